@@ -1,0 +1,215 @@
+"""Curvature laws: what the swimmer's body is told to do, with exact first and second time derivatives.
+
+A law is a sum of terms, each a wave in pitch (K2) or yaw (K3) of the backbone:
+
+    K(t, X) = sum over terms of  envelope(t) amplitude(X) sin(2 pi (X / wavelength - t / period) + phase)
+
+with each quotient dropped where its divisor is 0, and an envelope that is a sum of ramps. Equations (62) to (66) of
+Boyer, Porez and Leroyer, J. Nonlinear Sci. 20 (2010), 47-79, doi:10.1007/s00332-009-9050-5, are such a sum.
+
+Section axes (the paper's): 1 along the backbone from head to tail, 2 lateral, 3 up. K2 > 0 bends the tail down,
+K3 > 0 bends it towards +2. X runs from 0 at the nose to the body's length at the tail.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from eel_gaits.spline import natural_spline
+
+AXES = {"pitch": 1, "yaw": 2}  # name of the axis: its column in a curvature array
+MAXIMUM_TERMS = 1000
+
+
+@dataclass(frozen=True)
+class Ramp:
+    """`delta` times the C2 ramp f_r(t; start, end) of eq. (64): 0 before start, 1 after end, times in s."""
+
+    start: float
+    end: float
+    delta: float
+
+    def __post_init__(self):
+        for field in ("start", "end", "delta"):
+            object.__setattr__(self, field, _number(field, getattr(self, field)))
+        if not self.end > self.start:
+            raise ValueError(f"end must be > start ({self.start} s), got {self.end}")
+        if not math.isfinite(2.0 * math.pi * self.delta / (self.end - self.start) / (self.end - self.start)):
+            raise ValueError(f"end must lie far enough after start ({self.start} s) for finite rates, got {self.end}")
+
+    def value(self, t):
+        """The ramp and its first and second time derivatives at t [s]: three arrays of t's shape."""
+        duration = self.end - self.start
+        s = np.clip((np.asarray(t, dtype=float) - self.start) / duration, 0.0, 1.0)
+        moving = (s > 0.0) & (s < 1.0)  # the derivatives are exactly zero outside
+        angle = 2.0 * math.pi * s
+        value = self.delta * (s - np.sin(angle) / (2.0 * math.pi))
+        rate = np.where(moving, self.delta * (1.0 - np.cos(angle)) / duration, 0.0)
+        acceleration = np.where(moving, self.delta * 2.0 * math.pi * np.sin(angle) / duration / duration, 0.0)
+        return value, rate, acceleration
+
+
+@dataclass(frozen=True, kw_only=True)
+class Term:
+    """One wave or bend: envelope(t) amplitude(X) sin(2 pi (X / wavelength - t / period) + phase).
+
+    Attributes:
+        axis: "yaw" (K3) or "pitch" (K2).
+        amplitude: without knots, the coefficients of a polynomial in X [rad/m, rad/m^2, ...]; with knots, the values
+            [rad/m] there of a natural cubic spline, which goes on as a straight line beyond them.
+        knots: [m], strictly increasing, as many as amplitudes and at least 2; or none.
+        wavelength: [m]; 0: standing; negative: the wave runs towards the head.
+        period: [s]; 0: constant in time but for the envelope.
+        phase: [rad]; a constant bend has pi/2.
+        envelope: ramps, summed from 0; none: 1 at all times.
+    """
+
+    axis: str = "yaw"
+    amplitude: tuple[float, ...]
+    knots: tuple[float, ...] = ()
+    wavelength: float = 0.0
+    period: float = 0.0
+    phase: float = 0.0
+    envelope: tuple[Ramp, ...] = ()
+
+    def __post_init__(self):
+        if self.axis not in AXES:
+            raise ValueError(f"axis must be one of {', '.join(AXES)}, got {self.axis!r}")
+        for field in ("amplitude", "knots"):
+            object.__setattr__(self, field, _numbers(field, getattr(self, field)))
+        for field in ("wavelength", "period", "phase"):
+            object.__setattr__(self, field, _number(field, getattr(self, field)))
+        object.__setattr__(self, "envelope", tuple(self.envelope))
+        self._check_amplitude()
+        self._check_wave()
+
+    def _check_amplitude(self):
+        if not self.knots:
+            if not self.amplitude:
+                raise ValueError("amplitude must have at least 1 coefficient, got none")
+            return
+        if len(self.knots) < 2:
+            raise ValueError(f"knots must be none or at least 2, got {len(self.knots)}")
+        if len(self.amplitude) != len(self.knots):
+            raise ValueError(
+                f"amplitude must have one value per knot ({len(self.knots)}), got {len(self.amplitude)} values"
+            )
+        if not all(after > before for before, after in zip(self.knots, self.knots[1:])):
+            raise ValueError(f"knots must be strictly increasing [m], got {list(self.knots)}")
+        with np.errstate(all="ignore"):
+            if not np.all(np.isfinite(self.amplitude_at(self.knots))):
+                raise ValueError(f"knots must lie far enough apart for a finite spline, got {list(self.knots)}")
+
+    def _check_wave(self):
+        if self.period < 0.0:
+            raise ValueError(f"period must be >= 0 s, got {self.period}")
+        if self.period and self.period < 1e-100:
+            raise ValueError(f"period must be 0 or long enough for finite rates, got {self.period}")
+        if self.wavelength and abs(self.wavelength) < 1e-100:
+            raise ValueError(f"wavelength must be 0 or long enough for a finite wave number, got {self.wavelength}")
+        for ramp in self.envelope:
+            if not isinstance(ramp, Ramp):
+                raise ValueError(f"envelope must hold Ramps, got {ramp!r}")
+
+    @property
+    def wave_number(self):
+        """2 pi / wavelength [rad/m]; 0 for a standing term."""
+        return 2.0 * math.pi / self.wavelength if self.wavelength else 0.0
+
+    @property
+    def angular_frequency(self):
+        """2 pi / period [rad/s]; 0 for a term that is constant in time but for its envelope."""
+        return 2.0 * math.pi / self.period if self.period else 0.0
+
+    def amplitude_at(self, x):
+        """The amplitude [rad/m], shape (len(x),), at the stations x [m], shape (len(x),)."""
+        x = np.asarray(x, dtype=float)
+        if self.knots:
+            return natural_spline(self.knots, self.amplitude, x)
+        return np.polynomial.polynomial.polyval(x, self.amplitude)
+
+    def envelope_at(self, t):
+        """The envelope [1] and its first and second time derivatives at t [s]: three arrays of t's shape."""
+        if not self.envelope:
+            zero = np.zeros_like(np.asarray(t, dtype=float))
+            return zero + 1.0, zero, zero
+        return tuple(np.sum([ramp.value(t) for ramp in self.envelope], axis=0))
+
+    def curvature(self, time, x):
+        """This term's curvature [rad/m], rate [rad/m/s] and acceleration [rad/m/s^2], each of shape (len(x),)."""
+        x = np.asarray(x, dtype=float)
+        amplitude = self.amplitude_at(x)
+        envelope, envelope_rate, envelope_acceleration = self.envelope_at(time)
+        frequency = self.angular_frequency
+        angle = self.wave_number * x - frequency * time + self.phase
+        sine, cosine = np.sin(angle), np.cos(angle)
+        value = amplitude * envelope * sine
+        rate = amplitude * (envelope_rate * sine - envelope * frequency * cosine)
+        acceleration = amplitude * (
+            (envelope_acceleration - envelope * frequency**2) * sine - 2.0 * envelope_rate * frequency * cosine
+        )
+        return value, rate, acceleration
+
+
+@dataclass(frozen=True, init=False)
+class Law:
+    """A curvature law: the sum of its terms. No term at all: the straight body.
+
+    Attributes:
+        terms: at most 1000.
+        name: what the law is called in messages and plots.
+        transition: [s], over which a running swimmer takes the law on; 0: the receiver's own default.
+    """
+
+    terms: tuple[Term, ...]
+    name: str
+    transition: float
+
+    def __init__(self, *terms, name="law", transition=0.0):
+        if len(terms) > MAXIMUM_TERMS:
+            raise ValueError(f"terms must be at most {MAXIMUM_TERMS}, got {len(terms)}")
+        for index, term in enumerate(terms):
+            if not isinstance(term, Term):
+                raise ValueError(f"terms[{index}] must be a Term, got {term!r}")
+        transition = _number("transition", transition)
+        if transition < 0.0:
+            raise ValueError(f"transition must be >= 0 s, got {transition}")
+        object.__setattr__(self, "terms", tuple(terms))
+        object.__setattr__(self, "name", str(name))
+        object.__setattr__(self, "transition", transition)
+
+    def curvature(self, time, x):
+        """Curvature, its rate and its acceleration at one time.
+
+        Args:
+            time: [s], the law's own time.
+            x: [m], shape (M,), arc length from the nose.
+
+        Returns:
+            value [rad/m], rate [rad/m/s], acceleration [rad/m/s^2], each of shape (M, 3), section axes: column 0 is
+            zero, 1 is pitch (K2), 2 is yaw (K3).
+        """
+        x = np.atleast_1d(np.asarray(x, dtype=float))
+        total = np.zeros((3, x.size, 3))
+        for term in self.terms:
+            total[:, :, AXES[term.axis]] += term.curvature(time, x)
+        return total[0], total[1], total[2]
+
+
+def _number(name, value):
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name} must be a number, got {value!r}") from None
+    if not math.isfinite(number):
+        raise ValueError(f"{name} must be finite, got {number}")
+    return number
+
+
+def _numbers(name, values):
+    try:
+        values = tuple(values)
+    except TypeError:
+        raise ValueError(f"{name} must be a row of numbers, got {values!r}") from None
+    return tuple(_number(f"{name}[{index}]", value) for index, value in enumerate(values))

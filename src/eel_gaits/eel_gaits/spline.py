@@ -1,0 +1,69 @@
+"""Natural cubic splines, for whole rows of values at once.
+
+Through the knots x_0 < ... < x_(n-1) runs the piecewise cubic s with continuous s, s', s'' and s'' = 0 at both end
+knots. Its second derivatives M_i at the knots ("moments") solve the tridiagonal system
+
+    h_(i-1) M_(i-1) + 2 (h_(i-1) + h_i) M_i + h_i M_(i+1) = 6 (d_i - d_(i-1)),   h_i = x_(i+1) - x_i,
+    d_i = (s_(i+1) - s_i) / h_i,   i = 1 ... n-2,   M_0 = M_(n-1) = 0
+
+(de Boor, A Practical Guide to Splines, 1978, chapter IV). Beyond its end knots the spline goes on as a straight line.
+"""
+
+import numpy as np
+
+
+def natural_spline(knots, values, x):
+    """Evaluate the natural cubic splines through (knots, values) at x.
+
+    The result is linear in the values, so `natural_spline(knots, numpy.eye(n), x).T` is the matrix, shape (m, n), that
+    takes values at the knots to values at x.
+
+    Args:
+        knots: [m], shape (n,), n >= 2, strictly increasing.
+        values: [any], shape (..., n); one spline per row.
+        x: [m], shape (m,), where to evaluate; outside the knots too.
+
+    Returns:
+        [unit of the values], shape (..., m).
+    """
+    knots, values, x = (np.asarray(array, dtype=float) for array in (knots, values, x))
+    if knots.ndim != 1 or knots.size < 2:
+        raise ValueError(f"knots must be a row of at least 2 numbers, got shape {knots.shape}")
+    if not np.all(np.isfinite(knots)) or not np.all(np.diff(knots) > 0.0):
+        raise ValueError(f"knots must be finite and strictly increasing, got {knots.tolist()}")
+    if values.ndim < 1 or values.shape[-1] != knots.size:
+        raise ValueError(f"values must have {knots.size} entries per row, one for each knot, got shape {values.shape}")
+
+    spacing = np.diff(knots)
+    slopes = np.diff(values, axis=-1) / spacing
+    moments = _moments(spacing, slopes)
+    start_slopes = slopes - spacing * (2.0 * moments[..., :-1] + moments[..., 1:]) / 6.0
+
+    inside = np.clip(x, knots[0], knots[-1])
+    piece = np.clip(np.searchsorted(knots, inside, side="right") - 1, 0, knots.size - 2)
+    step = inside - knots[piece]
+    cubic = (moments[..., piece + 1] - moments[..., piece]) / (6.0 * spacing[piece])
+    result = values[..., piece] + step * (
+        start_slopes[..., piece] + step * (0.5 * moments[..., piece] + step * cubic)
+    )
+    end_slope = slopes[..., -1] + spacing[-1] * moments[..., -2] / 6.0
+    return (
+        result
+        + start_slopes[..., :1] * np.minimum(x - knots[0], 0.0)
+        + end_slope[..., np.newaxis] * np.maximum(x - knots[-1], 0.0)
+    )
+
+
+def _moments(spacing, slopes):
+    """Second derivatives at the knots, shape (..., n), by elimination without pivoting (diagonally dominant)."""
+    count = spacing.size + 1
+    moments = np.zeros(slopes.shape[:-1] + (count,))
+    right_side = 6.0 * np.diff(slopes, axis=-1)
+    pivots = 2.0 * (spacing[:-1] + spacing[1:])
+    for row in range(1, count - 2):
+        factor = spacing[row] / pivots[row - 1]
+        pivots[row] -= factor * spacing[row]
+        right_side[..., row] -= factor * right_side[..., row - 1]
+    for row in range(count - 3, -1, -1):
+        moments[..., row + 1] = (right_side[..., row] - spacing[row + 1] * moments[..., row + 2]) / pivots[row]
+    return moments
