@@ -1,0 +1,270 @@
+"""The swimmer's mechanics a second time, slow and plain: the independent check of the package's kernel.
+
+It starts from the kinetic energy of body and fluid (eqs 16, 36 of Boyer, Porez & Leroyer 2010),
+
+    T(K, dK/dt, mu) = 1/2 integral eta . (J_b + J_f) eta dX,        eta(X) = twist of the section X, mu = eta(0),
+
+and never writes an acceleration field. The momentum of the whole is dT/dmu and its matrix d2T/dmu2, both by
+polarisation (exact, as T is quadratic in mu); time derivatives are complex steps along the motion
+(K + i h dK/dt, ...). The head's acceleration is eq. (60); the internal wrench is eq. (50) integrated in the strong
+form from the nose to the tail, so that the tail's boundary condition (51) is left over as a check.
+
+Frames: the axes of the head at the instant, about the head, unless a name says `section` or `world`. Velocities are
+relative to the water. Arrays over X have shape (N, 3). Semi-axes as in the paper: `a` along E3, `b` along E2.
+"""
+
+from types import SimpleNamespace
+
+import numpy as np
+from reference_space import Space
+from scipy.integrate import solve_ivp
+
+STEP = 1e-30  # of the complex steps
+E1 = np.array([1.0, 0.0, 0.0])
+DRAG_ROLL, DRAG_LATERAL, DRAG_VERTICAL, NOSE_ADDED_MASS, NOSE_PRESSURE = 1.0, 1.98, 1.0, 0.32, 0.036
+
+
+def scene(**changes):
+    """The switches with their defaults; any object with these attributes does."""
+    defaults = dict(reactive=True, resistive=True, friction="printed", nose=True, perimeter="ellipse",
+                    added_mass="corrected", tail_pressure="lumped", current=(0.0, 0.0, 0.0),
+                    density=None, fluid_density=1000.0, viscosity=1e-6)  # fmt: skip
+    return SimpleNamespace(**{**defaults, **changes})
+
+
+def boyer_body():
+    """The robot of section 7.2.1."""
+
+    def cap(x):  # radius of the cylinder and of the half-ellipsoid that covers it
+        return np.where(x < 0.05, np.sqrt(np.maximum(x * (0.1 - x), 0.0)), 0.05)
+
+    def width_factor(x):
+        return -(np.sin(np.pi * x - np.pi / 2) + 1) / 6 - x**2 / 8 + 0.5
+
+    def height_factor(x):
+        middle = 1 - (np.sin(np.pi * (20 * x - 4) / 11 - np.pi / 2) + 1) / 5
+        return np.where(x < 0.2, 1.0, np.where(x < 0.75, middle, 0.6))
+
+    return SimpleNamespace(
+        half_width=lambda x: cap(x) * width_factor(x),
+        half_height=lambda x: cap(x) * height_factor(x),
+        kinks=(0.0, 0.05, 0.2, 0.75, 1.0), nose=(0.025, 0.05, 0.05), density=1000.0)  # fmt: skip
+
+
+class Reference:
+    """One body in one scene. `motion` below is (K, dK/dt, d2K/dt2, mu): curvature fields (N, 3) and head twist (6,)."""
+
+    def __init__(self, body, settings=None, **space):
+        self.scene = settings = settings or scene()
+        self.space = Space(body.kinks, **space)
+        self.length = body.kinks[-1]
+        at_tail = np.array([self.length])
+        self.a, self.b = body.half_height(self.space.x), body.half_width(self.space.x)
+        density = body.density if settings.density is None else settings.density
+        self.water = settings.fluid_density
+        area = np.pi * self.a * self.b
+        J2, J3 = area * self.a**2 / 4, area * self.b**2 / 4
+        self.inertia_body = density * np.stack([J2 + J3, J2, J3, area, area, area], axis=1)  # diagonal of J_b, (N, 6)
+        self.inertia_fluid = self._added(self.a, self.b)
+        self.tail_added = self._added(body.half_height(at_tail), body.half_width(at_tail))[0]
+        nose = np.prod(body.nose), body.nose[0] * body.nose[1]
+        self.nose_mass = self.water * np.pi * NOSE_ADDED_MASS * nose[0] * (settings.reactive and settings.nose)
+        self.nose_drag = np.pi * NOSE_PRESSURE * nose[1] * (settings.resistive and settings.nose)
+
+    def _added(self, a, b):
+        """Diagonal of J_f, eq. (37): the semi-axis perpendicular to the motion counts (as printed: the one along it)."""
+        lateral, vertical = (a, b) if self.scene.added_mass == "corrected" else (b, a)
+        zero = np.zeros_like(a)
+        columns = (a**2 - b**2) ** 2 / 8, zero, zero, zero, lateral**2, vertical**2
+        return self.scene.reactive * self.water * np.pi * np.stack(columns, axis=1)
+
+    # -- kinematics -------------------------------------------------------------------------------------------------
+    def configuration(self, K):
+        """Rotations (N, 3, 3) and positions (N, 3): R' = R hat(K) by Picard's iteration, r' = R E1, eq. (25)."""
+        hat, count = _hat(K), len(K)
+        R = increment = np.broadcast_to(np.eye(3), hat.shape)
+        for _ in range(200):
+            increment = (self.space.cumulate @ (increment @ hat).reshape(count, 9)).reshape(count, 3, 3)
+            R = R + increment
+            if np.max(np.abs(increment)) < 1e-20:
+                break
+        return R, self.space.cumulate @ R[:, :, 0]
+
+    def shape_velocity(self, R, K_rate):
+        """Angular and linear velocities (N, 3) of the sections while the head is held."""
+        omega = self.space.cumulate @ np.einsum("xij,xj->xi", R, K_rate)
+        return omega, self.space.cumulate @ np.cross(omega, R[:, :, 0])
+
+    def twists(self, K, K_rate, mu):
+        """Section twists eta(X), (..., N, 6), for head twists mu (..., 6)."""
+        (R, r), mu = self.configuration(K), np.asarray(mu)
+        omega, velocity = self.shape_velocity(R, K_rate)
+        turn, push = mu[..., None, :3], mu[..., None, 3:]
+        fields = omega + turn, velocity + push + np.cross(turn, r)
+        return np.concatenate([np.einsum("xji,...xj->...xi", R, field) for field in fields], axis=-1)
+
+    # -- energy, momentum, balance ----------------------------------------------------------------------------------
+    def energies(self, K, K_rate, mu):
+        """Kinetic energy of body and of fluid, eqs (16), (36), for each head twist of mu (..., 6)."""
+        eta = self.twists(K, K_rate, mu)
+        return tuple(np.einsum("x,xk,...xk->...", self.space.weights / 2, inertia, eta**2)
+                     for inertia in (self.inertia_body, self.inertia_fluid))  # fmt: skip
+
+    def momentum(self, K, K_rate, mu, part=slice(None)):
+        """dT/dmu = (L, P), (6,), of body and fluid, or of one of them; exact central differences of a quadratic form."""
+        shifted = np.concatenate([mu + np.eye(6), mu - np.eye(6)])
+        energy = sum(self.energies(K, K_rate, shifted)[part])
+        return (energy[:6] - energy[6:]) / 2
+
+    def momentum_rate(self, K, K_rate, K_acceleration, mu, mu_rate, part=slice(None)):
+        """Time derivative of the momentum in axes that rest, about a point that rests and coincides with the head."""
+        step = 1j * STEP
+        L, P = np.split(self.momentum(K, K_rate, mu, part), 2)
+        moved = self.momentum(K + step * K_rate, K_rate + step * K_acceleration, mu + step * mu_rate, part)
+        return moved.imag / STEP + np.concatenate([np.cross(mu[:3], L) + np.cross(mu[3:], P), np.cross(mu[:3], P)])
+
+    def mass_matrix(self, K):
+        """d2T/dmu2 (6, 6) by polarisation, without the nose's added mass."""
+        rest, basis = np.zeros_like(K), np.eye(6)
+        pairs = sum(self.energies(K, rest, (basis[:, None] + basis[None, :]).reshape(36, 6))).reshape(6, 6)
+        single = sum(self.energies(K, rest, basis))
+        return pairs - single[:, None] - single[None, :]
+
+    def tail_wrench(self, R, r, eta):
+        """What the tail gives to the wake, right-hand side of eq. (60): wrench about the head; and T_f at the tail."""
+        energy = self.tail_added @ eta**2 / 2
+        section = eta[3] * self.tail_added * eta - energy * np.concatenate([np.zeros(3), E1])
+        torque, force = R @ section[:3], R @ section[3:]
+        return np.concatenate([torque + np.cross(r, force), force]), energy
+
+    def resistive(self, eta):
+        """Resistive torque and force per length (N, 3), section axes, of section 7.2.1."""
+        a, b, settings = self.a, self.b, self.scene
+        perimeter = np.pi * (1.5 * (a + b) - np.sqrt(a * b)) * (0.5 if settings.perimeter == "printed" else 1.0)
+        square = eta * np.abs(eta)
+        friction = skin_friction(np.abs(eta[:, 3]) * self.space.x / settings.viscosity, settings.friction)
+        factors = -0.5 * self.water * settings.resistive
+        roll = DRAG_ROLL * np.pi * (a**2 - b**2) ** 2 * square[:, 0]
+        forces = friction * perimeter, 2 * DRAG_LATERAL * a, 2 * DRAG_VERTICAL * b
+        return factors * np.outer(roll, E1), factors * np.stack(forces, axis=1) * square[:, 3:]
+
+    def nose_force(self, mu, mu_rate):
+        """Axial force (N) on the nose: added mass times the true acceleration, and pressure drag."""
+        acceleration = mu_rate[3] + np.cross(mu[:3], mu[3:])[0]
+        return -self.nose_mass * acceleration - 0.5 * self.water * self.nose_drag * mu[3] * abs(mu[3])
+
+    def loads(self, K, K_rate, mu):
+        """Everything on the right of eq. (60) but the nose: wrench (6,) about the head."""
+        R, r = self.configuration(K)
+        eta = self.twists(K, K_rate, mu)
+        torque, force = (np.einsum("xij,xj->xi", R, load) for load in self.resistive(eta))
+        resistive = self.space.weights @ np.concatenate([torque + np.cross(r, force), force], axis=1)
+        ends = (self.at_tail(field) for field in (R.reshape(-1, 9), r, eta))
+        tail_R, tail_r, tail_eta = ends
+        return resistive + self.tail_wrench(tail_R.reshape(3, 3), tail_r, tail_eta)[0]
+
+    def at_tail(self, field):
+        return self.space.evaluate(field, self.length)[0]
+
+    def acceleration(self, K, K_rate, K_acceleration, mu):
+        """Rate of the head's twist (6,): eq. (60), in which the unknown enters linearly."""
+        matrix, load = self.mass_matrix(K), self.loads(K, K_rate, mu)
+        still = np.zeros(6)
+        matrix[3, 3] += self.nose_mass
+        load[3] += self.nose_force(mu, still)
+        return np.linalg.solve(matrix, load - self.momentum_rate(K, K_rate, K_acceleration, mu, still))
+
+    def fluid_wrench(self, K, K_rate, K_acceleration, mu, mu_rate):
+        """All of the fluid's action on the body (6,), about the head: eq. (61), resistive loads and nose."""
+        wrench = self.loads(K, K_rate, mu)
+        wrench[3] += self.nose_force(mu, mu_rate)
+        return wrench - self.momentum_rate(K, K_rate, K_acceleration, mu, mu_rate, slice(1, 2))
+
+    # -- internal wrench: strong form (50), from the nose to the tail ------------------------------------------------
+    def fields(self, K, K_rate, K_acceleration, mu, mu_rate):
+        """Internal torque and force, loads, energies, at the nodes; and what is left of the tail's condition (51)."""
+
+        def density(K, K_rate, mu, turn):  # of sigma_b, p_b, sigma_f, p_f in resting axes, (4, N, 3)
+            R, eta = turn @ self.configuration(K)[0], self.twists(K, K_rate, mu)
+            kinetic = np.concatenate([self.inertia_body * eta, self.inertia_fluid * eta], axis=1).reshape(-1, 4, 3)
+            return np.einsum("xij,xpj->pxi", R, kinetic)
+
+        step, integrate = 1j * STEP, self.space.cumulate
+        sigma_b, p_b, sigma_f, p_f = density(K, K_rate, mu, np.eye(3))
+        rates = density(K + step * K_rate, K_rate + step * K_acceleration, mu + step * mu_rate,
+                        np.eye(3) + step * _hat(mu[None, :3])[0]).imag / STEP  # fmt: skip
+        (R, _), eta = self.configuration(K), self.twists(K, K_rate, mu)
+        to_axes, to_section = (lambda f: np.einsum("xij,xj->xi", R, f)), (lambda f: np.einsum("xji,xj->xi", R, f))
+        resistive_torque, resistive_force = self.resistive(eta)
+        t1, V1, energy = R[:, :, 0], eta[:, 3:4], np.sum(self.inertia_fluid * eta**2, axis=1) / 2
+        nose = self.nose_force(mu, mu_rate)
+        n_sum = -nose * E1 + integrate @ (rates[1] + rates[3] - to_axes(resistive_force))  # n + V1 p_f
+        c_slope = rates[0] + rates[2] + np.cross(to_axes(eta[:, 3:]), p_f) - np.cross(t1, n_sum)
+        c_sum = integrate @ (c_slope - to_axes(resistive_torque))  # c + V1 sigma_f
+        force, torque = to_section(n_sum - V1 * p_f), to_section(c_sum - V1 * sigma_f)
+        tail_energy = self.tail_added @ self.at_tail(eta) ** 2 / 2
+        tail_residual = np.concatenate([self.at_tail(torque), self.at_tail(force) + tail_energy * E1])
+        flux = V1 * p_f
+        if self.scene.tail_pressure == "distributed":
+            force, flux, tail_energy = force + energy[:, None] * E1, flux - energy[:, None] * t1, 0.0
+        return SimpleNamespace(
+            torque=torque, force=force, tail_residual=tail_residual, resistive_force=resistive_force,
+            fluid_force=to_section(self.space.evaluate(flux, self.space.x, derivative=True) - rates[3]) + resistive_force,
+            tail_force=-tail_energy * E1, nose_force=nose * E1, fluid_energy_density=energy,
+            actuator_power=-self.space.weights @ np.sum(torque * K_rate, axis=1),
+            wake_power=self.at_tail(eta)[3] * (self.tail_added @ self.at_tail(eta) ** 2) / 2,
+            nose_power=nose * mu[3],
+            drag_power=self.space.weights @ np.sum(resistive_torque * eta[:, :3] + resistive_force * eta[:, 3:], axis=1))  # fmt: skip
+
+    # -- motion in time ---------------------------------------------------------------------------------------------
+    def march(self, law, times, position=(0, 0, 0), orientation=(0, 0, 0, 1), twist=(0,) * 6, rtol=1e-10, breaks=()):
+        """Head position (T, 3), quaternion x y z w (T, 4), twist (T, 6) at the times, by DOP853 restarted at `breaks`."""
+        current = np.asarray(self.scene.current, float)
+
+        def rates(time, state):
+            q, mu = state[3:7] / np.linalg.norm(state[3:7]), state[7:].copy()
+            world = rotation(q)
+            drift = world.T @ current
+            mu[3:] -= drift  # relative to the water
+            mu_rate = self.acceleration(*law.curvature(time, self.space.x), mu)
+            mu_rate[3:] -= np.cross(mu[:3], drift)
+            vector, scalar = q[3] * mu[:3] + np.cross(q[:3], mu[:3]), -q[:3] @ mu[:3]
+            return np.concatenate([world @ state[10:13], vector / 2, [scalar / 2], mu_rate])
+
+        state, out = np.concatenate([position, orientation, twist]).astype(float), []
+        knots = sorted({*times, *(b for b in breaks if times[0] < b < times[-1])})
+        for start, end in zip([knots[0], *knots[:-1]], knots):
+            if end > start:
+                run = solve_ivp(rates, (start, end), state, "DOP853", rtol=rtol, atol=rtol / 10, max_step=0.05)
+                state = run.y[:, -1]
+            if end in times:
+                out.append(state)
+        out = np.array(out)
+        return out[:, :3], out[:, 3:7] / np.linalg.norm(out[:, 3:7], axis=1)[:, None], out[:, 7:]
+
+
+def skin_friction(reynolds, law):
+    """c_f of section 7.2.1 against the local Reynolds number; zero at rest."""
+    safe = np.where(reynolds > 0, reynolds, 1.0)
+    laminar, turbulent = 0.664 / np.sqrt(safe), 0.059 / safe**0.2
+    if law == "none":
+        return np.zeros_like(safe)
+    if law == "laminar":
+        share = np.zeros_like(safe)
+    elif law == "printed":
+        share = (safe > 8e4).astype(float)
+    else:
+        s = np.clip(np.log(safe / 4e4) / np.log(4.0), 0.0, 1.0)
+        share = s - np.sin(2 * np.pi * s) / (2 * np.pi)
+    return np.where(reynolds > 0, (1 - share) * laminar + share * turbulent, 0.0)
+
+
+def rotation(q):
+    """Rotation matrix (3, 3) of a unit quaternion x y z w."""
+    skew = _hat(np.asarray(q, float)[None, :3])[0]
+    return np.eye(3) + 2 * q[3] * skew + 2 * skew @ skew
+
+
+def _hat(vectors):
+    """Cross-product matrices (N, 3, 3)."""
+    return np.cross(vectors[:, None, :], np.eye(3)[None, :, :]).transpose(0, 2, 1)
