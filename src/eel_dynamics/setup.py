@@ -1,0 +1,23 @@
+from setuptools import find_packages, setup
+
+setup(
+    name="eel_dynamics",
+    version="0.1.0",
+    packages=find_packages(),
+    data_files=[
+        ("share/ament_index/resource_index/packages", ["resource/eel_dynamics"]),
+        ("share/eel_dynamics", ["package.xml"]),
+    ],
+    install_requires=["setuptools"],
+    zip_safe=True,
+    maintainer="Eel simulator maintainers",
+    maintainer_email="maintainers@eel-simulator.example.org",
+    description="Dynamics of elongated swimmers in water (Boyer, Porez and Leroyer, 2010), as a library and as a node.",
+    license="Apache-2.0",
+    entry_points={
+        "console_scripts": [
+            "dynamics = eel_dynamics.node:main",
+            "simulate = eel_dynamics.command:main",
+        ]
+    },
+)

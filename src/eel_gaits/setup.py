@@ -1,0 +1,22 @@
+from setuptools import find_packages, setup
+
+setup(
+    name="eel_gaits",
+    version="0.1.0",
+    packages=find_packages(),
+    data_files=[
+        ("share/ament_index/resource_index/packages", ["resource/eel_gaits"]),
+        ("share/eel_gaits", ["package.xml"]),
+    ],
+    install_requires=["setuptools"],
+    zip_safe=True,
+    maintainer="Eel simulator maintainers",
+    maintainer_email="maintainers@eel-simulator.example.org",
+    description="Gaits of elongated swimmers: closed-form curvature laws, and the node that publishes them.",
+    license="Apache-2.0",
+    entry_points={
+        "console_scripts": [
+            "gait_generator = eel_gaits.node:main",
+        ]
+    },
+)

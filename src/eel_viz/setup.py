@@ -1,0 +1,24 @@
+from setuptools import find_packages, setup
+
+setup(
+    name="eel_viz",
+    version="0.1.0",
+    packages=find_packages(),
+    data_files=[
+        ("share/ament_index/resource_index/packages", ["resource/eel_viz"]),
+        ("share/eel_viz", ["package.xml"]),
+    ],
+    install_requires=["setuptools"],
+    zip_safe=True,
+    maintainer="Eel simulator maintainers",
+    maintainer_email="maintainers@eel-simulator.example.org",
+    description="Shows and records a swimmer: every topic into Rerun or a rosbag2 file.",
+    license="Apache-2.0",
+    entry_points={
+        "console_scripts": [
+            "visualiser = eel_viz.node:main",
+            "record = eel_viz.record:main",
+            "echo = eel_viz.echo:main",
+        ]
+    },
+)

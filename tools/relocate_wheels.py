@@ -1,0 +1,36 @@
+"""Make the ROS wheels of this virtual environment usable by CMake, and keep colcon out of it.
+
+The wheels' CMake files name the Python of the machine that built them (/opt/python/cp3xx-cp3xx/...), which does not
+exist here; CMake then stops with "non-existent path". They are replaced by this interpreter's own include folders.
+"""
+
+import re
+import sys
+import sysconfig
+from pathlib import Path
+
+import numpy
+
+BUILDER_INCLUDE = re.compile(r"/opt/python/cp3\d+-cp3\d+/include/python3\.\d+")
+BUILDER_NUMPY = re.compile(r"/opt/python/cp3\d+-cp3\d+/lib/python3\.\d+/site-packages/numpy/_?core/include")
+BUILDER_PREFIX = re.compile(r"/opt/python/cp3\d+-cp3\d+")
+
+
+def main() -> None:
+    prefix = Path(sys.prefix)
+    include = sysconfig.get_paths()["include"]
+    changed = 0
+    for path in (prefix / "share").rglob("*.cmake"):
+        text = path.read_text()
+        fixed = BUILDER_INCLUDE.sub(include, BUILDER_NUMPY.sub(numpy.get_include(), text))
+        if fixed != text:
+            path.write_text(fixed)
+            changed += 1
+    for path in (prefix / "share/ament_index/resource_index/parent_prefix_path").iterdir():
+        path.write_text(BUILDER_PREFIX.sub(str(prefix), path.read_text()))
+    (prefix / "COLCON_IGNORE").touch()
+    print(f"paths set right in {changed} CMake files")
+
+
+if __name__ == "__main__":
+    main()
