@@ -18,15 +18,19 @@ def falling_law():
 FALLING_BREAKS = (1.0, 2.0, 3.0, 6.0, 7.0, 8.0)  # s, where the third derivative of the law jumps
 
 
-def random_law(rng, pitch=True, size=1.0, length=1.0):
+SPLINE_KNOTS = (0.0, 1 / 3, 2 / 3, 1.0)  # in lengths
+
+
+def random_law(rng, pitch=True, size=1.0, length=1.0, spline=True):
     """Two waves and a bend in yaw, and the same in pitch: all kinds of term, at a size of `size` rad over the body."""
     terms = []
     for axis in ("yaw", "pitch") if pitch else ("yaw",):
         coefficients = size * rng.normal(size=3) / length ** np.arange(1, 4)
         terms.append(Term(axis=axis, amplitude=tuple(coefficients), wavelength=length * rng.uniform(0.6, 2.0),
                           period=rng.uniform(0.5, 2.0), phase=rng.uniform(0, 6)))  # fmt: skip
-        terms.append(Term(axis=axis, amplitude=tuple(size * rng.normal(size=4) / length), period=rng.uniform(1, 3),
-                          knots=tuple(length * np.array([0.0, 1 / 3, 2 / 3, 1.0]))))  # fmt: skip
+        if spline:  # its third derivative jumps at the inner knots
+            terms.append(Term(axis=axis, amplitude=tuple(size * rng.normal(size=4) / length), period=rng.uniform(1, 3),
+                              knots=tuple(length * np.array(SPLINE_KNOTS))))  # fmt: skip
         terms.append(Term(axis=axis, amplitude=(size * rng.normal() / length,), phase=HALF_PI,
                           envelope=(Ramp(0.1, 1.3, 1.0), Ramp(0.4, 2.0, -0.7))))  # fmt: skip
     return Law(*terms, name="random")

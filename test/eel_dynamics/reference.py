@@ -54,9 +54,9 @@ def boyer_body():
 class Reference:
     """One body in one scene. `motion` below is (K, dK/dt, d2K/dt2, mu): curvature fields (N, 3) and head twist (6,)."""
 
-    def __init__(self, body, settings=None, **space):
+    def __init__(self, body, settings=None, splits=(), **space):
         self.scene = settings = settings or scene()
-        self.space = Space(body.kinks, **space)
+        self.space = Space(sorted({*body.kinks, *splits}), **space)  # `splits`: kinks of the law
         self.length = body.kinks[-1]
         at_tail = np.array([self.length])
         self.a, self.b = body.half_height(self.space.x), body.half_width(self.space.x)
