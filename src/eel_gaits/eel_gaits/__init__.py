@@ -1,6 +1,37 @@
 """Curvature laws of elongated swimmers, and a ROS 2 node that publishes them. Nothing imported here needs ROS."""
 
+from eel_gaits.gaits import (
+    GAITS,
+    backward,
+    falling,
+    gait,
+    helix,
+    kern_efficient,
+    kern_fast,
+    rising,
+    rolling,
+    still,
+    straight,
+    turning,
+)
 from eel_gaits.law import Law, Ramp, Term
 from eel_gaits.spline import natural_spline
 
-__all__ = ["Law", "Ramp", "Term", "natural_spline"]
+__all__ = [
+    "GAITS",
+    "Law",
+    "Ramp",
+    "Term",
+    "backward",
+    "falling",
+    "gait",
+    "helix",
+    "kern_efficient",
+    "kern_fast",
+    "natural_spline",
+    "rising",
+    "rolling",
+    "still",
+    "straight",
+    "turning",
+]

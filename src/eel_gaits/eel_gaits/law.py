@@ -16,6 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from eel_gaits.quantity import number
 from eel_gaits.spline import natural_spline
 
 AXES = {"pitch": 1, "yaw": 2}  # name of the axis: its column in a curvature array
@@ -32,7 +33,7 @@ class Ramp:
 
     def __post_init__(self):
         for field in ("start", "end", "delta"):
-            object.__setattr__(self, field, _number(field, getattr(self, field)))
+            object.__setattr__(self, field, number(field, getattr(self, field)))
         if not self.end > self.start:
             raise ValueError(f"end must be > start ({self.start} s), got {self.end}")
         if not math.isfinite(2.0 * math.pi * self.delta / (self.end - self.start) / (self.end - self.start)):
@@ -79,7 +80,7 @@ class Term:
         for field in ("amplitude", "knots"):
             object.__setattr__(self, field, _numbers(field, getattr(self, field)))
         for field in ("wavelength", "period", "phase"):
-            object.__setattr__(self, field, _number(field, getattr(self, field)))
+            object.__setattr__(self, field, number(field, getattr(self, field)))
         object.__setattr__(self, "envelope", tuple(self.envelope))
         self._check_amplitude()
         self._check_wave()
@@ -172,7 +173,7 @@ class Law:
         for index, term in enumerate(terms):
             if not isinstance(term, Term):
                 raise ValueError(f"terms[{index}] must be a Term, got {term!r}")
-        transition = _number("transition", transition)
+        transition = number("transition", transition)
         if transition < 0.0:
             raise ValueError(f"transition must be >= 0 s, got {transition}")
         object.__setattr__(self, "terms", tuple(terms))
@@ -197,19 +198,9 @@ class Law:
         return total[0], total[1], total[2]
 
 
-def _number(name, value):
-    try:
-        number = float(value)
-    except (TypeError, ValueError):
-        raise ValueError(f"{name} must be a number, got {value!r}") from None
-    if not math.isfinite(number):
-        raise ValueError(f"{name} must be finite, got {number}")
-    return number
-
-
 def _numbers(name, values):
     try:
         values = tuple(values)
     except TypeError:
         raise ValueError(f"{name} must be a row of numbers, got {values!r}") from None
-    return tuple(_number(f"{name}[{index}]", value) for index, value in enumerate(values))
+    return tuple(number(f"{name}[{index}]", value) for index, value in enumerate(values))

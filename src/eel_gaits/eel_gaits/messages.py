@@ -1,0 +1,75 @@
+"""Curvature laws as `eel_msgs/CurvatureLaw` messages, and back.
+
+Both sides use the paper's section axes, so nothing is turned here: K2 (pitch) > 0 bends the tail down, K3 (yaw) > 0 to
+the right. What a message holds is checked once, by `law_from_message`; its ValueError names the field and the value.
+"""
+
+from builtin_interfaces.msg import Time
+from eel_msgs import msg
+from std_msgs.msg import Header
+
+from eel_gaits.law import MAXIMUM_TERMS, Law, Ramp, Term
+
+FRAME = "base_link"
+AXIS_NUMBERS = {"pitch": msg.CurvatureTerm.PITCH, "yaw": msg.CurvatureTerm.YAW}
+AXIS_NAMES = {number: name for name, number in AXIS_NUMBERS.items()}
+
+
+def law_to_message(law, *, stamp=None):
+    """The law as a message; `stamp` (builtin_interfaces/Time) is where its own t = 0 lies, none: zero."""
+    return msg.CurvatureLaw(
+        header=Header(stamp=stamp or Time(), frame_id=FRAME),
+        name=law.name,
+        terms=[_term_to_message(term) for term in law.terms],
+        transition=law.transition,
+    )
+
+
+def law_from_message(message):
+    """The `Law` that a message holds; its header is left to the caller.
+
+    ValueError, such as "terms[2].period must be >= 0 s, got -1.0", where the law is not finite, its arrays do not fit,
+    a period is negative, an axis is unknown, or there are more than 1000 terms.
+    """
+    if len(message.terms) > MAXIMUM_TERMS:
+        raise ValueError(f"terms must be at most {MAXIMUM_TERMS}, got {len(message.terms)}")
+    terms = [_term_from_message(term, f"terms[{index}]") for index, term in enumerate(message.terms)]
+    return Law(*terms, name=message.name, transition=message.transition)
+
+
+def _term_to_message(term):
+    return msg.CurvatureTerm(
+        axis=AXIS_NUMBERS[term.axis],
+        amplitude=term.amplitude,
+        knots=term.knots,
+        wavelength=term.wavelength,
+        period=term.period,
+        phase=term.phase,
+        envelope=[msg.Ramp(start=ramp.start, end=ramp.end, delta=ramp.delta) for ramp in term.envelope],
+    )
+
+
+def _term_from_message(term, place):
+    if term.axis not in AXIS_NAMES:
+        known = " or ".join(f"{number} ({name})" for number, name in AXIS_NAMES.items())
+        raise ValueError(f"{place}.axis must be {known}, got {term.axis}")
+    envelope = [_ramp_from_message(ramp, f"{place}.envelope[{index}]") for index, ramp in enumerate(term.envelope)]
+    try:
+        return Term(
+            axis=AXIS_NAMES[term.axis],
+            amplitude=term.amplitude,
+            knots=term.knots,
+            wavelength=term.wavelength,
+            period=term.period,
+            phase=term.phase,
+            envelope=envelope,
+        )
+    except ValueError as error:
+        raise ValueError(f"{place}.{error}") from None
+
+
+def _ramp_from_message(ramp, place):
+    try:
+        return Ramp(ramp.start, ramp.end, ramp.delta)
+    except ValueError as error:
+        raise ValueError(f"{place}.{error}") from None

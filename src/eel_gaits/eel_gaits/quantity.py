@@ -1,0 +1,43 @@
+"""A number with its unit, bounds and one-line description, declared once and checked on entry.
+
+A parameter set is a frozen, keyword-only dataclass that derives from `Quantities` and whose fields are made by
+`quantity`. A ROS node declares its parameters from the same fields.
+"""
+
+import math
+from dataclasses import dataclass, field, fields
+
+
+def quantity(default, *, unit, description, minimum, maximum):
+    """A dataclass field that carries its own unit, description and inclusive bounds as metadata."""
+    metadata = {"unit": unit, "description": description, "minimum": minimum, "maximum": maximum}
+    return field(default=default, metadata=metadata)
+
+
+def number(name, value):
+    """`value` as a finite float; ValueError that names it otherwise. A bool or a text is not a number."""
+    try:
+        if isinstance(value, (bool, str, bytes)):
+            raise TypeError
+        result = float(value)
+    except (TypeError, ValueError, OverflowError):
+        raise ValueError(f"{name} must be a number, got {value!r}") from None
+    if not math.isfinite(result):
+        raise ValueError(f"{name} must be finite, got {result}")
+    return result
+
+
+@dataclass(frozen=True, kw_only=True)
+class Quantities:
+    """Base of parameter sets: every field becomes a float within its bounds, or a ValueError names it."""
+
+    def __post_init__(self):
+        for entry in fields(self):
+            value = number(entry.name, getattr(self, entry.name))
+            unit = entry.metadata["unit"]
+            minimum, maximum = entry.metadata["minimum"], entry.metadata["maximum"]
+            if value < minimum:
+                raise ValueError(f"{entry.name} must be >= {minimum:g} {unit}, got {value:g}")
+            if value > maximum:
+                raise ValueError(f"{entry.name} must be <= {maximum:g} {unit}, got {value:g}")
+            object.__setattr__(self, entry.name, value)

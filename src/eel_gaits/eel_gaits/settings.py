@@ -1,0 +1,79 @@
+"""What the user of the gait generator has set: a gait, its numbers and the transition, and the law that follows.
+
+Settings never change; `changed` gives new ones, or a ValueError that says why not. Numbers are kept by name, so that one
+which the user has set carries over to another gait that has a number of that name; defaults do not.
+"""
+
+from dataclasses import dataclass, field, fields
+from types import MappingProxyType
+
+from eel_gaits.gaits import GAITS, find
+from eel_gaits.quantity import Quantities, quantity
+
+
+@dataclass(frozen=True, kw_only=True)
+class Transition(Quantities):
+    """How a receiver that is already moving takes the law on."""
+
+    transition: float = quantity(
+        0.0,
+        unit="s",
+        description="duration of the blend into the law; 0: the receiver's default",
+        minimum=0.0,
+        maximum=1e4,
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Settings:
+    """
+    Attributes:
+        gait: name of the gait.
+        chosen: what the user has set, by name; numbers of other gaits too.
+    """
+
+    gait: str = "falling"
+    chosen: dict[str, float] = field(default_factory=dict)
+
+    def __post_init__(self):
+        object.__setattr__(self, "chosen", MappingProxyType(dict(self.chosen)))
+        self.law()
+
+    @classmethod
+    def known_names(cls):
+        """Names of all that can be set, with any gait."""
+        numbers = {entry.name for make in GAITS.values() for entry in fields(make.numbers)}
+        return {"gait", "transition"} | numbers
+
+    @classmethod
+    def start(cls, overrides):
+        """Settings at start, from a mapping of name to value; names that no gait knows are left aside."""
+        known = {name: value for name, value in overrides.items() if name in cls.known_names()}
+        return cls(gait=known.pop("gait", cls.gait), chosen=known)
+
+    def changed(self, changes):
+        """Settings after the changes, a mapping of name to value, all or none of which are taken."""
+        changes = dict(changes)
+        gait = changes.pop("gait", self.gait)
+        own_names = ["transition", *(entry.name for entry in fields(find(gait).numbers))]
+        for name in changes:
+            if name not in own_names:
+                raise ValueError(f"gait {gait!r} has no parameter {name!r}, it has: {', '.join(own_names)}")
+        return Settings(gait=gait, chosen={**self.chosen, **changes})
+
+    def groups(self):
+        """The transition and the gait's numbers: two `Quantities`, what the user has set over the defaults."""
+        return tuple(
+            kind(**{entry.name: self.chosen[entry.name] for entry in fields(kind) if entry.name in self.chosen})
+            for kind in (Transition, find(self.gait).numbers)
+        )
+
+    def quantities(self):
+        """Yield (name, value, metadata) of each number that can be set with this gait."""
+        for group in self.groups():
+            for entry in fields(group):
+                yield entry.name, getattr(group, entry.name), entry.metadata
+
+    def law(self):
+        """The law that these settings ask for."""
+        return find(self.gait)(**{name: value for name, value, _ in self.quantities()})
