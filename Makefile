@@ -1,0 +1,30 @@
+# The two commands are `make demo` and `make test`; each does all the set-up itself, inside this folder.
+SHELL := /bin/bash
+.DEFAULT_GOAL := help
+.PHONY: help demo test build bench lint soak clean
+RUN := tools/run.sh
+
+help:   ## this list
+	@sed -n 's/^\([a-z]*\):[^#]*## */make \1\t/p' Makefile | expand -t 12
+
+demo: build   ## swim the falling gait through the three nodes; leaves out/falling.rrd and a summary
+	@$(RUN) python tools/demo.py
+
+test: build   ## all tests but the long ones (ARGS=... goes to pytest)
+	@$(RUN) python -m pytest -m "not soak" $(ARGS)
+
+soak: build   ## the long tests (ARGS=... goes to pytest)
+	@$(RUN) python -m pytest -m soak $(ARGS)
+
+bench: build   ## speed and accuracy figures (ARGS=NAME for one of them)
+	@$(RUN) python benchmarks/run.py $(ARGS)
+
+lint: build   ## ruff: rules and format
+	@$(RUN) ruff check .
+	@$(RUN) ruff format --check .
+
+build:   ## the virtual environment, the four packages, the compiled kernels (PYTHON=... chooses the Python)
+	@PYTHON="$(PYTHON)" tools/build.sh
+
+clean:   ## remove what build made; out/ stays
+	rm -rf .venv build install log

