@@ -272,7 +272,7 @@ def _start(numbers):
 def _check_order(numbers, earlier, later):
     before, after = getattr(numbers, earlier), getattr(numbers, later)
     if not after > before:
-        raise ValueError(f"{later} must be > {earlier} ({before:g} s), got {after:g}")
+        raise ValueError(f"{later} must be > {earlier} ({before:g} s), got {after}")
 
 
 def _pair(numbers, *, wavelength):

@@ -37,7 +37,7 @@ class Quantities:
             unit = entry.metadata["unit"]
             minimum, maximum = entry.metadata["minimum"], entry.metadata["maximum"]
             if value < minimum:
-                raise ValueError(f"{entry.name} must be >= {minimum:g} {unit}, got {value:g}")
+                raise ValueError(f"{entry.name} must be >= {minimum:g} {unit}, got {value}")
             if value > maximum:
-                raise ValueError(f"{entry.name} must be <= {maximum:g} {unit}, got {value:g}")
+                raise ValueError(f"{entry.name} must be <= {maximum:g} {unit}, got {value}")
             object.__setattr__(self, entry.name, value)

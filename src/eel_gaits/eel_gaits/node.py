@@ -1,0 +1,144 @@
+"""The gait generator: publishes the curvature law of a gait, and a new one whenever a parameter is set.
+
+`curvature_law` is transient local: a receiver that comes later gets the law too. Its stamp is the simulation time at
+which the gait began. Parameters of the same gait leave that time alone; another gait begins at now.
+"""
+
+import signal
+import sys
+import time
+
+import rclpy
+from builtin_interfaces.msg import Time
+from eel_msgs.msg import CurvatureLaw
+from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor, SetParametersResult
+from rclpy.clock import JumpThreshold
+from rclpy.duration import Duration
+from rclpy.exceptions import NameValidationException, ParameterException
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.signals import SignalHandlerOptions
+
+from eel_gaits.gaits import GAITS
+from eel_gaits.messages import law_to_message
+from eel_gaits.settings import Settings
+
+NAME = "gait_generator"
+DEFAULTS = ["--ros-args", "-p", "use_sim_time:=true", "--"]  # what the user says comes after, and wins
+
+
+class GaitGenerator(Node):
+    """Parameters `gait`, `transition` and the gait's own numbers; topic `curvature_law`."""
+
+    def __init__(self):
+        super().__init__(NAME, automatically_declare_parameters_from_overrides=True)
+        overrides = {name: parameter.value for name, parameter in self.get_parameters_by_prefix("").items()}
+        for name in overrides:
+            if name != "use_sim_time" and not self.describe_parameter(name).read_only:
+                self.undeclare_parameter(name)  # to be declared anew with its type and range
+        if not isinstance(self.get_parameter("use_sim_time").value, bool):
+            raise ValueError(f"use_sim_time must be true or false, got {overrides['use_sim_time']!r}")
+        self._settings = Settings.start(overrides)
+        self._plan = None  # in mid-change: the new Settings, or the reason of a refusal
+        self._stamp = Time()
+        quality = QoSProfile(
+            depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL
+        )
+        self._publisher = self.create_publisher(CurvatureLaw, "curvature_law", quality)
+        known = ", ".join(sorted(GAITS))
+        descriptor = ParameterDescriptor(description="name of the gait", additional_constraints=f"one of {known}")
+        self.declare_parameter("gait", self._settings.gait, descriptor, ignore_override=True)
+        self._declare_numbers()
+        self.add_pre_set_parameters_callback(self._plan_change)
+        self.add_on_set_parameters_callback(self._judge_change)
+        self.add_post_set_parameters_callback(self._make_change)
+        backwards = JumpThreshold(
+            min_forward=None, min_backward=Duration(nanoseconds=-1), on_clock_change=False
+        )
+        self._jump_handle = self.get_clock().create_jump_callback(backwards, post_callback=self._follow_reset)
+        self._publish()
+
+    def _declare_numbers(self):
+        for name, value, about in self._settings.quantities():
+            bounds = FloatingPointRange(from_value=about["minimum"], to_value=about["maximum"])
+            unit = f" [{about['unit']}]" if about["unit"] else ""
+            descriptor = ParameterDescriptor(description=about["description"] + unit, floating_point_range=[bounds])
+            self.declare_parameter(name, value, descriptor, ignore_override=True)
+
+    def _plan_change(self, parameters):
+        """Before a set: work out the new settings, and give rclpy what it can store under the present gait."""
+        ours = Settings.known_names()
+        others = [each for each in parameters if each.name not in ours and self.has_parameter(each.name)]
+        changes = {each.name: each.value for each in parameters if each not in others}
+        self._plan = None
+        if not changes:
+            return parameters
+        try:
+            self._plan = self._settings.changed(changes)
+        except ValueError as error:
+            self._plan = str(error)
+            return [Parameter("gait", value=self._settings.gait)]
+        if self._plan.gait != self._settings.gait:  # its numbers are declared once the set is accepted
+            return [*others, Parameter("gait", value=self._plan.gait)]
+        stored = {"gait": self._plan.gait, **{name: value for name, value, _ in self._plan.quantities()}}
+        return [*others, *(Parameter(name, value=stored[name]) for name in changes)]
+
+    def _judge_change(self, parameters):
+        if isinstance(self._plan, str):
+            self.get_logger().warning(f"refused: {self._plan}")
+            return SetParametersResult(successful=False, reason=self._plan)
+        return SetParametersResult(successful=True)
+
+    def _make_change(self, parameters):
+        plan, self._plan = self._plan, None
+        if plan is None:  # a declaration, or nothing of ours
+            return
+        before, self._settings = self._settings, plan
+        if plan.gait != before.gait:
+            for name, _, _ in before.quantities():
+                self.undeclare_parameter(name)
+            self._declare_numbers()
+            self._stamp = self.get_clock().now().to_msg()
+        self._publish()
+
+    def _follow_reset(self, jump):
+        """Time went back: the receiver's law now has its own t = 0 at 0, and so has what is published later."""
+        if self._stamp != Time():
+            self._stamp = Time()
+            self._publish()
+
+    def _publish(self):
+        self._publisher.publish(law_to_message(self._settings.law(), stamp=self._stamp))
+        began = self._stamp.sec + 1e-9 * self._stamp.nanosec
+        self.get_logger().info(
+            f"gait {self._settings.gait!r}, t = 0 at {began:.3f} s, published on {self._publisher.topic_name}"
+        )
+
+
+def main(args=None):
+    """Run the node; the exit status is 0 after SIGINT or SIGTERM, 2 if a parameter is refused at start."""
+    signals = []
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda received, _: signals.append(received))
+    try:
+        rclpy.init(args=DEFAULTS + (sys.argv if args is None else args), signal_handler_options=SignalHandlerOptions.NO)
+        node = GaitGenerator()
+    except (ValueError, RuntimeError, ParameterException, NameValidationException) as error:
+        sys.stderr.write(f"{NAME}: {' '.join(str(error).split())}\n")
+        rclpy.try_shutdown()
+        return 2
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    while not signals:
+        executor.spin_once(timeout_sec=0.1)
+        time.sleep(0.01)  # /clock may tick thousands of times a second: the newest tick is enough
+    executor.shutdown()
+    node.destroy_node()
+    rclpy.try_shutdown()
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
