@@ -1,0 +1,49 @@
+"""For all tests: every test session in a ROS domain of its own, and no process left behind."""
+
+import os
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "tools"))
+
+from node_process import NodeProcess  # noqa: E402
+from ros_domain import reserve_domain  # noqa: E402
+
+
+@pytest.fixture(scope="session", autouse=True)
+def ros_domain(tmp_path_factory):
+    """The number of a ROS domain that nobody else on this machine uses; in the environment for the whole session."""
+    domain = reserve_domain()
+    os.environ.pop("ROS_LOCALHOST_ONLY", None)
+    os.environ.update(domain.environment())
+    os.environ["ROS_LOG_DIR"] = str(tmp_path_factory.mktemp("ros_log"))
+    yield domain.number
+    domain.claim.close()
+
+
+@pytest.fixture
+def fresh_domain(monkeypatch):
+    """A domain for one test alone, for what counts messages or publishers; in the environment while the test lasts."""
+    domain = reserve_domain()
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(domain.number))
+    yield domain.number
+    domain.claim.close()
+
+
+@pytest.fixture
+def start(tmp_path):
+    """start(executable, *arguments) -> NodeProcess; all of them are gone when the test ends."""
+    started: list[NodeProcess] = []
+
+    def start_node(executable: str, *arguments: str) -> NodeProcess:
+        log = tmp_path / f"{executable}-{len(started)}.txt"
+        node = NodeProcess(executable, *arguments, environment=dict(os.environ), log=log)
+        started.append(node)
+        return node
+
+    yield start_node
+    for node in reversed(started):
+        node.end()

@@ -1,0 +1,76 @@
+"""A ROS node as a process of its own, which ends when its owner does, whatever way the owner ends."""
+
+import ctypes
+import os
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+PR_SET_PDEATHSIG = 1  # linux/prctl.h: the signal that the child gets when its parent has died
+
+
+class NodeProcess:
+    """One executable (found on the PATH that setup.bash makes), with its output in a log file."""
+
+    def __init__(self, executable: str, *arguments: str, environment: dict[str, str], log: Path) -> None:
+        """Start it: `arguments` as after `ros2 run package executable`, `log` takes both output streams."""
+        self.name = executable
+        self.log = log
+        log.parent.mkdir(parents=True, exist_ok=True)
+        libc = ctypes.CDLL(None)
+
+        def prepare() -> None:
+            libc.prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
+            signal.signal(signal.SIGINT, signal.SIG_DFL)  # a background job's children would ignore it
+
+        with log.open("w") as output:
+            self.process = subprocess.Popen(
+                [executable, *arguments],
+                env=environment,
+                stdin=subprocess.DEVNULL,
+                stdout=output,
+                stderr=subprocess.STDOUT,
+                start_new_session=True,
+                preexec_fn=prepare,
+            )
+
+    @property
+    def status(self) -> int | None:
+        """Exit status, or None while it runs."""
+        return self.process.poll()
+
+    def output(self) -> str:
+        """All it has said so far."""
+        return self.log.read_text(errors="replace")
+
+    def wait(self, timeout: float) -> int:
+        """Its exit status; `subprocess.TimeoutExpired` after `timeout` [s]."""
+        return self.process.wait(timeout)
+
+    def wait_for_output(self, text: str, timeout: float = 20.0) -> None:
+        """Until `text` stands in its output; AssertionError if it ends or `timeout` [s] passes without."""
+        deadline = time.monotonic() + timeout
+        while text not in self.output():
+            assert self.status is None, f"{self.name} ended with {self.status} before {text!r}:\n{self.output()}"
+            assert time.monotonic() < deadline, f"{self.name} did not say {text!r} in {timeout} s:\n{self.output()}"
+            time.sleep(0.02)
+
+    def interrupt(self, sent: signal.Signals = signal.SIGINT, timeout: float = 5.0) -> int:
+        """Send a signal and return the exit status; `subprocess.TimeoutExpired` after `timeout` [s]."""
+        if self.status is None:
+            self.process.send_signal(sent)
+        return self.process.wait(timeout)
+
+    def end(self, *, descendants: bool = True) -> None:
+        """Make sure that it is gone, asking first; `descendants`: so are the processes that it has started."""
+        try:
+            self.interrupt(timeout=3.0)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            self.process.wait()
+        if descendants:
+            try:
+                os.killpg(self.process.pid, signal.SIGKILL)
+            except ProcessLookupError:
+                pass
