@@ -1,10 +1,8 @@
 """Curvature laws of elongated swimmers, and a ROS 2 node that publishes them. Nothing imported here needs ROS."""
 
 from eel_gaits.gaits import (
-    GAITS,
     backward,
     falling,
-    gait,
     helix,
     kern_efficient,
     kern_fast,
@@ -15,6 +13,7 @@ from eel_gaits.gaits import (
     turning,
 )
 from eel_gaits.law import Law, Ramp, Term
+from eel_gaits.registry import GAITS, gait
 from eel_gaits.spline import natural_spline
 
 __all__ = [

@@ -11,52 +11,12 @@ Sources: falling, rising, straight and turning after Boyer, Porez and Leroyer, J
 (2006), 4841-4857, doi:10.1242/jeb.02526.
 """
 
-import functools
-import inspect
 import math
 from dataclasses import dataclass
 
-from eel_gaits.law import Law, Ramp, Term
+from eel_gaits.law import Ramp, Term
 from eel_gaits.quantity import Quantities, quantity
-
-GAITS = {}  # name of the gait: its function, whose attribute `numbers` is the class of its numbers
-
-
-def gait(name, *, transition=0.0, **numbers):
-    """The law of the gait called `name`; `numbers` replace its defaults. ValueError lists what there is."""
-    return find(name)(transition=transition, **numbers)
-
-
-def find(name):
-    """The function of the gait called `name`."""
-    if not isinstance(name, str) or name not in GAITS:
-        raise ValueError(f"unknown gait {name!r}, must be one of {', '.join(sorted(GAITS))}")
-    return GAITS[name]
-
-
-def _gait(numbers_class):
-    """Register `terms_of(numbers) -> terms` as a gait: a function of keyword numbers that returns a Law."""
-
-    def register(terms_of):
-        name = terms_of.__name__
-        own_names = tuple(inspect.signature(numbers_class).parameters)
-
-        @functools.wraps(terms_of)
-        def make(*, transition=0.0, **numbers):
-            unknown = [key for key in numbers if key not in own_names]
-            if unknown:
-                raise ValueError(f"gait {name!r} has no number {unknown[0]!r}, it has: {', '.join(own_names) or 'none'}")
-            return Law(*terms_of(numbers_class(**numbers)), name=name, transition=transition)
-
-        keyword = inspect.Parameter("transition", inspect.Parameter.KEYWORD_ONLY, default=0.0)
-        make.__signature__ = inspect.Signature(
-            [keyword, *inspect.signature(numbers_class).parameters.values()], return_annotation=Law
-        )
-        make.numbers = numbers_class
-        GAITS[name] = make
-        return make
-
-    return register
+from eel_gaits.registry import register
 
 
 def _period(default):
@@ -203,25 +163,25 @@ class EfficientKern(Kern):
     bend_tail: float = _scaled_bend(2.0 * math.pi, "the tail")
 
 
-@_gait(Quantities)
+@register(Quantities)
 def still(numbers):
     """The straight body, at rest in shape: to coast, or to be pushed."""
     return ()
 
 
-@_gait(Wave)
+@register(Wave)
 def straight(numbers):
     """Forward swimming: the yaw wave of eqs. (63) and (65), from head to tail."""
     return (numbers.term(),)
 
 
-@_gait(Wave)
+@register(Wave)
 def backward(numbers):
     """Backward swimming: the same wave, from tail to head."""
     return (numbers.term(direction=-1.0),)
 
 
-@_gait(Turn)
+@register(Turn)
 def turning(numbers):
     """Forward swimming with a lasting bend in yaw."""
     ramp = Ramp(numbers.bend_start, numbers.bend_full, 1.0)
@@ -229,37 +189,37 @@ def turning(numbers):
     return (numbers.term(), bend)
 
 
-@_gait(Dive)
+@register(Dive)
 def falling(numbers):
     """The gait of section 7.2.2, eqs. (62) to (66): forward swimming, and a dive from one depth to a greater one."""
     return (numbers.term(), numbers.bend(1.0))
 
 
-@_gait(Dive)
+@register(Dive)
 def rising(numbers):
     """The falling gait upside down: forward swimming, and a climb."""
     return (numbers.term(), numbers.bend(-1.0))
 
 
-@_gait(Roll)
+@register(Roll)
 def rolling(numbers):
     """A body bent into an arc whose direction turns about the backbone."""
     return _pair(numbers, wavelength=0.0)
 
 
-@_gait(Helix)
+@register(Helix)
 def helix(numbers):
     """A corkscrew: equal waves in pitch and yaw, a quarter of a period apart."""
     return _pair(numbers, wavelength=numbers.wavelength)
 
 
-@_gait(Kern)
+@register(Kern)
 def kern_fast(numbers):
     """The gait that evolved for speed in 3-D computations of a self-propelled eel."""
     return (_kern_term(numbers),)
 
 
-@_gait(EfficientKern)
+@register(EfficientKern)
 def kern_efficient(numbers):
     """The gait that evolved for efficiency in 3-D computations of a self-propelled eel."""
     return (_kern_term(numbers),)

@@ -96,11 +96,13 @@ class Term:
             raise ValueError(
                 f"amplitude must have one value per knot ({len(self.knots)}), got {len(self.amplitude)} values"
             )
-        if not all(after > before for before, after in zip(self.knots, self.knots[1:])):
+        if not np.all(np.diff(self.knots) > 0.0):
             raise ValueError(f"knots must be strictly increasing [m], got {list(self.knots)}")
         with np.errstate(all="ignore"):
             if not np.all(np.isfinite(self.amplitude_at(self.knots))):
-                raise ValueError(f"knots must lie far enough apart for a finite spline, got {list(self.knots)}")
+                raise ValueError(
+                    f"knots must lie far enough apart for a finite spline through amplitude, got {list(self.knots)}"
+                )
 
     def _check_wave(self):
         if self.period < 0.0:

@@ -5,10 +5,10 @@ the right. What a message holds is checked once, by `law_from_message`; its Valu
 """
 
 from builtin_interfaces.msg import Time
-from eel_msgs import msg
 from std_msgs.msg import Header
 
 from eel_gaits.law import MAXIMUM_TERMS, Law, Ramp, Term
+from eel_msgs import msg
 
 FRAME = "base_link"
 AXIS_NUMBERS = {"pitch": msg.CurvatureTerm.PITCH, "yaw": msg.CurvatureTerm.YAW}

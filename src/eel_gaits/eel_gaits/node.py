@@ -10,7 +10,6 @@ import time
 
 import rclpy
 from builtin_interfaces.msg import Time
-from eel_msgs.msg import CurvatureLaw
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor, SetParametersResult
 from rclpy.clock import JumpThreshold
 from rclpy.duration import Duration
@@ -21,9 +20,10 @@ from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.signals import SignalHandlerOptions
 
-from eel_gaits.gaits import GAITS
 from eel_gaits.messages import law_to_message
+from eel_gaits.registry import GAITS
 from eel_gaits.settings import Settings
+from eel_msgs.msg import CurvatureLaw
 
 NAME = "gait_generator"
 DEFAULTS = ["--ros-args", "-p", "use_sim_time:=true", "--"]  # what the user says comes after, and wins
@@ -38,8 +38,6 @@ class GaitGenerator(Node):
         for name in overrides:
             if name != "use_sim_time" and not self.describe_parameter(name).read_only:
                 self.undeclare_parameter(name)  # to be declared anew with its type and range
-        if not isinstance(self.get_parameter("use_sim_time").value, bool):
-            raise ValueError(f"use_sim_time must be true or false, got {overrides['use_sim_time']!r}")
         self._settings = Settings.start(overrides)
         self._plan = None  # in mid-change: the new Settings, or the reason of a refusal
         self._stamp = Time()
@@ -54,9 +52,7 @@ class GaitGenerator(Node):
         self.add_pre_set_parameters_callback(self._plan_change)
         self.add_on_set_parameters_callback(self._judge_change)
         self.add_post_set_parameters_callback(self._make_change)
-        backwards = JumpThreshold(
-            min_forward=None, min_backward=Duration(nanoseconds=-1), on_clock_change=False
-        )
+        backwards = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1), on_clock_change=False)
         self._jump_handle = self.get_clock().create_jump_callback(backwards, post_callback=self._follow_reset)
         self._publish()
 

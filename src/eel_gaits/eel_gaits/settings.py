@@ -1,14 +1,14 @@
 """What the user of the gait generator has set: a gait, its numbers and the transition, and the law that follows.
 
-Settings never change; `changed` gives new ones, or a ValueError that says why not. Numbers are kept by name, so that one
-which the user has set carries over to another gait that has a number of that name; defaults do not.
+Settings never change; `changed` gives new ones, or a ValueError that says why not. Numbers are kept by name, so that
+one which the user has set carries over to another gait that has a number of that name; defaults do not.
 """
 
 from dataclasses import dataclass, field, fields
 from types import MappingProxyType
 
-from eel_gaits.gaits import GAITS, find
 from eel_gaits.quantity import Quantities, quantity
+from eel_gaits.registry import GAITS, find
 
 
 @dataclass(frozen=True, kw_only=True)

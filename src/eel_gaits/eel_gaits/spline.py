@@ -43,9 +43,7 @@ def natural_spline(knots, values, x):
     piece = np.clip(np.searchsorted(knots, inside, side="right") - 1, 0, knots.size - 2)
     step = inside - knots[piece]
     cubic = (moments[..., piece + 1] - moments[..., piece]) / (6.0 * spacing[piece])
-    result = values[..., piece] + step * (
-        start_slopes[..., piece] + step * (0.5 * moments[..., piece] + step * cubic)
-    )
+    result = values[..., piece] + step * (start_slopes[..., piece] + step * (0.5 * moments[..., piece] + step * cubic))
     end_slope = slopes[..., -1] + spacing[-1] * moments[..., -2] / 6.0
     return (
         result
@@ -57,7 +55,7 @@ def natural_spline(knots, values, x):
 def _moments(spacing, slopes):
     """Second derivatives at the knots, shape (..., n), by elimination without pivoting (diagonally dominant)."""
     count = spacing.size + 1
-    moments = np.zeros(slopes.shape[:-1] + (count,))
+    moments = np.zeros((*slopes.shape[:-1], count))
     right_side = 6.0 * np.diff(slopes, axis=-1)
     pivots = 2.0 * (spacing[:-1] + spacing[1:])
     for row in range(1, count - 2):

@@ -1,0 +1,51 @@
+"""Gaits by name.
+
+A gait is written as a function that makes terms from its numbers; `register` turns it into one that takes the numbers
+as keywords and returns a `Law`, and lists it. `eel_gaits.gaits` holds the gaits themselves.
+"""
+
+import functools
+import inspect
+
+from eel_gaits.law import Law
+
+GAITS = {}  # name of the gait: its function, whose attribute `numbers` is the class of its numbers
+
+
+def gait(name, *, transition=0.0, **numbers):
+    """The law of the gait called `name`; `numbers` replace its defaults. ValueError lists what there is."""
+    return find(name)(transition=transition, **numbers)
+
+
+def find(name):
+    """The function of the gait called `name`."""
+    if not isinstance(name, str) or name not in GAITS:
+        raise ValueError(f"unknown gait {name!r}, must be one of {', '.join(sorted(GAITS))}")
+    return GAITS[name]
+
+
+def register(numbers_class):
+    """Decorator: list `terms_of(numbers) -> terms` as a gait, a function of keyword numbers that returns a Law."""
+
+    def decorate(terms_of):
+        name = terms_of.__name__
+        own_names = tuple(inspect.signature(numbers_class).parameters)
+
+        @functools.wraps(terms_of)
+        def make(*, transition=0.0, **numbers):
+            unknown = [key for key in numbers if key not in own_names]
+            if unknown:
+                raise ValueError(
+                    f"gait {name!r} has no number {unknown[0]!r}, it has: {', '.join(own_names) or 'none'}"
+                )
+            return Law(*terms_of(numbers_class(**numbers)), name=name, transition=transition)
+
+        keyword = inspect.Parameter("transition", inspect.Parameter.KEYWORD_ONLY, default=0.0)
+        make.__signature__ = inspect.Signature(
+            [keyword, *inspect.signature(numbers_class).parameters.values()], return_annotation=Law
+        )
+        make.numbers = numbers_class
+        GAITS[name] = make
+        return make
+
+    return decorate
