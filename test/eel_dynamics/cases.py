@@ -3,6 +3,7 @@
 from types import SimpleNamespace
 
 import numpy as np
+
 from eel_gaits import Law, Ramp, Term
 
 HALF_PI = np.pi / 2
@@ -26,13 +27,32 @@ def random_law(rng, pitch=True, size=1.0, length=1.0, spline=True):
     terms = []
     for axis in ("yaw", "pitch") if pitch else ("yaw",):
         coefficients = size * rng.normal(size=3) / length ** np.arange(1, 4)
-        terms.append(Term(axis=axis, amplitude=tuple(coefficients), wavelength=length * rng.uniform(0.6, 2.0),
-                          period=rng.uniform(0.5, 2.0), phase=rng.uniform(0, 6)))  # fmt: skip
+        terms.append(
+            Term(
+                axis=axis,
+                amplitude=tuple(coefficients),
+                wavelength=length * rng.uniform(0.6, 2.0),
+                period=rng.uniform(0.5, 2.0),
+                phase=rng.uniform(0, 6),
+            )
+        )
         if spline:  # its third derivative jumps at the inner knots
-            terms.append(Term(axis=axis, amplitude=tuple(size * rng.normal(size=4) / length), period=rng.uniform(1, 3),
-                              knots=tuple(length * np.array(SPLINE_KNOTS))))  # fmt: skip
-        terms.append(Term(axis=axis, amplitude=(size * rng.normal() / length,), phase=HALF_PI,
-                          envelope=(Ramp(0.1, 1.3, 1.0), Ramp(0.4, 2.0, -0.7))))  # fmt: skip
+            terms.append(
+                Term(
+                    axis=axis,
+                    amplitude=tuple(size * rng.normal(size=4) / length),
+                    period=rng.uniform(1, 3),
+                    knots=tuple(length * np.array(SPLINE_KNOTS)),
+                )
+            )
+        terms.append(
+            Term(
+                axis=axis,
+                amplitude=(size * rng.normal() / length,),
+                phase=HALF_PI,
+                envelope=(Ramp(0.1, 1.3, 1.0), Ramp(0.4, 2.0, -0.7)),
+            )
+        )
     return Law(*terms, name="random")
 
 

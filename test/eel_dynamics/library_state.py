@@ -3,29 +3,47 @@
 from types import SimpleNamespace
 
 import numpy as np
-from eel_dynamics import Body, Scene, Simulation, hydrodynamic_wrench, simulate
 from reference import Reference, rotation
 from reference import scene as reference_scene
+
+from eel_dynamics import Body, Scene, Simulation, hydrodynamic_wrench, simulate
 
 FINE = "reference"  # the most accurate preset
 
 
 def library_body(body):
     """The Body of a namespace of `cases` or `reference`."""
-    return Body(length=body.kinks[-1], half_width=body.half_width, half_height=body.half_height,
-                kinks=body.kinks[1:-1], nose=body.nose, density=body.density)  # fmt: skip
+    return Body(
+        length=body.kinks[-1],
+        half_width=body.half_width,
+        half_height=body.half_height,
+        kinks=body.kinks[1:-1],
+        nose=body.nose,
+        density=body.density,
+    )
 
 
 def namespace_body(body, kinks=()):
     """The other way round, with more panels where a body of arrays is not smooth."""
-    return SimpleNamespace(half_width=body.half_width, half_height=body.half_height, nose=body.nose,
-                           density=body.density, kinks=tuple(sorted({0.0, *body.kinks, *kinks, body.length})))  # fmt: skip
+    return SimpleNamespace(
+        half_width=body.half_width,
+        half_height=body.half_height,
+        nose=body.nose,
+        density=body.density,
+        kinks=tuple(sorted({0.0, *body.kinks, *kinks, body.length})),
+    )
 
 
 def snapshot(body, law, time=0.0, twist=(0,) * 6, orientation=(0, 0, 0, 1), settings=None, stations=21, accuracy=FINE):
     """What the library observes where the law is at `time` and the head has `twist` [rad/s, m/s] (over ground)."""
-    simulation = Simulation(body=body, scene=Scene(**(settings or {})), accuracy=accuracy, stations=stations,
-                            orientation=orientation, twist=twist)  # fmt: skip
+    simulation = Simulation(
+        body=body,
+        scene=Scene(**(settings or {})),
+        accuracy=accuracy,
+        stations=stations,
+        orientation=orientation,
+        twist=twist,
+    )
     simulation.adopt(law, origin=-time)
     return simulation.observe(wrench=True, load=True)
 
@@ -44,7 +62,9 @@ def expected(reference, law, time, twist, orientation=(0, 0, 0, 1)):
 
 def prescribed(body, law, time, twist, twist_rate, settings):
     """Torque and force (6,) of the fluid on the body, about the head, in its axes, for a given motion of the head."""
-    wrench = hydrodynamic_wrench(body, law, time, np.asarray(twist, float), np.asarray(twist_rate, float), Scene(**settings))
+    wrench = hydrodynamic_wrench(
+        body, law, time, np.asarray(twist, float), np.asarray(twist_rate, float), Scene(**settings)
+    )
     return np.concatenate([wrench.torque, wrench.force]) if hasattr(wrench, "torque") else np.asarray(wrench)
 
 
@@ -59,5 +79,20 @@ def distance(got, wanted, scale=None):
     return np.max(np.abs(got - wanted)) / (np.max(np.abs(wanted)) if scale is None else scale)
 
 
-__all__ = ["Body", "FINE", "Reference", "Scene", "Simulation", "distance", "expected", "library_body", "namespace_body", "prescribed",
-           "random_quaternion", "reference_scene", "rotation", "simulate", "snapshot"]  # fmt: skip
+__all__ = [
+    "FINE",
+    "Body",
+    "Reference",
+    "Scene",
+    "Simulation",
+    "distance",
+    "expected",
+    "library_body",
+    "namespace_body",
+    "prescribed",
+    "random_quaternion",
+    "reference_scene",
+    "rotation",
+    "simulate",
+    "snapshot",
+]

@@ -2,8 +2,9 @@
 
     source setup.bash && python test/eel_dynamics/make_reference_data.py
 
-Some minutes; names of cases as arguments make these alone. `converged_to` is the greatest change of any component of
-the state at any of the times from the coarser of two runs: the jump of the printed c_f(Re) and the kinks of V|V| bound it.
+Some minutes; names of cases as arguments make these alone. `converged_to` is the greatest change of any component
+of the state at any of the times from the coarser of two runs: the kinks of V|V| and the jump of the printed c_f(Re)
+bound it.
 """
 
 import json
@@ -19,9 +20,9 @@ OUT = Path(__file__).parent / "data" / "falling.json"
 
 
 CASES = {  # settings of the scene, then (tolerance in time, panels per span, nodes per panel) of two runs
-    "no drag": (dict(resistive=False), (1e-11, 1, 14), (1e-12, 1, 16)),
-    "laminar": (dict(friction="laminar"), (1e-8, 3, 16), (1e-9, 4, 16)),
-    "printed": (dict(friction="printed"), (1e-6, 2, 16), (1e-7, 4, 16)),
+    "no drag": ({"resistive": False}, (1e-11, 1, 14), (1e-12, 1, 16)),
+    "laminar": ({"friction": "laminar"}, (1e-8, 3, 16), (1e-9, 4, 16)),
+    "printed": ({"friction": "printed"}, (1e-6, 2, 16), (1e-7, 4, 16)),
 }
 
 
@@ -38,7 +39,8 @@ def main(names):
         states = run(settings, *fine)
         error = float(np.max(np.abs(states - run(settings, *coarse))))
         out[name] = {"scene": settings, "state": states.tolist(), "converged_to": error}
-        print(f"{name}: position at 10 s {np.array2string(states[-1, :3], precision=8)} m, coarse run differs by {error:.1e}")
+        position = np.array2string(states[-1, :3], precision=8)
+        print(f"{name}: position at 10 s {position} m, coarse run differs by {error:.1e}")
         OUT.write_text(json.dumps(out, indent=1) + "\n")
 
 

@@ -26,9 +26,19 @@ DRAG_ROLL, DRAG_LATERAL, DRAG_VERTICAL, NOSE_ADDED_MASS, NOSE_PRESSURE = 1.0, 1.
 
 def scene(**changes):
     """The switches with their defaults; any object with these attributes does."""
-    defaults = dict(reactive=True, resistive=True, friction="printed", nose=True, perimeter="ellipse",
-                    added_mass="corrected", tail_pressure="lumped", current=(0.0, 0.0, 0.0),
-                    density=None, fluid_density=1000.0, viscosity=1e-6)  # fmt: skip
+    defaults = {
+        "reactive": True,
+        "resistive": True,
+        "friction": "printed",
+        "nose": True,
+        "perimeter": "ellipse",
+        "added_mass": "corrected",
+        "tail_pressure": "lumped",
+        "current": (0.0, 0.0, 0.0),
+        "density": None,
+        "fluid_density": 1000.0,
+        "viscosity": 1e-6,
+    }
     return SimpleNamespace(**{**defaults, **changes})
 
 
@@ -48,7 +58,10 @@ def boyer_body():
     return SimpleNamespace(
         half_width=lambda x: cap(x) * width_factor(x),
         half_height=lambda x: cap(x) * height_factor(x),
-        kinks=(0.0, 0.05, 0.2, 0.75, 1.0), nose=(0.025, 0.05, 0.05), density=1000.0)  # fmt: skip
+        kinks=(0.0, 0.05, 0.2, 0.75, 1.0),
+        nose=(0.025, 0.05, 0.05),
+        density=1000.0,
+    )
 
 
 class Reference:
@@ -72,7 +85,7 @@ class Reference:
         self.nose_drag = np.pi * NOSE_PRESSURE * nose[1] * (settings.resistive and settings.nose)
 
     def _added(self, a, b):
-        """Diagonal of J_f, eq. (37): the semi-axis perpendicular to the motion counts (as printed: the one along it)."""
+        """Diagonal of J_f, eq. (37): the semi-axis across the motion counts (as printed: the one along it)."""
         lateral, vertical = (a, b) if self.scene.added_mass == "corrected" else (b, a)
         zero = np.zeros_like(a)
         columns = (a**2 - b**2) ** 2 / 8, zero, zero, zero, lateral**2, vertical**2
@@ -107,11 +120,13 @@ class Reference:
     def energies(self, K, K_rate, mu):
         """Kinetic energy of body and of fluid, eqs (16), (36), for each head twist of mu (..., 6)."""
         eta = self.twists(K, K_rate, mu)
-        return tuple(np.einsum("x,xk,...xk->...", self.space.weights / 2, inertia, eta**2)
-                     for inertia in (self.inertia_body, self.inertia_fluid))  # fmt: skip
+        return tuple(
+            np.einsum("x,xk,...xk->...", self.space.weights / 2, inertia, eta**2)
+            for inertia in (self.inertia_body, self.inertia_fluid)
+        )
 
     def momentum(self, K, K_rate, mu, part=slice(None)):
-        """dT/dmu = (L, P), (6,), of body and fluid, or of one of them; exact central differences of a quadratic form."""
+        """dT/dmu = (L, P), (6,), of body and fluid, or of one; exact central differences of a quadratic form."""
         shifted = np.concatenate([mu + np.eye(6), mu - np.eye(6)])
         energy = sum(self.energies(K, K_rate, shifted)[part])
         return (energy[:6] - energy[6:]) / 2
@@ -190,9 +205,16 @@ class Reference:
             return np.einsum("xij,xpj->pxi", R, kinetic)
 
         step, integrate = 1j * STEP, self.space.cumulate
-        sigma_b, p_b, sigma_f, p_f = density(K, K_rate, mu, np.eye(3))
-        rates = density(K + step * K_rate, K_rate + step * K_acceleration, mu + step * mu_rate,
-                        np.eye(3) + step * _hat(mu[None, :3])[0]).imag / STEP  # fmt: skip
+        _sigma_b, _p_b, sigma_f, p_f = density(K, K_rate, mu, np.eye(3))
+        rates = (
+            density(
+                K + step * K_rate,
+                K_rate + step * K_acceleration,
+                mu + step * mu_rate,
+                np.eye(3) + step * _hat(mu[None, :3])[0],
+            ).imag
+            / STEP
+        )
         (R, _), eta = self.configuration(K), self.twists(K, K_rate, mu)
         to_axes, to_section = (lambda f: np.einsum("xij,xj->xi", R, f)), (lambda f: np.einsum("xji,xj->xi", R, f))
         resistive_torque, resistive_force = self.resistive(eta)
@@ -208,17 +230,25 @@ class Reference:
         if self.scene.tail_pressure == "distributed":
             force, flux, tail_energy = force + energy[:, None] * E1, flux - energy[:, None] * t1, 0.0
         return SimpleNamespace(
-            torque=torque, force=force, tail_residual=tail_residual, resistive_force=resistive_force,
-            fluid_force=to_section(self.space.evaluate(flux, self.space.x, derivative=True) - rates[3]) + resistive_force,
-            tail_force=-tail_energy * E1, nose_force=nose * E1, fluid_energy_density=energy,
+            torque=torque,
+            force=force,
+            tail_residual=tail_residual,
+            resistive_force=resistive_force,
+            fluid_force=to_section(self.space.evaluate(flux, self.space.x, derivative=True) - rates[3])
+            + resistive_force,
+            tail_force=-tail_energy * E1,
+            nose_force=nose * E1,
+            fluid_energy_density=energy,
             actuator_power=-self.space.weights @ np.sum(torque * K_rate, axis=1),
             wake_power=self.at_tail(eta)[3] * (self.tail_added @ self.at_tail(eta) ** 2) / 2,
             nose_power=nose * mu[3],
-            drag_power=self.space.weights @ np.sum(resistive_torque * eta[:, :3] + resistive_force * eta[:, 3:], axis=1))  # fmt: skip
+            drag_power=self.space.weights
+            @ np.sum(resistive_torque * eta[:, :3] + resistive_force * eta[:, 3:], axis=1),
+        )
 
     # -- motion in time ---------------------------------------------------------------------------------------------
     def march(self, law, times, position=(0, 0, 0), orientation=(0, 0, 0, 1), twist=(0,) * 6, rtol=1e-10, breaks=()):
-        """Head position (T, 3), quaternion x y z w (T, 4), twist (T, 6) at the times, by DOP853 restarted at `breaks`."""
+        """Head position (T, 3), quaternion xyzw (T, 4), twist (T, 6) at the times: DOP853 restarted at `breaks`."""
         current = np.asarray(self.scene.current, float)
 
         def rates(time, state):
@@ -233,7 +263,7 @@ class Reference:
 
         state, out = np.concatenate([position, orientation, twist]).astype(float), []
         knots = sorted({*times, *(b for b in breaks if times[0] < b < times[-1])})
-        for start, end in zip([knots[0], *knots[:-1]], knots):
+        for start, end in zip([knots[0], *knots[:-1]], knots, strict=False):
             if end > start:
                 run = solve_ivp(rates, (start, end), state, "DOP853", rtol=rtol, atol=rtol / 10, max_step=0.05)
                 state = run.y[:, -1]

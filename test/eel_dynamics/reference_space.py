@@ -1,5 +1,7 @@
 """Quadrature and interpolation of the reference: Gauss panels that no kink of the body straddles."""
 
+import itertools
+
 import numpy as np
 from numpy.polynomial import legendre
 
@@ -19,7 +21,7 @@ class Space:
             integrals[:, n] = (values[:, n + 1] - values[:, n - 1]) / (2 * n + 1)
         local_cumulate = integrals @ self._expansion()
         x, weights, blocks = [], [], []
-        for span, (start, end) in enumerate(zip(kinks[:-1], kinks[1:])):
+        for span, (start, end) in enumerate(itertools.pairwise(kinks)):
             for panel in range(panels_per_span):
                 low, high = panel / panels_per_span, (panel + 1) / panels_per_span
                 u, slope = low + (high - low) * (local + 1) / 2, (high - low) / 2
@@ -52,6 +54,9 @@ class Space:
             xi, rate = 2 * (u - low) / (high - low) - 1, 2 / (high - low)
             rate = rate / (2 * end * u) if graded and u > 0 else rate / (end - start)
             coefficients = expand @ field[panel * self.order : (panel + 1) * self.order]
-            out.append(rate * legendre.legval(xi, legendre.legder(coefficients)) if derivative
-                       else legendre.legval(xi, coefficients))  # fmt: skip
+            out.append(
+                rate * legendre.legval(xi, legendre.legder(coefficients))
+                if derivative
+                else legendre.legval(xi, coefficients)
+            )
         return np.array(out)

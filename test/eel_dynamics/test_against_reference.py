@@ -6,8 +6,20 @@ from pathlib import Path
 import numpy as np
 import pytest
 from cases import SPLINE_KNOTS, falling_law, kern_body, random_law, random_twist
-from library_state import (Body, Reference, Scene, distance, expected, library_body, namespace_body, random_quaternion,
-                           reference_scene, rotation, simulate, snapshot)  # fmt: skip
+from library_state import (
+    Body,
+    Reference,
+    Scene,
+    distance,
+    expected,
+    library_body,
+    namespace_body,
+    random_quaternion,
+    reference_scene,
+    rotation,
+    simulate,
+    snapshot,
+)
 from reference import boyer_body
 
 STATIONS = np.sort(np.concatenate([np.linspace(0, 1, 15), [0.01, 0.05, 0.2, 0.75, 0.96]]))
@@ -19,20 +31,20 @@ EXACT = 1e-9
 # at 101 for one state. The printed c_f(Re) jumps by a factor 2.6 where Re = 8e4.
 KINKS = 1e-5
 SMOOTH_SCENES = [
-    dict(resistive=False),
-    dict(resistive=False, nose=False),
-    dict(resistive=False, reactive=False),
-    dict(resistive=False, added_mass="printed"),
-    dict(resistive=False, tail_pressure="distributed"),
-    dict(resistive=False, current=(0.3, -0.2, 0.1)),
-    dict(resistive=False, density=1300.0, fluid_density=800.0),
+    {"resistive": False},
+    {"resistive": False, "nose": False},
+    {"resistive": False, "reactive": False},
+    {"resistive": False, "added_mass": "printed"},
+    {"resistive": False, "tail_pressure": "distributed"},
+    {"resistive": False, "current": (0.3, -0.2, 0.1)},
+    {"resistive": False, "density": 1300.0, "fluid_density": 800.0},
 ]
 DRAG_SCENES = [
-    (dict(friction="laminar"), KINKS),
-    (dict(friction="blended", perimeter="printed"), KINKS),
-    (dict(friction="none", current=(0.3, -0.2, 0.1)), KINKS),
-    (dict(friction="laminar", viscosity=1e-4, reactive=False), KINKS),
-    (dict(friction="printed"), 1e-4),
+    ({"friction": "laminar"}, KINKS),
+    ({"friction": "blended", "perimeter": "printed"}, KINKS),
+    ({"friction": "none", "current": (0.3, -0.2, 0.1)}, KINKS),
+    ({"friction": "laminar", "viscosity": 1e-4, "reactive": False}, KINKS),
+    ({"friction": "printed"}, 1e-4),
 ]
 
 
@@ -55,7 +67,9 @@ def check(body, law, time, twist, q, settings, tolerance, splits=(), panels=2):
     assert distance(got.tail_force, fields.tail_force, lateral) < tolerance
     assert distance(got.nose_force, fields.nose_force, lateral) < tolerance
     inner = ~np.isin(STATIONS, body.kinks)  # at a kink the derivative of V1 p_f has two values
-    scale = np.abs(fields.fluid_force).max() if settings.get("reactive", True) or settings.get("resistive", True) else 1.0
+    scale = (
+        np.abs(fields.fluid_force).max() if settings.get("reactive", True) or settings.get("resistive", True) else 1.0
+    )
     # the derivative d/dX of the reference's polynomials costs 3 digits
     assert distance(got.fluid_force[inner], at(fields.fluid_force)[inner], scale or 1.0) < max(1e-6, 10 * tolerance)
     assert distance(got.resistive_force, at(fields.resistive_force), lateral) < max(1e-8, tolerance)
@@ -91,7 +105,7 @@ def test_law_with_splines():
     """Natural splines: the third derivative of K jumps at the knots, inside the library's panels."""
     rng = np.random.default_rng(5)
     state = random_law(rng), 0.8, random_twist(rng), random_quaternion(rng)
-    check(BODIES["boyer"], *state, dict(resistive=False), 1e-6, splits=SPLINE_KNOTS)
+    check(BODIES["boyer"], *state, {"resistive": False}, 1e-6, splits=SPLINE_KNOTS)
 
 
 def test_body_of_arrays():
@@ -104,8 +118,10 @@ def test_body_of_arrays():
     assert np.allclose(body.half_width(between), smooth.half_width(between), atol=2e-4)
     rng = np.random.default_rng(6)
     law, twist = random_law(rng, spline=False), random_twist(rng)
-    got = snapshot(body, law, 0.4, twist, settings=dict(resistive=False), stations=STATIONS)
-    reference = Reference(namespace_body(body, x), reference_scene(resistive=False), panels_per_span=1, nodes_per_panel=6)
+    got = snapshot(body, law, 0.4, twist, settings={"resistive": False}, stations=STATIONS)
+    reference = Reference(
+        namespace_body(body, x), reference_scene(resistive=False), panels_per_span=1, nodes_per_panel=6
+    )
     shape, relative, rate, _ = expected(reference, law, 0.4, twist)
     fields = reference.fields(*shape, relative, rate)
     assert distance(got.head_acceleration, rate) < 1e-5
@@ -115,10 +131,17 @@ def test_body_of_arrays():
 DATA = json.loads((Path(__file__).parent / "data" / "falling.json").read_text())
 
 
-@pytest.mark.parametrize("case, accuracy, tolerance", [
-    ("no drag", "reference", 1e-6), ("no drag", "fine", 1e-4), ("laminar", "reference", 1e-4),
-    ("laminar", "standard", 1e-3), ("printed", "reference", 1e-3), ("printed", "standard", 1e-3),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "case, accuracy, tolerance",
+    [
+        ("no drag", "reference", 1e-6),
+        ("no drag", "fine", 1e-4),
+        ("laminar", "reference", 1e-4),
+        ("laminar", "standard", 1e-3),
+        ("printed", "reference", 1e-3),
+        ("printed", "standard", 1e-3),
+    ],
+)
 def test_falling_gait(case, accuracy, tolerance):
     """Head position over 10 s against the reference's DOP853 march (data/falling.json), relative to path or length."""
     wanted = np.array(DATA[case]["state"])

@@ -7,8 +7,15 @@ from library_state import Body, Scene, Simulation, library_body, rotation, simul
 from reference import boyer_body
 
 BODIES = {"boyer": boyer_body(), "kern": kern_body()}
-SCENES = [{}, dict(resistive=False), dict(reactive=False), dict(nose=False), dict(tail_pressure="distributed"),
-          dict(current=(0.1, 0.2, 0.3)), dict(added_mass="printed")]  # fmt: skip
+SCENES = [
+    {},
+    {"resistive": False},
+    {"reactive": False},
+    {"nose": False},
+    {"tail_pressure": "distributed"},
+    {"current": (0.1, 0.2, 0.3)},
+    {"added_mass": "printed"},
+]
 ROUND_OFF = 1e-12  # against the greatest torque, or force, along the body
 
 
@@ -17,7 +24,9 @@ ROUND_OFF = 1e-12  # against the greatest torque, or force, along the body
 @pytest.mark.parametrize("accuracy", ["draft", "reference"])
 def test_closure_at_the_nose_and_condition_at_the_tail(body, settings, accuracy):
     rng = np.random.default_rng(SCENES.index(settings))
-    got = snapshot(library_body(BODIES[body]), random_law(rng), 0.7, random_twist(rng), settings=settings, accuracy=accuracy)
+    got = snapshot(
+        library_body(BODIES[body]), random_law(rng), 0.7, random_twist(rng), settings=settings, accuracy=accuracy
+    )
     torque, force = np.abs(got.torque).max(), np.abs(got.force).max()
     assert abs(got.closure_torque) < ROUND_OFF * torque
     assert abs(got.closure_force) < ROUND_OFF * force
@@ -44,11 +53,13 @@ def test_closure_at_every_published_instant():
 def test_acceleration_is_the_derivative_of_the_marched_twist():
     """Closure follows from how the acceleration was solved; that it moves the head is checked here.
 
-    Difference quotient of order 6 at 0.01 s of the march's samples: (2 pi)^7 h^6 / 140 = 3e-9 for the gait's first harmonic,
-    some 1e-6 for its fifth. The samples lie on the march's grid or are interpolated at its order.
+    Difference quotient of order 6 at 0.01 s of the march's samples: (2 pi)^7 h^6 / 140 = 3e-9 for the gait's first
+    harmonic, some 1e-6 for its fifth. The samples lie on the march's grid or are interpolated at its order.
     """
     step = 0.01
-    run = simulate(falling_law(), duration=3.0, scene=Scene(friction="laminar"), accuracy="reference", sample_period=step)
+    run = simulate(
+        falling_law(), duration=3.0, scene=Scene(friction="laminar"), accuracy="reference", sample_period=step
+    )
     w = run.twist
     slope = (-w[:-6] + 9 * w[1:-5] - 45 * w[2:-4] + 45 * w[4:-2] - 9 * w[5:-1] + w[6:]) / (60 * step)
     scale = np.abs(run.head_acceleration).max(axis=0)
@@ -57,7 +68,9 @@ def test_acceleration_is_the_derivative_of_the_marched_twist():
 
 def test_twist_is_the_derivative_of_the_marched_pose():
     step = 0.01
-    run = simulate(falling_law(), duration=2.0, scene=Scene(current=(0.1, 0.0, 0.2)), accuracy="fine", sample_period=step)
+    run = simulate(
+        falling_law(), duration=2.0, scene=Scene(current=(0.1, 0.0, 0.2)), accuracy="fine", sample_period=step
+    )
     p, q = run.position, run.orientation
     velocity = (p[:-4] - 8 * p[1:-3] + 8 * p[3:-1] - p[4:]) / (12 * step)
     q_rate = (q[:-4] - 8 * q[1:-3] + 8 * q[3:-1] - q[4:]) / (12 * step)

@@ -6,7 +6,7 @@ from cases import falling_law, random_law
 from library_state import Body, Reference, Scene, reference_scene, rotation, simulate
 from reference import boyer_body
 
-VACUUM = dict(reactive=False, resistive=False)
+VACUUM = {"reactive": False, "resistive": False}
 START = np.array([0.3, 0.2, -0.4, -0.5, 0.1, 0.2])
 # RK4 at the step of the finest preset over 2 s, and the fixed orders in space: a bound well above what is measured.
 TOLERANCE = 1e-6
@@ -22,7 +22,7 @@ def flight(request):
 def momenta(law, run):
     """(T, 6) angular (about the origin) and linear momentum in world axes, by the reference's own integrals."""
     reference, out = Reference(boyer_body(), reference_scene(**VACUUM)), []
-    for time, position, q, twist in zip(run.time, run.position, run.orientation, run.twist):
+    for time, position, q, twist in zip(run.time, run.position, run.orientation, run.twist, strict=False):
         L, P = np.split(reference.momentum(*law.curvature(time, reference.space.x)[:2], twist), 2)
         L, P = rotation(q) @ L, rotation(q) @ P
         out.append(np.concatenate([L + np.cross(position, P), P]))
@@ -45,7 +45,7 @@ def test_center_of_mass_moves_uniformly(flight):
 
 
 def test_energy_is_the_work_of_the_actuators(flight):
-    law, run = flight
+    _law, run = flight
     kinetic = run.energy.kinetic_body
     largest = np.max(np.abs(kinetic))
     assert np.all(run.energy.kinetic_fluid == 0)

@@ -8,11 +8,11 @@ from library_state import Scene, distance, simulate
 TERMS = ("actuator_power", "wake_power", "nose_power", "drag_power")
 SCENES = {
     "all": {},
-    "no drag": dict(resistive=False),
-    "no water inertia": dict(reactive=False, friction="laminar"),
-    "current": dict(current=(0.2, 0.1, -0.1), friction="laminar"),
-    "distributed": dict(tail_pressure="distributed", friction="laminar"),
-    "printed": dict(added_mass="printed", perimeter="printed"),
+    "no drag": {"resistive": False},
+    "no water inertia": {"reactive": False, "friction": "laminar"},
+    "current": {"current": (0.2, 0.1, -0.1), "friction": "laminar"},
+    "distributed": {"tail_pressure": "distributed", "friction": "laminar"},
+    "printed": {"added_mass": "printed", "perimeter": "printed"},
 }
 
 
@@ -25,8 +25,10 @@ def work_of(run):
 def test_residual_is_small(name):
     """1e-3 of the actuators' work is what the suite promises; the finest preset gives 1e-6."""
     law = falling_law()
-    runs = {accuracy: simulate(law, duration=3.0, scene=Scene(**SCENES[name]), accuracy=accuracy, sample_period=0.05)
-            for accuracy in ("standard", "reference")}  # fmt: skip
+    runs = {
+        accuracy: simulate(law, duration=3.0, scene=Scene(**SCENES[name]), accuracy=accuracy, sample_period=0.05)
+        for accuracy in ("standard", "reference")
+    }
     for accuracy, bound in (("standard", 1e-3), ("reference", 1e-6)):
         run = runs[accuracy]
         assert np.max(np.abs(run.energy.residual)) < bound * work_of(run)
@@ -47,8 +49,14 @@ def test_powers_integrate_to_the_energy_term_by_term():
 
 def test_wake_power_is_positive_where_the_tail_leads():
     """Backwards at 1 m/s, sideways too: V1(l) > 0, and the wake gives energy (a limit of the theory, kept)."""
-    run = simulate(random_law(np.random.default_rng(1), size=0.01), duration=0.05, twist=(0, 0, 0, 1.0, 0.3, 0.0),
-                   scene=Scene(resistive=False), accuracy="fine", sample_period=0.05)  # fmt: skip
+    run = simulate(
+        random_law(np.random.default_rng(1), size=0.01),
+        duration=0.05,
+        twist=(0, 0, 0, 1.0, 0.3, 0.0),
+        scene=Scene(resistive=False),
+        accuracy="fine",
+        sample_period=0.05,
+    )
     assert run.energy.wake_power[0] > 0
 
 

@@ -1,13 +1,14 @@
-"""Planar motion without drag is Lighthill's theory (model identity 3): eq. (1), eq. (61), and the linear theory of 1960."""
+"""Planar motion without drag is Lighthill's theory (model identity 3): eqs (1), (61), and the linear theory of 1960."""
 
 import numpy as np
 import pytest
-from eel_gaits import Law, Term
 from library_state import Body, prescribed
 from reference import boyer_body
 from reference_space import Space
 
-NO_DRAG = dict(resistive=False)  # no m_o in it either: see `no_nose`
+from eel_gaits import Law, Term
+
+NO_DRAG = {"resistive": False}  # no m_o in it either: see `no_nose`
 AMPLITUDE, WAVELENGTH, PERIOD, PHASE = (1.0, 0.5, 2.0), 0.8, 1.3, 0.4
 WAVE = Law(Term(axis="yaw", amplitude=AMPLITUDE, wavelength=WAVELENGTH, period=PERIOD, phase=PHASE))
 
@@ -15,8 +16,8 @@ WAVE = Law(Term(axis="yaw", amplitude=AMPLITUDE, wavelength=WAVELENGTH, period=P
 def plane_momentum(space, time, turn, heading, velocity):
     """Lighthill's fluid in the plane: momentum of the slices, its moment about the origin, and the tail's state.
 
-    `turn` the head's angular velocity, `heading` its angle, `velocity` (2,) in fixed axes; the head is at `origin + ...`:
-    its displacement from the origin is velocity times the (complex) time step, passed as `time.imag`.
+    `turn` is the head's angular velocity, `heading` its angle, `velocity` (2,) its velocity in fixed axes; positions
+    are from the head.
     """
     x = space.x
     angle = 2 * np.pi * (x / WAVELENGTH - time / PERIOD) + PHASE
@@ -38,12 +39,17 @@ def test_large_amplitude_theory(seed):
     """Force and moment on the body by eqs (1) and (61), with the momentum's rate by a complex step in time."""
     rng = np.random.default_rng(seed)
     time, turn, turn_rate = rng.uniform(0, 2), *rng.normal(size=2)
-    velocity, acceleration = rng.normal(size=2) - (1, 0), rng.normal(size=2)  # true acceleration, fixed axes = head axes
+    velocity, acceleration = (
+        rng.normal(size=2) - (1, 0),
+        rng.normal(size=2),
+    )  # true acceleration, fixed axes = head axes
     space, step = Space(boyer_body().kinks, 2, 16), 1e-30
 
     def total(h):
         shift = h * velocity
-        r, _, _, _, momentum = plane_momentum(space, time + h, turn + h * turn_rate, h * turn, velocity + h * acceleration)
+        r, _, _, _, momentum = plane_momentum(
+            space, time + h, turn + h * turn_rate, h * turn, velocity + h * acceleration
+        )
         r = r + shift
         moment = r[:, 0] * momentum[:, 1] - r[:, 1] * momentum[:, 0]
         return np.concatenate([space.weights @ momentum, [space.weights @ moment]])
@@ -75,7 +81,9 @@ def linear_theory(size, speed=0.7, period=1.1, samples=32):
     space = Space((0.0, 0.5, 1.0), 2, 16)
     thrust, h_t, h_x = [], [], []
     for time in np.arange(samples) * period / samples:
-        wrench = prescribed(Body.boyer2010(), law, time, (0, 0, 0, -speed, 0, 0), np.zeros(6), dict(nose=False, **NO_DRAG))
+        wrench = prescribed(
+            Body.boyer2010(), law, time, (0, 0, 0, -speed, 0, 0), np.zeros(6), dict(nose=False, **NO_DRAG)
+        )
         thrust.append(-wrench[3])
         K, K_rate, _ = (field[:, 2] for field in law.curvature(time, space.x))
         h_x.append(space.weights @ K)

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from cases import falling_law, random_law
+
 from eel_dynamics import Accuracy, Body, Scene, Simulation, SimulationStopped, hydrodynamic_wrench, simulate
 from eel_gaits import Law, Term
 
@@ -16,7 +17,7 @@ def refused(*words):
 
 
 def arrays(**changes):
-    return {**dict(x=X, half_width=ROUND, half_height=ROUND), **changes}
+    return {"x": X, "half_width": ROUND, "half_height": ROUND, **changes}
 
 
 def changed(values, index, value):
@@ -25,47 +26,53 @@ def changed(values, index, value):
     return values
 
 
-@pytest.mark.parametrize("given, words", [
-    (arrays(half_width=changed(ROUND, 5, -0.01)), ("half_width", "-0.01")),
-    (arrays(half_height=changed(ROUND, 5, np.nan)), ("half_height", "nan")),
-    (arrays(half_height=changed(ROUND, 5, np.inf)), ("half_height", "inf")),
-    (arrays(half_height=changed(ROUND, 0, 0.02)), ("half_height", "nose", "0.02")),
-    (arrays(half_width=ROUND[:-1]), ("half_width", "20")),
-    (arrays(half_width=np.zeros(21)), ("half_width",)),
-    (arrays(half_width="wide"), ("half_width", "wide")),
-    (arrays(x=X[::-1]), ("x ",)),
-    (arrays(x=changed(X, 5, X[4])), ("x ",)),
-    (arrays(x=X + 0.1), ("x ",)),
-    (arrays(x=changed(X, 5, np.nan)), ("x ", "nan")),
-    (dict(x=[0, 1], half_width=[0, 1], half_height=[0, 1]), ("x ", "2")),
-    (arrays(length=2.0), ("x ", "length", "2.0")),
-    (arrays(density=-1.0), ("density", "-1.0")),
-    (arrays(density=np.nan), ("density", "nan")),
-    (arrays(kinks=(0.5, 0.3)), ("kinks", "0.3")),
-    (arrays(kinks=(0.5, 1.3)), ("kinks", "1.3")),
-    (arrays(nose=(0.1, 0.1)), ("nose", "0.1")),
-    (arrays(nose=(0.1, -0.1, 0.1)), ("nose", "-0.1")),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "given, words",
+    [
+        (arrays(half_width=changed(ROUND, 5, -0.01)), ("half_width", "-0.01")),
+        (arrays(half_height=changed(ROUND, 5, np.nan)), ("half_height", "nan")),
+        (arrays(half_height=changed(ROUND, 5, np.inf)), ("half_height", "inf")),
+        (arrays(half_height=changed(ROUND, 0, 0.02)), ("half_height", "nose", "0.02")),
+        (arrays(half_width=ROUND[:-1]), ("half_width", "20")),
+        (arrays(half_width=np.zeros(21)), ("half_width",)),
+        (arrays(half_width="wide"), ("half_width", "wide")),
+        (arrays(x=X[::-1]), ("x ",)),
+        (arrays(x=changed(X, 5, X[4])), ("x ",)),
+        (arrays(x=X + 0.1), ("x ",)),
+        (arrays(x=changed(X, 5, np.nan)), ("x ", "nan")),
+        ({"x": [0, 1], "half_width": [0, 1], "half_height": [0, 1]}, ("x ", "2")),
+        (arrays(length=2.0), ("x ", "length", "2.0")),
+        (arrays(density=-1.0), ("density", "-1.0")),
+        (arrays(density=np.nan), ("density", "nan")),
+        (arrays(kinks=(0.5, 0.3)), ("kinks", "0.3")),
+        (arrays(kinks=(0.5, 1.3)), ("kinks", "1.3")),
+        (arrays(nose=(0.1, 0.1)), ("nose", "0.1")),
+        (arrays(nose=(0.1, -0.1, 0.1)), ("nose", "-0.1")),
+    ],
+)
 def test_body_of_arrays(given, words):
     with refused("body", *words):
         Body(**given)
 
 
-@pytest.mark.parametrize("given, words", [
-    (dict(length=-1.0), ("length", "-1.0")),
-    (dict(length=0.0), ("length", "0.0")),
-    (dict(length=None), ("length",)),
-    (dict(half_width=lambda x: 0.0 * x - 0.1), ("half_width", "-0.1")),
-    (dict(half_width=lambda x: 0.0 * x + 0.1), ("half_width", "nose", "0.1")),
-    (dict(half_height=lambda x: np.where(x > 0.5, np.nan, x)), ("half_height", "nan")),
-    (dict(half_height=3.0), ("half_height", "3.0")),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "given, words",
+    [
+        ({"length": -1.0}, ("length", "-1.0")),
+        ({"length": 0.0}, ("length", "0.0")),
+        ({"length": None}, ("length",)),
+        ({"half_width": lambda x: 0.0 * x - 0.1}, ("half_width", "-0.1")),
+        ({"half_width": lambda x: 0.0 * x + 0.1}, ("half_width", "nose", "0.1")),
+        ({"half_height": lambda x: np.where(x > 0.5, np.nan, x)}, ("half_height", "nan")),
+        ({"half_height": 3.0}, ("half_height", "3.0")),
+    ],
+)
 def test_body_of_functions(given, words):
     def half(x):
         return 0.05 * np.sqrt(x * (1.2 - x))
 
     with refused("body", *words):
-        Body(**{**dict(length=1.0, half_width=half, half_height=half), **given})
+        Body(**{"length": 1.0, "half_width": half, "half_height": half, **given})
 
 
 def test_body_by_name_and_file(tmp_path):
@@ -93,19 +100,22 @@ def test_body_from_files(tmp_path):
         assert np.allclose(body.half_height(X), 2 * ROUND, atol=1e-12)
 
 
-@pytest.mark.parametrize("given, words", [
-    (dict(friction="rough"), ("friction", "rough", "laminar")),
-    (dict(perimeter="square"), ("perimeter", "square")),
-    (dict(added_mass="none"), ("added_mass", "none")),
-    (dict(tail_pressure=1), ("tail_pressure", "1")),
-    (dict(planar="yes"), ("planar", "yes")),
-    (dict(current=(1, 2)), ("current", r"\(1, 2\)")),
-    (dict(current=(1, np.nan, 0)), ("current", "nan")),
-    (dict(planar=True, current=(0, 0, 1)), ("current", "plane")),
-    (dict(density=0.0), ("density", "0")),
-    (dict(fluid_density=-1.0), ("fluid_density", "-1")),
-    (dict(viscosity=np.inf), ("viscosity", "inf")),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "given, words",
+    [
+        ({"friction": "rough"}, ("friction", "rough", "laminar")),
+        ({"perimeter": "square"}, ("perimeter", "square")),
+        ({"added_mass": "none"}, ("added_mass", "none")),
+        ({"tail_pressure": 1}, ("tail_pressure", "1")),
+        ({"planar": "yes"}, ("planar", "yes")),
+        ({"current": (1, 2)}, ("current", r"\(1, 2\)")),
+        ({"current": (1, np.nan, 0)}, ("current", "nan")),
+        ({"planar": True, "current": (0, 0, 1)}, ("current", "plane")),
+        ({"density": 0.0}, ("density", "0")),
+        ({"fluid_density": -1.0}, ("fluid_density", "-1")),
+        ({"viscosity": np.inf}, ("viscosity", "inf")),
+    ],
+)
 def test_scene(given, words):
     with refused("scene", *words):
         Scene(**given)
@@ -122,25 +132,28 @@ def test_accuracy(given):
         Accuracy.of(given)
 
 
-@pytest.mark.parametrize("given, words", [
-    (dict(accuracy="best"), ("accuracy", "best")),
-    (dict(orientation=(0, 0, 0, 1.1)), ("orientation", "1.1")),
-    (dict(orientation=(0, 0, 0, 0)), ("orientation", "0")),
-    (dict(orientation=(0, 0, 1)), ("orientation",)),
-    (dict(orientation=(0, 0, np.nan, 1)), ("orientation", "nan")),
-    (dict(position=(0, 0, np.inf)), ("position", "inf")),
-    (dict(position=(0, 0)), ("position",)),
-    (dict(twist=(0, 0, 0, 0, 0)), ("twist",)),
-    (dict(twist=(0, 0, 0, 0, 0, np.nan)), ("twist", "nan")),
-    (dict(stations=1), ("stations", "1")),
-    (dict(stations=(0.5, 0.2)), ("stations",)),
-    (dict(stations=(0.0, 1.5)), ("stations", "1.5")),
-    (dict(scene="calm"), ("scene", "calm")),
-    (dict(body="boyer2010"), ("body", "boyer2010")),
-    (dict(scene=Scene(planar=True), position=(0, 0, 1)), ("planar|plane", "position")),
-    (dict(scene=Scene(planar=True), twist=(0, 0, 0, 0, 0, 1)), ("planar|plane", "twist")),
-    (dict(scene=Scene(planar=True), orientation=(1, 0, 0, 0)), ("planar|plane", "orientation")),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "given, words",
+    [
+        ({"accuracy": "best"}, ("accuracy", "best")),
+        ({"orientation": (0, 0, 0, 1.1)}, ("orientation", "1.1")),
+        ({"orientation": (0, 0, 0, 0)}, ("orientation", "0")),
+        ({"orientation": (0, 0, 1)}, ("orientation",)),
+        ({"orientation": (0, 0, np.nan, 1)}, ("orientation", "nan")),
+        ({"position": (0, 0, np.inf)}, ("position", "inf")),
+        ({"position": (0, 0)}, ("position",)),
+        ({"twist": (0, 0, 0, 0, 0)}, ("twist",)),
+        ({"twist": (0, 0, 0, 0, 0, np.nan)}, ("twist", "nan")),
+        ({"stations": 1}, ("stations", "1")),
+        ({"stations": (0.5, 0.2)}, ("stations",)),
+        ({"stations": (0.0, 1.5)}, ("stations", "1.5")),
+        ({"scene": "calm"}, ("scene", "calm")),
+        ({"body": "boyer2010"}, ("body", "boyer2010")),
+        ({"scene": Scene(planar=True), "position": (0, 0, 1)}, ("planar|plane", "position")),
+        ({"scene": Scene(planar=True), "twist": (0, 0, 0, 0, 0, 1)}, ("planar|plane", "twist")),
+        ({"scene": Scene(planar=True), "orientation": (1, 0, 0, 0)}, ("planar|plane", "orientation")),
+    ],
+)
 def test_simulation(given, words):
     with refused(*words):
         Simulation(**given)
@@ -155,18 +168,26 @@ def test_pitch_in_a_planar_scene():
         simulation.add_samples(1.0, [0.0, 1.0], [1.0, 1.0], *[[0.0, 0.0]] * 5)
 
 
-@pytest.mark.parametrize("given, words", [
-    (dict(duration=-1.0), ("duration", "-1.0")), (dict(duration=np.nan), ("duration", "nan")),
-    (dict(duration=1.0, sample_period=0.0), ("sample_period", "0")), (dict(duration=1.0, sample_period=-0.1), ("sample_period", "-0.1")),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "given, words",
+    [
+        ({"duration": -1.0}, ("duration", "-1.0")),
+        ({"duration": np.nan}, ("duration", "nan")),
+        ({"duration": 1.0, "sample_period": 0.0}, ("sample_period", "0")),
+        ({"duration": 1.0, "sample_period": -0.1}, ("sample_period", "-0.1")),
+    ],
+)
 def test_simulate(given, words):
     with refused(*words):
         simulate(falling_law(), **given)
 
 
 def test_law_of_the_wrong_kind():
-    for call in (lambda: simulate("falling", duration=1.0), lambda: Simulation().adopt("falling"),
-                 lambda: hydrodynamic_wrench(Body.boyer2010(), "falling", 0.0, np.zeros(6), np.zeros(6), Scene())):  # fmt: skip
+    for call in (
+        lambda: simulate("falling", duration=1.0),
+        lambda: Simulation().adopt("falling"),
+        lambda: hydrodynamic_wrench(Body.boyer2010(), "falling", 0.0, np.zeros(6), np.zeros(6), Scene()),
+    ):
         with refused("law", "falling"):
             call()
 
@@ -187,10 +208,16 @@ def test_advance_without_a_law_and_backwards():
         simulation.advance(0.2)
 
 
-@pytest.mark.parametrize("time, x, pitch, word", [
-    (0.0, [0.0, 1.0], [0.0, 0.0], "time"), (np.nan, [0.0, 1.0], [0.0, 0.0], "time"),
-    (1.0, [1.0, 0.0], [0.0, 0.0], "x"), (1.0, [0.0, 1.0], [0.0], "pitch"), (1.0, [0.0, 1.0], [0.0, np.nan], "pitch"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "time, x, pitch, word",
+    [
+        (0.0, [0.0, 1.0], [0.0, 0.0], "time"),
+        (np.nan, [0.0, 1.0], [0.0, 0.0], "time"),
+        (1.0, [1.0, 0.0], [0.0, 0.0], "x"),
+        (1.0, [0.0, 1.0], [0.0], "pitch"),
+        (1.0, [0.0, 1.0], [0.0, np.nan], "pitch"),
+    ],
+)
 def test_samples(time, x, pitch, word):
     simulation = Simulation()
     with refused(word):

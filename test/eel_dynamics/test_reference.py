@@ -5,7 +5,7 @@ import pytest
 from cases import SPLINE_KNOTS, falling_law, kern_body, random_law, random_twist
 from reference import STEP, Reference, boyer_body, rotation, scene
 
-SMOOTH = dict(resistive=False)
+SMOOTH = {"resistive": False}
 EXACT = 1e-11  # round-off of some 100 nodes and 40 Picard terms, relative to the terms' own size
 
 
@@ -19,7 +19,7 @@ def state(seed, **settings):
 
 
 def test_mass_and_added_mass_of_the_robot():
-    """1.94 kg (the paper), 1.944 and 4.998 kg, 2.827 kg/m at the tail (model page); 0.822 kg with eq. (37) as printed."""
+    """The paper's 1.94 kg; added mass 4.998 kg, 2.827 kg/m at the tail; 0.822 kg with eq. (37) as printed."""
     reference, printed = (Reference(boyer_body(), scene(added_mass=choice)) for choice in ("corrected", "printed"))
     weights = reference.space.weights
     assert weights @ reference.inertia_body[:, 3] == pytest.approx(1.944, abs=5e-4)
@@ -37,15 +37,17 @@ def test_volume_of_the_kern_body():
 def test_configuration_of_a_circle_and_of_a_helix():
     """Constant curvature: a circle of radius 1/K; constant K2 and K3: a circle in the plane across (K2, K3)."""
     reference = Reference(boyer_body())
-    K = np.zeros((reference.space.x.size, 3)) + (0.0, 3.0, 4.0)
+    K = np.tile([0.0, 3.0, 4.0], (reference.space.x.size, 1))
     R, r = reference.configuration(K)
     x, across = reference.space.x, np.array([0.0, 4.0, -3.0]) / 5  # K x E1 / |K|
-    assert np.allclose(r, np.outer(np.sin(5 * x), [0.2, 0, 0]) + np.outer(0.2 * (1 - np.cos(5 * x)), across), atol=1e-13)
+    assert np.allclose(
+        r, np.outer(np.sin(5 * x), [0.2, 0, 0]) + np.outer(0.2 * (1 - np.cos(5 * x)), across), atol=1e-13
+    )
     assert np.allclose(R.transpose(0, 2, 1) @ R, np.eye(3), atol=1e-13)
 
 
 @pytest.mark.parametrize("seed", range(4))
-@pytest.mark.parametrize("settings, tolerance", [(SMOOTH, EXACT), (dict(friction="laminar"), 1e-6)])
+@pytest.mark.parametrize("settings, tolerance", [(SMOOTH, EXACT), ({"friction": "laminar"}, 1e-6)])
 def test_strong_form_meets_the_tail_condition(seed, settings, tolerance):
     """Eq. (50) from the nose ends in n = -T_f t1, c = 0 at the tail, eq. (51): momentum against fields.
 
@@ -72,8 +74,8 @@ def test_energy_ledger(seed):
 def test_torque_by_virtual_work(seed):
     """Lagrange's equation of a shape coordinate s, K + s phi(X), gives integral C . phi dX from the energy alone.
 
-    d/dt dT/d(ds/dt) - dT/ds = -integral C . phi dX + (wake's wrench . virtual displacement of the tail), no drag. The head
-    is held in the virtual displacement, so that its equation does not enter; the torque comes from the strong form.
+    d/dt dT/d(ds/dt) - dT/ds = -integral C . phi dX + (wake's wrench . virtual displacement of the tail), no drag.
+    The head is held in the virtual displacement, so that its equation does not enter; the torque is the strong form's.
     """
     reference, (K, K1, K2), twist, rate = state(seed, **SMOOTH)
     x, step, h = reference.space.x, 1j * STEP, 1.0
@@ -84,7 +86,7 @@ def test_torque_by_virtual_work(seed):
 
     inertial = conjugate(K + step * K1, K1 + step * K2, twist + step * rate).imag / STEP
     inertial -= sum(reference.energies(K + step * phi, K1, twist)).imag / STEP
-    R, r = reference.configuration(K)
+    R, _r = reference.configuration(K)
     turn, shift = (reference.at_tail(field) for field in reference.shape_velocity(R, phi))
     eta, tail_R = reference.at_tail(reference.twists(K, K1, twist)), reference.at_tail(R.reshape(-1, 9)).reshape(3, 3)
     wrench, _ = reference.tail_wrench(tail_R, np.zeros(3), eta)  # about the tail
@@ -120,7 +122,7 @@ def test_without_fluid_the_momentum_stays():
     law, start = falling_law(), np.array([0.1, 0.2, -0.3, -0.5, 0.1, 0.2])
     times = (0.0, 0.5, 1.0)
     momenta = []
-    for time, position, q, twist in zip(times, *reference.march(law, times, twist=start, rtol=1e-11)):
+    for time, position, q, twist in zip(times, *reference.march(law, times, twist=start, rtol=1e-11), strict=False):
         L, P = np.split(reference.momentum(*law.curvature(time, reference.space.x)[:2], twist), 2)
         L, P = rotation(q) @ L, rotation(q) @ P
         momenta.append(np.concatenate([L + np.cross(position, P), P]))

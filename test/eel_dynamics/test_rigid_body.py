@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
-from eel_gaits import Law
 from library_state import Body, Reference, Scene, prescribed, reference_scene, simulate
 from reference import boyer_body
 from scipy.special import ellipj
+
+from eel_gaits import Law
 
 STRAIGHT = Law(name="straight")
 
@@ -13,7 +14,9 @@ STRAIGHT = Law(name="straight")
 @pytest.mark.parametrize("speed", [-0.7, 0.4])
 def test_coasting(speed):
     """Without friction the nose alone brakes: V = V0 / (1 + rho k_o |V0| t / (2 (m + m_o)))."""
-    run = simulate(STRAIGHT, duration=10.0, scene=Scene(friction="none"), twist=(0, 0, 0, speed, 0, 0), sample_period=1.0)
+    run = simulate(
+        STRAIGHT, duration=10.0, scene=Scene(friction="none"), twist=(0, 0, 0, speed, 0, 0), sample_period=1.0
+    )
     added = 1000 * np.pi * 0.32 * 0.025 * 0.05 * 0.05
     drag, mass = np.pi * 0.036 * 0.025 * 0.05, Body.boyer2010().mass + added
     slowing = 1 + 1000 * drag * abs(speed) * run.time / (2 * mass)
@@ -27,7 +30,7 @@ def test_coasting(speed):
 def test_munk_moment_and_wake(sideways):
     """-V1 V2 integral rho pi a^2 dX + l V1 V2 rho pi a(l)^2 about E3, its like about E2; and the force of the wake."""
     V1, (V2, V3) = -0.6, sideways
-    wrench = prescribed(Body.boyer2010(), STRAIGHT, 0.0, (0, 0, 0, V1, V2, V3), np.zeros(6), dict(resistive=False))
+    wrench = prescribed(Body.boyer2010(), STRAIGHT, 0.0, (0, 0, 0, V1, V2, V3), np.zeros(6), {"resistive": False})
     space = Reference(boyer_body(), reference_scene()).space
     a, b = boyer_body().half_height, boyer_body().half_width
     mass2, mass3 = (1000 * np.pi * (space.weights @ axis(space.x) ** 2) for axis in (a, b))
@@ -52,8 +55,14 @@ def test_free_top(spin):
     mass, center = matrix[3, 3], np.array([matrix[2, 4], 0, 0]) / matrix[3, 3]
     A, C, B = (matrix[k, k] - (mass * center[0] ** 2 if k else 0) for k in range(3))
     omega = np.array([spin[0], spin[2], 0.0])  # the middle moment's component starts at zero
-    run = simulate(STRAIGHT, duration=4.0, scene=Scene(reactive=False, resistive=False), sample_period=0.1,
-                   accuracy="reference", twist=(*omega, *-np.cross(omega, center)))  # fmt: skip
+    run = simulate(
+        STRAIGHT,
+        duration=4.0,
+        scene=Scene(reactive=False, resistive=False),
+        sample_period=0.1,
+        accuracy="reference",
+        twist=(*omega, *-np.cross(omega, center)),
+    )
     energy2, momentum2 = A * omega[0] ** 2 + C * omega[1] ** 2, (A * omega[0]) ** 2 + (C * omega[1]) ** 2
     if momentum2 > energy2 * B:  # turns about C
         rate = np.sqrt((C - B) * (momentum2 - energy2 * A) / (A * B * C))

@@ -11,8 +11,10 @@ from reference import boyer_body
 def test_wrench(seed):
     rng = np.random.default_rng(seed)
     law, twist = random_law(rng, spline=False), random_twist(rng)
-    lumped, distributed = (snapshot(Body.boyer2010(), law, 0.5, twist, settings=dict(tail_pressure=choice))
-                           for choice in ("lumped", "distributed"))  # fmt: skip
+    lumped, distributed = (
+        snapshot(Body.boyer2010(), law, 0.5, twist, settings={"tail_pressure": choice})
+        for choice in ("lumped", "distributed")
+    )
     assert np.allclose(lumped.head_acceleration, distributed.head_acceleration, rtol=1e-12, atol=1e-12)
     assert np.allclose(lumped.torque, distributed.torque, rtol=0, atol=1e-13 * np.abs(lumped.torque).max())
     reference = Reference(boyer_body(), reference_scene())
@@ -24,7 +26,9 @@ def test_wrench(seed):
 
 
 def test_head_motion():
-    runs = [simulate(falling_law(), duration=2.0, scene=Scene(tail_pressure=choice), sample_period=0.2)
-            for choice in ("lumped", "distributed")]  # fmt: skip
+    runs = [
+        simulate(falling_law(), duration=2.0, scene=Scene(tail_pressure=choice), sample_period=0.2)
+        for choice in ("lumped", "distributed")
+    ]
     assert np.array_equal(runs[0].position, runs[1].position)
     assert np.array_equal(runs[0].twist, runs[1].twist)
