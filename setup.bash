@@ -36,14 +36,13 @@ _eel_setup() {
         break
     done
 
-    local prefixes=() executables=() modules=()
+    local prefixes=() modules=()
     local libraries=("$root/install/eel_msgs/lib" "$root/.venv/lib" "$root/.venv/$site"/ros_*.libs)
     for package in eel_viz eel_dynamics eel_gaits eel_msgs; do
         prefixes+=("$root/install/$package")
-        executables+=("$root/install/$package/lib/$package")
         modules+=("$root/build/$package" "$root/install/$package/$site")
     done
-    _eel_path PATH "${executables[@]:0:3}" "$root/.venv/bin"
+    _eel_path PATH "$root/install/bin" "$root/.venv/bin"
     _eel_path AMENT_PREFIX_PATH "${prefixes[@]}" "$root/.venv"
     _eel_path PYTHONPATH "${modules[@]:0:6}" "$root/install/eel_msgs/$site"
     _eel_path LD_LIBRARY_PATH "${libraries[@]}"

@@ -45,7 +45,7 @@ make_environment() {
 build_packages() {
     local key
     key="$(find src -type f ! -path '*/__pycache__/*' ! -path '*.egg-info/*' \( ! -name '*.py' -o -name setup.py \) -print0 |
-        sort -z | xargs -0 sha256sum | key_of "$(cat .venv/stamp)")"
+        sort -z | xargs -0 sha256sum tools/build.sh | key_of "$(cat .venv/stamp)")"
     stamped install/stamp "$key" && return
     need_compiler
     say "colcon build of the four packages"
@@ -53,7 +53,20 @@ build_packages() {
     PATH="$root/.venv/bin:$PATH" AMENT_PREFIX_PATH="$root/.venv" CMAKE_PREFIX_PATH="$root/.venv" \
         .venv/bin/python .venv/bin/colcon build --symlink-install --cmake-args "-DPython3_EXECUTABLE=$root/.venv/bin/python" \
         9>&- || { say "colcon failed; its output is in log/latest_build"; exit 1; }
+    link_executables
     printf '%s' "$key" > install/stamp
+}
+
+# One folder for setup.bash to put on the PATH. `echo` is there as eel_echo: the system's own must not be shadowed.
+link_executables() {
+    local executable name
+    rm -rf install/bin
+    mkdir install/bin
+    for executable in install/eel_*/lib/eel_*/*; do
+        name="${executable##*/}"
+        [ "$name" != echo ] || name=eel_echo
+        ln -s "../../$executable" "install/bin/$name"
+    done
 }
 
 compile_kernels() {

@@ -55,6 +55,7 @@ def swim() -> dict[str, list]:
     display = bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
     domain = reserve_domain()
     environment = domain.environment()
+    os.environ.update(environment)  # for this program's own subscriber
     for stale in (RECORDING, PICTURE):
         stale.unlink(missing_ok=True)
     sink = "[spawn, save]" if display else "[save]"

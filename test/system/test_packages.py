@@ -1,0 +1,98 @@
+"""The four packages as colcon and rosdep see them: manifests that name what the sources import, executables in place."""
+
+import ast
+import os
+import subprocess
+import sys
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+PYTHON_PACKAGES = ("eel_gaits", "eel_dynamics", "eel_viz")
+EXECUTABLES = {
+    "eel_gaits": {"gait_generator"},
+    "eel_dynamics": {"dynamics", "simulate"},
+    "eel_viz": {"visualiser", "record", "echo"},
+}
+ROSDEP_KEY = {"numpy": "python3-numpy", "numba": "python3-numba", "scipy": "python3-scipy", "matplotlib": "python3-matplotlib", "yaml": "python3-yaml"}
+OPTIONAL = {"tf2_msgs"}  # used where it is installed
+FROM_REQUIREMENTS = {"rerun", "rosbags", "mcap", "pyarrow"}  # no rosdep key: requirements.txt brings them (pyarrow with rerun)
+
+
+def imported_modules(package: str) -> set[str]:
+    """Top-level names that a package's sources import, without Python's own and its own."""
+    found = set()
+    for path in (ROOT / "src" / package / package).rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.Import):
+                found |= {alias.name.split(".")[0] for alias in node.names}
+            elif isinstance(node, ast.ImportFrom) and node.level == 0:
+                found.add(node.module.split(".")[0])
+    return found - set(sys.stdlib_module_names) - {package}
+
+
+def manifest(package: str) -> ElementTree.Element:
+    return ElementTree.parse(ROOT / "src" / package / "package.xml").getroot()
+
+
+@pytest.mark.parametrize("package", PYTHON_PACKAGES)
+def test_manifest_names_what_the_sources_import(package):
+    declared = {node.text for node in manifest(package) if node.tag in ("depend", "exec_depend")}
+    needed = {ROSDEP_KEY.get(name, name) for name in imported_modules(package) - FROM_REQUIREMENTS - OPTIONAL}
+    assert needed <= declared, f"package.xml of {package} lacks {sorted(needed - declared)}"
+    unused = declared - needed
+    assert not unused, f"package.xml of {package} names {sorted(unused)}, which nothing imports"
+
+
+@pytest.mark.parametrize("package", (*PYTHON_PACKAGES, "eel_msgs"))
+def test_manifest_is_valid(package):
+    from catkin_pkg.package import parse_package
+
+    parsed = parse_package(str(ROOT / "src" / package))
+    assert parsed.name == package
+    assert parsed.licenses == ["Apache-2.0"]
+    assert parsed.version == "0.1.0"
+
+
+@pytest.mark.parametrize("package", PYTHON_PACKAGES)
+def test_executables_lie_where_ros2_run_looks(package):
+    from ament_index_python.packages import get_package_prefix
+
+    folder = Path(get_package_prefix(package)) / "lib" / package
+    executables = {path.name for path in folder.iterdir() if os.access(path, os.X_OK)}
+    assert executables == EXECUTABLES[package]
+    for path in folder.iterdir():
+        interpreter = path.read_text().splitlines()[0].removeprefix("#!")
+        assert Path(interpreter).samefile(sys.executable)
+
+
+def test_every_message_field_is_commented_with_its_unit():
+    for path in (ROOT / "src/eel_msgs/msg").glob("*.msg"):
+        for line in path.read_text().splitlines():
+            declaration, _, comment = line.partition("#")
+            if declaration.strip() and not declaration.startswith((" ", "uint8", "string")):
+                assert "[" in comment or declaration.startswith("std_msgs/Header"), f"{path.name}: {line}"
+
+
+@pytest.mark.parametrize("package", PYTHON_PACKAGES)
+def test_library_imports_without_ros(package):
+    """Everything but the nodes and the message glue runs where there is no ROS at all."""
+    ros = {"eel_viz": {"node", "messages", "record", "echo"}}.get(package, {"node", "messages"})
+    folder = ROOT / "src" / package / package
+    with_ros = ros | {path.stem for path in folder.glob("*.py") if path.stem != "__main__" and uses_ros(path)}
+    allowed = ros | ROS_SIDE.get(package, set())
+    assert with_ros <= allowed, f"these import ROS: {sorted(with_ros - allowed)}"
+    modules = [package, *(f"{package}.{path.stem}" for path in folder.glob("*.py") if path.stem not in with_ros | {"__init__", "__main__"})]
+    blocked = ["rclpy", "eel_msgs", "std_msgs", "geometry_msgs", "rcl_interfaces", "builtin_interfaces", "nav_msgs"]
+    code = f"import sys\nfor name in {blocked!r}: sys.modules[name] = None\nimport {', '.join(modules)}"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    assert done.returncode == 0, done.stderr
+
+
+ROS_SIDE = {"eel_dynamics": {"feed", "publishers"}}  # parts of the node
+
+
+def uses_ros(path: Path) -> bool:
+    return any(word in path.read_text() for word in ("import rclpy", "from rclpy", "from eel_msgs"))

@@ -1,0 +1,58 @@
+"""What the tests and the demo stand on: domains of their own, and processes that never outlive their owner."""
+
+import os
+import signal
+import subprocess
+import sys
+import textwrap
+import time
+from pathlib import Path
+
+import psutil
+import pytest
+from node_process import NodeProcess
+from ros_domain import reserve_domain
+
+
+def test_two_reservations_differ():
+    first, second = reserve_domain(), reserve_domain()
+    assert first.number != second.number
+    assert first.environment()["ROS_DOMAIN_ID"] == str(first.number)
+    first.claim.close()
+    second.claim.close()
+
+
+def test_stubborn_process_is_ended_with_its_children(tmp_path):
+    script = "trap '' INT TERM; sleep 1000 & echo $!; echo ready; wait; sleep 1000"
+    node = NodeProcess("bash", "-c", script, environment=dict(os.environ), log=tmp_path / "log.txt")
+    node.wait_for_output("ready")
+    child = int(node.output().split()[0])
+    node.end()
+    assert node.status == -signal.SIGKILL
+    assert not psutil.pid_exists(child) or psutil.Process(child).status() == psutil.STATUS_ZOMBIE
+
+
+def test_process_does_not_outlive_a_killed_owner(tmp_path):
+    owner = textwrap.dedent(f"""
+        import os, sys, time
+        sys.path.insert(0, {str(Path(__file__).parents[2] / "tools")!r})
+        from pathlib import Path
+        from node_process import NodeProcess
+        node = NodeProcess("sleep", "1000", environment=dict(os.environ), log=Path({str(tmp_path)!r}) / "log.txt")
+        print(node.process.pid, flush=True)
+        time.sleep(1000)
+    """)
+    process = subprocess.Popen([sys.executable, "-c", owner], stdout=subprocess.PIPE, text=True)
+    child = psutil.Process(int(process.stdout.readline()))
+    process.kill()
+    process.wait()
+    deadline = time.monotonic() + 5.0
+    while child.is_running() and child.status() != psutil.STATUS_ZOMBIE:
+        assert time.monotonic() < deadline
+        time.sleep(0.02)
+
+
+def test_waiting_for_output_of_a_dead_process_fails_at_once(tmp_path):
+    node = NodeProcess("bash", "-c", "echo no; exit 3", environment=dict(os.environ), log=tmp_path / "log.txt")
+    with pytest.raises(AssertionError, match="ended with 3"):
+        node.wait_for_output("yes")

@@ -1,0 +1,65 @@
+"""`source setup.bash`: from any folder, as often as one likes, without breaking the calling shell."""
+
+import os
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+NODES = ("gait_generator", "dynamics", "visualiser", "record", "eel_echo", "simulate")
+
+
+def shell(script: str, **environment: str) -> subprocess.CompletedProcess:
+    """Run a script in a bash that has nothing of this test's own environment."""
+    clean = {"HOME": os.environ.get("HOME", "/"), "PATH": "/usr/local/bin:/usr/bin:/bin", **environment}
+    return subprocess.run(["bash", "-c", script], env=clean, cwd="/", capture_output=True, text=True, timeout=60)
+
+
+def test_brings_python_and_nodes():
+    done = shell(f"source '{ROOT}/setup.bash' && python -c 'import eel_dynamics, eel_gaits, eel_msgs.msg, eel_viz, rclpy' && command -v " + " ".join(NODES))
+    assert done.returncode == 0, done.stderr
+    found = done.stdout.split()
+    assert [Path(path).name for path in found] == list(NODES)
+    assert all(Path(path).is_relative_to(ROOT / "install") for path in found)
+
+
+def test_shadows_no_command_of_the_system():
+    done = shell(f"source '{ROOT}/setup.bash'; ls {ROOT}/install/bin")
+    ours = done.stdout.split()
+    assert ours
+    assert [name for name in ours if any(Path(folder, name).exists() for folder in ("/usr/bin", "/bin", "/usr/sbin"))] == []
+
+
+def test_twice_is_as_good_as_once():
+    names = "PATH PYTHONPATH LD_LIBRARY_PATH AMENT_PREFIX_PATH"
+    script = f"source '{ROOT}/setup.bash'; for name in {names}; do echo ${{!name}}; done"
+    assert shell(f"source '{ROOT}/setup.bash'; {script}").stdout == shell(script).stdout
+
+
+@pytest.mark.parametrize("options", ["-eu", "-e", "-u", "+eu"])
+def test_leaves_the_shell_as_it_was(options):
+    done = shell(f"set {options}; before=$-; source '{ROOT}/setup.bash'; [ \"$before\" = \"$-\" ]; compgen -v | grep _eel || true; compgen -A function | grep _eel || true; pwd")
+    assert done.returncode == 0, done.stderr
+    assert done.stdout == "/\n"
+
+
+def test_keeps_what_was_there_and_leaves_a_sourced_ros_out():
+    done = shell(
+        f"source '{ROOT}/setup.bash'; echo $PYTHONPATH; echo $AMENT_PREFIX_PATH; echo $PATH",
+        PYTHONPATH="/mine:/opt/ros/jazzy/lib/python3.12/site-packages",
+        AMENT_PREFIX_PATH="/opt/ros/jazzy",
+        PATH="/opt/ros/jazzy/bin:/usr/bin:/bin",
+    )
+    modules, prefixes, path = (line.split(":") for line in done.stdout.splitlines())
+    assert modules[-1] == "/mine"
+    assert path[-2:] == ["/usr/bin", "/bin"]
+    assert not any(entry.startswith("/opt/ros") for entry in modules + prefixes + path)
+    assert "/opt/ros" in done.stderr
+
+
+def test_before_the_build_it_says_what_to_do(tmp_path):
+    (tmp_path / "setup.bash").write_text((ROOT / "setup.bash").read_text())
+    done = shell(f"source '{tmp_path}/setup.bash'; echo status $?")
+    assert done.stdout == "status 1\n"
+    assert "make -C" in done.stderr and len(done.stderr.splitlines()) == 1
