@@ -1,0 +1,175 @@
+"""The shape that drives the body: laws, samples of a controller, and the blends between them, as rows times factors.
+
+Every law is a sum of fields of X times functions of time alone,
+
+    K(t, X) = sum_m c_m(t) row_m(X),
+
+since sin(kX + phase - wt) = sin(kX + phase) cos wt - cos(kX + phase) sin wt. The rows are tabulated once: at the nodes,
+at the stations, and as the Magnus moments of the intervals that lead to both; an instant needs the factors c_m only.
+The difference between a motion and the law that takes over, and the quintic between two instants of a controller, are of
+the same form.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from .kernel import OPTIONS
+
+AXES = {"pitch": 0, "yaw": 1}
+MOMENT_POINTS = 10  # Gauss points per interval for the Magnus moments
+
+
+class Drive(NamedTuple):
+    """A tabulated shape of m rows on n nodes and s stations, as the loops take it."""
+
+    axis: np.ndarray  # (m,) int, 0 pitch (K2), 1 yaw (K3)
+    node: np.ndarray  # (m, n) rad/m at the nodes, per unit of factor
+    bend: np.ndarray  # (m, 3, n) rad, Magnus moments between the nodes
+    station: np.ndarray  # (m, s) rad/m
+    station_bend: np.ndarray  # (m, 3, s) rad, from the node before each station
+    origin: float  # s, simulation time of the law's own t = 0
+    sine: np.ndarray  # (k,) int, row of sin(kX + phase) of the k-th group of terms
+    cosine: np.ndarray  # (k,) int, row of cos(kX + phase), -1 without a period
+    period: np.ndarray  # (k,) s, 0: constant
+    ramp_first: np.ndarray  # (k,) int, first ramp of the envelope
+    ramp_count: np.ndarray  # (k,) int, -1: no envelope
+    ramps: np.ndarray  # (., 3) start s, end s, delta
+    segment: int  # first of the 12 rows of a quintic between two instants, -1: none
+    segment_start: float  # s
+    segment_end: float  # s
+    blend: int  # first of the 6 rows of a blend, -1: none
+    blend_start: float  # s
+    blend_end: float  # s
+
+
+class Tabulation:
+    """Points along the body at which rows are tabulated, and their Magnus moments.
+
+    columns: [nodes n | moments of nodes 3n | stations s | moments of stations 3s]
+    """
+
+    def __init__(self, nodes: np.ndarray, previous: np.ndarray, stations: np.ndarray, station_base: np.ndarray):
+        self.nodes, self.stations = len(nodes), len(stations)
+        points, weights = np.polynomial.legendre.leggauss(MOMENT_POINTS)
+        start, end = np.concatenate((previous, station_base)), np.concatenate((nodes, stations))
+        self._length = end - start
+        inside = 0.5 * (start + end)[:, None] + 0.5 * self._length[:, None] * points
+        self.x = np.concatenate((nodes, stations, inside.ravel()))
+        b0, b1, b2 = 0.5 * weights, 0.25 * weights * points, 0.125 * weights * points**2
+        self._moments = np.stack((b0, 12.0 * b1, 180.0 * b2 - 15.0 * b0))  # B0, alpha2, alpha3 per unit length
+
+    @property
+    def width(self) -> int:
+        return 4 * (self.nodes + self.stations)
+
+    def columns(self, values: np.ndarray) -> np.ndarray:
+        """Tabulated rows (..., width) of fields with `values` (..., len(x)) at the points x."""
+        n, s = self.nodes, self.stations
+        inside = values[..., n + s :].reshape(*values.shape[:-1], n + s, MOMENT_POINTS)
+        moments = np.einsum("...ig,kg->...ki", inside, self._moments) * self._length
+        flat = values.shape[:-1]
+        return np.concatenate(
+            (values[..., :n], moments[..., :n].reshape(*flat, 3 * n), values[..., n : n + s], moments[..., n:].reshape(*flat, 3 * s)),
+            axis=-1,
+        )
+
+    def split(self, rows: np.ndarray):
+        """node (m, n), bend (m, 3, n), station (m, s), station_bend (m, 3, s) of tabulated `rows` (m, width)."""
+        n, s, m = self.nodes, self.stations, len(rows)
+        cuts = np.split(rows, [n, 4 * n, 4 * n + s], axis=1)
+        shapes = (m, n), (m, 3, n), (m, s), (m, 3, s)
+        return tuple(np.ascontiguousarray(part.reshape(shape)) for part, shape in zip(cuts, shapes))
+
+
+@njit(**OPTIONS)
+def quintic(s, length, sign, factor, row):
+    """Factors (3, m) [value, rate, acceleration] of the value, rate and acceleration at one end of an interval of `length`,
+    at the fraction `s` from that end; the polynomials vanish with two derivatives at the other end. `sign` -1: from the end."""
+    s2, s3 = s * s, s * s * s
+    d, d2 = sign / length, 1.0 / (length * length)
+    factor[0, row] = 1.0 - s3 * (10.0 - s * (15.0 - 6.0 * s))
+    factor[1, row] = -d * 30.0 * s2 * (1.0 - s) * (1.0 - s)
+    factor[2, row] = -d2 * 60.0 * s * (1.0 - s) * (1.0 - 2.0 * s)
+    scale = sign * length
+    factor[0, row + 1] = scale * (s - s3 * (6.0 - s * (8.0 - 3.0 * s)))
+    factor[1, row + 1] = scale * d * (1.0 - s2 * (18.0 - s * (32.0 - 15.0 * s)))
+    factor[2, row + 1] = -scale * d2 * s * (36.0 - s * (96.0 - 60.0 * s))
+    scale = length * length
+    factor[0, row + 2] = scale * 0.5 * s2 * (1.0 - s) ** 3
+    factor[1, row + 2] = scale * d * 0.5 * s * (1.0 - s) ** 2 * (2.0 - 5.0 * s)
+    factor[2, row + 2] = scale * d2 * (1.0 - s) * (1.0 - s * (8.0 - 10.0 * s))
+
+
+@njit(**OPTIONS)
+def factors(drive, time, factor):
+    """Factors c_m (3, m) at `time` [s]: value, rate [1/s] and acceleration [1/s^2]."""
+    own = time - drive.origin
+    for k in range(len(drive.period)):
+        e, e1, e2 = 1.0, 0.0, 0.0
+        if drive.ramp_count[k] >= 0:
+            e = 0.0
+            for j in range(drive.ramp_first[k], drive.ramp_first[k] + drive.ramp_count[k]):
+                start, end, delta = drive.ramps[j, 0], drive.ramps[j, 1], drive.ramps[j, 2]
+                if own >= end:
+                    e += delta
+                elif own > start:
+                    length = end - start
+                    part = (own - start) / length
+                    angle = 2.0 * np.pi * part
+                    e += delta * (part - np.sin(angle) / (2.0 * np.pi))
+                    e1 += delta * (1.0 - np.cos(angle)) / length
+                    e2 += delta * 2.0 * np.pi * np.sin(angle) / (length * length)
+        row = drive.sine[k]
+        if drive.period[k] == 0.0:
+            factor[0, row], factor[1, row], factor[2, row] = e, e1, e2
+        else:
+            turns = own / drive.period[k]
+            angle = 2.0 * np.pi * (turns - np.floor(turns))
+            w = 2.0 * np.pi / drive.period[k]
+            c, s = np.cos(angle), np.sin(angle)
+            factor[0, row] = e * c
+            factor[1, row] = e1 * c - e * w * s
+            factor[2, row] = (e2 - e * w * w) * c - 2.0 * e1 * w * s
+            row = drive.cosine[k]
+            factor[0, row] = -e * s
+            factor[1, row] = -e1 * s - e * w * c
+            factor[2, row] = -(e2 - e * w * w) * s - 2.0 * e1 * w * c
+    if drive.segment >= 0:
+        length = drive.segment_end - drive.segment_start
+        part = min(1.0, max(0.0, (time - drive.segment_start) / length))
+        for axis in range(2):
+            quintic(part, length, 1.0, factor, drive.segment + 6 * axis)
+            quintic(1.0 - part, length, -1.0, factor, drive.segment + 6 * axis + 3)
+    if drive.blend >= 0:
+        length = drive.blend_end - drive.blend_start
+        part = (time - drive.blend_start) / length
+        for axis in range(2):
+            if part >= 1.0:
+                factor[:, drive.blend + 3 * axis : drive.blend + 3 * axis + 3] = 0.0
+            else:
+                quintic(max(0.0, part), length, 1.0, factor, drive.blend + 3 * axis)
+
+
+@njit(**OPTIONS)
+def combine(axis, rows, factor, result):
+    """Sum over rows of factor (m,) times rows (m, n), apart for pitch and yaw, into `result` (2, n)."""
+    result[:] = 0.0
+    for m in range(len(axis)):
+        c, k = factor[m], axis[m]
+        if c != 0.0:
+            for i in range(rows.shape[1]):
+                result[k, i] += c * rows[m, i]
+
+
+@njit(**OPTIONS)
+def combine_moments(axis, rows, factor, result):
+    """Sum over rows of factor (m,) times rows (m, 3, n), apart for pitch and yaw, into `result` (3, 2, n)."""
+    result[:] = 0.0
+    for m in range(len(axis)):
+        c, k = factor[m], axis[m]
+        if c != 0.0:
+            for j in range(3):
+                for i in range(rows.shape[2]):
+                    result[j, k, i] += c * rows[m, j, i]

@@ -1,0 +1,344 @@
+"""March of the head in time: explicit Runge-Kutta steps of the momentum form, with dense output, compiled.
+
+State y (17,), world axes: position of the head 0:3 [m]; orientation 3:7, quaternion x y z w; momentum of body, water and
+nose about the head 7:10 [kg m^2/s] and linear 10:13 [kg m/s]; work of actuators, wake, nose and drag since the start
+13:17 [J]. The works are integrals along the way, from the acceleration form at the Lobatto points of each step.
+
+Two methods: the pair of Dormand and Prince of orders 5(4) with a step chosen by its error estimate (J. Comp. Appl. Math.
+6 (1980); dense output of order 4 by Shampine, Math. Comp. 46 (1986)), and the classical Runge-Kutta method with a given
+step. Steps end at the breakpoints of the shape, where its derivatives jump.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from .drive import combine, combine_moments, factors
+from .kernel import OPTIONS, add_head_twist, configure, momentum_rates, twist_of_momentum
+from .wrench import accelerate, actuator_power
+
+STATE = 13
+WORKS = 4
+LOBATTO = np.array([0.0, 0.5 - np.sqrt(5.0) / 10.0, 0.5 + np.sqrt(5.0) / 10.0, 1.0])
+LOBATTO_SERIES = np.linalg.inv(np.vander(LOBATTO, increasing=True))  # coefficients of the cubic through values there
+
+MARCHED, NOT_FINITE, STEP_TOO_SMALL, SINGULAR = 0, 1, 2, 3
+
+
+class Method(NamedTuple):
+    """A Runge-Kutta method whose last stage is the first of the next step. s stages."""
+
+    a: np.ndarray  # (s, s)
+    c: np.ndarray  # (s,)
+    error: np.ndarray  # (s,) weights of the error estimate, zero where there is none
+    dense: np.ndarray  # (s, 4) y(theta) = y + h sum_i k_i sum_j dense[i, j] theta^(j+1)
+    adaptive: bool
+
+
+class Control(NamedTuple):
+    """What bounds a step."""
+
+    tolerance: float  # relative error per step
+    step: float  # s, the step where it is fixed, else the longest
+    smallest: float  # s
+    length: float  # m, scale of positions
+    momentum_floor: float  # kg m/s, below which momentum counts as none
+    ledger: bool
+
+
+class Step(NamedTuple):
+    """The step that the state is in, and the work space; n nodes, s stages."""
+
+    time: np.ndarray  # (3,) start s, length s, proposed next length s
+    y: np.ndarray  # (13,) at its start
+    end: np.ndarray  # (13,) at its end
+    k: np.ndarray  # (s, 13) rates at the stages
+    trial: np.ndarray  # (13,)
+    work: np.ndarray  # (4,) at the start
+    power: np.ndarray  # (4, 4) at the Lobatto points: [point, work]
+    twist: np.ndarray  # (6,)
+    rates: np.ndarray  # (6,)
+    momentum: np.ndarray  # (6,)
+    scale: np.ndarray  # (2,) greatest angular and linear momentum so far
+    count: np.ndarray  # (3,) int: steps, rejected steps, evaluations
+    fresh: np.ndarray  # (1,) int: 1 where k[-1] and power[-1] do not hold the start of the next step
+
+
+def step_of(stages: int) -> Step:
+    return Step(
+        time=np.zeros(3),
+        y=np.zeros(STATE),
+        end=np.zeros(STATE),
+        k=np.zeros((stages, STATE)),
+        trial=np.zeros(STATE),
+        work=np.zeros(WORKS),
+        power=np.zeros((4, WORKS)),
+        twist=np.zeros(6),
+        rates=np.zeros(6),
+        momentum=np.zeros(6),
+        scale=np.zeros(2),
+        count=np.zeros(3, dtype=np.int64),
+        fresh=np.ones(1, dtype=np.int64),
+    )
+
+
+def classical() -> Method:
+    """The classical Runge-Kutta method of order 4; between steps the cubic that meets value and rate at both ends."""
+    a = np.zeros((5, 5))
+    a[1, 0], a[2, 1], a[3, 2] = 0.5, 0.5, 1.0
+    a[4, :4] = 1 / 6, 1 / 3, 1 / 3, 1 / 6
+    # cubic Hermite: k1 (t - 2 t^2 + t^3) + k5 (t^3 - t^2) + (sum b k)(3 t^2 - 2 t^3)
+    dense = np.outer(a[4], [0.0, 3.0, -2.0, 0.0])
+    dense[0] += [1.0, -2.0, 1.0, 0.0]
+    dense[4] += [0.0, -1.0, 1.0, 0.0]
+    return Method(a, np.array([0.0, 0.5, 0.5, 1.0, 1.0]), np.zeros(5), dense, False)
+
+
+def dormand_prince() -> Method:
+    """The pair of orders 5(4)."""
+    a = np.zeros((7, 7))
+    a[1, :1] = 1 / 5
+    a[2, :2] = 3 / 40, 9 / 40
+    a[3, :3] = 44 / 45, -56 / 15, 32 / 9
+    a[4, :4] = 19372 / 6561, -25360 / 2187, 64448 / 6561, -212 / 729
+    a[5, :5] = 9017 / 3168, -355 / 33, 46732 / 5247, 49 / 176, -5103 / 18656
+    a[6, :6] = 35 / 384, 0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84
+    error = np.array([71 / 57600, 0, -71 / 16695, 71 / 1920, -17253 / 339200, 22 / 525, -1 / 40])
+    dense = np.array(
+        [
+            [1, -8048581381 / 2820520608, 8663915743 / 2820520608, -12715105075 / 11282082432],
+            [0, 0, 0, 0],
+            [0, 131558114200 / 32700410799, -68118460800 / 10900136933, 87487479700 / 32700410799],
+            [0, -1754552775 / 470086768, 14199869525 / 1410260304, -10690763975 / 1880347072],
+            [0, 127303824393 / 49829197408, -318862633887 / 49829197408, 701980252875 / 199316789632],
+            [0, -282668133 / 205662961, 2019193451 / 616988883, -1453857185 / 822651844],
+            [0, 40617522 / 29380423, -110615467 / 29380423, 69997945 / 29380423],
+        ]
+    )
+    return Method(a, np.array([0.0, 0.2, 0.3, 0.8, 8 / 9, 1.0, 1.0]), error, dense, True)
+
+
+@njit(**OPTIONS)
+def normalise(y):
+    """Make the orientation of state `y` a unit quaternion."""
+    size = np.sqrt(y[3] * y[3] + y[4] * y[4] + y[5] * y[5] + y[6] * y[6])
+    for k in range(3, 7):
+        y[k] /= size
+
+
+@njit(**OPTIONS)
+def rotate(y, inverse, vector, at):
+    """Rotate `vector[at:at+3]` in place by the orientation of state `y` (world from head), or by its inverse."""
+    x, v, z, w = y[3], y[4], y[5], y[6]
+    size = 1.0 / (x * x + v * v + z * z + w * w)
+    if inverse:
+        x, v, z = -x, -v, -z
+    a, b, c = vector[at], vector[at + 1], vector[at + 2]
+    ta, tb, tc = 2.0 * size * (v * c - z * b), 2.0 * size * (z * a - x * c), 2.0 * size * (x * b - v * a)
+    vector[at] = a + w * ta + v * tc - z * tb
+    vector[at + 1] = b + w * tb + z * ta - x * tc
+    vector[at + 2] = c + w * tc + x * tb - v * ta
+
+
+@njit(**OPTIONS)
+def settle(swimmer, drive, fields, time, y, momentum, twist):
+    """Configure the body at `time` and find the head's `twist` from the momentum of state `y`. False where it has none."""
+    factors(drive, time, fields.factor)
+    combine_moments(drive.axis, drive.bend, fields.factor[0], fields.bend)
+    combine(drive.axis, drive.node, fields.factor[1], fields.rate)
+    configure(swimmer, fields)
+    for k in range(6):
+        momentum[k] = y[7 + k]
+    rotate(y, True, momentum, 0)
+    rotate(y, True, momentum, 3)
+    return twist_of_momentum(swimmer, fields, momentum, twist)
+
+
+@njit(**OPTIONS)
+def rate_of_state(swimmer, drive, fields, current, time, y, step, dy):
+    """Rate `dy` (13,) of state `y` at `time` (eq. 27 in the momentum form). False where the inertia is singular."""
+    if not settle(swimmer, drive, fields, time, y, step.momentum, step.twist):
+        return False
+    momentum_rates(swimmer, fields, step.momentum, step.twist, step.rates)
+    twist, rates = step.twist, step.rates
+    dy[0], dy[1], dy[2] = twist[3], twist[4], twist[5]
+    rotate(y, False, dy, 0)
+    for k in range(3):
+        dy[k] += current[k]
+    x, v, z, w = y[3], y[4], y[5], y[6]
+    ox, oy, oz = 0.5 * twist[0], 0.5 * twist[1], 0.5 * twist[2]
+    dy[3] = w * ox + v * oz - z * oy
+    dy[4] = w * oy + z * ox - x * oz
+    dy[5] = w * oz + x * oy - v * ox
+    dy[6] = -x * ox - v * oy - z * oz
+    for k in range(6):
+        dy[7 + k] = rates[k]
+    rotate(y, False, dy, 7)
+    rotate(y, False, dy, 10)
+    return True
+
+
+@njit(**OPTIONS)
+def powers_of_state(swimmer, drive, fields, balance, time, y, step, power):
+    """Powers (4,) [W] of actuators, wake, nose and drag in state `y` at `time`, by the acceleration form."""
+    if not settle(swimmer, drive, fields, time, y, step.momentum, step.twist):
+        return False
+    combine(drive.axis, drive.node, fields.factor[2], fields.accel)
+    add_head_twist(fields, step.twist)
+    accelerate(swimmer, fields, step.twist, balance)
+    actuator_power(swimmer, fields, balance, step.rates)
+    for k in range(4):
+        power[k] = balance.powers[k]
+    return True
+
+
+@njit(**OPTIONS)
+def interpolate(method, step, theta, y):
+    """State `y` (13,) at the fraction `theta` of the step."""
+    for k in range(STATE):
+        y[k] = step.y[k]
+    for i in range(method.a.shape[0]):
+        d = method.dense
+        weight = step.time[1] * theta * (d[i, 0] + theta * (d[i, 1] + theta * (d[i, 2] + theta * d[i, 3])))
+        for k in range(STATE):
+            y[k] += weight * step.k[i, k]
+    normalise(y)
+
+
+@njit(**OPTIONS)
+def works_upto(step, theta, weights, work):
+    """Works (4,) [J] at the fraction `theta` of the step: the integral of the cubic through the powers at Lobatto's points."""
+    for k in range(WORKS):
+        work[k] = step.work[k]
+    power = theta
+    for j in range(4):
+        for i in range(4):
+            for k in range(WORKS):
+                work[k] += step.time[1] * power / (j + 1.0) * weights[j, i] * step.power[i, k]
+        power *= theta
+
+
+@njit(**OPTIONS)
+def error_by_tolerance(method, control, step, length):
+    """The error estimate of the trial step by the tolerance: of position by the body's length, of orientation by one, of
+    the momenta by their greatest size so far; the worst of the four. A good step has 1 or less."""
+    trial, scale = step.trial, np.empty(4)
+    scale[0], scale[1] = control.length, 1.0
+    scale[3] = max(step.scale[1], np.sqrt(trial[10] ** 2 + trial[11] ** 2 + trial[12] ** 2), control.momentum_floor)
+    scale[2] = max(step.scale[0], np.sqrt(trial[7] ** 2 + trial[8] ** 2 + trial[9] ** 2), scale[3] * control.length)
+    worst = 0.0
+    for group in range(4):
+        first = (0, 3, 7, 10, 13)[group]
+        last = (0, 3, 7, 10, 13)[group + 1]
+        square = 0.0
+        for k in range(first, last):
+            error = 0.0
+            for i in range(method.a.shape[0]):
+                error += method.error[i] * step.k[i, k]
+            square += error * error
+        worst = max(worst, np.sqrt(square) * length / (control.tolerance * scale[group]))
+    return worst
+
+
+@njit(**OPTIONS)
+def attempt(swimmer, drive, fields, current, method, control, step, start, length):
+    """Try a step of `length` [s] from `step.end` at `start`, into `step.trial`. Returns a status and the error by tolerance."""
+    stages = method.a.shape[0]
+    for i in range(1, stages):
+        for k in range(STATE):
+            total = 0.0
+            for j in range(i):
+                total += method.a[i, j] * step.k[j, k]
+            step.trial[k] = step.end[k] + length * total
+        if i == stages - 1:
+            normalise(step.trial)
+        step.count[2] += 1
+        if not rate_of_state(swimmer, drive, fields, current, start + method.c[i] * length, step.trial, step, step.k[i]):
+            return SINGULAR, np.inf
+    total = 0.0
+    for k in range(STATE):
+        total += abs(step.trial[k]) + abs(step.k[stages - 1, k])
+    if not np.isfinite(total):
+        return NOT_FINITE, np.inf
+    return MARCHED, error_by_tolerance(method, control, step, length) if method.adaptive else 0.0
+
+
+@njit(**OPTIONS)
+def begin(swimmer, drive, fields, balance, current, method, control, step, start):
+    """Have the first stage of the next step (and the powers there) ready: from the step before, or evaluated anew."""
+    last = method.a.shape[0] - 1
+    if step.fresh[0] == 1:
+        step.count[2] += 1
+        if not rate_of_state(swimmer, drive, fields, current, start, step.end, step, step.k[last]):
+            return False
+        if control.ledger and not powers_of_state(swimmer, drive, fields, balance, start, step.end, step, step.power[3]):
+            return False
+        step.fresh[0] = 0
+    for k in range(STATE):
+        step.k[0, k] = step.k[last, k]
+    return True
+
+
+@njit(**OPTIONS)
+def fitted(method, control, step, start, target, tiny):
+    """Length [s] of the next step: as proposed, or such that steps end on `target` without a sliver before it."""
+    left = target - start
+    if not method.adaptive:
+        return left / np.ceil(left / control.step - 1e-9) if left < 1e100 else control.step
+    length = min(control.step, step.time[2])
+    if length > left - tiny:
+        return left
+    return min(length, 0.5 * left) if length > 0.5 * left else length
+
+
+@njit(**OPTIONS)
+def accept(step, start, length, series):
+    """Make the trial step the step."""
+    works_upto(step, 1.0, series, step.work)
+    for k in range(STATE):
+        step.y[k] = step.end[k]
+        step.end[k] = step.trial[k]
+    for k in range(WORKS):
+        step.power[0, k] = step.power[3, k]
+    step.time[0], step.time[1] = start, length
+    step.count[0] += 1
+    step.scale[0] = max(step.scale[0], np.sqrt(step.end[7] ** 2 + step.end[8] ** 2 + step.end[9] ** 2))
+    step.scale[1] = max(step.scale[1], np.sqrt(step.end[10] ** 2 + step.end[11] ** 2 + step.end[12] ** 2))
+
+
+@njit(**OPTIONS)
+def march(swimmer, drive, fields, balance, current, method, control, breakpoints, lobatto, series, step, until):
+    """March until the step holds the time `until` [s]. Returns MARCHED, or why it could not."""
+    tiny = 1e-12 * max(1.0, abs(until))
+    while step.time[0] + step.time[1] < until - tiny:
+        start = step.time[0] + step.time[1]
+        target = np.inf
+        for j in range(len(breakpoints)):
+            if breakpoints[j] > start + tiny:
+                target = breakpoints[j]
+                break
+        if not begin(swimmer, drive, fields, balance, current, method, control, step, start):
+            return SINGULAR
+        proposed = step.time[2]
+        length = fitted(method, control, step, start, target, tiny)
+        status, error = attempt(swimmer, drive, fields, current, method, control, step, start, length)
+        while status != MARCHED or error > 1.0:
+            step.count[1] += 1
+            length *= 0.1 if status != MARCHED else max(0.2, 0.9 * error**-0.2)
+            proposed = length
+            if not method.adaptive or length < control.smallest:
+                step.fresh[0] = 1
+                return STEP_TOO_SMALL if status == MARCHED else status
+            status, error = attempt(swimmer, drive, fields, current, method, control, step, start, length)
+        grown = length * (5.0 if error < 1e-4 else min(5.0, 0.9 * error**-0.2))
+        step.time[2] = min(control.step, grown if length >= proposed else max(proposed, grown))
+        if abs(start + length - target) <= tiny:
+            length = target - start
+        accept(step, start, length, series)
+        if control.ledger:
+            for j in range(1, 4):
+                interpolate(method, step, lobatto[j], step.trial)
+                if not powers_of_state(swimmer, drive, fields, balance, start + lobatto[j] * length, step.trial, step, step.power[j]):
+                    return SINGULAR
+    return MARCHED

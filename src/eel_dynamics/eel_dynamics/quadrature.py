@@ -1,0 +1,136 @@
+"""Nodes along the body, and the matrices that integrate from the nose to each of them.
+
+The body is cut into panels at its kinks, so that every field is smooth inside a panel. A panel carries `p` right Radau
+points: the last one is the panel's end, so the tail is a node, and each panel starts where the one before ended. The
+integral of the polynomial through the points (collocation; Hairer and Wanner, Solving Ordinary Differential Equations
+II, section IV.5) is exact to degree 2p - 2 over a panel, and to degree p - 1 up to a point inside it.
+
+The half-axes grow like sqrt(X) at a rounded nose: the first panel is integrated in u with X = X_1 u^2, in which fields
+that hold sqrt(X) are smooth.
+"""
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.polynomial import legendre
+
+
+@dataclass(frozen=True, kw_only=True)
+class Panel:
+    """Part of the body between two kinks. `graded`: integrated in u, X = end u^2 (`start` is 0 then)."""
+
+    start: float
+    end: float
+    points: int
+    graded: bool = False
+
+    def locate(self, fraction):
+        """X [m] of the panel's variable in (0, 1), and dX by it."""
+        fraction = np.asarray(fraction, dtype=float)
+        length = self.end - self.start
+        if self.graded:
+            return length * fraction**2, 2.0 * length * fraction
+        return self.start + length * fraction, np.full_like(fraction, length)
+
+    def fraction(self, x):
+        """The panel's variable at X = `x` [m]; the inverse of `locate`."""
+        part = np.clip((np.asarray(x, dtype=float) - self.start) / (self.end - self.start), 0.0, 1.0)
+        return np.sqrt(part) if self.graded else part
+
+
+@dataclass(frozen=True)
+class Grid:
+    """Nodes of all panels in order. n nodes, p_max the largest number of points of a panel.
+
+    x (n,) [m]; weight (n,) [m]: integral over the body; previous (n,) [m]: X of the node before (0 for the first);
+    first (n,): index of the first node of a node's panel; count (n,): points of that panel;
+    matrix (n, p_max) [m]: integral from the panel's start to node i is sum_j matrix[i, j] f[first[i] + j].
+    """
+
+    panels: tuple[Panel, ...]
+    x: np.ndarray
+    weight: np.ndarray
+    previous: np.ndarray
+    first: np.ndarray
+    count: np.ndarray
+    matrix: np.ndarray
+
+    @staticmethod
+    def of(panels: tuple[Panel, ...]) -> "Grid":
+        total = sum(panel.points for panel in panels)
+        widest = max(panel.points for panel in panels)
+        x, weight, matrix = np.empty(total), np.empty(total), np.zeros((total, widest))
+        first, count = np.empty(total, dtype=np.int64), np.empty(total, dtype=np.int64)
+        begin = 0
+        for panel in panels:
+            span = slice(begin, begin + panel.points)
+            fraction = radau_points(panel.points)
+            x[span], scale = panel.locate(fraction)
+            x[begin + panel.points - 1] = panel.end
+            matrix[span, : panel.points] = integration_matrix(panel.points, fraction) * scale
+            weight[span] = matrix[begin + panel.points - 1, : panel.points]
+            first[span], count[span] = begin, panel.points
+            begin += panel.points
+        return Grid(panels, x, weight, np.concatenate(([0.0], x[:-1])), first, count, matrix)
+
+    def panel_at(self, x) -> np.ndarray:
+        """Index of the panel that holds X = `x` (M,) [m]; a kink belongs to the panel that it ends."""
+        ends = np.array([panel.end for panel in self.panels])
+        return np.minimum(np.searchsorted(ends, x, side="left"), len(ends) - 1)
+
+    def rows_at(self, x, kind: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Rows that turn nodal values into values at X = `x` (M,) [m].
+
+        kind "integral": from the start of the panel to X [m]; kind "value": of the interpolating polynomial.
+        Returns (M, p_max), the index of the first node of each row's panel (M,), and its number of points (M,).
+        """
+        maker = {"integral": integration_matrix, "value": interpolation_matrix}[kind]
+        x = np.asarray(x, dtype=float)
+        rows = np.zeros((len(x), self.matrix.shape[1]))
+        begins = np.concatenate(([0], np.cumsum([panel.points for panel in self.panels])))
+        home = self.panel_at(x)
+        for index, panel in enumerate(self.panels):
+            here = np.flatnonzero(home == index)
+            if len(here):
+                part = maker(panel.points, panel.fraction(x[here]))
+                if kind == "integral":
+                    part = part * panel.locate(radau_points(panel.points))[1]
+                rows[here, : panel.points] = part
+        return rows, begins[home].astype(np.int64), np.array([self.panels[k].points for k in home], dtype=np.int64)
+
+
+@lru_cache(maxsize=None)
+def radau_points(points: int) -> np.ndarray:
+    """The right Radau points in (0, 1], ascending: zeros of P_p - P_(p-1) on (-1, 1], mapped."""
+    if points == 1:
+        return np.array([1.0])
+    series = np.zeros(points + 1)
+    series[points], series[points - 1] = 1.0, -1.0
+    zeros = np.sort(legendre.legroots(series).real)
+    slope = legendre.legder(series)
+    for _ in range(3):
+        zeros = zeros - legendre.legval(zeros, series) / legendre.legval(zeros, slope)
+    zeros[-1] = 1.0
+    return 0.5 * (zeros + 1.0)
+
+
+def interpolation_matrix(points: int, at) -> np.ndarray:
+    """Values at `at` (M,) in [0, 1] of the polynomial through the Radau points: (M, points)."""
+    return np.linalg.solve(_basis(points).T, legendre.legvander(2.0 * np.asarray(at) - 1.0, points - 1).T).T
+
+
+def integration_matrix(points: int, upto) -> np.ndarray:
+    """Integral from 0 to `upto` (M,) in [0, 1] of the polynomial through the Radau points: (M, points)."""
+    z = 2.0 * np.asarray(upto, dtype=float) - 1.0
+    high = legendre.legvander(z, points)
+    integrals = np.empty((len(z), points))
+    integrals[:, 0] = 0.5 * (z + 1.0)
+    for k in range(1, points):
+        integrals[:, k] = 0.5 * (high[:, k + 1] - high[:, k - 1]) / (2 * k + 1)
+    return np.linalg.solve(_basis(points).T, integrals.T).T
+
+
+@lru_cache(maxsize=None)
+def _basis(points: int) -> np.ndarray:
+    return legendre.legvander(2.0 * radau_points(points) - 1.0, points - 1)

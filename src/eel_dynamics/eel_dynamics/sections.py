@@ -1,0 +1,131 @@
+"""What the loops need of the body and the scene, tabulated once: section data at the nodes (model of sections 3.3, 4.2, 7.2.1).
+
+Half-axes a along E3, b along E2. Body: m_b = rho_b pi a b, J2 = rho_b pi a^3 b/4, J3 = rho_b pi a b^3/4, J1 = J2 + J3.
+Water: J_f1 = rho_f pi/8 (a^2 - b^2)^2, M_f = rho_f pi diag(0, a^2, b^2) (eq. 37 with its semi-axes exchanged: the added
+mass for motion along an axis of an ellipse goes with the square of the other half-axis; Lamb; section 4.3 of the paper).
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from .body import Body
+from .quadrature import Grid, Panel
+from .scene import FRICTION, Scene
+
+WIDEST_PANEL = 24  # points; a longer panel is cut into equal parts
+TRANSITION = 8.0e4  # Reynolds number at which the printed friction law jumps from laminar to turbulent
+
+
+class Swimmer(NamedTuple):
+    """Constants of a run at the n nodes (arrays (n,) unless said) and at the nose. All float64; SI units."""
+
+    x: np.ndarray  # m
+    weight: np.ndarray  # m, of the integral over the body
+    matrix: np.ndarray  # (n, p) m, of the integral from a panel's start to a node
+    first: np.ndarray  # (n,) int, first node of the node's panel
+    count: np.ndarray  # (n,) int, nodes of the panel
+    mass: np.ndarray  # kg/m, of the body
+    added2: np.ndarray  # kg/m, added mass along E2
+    added3: np.ndarray  # kg/m, along E3
+    inertia1: np.ndarray  # kg m, of body and water about E1
+    inertia2: np.ndarray  # kg m, about E2
+    inertia3: np.ndarray  # kg m, about E3
+    added_roll: np.ndarray  # kg m, of the water about E1
+    drag2: np.ndarray  # kg/m^2, 1/2 rho_f k2
+    drag3: np.ndarray  # kg/m^2, 1/2 rho_f k3
+    drag_roll: np.ndarray  # kg, 1/2 rho_f k4
+    laminar: np.ndarray  # friction force per length = -laminar |V1|^(1/2) V1
+    turbulent: np.ndarray  # friction force per length = -turbulent |V1|^(4/5) V1
+    transition: np.ndarray  # m/s, |V1| at which Re = 8e4
+    friction: int  # index into scene.FRICTION
+    resistive: bool
+    nose_mass: float  # kg, m_o
+    nose_drag: float  # kg/m, 1/2 rho_f k_o
+
+
+def panels_of(body: Body, resolution: float) -> tuple[Panel, ...]:
+    """Panels between the kinks of `body`, with about `resolution` points per length of the body, and three to spare each."""
+    panels, start = [], 0.0
+    for end in body.panel_ends:
+        points = (4 if start == 0.0 else 3) + round(resolution * (end - start) / body.length)
+        parts = -(-points // WIDEST_PANEL) if start > 0.0 else 1
+        edges = np.linspace(start, end, parts + 1)
+        for left, right in zip(edges[:-1], edges[1:]):
+            panels.append(Panel(start=float(left), end=float(right), points=-(-points // parts), graded=start == 0.0))
+        start = end
+    return tuple(panels)
+
+
+def added_masses(body: Body, scene: Scene, a_squared, b_squared):
+    """M_f along E2 and E3 [kg/m], J_f1 [kg m]; zero where the scene has no reactive water."""
+    rho = scene.fluid_density if scene.reactive else 0.0
+    along2, along3 = (a_squared, b_squared) if scene.added_mass == "corrected" else (b_squared, a_squared)
+    return rho * np.pi * along2, rho * np.pi * along3, rho * np.pi / 8.0 * (a_squared - b_squared) ** 2
+
+
+def swimmer_of(body: Body, scene: Scene, grid: Grid) -> Swimmer:
+    """Tabulate `body` in `scene` at the nodes of `grid`."""
+    return _tabulate(body, scene, grid.x, grid.weight, grid.matrix, grid.first, grid.count)
+
+
+class Stations(NamedTuple):
+    """Section data where profiles are given, M stations; `matrix` integrates from the start of a station's panel to it."""
+
+    section: Swimmer  # (M,) each
+    node: np.ndarray  # (M,) int, the last node at or before the station, -1: none
+    added2_slope: np.ndarray  # (M,) kg/m^2, derivative of `added2` by X
+    added3_slope: np.ndarray  # (M,) kg/m^2
+    added_roll_slope: np.ndarray  # (M,) kg
+
+
+def stations_of(body: Body, scene: Scene, grid: Grid, x: np.ndarray) -> Stations:
+    """Tabulate `body` in `scene` at the stations `x` (M,) [m]."""
+    rows, first, count = grid.rows_at(x, "integral")
+    a_squared, b_squared, a_slope, b_slope = body.squares(x)
+    slope2, slope3, _ = added_masses(body, scene, a_slope, b_slope)
+    rho = scene.fluid_density if scene.reactive else 0.0
+    return Stations(
+        section=_tabulate(body, scene, x, np.zeros(len(x)), rows, first, count),
+        node=(np.searchsorted(grid.x, x, side="right") - 1).astype(np.int64),
+        added2_slope=slope2,
+        added3_slope=slope3,
+        added_roll_slope=rho * np.pi / 4.0 * (a_squared - b_squared) * (a_slope - b_slope),
+    )
+
+
+def _tabulate(body: Body, scene: Scene, x, weight, matrix, first, count) -> Swimmer:
+    a, b = body.half_height(x), body.half_width(x)
+    density = body.density if scene.density is None else scene.density
+    area = np.pi * a * b
+    added2, added3, added_roll = added_masses(body, scene, a**2, b**2)
+    inertia2, inertia3 = density * area * a**2 / 4.0, density * area * b**2 / 4.0
+    half_rho = 0.5 * scene.fluid_density if scene.resistive else 0.0
+    perimeter = np.pi * (1.5 * (a + b) - np.sqrt(a * b)) * (0.5 if scene.perimeter == "printed" else 1.0)
+    nose_area = np.pi * body.nose[0] * body.nose[1] if scene.nose else 0.0
+    reactive_rho = scene.fluid_density if scene.reactive else 0.0
+    behind = np.where(x > 0.0, x, np.inf)  # friction has no length to act on at the nose
+    return Swimmer(
+        x=np.ascontiguousarray(x, dtype=float),
+        weight=weight,
+        matrix=matrix,
+        first=first,
+        count=count,
+        mass=density * area,
+        added2=added2,
+        added3=added3,
+        inertia1=inertia2 + inertia3 + added_roll,
+        inertia2=inertia2,
+        inertia3=inertia3,
+        added_roll=added_roll,
+        drag2=half_rho * 2.0 * body.lateral_drag * a,
+        drag3=half_rho * 2.0 * body.vertical_drag * b,
+        drag_roll=half_rho * body.roll_drag * np.pi * (a**2 - b**2) ** 2,
+        laminar=half_rho * perimeter * 0.664 * np.sqrt(scene.viscosity / behind),
+        turbulent=half_rho * perimeter * 0.059 * (scene.viscosity / behind) ** 0.2,
+        transition=TRANSITION * scene.viscosity / behind,
+        friction=FRICTION.index("none" if scene.viscosity == 0.0 else scene.friction),
+        resistive=bool(scene.resistive),
+        nose_mass=float(reactive_rho * nose_area * body.nose_added_mass * body.nose[2]),
+        nose_drag=float(half_rho * nose_area * body.nose_drag),
+    )

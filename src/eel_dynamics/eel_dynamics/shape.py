@@ -1,0 +1,227 @@
+"""Which law or samples the body follows, and how it passes smoothly from one to the next.
+
+When a new law or controller takes over, the difference between the present motion and the new one (value, rate and
+acceleration) dies out as a quintic over a transition, added to the new one: the curvature, its rate and its acceleration
+never jump. When a controller's samples run out, the shape comes to rest by the same means.
+"""
+
+from bisect import insort
+
+import numpy as np
+
+from eel_gaits.law import Law
+from eel_gaits.spline import natural_spline
+
+from .drive import AXES, Drive, Tabulation, factors
+
+NONE = np.zeros(0, dtype=np.int64)
+
+
+class Shape:
+    """The present source of curvature, its blend, and the tabulated `drive` of both for the loops.
+
+    `default_transition` [s] holds where a law gives none, and for samples.
+    """
+
+    def __init__(self, tabulation: Tabulation, default_transition: float):
+        self.tabulation = tabulation
+        self.default_transition = default_transition
+        self.law: Law | None = None
+        self.origin = 0.0
+        self.samples: list[tuple[float, np.ndarray]] = []  # (time, rows (2, 3, width)), from the start of the segment on
+        self.sampled = False
+        self.resting = False
+        self._blend: tuple[np.ndarray, float, float] | None = None
+        self._spline: tuple[np.ndarray, np.ndarray] | None = None
+        self._source: dict = {}
+        self.drive: Drive = None
+        self._follow(_constant(np.zeros((2, tabulation.width))))
+
+    # -- laws
+
+    def adopt(self, law: Law, *, origin: float, time: float, transition: float):
+        """Follow `law` from `time` [s] on; `transition` 0: at once, without a blend."""
+        source = _law_rows(law, self.tabulation, origin)
+        self._take_over(source, time, transition)
+        self.law, self.origin = law, origin
+        self.samples, self.sampled, self.resting = [], False, False
+
+    # -- samples of a controller
+
+    def add(self, time: float, now: float, x, values):
+        """One instant, (time [s], values (2, 3, len(x)): pitch and yaw, value, rate and acceleration)."""
+        x, values = np.array(x, dtype=float), np.array(values, dtype=float)
+        if self._spline is None or not np.array_equal(self._spline[0], x):
+            matrix = self.tabulation.columns(natural_spline(x, np.eye(len(x)), self.tabulation.x))
+            self._spline = (x, matrix)
+        if self.sampled and len(self.samples) > 1 and time <= self.samples[1][0]:
+            raise ValueError(f"curvature samples must come after the instant being approached ({self.samples[1][0]:.6f} s), got {time:.6f} s")
+        if any(time == known for known, _ in self.samples):
+            raise ValueError(f"curvature samples at {time:.6f} s came twice")
+        insort(self.samples, (time, values @ self._spline[1]), key=lambda sample: sample[0])
+
+    @property
+    def until(self) -> float | None:
+        """Last instant of a controller that drives or is about to [s], or None."""
+        return self.samples[-1][0] if self.samples else None
+
+    def next_event(self, now: float) -> float:
+        """Time [s] at which the source changes by itself, inf where it does not."""
+        if self.sampled:
+            return self.samples[1][0]
+        later = [time for time, _ in self.samples if time > now]
+        return later[0] if len(later) > 1 else np.inf
+
+    def pass_event(self, now: float):
+        """Change the source as due at `now` [s]: to samples that bracket the time, to their next interval, or to rest."""
+        if self.sampled:
+            if now < self.samples[1][0]:
+                return
+            self.samples.pop(0)
+            if len(self.samples) > 1:
+                self._follow(self._segment())
+                return
+            value, rate, acceleration = self.at(now)
+            self._take_over(_constant(value), now, self.default_transition)
+            self.samples, self.sampled, self.resting = [], False, True
+            return
+        while len(self.samples) > 1 and self.samples[1][0] <= now:
+            self.samples.pop(0)
+        if len(self.samples) > 1 and self.samples[0][0] <= now:
+            self._take_over(self._segment(), now, self.default_transition)
+            self.sampled, self.resting = True, False
+
+    def forget_samples(self):
+        """Drop the controller's instants; the shape stays with what drives it."""
+        self.samples, self.sampled, self.resting = [], False, False
+
+    # -- rows
+
+    def at(self, time: float) -> np.ndarray:
+        """Tabulated value, rate and acceleration (3, 2, width) at `time` [s]."""
+        factor = np.zeros((3, len(self.drive.axis)))
+        factors(self.drive, time, factor)
+        result = np.zeros((3, 2, self.tabulation.width))
+        for axis in range(2):
+            mine = self.drive.axis == axis
+            result[:, axis] = factor[:, mine] @ self._rows[mine]
+        return result
+
+    def breakpoints(self) -> np.ndarray:
+        """Times [s] at which a derivative of the shape jumps, ascending."""
+        drive = self.drive
+        times = list((drive.ramps[:, :2] + drive.origin).ravel())
+        times += [drive.blend_end] if drive.blend >= 0 else []
+        times += [drive.segment_start, drive.segment_end] if drive.segment >= 0 else []
+        return np.unique(np.array(times, dtype=float))
+
+    @property
+    def time_scale(self) -> float:
+        """Shortest time [s] over which the shape changes: of its periods, ramps, blend, samples; inf where it stands still."""
+        drive = self.drive
+        scales = list(drive.period[drive.period > 0.0]) + list(drive.ramps[:, 1] - drive.ramps[:, 0])
+        scales += [drive.blend_end - drive.blend_start] if drive.blend >= 0 else []
+        scales += [2.0 * (drive.segment_end - drive.segment_start)] if drive.segment >= 0 else []
+        return float(min(scales, default=np.inf))
+
+    def end_blend(self, now: float):
+        """Drop a blend that is over, so that it costs nothing."""
+        if self._blend is not None and now >= self._blend[2]:
+            self._blend = None
+            self._follow(self._source)
+
+    def _take_over(self, source: dict, time: float, transition: float):
+        if transition > 0.0:
+            present = self.at(time)
+            self._blend = None
+            self._follow(source)
+            difference = (present - self.at(time)).swapaxes(0, 1).reshape(6, -1)
+            if np.any(difference):
+                self._blend = (difference, time, time + transition)
+        else:
+            self._blend = None
+        self._follow(source)
+
+    def _segment(self) -> dict:
+        (start, first), (end, second) = self.samples[0], self.samples[1]
+        rows = np.stack((first, second), axis=1).reshape(12, -1)
+        return {"rows": rows, "axis": np.repeat((0, 1), 6), "segment": (start, end)}
+
+    def _follow(self, source: dict):
+        self._source = source
+        rows, axis = source["rows"], source["axis"]
+        start, end = source.get("segment", (0.0, 0.0))
+        blend, blend_start, blend_end = -1, 0.0, 0.0
+        if self._blend is not None:
+            blend = len(rows)
+            difference, blend_start, blend_end = self._blend
+            rows, axis = np.concatenate((rows, difference)), np.concatenate((axis, np.repeat((0, 1), 3)))
+        self._rows = rows
+        node, bend, station, station_bend = self.tabulation.split(rows)
+        self.drive = Drive(
+            axis=np.asarray(axis, dtype=np.int64),
+            node=node,
+            bend=bend,
+            station=station,
+            station_bend=station_bend,
+            origin=float(source.get("origin", 0.0)),
+            sine=source.get("sine", NONE),
+            cosine=source.get("cosine", NONE),
+            period=source.get("period", np.zeros(0)),
+            ramp_first=source.get("ramp_first", NONE),
+            ramp_count=source.get("ramp_count", NONE),
+            ramps=source.get("ramps", np.zeros((0, 3))),
+            segment=0 if "segment" in source else -1,
+            segment_start=float(start),
+            segment_end=float(end),
+            blend=blend,
+            blend_start=float(blend_start),
+            blend_end=float(blend_end),
+        )
+
+
+def _constant(value: np.ndarray) -> dict:
+    """A shape that stands still: value (2, width)."""
+    return {
+        "rows": np.array(value),
+        "axis": np.arange(2),
+        "sine": np.arange(2),
+        "cosine": np.full(2, -1),
+        "period": np.zeros(2),
+        "ramp_first": np.zeros(2, dtype=np.int64),
+        "ramp_count": np.full(2, -1),
+    }
+
+
+def _law_rows(law: Law, tabulation: Tabulation, origin: float) -> dict:
+    """Rows and time factors of a law; terms of equal axis, period and envelope share their rows."""
+    groups: dict = {}
+    for term in law.terms:
+        groups.setdefault((term.axis, term.period, term.envelope), []).append(term)
+    if not groups:
+        return _constant(np.zeros((2, tabulation.width))) | {"origin": origin}
+    rows, axis, sine, cosine, period, first, count, ramps = [], [], [], [], [], [], [], []
+    for (name, duration, envelope), terms in groups.items():
+        angle = [term.wave_number * tabulation.x + term.phase for term in terms]
+        amplitude = [term.amplitude_at(tabulation.x) for term in terms]
+        sine.append(len(rows))
+        rows.append(sum(a * np.sin(b) for a, b in zip(amplitude, angle)))
+        cosine.append(len(rows) if duration else -1)
+        if duration:
+            rows.append(sum(a * np.cos(b) for a, b in zip(amplitude, angle)))
+        axis += [AXES[name]] * (2 if duration else 1)
+        period.append(duration)
+        first.append(len(ramps))
+        count.append(len(envelope) if envelope else -1)
+        ramps += [(ramp.start, ramp.end, ramp.delta) for ramp in envelope]
+    return {
+        "rows": tabulation.columns(np.array(rows)),
+        "axis": np.array(axis, dtype=np.int64),
+        "origin": origin,
+        "sine": np.array(sine, dtype=np.int64),
+        "cosine": np.array(cosine, dtype=np.int64),
+        "period": np.array(period, dtype=float),
+        "ramp_first": np.array(first, dtype=np.int64),
+        "ramp_count": np.array(count, dtype=np.int64),
+        "ramps": np.array(ramps, dtype=float).reshape(-1, 3),
+    }

@@ -1,0 +1,426 @@
+"""A swimmer in water, marched in time and observed: the algorithm of section 7.1 of Boyer, Porez and Leroyer (2010)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from eel_gaits.law import Law
+
+from .accuracy import Accuracy
+from .body import Body
+from .drive import Tabulation
+from .energy import EnergyLedger
+from .integrator import (
+    LOBATTO,
+    LOBATTO_SERIES,
+    MARCHED,
+    NOT_FINITE,
+    SINGULAR,
+    STEP_TOO_SMALL,
+    Control,
+    classical,
+    dormand_prince,
+    interpolate,
+    march,
+    settle,
+    step_of,
+    works_upto,
+)
+from .kernel import configure, fields_of, momentum_of_twist
+from .drive import combine, combine_moments, factors
+from .profiles import observe, profiles_of, station_fields_of
+from .quadrature import Grid
+from .scene import Scene
+from .sections import panels_of, stations_of, swimmer_of
+from .shape import Shape
+from .wrench import balance_of
+
+LONGEST_STEP = 0.25  # of the shortest time over which the shape changes
+SLOWEST = 1e-3  # body lengths per time scale, below which the head counts as at rest
+
+
+class SimulationStopped(RuntimeError):
+    """The march could not go on. `time` [s], `quantity` and `value` that failed, `hint`: what to change."""
+
+    def __init__(self, time: float, quantity: str, value: float, hint: str):
+        super().__init__(f"stopped at t = {time:.6g} s: {quantity} ({value:.3g}); {hint}")
+        self.time, self.quantity, self.value, self.hint = time, quantity, value, hint
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """One instant, library axes, SI units; M stations. Its arrays are views of work space: copy what is to be kept."""
+
+    time: float
+    position: np.ndarray  # (3,) m, head, world
+    orientation: np.ndarray  # (4,) x y z w, world from head
+    twist: np.ndarray  # (6,) (Omega, V) rad/s, m/s, head's axes
+    head_acceleration: np.ndarray  # (6,) rad/s^2, m/s^2, true acceleration of the head in its axes
+    center_of_mass: np.ndarray  # (3,) m, world
+    x: np.ndarray  # (M,) m
+    backbone: np.ndarray  # (M, 3) m, world
+    section_orientation: np.ndarray  # (M, 4) x y z w, world from section
+    curvature: np.ndarray  # (M, 3) rad/m
+    curvature_rate: np.ndarray  # (M, 3) rad/m/s
+    torque: np.ndarray | None  # (M, 3) N m, section axes
+    force: np.ndarray | None  # (M, 3) N, section axes
+    fluid_force: np.ndarray | None  # (M, 3) N/m, section axes
+    resistive_force: np.ndarray | None  # (M, 3) N/m, section axes
+    tail_force: np.ndarray | None  # (3,) N, section axes at the tail
+    nose_force: np.ndarray | None  # (3,) N, section axes at the nose
+    energy: EnergyLedger | None
+    closure_torque: float | None  # N m, what is left of the internal torque at the nose
+    closure_force: float | None  # N, what is left of the internal force there, less the load on the nose
+    actuator_work: float | None  # J since the start
+
+
+class Simulation:
+    """One swimmer, from its initial state on. Adopt a law (or add samples), advance, observe.
+
+    body, scene: what swims in what. accuracy: preset, target relative error, or `Accuracy`. stations: how many, or their
+    X (M,) [m]. position [m], orientation (x y z w, world from head), twist ((Omega, V) [rad/s, m/s], head's axes): the
+    initial state, in the library's axes. default_transition [s]: of blends where a law gives none.
+    `ValueError` names the argument that does not fit.
+    """
+
+    def __init__(
+        self,
+        body: Body | None = None,
+        scene: Scene | None = None,
+        accuracy: "str | float | Accuracy" = "standard",
+        stations=51,
+        position=(0.0, 0.0, 0.0),
+        orientation=(0.0, 0.0, 0.0, 1.0),
+        twist=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+        default_transition: float = 1.0,
+    ):
+        self.body = Body.boyer2010() if body is None else _instance("body", body, Body)
+        self.scene = Scene() if scene is None else _instance("scene", scene, Scene)
+        self.accuracy = Accuracy.of(accuracy)
+        self.x = _stations(stations, self.body.length)
+        self._start = _row("position", position, 3), _unit("orientation", orientation), _row("twist", twist, 6)
+        if self.scene.planar:
+            _check_planar(*self._start)
+        if not (np.isfinite(default_transition) and default_transition > 0.0):
+            raise ValueError(f"default_transition must be finite and > 0 s, got {default_transition!r}")
+        self._build()
+        self.shape = Shape(self._tabulation, float(default_transition))
+        self.ready = False
+        self.time = 0.0
+        self._take_initial_state()
+
+    def _build(self):
+        grid = Grid.of(panels_of(self.body, self.accuracy.resolution))
+        self._grid = grid
+        self._swimmer = swimmer_of(self.body, self.scene, grid)
+        self._stations = stations_of(self.body, self.scene, grid, self.x)
+        base = np.where(self._stations.node >= 0, grid.x[self._stations.node], 0.0)
+        self._tabulation = Tabulation(grid.x, grid.previous, self.x, base)
+        self._balance = balance_of(len(grid.x))
+        self._here = station_fields_of(len(self.x))
+        self._out = profiles_of(1, len(self.x))
+        self._current = np.array(self.scene.current)
+        self._method = dormand_prince() if self.accuracy.step is None else classical()
+        self._step = step_of(len(self._method.c))
+        self._distributed = self.scene.tail_pressure == "distributed"
+
+    # -- what drives the body
+
+    @property
+    def law(self) -> Law | None:
+        """The law in force, or the last one before a controller took over."""
+        return self.shape.law
+
+    @property
+    def samples_until(self) -> float | None:
+        """Last instant [s] of a controller's samples, or None where there are none."""
+        return self.shape.until
+
+    @property
+    def resting(self) -> bool:
+        """A controller's samples have run out: the shape comes to rest."""
+        return self.shape.resting
+
+    def adopt(self, law: Law, origin: float = 0.0, transition: float | None = None):
+        """Follow `law` from the present time on; `origin` [s] is the simulation time of its own t = 0.
+
+        The first law, before the start, needs no blend; a later one takes over during `transition` [s], or the law's own, or
+        the default. `ValueError` for a law that the scene does not allow.
+        """
+        _instance("law", law, Law)
+        if self.scene.planar and any(term.axis == "pitch" for term in law.terms):
+            raise ValueError(f"law {law.name!r} has a pitch term: a planar scene cannot bend out of its plane")
+        if not np.isfinite(origin):
+            raise ValueError(f"law origin must be finite, got {origin!r} s")
+        blend = transition or law.transition or self.shape.default_transition
+        if not (np.isfinite(blend) and blend > 0.0):
+            raise ValueError(f"transition must be finite and > 0 s, got {transition!r}")
+        first = not self.ready and self.time == 0.0
+        self.shape.adopt(law, origin=float(origin), time=self.time, transition=0.0 if first else float(blend))
+        if first:
+            self._take_initial_state()
+        self.ready = True
+        self._restart()
+
+    def add_samples(self, time, x, pitch, pitch_rate, pitch_accel, yaw, yaw_rate, yaw_accel):
+        """One instant of a controller: curvature [rad/m], its rate and acceleration at the points `x` [m], `time` [s] ahead.
+
+        Natural cubic splines in X; between instants the quintic that meets value, rate and acceleration at both. It takes
+        over as soon as two instants bracket the present. `ValueError` names what does not fit.
+        """
+        x = _row("curvature samples x", x, None)
+        if len(x) < 2 or np.any(np.diff(x) <= 0.0):
+            raise ValueError(f"curvature samples x must rise over 2 points or more, got {len(x)} points")
+        if x[0] < -1e-9 * self.body.length or x[-1] > self.body.length * (1.0 + 1e-9):
+            raise ValueError(f"curvature samples x must lie within 0 to {self.body.length} m, got {x[0]} to {x[-1]}")
+        names = "pitch", "pitch_rate", "pitch_accel", "yaw", "yaw_rate", "yaw_accel"
+        values = [_row(f"curvature samples {name}", row, len(x)) for name, row in zip(names, (pitch, pitch_rate, pitch_accel, yaw, yaw_rate, yaw_accel))]
+        if self.scene.planar and any(np.any(row) for row in values[:3]):
+            raise ValueError("curvature samples pitch must be 0 in a planar scene")
+        if not np.isfinite(time) or time <= self.time:
+            raise ValueError(f"curvature samples must lie ahead of the simulation ({self.time:.6f} s), got {time:.6f} s")
+        self.shape.add(float(time), self.time, x, np.reshape(values, (2, 3, len(x))))
+        self.ready = True
+
+    # -- march
+
+    def advance(self, time: float):
+        """March to `time` [s]. Raises `SimulationStopped` where it cannot; the state stays the last good one."""
+        if not self.ready:
+            raise RuntimeError("no law has been adopted")
+        if not np.isfinite(time) or time < self.time:
+            raise ValueError(f"time must be finite and >= the present {self.time} s, got {time!r}")
+        while True:
+            self.shape.pass_event(self.time)
+            if self.shape.drive is not self._drive:
+                self._restart()
+            event = self.shape.next_event(self.time)
+            self._march_to(min(time, event))
+            if time <= event:
+                break
+        if self.shape.sampled and time == event:
+            return
+        self.shape.end_blend(self.time)
+        if self.shape.drive is not self._drive:
+            self._use_drive()
+
+    def _march_to(self, time: float):
+        step = self._step
+        status = march(
+            self._swimmer,
+            self._drive,
+            self._fields,
+            self._balance,
+            self._current,
+            self._method,
+            self._control,
+            self._breakpoints,
+            LOBATTO,
+            LOBATTO_SERIES,
+            step,
+            time,
+        )
+        if status != MARCHED:
+            self._restart()
+            raise self._stopped(status)
+        theta = 1.0 if step.time[1] == 0.0 else min(1.0, max(0.0, (time - step.time[0]) / step.time[1]))
+        if step.time[1] == 0.0 or abs(step.time[0] + step.time[1] - time) <= 1e-12 * max(1.0, abs(time)):
+            self._y[:] = step.end
+            theta = 1.0
+        else:
+            interpolate(self._method, step, theta, self._y)
+        works_upto(step, theta, LOBATTO_SERIES, self._work)
+        self.time = time
+
+    def _stopped(self, status: int) -> SimulationStopped:
+        if status == SINGULAR:
+            return SimulationStopped(self.time, "inertia of body and water is not positive definite", np.nan, "check the body's section data")
+        if status == NOT_FINITE:
+            return SimulationStopped(self.time, "momentum is not finite", np.nan, "take a smaller accuracy step, or a slower law")
+        return SimulationStopped(self.time, "step for the wanted accuracy is too small", self._control.smallest, "take a coarser accuracy, or a slower law")
+
+    # -- observe
+
+    def observe(self, wrench: bool = True, load: bool = True) -> Snapshot:
+        """What the present instant shows; `wrench` and `load` ask for the internal wrench and the water's load along the body."""
+        wrench = wrench and self.scene.internal_wrench
+        self._observe_into(self._out, 0, wrench, load)
+        out, ledger = self._out, self.scene.ledger
+        return Snapshot(
+            time=self.time,
+            position=out.position[0],
+            orientation=out.orientation[0],
+            twist=out.twist[0],
+            head_acceleration=out.head_acceleration[0],
+            center_of_mass=out.center_of_mass[0],
+            x=self.x,
+            backbone=out.backbone[0],
+            section_orientation=out.section_orientation[0],
+            curvature=out.curvature[0],
+            curvature_rate=out.curvature_rate[0],
+            torque=out.torque[0] if wrench else None,
+            force=out.force[0] if wrench else None,
+            fluid_force=out.fluid_force[0] if load else None,
+            resistive_force=out.resistive_force[0] if load else None,
+            tail_force=out.tail_force[0] if load else None,
+            nose_force=out.nose_force[0] if load else None,
+            energy=EnergyLedger.of(out.kinetic[0], out.powers[0], self._work.copy(), self._kinetic_at_start) if ledger else None,
+            closure_torque=float(out.closure[0, 0]) if wrench else None,
+            closure_force=float(out.closure[0, 1]) if wrench else None,
+            actuator_work=float(self._work[0]) if ledger else None,
+        )
+
+    def _observe_into(self, out, sample: int, wrench: bool, load: bool):
+        good = observe(
+            self._swimmer,
+            self._stations,
+            self._drive,
+            self._fields,
+            self._balance,
+            self._here,
+            self._step,
+            self._current,
+            self._distributed,
+            wrench,
+            load,
+            self.time,
+            self._y,
+            sample,
+            out,
+        )
+        if not good:
+            raise self._stopped(SINGULAR)
+
+    @property
+    def evaluations(self) -> tuple[int, int, int]:
+        """Steps, rejected steps and evaluations of the head's dynamics so far."""
+        return tuple(int(value) for value in self._step.count)
+
+    # -- states
+
+    def reset(self):
+        """State and time to the start; the last law kept, with its own t = 0 at 0."""
+        law = self.shape.law
+        self.shape = Shape(self._tabulation, self.shape.default_transition)
+        self.time, self.ready = 0.0, False
+        if law is None:
+            self._take_initial_state()
+        else:
+            self.adopt(law)
+
+    def warm_up(self):
+        """Compile (or load) every loop, on the first call in a process: march a moment and observe it."""
+        from eel_gaits import straight
+
+        trial = Simulation(self.body, self.scene, self.accuracy, self.x)
+        trial.adopt(straight())
+        trial.advance(1e-3)
+        trial.observe()
+
+    def _use_drive(self):
+        self._drive = self.shape.drive
+        self._fields = fields_of(len(self._grid.x), len(self._drive.axis))
+        self._breakpoints = self.shape.breakpoints()
+        scale = min(self.shape.time_scale, self._motion_scale)
+        smallest = 1e-9 * min(scale, 1.0)
+        longest = LONGEST_STEP * min(scale, 10.0)
+        mass = float(np.sum(self._swimmer.weight * self._swimmer.mass))
+        self._control = Control(
+            tolerance=self.accuracy.tolerance,
+            step=longest if self.accuracy.step is None else float(self.accuracy.step),
+            smallest=smallest,
+            length=self.body.length,
+            momentum_floor=SLOWEST * mass * self.body.length / min(scale, 10.0),
+            ledger=bool(self.scene.ledger),
+        )
+
+    def _restart(self):
+        """Let the next step begin at the present state, with what drives the body now."""
+        self._use_drive()
+        step = self._step
+        step.end[:] = self._y
+        step.work[:] = self._work
+        step.time[0], step.time[1] = self.time, 0.0
+        if step.time[2] == 0.0:
+            step.time[2] = 0.1 * self._control.step
+        step.fresh[0] = 1
+
+    def _take_initial_state(self):
+        position, orientation, twist = self._start
+        self._y, self._work = np.zeros(13), np.zeros(4)
+        self._y[:3], self._y[3:7] = position, orientation
+        self._motion_scale = np.inf
+        self._use_drive()
+        fields, drive, momentum = self._fields, self._drive, np.zeros(6)
+        relative = twist.copy()
+        relative[3:] -= _matrix(orientation).T @ self._current
+        factors(drive, self.time, fields.factor)
+        combine_moments(drive.axis, drive.bend, fields.factor[0], fields.bend)
+        combine(drive.axis, drive.node, fields.factor[1], fields.rate)
+        configure(self._swimmer, fields)
+        momentum_of_twist(self._swimmer, fields, relative, momentum)
+        world = _matrix(orientation)
+        self._y[7:10], self._y[10:13] = world @ momentum[:3], world @ momentum[3:]
+        speed, spin = np.linalg.norm(relative[3:]), np.linalg.norm(relative[:3])
+        self._motion_scale = min(self.body.length / speed if speed else np.inf, 1.0 / spin if spin else np.inf)
+        self._step.time[:], self._step.count[:] = 0.0, 0
+        self._step.scale[:] = np.linalg.norm(momentum[:3]), np.linalg.norm(momentum[3:])
+        self._restart()
+        self._observe_into(self._out, 0, False, False)
+        self._kinetic_at_start = float(self._out.kinetic[0].sum())
+
+
+def _matrix(quaternion) -> np.ndarray:
+    x, y, z, w = quaternion
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+
+
+def _instance(name: str, value, kind: type):
+    if not isinstance(value, kind):
+        raise ValueError(f"{name} must be a {kind.__name__}, got {value!r}")
+    return value
+
+
+def _row(name: str, values, size: int | None) -> np.ndarray:
+    try:
+        array = np.array(values, dtype=float)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name} must be numbers, got {values!r}") from None
+    if array.ndim != 1 or (size is not None and len(array) != size):
+        raise ValueError(f"{name} must be {'a row of' if size is None else size} numbers, got {array.size}")
+    if not np.all(np.isfinite(array)):
+        raise ValueError(f"{name} must be finite, got {array[~np.isfinite(array)][0]} at index {np.flatnonzero(~np.isfinite(array))[0]}")
+    return array
+
+
+def _unit(name: str, quaternion) -> np.ndarray:
+    array = _row(name, quaternion, 4)
+    size = np.linalg.norm(array)
+    if abs(size - 1.0) > 1e-6:
+        raise ValueError(f"{name} must be a unit quaternion (x, y, z, w), got norm {size:.6g}")
+    return array / size
+
+
+def _stations(stations, length: float) -> np.ndarray:
+    if isinstance(stations, (int, np.integer)) and not isinstance(stations, bool):
+        if not 2 <= stations <= 100_000:
+            raise ValueError(f"stations must be 2 or more, or their X in m, got {stations!r}")
+        return np.linspace(0.0, length, int(stations))
+    x = _row("stations", stations, None)
+    if len(x) < 1 or np.any(np.diff(x) <= 0.0) or x[0] < 0.0 or x[-1] > length * (1 + 1e-12):
+        raise ValueError(f"stations must rise within 0 to {length} m, got {stations!r}")
+    return np.minimum(x, length)
+
+
+def _check_planar(position, orientation, twist):
+    """`ValueError` unless the initial state lies in the plane z = const and stays there."""
+    if np.any(np.abs(orientation[:2]) > 1e-12):
+        raise ValueError(f"orientation must be a turn about z in a planar scene, got {orientation.tolist()}")
+    if twist[0] or twist[1] or twist[5]:
+        raise ValueError(f"twist must lie in the plane of a planar scene (Omega_1 = Omega_2 = V_3 = 0), got {twist.tolist()}")
