@@ -1,0 +1,164 @@
+"""How a recording is arranged: functions without data. Each arrangement fits a window of 1280 by 720.
+
+`overview` shows everything at once, `torques` the profiles large, `motion` the path and the velocities; a recording
+carries all three as tabs, the one asked for in front.
+"""
+
+import rerun.blueprint as rrb
+from rerun.blueprint.archetypes import EntityBehavior
+
+from eel_viz import colours, entities, heat_map, profile_plot
+from eel_viz.settings import BLUEPRINTS
+
+_PAST = rrb.VisibleTimeRanges(
+    [
+        rrb.VisibleTimeRange(
+            entities.TIMELINE,
+            start=rrb.TimeRangeBoundary.infinite(),
+            end=rrb.TimeRangeBoundary.cursor_relative(),
+        )
+    ]
+)
+
+
+def arrangement(first: str = "overview", *, live: bool = False) -> rrb.Blueprint:
+    """All arrangements, `first` in front; `live` follows the newest data, else the cursor stands at the start."""
+    if first not in BLUEPRINTS:
+        raise ValueError(f"blueprint must be one of {', '.join(BLUEPRINTS)}, got {first!r}")
+    tabs = {"overview": overview(), "torques": torques(), "motion": motion()}
+    return rrb.Blueprint(
+        rrb.Tabs(*tabs.values(), active_tab=list(tabs).index(first)),
+        rrb.TopPanel(state="hidden"),
+        rrb.BlueprintPanel(state="hidden"),
+        rrb.SelectionPanel(state="hidden"),
+        rrb.TimePanel(state="collapsed", timeline=entities.TIMELINE, play_state="following" if live else "paused"),
+        auto_layout=False,
+        auto_views=False,
+    )
+
+
+def overview() -> rrb.Container:
+    """The swimmer, its profiles, its power, and whether the run can be trusted."""
+    return rrb.Horizontal(
+        rrb.Vertical(
+            following_view(),
+            rrb.Horizontal(speed_view(), power_view()),
+            row_shares=[2.3, 1.0],
+        ),
+        rrb.Vertical(
+            profile_view(entities.TORQUE, "Internal torque C(X)"),
+            profile_view(entities.FORCE, "Internal force N(X)"),
+            heat_map_view(),
+            rrb.Horizontal(run_tabs(), residual_view(), column_shares=[1.1, 1.0]),
+            row_shares=[1.2, 1.2, 1.15, 1.0],
+        ),
+        column_shares=[1.15, 1.0],
+        name="overview",
+    )
+
+
+def torques() -> rrb.Container:
+    """What the actuators feel."""
+    return rrb.Horizontal(
+        rrb.Vertical(following_view(), heat_map_view(), row_shares=[1.5, 1.0]),
+        rrb.Vertical(
+            profile_view(entities.TORQUE, "Internal torque C(X)"),
+            profile_view(entities.FORCE, "Internal force N(X)"),
+            profile_view(entities.CURVATURE, "Curvature K(X)"),
+        ),
+        name="torques",
+    )
+
+
+def motion() -> rrb.Container:
+    """Where the head goes, and how."""
+    return rrb.Horizontal(
+        rrb.Vertical(standing_view(), speed_view(), row_shares=[2.0, 1.0]),
+        rrb.Vertical(
+            _series("Attitude of the head", entities.ATTITUDE),
+            _series("Velocity of the head, base_link", entities.LINEAR),
+            _series("Angular velocity of the head, base_link", entities.ANGULAR),
+            _series("Kinetic energy", entities.KINETIC),
+        ),
+        column_shares=[1.3, 1.0],
+        name="motion",
+    )
+
+
+def following_view() -> rrb.Spatial3DView:
+    """Three dimensions, the camera moving with the swimmer without turning."""
+    return rrb.Spatial3DView(
+        name="Swimmer, coloured by C3, with the fluid's force",
+        origin=entities.FOLLOW,
+        contents=[f"{entities.WORLD}/**"],
+        background=colours.WATER_BACKGROUND,
+        line_grid=rrb.LineGrid3D(visible=False),
+        eye_controls=rrb.EyeControls3D(position=(-0.5, -1.0, 0.62), look_target=(0.03, 0.0, -0.06), eye_up=(0, 0, 1)),
+        overrides={entities.TRACK: [_PAST], **_hidden(entities.HEAD, entities.TAIL)},
+    )
+
+
+def standing_view() -> rrb.Spatial3DView:
+    """Three dimensions, the camera standing still above the start."""
+    return rrb.Spatial3DView(
+        name="Path in the world",
+        origin=entities.WORLD,
+        contents=[f"{entities.WORLD}/**", f"- {entities.LEGEND}/**"],
+        background=colours.WATER_BACKGROUND,
+        line_grid=rrb.LineGrid3D(visible=False),
+        eye_controls=rrb.EyeControls3D(position=(-0.9, -3.2, 2.0), look_target=(0.7, 0.0, -0.5), eye_up=(0, 0, 1)),
+        overrides={entities.TRACK: [_PAST], **_hidden(entities.LOAD, entities.LOAD_ENDS, entities.TAIL)},
+    )
+
+
+def profile_view(root: str, name: str) -> rrb.Spatial2DView:
+    """One drawing against X."""
+    return rrb.Spatial2DView(
+        name=name,
+        origin=root,
+        background=(13, 16, 17),
+        visual_bounds=rrb.VisualBounds2D(x_range=profile_plot.BOUNDS_X, y_range=profile_plot.BOUNDS_Y),
+    )
+
+
+def heat_map_view() -> rrb.Spatial2DView:
+    """C3 over X and time."""
+    return rrb.Spatial2DView(
+        name="Torque C3(X, t)",
+        origin=entities.HEAT_MAP,
+        background=(13, 16, 17),
+        visual_bounds=rrb.VisualBounds2D(x_range=heat_map.BOUNDS_X, y_range=heat_map.BOUNDS_Y),
+    )
+
+
+def speed_view() -> rrb.TimeSeriesView:
+    """Speed and depth of the head."""
+    return _series("Speed and depth of the head", entities.SPEED, entities.DEPTH)
+
+
+def power_view() -> rrb.TimeSeriesView:
+    """The powers of the ledger."""
+    return _series("Power into body and fluid", entities.POWER)
+
+
+def residual_view() -> rrb.TimeSeriesView:
+    """The ledger's residual."""
+    return _series("Energy residual", entities.RESIDUAL)
+
+
+def run_tabs() -> rrb.Tabs:
+    """The run in words, and the log."""
+    return rrb.Tabs(
+        rrb.TextDocumentView(name="Run", origin=entities.RUN),
+        rrb.TextLogView(name="Log", origin=entities.LOG),
+    )
+
+
+def _series(name: str, *paths: str) -> rrb.TimeSeriesView:
+    return rrb.TimeSeriesView(
+        name=name, origin=entities.PLOTS, contents=list(paths), plot_legend=rrb.PlotLegend(corner="LeftTop")
+    )
+
+
+def _hidden(*paths: str) -> dict[str, list]:
+    return {path: [EntityBehavior(visible=False)] for path in paths}

@@ -1,0 +1,45 @@
+"""Colours that the colour-blind can tell apart: one for each section axis, and a diverging map for signed values.
+
+The three axis colours are Okabe and Ito's orange, bluish green and sky blue. The diverging map goes from blue over
+a light grey to red (after Moreland's "cool to warm"), so that both signs differ in hue and lightness from zero.
+"""
+
+import numpy as np
+
+AXIS = ((230, 134, 40), (0, 170, 130), (86, 180, 233))  # section axes 1, 2, 3
+TEAL = (38, 190, 170)
+AMBER = (236, 178, 50)
+MAGENTA = (222, 80, 150)
+GREY = (150, 155, 160)
+LABEL = (205, 210, 215)
+TICK = (70, 76, 84)
+FRAME = (110, 116, 124)
+WATER_LINE = (38, 70, 96)
+WATER_LINE_MAJOR = (62, 104, 138)
+WATER_BACKGROUND = (9, 20, 33)
+
+_ANCHORS = np.array(
+    [
+        (35, 60, 170), (66, 106, 214), (106, 150, 240), (162, 194, 250), (225, 225, 225),
+        (247, 184, 150), (236, 128, 98), (208, 66, 54), (165, 12, 38),
+    ],
+    dtype=float,
+)  # fmt: skip
+DIVERGING = np.stack(
+    [np.interp(np.linspace(0, 8, 256), np.arange(9), _ANCHORS[:, channel]) for channel in range(3)], axis=1
+).round().astype(np.uint8)
+
+
+def dim(colour: tuple[int, int, int], factor: float = 0.45) -> tuple[int, int, int]:
+    """The same hue, darker: for what stands behind, like an envelope."""
+    return tuple(int(channel * factor) for channel in colour)
+
+
+def diverging(values: np.ndarray, limit: float) -> np.ndarray:
+    """Colours of signed `values`: -limit and below the bluest, 0 grey, +limit and above the reddest; uint8 (..., 3)."""
+    return DIVERGING[diverging_index(values, limit)]
+
+
+def diverging_index(values: np.ndarray, limit: float) -> np.ndarray:
+    """Rows of `DIVERGING` that show `values`, uint8, same shape."""
+    return np.clip((np.asarray(values) / limit + 1.0) * 127.5 + 0.5, 0, 255).astype(np.uint8)

@@ -1,0 +1,65 @@
+"""Where everything lies in a recording: the entity paths that loggers and blueprints share.
+
+Three trees: `/world` (three-dimensional, metres, the world frame of the messages, z up), `/profiles` and `/heat_map`
+(two-dimensional drawings against the abscissa X), `/plots` (scalars over time). `/numbers` holds the profiles of the
+messages unchanged, in double precision; nothing draws it.
+"""
+
+TIMELINE = "sim_time"  # duration since the start of the simulation, from header.stamp
+
+# --- three dimensions, world frame [m] ---------------------------------------------------------------------------
+WORLD = "/world"
+FOLLOW = "/world/follow"  # a frame that moves with the middle of the backbone, and never turns
+LEGEND = "/world/follow/legend"
+WATER = "/world/water"
+GRID = "/world/water/grid"
+GRID_LABELS = "/world/water/labels"
+SHADOW = "/world/water/shadow"
+SKIN = "/world/eel/skin"
+BACKBONE = "/world/eel/backbone"
+HEAD = "/world/eel/head"
+TAIL = "/world/eel/tail"
+TRACK = "/world/track"
+LOAD = "/world/load/distributed"
+LOAD_ENDS = "/world/load/ends"
+
+# --- drawings against X ------------------------------------------------------------------------------------------
+PROFILES = "/profiles"
+TORQUE = "/profiles/torque"
+FORCE = "/profiles/force"
+CURVATURE = "/profiles/curvature"
+# below each of the three:
+CURVES = "curves"
+ENVELOPE = "envelope"
+FRAME = "frame"
+TICKS = "ticks"
+KEY = "key"
+
+HEAT_MAP = "/heat_map"
+HEAT_MAP_IMAGE = "/heat_map/image"
+HEAT_MAP_FRAME = "/heat_map/frame"
+
+# --- scalars over time -------------------------------------------------------------------------------------------
+PLOTS = "/plots"
+POSITION = "/plots/position"  # x, y, z of the head [m]
+ORIENTATION = "/plots/orientation"  # x, y, z, w of the head
+ATTITUDE = "/plots/attitude"  # heading, pitch, roll [deg]
+LINEAR = "/plots/linear_velocity"  # of the head, in base_link [m/s]
+ANGULAR = "/plots/angular_velocity"  # of the head, in base_link [rad/s]
+SPEED = "/plots/speed"
+DEPTH = "/plots/depth"
+POWER = "/plots/power"  # actuator, wake, nose, drag [W]
+KINETIC = "/plots/kinetic"  # body, fluid [J]
+RESIDUAL = "/plots/residual"  # [J]
+
+# --- the profiles of the messages, in double precision -------------------------------------------------------------
+NUMBERS = "/numbers"
+WRENCH_NUMBERS = "/numbers/internal_wrench"
+CURVATURE_NUMBERS = "/numbers/curvature"
+LOAD_NUMBERS = "/numbers/hydrodynamic_load"
+BODY_NUMBERS = "/numbers/body"
+ODOMETRY_NUMBERS = "/numbers/odom"
+
+# --- text --------------------------------------------------------------------------------------------------------
+RUN = "/run/summary"
+LOG = "/run/log"

@@ -1,0 +1,70 @@
+"""A map of one profile over abscissa and time: the last seconds, the present at the right, the head at the top.
+
+It is a rolling image of palette indices (one byte each), a column per `STEP` seconds, with its own axes and colour bar.
+"""
+
+import numpy as np
+import rerun as rr
+
+from eel_viz import colours, entities
+
+COLUMNS = 150
+ROWS = 51
+STEP = 0.04  # s
+NO_DATA = 0
+BOUNDS_X = (-13.0, COLUMNS + 26.0)
+BOUNDS_Y = (-3.0, ROWS + 9.0)
+
+
+class HeatMap:
+    """Keeps the columns and logs the image; `limit` is the value of the deepest colour, `unit` its unit."""
+
+    def __init__(self, stream: rr.RecordingStream, *, limit: float, unit: str) -> None:
+        self._stream, self._limit = stream, limit
+        self._pixels = np.full((ROWS, COLUMNS), NO_DATA, dtype=np.uint8)
+        self._last: int | None = None
+        palette = [rr.AnnotationInfo(id=NO_DATA, color=(24, 27, 31))]
+        palette += [rr.AnnotationInfo(id=k, color=tuple(int(c) for c in colours.DIVERGING[k])) for k in range(1, 256)]
+        stream.log(entities.HEAT_MAP, rr.AnnotationContext(palette), static=True)
+        self._draw_frame(unit)
+
+    def include(self, stamp: int, x: np.ndarray, values: np.ndarray) -> None:
+        """Put `values` (M,) at stations `x` [m] into the column of `stamp` [ns]."""
+        column = int((stamp + 1000) // int(STEP * 1e9))
+        if self._last is not None and column <= self._last:
+            return
+        shift = COLUMNS if self._last is None else min(column - self._last, COLUMNS)
+        self._pixels[:, :-shift] = self._pixels[:, shift:].copy()
+        rows = np.interp(np.linspace(0.0, x[-1], ROWS), x, values)
+        fresh = np.maximum(colours.diverging_index(rows, self._limit), 1)
+        self._pixels[:, -shift:] = NO_DATA if self._last is None else fresh[:, None]
+        self._pixels[:, -1] = fresh
+        self._last = column
+
+    def draw(self) -> None:
+        """The image at the stream's present time."""
+        self._stream.log(entities.HEAT_MAP_IMAGE, rr.SegmentationImage(self._pixels, draw_order=0.0))
+
+    def _draw_frame(self, unit: str) -> None:
+        bar = np.linspace(0, ROWS, 65)
+        left, right = COLUMNS + 4.0, COLUMNS + 8.0
+        steps = [[((left + right) / 2, y0), ((left + right) / 2, y1)] for y0, y1 in zip(bar[:-1], bar[1:], strict=True)]
+        shades = colours.diverging(np.linspace(1.0, -1.0, 64), 1.0)
+        self._stream.log(
+            f"{entities.HEAT_MAP_FRAME}/bar", rr.LineStrips2D(steps, colors=shades, radii=(right - left) / 2), static=True
+        )
+        rise = 4.2
+        places = [(-7.0, 2.5 - rise), (-7.0, ROWS - 2.5 - rise), (right + 9.0, 2.5 - rise), (right + 9.0, ROWS / 2 - rise)]
+        places += [(right + 9.0, ROWS - 2.5 - rise)]
+        texts = ["head", "tail", f"+{self._limit:g} {unit}", "0", f"-{self._limit:g} {unit}"]
+        span = COLUMNS * STEP
+        places += [(COLUMNS * k / 3, ROWS + 4.5 - rise) for k in range(4)]
+        texts += [f"-{span * (1 - k / 3):g} s" for k in range(3)] + ["now"]
+        self._stream.log(
+            f"{entities.HEAT_MAP_FRAME}/labels",
+            rr.Points2D(
+                places, labels=texts, colors=[colours.LABEL] * len(texts), show_labels=True,
+                radii=rr.Radius.ui_points(0.1),
+            ),
+            static=True,
+        )  # fmt: skip

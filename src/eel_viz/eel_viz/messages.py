@@ -1,0 +1,214 @@
+"""Messages of the swimmer as arrays, checked: nothing that is not finite or does not fit comes further than here.
+
+Each `read_*` takes one message (any object with its fields) and returns arrays; it raises `BadMessage`, which names the
+field, instead of guessing. Frames and units are those of the message.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+UNIT_TOLERANCE = 1e-6  # of a quaternion's norm
+
+
+class BadMessage(ValueError):
+    """A message that cannot be shown; `field` says where, so that each fault is reported once."""
+
+    def __init__(self, field: str, problem: str) -> None:
+        super().__init__(f"{field} {problem}")
+        self.field = field
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Pose:
+    """`position` (3,) [m] and `orientation` (4,), x y z w, in the world frame."""
+
+    position: np.ndarray
+    orientation: np.ndarray
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Twist:
+    """`linear` (3,) [m/s] and `angular` (3,) [rad/s] in base_link."""
+
+    linear: np.ndarray
+    angular: np.ndarray
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Body:
+    """`length` [m], `mass` [kg], and half axes [m], (B,) at `x` [m], (B,)."""
+
+    length: float
+    mass: float
+    x: np.ndarray
+    half_width: np.ndarray
+    half_height: np.ndarray
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Backbone:
+    """`position` (M, 3) [m] and `orientation` (M, 4) in the world frame at stations `x` (M,) [m]."""
+
+    x: np.ndarray
+    position: np.ndarray
+    orientation: np.ndarray
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Profiles:
+    """Named profiles in section axes, each (M,), at stations `x` (M,) [m]; names and units are the message's."""
+
+    x: np.ndarray
+    values: dict[str, np.ndarray]
+
+    def together(self, *names: str) -> np.ndarray:
+        """The profiles `names` side by side, (M, len(names))."""
+        return np.stack([self.values[name] for name in names], axis=1)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Load:
+    """The fluid's load: `profiles` [N/m], and the forces at `tail` and `nose`, (3,) [N], all in section axes."""
+
+    profiles: Profiles
+    tail: np.ndarray
+    nose: np.ndarray
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Status:
+    """One status of a DiagnosticArray: `level` 0 OK, 1 WARN, 2 ERROR, 3 STALE."""
+
+    name: str
+    level: int
+    message: str
+    values: dict[str, str]
+
+
+ENERGY_FIELDS = (
+    "kinetic_body", "kinetic_fluid", "actuator_power", "wake_power", "nose_power", "drag_power", "residual",
+)  # fmt: skip
+WRENCH_FIELDS = ("torque_1", "torque_2", "torque_3", "force_1", "force_2", "force_3")
+CURVATURE_FIELDS = ("pitch", "pitch_rate", "yaw", "yaw_rate")
+LOAD_FIELDS = ("force_1", "force_2", "force_3", "resistive_1", "resistive_2", "resistive_3")
+
+
+def stamp_of(message) -> int:
+    """header.stamp [ns]."""
+    return message.header.stamp.sec * 1_000_000_000 + message.header.stamp.nanosec
+
+
+def read_pose(pose) -> Pose:
+    """From geometry_msgs/Pose."""
+    p, q = pose.position, pose.orientation
+    orientation = np.array([q.x, q.y, q.z, q.w])
+    _check_unit("orientation", orientation)
+    return Pose(position=_finite("position", np.array([p.x, p.y, p.z])), orientation=orientation)
+
+
+def read_twist(twist) -> Twist:
+    """From geometry_msgs/Twist."""
+    return Twist(linear=_vector("linear", twist.linear), angular=_vector("angular", twist.angular))
+
+
+def read_backbone(message) -> Backbone:
+    """From eel_msgs/Backbone."""
+    x = _stations(message.x)
+    position = _finite("position", _sized("position", message.position, 3 * len(x))).reshape(-1, 3)
+    orientation = _sized("orientation", message.orientation, 4 * len(x)).reshape(-1, 4)
+    _check_unit("orientation", orientation)
+    return Backbone(x=x, position=position, orientation=orientation)
+
+
+def read_body(message) -> Body:
+    """From eel_msgs/BodyGeometry."""
+    x = _stations(message.x)
+    half_width, half_height = (
+        _finite(name, _sized(name, getattr(message, name), len(x))) for name in ("half_width", "half_height")
+    )
+    for name, values in (("half_width", half_width), ("half_height", half_height)):
+        if np.any(values < 0.0):
+            raise BadMessage(name, f"has negative values, the least is {values.min():g} m")
+    for name, value in (("length", message.length), ("mass", message.mass)):
+        if not 0.0 < value < np.inf:
+            raise BadMessage(name, f"must be > 0 and finite, got {value!r}")
+    return Body(length=message.length, mass=message.mass, x=x, half_width=half_width, half_height=half_height)
+
+
+def read_wrench(message) -> Profiles:
+    """From eel_msgs/InternalWrench: torques [N m], forces [N]."""
+    return _profiles(message, WRENCH_FIELDS)
+
+
+def read_curvature(message) -> Profiles:
+    """From eel_msgs/Curvature [rad/m], [rad/(m s)]."""
+    return _profiles(message, CURVATURE_FIELDS)
+
+
+def read_load(message) -> Load:
+    """From eel_msgs/HydrodynamicLoad."""
+    return Load(
+        profiles=_profiles(message, LOAD_FIELDS),
+        tail=_vector("tail_force", message.tail_force),
+        nose=_vector("nose_force", message.nose_force),
+    )
+
+
+def read_energy(message) -> dict[str, float]:
+    """From eel_msgs/EnergyLedger: one number per field [J], [W]."""
+    values = {name: getattr(message, name) for name in ENERGY_FIELDS}
+    for name, value in values.items():
+        if not np.isfinite(value):
+            raise BadMessage(name, f"is {value!r}")
+    return values
+
+
+def read_diagnostics(message) -> list[Status]:
+    """From diagnostic_msgs/DiagnosticArray."""
+    return [
+        Status(
+            name=status.name,
+            level=int.from_bytes(status.level, "little") if isinstance(status.level, bytes) else int(status.level),
+            message=status.message,
+            values={entry.key: entry.value for entry in status.values},
+        )
+        for status in message.status
+    ]
+
+
+def _profiles(message, names: tuple[str, ...]) -> Profiles:
+    x = _stations(message.x)
+    return Profiles(x=x, values={name: _finite(name, _sized(name, getattr(message, name), len(x))) for name in names})
+
+
+def _stations(values) -> np.ndarray:
+    x = _finite("x", np.asarray(values, dtype=float))
+    if len(x) < 2:
+        raise BadMessage("x", f"must have at least 2 stations, got {len(x)}")
+    if not np.all(np.diff(x) > 0.0):
+        raise BadMessage("x", "must increase from station to station")
+    return x
+
+
+def _sized(name: str, values, size: int) -> np.ndarray:
+    array = np.asarray(values, dtype=float)
+    if array.shape != (size,):
+        raise BadMessage(name, f"must have {size} numbers to fit x, got {array.size}")
+    return array
+
+
+def _finite(name: str, array: np.ndarray) -> np.ndarray:
+    if not np.all(np.isfinite(array)):
+        raise BadMessage(name, "has values that are not finite")
+    return array
+
+
+def _vector(name: str, vector) -> np.ndarray:
+    return _finite(name, np.array([vector.x, vector.y, vector.z]))
+
+
+def _check_unit(name: str, quaternions: np.ndarray) -> None:
+    error = np.abs(np.sqrt(np.sum(np.square(quaternions), axis=-1)) - 1.0)
+    if not np.all(error <= UNIT_TOLERANCE):  # NaN too
+        raise BadMessage(name, f"must have quaternions of unit norm, worst error {np.max(error):g}")

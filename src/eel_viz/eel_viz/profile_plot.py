@@ -1,0 +1,115 @@
+"""A drawing of profiles against the abscissa X: curves, their envelope so far, and axes with ticks.
+
+Rerun has no plot against anything but time, so the drawing is made of lines in a two-dimensional view, whose axes
+share one scale and whose y points down: drawn x = WIDTH * X / length, drawn y = -value / (2 limit). If a value is
+beyond the limit, the limit grows to the next of 1, 2, 5, 10 ... and the ticks with it; nothing is cut off.
+"""
+
+import numpy as np
+import rerun as rr
+
+from eel_viz import colours, entities
+
+WIDTH = 3.2
+LABEL_RISE = 0.085  # a label hangs below its point
+BOUNDS_X = (-0.36, WIDTH + 0.16)
+BOUNDS_Y = (-0.76, 0.70)
+
+
+class ProfilePlot:
+    """Draws up to three profiles into the entities below `root` of `stream`.
+
+    `names` are the curves' (C1, C2, C3), `unit` that of the values, `limit` > 0 the value at the upper edge at first.
+    """
+
+    def __init__(
+        self, stream: rr.RecordingStream, root: str, *, names: tuple[str, ...], unit: str, limit: float,
+        palette: tuple[tuple[int, int, int], ...] = colours.AXIS,
+    ):  # fmt: skip
+        self._stream, self._root, self._names, self._unit = stream, root, names, unit
+        self.limit = limit
+        self._palette = palette
+        self._ticks: tuple[float, float] | None = None
+        self._x: np.ndarray | None = None
+        self._low = self._high = np.empty(0)
+        self._draw_frame()
+
+    def include(self, x: np.ndarray, values: np.ndarray) -> None:
+        """Widen the envelope and the limit by `values`, (M, n) at stations `x` [m], (M,)."""
+        if self._x is None or not np.array_equal(self._x, x):
+            self._x, self._low, self._high = np.array(x), np.array(values), np.array(values)
+        else:
+            np.minimum(self._low, values, out=self._low)
+            np.maximum(self._high, values, out=self._high)
+        self.limit = grown_limit(self.limit, float(np.max(np.abs(values))))
+
+    def draw(self, x: np.ndarray, values: np.ndarray) -> None:
+        """The curves of `values`, (M, n), at the stream's present time."""
+        length = float(x[-1])
+        if self._ticks != (self.limit, length):
+            self._ticks = (self.limit, length)
+            self._draw_ticks(length)
+        self._stream.log(
+            f"{self._root}/{entities.CURVES}", rr.LineStrips2D.from_fields(strips=self._drawn(x, values), draw_order=30.0)
+        )
+
+    def draw_envelope(self) -> None:
+        """The least and the greatest value so far at each station, behind the curves."""
+        if self._x is not None:
+            strips = np.concatenate([self._drawn(self._x, self._low), self._drawn(self._x, self._high)])
+            self._stream.log(f"{self._root}/{entities.ENVELOPE}", rr.LineStrips2D.from_fields(strips=strips, draw_order=20.0))
+
+    def _drawn(self, x: np.ndarray, values: np.ndarray) -> np.ndarray:
+        strips = np.empty((values.shape[1], len(x), 2), dtype=np.float32)
+        strips[:, :, 0] = WIDTH * x / x[-1]
+        strips[:, :, 1] = values.T / (-2.0 * self.limit)
+        return strips
+
+    def _draw_frame(self) -> None:
+        palette = self._palette[: len(self._names)]
+        grid = [[(0, y), (WIDTH, y)] for y in (-0.5, -0.25, 0.0, 0.25, 0.5)]
+        grid += [[(WIDTH * k / 5, -0.5), (WIDTH * k / 5, 0.5)] for k in range(6)]
+        shades = [colours.TICK] * len(grid)
+        shades[2] = colours.FRAME
+        log = self._stream.log
+        log(
+            f"{self._root}/{entities.FRAME}",
+            rr.LineStrips2D(grid, colors=shades, radii=rr.Radius.ui_points(0.6), draw_order=10.0),
+            static=True,
+        )
+        log(
+            f"{self._root}/{entities.CURVES}",
+            rr.LineStrips2D.from_fields(colors=palette, radii=rr.Radius.ui_points(1.4)),
+            static=True,
+        )
+        behind = [colours.dim(colour) for colour in palette]
+        log(
+            f"{self._root}/{entities.ENVELOPE}",
+            rr.LineStrips2D.from_fields(colors=behind * 2, radii=rr.Radius.ui_points(0.7)),
+            static=True,
+        )
+        keys = [(WIDTH * (0.05 + 0.09 * k), -0.62 - LABEL_RISE) for k in range(len(palette))]
+        log(f"{self._root}/{entities.KEY}", _labels(keys, list(self._names), palette), static=True)
+
+    def _draw_ticks(self, length: float) -> None:
+        places = [(-0.17, -y - LABEL_RISE) for y in (0.5, 0.0, -0.5)]
+        texts = [f"{y * self.limit:+.3g}" if y else "0" for y in (1.0, 0.0, -1.0)]
+        places += [(WIDTH * k / 5, 0.585 - LABEL_RISE) for k in range(6)]
+        texts += [f"{length * k / 5:.3g}" for k in range(6)]
+        places.append((WIDTH * 0.83, -0.62 - LABEL_RISE))
+        texts.append(f"[{self._unit}] over X [m]")
+        self._stream.log(f"{self._root}/{entities.TICKS}", _labels(places, texts, [colours.LABEL] * len(texts)))
+
+
+def grown_limit(limit: float, value: float) -> float:
+    """`limit`, or the first of 1, 2, 5, 10, 20 ... times a power of ten that is not below `value`."""
+    if value <= limit:
+        return limit
+    decade = 10.0 ** np.floor(np.log10(value))
+    return next(float(step * decade) for step in (1.0, 2.0, 5.0, 10.0) if step * decade >= value * (1 - 1e-12))
+
+
+def _labels(places: list, texts: list[str], palette: list | tuple) -> rr.Points2D:
+    return rr.Points2D(
+        places, labels=texts, colors=palette, show_labels=True, radii=rr.Radius.ui_points(0.1), draw_order=40.0
+    )

@@ -1,0 +1,150 @@
+"""Runs of the simulation, each a recording of its own: a stamp that goes back begins the next one.
+
+Topics reach a reset one by one, in any order; so each topic has its own place in the row of runs, and a run is closed once
+every topic that was in it has gone on. What is valid at all times (the body, the law) is given to each new recording.
+"""
+
+import time
+from collections import deque
+from collections.abc import Callable
+
+from eel_viz.loggers import Loggers
+from eel_viz.messages import Body, Status
+from eel_viz.sinks import Destination, Say, close_stream
+
+RETRY = 2.0  # s of wall time between two attempts at an absent viewer
+RESETS, SPAN = 3, 10.0  # so many resets within so many seconds, with several publishers: not a reset
+
+
+class Run:
+    """One run: the loggers of each destination that is there."""
+
+    def __init__(self, number: int) -> None:
+        self.number = number
+        self.loggers: dict[int, Loggers] = {}  # by the destination's place in the list
+        self.streams: dict[int, object] = {}
+        self.latest = 0  # ns
+
+    def close(self) -> None:
+        for stream in self.streams.values():
+            close_stream(stream)
+        self.streams.clear()
+        self.loggers.clear()
+
+
+class Runs:
+    """Hands each message to the loggers of its run.
+
+    `crowded(topic)` says whether more than one publisher is there, whose stamps would go back and forth.
+    """
+
+    def __init__(
+        self, destinations: list[Destination], name: str, warn: Say, crowded: Callable[[str], bool] = lambda topic: False
+    ) -> None:
+        self._destinations, self._name, self._warn, self._crowded = destinations, name, warn, crowded
+        self._place: dict[str, tuple[int, int]] = {}  # topic: number of its run, last stamp
+        self._body: Body | None = None
+        self._law: str | None = None
+        self._statuses: list[Status] = []
+        self._resets: deque[float] = deque(maxlen=RESETS)
+        self._tried = time.monotonic()
+        self._warned = False
+        self._runs: dict[int, Run] = {}
+        self._begin(1)
+
+    @property
+    def latest(self) -> int:
+        """Newest stamp of the newest run [ns]."""
+        return self._newest.latest
+
+    def at(self, topic: str, stamp: int) -> list[Loggers]:
+        """The loggers that a message of `topic` with `stamp` [ns] goes to."""
+        number, last = self._place.get(topic, (self._newest.number, stamp))
+        if stamp < last:
+            if self._disorder(topic):
+                return []
+            number += 1
+            if number not in self._runs:
+                self._warn(f"stamps of {topic} went back from {last / 1e9:g} s to {stamp / 1e9:g} s: a new recording begins")
+                self._begin(number)
+        self._place[topic] = (number, stamp)
+        if stamp < last:
+            self._close_before(min(place for place, _ in self._place.values()))
+        run = self._runs[number]
+        run.latest = max(run.latest, stamp)
+        return list(run.loggers.values())
+
+    def body(self, body: Body) -> None:
+        """The body, for this run and those to come."""
+        self._body = body
+        for loggers in self._newest.loggers.values():
+            loggers.body(body)
+
+    def law(self, name: str) -> None:
+        """The law that was published last."""
+        self._law = name
+        for loggers in self._newest.loggers.values():
+            loggers.law(self.latest, name)
+
+    def diagnostics(self, statuses: list[Status]) -> None:
+        """Statuses, at the newest time there is: their own stamps may be wall time."""
+        self._statuses = statuses
+        for loggers in self._newest.loggers.values():
+            loggers.diagnostics(self.latest, statuses)
+
+    def attend(self) -> None:
+        """Now and then: try the destinations that were not there."""
+        if time.monotonic() - self._tried > RETRY:
+            self._tried = time.monotonic()
+            self._open_missing(self._newest)
+
+    def close(self) -> None:
+        """End all runs, and then the servers."""
+        for run in self._runs.values():
+            run.close()
+        self._runs.clear()
+        for destination in self._destinations:
+            destination.close()
+
+    @property
+    def _newest(self) -> Run:
+        return self._runs[max(self._runs)]
+
+    def _begin(self, number: int) -> None:
+        run = Run(number)
+        self._open_missing(run)
+        self._runs[number] = run
+
+    def _open_missing(self, run: Run) -> None:
+        for place, destination in enumerate(self._destinations):
+            if place in run.loggers:
+                continue
+            stream = destination.open(run.number, self._name if run.number == 1 else f"{self._name} {run.number}")
+            if stream is None:
+                continue
+            loggers = Loggers(stream, destination.settings, destination.rates)
+            run.streams[place], run.loggers[place] = stream, loggers
+            if self._body is not None:
+                loggers.body(self._body)
+            if self._law is not None:
+                loggers.law(run.latest, self._law)
+            loggers.diagnostics(run.latest, self._statuses)
+
+    def _close_before(self, number: int) -> None:
+        for old in [each for each in self._runs if each < number]:
+            self._runs.pop(old).close()
+
+    def _disorder(self, topic: str) -> bool:
+        """Whether stamps go back because several publishers send on `topic`, rather than by a reset."""
+        now = time.monotonic()
+        place = self._place[topic][0]
+        if place < self._newest.number:
+            return False  # catching up with a reset that another topic has seen
+        often = len(self._resets) == RESETS and now - self._resets[0] < SPAN
+        if often and self._crowded(topic):
+            if not self._warned:
+                self._warn(f"stamps of {topic} go back and forth, it has more than one publisher: older ones are left out")
+                self._warned = True
+            return True
+        self._resets.append(now)
+        return False

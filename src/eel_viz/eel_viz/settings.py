@@ -1,0 +1,92 @@
+"""What the user can set: each once, with unit, default, bounds and description. The node declares its parameters from it."""
+
+import math
+from dataclasses import dataclass, field, fields
+
+
+def setting(default, description: str, *, unit: str = "", minimum: float | None = None, maximum: float | None = None):
+    """A field with what `ros2 param describe` tells. Bounds are inclusive."""
+    return field(
+        default=default,
+        metadata={"description": description, "unit": unit, "minimum": minimum, "maximum": maximum},
+    )
+
+
+SINKS = ("spawn", "connect", "serve", "save")
+BLUEPRINTS = ("overview", "torques", "motion")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Settings:
+    """Parameters of the visualiser; read when it starts."""
+
+    sink: tuple[str, ...] = setting(
+        ("auto",),
+        "where it goes, one or more of: spawn (a viewer window), connect (a viewer that runs, see viewer), serve (gRPC "
+        "and web viewer), save (a file, see recording); auto: spawn where there is a display, else save",
+    )
+    recording: str = setting("", "file to save, .rrd; empty: eel-DATE-TIME.rrd in the working folder")
+    viewer: str = setting("rerun+http://127.0.0.1:9876/proxy", "address of the viewer to connect to")
+    port: int = setting(9876, "port of the served data (gRPC), on this machine alone", minimum=1024, maximum=65535)
+    web_port: int = setting(9090, "port of the served web viewer", minimum=1024, maximum=65535)
+    blueprint: str = setting("overview", "arrangement shown first: overview, torques or motion")
+    rate: float = setting(30.0, "samples per second that a live viewer gets; a file gets all", unit="Hz", minimum=0.1, maximum=1000.0)
+    skin_rate: float = setting(
+        25.0, "skin, arrows and curves drawn per second of simulation time in a file", unit="Hz", minimum=0.1, maximum=1000.0
+    )
+    torque_limit: float = setting(1.0, "torque of the deepest colour, and of the plot's edge", unit="N m", minimum=1e-9)
+    force_limit: float = setting(2.0, "force at the plot's edge", unit="N", minimum=1e-9)
+    curvature_limit: float = setting(5.0, "curvature at the plot's edge", unit="rad/m", minimum=1e-9)
+    load_scale: float = setting(0.02, "length of the arrow of a load of 1 N/m", unit="m^2/N", minimum=0.0)
+    end_force_scale: float = setting(0.1, "length of the arrow of a force of 1 N at nose or tail", unit="m/N", minimum=0.0)
+    memory_limit: str = setting("1GiB", "memory that served data may take before the oldest are dropped")
+    stop_with_publisher: bool = setting(
+        False, "leave, with status 0, some time after the publishers of the swimmer have gone; they must have been there"
+    )
+
+    def __post_init__(self) -> None:
+        if not self.sink:
+            raise ValueError(f"sink must name at least one of {', '.join(SINKS)}, got none")
+        for name in self.sink:
+            if name not in ("auto", *SINKS):
+                raise ValueError(f"sink must be some of {', '.join(SINKS)} or auto, got {name!r}")
+        if self.blueprint not in BLUEPRINTS:
+            raise ValueError(f"blueprint must be one of {', '.join(BLUEPRINTS)}, got {self.blueprint!r}")
+
+    @classmethod
+    def from_values(cls, values: dict) -> "Settings":
+        """Settings from what a user gave, by name; floats may be integers, lists may be one text with commas.
+
+        ValueError names the setting, what it must be, and what it got.
+        """
+        return cls(**{item.name: _checked(item, values[item.name]) for item in fields(cls) if item.name in values})
+
+
+def _checked(item, value):
+    default, name = item.default, item.name
+    if isinstance(default, bool):
+        if not isinstance(value, bool):
+            raise ValueError(f"{name} must be true or false, got {value!r}")
+    elif isinstance(default, str):
+        if not isinstance(value, str):
+            raise ValueError(f"{name} must be a text, got {value!r}")
+    elif isinstance(default, tuple):
+        words = value.split(",") if isinstance(value, str) else value
+        if not isinstance(words, (list, tuple)) or not all(isinstance(word, str) for word in words):
+            raise ValueError(f"{name} must be a list of texts, got {value!r}")
+        return tuple(word.strip() for word in words)
+    elif isinstance(value, bool) or not isinstance(value, int if isinstance(default, int) else (int, float)):
+        raise ValueError(f"{name} must be {'an integer' if isinstance(default, int) else 'a number'}, got {value!r}")
+    else:
+        low, high = item.metadata["minimum"], item.metadata["maximum"]
+        if not math.isfinite(value) or (low is not None and value < low) or (high is not None and value > high):
+            raise ValueError(f"{name} must be {limits(item.metadata)}, got {value:g}")
+        return type(default)(value)
+    return value
+
+
+def limits(metadata) -> str:
+    """The bounds in words, such as ">= 0.1 Hz and <= 1000 Hz"."""
+    unit = f" {metadata['unit']}" if metadata["unit"] else ""
+    words = [f"{sign} {metadata[key]:g}{unit}" for sign, key in ((">=", "minimum"), ("<=", "maximum")) if metadata[key] is not None]
+    return " and ".join(words) or "a finite number"

@@ -1,0 +1,183 @@
+"""Where a recording goes: a file, a viewer that runs already, or served data that any viewer can come to, now or later.
+
+A destination makes one Rerun stream for each run. What is served lives in a server of this process, to which the
+streams are clients: nothing blocks when no viewer is there, memory is bounded, and an open viewer moves on to the new run.
+A stream straight to an absent viewer would block for ever in the end; so the viewer's port is probed first.
+"""
+
+import datetime
+import os
+import pathlib
+import subprocess
+from collections.abc import Callable
+from urllib.parse import urlsplit
+
+import rerun as rr
+import rerun.blueprint as rrb
+
+from eel_viz.blueprint import arrangement
+from eel_viz.loggers import Rates
+from eel_viz.render import free_port, listening, native_viewer
+from eel_viz.settings import Settings
+
+APPLICATION = "eel"
+CLOSING_LIMIT = 3.0  # s for what is still on its way
+HOST = "127.0.0.1"
+
+Say = Callable[[str], None]
+
+
+class Destination:
+    """Makes the streams of runs. `rates`: how much of a run goes there; `say`, `warn`: one line to the user."""
+
+    def __init__(self, settings: Settings, rates: Rates, say: Say, warn: Say, *, live: bool) -> None:
+        self.settings, self.rates, self.say, self.warn = settings, rates, say, warn
+        self._live = live
+
+    def open(self, run: int, name: str) -> rr.RecordingStream | None:
+        """The stream of run number `run` (1, 2, ...), called `name`; None: not now."""
+        sink = self._sink(run)
+        if sink is None:
+            return None
+        stream = rr.RecordingStream(APPLICATION)
+        stream.set_log_time_enabled(False)
+        stream.set_sinks(sink, default_blueprint=self._blueprint())
+        stream.send_recording_name(name)
+        return stream
+
+    def close(self) -> None:
+        """End what is not a run's: a server."""
+
+    def _blueprint(self) -> rrb.Blueprint:
+        return arrangement(self.settings.blueprint, live=self._live)
+
+    def _sink(self, run: int) -> rr.FileSink | rr.GrpcSink | None:
+        raise NotImplementedError
+
+
+class File(Destination):
+    """A .rrd file; the second run and later ones get a number before the suffix."""
+
+    def __init__(self, settings: Settings, say: Say, warn: Say) -> None:
+        super().__init__(settings, Rates(numbers=0.0, drawings=settings.skin_rate), say, warn, live=False)
+        path = settings.recording or f"eel-{datetime.datetime.now():%Y%m%d-%H%M%S}.rrd"
+        self._first = pathlib.Path(path)
+
+    def path(self, run: int) -> pathlib.Path:
+        """The file of run number `run`."""
+        first = self._first
+        return first if run == 1 else first.with_name(f"{first.stem}-{run}{first.suffix}")
+
+    def _sink(self, run: int) -> rr.FileSink:
+        path = self.path(run)
+        existed = path.exists()
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            with path.open("ab"):  # a FileSink does not say why it cannot write
+                pass
+        except OSError as error:
+            raise ValueError(f"recording {str(path)!r} cannot be written: {error.strerror or error}") from error
+        if existed:
+            self.warn(f"{path} is there already and is replaced")
+        self.say(f"saving to {path}")
+        return rr.FileSink(str(path))
+
+
+class Served(Destination):
+    """Data served on a port of this machine, for viewers that come and go."""
+
+    def __init__(self, settings: Settings, say: Say, warn: Say) -> None:
+        super().__init__(settings, Rates(numbers=settings.rate, drawings=settings.rate), say, warn, live=True)
+        port = settings.port
+        if listening(port):  # the server would only log it
+            port = free_port()
+            warn(f"port {settings.port} is in use, taking {port}")
+        server = rr.GrpcServerSink(bind_ip=HOST, port=port, server_memory_limit=settings.memory_limit)
+        self.uri = server.uri
+        self._host = rr.RecordingStream(APPLICATION, send_properties=False)
+        self._host.set_sinks(server)
+        say(f"serving at {self.uri}")
+
+    def _sink(self, run: int) -> rr.GrpcSink:
+        return rr.GrpcSink(self.uri)
+
+    def close(self) -> None:
+        """End the server, after the runs' streams."""
+        close_stream(self._host)
+
+    def show_in_window(self) -> None:
+        """Open a viewer on this machine's display; it stays when this process ends."""
+        if not display():
+            self.warn("there is no display: no viewer is opened")
+            return
+        command = [native_viewer(), "--port", str(free_port()), "--hide-welcome-screen", self.uri]
+        subprocess.Popen(
+            command, env={**os.environ, "RERUN_APP_ONLY": "true"}, start_new_session=True,
+            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+        )  # fmt: skip
+
+    def show_in_browser(self) -> None:
+        """Serve the web viewer too, and say where."""
+        port = self.settings.web_port
+        if listening(port):
+            port = free_port()
+            self.warn(f"port {self.settings.web_port} is in use, taking {port}")
+        rr.serve_web_viewer(web_port=port, open_browser=False, connect_to=self.uri)
+        self.say(f"look at it in a browser: http://{HOST}:{port}/?url={self.uri}")
+
+
+class Connected(Destination):
+    """A viewer that somebody else has started; while it is absent, nothing is sent."""
+
+    def __init__(self, settings: Settings, say: Say, warn: Say) -> None:
+        super().__init__(settings, Rates(numbers=settings.rate, drawings=settings.rate), say, warn, live=True)
+        address = urlsplit(settings.viewer)
+        if address.hostname is None or address.port is None:
+            raise ValueError(f"viewer must look like rerun+http://127.0.0.1:9876/proxy, got {settings.viewer!r}")
+        self._address = (address.hostname, address.port)
+        self._missed = False
+
+    def _sink(self, run: int) -> rr.GrpcSink | None:
+        host, port = self._address
+        if listening(port, host):
+            self.say(f"connected to the viewer at {self.settings.viewer}")
+            self._missed = False
+            return rr.GrpcSink(self.settings.viewer)
+        if not self._missed:
+            self.warn(f"no viewer listens at {self.settings.viewer}: start one with `rerun`, it is tried again while running")
+            self._missed = True
+        return None
+
+
+def destinations(settings: Settings, say: Say, warn: Say) -> list[Destination]:
+    """What `settings.sink` asks for."""
+    names = set(settings.sink)
+    if "auto" in names:
+        names = (names - {"auto"}) | {"spawn" if display() else "save"}
+    found: list[Destination] = []
+    if "save" in names:
+        found.append(File(settings, say, warn))
+    if names & {"spawn", "serve"}:
+        served = Served(settings, say, warn)
+        found.append(served)
+        if "spawn" in names:
+            served.show_in_window()
+        if "serve" in names:
+            served.show_in_browser()
+    if "connect" in names:
+        found.append(Connected(settings, say, warn))
+    return found
+
+
+def display() -> bool:
+    """Whether a window can be opened."""
+    return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
+
+
+def close_stream(stream: rr.RecordingStream) -> None:
+    """Bring out what is on its way, within `CLOSING_LIMIT`, and end the stream: a file is then complete."""
+    try:
+        stream.flush(timeout_sec=CLOSING_LIMIT)
+    except RuntimeError:
+        pass  # the viewer has gone; a file is complete all the same
+    stream.disconnect()

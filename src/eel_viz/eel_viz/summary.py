@@ -1,0 +1,56 @@
+"""The state of a run in a few lines of text: what a viewer wants to know before trusting the picture.
+
+Everything comes from messages: the path from head_pose, the torque from internal_wrench, the rest from diagnostics.
+"""
+
+import numpy as np
+
+from eel_viz.messages import Body
+
+
+class Summary:
+    """Collects, and writes Markdown."""
+
+    def __init__(self) -> None:
+        self.law: str | None = None
+        self.body: Body | None = None
+        self.speed: float | None = None  # m/s
+        self.residual: float | None = None  # J
+        self.values: dict[str, str] = {}  # of the diagnostics
+        self._first: tuple[int, np.ndarray] | None = None
+        self._last: tuple[int, np.ndarray] | None = None
+        self._path = 0.0  # m
+        self._peak: tuple[float, float, int] = (0.0, 0.0, 0)  # N m, m, ns
+
+    def move(self, stamp: int, position: np.ndarray) -> None:
+        """The head is at `position`, (3,) [m], at `stamp` [ns]."""
+        if self._last is not None:
+            self._path += float(np.linalg.norm(position - self._last[1]))
+        self._last = (stamp, np.array(position))
+        self._first = self._first or self._last
+
+    def strain(self, stamp: int, x: np.ndarray, torque: np.ndarray) -> None:
+        """The yaw torque C3, (M,) [N m], at stations `x` [m] and `stamp` [ns]."""
+        k = int(np.argmax(np.abs(torque)))
+        if abs(torque[k]) > abs(self._peak[0]):
+            self._peak = (float(torque[k]), float(x[k]), stamp)
+
+    def text(self) -> str:
+        """Markdown, one paragraph a line."""
+        lines = []
+        if self._last is not None and self._first is not None:
+            stamp, position = self._last
+            seconds = (stamp - self._first[0]) / 1e9
+            mean = self._path / seconds if seconds > 0 else 0.0
+            speed = "" if self.speed is None else f", speed {self.speed:.3f} m/s"
+            lines.append(f"**{stamp / 1e9:.2f} s**{speed}, mean {mean:.3f} m/s, path {self._path:.2f} m")
+            lines.append("head at " + ", ".join(f"{name} {value:+.3f}" for name, value in zip("xyz", position, strict=True)) + " m")
+        if self.law is not None:
+            lines.append(f"law **{self.law}**")
+        if self.body is not None:
+            lines.append(f"body {self.body.length:.3g} m, {self.body.mass:.4g} kg")
+        torque, x, stamp = self._peak
+        if torque:
+            lines.append(f"greatest C3 {torque:+.3f} N m at X {x:.2f} m, {stamp / 1e9:.2f} s")
+        lines += [f"{key.replace('_', ' ')} {value}" for key, value in self.values.items()]
+        return "\n\n".join(lines)
