@@ -36,8 +36,9 @@ class Ramp:
             object.__setattr__(self, field, number(field, getattr(self, field)))
         if not self.end > self.start:
             raise ValueError(f"end must be > start ({self.start} s), got {self.end}")
-        if not math.isfinite(2.0 * math.pi * self.delta / (self.end - self.start) / (self.end - self.start)):
-            raise ValueError(f"end must lie far enough after start ({self.start} s) for finite rates, got {self.end}")
+        duration = self.end - self.start
+        if not math.isfinite(duration) or not math.isfinite(10.0 * self.delta / duration / duration):
+            raise ValueError(f"end must lie so after start ({self.start} s) that rates are finite, got {self.end}")
 
     def value(self, t):
         """The ramp and its first and second time derivatives at t [s]: three arrays of t's shape."""
@@ -75,13 +76,13 @@ class Term:
     envelope: tuple[Ramp, ...] = ()
 
     def __post_init__(self):
-        if self.axis not in AXES:
+        if not isinstance(self.axis, str) or self.axis not in AXES:
             raise ValueError(f"axis must be one of {', '.join(AXES)}, got {self.axis!r}")
         for field in ("amplitude", "knots"):
             object.__setattr__(self, field, _numbers(field, getattr(self, field)))
         for field in ("wavelength", "period", "phase"):
             object.__setattr__(self, field, number(field, getattr(self, field)))
-        object.__setattr__(self, "envelope", tuple(self.envelope))
+        object.__setattr__(self, "envelope", _row("envelope", "Ramps", self.envelope))
         self._check_amplitude()
         self._check_wave()
 
@@ -100,9 +101,7 @@ class Term:
             raise ValueError(f"knots must be strictly increasing [m], got {list(self.knots)}")
         with np.errstate(all="ignore"):
             if not np.all(np.isfinite(self.amplitude_at(self.knots))):
-                raise ValueError(
-                    f"knots must lie far enough apart for a finite spline through amplitude, got {list(self.knots)}"
-                )
+                raise ValueError(f"knots must lie far enough apart for a finite spline, got {list(self.knots)}")
 
     def _check_wave(self):
         if self.period < 0.0:
@@ -201,8 +200,11 @@ class Law:
 
 
 def _numbers(name, values):
+    return tuple(number(f"{name}[{index}]", value) for index, value in enumerate(_row(name, "numbers", values)))
+
+
+def _row(name, kind, values):
     try:
-        values = tuple(values)
+        return tuple(values)
     except TypeError:
-        raise ValueError(f"{name} must be a row of numbers, got {values!r}") from None
-    return tuple(number(f"{name}[{index}]", value) for index, value in enumerate(values))
+        raise ValueError(f"{name} must be a row of {kind}, got {values!r}") from None

@@ -1,0 +1,214 @@
+"""The gait generator as a process, over real DDS."""
+
+import math
+import signal
+import time
+
+import pytest
+from rclpy.qos import QoSProfile
+
+from eel_gaits import falling, gait, turning
+
+SAID = "published on"
+
+
+@pytest.fixture
+def generator(start):
+    """generator(*ros_arguments) -> the running process, after its first log line."""
+
+    def run(*arguments):
+        process = start("gait_generator", *(("--ros-args", *arguments) if arguments else ()))
+        process.wait_for_output(SAID)
+        return process
+
+    return run
+
+
+def test_a_late_subscriber_gets_the_law(generator, client):
+    generator()
+    client.listen()
+    assert client.law(0) == (falling(), 0.0)
+    assert client.messages[0].header.frame_id == "base_link"
+
+
+def test_a_volatile_subscriber_that_was_there_first_gets_it_too(start, client):
+    client.listen(quality=QoSProfile(depth=10))
+    start("gait_generator").wait_for_output(SAID)
+    client.set(period=2.0)  # by then the end points have met
+    client.until(lambda: client.messages and client.latest()[0] == falling(period=2.0), "new law")
+
+
+def test_parameters_at_start_take_integers_and_tell_what_they_are(generator, client):
+    generator("-p", "period:=2", "-p", "transition:=1", "-p", "pitch_bend:=-1")
+    client.listen()
+    assert client.law(0)[0] == falling(period=2.0, transition=1.0, pitch_bend=-1.0)
+    assert client.values()["period"] == 2.0 and client.values()["use_sim_time"] is True
+    period, name = client.describe("period", "gait")
+    assert period.description == "period T of the wave [s]" and period.type == 3 and not period.dynamic_typing
+    assert (period.floating_point_range[0].from_value, period.floating_point_range[0].to_value) == (1e-3, 1e4)
+    assert "turning" in name.additional_constraints
+
+
+def test_a_params_file_in_a_namespace(generator, client, tmp_path):
+    file = tmp_path / "parameters.yaml"
+    file.write_text(
+        "/**:\n  ros__parameters:\n    gait: turning\n    yaw_bend: -1\n    rate: 100\n    use_sim_time: false\n"
+    )
+    generator("--params-file", str(file), "-r", "__ns:=/second")
+    client.listen("second/curvature_law")
+    client.generator = "second/gait_generator"
+    assert client.law(0) == (turning(yaw_bend=-1.0), 0.0)
+    values = client.values()
+    assert values["use_sim_time"] is False and "rate" not in values and "pitch_bend" not in values
+
+
+def test_a_parameter_of_the_same_gait_keeps_the_time_another_gait_starts_at_now(generator, client):
+    generator("-p", "wavelength:=0.8")
+    client.listen()
+    client.law(0)
+
+    def turns_at_the_ticked_time():
+        client.set(gait="falling")
+        client.set(gait="turning")
+        client.until(lambda: client.latest()[0].name == "turning", "turning law")
+        return client.latest()[1] == 12.5
+
+    client.tick_until(12.5, turns_at_the_ticked_time, "law with the ticked time")
+    assert client.latest() == (turning(wavelength=0.8), 12.5)
+    values = client.values()
+    assert values["gait"] == "turning" and values["yaw_bend"] == 0.5 and "pitch_bend" not in values
+
+    count = len(client.messages)
+    client.tick(20.0)
+    assert client.set(yaw_bend=-1)[0].successful
+    assert client.law(count) == (turning(wavelength=0.8, yaw_bend=-1.0), 12.5)
+    assert client.set(transition=2)[0].successful
+    assert client.law(count + 1) == (turning(wavelength=0.8, yaw_bend=-1.0, transition=2.0), 12.5)
+
+
+def test_after_time_went_back_the_law_has_its_start_at_zero(generator, client):
+    generator()
+    client.listen()
+    client.law(0)
+
+    def turned():
+        client.set(gait="falling")
+        client.set(gait="turning")
+        client.until(lambda: client.latest()[0].name == "turning", "turning law")
+        return client.latest()[1] > 0.0
+
+    client.tick_until(30.0, turned, "law at 30 s")
+    client.tick_until(3.0, lambda: client.latest() == (turning(), 0.0), "law whose start is at zero")
+    count = len(client.messages)
+    client.set(period=2.0)
+    assert client.law(count) == (turning(period=2.0), 0.0)
+
+
+def test_before_any_clock_another_gait_has_a_zero_stamp(generator, client):
+    generator()
+    client.listen()
+    client.law(0)
+    assert client.set(gait="helix")[0].successful
+    assert client.law(1) == (gait("helix"), 0.0)
+
+
+def test_what_the_user_set_carries_over(generator, client):
+    generator("-p", "yaw_bend:=0.25")  # of a gait that is not on yet
+    client.listen()
+    assert client.law(0)[0] == falling()
+    assert all(result.successful for result in client.set(period=3, wavelength=0.7, gait="turning"))
+    assert client.law(3)[0] == turning(period=3.0, wavelength=0.7, yaw_bend=0.25)
+    client.set(gait="kern_efficient")
+    assert client.law(4)[0] == gait("kern_efficient", period=3.0)
+    client.set(gait="turning")
+    assert client.law(5)[0] == turning(period=3.0, wavelength=0.7, yaw_bend=0.25)
+
+
+def test_a_gait_and_its_numbers_set_together(generator, client):
+    generator()
+    client.listen()
+    client.law(0)
+    assert client.set_together(gait="turning", yaw_bend=-2, period=1.5).successful
+    assert client.law(1)[0] == turning(yaw_bend=-2.0, period=1.5)
+    assert client.values()["yaw_bend"] == -2.0
+    assert client.set_together(bend_start=5, bend_full=6).successful
+    assert client.law(2)[0] == turning(yaw_bend=-2.0, period=1.5, bend_start=5.0, bend_full=6.0)
+
+
+def test_a_refused_set_says_why_and_changes_nothing(generator, client):
+    generator("-p", "period:=2.0")
+    client.listen()
+    client.law(0)
+    before = client.values()
+    for values, reason in (
+        ({"gait": "swim"}, "unknown gait 'swim', must be one of backward, falling, helix"),
+        ({"gait": 7}, "unknown gait 7"),
+        ({"period": -1.0}, "period must be >= 0.001 s, got -1.0"),
+        ({"period": 0}, "period must be >= 0.001 s, got 0.0"),
+        ({"period": math.nan}, "period must be finite, got nan"),
+        ({"period": "fast"}, "period must be a number, got 'fast'"),
+        ({"period": True}, "period must be a number, got True"),
+        ({"period": None}, "period must be a number, got None"),
+        ({"period": [1.0, 2.0]}, "period must be a number, got"),
+        ({"bend_full": 0.5}, "bend_full must be > bend_start (1 s), got 0.5"),
+        ({"yaw_bend": 1.0}, "gait 'falling' has no parameter 'yaw_bend', it has: transition, period"),
+        ({"transition": -1}, "transition must be >= 0 s, got -1.0"),
+    ):
+        result = client.set(**values)[0]
+        assert not result.successful and reason in result.reason, (values, result)
+    together = client.set_together(period=3.0, gait="turning", pitch_bend=1.0)
+    assert not together.successful and "gait 'turning' has no parameter 'pitch_bend'" in together.reason
+    assert not client.set_together(period=3.0, use_sim_time=3).successful
+    assert client.values() == before
+    assert client.set(wavelength=0.9)[0].successful
+    assert client.law(1)[0] == falling(period=2.0, wavelength=0.9)  # and nothing was published in between
+    assert len(client.messages) == 2
+
+
+@pytest.mark.parametrize(
+    ("argument", "line"),
+    [
+        ("period:=-1", "gait_generator: period must be >= 0.001 s, got -1.0"),
+        ("period:=.inf", "gait_generator: period must be finite, got inf"),
+        ("period:=fast", "gait_generator: period must be a number, got 'fast'"),
+        ("gait:=swim", "gait_generator: unknown gait 'swim', must be one of"),
+        ("bend_full:=0", "gait_generator: bend_full must be > bend_start (1 s), got 0.0"),
+        ("transition:=[1.0]", "gait_generator: transition must be a number, got"),
+    ],
+)
+def test_a_bad_parameter_at_start_ends_it_with_one_line_and_status_2(start, argument, line):
+    process = start("gait_generator", "--ros-args", "-p", argument)
+    assert process.wait(20.0) == 2
+    assert process.output().startswith(line)
+    assert process.output().count("\n") == 1
+
+
+def test_a_bad_params_file_ends_it_with_status_2(start, tmp_path):
+    file = tmp_path / "parameters.yaml"
+    file.write_text("gait_generator:\n  ros__parameters:\n    gait: turning\n    yaw_bend: 1e9\n")
+    process = start("gait_generator", "--ros-args", "--params-file", str(file))
+    assert process.wait(20.0) == 2
+    assert process.output() == "gait_generator: yaw_bend must be <= 100000 rad/m, got 1000000000.0\n"
+    process = start("gait_generator", "--ros-args", "--params-file", str(tmp_path / "missing.yaml"))
+    assert process.wait(20.0) == 2
+    assert "missing.yaml" in process.output() and "Traceback" not in process.output()
+
+
+@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("delay", [0.0, 0.05, 0.5])
+def test_a_signal_ends_it_with_status_0_within_a_second(generator, sent, delay):
+    process = generator()
+    time.sleep(delay)  # the moment of the signal is what is tried here
+    began = time.monotonic()
+    assert process.interrupt(sent, timeout=10.0) == 0
+    assert time.monotonic() - began < 1.0
+    assert "Traceback" not in process.output()
+
+
+def test_a_second_signal_does_no_harm(generator):
+    process = generator()
+    process.process.send_signal(signal.SIGINT)
+    process.process.send_signal(signal.SIGTERM)
+    process.process.send_signal(signal.SIGINT)
+    assert process.wait(10.0) == 0
+    assert "Traceback" not in process.output()

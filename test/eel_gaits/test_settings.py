@@ -1,0 +1,61 @@
+"""What the user has set: carry-over between gaits, and refusals that change nothing."""
+
+import pytest
+from eel_gaits.settings import Settings
+
+from eel_gaits import falling, gait, turning
+
+
+def test_starts_with_the_falling_gait():
+    assert Settings.start({}).law() == falling()
+
+
+def test_overrides_of_other_gaits_and_other_nodes_wait_or_are_left_aside():
+    start = Settings.start({"gait": "falling", "period": 2, "yaw_bend": 0.25, "rate": 100, "scene.planar": True})
+    assert start.law() == falling(period=2.0)
+    assert start.changed({"gait": "turning"}).law() == turning(period=2.0, yaw_bend=0.25)
+
+
+def test_what_the_user_set_carries_over_and_defaults_do_not():
+    settings = Settings().changed({"period": 2, "bend_start": 0.5, "transition": 3})
+    turned = settings.changed({"gait": "turning"})
+    assert turned.law() == turning(period=2.0, bend_start=0.5, transition=3.0)
+    rolled = turned.changed({"gait": "rolling"})
+    assert rolled.law() == gait("rolling", period=2.0, transition=3.0)
+    assert rolled.changed({"gait": "kern_efficient"}).law().terms == gait("kern_efficient", period=2.0).terms
+    assert rolled.changed({"gait": "falling"}).law() == settings.law()
+
+
+def test_a_gait_and_its_numbers_together():
+    assert Settings().changed({"gait": "turning", "yaw_bend": -1, "period": 3}).law() == turning(
+        yaw_bend=-1.0, period=3.0
+    )
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"gait": "swim"}, "unknown gait 'swim'"),
+        ({"gait": None}, "unknown gait None"),
+        ({"yaw_bend": 1.0}, "gait 'falling' has no parameter 'yaw_bend', it has: transition, period"),
+        ({"gait": "turning", "pitch_bend": 1.0}, "gait 'turning' has no parameter 'pitch_bend'"),
+        ({"period": 0.0}, "period must be >= 0.001 s, got 0.0"),
+        ({"period": True}, "period must be a number, got True"),
+        ({"period": None}, "period must be a number, got None"),
+        ({"period": 2.0, "bend_start": 2.0}, "bend_full must be > bend_start (2 s), got 2.0"),
+        ({"transition": -1.0}, "transition must be >= 0 s, got -1.0"),
+    ],
+)
+def test_refuses_and_stays_as_it_was(changes, message):
+    settings = Settings(chosen={"wavelength": 0.8})
+    with pytest.raises(ValueError) as caught:
+        settings.changed(changes)
+    assert message in str(caught.value)
+    assert settings.law() == falling(wavelength=0.8)
+
+
+def test_a_number_that_does_not_suit_the_new_gait_is_named():
+    settings = Settings().changed({"bend_start": 4.0, "bend_full": 5.0, "bend_end": 6.0})
+    assert settings.changed({"gait": "turning"}).law() == turning(bend_start=4.0, bend_full=5.0)
+    with pytest.raises(ValueError, match="bend_end must be > bend_full"):
+        Settings(gait="turning").changed({"bend_full": 3.5}).changed({"gait": "falling"})
