@@ -33,13 +33,12 @@ def fresh_domain(monkeypatch):
     domain.claim.close()
 
 
-@pytest.fixture
-def start(tmp_path):
-    """start(executable, *arguments) -> NodeProcess; all of them are gone when the test ends."""
+def starter(folder):
+    """Yields start(executable, *arguments) -> NodeProcess, and ends what was started; output goes to files in `folder`."""
     started: list[NodeProcess] = []
 
     def start_node(executable: str, *arguments: str) -> NodeProcess:
-        log = tmp_path / f"{executable}-{len(started)}.txt"
+        log = folder / f"{Path(executable).name}-{len(started)}.txt"
         node = NodeProcess(executable, *arguments, environment=dict(os.environ), log=log)
         started.append(node)
         return node
@@ -47,3 +46,20 @@ def start(tmp_path):
     yield start_node
     for node in reversed(started):
         node.end()
+
+
+@pytest.fixture
+def start(tmp_path):
+    """start(executable, *arguments) -> NodeProcess; all of them are gone when the test ends."""
+    yield from starter(tmp_path)
+
+
+@pytest.fixture(scope="module")
+def start_for_module(tmp_path_factory):
+    """As `start`, for the tests of one module together; in a domain of its own."""
+    before = os.environ["ROS_DOMAIN_ID"]
+    domain = reserve_domain()
+    os.environ["ROS_DOMAIN_ID"] = str(domain.number)
+    yield from starter(tmp_path_factory.mktemp("nodes"))
+    domain.claim.close()
+    os.environ["ROS_DOMAIN_ID"] = before

@@ -70,7 +70,6 @@ link_executables() {
 }
 
 compile_kernels() {
-    [ -f src/eel_dynamics/eel_dynamics/simulation.py ] || return 0
     local key
     # numba's cache does not see that a function called from another file has changed: start afresh when any source has.
     key="$(find src/eel_gaits src/eel_dynamics -name '*.py' -print0 | sort -z | xargs -0 sha256sum | key_of "$(cat install/stamp)")"

@@ -29,6 +29,7 @@ def main() -> None:
     for path in (prefix / "share/ament_index/resource_index/parent_prefix_path").iterdir():
         path.write_text(BUILDER_PREFIX.sub(str(prefix), path.read_text()))
     (prefix / "COLCON_IGNORE").touch()
+    (prefix / "local_setup.sh").touch()  # colcon takes a prefix without one for a mistake, and says so
     print(f"paths set right in {changed} CMake files")
 
 
