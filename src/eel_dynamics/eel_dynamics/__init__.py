@@ -2,7 +2,22 @@
 
 from .accuracy import Accuracy
 from .body import Body
+from .energy import EnergyLedger
+from .prescribed import HydrodynamicWrench, hydrodynamic_wrench
+from .run import Run, simulate
 from .scene import Scene
-from .simulation import Simulation, SimulationStopped
+from .simulation import Simulation, SimulationStopped, Snapshot
 
-__all__ = ["Accuracy", "Body", "Scene", "Simulation", "SimulationStopped"]
+__all__ = [
+    "Accuracy",
+    "Body",
+    "EnergyLedger",
+    "HydrodynamicWrench",
+    "Run",
+    "Scene",
+    "Simulation",
+    "SimulationStopped",
+    "Snapshot",
+    "hydrodynamic_wrench",
+    "simulate",
+]

@@ -207,7 +207,7 @@ def interpolate(method, step, theta, y):
 
 
 @njit(**OPTIONS)
-def works_upto(step, theta, weights, work):
+def works_upto(step, theta, series, work):
     """Works (4,) [J] at the fraction `theta` of the step: the integral of the cubic through the powers at Lobatto's points."""
     for k in range(WORKS):
         work[k] = step.work[k]
@@ -215,8 +215,22 @@ def works_upto(step, theta, weights, work):
     for j in range(4):
         for i in range(4):
             for k in range(WORKS):
-                work[k] += step.time[1] * power / (j + 1.0) * weights[j, i] * step.power[i, k]
+                work[k] += step.time[1] * power / (j + 1.0) * series[j, i] * step.power[i, k]
         power *= theta
+
+
+@njit(**OPTIONS)
+def state_at(method, series, step, time, y, work):
+    """State `y` (13,) and works (4,) at `time` [s] within the step."""
+    length = step.time[1]
+    if abs(step.time[0] + length - time) <= 1e-12 * max(1.0, abs(time)):
+        for k in range(STATE):
+            y[k] = step.end[k]
+        works_upto(step, 1.0, series, work)
+    else:
+        theta = min(1.0, max(0.0, (time - step.time[0]) / length))
+        interpolate(method, step, theta, y)
+        works_upto(step, theta, series, work)
 
 
 @njit(**OPTIONS)

@@ -9,7 +9,7 @@ import numpy as np
 from numba import njit
 
 from .drive import combine, combine_moments
-from .integrator import powers_of_state, rotate
+from .integrator import MARCHED, SINGULAR, WORKS, march, powers_of_state, rotate, state_at
 from .kernel import OPTIONS, axes_of, friction, turns
 from .wrench import kinetic_energies, section_wrench
 
@@ -276,3 +276,19 @@ def observe(swimmer, stations, drive, fields, balance, here, step, current, dist
         out.tail_force[sample, 0] = 0.0 if distributed else -energy
         out.nose_force[sample, 0] = balance.nose[0]
     return True
+
+
+@njit(**OPTIONS)
+def record(swimmer, stations, drive, fields, balance, here, step, current, distributed, method, control, breakpoints, lobatto, series, want_wrench, want_load, times, y, work, works, out):
+    """March through `times` (T,) [s], ascending, and fill one instant of `out` and of `works` (T, 4) at each; `y` (13,) and
+    `work` (4,) end as the last. Returns the number of instants filled, and a status."""
+    for sample in range(len(times)):
+        status = march(swimmer, drive, fields, balance, current, method, control, breakpoints, lobatto, series, step, times[sample])
+        if status != MARCHED:
+            return sample, status
+        state_at(method, series, step, times[sample], y, work)
+        for k in range(WORKS):
+            works[sample, k] = work[k]
+        if not observe(swimmer, stations, drive, fields, balance, here, step, current, distributed, want_wrench, want_load, times[sample], y, sample, out):
+            return sample, SINGULAR
+    return len(times), MARCHED

@@ -8,7 +8,7 @@ from eel_gaits.law import Law
 
 from .accuracy import Accuracy
 from .body import Body
-from .drive import Tabulation
+from .drive import Tabulation, combine, combine_moments, factors
 from .energy import EnergyLedger
 from .integrator import (
     LOBATTO,
@@ -16,19 +16,15 @@ from .integrator import (
     MARCHED,
     NOT_FINITE,
     SINGULAR,
-    STEP_TOO_SMALL,
     Control,
     classical,
     dormand_prince,
-    interpolate,
     march,
-    settle,
+    state_at,
     step_of,
-    works_upto,
 )
 from .kernel import configure, fields_of, momentum_of_twist
-from .drive import combine, combine_moments, factors
-from .profiles import observe, profiles_of, station_fields_of
+from .profiles import Profiles, observe, profiles_of, record, station_fields_of
 from .quadrature import Grid
 from .scene import Scene
 from .sections import panels_of, stations_of, swimmer_of
@@ -98,7 +94,7 @@ class Simulation:
         self.scene = Scene() if scene is None else _instance("scene", scene, Scene)
         self.accuracy = Accuracy.of(accuracy)
         self.x = _stations(stations, self.body.length)
-        self._start = _row("position", position, 3), _unit("orientation", orientation), _row("twist", twist, 6)
+        self._start = row("position", position, 3), _unit("orientation", orientation), row("twist", twist, 6)
         if self.scene.planar:
             _check_planar(*self._start)
         if not (np.isfinite(default_transition) and default_transition > 0.0):
@@ -112,11 +108,11 @@ class Simulation:
     def _build(self):
         grid = Grid.of(panels_of(self.body, self.accuracy.resolution))
         self._grid = grid
-        self._swimmer = swimmer_of(self.body, self.scene, grid)
+        self.swimmer = swimmer_of(self.body, self.scene, grid)
         self._stations = stations_of(self.body, self.scene, grid, self.x)
         base = np.where(self._stations.node >= 0, grid.x[self._stations.node], 0.0)
         self._tabulation = Tabulation(grid.x, grid.previous, self.x, base)
-        self._balance = balance_of(len(grid.x))
+        self.balance = balance_of(len(grid.x))
         self._here = station_fields_of(len(self.x))
         self._out = profiles_of(1, len(self.x))
         self._current = np.array(self.scene.current)
@@ -168,13 +164,13 @@ class Simulation:
         Natural cubic splines in X; between instants the quintic that meets value, rate and acceleration at both. It takes
         over as soon as two instants bracket the present. `ValueError` names what does not fit.
         """
-        x = _row("curvature samples x", x, None)
+        x = row("curvature samples x", x, None)
         if len(x) < 2 or np.any(np.diff(x) <= 0.0):
             raise ValueError(f"curvature samples x must rise over 2 points or more, got {len(x)} points")
         if x[0] < -1e-9 * self.body.length or x[-1] > self.body.length * (1.0 + 1e-9):
             raise ValueError(f"curvature samples x must lie within 0 to {self.body.length} m, got {x[0]} to {x[-1]}")
         names = "pitch", "pitch_rate", "pitch_accel", "yaw", "yaw_rate", "yaw_accel"
-        values = [_row(f"curvature samples {name}", row, len(x)) for name, row in zip(names, (pitch, pitch_rate, pitch_accel, yaw, yaw_rate, yaw_accel))]
+        values = [row(f"curvature samples {name}", row, len(x)) for name, row in zip(names, (pitch, pitch_rate, pitch_accel, yaw, yaw_rate, yaw_accel))]
         if self.scene.planar and any(np.any(row) for row in values[:3]):
             raise ValueError("curvature samples pitch must be 0 in a planar scene")
         if not np.isfinite(time) or time <= self.time:
@@ -192,7 +188,7 @@ class Simulation:
             raise ValueError(f"time must be finite and >= the present {self.time} s, got {time!r}")
         while True:
             self.shape.pass_event(self.time)
-            if self.shape.drive is not self._drive:
+            if self.shape.drive is not self.drive:
                 self._restart()
             event = self.shape.next_event(self.time)
             self._march_to(min(time, event))
@@ -201,35 +197,15 @@ class Simulation:
         if self.shape.sampled and time == event:
             return
         self.shape.end_blend(self.time)
-        if self.shape.drive is not self._drive:
+        if self.shape.drive is not self.drive:
             self._use_drive()
 
     def _march_to(self, time: float):
-        step = self._step
-        status = march(
-            self._swimmer,
-            self._drive,
-            self._fields,
-            self._balance,
-            self._current,
-            self._method,
-            self._control,
-            self._breakpoints,
-            LOBATTO,
-            LOBATTO_SERIES,
-            step,
-            time,
-        )
+        status = march(*self._loops, self._current, *self._marching, self._step, time)
         if status != MARCHED:
             self._restart()
             raise self._stopped(status)
-        theta = 1.0 if step.time[1] == 0.0 else min(1.0, max(0.0, (time - step.time[0]) / step.time[1]))
-        if step.time[1] == 0.0 or abs(step.time[0] + step.time[1] - time) <= 1e-12 * max(1.0, abs(time)):
-            self._y[:] = step.end
-            theta = 1.0
-        else:
-            interpolate(self._method, step, theta, self._y)
-        works_upto(step, theta, LOBATTO_SERIES, self._work)
+        state_at(self._method, LOBATTO_SERIES, self._step, time, self._y, self._work)
         self.time = time
 
     def _stopped(self, status: int) -> SimulationStopped:
@@ -264,32 +240,27 @@ class Simulation:
             resistive_force=out.resistive_force[0] if load else None,
             tail_force=out.tail_force[0] if load else None,
             nose_force=out.nose_force[0] if load else None,
-            energy=EnergyLedger.of(out.kinetic[0], out.powers[0], self._work.copy(), self._kinetic_at_start) if ledger else None,
+            energy=EnergyLedger.of(out.kinetic[0], out.powers[0], self._work.copy(), self.kinetic_at_start) if ledger else None,
             closure_torque=float(out.closure[0, 0]) if wrench else None,
             closure_force=float(out.closure[0, 1]) if wrench else None,
             actuator_work=float(self._work[0]) if ledger else None,
         )
 
     def _observe_into(self, out, sample: int, wrench: bool, load: bool):
-        good = observe(
-            self._swimmer,
-            self._stations,
-            self._drive,
-            self._fields,
-            self._balance,
-            self._here,
-            self._step,
-            self._current,
-            self._distributed,
-            wrench,
-            load,
-            self.time,
-            self._y,
-            sample,
-            out,
-        )
-        if not good:
+        swimmer, *loops = self._loops
+        if not observe(swimmer, self._stations, *loops, *self._observing, wrench, load, self.time, self._y, sample, out):
             raise self._stopped(SINGULAR)
+
+    def record(self, times: np.ndarray, wrench: bool, load: bool) -> tuple[Profiles, np.ndarray, int, SimulationStopped | None]:
+        """March through `times` (T,) [s] under the law in force, observing each: the profiles, the works (T, 4) [J] of
+        actuators, wake, nose and drag, how many instants were reached, and what stopped it, if anything did."""
+        out, works = profiles_of(len(times), len(self.x), wrench, load), np.zeros((len(times), 4))
+        swimmer, *loops = self._loops
+        done, status = record(
+            swimmer, self._stations, *loops, *self._observing, *self._marching, wrench, load, times, self._y, self._work, works, out
+        )
+        self.time = float(times[done - 1]) if done else self.time
+        return out, works, done, None if status == MARCHED else self._stopped(status)
 
     @property
     def evaluations(self) -> tuple[int, int, int]:
@@ -318,13 +289,13 @@ class Simulation:
         trial.observe()
 
     def _use_drive(self):
-        self._drive = self.shape.drive
-        self._fields = fields_of(len(self._grid.x), len(self._drive.axis))
+        self.drive = self.shape.drive
+        self.fields = fields_of(len(self._grid.x), len(self.drive.axis))
         self._breakpoints = self.shape.breakpoints()
         scale = min(self.shape.time_scale, self._motion_scale)
         smallest = 1e-9 * min(scale, 1.0)
         longest = LONGEST_STEP * min(scale, 10.0)
-        mass = float(np.sum(self._swimmer.weight * self._swimmer.mass))
+        mass = float(np.sum(self.swimmer.weight * self.swimmer.mass))
         self._control = Control(
             tolerance=self.accuracy.tolerance,
             step=longest if self.accuracy.step is None else float(self.accuracy.step),
@@ -333,6 +304,18 @@ class Simulation:
             momentum_floor=SLOWEST * mass * self.body.length / min(scale, 10.0),
             ledger=bool(self.scene.ledger),
         )
+
+    @property
+    def _loops(self):
+        return self.swimmer, self.drive, self.fields, self.balance
+
+    @property
+    def _marching(self):
+        return self._method, self._control, self._breakpoints, LOBATTO, LOBATTO_SERIES
+
+    @property
+    def _observing(self):
+        return self._here, self._step, self._current, self._distributed
 
     def _restart(self):
         """Let the next step begin at the present state, with what drives the body now."""
@@ -351,14 +334,14 @@ class Simulation:
         self._y[:3], self._y[3:7] = position, orientation
         self._motion_scale = np.inf
         self._use_drive()
-        fields, drive, momentum = self._fields, self._drive, np.zeros(6)
+        fields, drive, momentum = self.fields, self.drive, np.zeros(6)
         relative = twist.copy()
         relative[3:] -= _matrix(orientation).T @ self._current
         factors(drive, self.time, fields.factor)
         combine_moments(drive.axis, drive.bend, fields.factor[0], fields.bend)
         combine(drive.axis, drive.node, fields.factor[1], fields.rate)
-        configure(self._swimmer, fields)
-        momentum_of_twist(self._swimmer, fields, relative, momentum)
+        configure(self.swimmer, fields)
+        momentum_of_twist(self.swimmer, fields, relative, momentum)
         world = _matrix(orientation)
         self._y[7:10], self._y[10:13] = world @ momentum[:3], world @ momentum[3:]
         speed, spin = np.linalg.norm(relative[3:]), np.linalg.norm(relative[:3])
@@ -367,7 +350,7 @@ class Simulation:
         self._step.scale[:] = np.linalg.norm(momentum[:3]), np.linalg.norm(momentum[3:])
         self._restart()
         self._observe_into(self._out, 0, False, False)
-        self._kinetic_at_start = float(self._out.kinetic[0].sum())
+        self.kinetic_at_start = float(self._out.kinetic[0].sum())
 
 
 def _matrix(quaternion) -> np.ndarray:
@@ -387,7 +370,7 @@ def _instance(name: str, value, kind: type):
     return value
 
 
-def _row(name: str, values, size: int | None) -> np.ndarray:
+def row(name: str, values, size: int | None) -> np.ndarray:
     try:
         array = np.array(values, dtype=float)
     except (TypeError, ValueError):
@@ -400,7 +383,7 @@ def _row(name: str, values, size: int | None) -> np.ndarray:
 
 
 def _unit(name: str, quaternion) -> np.ndarray:
-    array = _row(name, quaternion, 4)
+    array = row(name, quaternion, 4)
     size = np.linalg.norm(array)
     if abs(size - 1.0) > 1e-6:
         raise ValueError(f"{name} must be a unit quaternion (x, y, z, w), got norm {size:.6g}")
@@ -412,7 +395,7 @@ def _stations(stations, length: float) -> np.ndarray:
         if not 2 <= stations <= 100_000:
             raise ValueError(f"stations must be 2 or more, or their X in m, got {stations!r}")
         return np.linspace(0.0, length, int(stations))
-    x = _row("stations", stations, None)
+    x = row("stations", stations, None)
     if len(x) < 1 or np.any(np.diff(x) <= 0.0) or x[0] < 0.0 or x[-1] > length * (1 + 1e-12):
         raise ValueError(f"stations must rise within 0 to {length} m, got {stations!r}")
     return np.minimum(x, length)

@@ -1,0 +1,173 @@
+"""A whole run of a law: `simulate`, and what it returns."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from eel_gaits.law import Law
+
+from .accuracy import Accuracy
+from .body import Body
+from .energy import EnergyLedger
+from .scene import Scene
+from .simulation import Simulation, SimulationStopped
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """T samples at M stations. Library axes (the body lies along +x from the head and swims towards -x), SI units."""
+
+    law: Law
+    body: Body
+    scene: Scene
+    accuracy: Accuracy
+    time: np.ndarray  # (T,) s
+    position: np.ndarray  # (T, 3) m, head, world
+    orientation: np.ndarray  # (T, 4) x y z w, world from head
+    twist: np.ndarray  # (T, 6) (Omega, V) rad/s, m/s, head's axes
+    head_acceleration: np.ndarray  # (T, 6) angular and true acceleration of the head, rad/s^2, m/s^2, head's axes
+    center_of_mass: np.ndarray  # (T, 3) m, world
+    x: np.ndarray  # (M,) m, where the profiles are given
+    backbone: np.ndarray  # (T, M, 3) m, world
+    section_orientation: np.ndarray  # (T, M, 4) x y z w, world from section
+    curvature: np.ndarray  # (T, M, 3) rad/m
+    curvature_rate: np.ndarray  # (T, M, 3) rad/m/s
+    torque: np.ndarray | None  # (T, M, 3) N m, section axes: of the part behind a section on the part ahead
+    force: np.ndarray | None  # (T, M, 3) N, section axes; force[..., 0] > 0 is tension
+    fluid_force: np.ndarray | None  # (T, M, 3) N/m, of the water on the body, section axes
+    resistive_force: np.ndarray | None  # (T, M, 3) N/m, its resistive part
+    tail_force: np.ndarray | None  # (T, 3) N, section axes at the tail
+    nose_force: np.ndarray | None  # (T, 3) N, section axes at the nose
+    energy: EnergyLedger | None  # one (T,) array per field
+    closure_torque: np.ndarray | None  # (T,) N m, what is left of the internal torque at the nose
+    closure_force: np.ndarray | None  # (T,) N, what is left of the internal force there, less the load on the nose
+    steps: int  # accepted steps in time
+    evaluations: int  # of the head's dynamics, for the motion alone
+
+    @property
+    def twist_rate(self) -> np.ndarray:
+        """(T, 6) (Omegadot, Vdot): rate of the components of the twist, rad/s^2, m/s^2, head's axes."""
+        rate = self.head_acceleration.copy()
+        rate[:, 3:] -= np.cross(self.twist[:, :3], self.twist[:, 3:])
+        return rate
+
+    @property
+    def path_length(self) -> float:
+        """Length [m] of the head's path through the samples."""
+        return float(np.sum(np.linalg.norm(np.diff(self.position, axis=0), axis=1)))
+
+    @property
+    def mean_speed(self) -> float:
+        """Distance of the centre of mass between the first and the last sample by the time [m/s]; 0 for one sample."""
+        duration = self.time[-1] - self.time[0]
+        return float(np.linalg.norm(self.center_of_mass[-1] - self.center_of_mass[0]) / duration) if duration else 0.0
+
+    def greatest_torque(self) -> tuple[float, float, float]:
+        """Greatest magnitude [N m] of the internal torque over the run, with its X [m] and its time [s]."""
+        if self.torque is None:
+            raise ValueError("greatest_torque needs a run with scene internal_wrench on")
+        size = np.linalg.norm(self.torque, axis=2)
+        sample, station = np.unravel_index(np.argmax(size), size.shape)
+        return float(size[sample, station]), float(self.x[station]), float(self.time[sample])
+
+    def summary(self) -> str:
+        """The run in a few lines, each number with its unit."""
+        row = lambda values: "(" + ", ".join(f"{value:+.4f}" for value in values) + ")"  # noqa: E731
+        lines = [
+            f"{self.law.name}: {self.body.name}, {self.body.length:g} m, {self.body_mass:.4g} kg, {self.time[-1]:g} s, accuracy {self.accuracy.name}",
+            f"final position      {row(self.position[-1])} m",
+            f"final orientation   {row(self.orientation[-1])} x y z w",
+            f"head's path         {self.path_length:.4f} m",
+            f"mean speed          {self.mean_speed:.4f} m/s, centre of mass, start to end",
+        ]
+        if self.torque is not None:
+            size, x, time = self.greatest_torque()
+            lines.append(f"greatest torque     {size:.4g} N m at X = {x:.3f} m, t = {time:.3f} s")
+            lines.append(f"closure at the nose {np.max(self.closure_torque):.1e} N m, {np.max(self.closure_force):.1e} N")
+        if self.energy is not None:
+            e = self.energy
+            kinetic = e.kinetic_body[-1] + e.kinetic_fluid[-1] - e.kinetic_body[0] - e.kinetic_fluid[0]
+            lines.append(
+                f"energy [J]          actuators {e.actuator_work[-1]:+.4g}, wake {e.wake_work[-1]:+.4g}, nose {e.nose_work[-1]:+.4g}, "
+                f"drag {e.drag_work[-1]:+.4g}, kinetic {kinetic:+.4g}, residual {e.residual[-1]:+.1e}"
+            )
+        lines.append(f"cost                {self.steps} steps, {self.evaluations} evaluations of the head's dynamics")
+        return "\n".join(lines)
+
+    @property
+    def body_mass(self) -> float:
+        """Mass of the body in this scene [kg]."""
+        return self.body.volume * (self.body.density if self.scene.density is None else self.scene.density)
+
+
+def simulate(
+    law: Law,
+    duration: float = 10.0,
+    *,
+    body: Body | None = None,
+    scene: Scene | None = None,
+    accuracy: "str | float | Accuracy" = "standard",
+    sample_period: float = 0.05,
+    stations=51,
+    position=(0.0, 0.0, 0.0),
+    orientation=(0.0, 0.0, 0.0, 1.0),
+    twist=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+    load: bool = False,
+) -> Run:
+    """Swim `law` for `duration` [s] and sample every `sample_period` [s], from t = 0 on.
+
+    stations: number of equidistant stations, or their X (M,) [m]. position [m], orientation (x y z w), twist ((Omega, V) in
+    the head's axes): the head's initial state. load: the water's load along the body too. The steps in time do not depend on
+    the sampling. `ValueError` names what does not fit; `SimulationStopped` carries the samples so far as `run`.
+    """
+    if not (np.isfinite(duration) and duration >= 0.0):
+        raise ValueError(f"duration must be finite and >= 0 s, got {duration!r}")
+    if not (np.isfinite(sample_period) and sample_period > 0.0):
+        raise ValueError(f"sample_period must be finite and > 0 s, got {sample_period!r}")
+    swimmer = Simulation(body=body, scene=scene, accuracy=accuracy, stations=stations, position=position, orientation=orientation, twist=twist)
+    swimmer.adopt(law)
+    times = np.arange(int(np.floor(duration / sample_period + 1e-9)) + 1) * float(sample_period)
+    wrench = swimmer.scene.internal_wrench
+    out, works, done, stopped = swimmer.record(times, wrench, bool(load))
+    run = _run_of(swimmer, law, times[:done], out, works[:done], wrench, load)
+    if stopped is not None:
+        stopped.run = run
+        raise stopped
+    return run
+
+
+def _run_of(swimmer: Simulation, law: Law, times, out, works, wrench: bool, load: bool) -> Run:
+    done = len(times)
+    energy = EnergyLedger.of(out.kinetic[:done], out.powers[:done], works, swimmer.kinetic_at_start) if swimmer.scene.ledger else None
+    steps, _, evaluations = swimmer.evaluations
+    return Run(
+        law=law,
+        body=swimmer.body,
+        scene=swimmer.scene,
+        accuracy=swimmer.accuracy,
+        time=times,
+        position=out.position[:done],
+        orientation=out.orientation[:done],
+        twist=out.twist[:done],
+        head_acceleration=out.head_acceleration[:done],
+        center_of_mass=out.center_of_mass[:done],
+        x=swimmer.x,
+        backbone=out.backbone[:done],
+        section_orientation=out.section_orientation[:done],
+        curvature=out.curvature[:done],
+        curvature_rate=out.curvature_rate[:done],
+        torque=out.torque[:done] if wrench else None,
+        force=out.force[:done] if wrench else None,
+        fluid_force=out.fluid_force[:done] if load else None,
+        resistive_force=out.resistive_force[:done] if load else None,
+        tail_force=out.tail_force[:done] if load else None,
+        nose_force=out.nose_force[:done] if load else None,
+        energy=energy,
+        closure_torque=out.closure[:done, 0] if wrench else None,
+        closure_force=out.closure[:done, 1] if wrench else None,
+        steps=steps,
+        evaluations=evaluations,
+    )
+
+
+__all__ = ["Run", "SimulationStopped", "simulate"]
