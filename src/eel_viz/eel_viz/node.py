@@ -4,26 +4,22 @@ It only listens. Subscriptions are reliable and keep all, so that a run without 
 the messages. It runs until SIGINT or SIGTERM, or with `stop_with_publisher` until the swimmer has gone.
 """
 
-import signal
 import sys
 import time
 from collections import Counter
 from dataclasses import fields
 
-import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from eel_msgs.msg import Backbone, BodyGeometry, Curvature, CurvatureLaw, EnergyLedger, HydrodynamicLoad, InternalWrench
 from geometry_msgs.msg import PoseStamped, TwistStamped
 from nav_msgs.msg import Odometry
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
-from rclpy.exceptions import NameValidationException, ParameterException
-from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
-from rclpy.signals import SignalHandlerOptions
 
 from eel_viz import messages
+from eel_viz.lifetime import live
 from eel_viz.messages import BadMessage, stamp_of
+from eel_viz.quality import keep_all
 from eel_viz.runs import Runs
 from eel_viz.settings import Settings, limits
 from eel_viz.sinks import destinations
@@ -31,9 +27,6 @@ from eel_viz.sinks import destinations
 NAME = "visualiser"
 DEFAULTS = ["--ros-args", "-p", "use_sim_time:=true", "--"]  # what the user says comes after, and wins
 GONE = 1.0  # s without publishers and messages, after which `stop_with_publisher` ends the node
-EVERY = QoSProfile(history=HistoryPolicy.KEEP_ALL, depth=1, reliability=ReliabilityPolicy.RELIABLE)
-LATCHED = QoSProfile(depth=10, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-VOLATILE = QoSProfile(depth=10, reliability=ReliabilityPolicy.RELIABLE)
 
 
 class Visualiser(Node):
@@ -42,11 +35,10 @@ class Visualiser(Node):
     def __init__(self):
         super().__init__(NAME)
         self.settings = declare_settings(self)
-        log = self.get_logger()
         self._runs = Runs(
-            destinations(self.settings, lambda text: log.info(text), lambda text: log.warning(text)),
+            destinations(self.settings, self._say, self._warn),
             name=self.get_namespace().strip("/") or "eel",
-            warn=lambda text: log.warning(text),
+            warn=self._warn,
             crowded=lambda topic: self.count_publishers(topic) > 1,
         )
         self.received = Counter()
@@ -62,9 +54,9 @@ class Visualiser(Node):
         self._listen("internal_wrench", InternalWrench, self._internal_wrench)
         self._listen("hydrodynamic_load", HydrodynamicLoad, self._hydrodynamic_load)
         self._listen("energy", EnergyLedger, self._energy)
-        self._listen("body", BodyGeometry, self._body, LATCHED)
-        self._listen("curvature_law", CurvatureLaw, self._law, LATCHED)
-        self._listen("curvature_law", CurvatureLaw, self._law, VOLATILE)
+        self._listen("body", BodyGeometry, self._body, keep_all(latched=True))
+        self._listen("curvature_law", CurvatureLaw, self._law, keep_all(latched=True))
+        self._listen("curvature_law", CurvatureLaw, self._law)
         self._listen("/diagnostics", DiagnosticArray, self._diagnostics)
 
     def attend(self) -> bool:
@@ -81,9 +73,15 @@ class Visualiser(Node):
         """Complete the recordings, and say what came."""
         self._runs.close()
         counts = ", ".join(f"{topic} {count}" for topic, count in self.received.items()) or "nothing"
-        self.get_logger().info(f"received: {counts}")
+        self._say(f"received: {counts}")
 
-    def _listen(self, topic, kind, show, quality=EVERY) -> None:
+    def _say(self, text: str) -> None:
+        self.get_logger().info(text)
+
+    def _warn(self, text: str) -> None:
+        self.get_logger().warning(text)
+
+    def _listen(self, topic, kind, show, quality=keep_all()) -> None:
         def receive(message):
             self.received[topic] += 1
             self._last_message = time.monotonic()
@@ -93,7 +91,7 @@ class Visualiser(Node):
             except BadMessage as problem:
                 if (topic, problem.field) not in self._complaints:
                     self._complaints.add((topic, problem.field))
-                    self.get_logger().warning(f"{topic}: {problem}: left out, and those like it")
+                    self._warn(f"{topic}: {problem}: left out, and those like it")
 
         self.create_subscription(kind, topic, receive, quality)
 
@@ -181,32 +179,10 @@ def _set_range(descriptor: ParameterDescriptor, item) -> None:
         descriptor.floating_point_range = [FloatingPointRange(from_value=low, to_value=1e9 if high is None else high)]
 
 
-def main(args=None) -> int:
+def main(arguments: list[str] | None = None) -> int:
     """Run the node; the exit status is 0 after SIGINT or SIGTERM, 2 if a parameter is refused at start."""
-    signals = []
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda received, _: signals.append(received))
-    try:
-        rclpy.init(args=DEFAULTS + (sys.argv if args is None else args), signal_handler_options=SignalHandlerOptions.NO)
-        node = Visualiser()
-    except (ValueError, RuntimeError, ParameterException, NameValidationException) as error:
-        sys.stderr.write(f"{NAME}: {' '.join(str(error).split())}\n")
-        rclpy.try_shutdown()
-        return 2
-    executor = SingleThreadedExecutor()
-    executor.add_node(node)
-    attended = time.monotonic()
-    while not signals:
-        executor.spin_once(timeout_sec=0.1)
-        if time.monotonic() - attended > 0.2:
-            attended = time.monotonic()
-            if not node.attend():
-                break
-    executor.shutdown()
-    node.close()
-    node.destroy_node()
-    rclpy.try_shutdown()
-    return 0
+    given = sys.argv if arguments is None else [NAME, *arguments]
+    return live(NAME, DEFAULTS + given, Visualiser, Visualiser.attend)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,79 @@
+"""What a message type is, as bags need it: the text of its definition with all that it contains, and its hash.
+
+Both are read from the files that every interface package installs (`share/PACKAGE/msg/TYPE.msg` and `.json`), so that
+they are those of the very types that are on the network.
+"""
+
+import importlib
+import json
+import pathlib
+import re
+
+from ament_index_python.packages import PackageNotFoundError, get_package_share_directory
+
+_SEPARATOR = "=" * 80
+_FIELD = re.compile(r"^\s*([A-Za-z][\w/]*)(?:<=\d+)?(?:\[[^\]]*\])?\s+[A-Za-z]\w*")
+_PRIMITIVES = {
+    "bool", "byte", "char", "string", "wstring", "float32", "float64", "int8", "uint8", "int16", "uint16", "int32", "uint32",
+    "int64", "uint64",
+}  # fmt: skip
+
+
+def message_class(name: str) -> type:
+    """The Python class of `name`, such as eel_msgs/msg/Backbone; ValueError if its package is not installed here."""
+    package, _, kind = name.partition("/msg/")
+    try:
+        return getattr(importlib.import_module(f"{package}.msg"), kind)
+    except (ImportError, AttributeError, ValueError) as error:
+        raise ValueError(f"message type {name!r} is not installed here") from error
+
+
+def definition(name: str) -> str:
+    """The text of `name` and, after separators, of all types in it, as rosbag2 stores it."""
+    texts = {name: _text(name)}
+    waiting = [name]
+    while waiting:
+        for inner in _inner_types(waiting[0], texts[waiting[0]]):
+            if inner not in texts:
+                texts[inner] = _text(inner)
+                waiting.append(inner)
+        waiting.pop(0)
+    first, *others = texts
+    parts = [texts[first]]
+    for other in others:
+        parts.append(f"{_SEPARATOR}\nMSG: {other.replace('/msg/', '/')}\n{texts[other]}")
+    return "".join(part if part.endswith("\n") else part + "\n" for part in parts)
+
+
+def type_hash(name: str) -> str:
+    """The hash of `name` (RIHS01_...), as end points announce it."""
+    described = json.loads(_file(name, "json").read_text(encoding="utf8"))
+    return next(entry["hash_string"] for entry in described["type_hashes"] if entry["type_name"] == name)
+
+
+def _inner_types(name: str, text: str) -> list[str]:
+    package = name.partition("/")[0]
+    found = []
+    for line in text.splitlines():
+        match = _FIELD.match(line)
+        if match is None or match[1] in _PRIMITIVES:
+            continue
+        kind = match[1]
+        if "/" not in kind:
+            kind = f"{'std_msgs' if kind == 'Header' else package}/msg/{kind}"
+        elif "/msg/" not in kind:
+            kind = kind.replace("/", "/msg/")
+        found.append(kind)
+    return found
+
+
+def _text(name: str) -> str:
+    return _file(name, "msg").read_text(encoding="utf8")
+
+
+def _file(name: str, suffix: str) -> pathlib.Path:
+    package, _, kind = name.partition("/msg/")
+    try:
+        return pathlib.Path(get_package_share_directory(package)) / "msg" / f"{kind}.{suffix}"
+    except (PackageNotFoundError, ValueError) as error:
+        raise ValueError(f"message type {name!r} is not installed here") from error

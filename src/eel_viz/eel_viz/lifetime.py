@@ -1,0 +1,49 @@
+"""How a ROS process of this package lives and ends: SIGINT and SIGTERM end it well, with status 0 and no traceback."""
+
+import signal
+import sys
+import time
+from collections.abc import Callable
+
+import rclpy
+from rclpy.exceptions import NameValidationException, ParameterException
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
+
+ATTEND = 0.1  # s between two calls of `attend`
+
+
+def live(name: str, arguments: list[str], make: Callable[[], Node], attend: Callable[[Node], bool]) -> int:
+    """Make the node, serve it until a signal comes or `attend(node)` says False, and call its `close()`, if it has one.
+
+    Returns the exit status: 0, or 2 with one line on stderr if `make` refuses its settings.
+    """
+    signals: list[int] = []
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda received, _: signals.append(received))
+    try:
+        rclpy.init(args=arguments, signal_handler_options=SignalHandlerOptions.NO)
+        node = make()
+    except (ValueError, RuntimeError, OSError, ParameterException, NameValidationException) as error:
+        sys.stderr.write(f"{name}: {' '.join(str(error).split())}\n")
+        rclpy.try_shutdown()
+        return 2
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    attended = 0.0
+    try:
+        while not signals:
+            now = time.monotonic()
+            if now - attended > ATTEND:
+                attended = now
+                if not attend(node):
+                    break
+            executor.spin_once(timeout_sec=ATTEND)
+    finally:
+        executor.shutdown()
+        if hasattr(node, "close"):
+            node.close()
+        node.destroy_node()
+        rclpy.try_shutdown()
+    return 0
