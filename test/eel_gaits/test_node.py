@@ -205,9 +205,11 @@ def test_a_signal_ends_it_with_status_0_within_a_second(generator, sent, delay):
     assert "Traceback" not in process.output()
 
 
-def test_a_second_signal_does_no_harm(generator):
+@pytest.mark.parametrize("delay", [0.0, 0.04, 0.08, 0.12])
+def test_a_second_signal_does_no_harm(generator, delay):
     process = generator()
     process.process.send_signal(signal.SIGINT)
+    time.sleep(delay)  # from the loop to the last moments of the interpreter
     process.process.send_signal(signal.SIGTERM)
     process.process.send_signal(signal.SIGINT)
     assert process.wait(10.0) == 0

@@ -27,9 +27,8 @@ def test_what_the_user_set_carries_over_and_defaults_do_not():
 
 
 def test_a_gait_and_its_numbers_together():
-    assert Settings().changed({"gait": "turning", "yaw_bend": -1, "period": 3}).law() == turning(
-        yaw_bend=-1.0, period=3.0
-    )
+    together = Settings().changed({"gait": "turning", "yaw_bend": -1, "period": 3})
+    assert together.law() == turning(yaw_bend=-1.0, period=3.0)
 
 
 @pytest.mark.parametrize(

@@ -130,6 +130,8 @@ def main(args=None):
     while not signals:
         executor.spin_once(timeout_sec=0.1)
         time.sleep(0.01)  # /clock may tick thousands of times a second: the newest tick is enough
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, signal.SIG_IGN)  # until the process is gone: a second one would spoil its exit status
     executor.shutdown()
     node.destroy_node()
     rclpy.try_shutdown()
