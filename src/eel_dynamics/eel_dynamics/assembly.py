@@ -1,0 +1,29 @@
+"""From the node's parameters, in ROS (REP-103) frames, to the simulation, in the library's."""
+
+from dataclasses import replace
+from pathlib import Path
+
+from .body import Body
+from .frames import turn_quaternion, turn_vector
+from .parameters import DynamicsParameters
+from .scene import Scene
+from .simulation import Simulation
+
+
+def simulation_of(parameters: DynamicsParameters, scene: Scene) -> Simulation:
+    """The simulation at its start; the scene's current is in the ROS world frame. `ValueError` says what does not fit."""
+    twist = (*parameters.initial_angular_velocity, *parameters.initial_linear_velocity)
+    return Simulation(
+        body=_body_of(parameters.body),
+        scene=replace(scene, current=tuple(turn_vector(scene.current).tolist())),
+        accuracy=parameters.accuracy,
+        stations=parameters.stations,
+        position=turn_vector(parameters.initial_position),
+        orientation=turn_quaternion(parameters.initial_orientation),
+        twist=turn_vector([twist[:3], twist[3:]]).ravel(),
+        default_transition=parameters.default_transition,
+    )
+
+
+def _body_of(name: str) -> Body:
+    return Body.from_file(name) if Path(name).suffix in (".csv", ".npz") else Body.named(name)

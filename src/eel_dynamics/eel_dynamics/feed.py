@@ -1,0 +1,58 @@
+"""What the swimmer is told to do: laws and samples of laws as they arrive, checked, each taken once.
+
+Laws come over two subscriptions (one that also hears what was published before it, one that hears any publisher), so that
+most arrive twice.
+"""
+
+from collections import deque
+
+from .report import ERROR
+
+FAR_AHEAD = 3600.0  # s: a stamp so far ahead of the simulation is wall time by mistake
+
+
+class LawFeed:
+    """Hears laws and samples, and hands them to `march` (methods time, take_law, take_samples).
+
+    law_of, samples_of: messages to a `Law`, to the arguments of `Simulation.add_samples`; ValueError says what is wrong.
+    """
+
+    def __init__(self, march, report, *, law_of, samples_of):
+        self._march, self._report = march, report
+        self._law_of, self._samples_of = law_of, samples_of
+        self._heard = deque(maxlen=256)
+
+    def hear_law(self, message, info: dict):
+        """Takes a law from the message `message`; `info` tells two deliveries of one message from two messages."""
+        delivery = (info.get("source_timestamp"), info.get("publication_sequence_number"))
+        if delivery[0] and delivery in self._heard:
+            return
+        self._heard.append(delivery)
+        try:
+            origin = self._checked_stamp(message.header.stamp)
+            law = self._law_of(message)
+        except ValueError as error:
+            self._report.event("law", f"law {message.name!r} refused: {error}", ERROR, differing=True)
+        else:
+            self._march.take_law(law, origin)
+
+    def hear_samples(self, message):
+        """Takes one instant of a law from a controller."""
+        try:
+            self._checked_stamp(message.header.stamp)
+            samples = self._samples_of(message)
+        except ValueError as error:
+            self._report.event("samples", f"curvature samples refused: {error}", ERROR)
+        else:
+            self._march.take_samples(samples)
+
+    def _checked_stamp(self, stamp) -> float:
+        time = stamp.sec + 1e-9 * stamp.nanosec
+        if stamp.sec < 0 or stamp.nanosec >= 1_000_000_000:
+            raise ValueError(f"header.stamp must be >= 0 s, with nanosec < 1e9, got sec {stamp.sec}, nanosec {stamp.nanosec}")
+        if time > self._march.time + FAR_AHEAD:
+            raise ValueError(
+                f"header.stamp must be simulation time, at most {FAR_AHEAD:g} s ahead of {self._march.time:g} s, got {time:.3f} s: "
+                "that looks like wall time, does its publisher use use_sim_time?"
+            )
+        return time

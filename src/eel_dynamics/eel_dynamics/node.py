@@ -1,0 +1,145 @@
+"""The dynamics node: declares its parameters, hears laws, has the simulation march, publishes, and tells how it goes.
+
+The march has a thread of its own (march.py), callbacks run in another, and the main thread waits for the end or a signal.
+"""
+
+import sys
+import traceback
+
+import rclpy
+from diagnostic_msgs.msg import DiagnosticArray
+from eel_gaits.messages import law_from_message
+from eel_msgs.msg import BodyGeometry, CurvatureLaw, CurvatureSamples
+from rclpy.clock import Clock, ClockType
+from rclpy.duration import Duration
+from rclpy.exceptions import NameValidationException, ParameterException
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.impl.implementation_singleton import rclpy_implementation
+from rclpy.logging import get_logger
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
+from rclpy.signals import SignalHandlerOptions
+from std_srvs.srv import SetBool, Trigger
+
+from .assembly import simulation_of
+from .clock_right import ClockWatch
+from .compilation import compile_apart, load
+from .declaration import Declaration
+from .ending import Ending, leave_at_once
+from .feed import LawFeed
+from .march import March
+from .messages import Sample, body_message, diagnostic_array, samples_from_message
+from .publishers import Publishers
+from .report import Report
+from .status import Status
+
+LATCHED = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+LIVE = QoSProfile(depth=100)
+LOSSLESS = QoSProfile(history=HistoryPolicy.KEEP_ALL)  # reliable, as the others are
+PROMPT = 1.0  # s: a service has answered by then
+FAREWELL = 5.0  # s: longest wait for acknowledgements at the end of a run
+HASTE = 0.3  # s: likewise after a signal
+
+
+class DynamicsNode(Node):
+    """Topics, services and parameters of a run."""
+
+    def __init__(self):
+        super().__init__("dynamics")
+        report = Report(self.get_logger())
+        self.parameters = Declaration(self, lambda values: self.march.change(values))
+        values, scene = self.parameters.values, self.parameters.scene
+        simulation = simulation_of(values, scene)
+        self.outlets = Publishers(
+            Sample(simulation.x, scene, values.world_frame, values.head_frame),
+            create=lambda kind, topic, lossless: self.create_publisher(kind, topic, LOSSLESS if lossless else LIVE),
+            destroy=self.destroy_publisher,
+            refusal=rclpy_implementation.RCLError,
+            values=lambda: self.parameters.values,
+            stopped=lambda: self.march.stopped,
+            report=report,
+        )
+        self.march = March(simulation, values, self.outlets, report)
+        self.status = Status(self.march, report, values.accuracy)
+        self._diagnostics = self.create_publisher(DiagnosticArray, "/diagnostics", 10)
+        self._body = self.create_publisher(BodyGeometry, "body", LATCHED)
+        self._body.publish(body_message(simulation.body, scene, simulation.x, values.head_frame))
+
+        feed = LawFeed(self.march, report, law_of=law_from_message, samples_of=samples_from_message)
+        for quality in (LATCHED, QoSProfile(depth=10)):  # the first hears earlier laws too, the second any publisher
+            self.create_subscription(CurvatureLaw, "curvature_law", lambda message, info: feed.hear_law(message, info), quality)
+        self.create_subscription(CurvatureSamples, "curvature_samples", feed.hear_samples, LOSSLESS)
+        self.create_service(Trigger, "~/reset", self._reset)
+        self.create_service(SetBool, "~/pause", self._pause)
+        clock = ClockWatch(self, lambda offered: self.march.order(lambda: self.outlets.offer_clock(offered)), report)
+        clock.look(values.clock)
+        steady = Clock(clock_type=ClockType.STEADY_TIME)
+        self.create_timer(0.25, lambda: clock.look(self.parameters.values.clock), clock=steady)
+        self.create_timer(1.0, self.tell, clock=steady)
+
+    def tell(self, final: bool = False):
+        """Publishes /diagnostics."""
+        level, text, values = self.status.collect(self.count_publishers("curvature_law"), final)
+        name = self.get_fully_qualified_name()
+        self._diagnostics.publish(diagnostic_array(self.march.time, name, level, text, values))
+
+    def wait_for_acknowledgements(self, seconds: float):
+        """Waits until subscribers have received everything, at most so long."""
+        mine = [self._diagnostics, self._body]
+        if not self.outlets.wait_for_acknowledgements(mine, lambda publisher, wait: publisher.wait_for_all_acked(Duration(seconds=wait)), seconds):
+            self.get_logger().warning(f"some subscriber has not received everything within {seconds:g} s")
+
+    def _reset(self, request, response):
+        done = self.march.reset().wait(PROMPT)
+        response.success, response.message = True, "at t = 0 s" if done else "to be done after the present sample"
+        return response
+
+    def _pause(self, request, response):
+        done = self.march.pause(request.data).wait(PROMPT)
+        state = "paused" if request.data else "going on"
+        response.success, response.message = True, f"{state} at t = {self.march.time:g} s" if done else "to be done after the present sample"
+        return response
+
+
+def main(args=None) -> int:
+    """Runs the node; status 0 after its duration, SIGINT or SIGTERM, 2 if it cannot start as asked, 1 if it fails."""
+    ending = Ending()
+    try:
+        rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
+        if not load() and not compiled(ending):
+            return 0
+        node = DynamicsNode()
+    except (ValueError, RuntimeError, ParameterException, NameValidationException) as error:
+        sys.stderr.write(f"dynamics: {' '.join(str(error).split())}\n")
+        rclpy.try_shutdown()
+        return 2
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    ending.start(node.march.run)
+    ending.start(lambda: spin(executor, ending))
+    done, error = ending.wait()
+    node.march.stop()
+    if error is not None:
+        node.get_logger().fatal("".join(traceback.format_exception(error)))
+    node.tell(final=True)
+    node.wait_for_acknowledgements(FAREWELL if done else HASTE)
+    ending.over = True
+    executor.wake()
+    if not ending.join(HASTE):
+        leave_at_once(int(error is not None))
+    executor.shutdown()
+    node.destroy_node()
+    rclpy.try_shutdown()
+    return int(error is not None)
+
+
+def compiled(ending) -> bool:
+    """Fills the cache of compiled loops; False where a signal came in between."""
+    get_logger("dynamics").info("compiling the physics, which takes up to a minute and is kept for the next start")
+    return compile_apart(ending.comes_within)
+
+
+def spin(executor, ending):
+    """Serves callbacks until the process ends."""
+    while not ending.over:
+        executor.spin_once(timeout_sec=HASTE)

@@ -1,0 +1,43 @@
+"""When each sample is due on the steady clock.
+
+Sample k is due at start + (k - first) * period / factor. A run that falls behind by more than a few periods gives the lost
+time up rather than hurry after it: it keeps its accuracy, not its pace.
+"""
+
+import math
+
+FEW_PERIODS = 5
+SHORTEST_DELAY = 0.02  # s: below this the operating system's scheduling is heard, not the run
+
+
+class Pace:
+    """Due times of samples `period` [simulated s] apart at `factor` simulated seconds per second; 0: due at once."""
+
+    def __init__(self, period: float, factor: float):
+        self.period = period
+        self.factor = factor
+        self.lost = 0.0  # s of wall time given up so far
+        self._first, self._start = 0, -math.inf
+
+    def restart(self, sample: int, now: float, factor: float | None = None):
+        """`sample` is due `now` [s, steady clock], and the ones after it from there on."""
+        if factor is not None:
+            self.factor = factor
+        self._first, self._start = sample, now
+
+    def due(self, sample: int) -> float:
+        """Time [s, steady clock] at which `sample` is due."""
+        if self.factor == 0.0:
+            return -math.inf
+        return self._start + (sample - self._first) * self.period / self.factor
+
+    def settle(self, sample: int, now: float) -> float:
+        """Delay [s] of `sample` where it is late by more than a few periods, else 0; the delay is given up."""
+        if self.factor == 0.0:
+            return 0.0
+        delay = now - self.due(sample)
+        if delay <= max(FEW_PERIODS * self.period / self.factor, SHORTEST_DELAY):
+            return 0.0
+        self.lost += delay
+        self.restart(sample, now)
+        return delay

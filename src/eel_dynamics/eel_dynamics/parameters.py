@@ -1,0 +1,131 @@
+"""The dynamics node's parameters: each one once, with its default, unit, bounds and description.
+
+The node declares its ROS parameters from these fields (and from `Scene`'s, as `scene.*`) and overlays what the user gave.
+Poses and velocities are in ROS (REP-103) frames: world `odom`, head `base_link`.
+"""
+
+import math
+from dataclasses import MISSING, Field, dataclass, field, fields
+
+
+def _parameter(default, description, unit="", **bounds):
+    return field(default=default, metadata={"description": description, "unit": unit, **bounds})
+
+
+@dataclass(frozen=True, kw_only=True)
+class DynamicsParameters:
+    """What a run of the node is, but for the scene. Made by `from_values`, which checks each value.
+
+    Metadata of a field: unit, description; minimum, maximum, exclusive (the minimum itself is refused), choices,
+    number (a text or a number), changeable (at run time).
+    """
+
+    accuracy: str = _parameter("standard", "preset (draft, standard, fine, reference) or a target relative error", number=True)
+    rate: float = _parameter(100.0, "samples published per simulated second", "Hz", minimum=0.0, exclusive=True, maximum=1e4)
+    real_time_factor: float = _parameter(
+        1.0, "simulated seconds per second; 0: as fast as it goes, fixed at start", minimum=0.0, maximum=1e6, changeable=True
+    )
+    duration: float = _parameter(0.0, "simulated time after which the node leaves with status 0; 0: no end", "s", minimum=0.0, maximum=1e9)
+    stations: int = _parameter(51, "points along the backbone where profiles are given", minimum=2, maximum=10_000)
+    body: str = _parameter("boyer2010", "name of a body, or a .csv or .npz file with columns x, half_width, half_height [m]")
+    default_transition: float = _parameter(
+        1.0, "blending time of a law that names none", "s", minimum=0.0, exclusive=True, maximum=1e4
+    )
+    initial_position: tuple = _parameter((0.0, 0.0, 0.0), "of the head at the start, in the world frame", "m")
+    initial_orientation: tuple = _parameter((0.0, 0.0, 0.0, 1.0), "of the head at the start, unit quaternion x y z w")
+    initial_linear_velocity: tuple = _parameter((0.0, 0.0, 0.0), "of the head at the start, in the head frame", "m/s")
+    initial_angular_velocity: tuple = _parameter((0.0, 0.0, 0.0), "of the head at the start, in the head frame", "rad/s")
+    world_frame: str = _parameter("odom", "frame id of the world")
+    head_frame: str = _parameter("base_link", "frame id of the head")
+    clock: bool = _parameter(True, "publish /clock, unless another publisher of it is on the network", changeable=True)
+    publish_tf: bool = _parameter(True, "publish world to head on /tf, where tf2_msgs is installed", changeable=True)
+    wait_for_subscribers: int = _parameter(0, "subscribers to wait for before the first sample", minimum=0, maximum=1000)
+    subscriber_timeout: float = _parameter(
+        5.0, "longest wait for a stuck subscriber or a silent controller, at real_time_factor 0", "s", minimum=0.0, maximum=3600.0, changeable=True
+    )
+
+    def __post_init__(self):
+        for name in ("world_frame", "head_frame"):
+            if not getattr(self, name):
+                raise ValueError(f"{name} must not be empty")
+        norm = math.sqrt(math.fsum(value * value for value in self.initial_orientation))
+        if abs(norm - 1.0) > 1e-3:
+            raise ValueError(f"initial_orientation must be a unit quaternion, got {list(self.initial_orientation)} of norm {norm:g}")
+        object.__setattr__(self, "initial_orientation", tuple(value / norm for value in self.initial_orientation))
+
+    @property
+    def last_sample(self) -> float:
+        """Index of the last sample: samples k = 0 ... N at k/rate; infinite without a duration."""
+        return math.floor(self.duration * self.rate + 1e-9) if self.duration > 0.0 else math.inf
+
+
+def default_of(item: Field):
+    """The default as a ROS parameter holds it: lists for tuples, 0.0 for None."""
+    assert item.default is not MISSING, item.name
+    if item.default is None:
+        return 0.0
+    return list(item.default) if isinstance(item.default, tuple) else item.default
+
+
+def checked(item: Field, value, name: str):
+    """`value` as the field has it; `ValueError` names the parameter `name`, what it must be, and what it got."""
+    default = item.default
+    if isinstance(default, bool):
+        if not isinstance(value, bool):
+            raise ValueError(f"{name} must be true or false, got {value!r}")
+    elif isinstance(default, str):
+        if item.metadata.get("number") and isinstance(value, (int, float)) and not isinstance(value, bool):
+            return float(value)
+        if not isinstance(value, str):
+            raise ValueError(f"{name} must be a text{' or a number' if item.metadata.get('number') else ''}, got {_shown(value)}")
+        if value not in item.metadata.get("choices", (value,)):
+            raise ValueError(f"{name} must be one of {', '.join(item.metadata['choices'])}, got {value!r}")
+    elif isinstance(default, tuple):
+        return _checked_vector(default, value, name)
+    elif isinstance(default, int):
+        if isinstance(value, bool) or not isinstance(value, int):
+            raise ValueError(f"{name} must be an integer, got {_shown(value)}")
+        _check_bounds(item, value, name)
+    else:
+        if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+            raise ValueError(f"{name} must be a finite number, got {_shown(value)}")
+        value = float(value)
+        if default is None and value == 0.0:
+            return None
+        _check_bounds(item, value, name)
+    return value
+
+
+def from_values(kind, values: dict, prefix: str = ""):
+    """An instance of the dataclass `kind` from its fields' `values`, checked; names in errors begin with `prefix`."""
+    return kind(**{item.name: checked(item, values[item.name], prefix + item.name) for item in fields(kind)})
+
+
+def limits(metadata) -> str:
+    """The bounds in words, such as "> 0 Hz"; empty without bounds."""
+    unit = f" {metadata['unit']}" if metadata.get("unit") else ""
+    words = []
+    if "minimum" in metadata:
+        words.append(f"{'>' if metadata.get('exclusive') else '>='} {metadata['minimum']:g}{unit}")
+    if "maximum" in metadata:
+        words.append(f"<= {metadata['maximum']:g}{unit}")
+    return " and ".join(words)
+
+
+def _check_bounds(item: Field, value, name: str):
+    low, high = item.metadata.get("minimum", -math.inf), item.metadata.get("maximum", math.inf)
+    if not low <= value <= high or (item.metadata.get("exclusive") and value == low):
+        raise ValueError(f"{name} must be {limits(item.metadata)}, got {value:g}")
+
+
+def _checked_vector(default: tuple, value, name: str) -> tuple:
+    numbers = value if isinstance(value, (list, tuple)) or hasattr(value, "typecode") else ()
+    if any(isinstance(number, (bool, str)) or not isinstance(number, (int, float)) for number in numbers):
+        numbers = ()
+    if len(numbers) != len(default) or not all(math.isfinite(number) for number in numbers):
+        raise ValueError(f"{name} must be {len(default)} finite numbers, got {_shown(value)}")
+    return tuple(float(number) for number in numbers)
+
+
+def _shown(value) -> str:
+    return repr(list(value) if hasattr(value, "typecode") else value)

@@ -1,0 +1,147 @@
+"""The topics of a run: each sample goes to those that someone hears, at real time or without loss.
+
+At real time a slow subscriber misses samples and nobody waits. Without a pace, publishers are reliable and keep all: a
+history that is full makes `publish` fail, and it is tried again until the subscriber has caught up, or is taken for stuck.
+Its topics then change to a history that forgets, so that the run and the other subscribers go on.
+"""
+
+import time
+
+RETRY = 0.002  # s between two attempts: lets the other threads run
+CALM = 1.0  # s without a change after which partial subscribers are taken to be complete
+HEAVY = {"internal_wrench": "wrench", "hydrodynamic_load": "load"}  # topic: what Simulation.observe computes for it
+
+
+class Channel:
+    """One topic: its publisher, made by `create(message_type, topic, lossless)`."""
+
+    def __init__(self, create, message_type, topic: str, lossless: bool):
+        self.topic, self.message_type = topic, message_type
+        self._create = create
+        self.lossless = lossless
+        self.publisher = create(message_type, topic, lossless)
+
+    def forget(self, destroy):
+        """Changes to a history that forgets what a stuck subscriber has not taken."""
+        destroy(self.publisher)
+        self.lossless = False
+        self.publisher = self._create(self.message_type, self.topic, False)
+
+
+class Publishers:
+    """All topics of samples, and /clock.
+
+    sample: the messages (messages.Sample). create: see Channel; destroy(publisher). refusal: the exception of a publish
+    that failed. values(): the DynamicsParameters in force. stopped(): whether the run is over.
+    """
+
+    def __init__(self, sample, *, create, destroy, refusal, values, stopped, report):
+        self._sample, self._create, self._destroy, self._refusal = sample, create, destroy, refusal
+        self._values, self._stopped, self._report = values, stopped, report
+        self._lossless = values().real_time_factor == 0.0
+        self._channels = {name: Channel(create, type(message), name, self._lossless) for name, message in sample.messages.items()}
+        self._clock = None
+        self._patience = Patience()
+        self._audience, self._audience_since = None, 0.0
+
+    def wants(self, name: str) -> bool:
+        """Whether someone hears the topic."""
+        channel = self._channels.get(name)
+        if channel is None or (name == "/tf" and not self._values().publish_tf):
+            return False
+        return channel.publisher.get_subscription_count() > 0
+
+    def wanted_parts(self) -> dict[str, bool]:
+        """Which of the costly parts of a snapshot someone wants: the flags of `Simulation.observe`."""
+        return {part: self.wants(name) for name, part in HEAVY.items()}
+
+    def publish(self, snapshot, nanoseconds: int):
+        """One sample at simulation time `nanoseconds`, /clock first."""
+        self.tick(nanoseconds)
+        for name, channel in self._channels.items():
+            if self.wants(name):
+                self._send(channel, self._sample.fill(name, snapshot))
+
+    def tick(self, nanoseconds: int):
+        """/clock alone."""
+        self._sample.set_time(nanoseconds)
+        if self._clock is not None:
+            self._send(self._clock, self._sample.clock)
+
+    def offer_clock(self, offered: bool):
+        """Begins or ends publishing /clock."""
+        if offered and self._clock is None:
+            self._clock = Channel(self._create, type(self._sample.clock), "/clock", self._lossless)
+        elif not offered and self._clock is not None:
+            self._destroy(self._clock.publisher)
+            self._clock = None
+
+    def audience_complete(self, wanted: int, now: float) -> bool:
+        """Whether every topic has `wanted` subscribers, or some have and nobody has come or gone for a while."""
+        counts = [channel.publisher.get_subscription_count() for channel in self._channels.values()]
+        if counts != self._audience:
+            self._audience, self._audience_since = counts, now
+        return min(counts) >= wanted or (max(counts) >= wanted and now - self._audience_since > CALM)
+
+    def wait_for_acknowledgements(self, others: list, acknowledged, seconds: float) -> bool:
+        """Waits until all is received, of `others` (publishers) too, at most so long; acknowledged(publisher, seconds) -> bool."""
+        end = time.monotonic() + seconds
+        clock = [self._clock] if self._clock is not None else []
+        channels = [*self._channels.values(), *clock]
+        for publisher in [channel.publisher for channel in channels if channel.lossless] + others:
+            if not acknowledged(publisher, max(0.0, end - time.monotonic())):
+                return False
+        return True
+
+    def _send(self, channel: Channel, message):
+        start = None  # s: when the first attempt failed
+        while not self._stopped():
+            try:
+                channel.publisher.publish(message)
+            except self._refusal as error:
+                if not channel.lossless:
+                    self._report.event("publish " + channel.topic, f"{channel.topic} could not be published: {error}")
+                    return
+                now = time.monotonic()
+                if start is None:
+                    start = now
+                    self._patience.begin(now)
+                if self._patience.over(now, self._values().subscriber_timeout):
+                    self._give_up(channel)
+                    return
+                self._report.event("slow subscriber", f"waiting for a subscriber of {channel.topic}, whose history is full")
+                time.sleep(RETRY)
+            else:
+                if start is not None:
+                    self._patience.renew()
+                return
+
+    def _give_up(self, channel: Channel):
+        self._report.begin(
+            "stuck " + channel.topic,
+            f"a subscriber of {channel.topic} has been stuck for {self._values().subscriber_timeout:g} s: going on without it, it will miss samples",
+        )
+        channel.forget(self._destroy)
+
+
+class Patience:
+    """How long subscribers have been waited for: one account for all topics, since who is stuck is stuck on all of them."""
+
+    def __init__(self):
+        self._since = None  # s, steady clock
+        self._last = 0.0
+
+    def begin(self, now: float):
+        """A publish has failed; a wait that ended some time ago does not count."""
+        if self._since is None or now - self._last > CALM:
+            self._since = now
+        self._last = now
+
+    def over(self, now: float, timeout: float) -> bool:
+        """Whether `timeout` s of waiting are used up."""
+        self._last = now
+        return now - self._since >= timeout
+
+    def renew(self):
+        """A subscriber has caught up."""
+        self._since = None
