@@ -15,7 +15,7 @@ from numba import njit
 
 OPTIONS = {"cache": True, "nogil": True, "error_model": "numpy", "fastmath": {"contract", "reassoc", "nsz", "arcp"}}
 
-LOG_BLEND = np.log(4.0e4), np.log(1.6e5)  # ln Re over which the blended friction law goes from laminar to turbulent
+PRINTED, LAMINAR, BLENDED = 0, 1, 2  # laws of friction, as in the scene
 
 
 class Fields(NamedTuple):
@@ -30,6 +30,7 @@ class Fields(NamedTuple):
     accel: np.ndarray  # (2, n) rad/m/s^2, Kddot
     omega: np.ndarray  # (3, n) rad/s, angular velocity of the sections
     v: np.ndarray  # (3, n) m/s, velocity of the sections
+    part: np.ndarray  # (n,) part of the turbulent law in the friction
     integrand: np.ndarray  # (6, n) scratch
     inertia: np.ndarray  # (6, 6) of body and water about the head
     wrench: np.ndarray  # (6,) scratch
@@ -48,6 +49,7 @@ def fields_of(nodes: int, rows: int) -> Fields:
         accel=np.zeros((2, nodes)),
         omega=np.zeros((3, nodes)),
         v=np.zeros((3, nodes)),
+        part=np.zeros(nodes),
         integrand=np.zeros((6, nodes)),
         inertia=np.zeros((6, 6)),
         wrench=np.zeros(6),
@@ -276,23 +278,59 @@ def add_head_twist(fields, twist):
 
 
 @njit(**OPTIONS)
-def friction(swimmer, i, speed):
-    """1/2 rho_f k1 |V1| [kg/m/s] at node i for the axial speed |V1| [m/s]; c_f(Re) with Re = |V1| X/nu (section 7.2.1)."""
-    if swimmer.friction == 3:
+def turbulent_part(swimmer, i, speed):
+    """Part of the turbulent law in the friction at section i for the axial speed |V1| [m/s]; Re = |V1| X/nu (section 7.2.1)."""
+    if swimmer.friction == PRINTED:
+        return 1.0 if speed > swimmer.transition[i] else 0.0
+    if swimmer.friction != BLENDED or speed <= 0.5 * swimmer.transition[i]:
         return 0.0
-    if swimmer.friction == 1:
-        return swimmer.laminar[i] * np.sqrt(speed)
-    if swimmer.friction == 0:
-        if speed <= swimmer.transition[i]:
-            return swimmer.laminar[i] * np.sqrt(speed)
-        return swimmer.turbulent[i] * speed**0.8
-    if speed <= 0.5 * swimmer.transition[i]:
-        return swimmer.laminar[i] * np.sqrt(speed)
     if speed >= 2.0 * swimmer.transition[i]:
-        return swimmer.turbulent[i] * speed**0.8
-    part = np.log(speed / swimmer.transition[i] * 2.0) / np.log(4.0)
-    part -= np.sin(2.0 * np.pi * part) / (2.0 * np.pi)
-    return (1.0 - part) * swimmer.laminar[i] * np.sqrt(speed) + part * swimmer.turbulent[i] * speed**0.8
+        return 1.0
+    part = np.log(2.0 * speed / swimmer.transition[i]) / np.log(4.0)  # f_r(ln Re; ln 4e4, ln 1.6e5), eq. (64)
+    return part - np.sin(2.0 * np.pi * part) / (2.0 * np.pi)
+
+
+@njit(**OPTIONS)
+def friction(swimmer, i, part, speed):
+    """1/2 rho_f k1 |V1| [kg/m/s] at section i for the axial speed |V1| [m/s], `part` of it by the turbulent law."""
+    force = 0.0
+    if part < 1.0:
+        force += (1.0 - part) * swimmer.laminar[i] * np.sqrt(speed)
+    if part > 0.0:
+        force += part * swimmer.turbulent[i] * speed**0.8
+    return force
+
+
+@njit(**OPTIONS)
+def share_friction(swimmer, fields):
+    """Part (n,) of the turbulent law in the friction of each node, from the true velocities.
+
+    The printed law jumps at one X, inside the stretch of the body that a node stands for (its weight, laid end to end). The
+    node on that stretch takes both laws in proportion, so that the load changes without a jump as the place moves.
+    """
+    R, v, part = fields.R, fields.v, fields.part
+    n = R.shape[1]
+    if swimmer.friction == PRINTED:
+        before = 0.0
+        end = 0.0
+        for i in range(n):
+            ratio = abs(R[0, i] * v[0, i] + R[1, i] * v[1, i] + R[2, i] * v[2, i]) / swimmer.transition[i]
+            part[i] = 1.0 if ratio > 1.0 else 0.0
+            if i > 0 and (ratio > 1.0) != (before > 1.0):
+                x = swimmer.x[i - 1] + (1.0 - before) / (ratio - before) * (swimmer.x[i] - swimmer.x[i - 1])
+                change = part[i] - (1.0 if before > 1.0 else 0.0)
+                if x < end:
+                    part[i - 1] += change * min(1.0, (end - x) / swimmer.weight[i - 1])
+                else:
+                    part[i] -= change * min(1.0, (x - end) / swimmer.weight[i])
+            before = ratio
+            end += swimmer.weight[i]
+    elif swimmer.friction == BLENDED:
+        for i in range(n):
+            part[i] = turbulent_part(swimmer, i, abs(R[0, i] * v[0, i] + R[1, i] * v[1, i] + R[2, i] * v[2, i]))
+    else:
+        for i in range(n):
+            part[i] = 0.0
 
 
 @njit(**OPTIONS)
@@ -300,6 +338,7 @@ def add_resistive_loads(swimmer, fields, wrench):
     """Add the drag along the body to `wrench` (6,), on the body (section 7.2.1). Returns its power [W]."""
     R, r, omega, v = fields.R, fields.r, fields.omega, fields.v
     tx = ty = tz = fx = fy = fz = power = 0.0
+    share_friction(swimmer, fields)
     for i in range(R.shape[1]):
         vx, vy, vz = v[0, i], v[1, i], v[2, i]
         v1 = R[0, i] * vx + R[1, i] * vy + R[2, i] * vz
@@ -307,7 +346,7 @@ def add_resistive_loads(swimmer, fields, wrench):
         v3 = R[6, i] * vx + R[7, i] * vy + R[8, i] * vz
         roll = R[0, i] * omega[0, i] + R[1, i] * omega[1, i] + R[2, i] * omega[2, i]
         weight = swimmer.weight[i]
-        n1 = -weight * friction(swimmer, i, abs(v1)) * v1
+        n1 = -weight * friction(swimmer, i, fields.part[i], abs(v1)) * v1
         n2 = -weight * swimmer.drag2[i] * abs(v2) * v2
         n3 = -weight * swimmer.drag3[i] * abs(v3) * v3
         c1 = -weight * swimmer.drag_roll[i] * abs(roll) * roll

@@ -9,7 +9,7 @@ from eel_gaits.law import Law
 from .accuracy import Accuracy
 from .body import Body
 from .drive import combine, combine_moments, factors
-from .kernel import add_head_twist, add_wake, configure
+from .kernel import add_head_twist, add_wake, configure, share_friction
 from .scene import Scene
 from .simulation import Simulation, row
 from .wrench import add_head_acceleration, gather, section_densities, shape_accelerations
@@ -76,6 +76,7 @@ def hydrodynamic_wrench(body: Body, law: Law, time: float, twist, twist_rate, sc
     section_densities(alone, fields, balance)
     gather(alone, balance.density, inertia)
     if water.resistive:
+        share_friction(water, fields)
         section_densities(alone._replace(resistive=True), fields, balance)
         gather(alone, balance.density, both)
     else:

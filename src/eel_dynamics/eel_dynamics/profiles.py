@@ -10,7 +10,7 @@ from numba import njit
 
 from .drive import combine, combine_moments
 from .integrator import MARCHED, SINGULAR, WORKS, march, powers_of_state, rotate, state_at
-from .kernel import OPTIONS, axes_of, friction, turns
+from .kernel import OPTIONS, axes_of, friction, turbulent_part, turns
 from .wrench import kinetic_energies, section_wrench
 
 
@@ -214,7 +214,7 @@ def loads(stations, here, distributed, sample, out):
             f3 += energy * k2
         r1 = r2 = r3 = 0.0
         if section.resistive:
-            r1 = -friction(section, i, abs(u[0])) * u[0]
+            r1 = -friction(section, i, turbulent_part(section, i, abs(u[0])), abs(u[0])) * u[0]
             r2 = -section.drag2[i] * abs(u[1]) * u[1]
             r3 = -section.drag3[i] * abs(u[2]) * u[2]
         rows = out.resistive_force[sample, i], out.fluid_force[sample, i]

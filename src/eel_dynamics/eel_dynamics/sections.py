@@ -104,6 +104,7 @@ def _tabulate(body: Body, scene: Scene, x, weight, matrix, first, count) -> Swim
     perimeter = np.pi * (1.5 * (a + b) - np.sqrt(a * b)) * (0.5 if scene.perimeter == "printed" else 1.0)
     nose_area = np.pi * body.nose[0] * body.nose[1] if scene.nose else 0.0
     reactive_rho = scene.fluid_density if scene.reactive else 0.0
+    rubbed = 0.0 if scene.friction == "none" else half_rho
     behind = np.where(x > 0.0, x, np.inf)  # friction has no length to act on at the nose
     return Swimmer(
         x=np.ascontiguousarray(x, dtype=float),
@@ -121,10 +122,10 @@ def _tabulate(body: Body, scene: Scene, x, weight, matrix, first, count) -> Swim
         drag2=half_rho * 2.0 * body.lateral_drag * a,
         drag3=half_rho * 2.0 * body.vertical_drag * b,
         drag_roll=half_rho * body.roll_drag * np.pi * (a**2 - b**2) ** 2,
-        laminar=half_rho * perimeter * 0.664 * np.sqrt(scene.viscosity / behind),
-        turbulent=half_rho * perimeter * 0.059 * (scene.viscosity / behind) ** 0.2,
+        laminar=rubbed * perimeter * 0.664 * np.sqrt(scene.viscosity / behind),
+        turbulent=rubbed * perimeter * 0.059 * (scene.viscosity / behind) ** 0.2,
         transition=TRANSITION * scene.viscosity / behind,
-        friction=FRICTION.index("none" if scene.viscosity == 0.0 else scene.friction),
+        friction=FRICTION.index("laminar" if scene.friction == "none" or scene.viscosity == 0.0 else scene.friction),
         resistive=bool(scene.resistive),
         nose_mass=float(reactive_rho * nose_area * body.nose_added_mass * body.nose[2]),
         nose_drag=float(half_rho * nose_area * body.nose_drag),

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from .kernel import OPTIONS, add_wake, friction, integrate, solve
+from .kernel import OPTIONS, add_wake, friction, integrate, share_friction, solve
 
 
 class Balance(NamedTuple):
@@ -115,7 +115,7 @@ def section_densities(swimmer, fields, balance):
         g2 = j2 * e2 + o3 * s1 - o1 * s3 + v3 * p1 - v1 * p3
         g3 = j3 * e3 + o1 * s2 - o2 * s1 + v1 * p2 - v2 * p1
         if swimmer.resistive:
-            n1 = friction(swimmer, i, abs(v1)) * v1
+            n1 = friction(swimmer, i, fields.part[i], abs(v1)) * v1
             n2 = swimmer.drag2[i] * abs(v2) * v2
             n3 = swimmer.drag3[i] * abs(v3) * v3
             c1 = swimmer.drag_roll[i] * abs(o1) * o1
@@ -148,6 +148,8 @@ def accelerate(swimmer, fields, twist, balance):
     """Head's acceleration, accelerations and balance of the sections, in a configured body whose `fields` hold the true
     velocities and the Cholesky factor of the inertia I_o."""
     shape_accelerations(swimmer, fields, balance)
+    if swimmer.resistive:
+        share_friction(swimmer, fields)
     section_densities(swimmer, fields, balance)
     gather(swimmer, balance.density, balance.total)
     for k in range(6):
