@@ -1,0 +1,139 @@
+"""`simulate`: swim a gait offline, print the summary, keep the run.
+
+    simulate falling
+    simulate straight --set wavelength=0.8 --scene friction=laminar --accuracy 1e-6 --out run.npz
+"""
+
+import argparse
+import csv
+import sys
+import time
+from dataclasses import fields
+from pathlib import Path
+
+import numpy as np
+
+from eel_gaits.registry import GAITS, gait
+
+from .accuracy import PRESETS
+from .body import NAMED, Body
+from .run import Run, simulate
+from .scene import Scene
+from .simulation import SimulationStopped
+
+ARRAYS = (
+    "time position orientation twist head_acceleration center_of_mass x backbone section_orientation curvature curvature_rate torque force "
+    "fluid_force resistive_force tail_force nose_force closure_torque closure_force"
+).split()
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Exit status 0; 2 for bad input, with one line; 3 for a run that stopped, with what it had until then."""
+    options = _parser().parse_args(arguments)
+    try:
+        out = _checked_out(options.out)
+        numbers = {name: _number(name, value) for name, value in _pairs("--set", options.set)}
+        law = gait(options.gait, **numbers)
+        body = Body.named(options.body) if options.body in NAMED else Body.from_file(options.body)
+        scene = Scene(**{name: _scene_value(name, value) for name, value in _pairs("--scene", options.scene)})
+        start = time.perf_counter()
+        run = simulate(
+            law,
+            options.duration,
+            body=body,
+            scene=scene,
+            accuracy=options.accuracy,
+            sample_period=options.sample_period,
+            stations=options.stations,
+            load=options.load,
+        )
+    except SimulationStopped as stopped:
+        print(f"simulate: {stopped}", file=sys.stderr)
+        if out is not None and len(stopped.run.time):
+            _write(stopped.run, out)
+        return 3
+    except (ValueError, OSError) as error:
+        print(f"simulate: {error}", file=sys.stderr)
+        return 2
+    print(run.summary())
+    print(f"wall time           {time.perf_counter() - start:.3f} s, loading or compiling the loops included")
+    if out is not None:
+        _write(run, out)
+        print(f"written to          {out}")
+    return 0
+
+
+def _parser() -> argparse.ArgumentParser:
+    scene = ", ".join(item.name for item in fields(Scene))
+    parser = argparse.ArgumentParser(prog="simulate", description="Swim a gait offline and print the summary.")
+    parser.add_argument("gait", nargs="?", default="falling", help=f"one of {', '.join(sorted(GAITS))} (falling)")
+    parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="a number of the gait; may be repeated")
+    parser.add_argument("--duration", type=float, default=10.0, help="s (10)")
+    parser.add_argument("--accuracy", default="standard", help=f"{', '.join(PRESETS)}, or a target relative error (standard)")
+    parser.add_argument("--body", default="boyer2010", help=f"{', '.join(NAMED)}, or a .csv or .npz file with columns x, half_width, half_height [m]")
+    parser.add_argument("--scene", action="append", default=[], metavar="NAME=VALUE", help=f"physics: {scene}; may be repeated")
+    parser.add_argument("--sample-period", type=float, default=0.05, help="s (0.05)")
+    parser.add_argument("--stations", type=int, default=51, help="points along the body (51)")
+    parser.add_argument("--load", action="store_true", help="keep the water's load along the body too")
+    parser.add_argument("--out", metavar="FILE", help=".npz: every array of the run; .csv: head, energies, one line per sample")
+    return parser
+
+
+def _pairs(option: str, texts: list[str]) -> list[tuple[str, str]]:
+    for text in texts:
+        if "=" not in text:
+            raise ValueError(f"{option} must be NAME=VALUE, got {text!r}")
+    return [tuple(text.split("=", 1)) for text in texts]
+
+
+def _number(name: str, text: str):
+    try:
+        values = tuple(float(part) for part in text.split(","))
+    except ValueError:
+        raise ValueError(f"{name} must be a number, or several with commas, got {text!r}") from None
+    return values[0] if len(values) == 1 else values
+
+
+def _scene_value(name: str, text: str):
+    kinds = {item.name: item for item in fields(Scene)}
+    if name not in kinds:
+        raise ValueError(f"scene has no field {name!r}, it has: {', '.join(kinds)}")
+    if isinstance(kinds[name].default, bool):
+        words = {"true": True, "on": True, "1": True, "false": False, "off": False, "0": False}
+        if text.lower() not in words:
+            raise ValueError(f"scene {name} must be true or false, got {text!r}")
+        return words[text.lower()]
+    return text if "choices" in kinds[name].metadata else _number(f"scene {name}", text)
+
+
+def _checked_out(out: str | None) -> Path | None:
+    if out is None:
+        return None
+    path = Path(out)
+    if path.suffix not in (".npz", ".csv"):
+        raise ValueError(f"--out must end in .npz or .csv, got {out!r}")
+    if not path.parent.is_dir():
+        raise ValueError(f"--out must lie in a folder that exists, got {out!r}")
+    if path.exists():
+        print(f"simulate: {path} exists and will be overwritten", file=sys.stderr)
+    return path
+
+
+def _write(run: Run, path: Path):
+    energy = {} if run.energy is None else {name: run.energy[name] for name in run.energy.keys()}
+    if path.suffix == ".npz":
+        arrays = {name: getattr(run, name) for name in ARRAYS if getattr(run, name) is not None}
+        np.savez_compressed(path, **arrays, **{f"energy_{name}": values for name, values in energy.items()})
+        return
+    columns = {"time": run.time}
+    groups = (("position", "xyz"), ("orientation", "xyzw"), ("center_of_mass", "xyz"))
+    columns |= {f"{name}_{axis}": getattr(run, name)[:, k] for name, axes in groups for k, axis in enumerate(axes)}
+    columns |= {f"{name}_{axis}": run.twist[:, k] for k, (name, axis) in enumerate((name, axis) for name in ("omega", "v") for axis in "123")}
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow([*columns, *energy])
+        writer.writerows(np.column_stack([*columns.values(), *energy.values()]).tolist())
+
+
+if __name__ == "__main__":
+    sys.exit(main())
