@@ -105,7 +105,7 @@ class Recorder(Node):
             if topic not in self._connections:
                 self._connect(topic, kind)
             self._last_message = time.monotonic()
-            self._present = True
+            self._present |= topic == self.resolve_topic_name(SWIMMER)  # a law alone is no swimmer
             self.counts[topic] += 1
             self._writer.write(self._connections[topic], about.get("received_timestamp") or time.time_ns(), data)
 
