@@ -36,9 +36,10 @@ def main() -> int:
         expected = round(DURATION * RATE) + 1
         shown = count_recorded(RECORDING)
         print(describe(summary))
-        print(f"  samples            {expected} published, {summary.samples} received here, {shown} in {RECORDING}")
-        if (summary.samples, shown) != (expected, expected):
-            raise DemoError(f"{expected} samples were due, {summary.samples} came here and {shown} reached the recording")
+        counts = (summary.published, summary.received, shown)
+        print("  samples            {} published, {} received here, {} in {}".format(*counts, RECORDING))
+        if set(counts) != {expected}:
+            raise DemoError("of {} samples, {} were published, {} came here and {} reached the recording".format(expected, *counts))
         if summary.failures:
             raise DemoError("; ".join(summary.failures))
         say(f"the library alone runs it {library_speed():,.0f} times faster than real time")
@@ -80,7 +81,7 @@ def swim() -> dict[str, list]:
             f"wait_for_subscribers:={LISTENERS}",
         )
         await_end(dynamics, nodes, limit=60.0)
-        await_end(visualiser, nodes, limit=30.0)
+        await_end(visualiser, nodes, limit=30.0, finished=(dynamics,))
         time.sleep(0.2)  # what this program's own thread has received and not yet read
         return reception.messages
     finally:
@@ -89,23 +90,20 @@ def swim() -> dict[str, list]:
         reception.close()
 
 
-def await_end(awaited: NodeProcess, nodes: list[NodeProcess], *, limit: float) -> None:
-    """Until `awaited` has left with status 0; DemoError if any of `nodes` fails or `limit` [s] passes."""
+def await_end(awaited: NodeProcess, nodes: list[NodeProcess], *, limit: float, finished: tuple[NodeProcess, ...] = ()) -> None:
+    """Until `awaited` has left with status 0; DemoError if another of `nodes` but the `finished` ends, or `limit` [s] passes."""
     deadline = time.monotonic() + limit
     while awaited.status is None:
         if time.monotonic() > deadline:
-            raise DemoError(f"{awaited.name} did not end within {limit:g} s, see {awaited.log}")
-        for node in nodes:
-            if node.status:
-                break
-        else:
-            time.sleep(0.02)
-            continue
-        break
+            raise DemoError(f"{awaited.name} did not end within {limit:g} s (see {awaited.log})")
+        if any(node.status is not None for node in nodes if node not in finished):
+            break
+        time.sleep(0.02)
     for node in nodes:
-        if node.status:
+        if node.status is not None and node not in finished and (node.status or node is not awaited):
             said = [line for line in node.output().splitlines() if line.strip()]
-            raise DemoError(f"{node.name} ended with status {node.status}: {said[-1] if said else 'it said nothing'} (all of it: {node.log})")
+            last = said[-1] if said else "it said nothing"
+            raise DemoError(f"{node.name} ended too early, with status {node.status}: {last} (all of it: {node.log})")
 
 
 def count_recorded(path: Path) -> int:

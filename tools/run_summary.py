@@ -14,7 +14,8 @@ class RunSummary:
 
     law: str
     duration: float  # s, of simulation
-    samples: int  # [-] poses received
+    published: int  # [-] samples, as the dynamics node counts them
+    received: int  # [-] poses that came
     position: np.ndarray  # m, (3,) head at the end
     orientation: np.ndarray  # [-], (4,) head at the end, x y z w
     path_length: float  # m, of the head
@@ -65,18 +66,21 @@ def summarise(messages: dict[str, list]) -> RunSummary:
 
     torque = np.sqrt(sum(_field(wrenches, f"torque_{axis}") ** 2 for axis in (1, 2, 3)))
     force = np.sqrt(sum(_field(wrenches, f"force_{axis}") ** 2 for axis in (1, 2, 3)))
+    if not torque.any():
+        raise ValueError("every internal torque that came is zero")
     when, where = np.unravel_index(torque.argmax(), torque.shape)
 
     time = np.array([seconds(ledger) for ledger in ledgers])
     energy = {
         name: np.array([getattr(ledger, name) for ledger in ledgers])
-        for name in ("actuator_power", "wake_power", "nose_power", "drag_power", "residual")
+        for name in ("wake_power", "nose_power", "drag_power", "residual")
     }
     last = ledgers[-1]
     return RunSummary(
         law=messages["curvature_law"][-1].name if messages["curvature_law"] else "",
         duration=duration,
-        samples=len(poses),
+        published=int(_numbers(messages["/diagnostics"], "samples_published")[-1]),
+        received=len(poses),
         position=head[-1],
         orientation=np.array([turn.x, turn.y, turn.z, turn.w]),
         path_length=path,
@@ -84,13 +88,13 @@ def summarise(messages: dict[str, list]) -> RunSummary:
         torque=float(torque.max()),
         torque_x=wrenches[when].x[where],
         torque_time=seconds(wrenches[when]),
-        work=float(np.trapezoid(energy["actuator_power"], time)),
+        work=float(_numbers(messages["/diagnostics"], "actuator_work")[-1]),
         wake=float(np.trapezoid(energy["wake_power"], time)),
         drag=float(np.trapezoid(energy["drag_power"] + energy["nose_power"], time)),
         kinetic=last.kinetic_body + last.kinetic_fluid,
         residual=float(np.abs(energy["residual"]).max()),
-        closure_force=_greatest(messages["/diagnostics"], "closure_force") / float(force.max()),
-        closure_torque=_greatest(messages["/diagnostics"], "closure_torque") / float(torque.max()),
+        closure_force=_numbers(messages["/diagnostics"], "closure_force").max() / force.max(),
+        closure_torque=_numbers(messages["/diagnostics"], "closure_torque").max() / torque.max(),
     )
 
 
@@ -115,8 +119,8 @@ def _field(messages: list, name: str) -> np.ndarray:
     return np.array([getattr(message, name) for message in messages])
 
 
-def _greatest(arrays: list, key: str) -> float:
+def _numbers(arrays: list, key: str) -> np.ndarray:
     values = [float(value) for value in diagnostic_values(arrays, key)]
     if not values:
         raise ValueError(f"the diagnostics have no {key}")
-    return max(abs(value) for value in values)
+    return np.array(values)

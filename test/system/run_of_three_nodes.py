@@ -65,7 +65,7 @@ def stamps(messages: list) -> np.ndarray:
 def swim(start, folder: Path, *, remap: tuple[str, ...] = ()) -> Results:
     """Start recorder, visualiser, gait generator and dynamics; wait until all that ends by itself has ended well."""
     recording, bag = folder / "swim.rrd", folder / "bag"
-    recorder = start("record", str(bag), *remap)
+    recorder = start("record", "--output", str(bag), "--stop-with-publisher", *remap)
     visualiser = start(
         "visualiser", "--ros-args", "-p", "sink:=[save]", "-p", f"recording:={recording}", "-p", "stop_with_publisher:=true", *remap
     )
@@ -74,7 +74,6 @@ def swim(start, folder: Path, *, remap: tuple[str, ...] = ()) -> Results:
         "dynamics", "--ros-args", "-p", f"duration:={DURATION}", "-p", f"rate:={RATE}", "-p", f"stations:={STATIONS}",
         "-p", "real_time_factor:=0", "-p", "wait_for_subscribers:=2", *remap,
     )  # fmt: skip
-    for node in (dynamics, visualiser):
+    for node in (dynamics, visualiser, recorder):
         assert node.wait(60.0) == 0, node.output()
-    assert recorder.interrupt(timeout=20.0) == 0, recorder.output()
     return Results(bag, recording)

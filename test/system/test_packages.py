@@ -91,7 +91,7 @@ def test_library_imports_without_ros(package):
     assert done.returncode == 0, done.stderr
 
 
-ROS_SIDE = {"eel_dynamics": {"feed", "publishers"}}  # parts of the node
+ROS_SIDE = {"eel_dynamics": {"declaration"}}  # parts of the node
 
 
 def uses_ros(path: Path) -> bool:
