@@ -7,7 +7,7 @@ carries all three as tabs, the one asked for in front.
 import rerun.blueprint as rrb
 from rerun.blueprint.archetypes import EntityBehavior
 
-from eel_viz import colours, entities, heat_map, profile_plot
+from eel_viz import colours, entities, heat_map, profile_plot, scene
 from eel_viz.settings import BLUEPRINTS
 
 _PAST = rrb.VisibleTimeRanges(
@@ -75,10 +75,10 @@ def motion() -> rrb.Container:
     return rrb.Horizontal(
         rrb.Vertical(standing_view(), speed_view(), row_shares=[2.0, 1.0]),
         rrb.Vertical(
-            _series("Attitude of the head", entities.ATTITUDE),
-            _series("Velocity of the head, base_link", entities.LINEAR),
-            _series("Angular velocity of the head, base_link", entities.ANGULAR),
-            _series("Kinetic energy", entities.KINETIC),
+            _series("Attitude of the head [deg]", entities.ATTITUDE),
+            _series("Velocity of the head in base_link [m/s]", entities.LINEAR),
+            _series("Angular velocity of the head in base_link [rad/s]", entities.ANGULAR),
+            _series("Kinetic energy [J]", entities.KINETIC),
         ),
         column_shares=[1.3, 1.0],
         name="motion",
@@ -93,7 +93,7 @@ def following_view() -> rrb.Spatial3DView:
         contents=[f"{entities.WORLD}/**"],
         background=colours.WATER_BACKGROUND,
         line_grid=rrb.LineGrid3D(visible=False),
-        eye_controls=rrb.EyeControls3D(position=(-0.5, -1.0, 0.62), look_target=(0.03, 0.0, -0.06), eye_up=(0, 0, 1)),
+        eye_controls=rrb.EyeControls3D(position=scene.EYE, look_target=scene.EYE_TARGET, eye_up=(0, 0, 1)),
         overrides={entities.TRACK: [_PAST], **_hidden(entities.HEAD, entities.TAIL)},
     )
 
@@ -106,7 +106,7 @@ def standing_view() -> rrb.Spatial3DView:
         contents=[f"{entities.WORLD}/**", f"- {entities.LEGEND}/**"],
         background=colours.WATER_BACKGROUND,
         line_grid=rrb.LineGrid3D(visible=False),
-        eye_controls=rrb.EyeControls3D(position=(-0.9, -3.2, 2.0), look_target=(0.7, 0.0, -0.5), eye_up=(0, 0, 1)),
+        eye_controls=rrb.EyeControls3D(position=(-0.7, -2.9, 1.3), look_target=(1.1, -0.1, -0.7), eye_up=(0, 0, 1)),
         overrides={entities.TRACK: [_PAST], **_hidden(entities.LOAD, entities.LOAD_ENDS, entities.TAIL)},
     )
 
@@ -124,7 +124,7 @@ def profile_view(root: str, name: str) -> rrb.Spatial2DView:
 def heat_map_view() -> rrb.Spatial2DView:
     """C3 over X and time."""
     return rrb.Spatial2DView(
-        name="Torque C3(X, t)",
+        name="Torque C3(X, t) [N m]",
         origin=entities.HEAT_MAP,
         background=(13, 16, 17),
         visual_bounds=rrb.VisualBounds2D(x_range=heat_map.BOUNDS_X, y_range=heat_map.BOUNDS_Y),
@@ -138,12 +138,12 @@ def speed_view() -> rrb.TimeSeriesView:
 
 def power_view() -> rrb.TimeSeriesView:
     """The powers of the ledger."""
-    return _series("Power into body and fluid", entities.POWER)
+    return _series("Power into body and fluid [W]", entities.POWER)
 
 
 def residual_view() -> rrb.TimeSeriesView:
     """The ledger's residual."""
-    return _series("Energy residual", entities.RESIDUAL)
+    return _series("Energy residual [J]", entities.RESIDUAL, legend=False)
 
 
 def run_tabs() -> rrb.Tabs:
@@ -154,10 +154,9 @@ def run_tabs() -> rrb.Tabs:
     )
 
 
-def _series(name: str, *paths: str) -> rrb.TimeSeriesView:
-    return rrb.TimeSeriesView(
-        name=name, origin=entities.PLOTS, contents=list(paths), plot_legend=rrb.PlotLegend(corner="LeftTop")
-    )
+def _series(name: str, *paths: str, legend: bool = True) -> rrb.TimeSeriesView:
+    corner = rrb.PlotLegend(corner="LeftTop", visible=legend)
+    return rrb.TimeSeriesView(name=name, origin=entities.PLOTS, contents=list(paths), plot_legend=corner)
 
 
 def _hidden(*paths: str) -> dict[str, list]:

@@ -8,25 +8,25 @@ import rerun as rr
 
 from eel_viz import colours, entities
 
-COLUMNS = 150
-ROWS = 51
-STEP = 0.04  # s
+COLUMNS = 200
+ROWS = 45
+STEP = 0.04  # s; the map is 8 s long
 NO_DATA = 0
-BOUNDS_X = (-13.0, COLUMNS + 26.0)
+BOUNDS_X = (-17.0, COLUMNS + 24.0)
 BOUNDS_Y = (-3.0, ROWS + 9.0)
 
 
 class HeatMap:
-    """Keeps the columns and logs the image; `limit` is the value of the deepest colour, `unit` its unit."""
+    """Keeps the columns and logs the image; `limit` is the value of the deepest colour."""
 
-    def __init__(self, stream: rr.RecordingStream, *, limit: float, unit: str) -> None:
+    def __init__(self, stream: rr.RecordingStream, *, limit: float) -> None:
         self._stream, self._limit = stream, limit
         self._pixels = np.full((ROWS, COLUMNS), NO_DATA, dtype=np.uint8)
         self._last: int | None = None
         palette = [rr.AnnotationInfo(id=NO_DATA, color=(24, 27, 31))]
         palette += [rr.AnnotationInfo(id=k, color=tuple(int(c) for c in colours.DIVERGING[k])) for k in range(1, 256)]
         stream.log(entities.HEAT_MAP, rr.AnnotationContext(palette), static=True)
-        self._draw_frame(unit)
+        self._draw_frame()
 
     def include(self, stamp: int, x: np.ndarray, values: np.ndarray) -> None:
         """Put `values` (M,) at stations `x` [m] into the column of `stamp` [ns]."""
@@ -45,7 +45,7 @@ class HeatMap:
         """The image at the stream's present time."""
         self._stream.log(entities.HEAT_MAP_IMAGE, rr.SegmentationImage(self._pixels, draw_order=0.0))
 
-    def _draw_frame(self, unit: str) -> None:
+    def _draw_frame(self) -> None:
         bar = np.linspace(0, ROWS, 65)
         left, right = COLUMNS + 4.0, COLUMNS + 8.0
         steps = [[((left + right) / 2, y0), ((left + right) / 2, y1)] for y0, y1 in zip(bar[:-1], bar[1:], strict=True)]
@@ -56,10 +56,10 @@ class HeatMap:
         rise = 4.2
         places = [(-7.0, 2.5 - rise), (-7.0, ROWS - 2.5 - rise), (right + 9.0, 2.5 - rise), (right + 9.0, ROWS / 2 - rise)]
         places += [(right + 9.0, ROWS - 2.5 - rise)]
-        texts = ["head", "tail", f"+{self._limit:g} {unit}", "0", f"-{self._limit:g} {unit}"]
+        texts = ["head", "tail", f"+{self._limit:g}", "0", f"-{self._limit:g}"]
         span = COLUMNS * STEP
-        places += [(COLUMNS * k / 3, ROWS + 4.5 - rise) for k in range(4)]
-        texts += [f"-{span * (1 - k / 3):g} s" for k in range(3)] + ["now"]
+        places += [(COLUMNS * k / 4, ROWS + 4.5 - rise) for k in range(5)]
+        texts += [f"-{span * (1 - k / 4):g} s" for k in range(4)] + ["now"]
         self._stream.log(
             f"{entities.HEAT_MAP_FRAME}/labels",
             rr.Points2D(

@@ -23,7 +23,7 @@ from eel_viz.skin import Skin
 from eel_viz.summary import Summary
 
 ENVELOPE_PERIOD = 250_000_000  # ns
-HEAT_MAP_PERIOD = 120_000_000
+HEAT_MAP_PERIOD = 160_000_000
 SUMMARY_PERIOD = 500_000_000
 ARROWS = 24  # along the body
 KEPT = 512  # backbones and loads that wait for each other
@@ -62,8 +62,8 @@ class Loggers:
             stream, entities.CURVATURE, names=("K2", "K3"), unit="rad/m", limit=settings.curvature_limit,
             palette=colours.AXIS[1:],
         )  # fmt: skip
-        self._heat_map = HeatMap(stream, limit=settings.torque_limit, unit="N m")
-        log_legend(stream, limit=settings.torque_limit, unit="N m", name="C3")
+        self._heat_map = HeatMap(stream, limit=settings.colour_limit)
+        log_legend(stream, limit=settings.colour_limit, unit="N m", name="C3")
         self._style()
 
     # --- the swimmer ---------------------------------------------------------------------------------------------
@@ -98,10 +98,8 @@ class Loggers:
 
     def head_twist(self, stamp: int, twist: Twist) -> None:
         """Speed, and the velocities of the head in its own axes."""
-        speed = float(np.linalg.norm(twist.linear))
-        self.summary.speed = speed
         if self._due("head_twist", stamp, self._number_period):
-            self._scalars(entities.SPEED, [speed])
+            self._scalars(entities.SPEED, [np.linalg.norm(twist.linear)])
             self._scalars(entities.LINEAR, twist.linear)
             self._scalars(entities.ANGULAR, twist.angular)
 
@@ -147,7 +145,7 @@ class Loggers:
             self._torque.draw(wrench.x, torque)
             self._force.draw(wrench.x, force)
             if self._skin is not None:
-                shades = colours.diverging(self._skin.spread(wrench.x, torque[:, 2]), self._settings.torque_limit)
+                shades = colours.diverging(self._skin.spread(wrench.x, torque[:, 2]), self._settings.colour_limit)
                 self._stream.log(entities.SKIN, rr.Mesh3D.from_fields(vertex_colors=shades))
         if self._due("envelope", stamp, ENVELOPE_PERIOD):
             self._torque.draw_envelope()
@@ -177,7 +175,6 @@ class Loggers:
 
     def energy(self, stamp: int, energy: dict[str, float]) -> None:
         """The ledger's terms."""
-        self.summary.residual = energy["residual"]
         if self._due("energy", stamp, self._number_period):
             self._scalars(entities.POWER, [energy[f"{name}_power"] for name in ("actuator", "wake", "nose", "drag")])
             self._scalars(entities.KINETIC, [energy["kinetic_body"], energy["kinetic_fluid"]])
@@ -192,6 +189,7 @@ class Loggers:
     def diagnostics(self, stamp: int, statuses: list[Status]) -> None:
         """Each status whose level or words have changed, as text; the values go into the summary."""
         for status in statuses:
+            self.summary.state = status.message
             self.summary.values.update(status.values)
             if self._statuses.get(status.name) != (status.level, status.message):
                 self._statuses[status.name] = (status.level, status.message)
@@ -258,7 +256,7 @@ class Loggers:
 
     def _style(self) -> None:
         log = self._stream.log
-        log(entities.BACKBONE, rr.LineStrips3D.from_fields(colors=[colours.LABEL], radii=[0.002]), static=True)
+        log(entities.BACKBONE, rr.LineStrips3D.from_fields(colors=[colours.LABEL], radii=[0.001]), static=True)
         log(entities.LOAD, rr.Arrows3D.from_fields(colors=[colours.TEAL], radii=[0.0022]), static=True)
         log(entities.LOAD_ENDS, rr.Arrows3D.from_fields(colors=[colours.MAGENTA], radii=[0.004]), static=True)
         for path in (entities.HEAD, entities.TAIL):
@@ -266,16 +264,16 @@ class Loggers:
         series = {
             entities.POSITION: (("x [m]", "y [m]", "z [m]"), colours.AXIS),
             entities.ORIENTATION: (("qx", "qy", "qz", "qw"), (*colours.AXIS, colours.GREY)),
-            entities.ATTITUDE: (("heading [deg]", "pitch [deg]", "roll [deg]"), (colours.AXIS[2], colours.AXIS[1], colours.AXIS[0])),
-            entities.LINEAR: (("v_x [m/s]", "v_y [m/s]", "v_z [m/s]"), colours.AXIS),
-            entities.ANGULAR: (("w_x [rad/s]", "w_y [rad/s]", "w_z [rad/s]"), colours.AXIS),
+            entities.ATTITUDE: (("heading", "pitch", "roll"), (colours.AXIS[2], colours.AXIS[1], colours.AXIS[0])),
+            entities.LINEAR: (("x", "y", "z"), colours.AXIS),
+            entities.ANGULAR: (("x", "y", "z"), colours.AXIS),
             entities.SPEED: (("speed [m/s]",), (colours.AXIS[2],)),
             entities.DEPTH: (("depth [m]",), (colours.AXIS[0],)),
             entities.POWER: (
-                ("actuator [W]", "wake [W]", "nose [W]", "drag [W]"),
+                ("actuator", "wake", "nose", "drag"),
                 (colours.AXIS[1], colours.AXIS[0], colours.GREY, colours.MAGENTA),
             ),
-            entities.KINETIC: (("body [J]", "fluid [J]"), (colours.AXIS[0], colours.AXIS[2])),
+            entities.KINETIC: (("body", "fluid"), (colours.AXIS[0], colours.AXIS[2])),
             entities.RESIDUAL: (("residual [J]",), (colours.MAGENTA,)),
         }
         for path, (names, shades) in series.items():

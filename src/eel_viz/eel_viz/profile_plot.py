@@ -10,10 +10,10 @@ import rerun as rr
 
 from eel_viz import colours, entities
 
-WIDTH = 3.2
+WIDTH = 5.2
 LABEL_RISE = 0.085  # a label hangs below its point
-BOUNDS_X = (-0.36, WIDTH + 0.16)
-BOUNDS_Y = (-0.76, 0.70)
+BOUNDS_X = (-0.42, WIDTH + 0.18)
+BOUNDS_Y = (-0.79, 0.79)
 
 
 class ProfilePlot:
@@ -88,15 +88,15 @@ class ProfilePlot:
             rr.LineStrips2D.from_fields(colors=behind * 2, radii=rr.Radius.ui_points(0.7)),
             static=True,
         )
-        keys = [(WIDTH * (0.05 + 0.09 * k), -0.62 - LABEL_RISE) for k in range(len(palette))]
+        keys = [(WIDTH * (0.05 + 0.075 * k), -0.62 - LABEL_RISE) for k in range(len(palette))]
         log(f"{self._root}/{entities.KEY}", _labels(keys, list(self._names), palette), static=True)
 
     def _draw_ticks(self, length: float) -> None:
-        places = [(-0.17, -y - LABEL_RISE) for y in (0.5, 0.0, -0.5)]
+        places = [(-0.2, -y - LABEL_RISE) for y in (0.5, 0.0, -0.5)]
         texts = [f"{y * self.limit:+.3g}" if y else "0" for y in (1.0, 0.0, -1.0)]
         places += [(WIDTH * k / 5, 0.585 - LABEL_RISE) for k in range(6)]
         texts += [f"{length * k / 5:.3g}" for k in range(6)]
-        places.append((WIDTH * 0.83, -0.62 - LABEL_RISE))
+        places.append((WIDTH * 0.88, -0.62 - LABEL_RISE))
         texts.append(f"[{self._unit}] over X [m]")
         self._stream.log(f"{self._root}/{entities.TICKS}", _labels(places, texts, [colours.LABEL] * len(texts)))
 

@@ -11,7 +11,11 @@ from eel_viz import colours, entities
 
 HALF = 6  # m, from the middle of the grid to its edge
 CLEARANCE = 0.4  # m, between swimmer and floor at least
-LEGEND_AT = (0.0, 0.0, -0.42)  # m, in the frame that follows the swimmer
+LABELLED = 2  # m, from the swimmer to the labels
+EYE = np.array((-0.46, -0.92, 0.55))  # m, camera in the frame that follows the swimmer
+EYE_TARGET = (0.03, 0.0, -0.05)  # m, where it looks
+LEGEND_AT = (0.5, -0.21, -0.2)  # m, from the camera: ahead, to the right, up
+LEGEND_SIZE = (0.16, 0.009)  # m
 
 
 class Water:
@@ -42,34 +46,34 @@ class Water:
         if self._at != (x, y, floor):
             self._at = (x, y, floor)
             self._place(x, y, floor)
-        shadow = np.array(position, dtype=np.float32)
+        shadow = np.array(position[:: max(1, len(position) // 24)], dtype=np.float32)
         shadow[:, 2] = floor + 0.002
         self._stream.log(entities.SHADOW, rr.LineStrips3D.from_fields(strips=[shadow]))
 
     def _place(self, x: int, y: int, floor: int) -> None:
         self._stream.log(entities.GRID, rr.Transform3D(translation=(x, y, floor)))
-        along = range(x - 3, x + 5)
-        across = range(y - 2, y + 4)
-        places = [(k, y, floor) for k in along] + [(x - 2, k, floor) for k in across if k != y]
-        texts = [f"x {k} m" if k != x - 2 else f"x {k}, y {y}, z {floor} m" for k in along]
-        texts += [f"y {k} m" for k in across if k != y]
+        right, front = x + LABELLED, y - 1  # where they do not stand before the swimmer, as the camera looks at first
+        places = [(i, front, floor) for i in range(x - LABELLED, right)] + [(right, j, floor) for j in range(front, y + 4)]
+        texts = [f"x {i} m" for i in range(x - LABELLED, right)] + [f"y {j} m" for j in range(front, y + 4)]
+        texts[places.index((right, front, floor))] = f"x {right}, y {front}, z {floor} m"
         self._stream.log(
             entities.GRID_LABELS,
             rr.Points3D(
-                places, labels=texts, show_labels=True, radii=rr.Radius.ui_points(1.5),
-                colors=[(128, 160, 186)] * len(texts),
+                places, labels=texts, show_labels=True, radii=rr.Radius.ui_points(2.0),
+                colors=[colours.WATER_LABEL] * len(texts),
             ),
         )  # fmt: skip
 
 
 def log_legend(stream: rr.RecordingStream, *, limit: float, unit: str, name: str) -> None:
-    """A bar of the skin's colours, below the swimmer, in the frame that follows it."""
-    width, height, steps = 0.5, 0.03, 33
-    x = np.linspace(-width / 2, width / 2, steps)
-    vertices = np.zeros((2 * steps, 3), dtype=np.float32)
-    vertices[:steps, 0] = vertices[steps:, 0] = x
-    vertices[steps:, 2] = height
-    vertices += np.array(LEGEND_AT, dtype=np.float32)
+    """A bar of the skin's colours in the lower left corner of the following view, as its camera stands at first."""
+    ahead = _unit(np.subtract(EYE_TARGET, EYE))
+    right = _unit(np.cross(ahead, (0.0, 0.0, 1.0)))
+    up = np.cross(right, ahead)
+    steps = 33
+    middle = EYE + LEGEND_AT[0] * ahead + LEGEND_AT[1] * right + LEGEND_AT[2] * up
+    along = np.linspace(-0.5, 0.5, steps)[:, None] * LEGEND_SIZE[0] * right
+    vertices = np.concatenate([middle + along, middle + along + LEGEND_SIZE[1] * up])
     k = np.arange(steps - 1)
     triangles = np.concatenate([np.stack([k, k + 1, k + steps], 1), np.stack([k + 1, k + steps + 1, k + steps], 1)])
     shades = np.tile(colours.diverging(np.linspace(-1.0, 1.0, steps), 1.0), (2, 1))
@@ -78,8 +82,8 @@ def log_legend(stream: rr.RecordingStream, *, limit: float, unit: str, name: str
         rr.Mesh3D(vertex_positions=vertices, triangle_indices=triangles, vertex_colors=shades),
         static=True,
     )
-    places = [(-width / 2, 0, 0), (0, 0, 0), (width / 2, 0, 0)] + np.array(LEGEND_AT)
-    texts = [f"{-limit:g} {unit}", f"{name} 0", f"+{limit:g} {unit}"]
+    places = [middle + share * LEGEND_SIZE[0] * right for share in (-0.5, 0.0, 0.5)]
+    texts = [f"-{limit:g}", f"{name} [{unit}]", f"+{limit:g}"]
     stream.log(
         f"{entities.LEGEND}/labels",
         rr.Points3D(
@@ -106,3 +110,7 @@ class Track:
         if self._last is not None:
             self._stream.log(entities.TRACK, rr.LineStrips3D.from_fields(strips=[np.stack([self._last, position])]))
         self._last = np.array(position)
+
+
+def _unit(vector: np.ndarray) -> np.ndarray:
+    return vector / np.linalg.norm(vector)

@@ -34,11 +34,12 @@ class Settings:
     skin_rate: float = setting(
         25.0, "skin, arrows and curves drawn per second of simulation time in a file", unit="Hz", minimum=0.1, maximum=1000.0
     )
-    torque_limit: float = setting(1.0, "torque of the deepest colour, and of the plot's edge", unit="N m", minimum=1e-9)
+    colour_limit: float = setting(0.25, "torque C3 from which on colours are deepest", unit="N m", minimum=1e-9)
+    torque_limit: float = setting(0.6, "torque at the plot's edge; grows if need be, like those below", unit="N m", minimum=1e-9)
     force_limit: float = setting(2.0, "force at the plot's edge", unit="N", minimum=1e-9)
     curvature_limit: float = setting(5.0, "curvature at the plot's edge", unit="rad/m", minimum=1e-9)
-    load_scale: float = setting(0.02, "length of the arrow of a load of 1 N/m", unit="m^2/N", minimum=0.0)
-    end_force_scale: float = setting(0.1, "length of the arrow of a force of 1 N at nose or tail", unit="m/N", minimum=0.0)
+    load_scale: float = setting(0.03, "length of the arrow of a load of 1 N/m", unit="m^2/N", minimum=0.0)
+    end_force_scale: float = setting(0.5, "length of the arrow of a force of 1 N at nose or tail", unit="m/N", minimum=0.0)
     memory_limit: str = setting("1GiB", "memory that served data may take before the oldest are dropped")
     stop_with_publisher: bool = setting(
         False, "leave, with status 0, some time after the publishers of the swimmer have gone; they must have been there"

@@ -10,7 +10,7 @@ import numpy as np
 
 from eel_viz.centre_line import Resampling
 
-RINGS = 36
+RINGS = 32
 SIDES = 12
 
 

@@ -7,6 +7,14 @@ import numpy as np
 
 from eel_viz.messages import Body
 
+TOLD = {  # keys of the diagnostics, and the words for them
+    "warnings": "**warnings:**",
+    "accuracy": "accuracy",
+    "real_time_factor": "real-time factor",
+    "closure_torque_relative": "closure",
+    "energy_residual_worst": "worst residual [J]",
+}
+
 
 class Summary:
     """Collects, and writes Markdown."""
@@ -14,8 +22,7 @@ class Summary:
     def __init__(self) -> None:
         self.law: str | None = None
         self.body: Body | None = None
-        self.speed: float | None = None  # m/s
-        self.residual: float | None = None  # J
+        self.state = ""  # in the diagnostics' words
         self.values: dict[str, str] = {}  # of the diagnostics
         self._first: tuple[int, np.ndarray] | None = None
         self._last: tuple[int, np.ndarray] | None = None
@@ -37,20 +44,16 @@ class Summary:
 
     def text(self) -> str:
         """Markdown, one paragraph a line."""
-        lines = []
+        lines = [", ".join(([f"law **{self.law}**"] if self.law is not None else []) + ([self.state] if self.state else []))]
         if self._last is not None and self._first is not None:
             stamp, position = self._last
             seconds = (stamp - self._first[0]) / 1e9
             mean = self._path / seconds if seconds > 0 else 0.0
-            speed = "" if self.speed is None else f", speed {self.speed:.3f} m/s"
-            lines.append(f"**{stamp / 1e9:.2f} s**{speed}, mean {mean:.3f} m/s, path {self._path:.2f} m")
-            lines.append("head at " + ", ".join(f"{name} {value:+.3f}" for name, value in zip("xyz", position, strict=True)) + " m")
-        if self.law is not None:
-            lines.append(f"law **{self.law}**")
-        if self.body is not None:
-            lines.append(f"body {self.body.length:.3g} m, {self.body.mass:.4g} kg")
+            lines.append(f"mean speed **{mean:.3f} m/s**, path {self._path:.2f} m")
         torque, x, stamp = self._peak
         if torque:
-            lines.append(f"greatest C3 {torque:+.3f} N m at X {x:.2f} m, {stamp / 1e9:.2f} s")
-        lines += [f"{key.replace('_', ' ')} {value}" for key, value in self.values.items()]
-        return "\n\n".join(lines)
+            lines.append(f"greatest C3 **{torque:+.3f} N m** at X {x:.2f} m, {stamp / 1e9:.2f} s")
+        lines.append(", ".join(f"{words} {self.values[key]}" for key, words in TOLD.items() if self.values.get(key)))
+        if self.body is not None:
+            lines.append(f"body {self.body.length:.3g} m, {self.body.mass:.4g} kg")
+        return "\n\n".join(line for line in lines if line)
