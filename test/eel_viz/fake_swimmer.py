@@ -10,17 +10,24 @@ import made_up
 import rclpy
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
-from eel_msgs.msg import Backbone, BodyGeometry, Curvature, CurvatureLaw, EnergyLedger, HydrodynamicLoad, InternalWrench
 from geometry_msgs.msg import PoseStamped, TwistStamped, Vector3
 from nav_msgs.msg import Odometry
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 
+from eel_msgs.msg import Backbone, BodyGeometry, Curvature, CurvatureLaw, EnergyLedger, HydrodynamicLoad, InternalWrench
+
 EVERY = QoSProfile(history=HistoryPolicy.KEEP_ALL, depth=1, reliability=ReliabilityPolicy.RELIABLE)
 LATCHED = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 TOPICS = {
-    "head_pose": PoseStamped, "head_twist": TwistStamped, "odom": Odometry, "backbone": Backbone, "curvature": Curvature,
-    "internal_wrench": InternalWrench, "hydrodynamic_load": HydrodynamicLoad, "energy": EnergyLedger,
-}  # fmt: skip
+    "head_pose": PoseStamped,
+    "head_twist": TwistStamped,
+    "odom": Odometry,
+    "backbone": Backbone,
+    "curvature": Curvature,
+    "internal_wrench": InternalWrench,
+    "hydrodynamic_load": HydrodynamicLoad,
+    "energy": EnergyLedger,
+}
 
 
 def messages(swimmer: made_up.Swimmer, nanoseconds: int) -> dict:
@@ -42,7 +49,11 @@ def messages(swimmer: made_up.Swimmer, nanoseconds: int) -> dict:
     out["backbone"].x = swimmer.x.tolist()
     out["backbone"].position = backbone["position"].ravel().tolist()
     out["backbone"].orientation = backbone["orientation"].ravel().tolist()
-    for topic, values in (("curvature", swimmer.curvature(t)), ("internal_wrench", swimmer.wrench(t)), ("hydrodynamic_load", swimmer.load(t))):
+    for topic, values in (
+        ("curvature", swimmer.curvature(t)),
+        ("internal_wrench", swimmer.wrench(t)),
+        ("hydrodynamic_load", swimmer.load(t)),
+    ):
         for name, array in values.items():
             vector = name.endswith("_force")
             setattr(out[topic], name, Vector3(x=array[0], y=array[1], z=array[2]) if vector else array.tolist())
@@ -53,7 +64,9 @@ def messages(swimmer: made_up.Swimmer, nanoseconds: int) -> dict:
 
 def body_message(stations: int) -> BodyGeometry:
     fields = made_up.body(stations)
-    return BodyGeometry(**{name: value if isinstance(value, float) else value.tolist() for name, value in fields.items()})
+    return BodyGeometry(
+        **{name: value if isinstance(value, float) else value.tolist() for name, value in fields.items()}
+    )
 
 
 def diagnostics(nanoseconds: int) -> DiagnosticArray:

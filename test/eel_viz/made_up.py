@@ -1,6 +1,6 @@
 """A swimmer that never was: smooth analytic fields with the shapes, frames and sizes of the real messages.
 
-Kinematics are consistent (the backbone is the integral of the curvature, the sections are orthonormal), loads are made up.
+The backbone is the integral of the curvature and the sections are orthonormal; the loads are made up.
 """
 
 import numpy as np
@@ -16,9 +16,12 @@ def body(stations: int = STATIONS) -> dict:
     narrow = -(np.sin(np.pi * x - np.pi / 2) + 1) / 6 - x**2 / 8 + 0.5
     bend = np.clip((20 * x - 4) / 11, 0.0, 1.0)
     return {
-        "length": LENGTH, "mass": 1.944, "x": x, "half_width": radius * narrow,
+        "length": LENGTH,
+        "mass": 1.944,
+        "x": x,
+        "half_width": radius * narrow,
         "half_height": radius * (1 - (np.sin(np.pi * bend - np.pi / 2) + 1) / 5),
-    }  # fmt: skip
+    }
 
 
 class Swimmer:
@@ -34,9 +37,12 @@ class Swimmer:
         phase = 2 * np.pi * (x - t)
         pitch = 0.5 * (np.sin(np.pi * t / 5) ** 3) * np.ones_like(x)
         return {
-            "x": x, "yaw": ramp * amplitude * np.sin(phase), "yaw_rate": -2 * np.pi * ramp * amplitude * np.cos(phase),
-            "pitch": pitch, "pitch_rate": 0.3 * np.pi * np.sin(np.pi * t / 5) ** 2 * np.cos(np.pi * t / 5) * np.ones_like(x),
-        }  # fmt: skip
+            "x": x,
+            "yaw": ramp * amplitude * np.sin(phase),
+            "yaw_rate": -2 * np.pi * ramp * amplitude * np.cos(phase),
+            "pitch": pitch,
+            "pitch_rate": 0.3 * np.pi * np.sin(np.pi * t / 5) ** 2 * np.cos(np.pi * t / 5) * np.ones_like(x),
+        }
 
     def head(self, t: float) -> dict:
         """Position (3,), orientation (4,), linear and angular velocity (3,)."""
@@ -48,15 +54,18 @@ class Swimmer:
         half_yaw, half_roll = heading / 2, roll / 2
         orientation = np.array(
             [
-                np.cos(half_yaw) * np.sin(half_roll), np.sin(half_yaw) * np.sin(half_roll),
-                np.sin(half_yaw) * np.cos(half_roll), np.cos(half_yaw) * np.cos(half_roll),
+                np.cos(half_yaw) * np.sin(half_roll),
+                np.sin(half_yaw) * np.sin(half_roll),
+                np.sin(half_yaw) * np.cos(half_roll),
+                np.cos(half_yaw) * np.cos(half_roll),
             ]
-        )  # fmt: skip
+        )
         return {
-            "position": self.offset + (distance, 0.015 * t * t + sway, z), "orientation": orientation,
+            "position": self.offset + np.array([distance, 0.015 * t * t + sway, z]),
+            "orientation": orientation,
             "linear": np.array([0.3 * t / (t + 1.0), 0.1 * np.sin(2 * np.pi * t), -0.05 * np.sin(np.pi * t / 10)]),
             "angular": np.array([0.1 * np.cos(np.pi * t), 0.02, 2.2 * np.cos(2 * np.pi * t)]),
-        }  # fmt: skip
+        }
 
     def backbone(self, t: float) -> dict:
         """Positions (M, 3) and orientations (M, 4) by marching the curvature from the head with small rotations."""
@@ -68,7 +77,13 @@ class Swimmer:
         for k in range(len(self.x) - 1):
             h = self.x[k + 1] - self.x[k]
             # section axes 2, 3 are -y, +z of base_link
-            turn = h * np.array([0.0, -0.5 * (curvature["pitch"][k] + curvature["pitch"][k + 1]), 0.5 * (curvature["yaw"][k] + curvature["yaw"][k + 1])])
+            turn = h * np.array(
+                [
+                    0.0,
+                    -0.5 * (curvature["pitch"][k] + curvature["pitch"][k + 1]),
+                    0.5 * (curvature["yaw"][k] + curvature["yaw"][k + 1]),
+                ]
+            )
             middle = _times(q, _small(turn / 2))
             position[k + 1] = position[k] + _rotate(middle, np.array([-h, 0.0, 0.0]))
             q = _times(q, _small(turn))
@@ -80,28 +95,42 @@ class Swimmer:
         bell = (x * (1 - x)) ** 1.2 * 4
         wave = 2 * np.pi * (0.9 * x - t)
         return {
-            "x": x, "torque_1": 0.02 * ramp * bell * np.sin(wave / 2), "torque_2": 0.15 * bell * np.sin(np.pi * t / 5),
-            "torque_3": 0.55 * ramp * bell * np.sin(wave + 0.4), "force_1": 0.8 * ramp * bell * np.cos(2 * wave) - 0.1 * (1 - x),
-            "force_2": 1.3 * ramp * bell * np.cos(wave), "force_3": 0.2 * ramp * bell * np.sin(np.pi * t / 5),
-        }  # fmt: skip
+            "x": x,
+            "torque_1": 0.02 * ramp * bell * np.sin(wave / 2),
+            "torque_2": 0.15 * bell * np.sin(np.pi * t / 5),
+            "torque_3": 0.55 * ramp * bell * np.sin(wave + 0.4),
+            "force_1": 0.8 * ramp * bell * np.cos(2 * wave) - 0.1 * (1 - x),
+            "force_2": 1.3 * ramp * bell * np.cos(wave),
+            "force_3": 0.2 * ramp * bell * np.sin(np.pi * t / 5),
+        }
 
     def load(self, t: float) -> dict:
         x, ramp = self.x, min(t, 1.0) ** 2
         wave = 2 * np.pi * (x - t)
         return {
-            "x": x, "force_1": -0.05 * ramp * np.ones_like(x), "force_2": 6.0 * ramp * (0.3 + x) * np.cos(wave),
-            "force_3": 0.8 * ramp * x * np.sin(np.pi * t / 5) * np.ones_like(x), "resistive_1": -0.05 * ramp * np.ones_like(x),
-            "resistive_2": 2.0 * ramp * (0.3 + x) * np.cos(wave), "resistive_3": 0.1 * ramp * x,
-            "tail_force": np.array([-0.4 * ramp, 0.3 * ramp * np.sin(2 * np.pi * t), 0.0]), "nose_force": np.array([0.1, 0.0, 0.0]) * ramp,
-        }  # fmt: skip
+            "x": x,
+            "force_1": -0.05 * ramp * np.ones_like(x),
+            "force_2": 6.0 * ramp * (0.3 + x) * np.cos(wave),
+            "force_3": 0.8 * ramp * x * np.sin(np.pi * t / 5) * np.ones_like(x),
+            "resistive_1": -0.05 * ramp * np.ones_like(x),
+            "resistive_2": 2.0 * ramp * (0.3 + x) * np.cos(wave),
+            "resistive_3": 0.1 * ramp * x,
+            "tail_force": np.array([-0.4 * ramp, 0.3 * ramp * np.sin(2 * np.pi * t), 0.0]),
+            "nose_force": np.array([0.1, 0.0, 0.0]) * ramp,
+        }
 
     def energy(self, t: float) -> dict:
         ramp = min(t, 1.0) ** 2
         actuator = ramp * (1.1 + np.sin(4 * np.pi * t))
         return {
-            "kinetic_body": 0.1 * ramp, "kinetic_fluid": 0.25 * ramp * (1 + 0.2 * np.sin(4 * np.pi * t)), "actuator_power": actuator,
-            "wake_power": -0.5 * actuator, "nose_power": -0.03 * ramp, "drag_power": -0.35 * actuator, "residual": 1e-5 * np.sin(3 * t) * t,
-        }  # fmt: skip
+            "kinetic_body": 0.1 * ramp,
+            "kinetic_fluid": 0.25 * ramp * (1 + 0.2 * np.sin(4 * np.pi * t)),
+            "actuator_power": actuator,
+            "wake_power": -0.5 * actuator,
+            "nose_power": -0.03 * ramp,
+            "drag_power": -0.35 * actuator,
+            "residual": 1e-5 * np.sin(3 * t) * t,
+        }
 
 
 def _small(turn: np.ndarray) -> np.ndarray:

@@ -1,6 +1,6 @@
 """The backbone between its stations: cubic Hermite in position, whose slope is known exactly (dr/dX = t1).
 
-So the skin can have its own abscissae, finer at the nose, and does not change its mesh when the number of stations does.
+So the skin can have its own abscissae, finer at the nose, and keeps its mesh when the number of stations changes.
 """
 
 import numpy as np
@@ -31,7 +31,7 @@ class Resampling:
     def centre_line(self, position: np.ndarray, orientation: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Position [m], (R, 3), and section axes, (R, 3, 3) with columns t1, t2, t3, both in the world frame.
 
-        `position` (M, 3) [m] and `orientation` (M, 4) are those of the message `Backbone` (REP-103 axes of each station).
+        `position` (M, 3) [m] and `orientation` (M, 4) are those of the message `Backbone` (REP-103 axes).
         """
         axes = world_from_body(orientation) * (-1.0, -1.0, 1.0)
         position = np.asarray(position, dtype=float)

@@ -21,14 +21,23 @@ WATER_BACKGROUND = (9, 20, 33)
 
 _ANCHORS = np.array(
     [
-        (35, 60, 170), (66, 106, 214), (106, 150, 240), (162, 194, 250), (225, 225, 225),
-        (247, 184, 150), (236, 128, 98), (208, 66, 54), (165, 12, 38),
+        (35, 60, 170),
+        (66, 106, 214),
+        (106, 150, 240),
+        (162, 194, 250),
+        (225, 225, 225),
+        (247, 184, 150),
+        (236, 128, 98),
+        (208, 66, 54),
+        (165, 12, 38),
     ],
     dtype=float,
-)  # fmt: skip
-DIVERGING = np.stack(
-    [np.interp(np.linspace(0, 8, 256), np.arange(9), _ANCHORS[:, channel]) for channel in range(3)], axis=1
-).round().astype(np.uint8)
+)
+DIVERGING = (
+    np.stack([np.interp(np.linspace(0, 8, 256), np.arange(9), _ANCHORS[:, channel]) for channel in range(3)], axis=1)
+    .round()
+    .astype(np.uint8)
+)
 
 
 def dim(colour: tuple[int, int, int], factor: float = 0.45) -> tuple[int, int, int]:

@@ -82,7 +82,9 @@ def picked(message, field: str | None):
 
 def as_yaml(value, *, short: int | None = None) -> str:
     """YAML of a message or a part of one; arrays end after `short` elements."""
-    return yaml.safe_dump(_plain(value, short), sort_keys=False, allow_unicode=True, default_flow_style=False, width=10**6).replace("\n...\n", "\n")
+    return yaml.safe_dump(
+        _plain(value, short), sort_keys=False, allow_unicode=True, default_flow_style=False, width=10**6
+    ).replace("\n...\n", "\n")
 
 
 def _plain(value, short: int | None):

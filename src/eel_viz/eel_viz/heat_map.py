@@ -3,6 +3,8 @@
 It is a rolling image of palette indices (one byte each), a column per `STEP` seconds, with its own axes and colour bar.
 """
 
+from itertools import pairwise
+
 import numpy as np
 import rerun as rr
 
@@ -48,13 +50,20 @@ class HeatMap:
     def _draw_frame(self) -> None:
         bar = np.linspace(0, ROWS, 65)
         left, right = COLUMNS + 4.0, COLUMNS + 8.0
-        steps = [[((left + right) / 2, y0), ((left + right) / 2, y1)] for y0, y1 in zip(bar[:-1], bar[1:], strict=True)]
+        steps = [[((left + right) / 2, y0), ((left + right) / 2, y1)] for y0, y1 in pairwise(bar)]
         shades = colours.diverging(np.linspace(1.0, -1.0, 64), 1.0)
         self._stream.log(
-            f"{entities.HEAT_MAP_FRAME}/bar", rr.LineStrips2D(steps, colors=shades, radii=(right - left) / 2), static=True
+            f"{entities.HEAT_MAP_FRAME}/bar",
+            rr.LineStrips2D(steps, colors=shades, radii=(right - left) / 2),
+            static=True,
         )
         rise = 4.2
-        places = [(-7.0, 2.5 - rise), (-7.0, ROWS - 2.5 - rise), (right + 9.0, 2.5 - rise), (right + 9.0, ROWS / 2 - rise)]
+        places = [
+            (-7.0, 2.5 - rise),
+            (-7.0, ROWS - 2.5 - rise),
+            (right + 9.0, 2.5 - rise),
+            (right + 9.0, ROWS / 2 - rise),
+        ]
         places += [(right + 9.0, ROWS - 2.5 - rise)]
         texts = ["head", "tail", f"+{self._limit:g}", "0", f"-{self._limit:g}"]
         span = COLUMNS * STEP
@@ -63,8 +72,11 @@ class HeatMap:
         self._stream.log(
             f"{entities.HEAT_MAP_FRAME}/labels",
             rr.Points2D(
-                places, labels=texts, colors=[colours.LABEL] * len(texts), show_labels=True,
+                places,
+                labels=texts,
+                colors=[colours.LABEL] * len(texts),
+                show_labels=True,
                 radii=rr.Radius.ui_points(0.1),
             ),
             static=True,
-        )  # fmt: skip
+        )

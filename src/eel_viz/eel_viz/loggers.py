@@ -1,8 +1,8 @@
 """The swimmer's messages into one Rerun stream: one method for each message, each called at the message's own time.
 
-Geometry is drawn in single precision `drawing_rate` times a second; scalars and profiles go in as they are, in double
-precision, `number_rate` times a second (0: every one). What belongs together has the same time, and that is all that ties
-it: the skin takes its shape from the backbone and its colour from the torque, whichever comes first.
+Geometry is drawn in single precision at one rate; scalars and profiles go in as they are, in double precision, at
+another (see `Rates`). What belongs together has the same time, and that is all that ties it: the skin takes its shape
+from the backbone and its colour from the torque, whichever comes first.
 """
 
 from collections import OrderedDict
@@ -12,10 +12,10 @@ import numpy as np
 import rerun as rr
 
 from eel_viz import colours, entities
+from eel_viz.centre_line import Resampling
 from eel_viz.heat_map import HeatMap
 from eel_viz.messages import Backbone, Body, Load, Pose, Profiles, Status, Twist
 from eel_viz.orientation import attitude, world_from_section
-from eel_viz.centre_line import Resampling
 from eel_viz.profile_plot import ProfilePlot
 from eel_viz.scene import Track, Water, log_legend
 from eel_viz.settings import Settings
@@ -56,12 +56,20 @@ class Loggers:
         stream.log(entities.WORLD, rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
         self._water = Water(stream)
         self._track = Track(stream)
-        self._torque = ProfilePlot(stream, entities.TORQUE, names=("C1", "C2", "C3"), unit="N m", limit=settings.torque_limit)
-        self._force = ProfilePlot(stream, entities.FORCE, names=("N1", "N2", "N3"), unit="N", limit=settings.force_limit)
+        self._torque = ProfilePlot(
+            stream, entities.TORQUE, names=("C1", "C2", "C3"), unit="N m", limit=settings.torque_limit
+        )
+        self._force = ProfilePlot(
+            stream, entities.FORCE, names=("N1", "N2", "N3"), unit="N", limit=settings.force_limit
+        )
         self._curvature = ProfilePlot(
-            stream, entities.CURVATURE, names=("K2", "K3"), unit="rad/m", limit=settings.curvature_limit,
+            stream,
+            entities.CURVATURE,
+            names=("K2", "K3"),
+            unit="rad/m",
+            limit=settings.curvature_limit,
             palette=colours.AXIS[1:],
-        )  # fmt: skip
+        )
         self._heat_map = HeatMap(stream, limit=settings.colour_limit)
         log_legend(stream, limit=settings.colour_limit, unit="N m", name="C3")
         self._style()
@@ -91,7 +99,8 @@ class Loggers:
         if self._due("track", stamp, self._drawing_period):
             self._track.draw(pose.position)
             self._stream.log(
-                entities.HEAD, rr.Transform3D(translation=pose.position, quaternion=rr.Quaternion(xyzw=pose.orientation))
+                entities.HEAD,
+                rr.Transform3D(translation=pose.position, quaternion=rr.Quaternion(xyzw=pose.orientation)),
             )
         if self._due("summary", stamp, SUMMARY_PERIOD):
             self._stream.log(entities.RUN, rr.TextDocument(self.summary.text(), media_type="text/markdown"))
@@ -106,16 +115,17 @@ class Loggers:
     def odometry(self, stamp: int, pose: Pose, twist: Twist) -> None:
         """The numbers of odom; what they show is drawn from head_pose and head_twist."""
         if self._due("odom", stamp, self._number_period):
-            values = {
-                "position": pose.position, "orientation": pose.orientation, "linear": twist.linear, "angular": twist.angular,
-            }  # fmt: skip
+            values = {"position": pose.position, "orientation": pose.orientation}
+            values |= {"linear": twist.linear, "angular": twist.angular}
             self._numbers(entities.ODOMETRY_NUMBERS, "Odometry", values)
 
     def backbone(self, stamp: int, backbone: Backbone) -> None:
         """Line, skin, floor and camera."""
         if self._due("backbone", stamp, self._number_period):
             self._at(stamp)
-            self._stream.log(entities.BACKBONE, rr.LineStrips3D.from_fields(strips=[backbone.position.astype(np.float32)]))
+            self._stream.log(
+                entities.BACKBONE, rr.LineStrips3D.from_fields(strips=[backbone.position.astype(np.float32)])
+            )
         if not self._due("skin", stamp, self._drawing_period):
             return
         self._at(stamp)
@@ -133,7 +143,10 @@ class Loggers:
 
     def internal_wrench(self, stamp: int, wrench: Profiles) -> None:
         """Torques and forces along the body; C3 colours the skin and makes the heat map."""
-        torque, force = wrench.together("torque_1", "torque_2", "torque_3"), wrench.together("force_1", "force_2", "force_3")
+        torque, force = (
+            wrench.together("torque_1", "torque_2", "torque_3"),
+            wrench.together("force_1", "force_2", "force_3"),
+        )
         self.summary.strain(stamp, wrench.x, torque[:, 2])
         self._torque.include(wrench.x, torque)
         self._force.include(wrench.x, force)
@@ -282,5 +295,3 @@ class Loggers:
 
 def _period(rate: float) -> int:
     return round(1e9 / rate) if rate else 0
-
-

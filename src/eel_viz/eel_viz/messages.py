@@ -87,8 +87,14 @@ class Status:
 
 
 ENERGY_FIELDS = (
-    "kinetic_body", "kinetic_fluid", "actuator_power", "wake_power", "nose_power", "drag_power", "residual",
-)  # fmt: skip
+    "kinetic_body",
+    "kinetic_fluid",
+    "actuator_power",
+    "wake_power",
+    "nose_power",
+    "drag_power",
+    "residual",
+)
 WRENCH_FIELDS = ("torque_1", "torque_2", "torque_3", "force_1", "force_2", "force_3")
 CURVATURE_FIELDS = ("pitch", "pitch_rate", "yaw", "yaw_rate")
 LOAD_FIELDS = ("force_1", "force_2", "force_3", "resistive_1", "resistive_2", "resistive_3")

@@ -10,12 +10,12 @@ from collections import Counter
 from dataclasses import fields
 
 from diagnostic_msgs.msg import DiagnosticArray
-from eel_msgs.msg import Backbone, BodyGeometry, Curvature, CurvatureLaw, EnergyLedger, HydrodynamicLoad, InternalWrench
 from geometry_msgs.msg import PoseStamped, TwistStamped
 from nav_msgs.msg import Odometry
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from rclpy.node import Node
 
+from eel_msgs.msg import Backbone, BodyGeometry, Curvature, CurvatureLaw, EnergyLedger, HydrodynamicLoad, InternalWrench
 from eel_viz import messages
 from eel_viz.lifetime import live
 from eel_viz.messages import BadMessage, stamp_of
@@ -26,6 +26,7 @@ from eel_viz.sinks import destinations
 
 NAME = "visualiser"
 DEFAULTS = ["--ros-args", "-p", "use_sim_time:=true", "--"]  # what the user says comes after, and wins
+EVERY = keep_all()
 GONE = 1.0  # s without publishers and messages, after which `stop_with_publisher` ends the node
 
 
@@ -81,7 +82,7 @@ class Visualiser(Node):
     def _warn(self, text: str) -> None:
         self.get_logger().warning(text)
 
-    def _listen(self, topic, kind, show, quality=keep_all()) -> None:
+    def _listen(self, topic, kind, show, quality=EVERY) -> None:
         def receive(message):
             self.received[topic] += 1
             self._last_message = time.monotonic()

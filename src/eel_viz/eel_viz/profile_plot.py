@@ -23,9 +23,15 @@ class ProfilePlot:
     """
 
     def __init__(
-        self, stream: rr.RecordingStream, root: str, *, names: tuple[str, ...], unit: str, limit: float,
+        self,
+        stream: rr.RecordingStream,
+        root: str,
+        *,
+        names: tuple[str, ...],
+        unit: str,
+        limit: float,
         palette: tuple[tuple[int, int, int], ...] = colours.AXIS,
-    ):  # fmt: skip
+    ):
         self._stream, self._root, self._names, self._unit = stream, root, names, unit
         self.limit = limit
         self._palette = palette
@@ -50,14 +56,17 @@ class ProfilePlot:
             self._ticks = (self.limit, length)
             self._draw_ticks(length)
         self._stream.log(
-            f"{self._root}/{entities.CURVES}", rr.LineStrips2D.from_fields(strips=self._drawn(x, values), draw_order=30.0)
+            f"{self._root}/{entities.CURVES}",
+            rr.LineStrips2D.from_fields(strips=self._drawn(x, values), draw_order=30.0),
         )
 
     def draw_envelope(self) -> None:
         """The least and the greatest value so far at each station, behind the curves."""
         if self._x is not None:
             strips = np.concatenate([self._drawn(self._x, self._low), self._drawn(self._x, self._high)])
-            self._stream.log(f"{self._root}/{entities.ENVELOPE}", rr.LineStrips2D.from_fields(strips=strips, draw_order=20.0))
+            self._stream.log(
+                f"{self._root}/{entities.ENVELOPE}", rr.LineStrips2D.from_fields(strips=strips, draw_order=20.0)
+            )
 
     def _drawn(self, x: np.ndarray, values: np.ndarray) -> np.ndarray:
         strips = np.empty((values.shape[1], len(x), 2), dtype=np.float32)

@@ -26,5 +26,7 @@ def fitting(offers: list[QoSProfile]) -> QoSProfile:
 def hears(profile: QoSProfile, offer: QoSProfile) -> bool:
     """Whether a subscription of `profile` matches a publisher's `offer`."""
     reliable = profile.reliability == ReliabilityPolicy.RELIABLE and offer.reliability != ReliabilityPolicy.RELIABLE
-    latched = profile.durability == DurabilityPolicy.TRANSIENT_LOCAL and offer.durability != DurabilityPolicy.TRANSIENT_LOCAL
+    latched = (
+        profile.durability == DurabilityPolicy.TRANSIENT_LOCAL and offer.durability != DurabilityPolicy.TRANSIENT_LOCAL
+    )
     return not reliable and not latched

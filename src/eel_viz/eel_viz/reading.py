@@ -17,7 +17,7 @@ from eel_viz.entities import TIMELINE
 
 @dataclass(frozen=True, kw_only=True)
 class Columns:
-    """One entity. `stamps` (T,) [ns] are those of all its rows; of each component, values and the stamps that have them."""
+    """One entity: the `stamps` (T,) [ns] of all its rows, and of each component the values and their stamps."""
 
     stamps: np.ndarray
     values: dict[str, list]

@@ -1,7 +1,7 @@
 """Records topics to a rosbag2 folder in MCAP storage, for `ros2 bag play` and `rosbags`, where there is no `ros2 bag`.
 
-Messages are written as they come, undecoded. The suite's own topics are listened to from the start, so that a run without
-a pace loses nothing; others as soon as they are discovered. Stamps in the bag are times of reception.
+Messages are written as they come, undecoded. The suite's own topics are listened to from the start, so that a run
+without a pace loses nothing; others as soon as they are discovered. Stamps in the bag are times of reception.
 """
 
 import argparse
@@ -25,12 +25,18 @@ GONE = 1.0  # s without publishers and messages, after which --stop-with-publish
 LOOK = 0.2  # s between two looks at who is there
 GLOBAL = {"/clock": "rosgraph_msgs/msg/Clock", "/diagnostics": "diagnostic_msgs/msg/DiagnosticArray"}
 OWN = {
-    "head_pose": "geometry_msgs/msg/PoseStamped", "head_twist": "geometry_msgs/msg/TwistStamped",
-    "odom": "nav_msgs/msg/Odometry", "backbone": "eel_msgs/msg/Backbone", "curvature": "eel_msgs/msg/Curvature",
-    "internal_wrench": "eel_msgs/msg/InternalWrench", "hydrodynamic_load": "eel_msgs/msg/HydrodynamicLoad",
-    "energy": "eel_msgs/msg/EnergyLedger", "body": "eel_msgs/msg/BodyGeometry",
-    "curvature_law": "eel_msgs/msg/CurvatureLaw", "curvature_samples": "eel_msgs/msg/CurvatureSamples",
-}  # fmt: skip
+    "head_pose": "geometry_msgs/msg/PoseStamped",
+    "head_twist": "geometry_msgs/msg/TwistStamped",
+    "odom": "nav_msgs/msg/Odometry",
+    "backbone": "eel_msgs/msg/Backbone",
+    "curvature": "eel_msgs/msg/Curvature",
+    "internal_wrench": "eel_msgs/msg/InternalWrench",
+    "hydrodynamic_load": "eel_msgs/msg/HydrodynamicLoad",
+    "energy": "eel_msgs/msg/EnergyLedger",
+    "body": "eel_msgs/msg/BodyGeometry",
+    "curvature_law": "eel_msgs/msg/CurvatureLaw",
+    "curvature_samples": "eel_msgs/msg/CurvatureSamples",
+}
 UNASKED = ("/rosout", "/parameter_events")  # recorded only by name
 SWIMMER = "head_pose"  # its publishers' leaving ends a recording with --stop-with-publisher
 
@@ -150,8 +156,12 @@ def _stored(offer: QoSProfile) -> Qos:
 def main(arguments: list[str] | None = None) -> int:
     """Command line; status 0 after SIGINT, SIGTERM or the end that was asked for, 2 if it cannot begin."""
     words = sys.argv if arguments is None else [NAME, *arguments]
-    parser = argparse.ArgumentParser(prog=NAME, description="Record topics to a rosbag2 folder (MCAP), readable by ros2 bag and rosbags.")
-    parser.add_argument("topics", nargs="*", help="names; none: every topic of the namespace, /clock, /diagnostics and /tf")
+    parser = argparse.ArgumentParser(
+        prog=NAME, description="Record topics to a rosbag2 folder (MCAP), readable by ros2 bag and rosbags."
+    )
+    parser.add_argument(
+        "topics", nargs="*", help="names; none: every topic of the namespace, /clock, /diagnostics and /tf"
+    )
     parser.add_argument("-o", "--output", required=True, metavar="FOLDER", help="new folder of the bag")
     parser.add_argument("--namespace", default="/", metavar="NS", help="of the swimmer (default /)")
     parser.add_argument("--duration", type=float, metavar="SECONDS", help="end after so much wall time")

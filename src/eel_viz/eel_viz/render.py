@@ -12,8 +12,10 @@ import pathlib
 import socket
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Iterator
+from typing import IO
 
 from eel_viz.entities import TIMELINE
 
@@ -26,7 +28,11 @@ class CannotRender(RuntimeError):
 
 
 def render(
-    recording: str | os.PathLike[str], picture: str | os.PathLike[str], *, at: float, size: tuple[int, int] = (1920, 1080)
+    recording: str | os.PathLike[str],
+    picture: str | os.PathLike[str],
+    *,
+    at: float,
+    size: tuple[int, int] = (1920, 1080),
 ) -> None:
     """Write the PNG `picture` of `recording` at simulation time `at` [s], `size` in pixels."""
     path = pathlib.Path(recording).resolve()
@@ -49,18 +55,18 @@ def viewer(size: tuple[int, int] = (1920, 1080)) -> Iterator:
     command += ["--bind", "127.0.0.1", "--hide-welcome-screen"]
     # with more than errors in the log, notices of the start would be in the picture
     environment = {**os.environ, "RUST_LOG": "error", "RERUN_APP_ONLY": "true"}
-    process = subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
-    try:
-        _await_listening(process, port)
-        yield ViewerClient.connect(f"rerun+http://127.0.0.1:{port}/proxy")
-    finally:
-        process.terminate()
+    with tempfile.TemporaryFile() as said:
+        process = subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=said)
         try:
-            process.wait(timeout=5)
-        except subprocess.TimeoutExpired:
-            process.kill()
-            process.wait()
-        process.stderr.close()
+            _await_listening(process, port, said)
+            yield ViewerClient.connect(f"rerun+http://127.0.0.1:{port}/proxy")
+        finally:
+            process.terminate()
+            try:
+                process.wait(timeout=5)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
 
 
 def native_viewer() -> str:
@@ -85,12 +91,13 @@ def listening(port: int, host: str = "127.0.0.1") -> bool:
         return probe.connect_ex((host, port)) == 0
 
 
-def _await_listening(process: subprocess.Popen, port: int) -> None:
+def _await_listening(process: subprocess.Popen, port: int, said: IO[bytes]) -> None:
     limit = time.monotonic() + START_LIMIT
     while not listening(port):
         if process.poll() is not None:
-            lines = process.stderr.read().decode(errors="replace").strip().splitlines()
-            reason = next((line for line in lines if "graphics" in line or "render" in line or "error" in line.lower()), "")
+            said.seek(0)
+            lines = said.read().decode(errors="replace").splitlines()
+            reason = next((line for line in lines if "graphics" in line or "render" in line.lower()), "")
             raise CannotRender(
                 f"the viewer ended with status {process.returncode} ({reason.strip() or 'no reason given'}); it needs a "
                 "Vulkan driver: apt-get install --no-install-recommends mesa-vulkan-drivers"

@@ -1,7 +1,7 @@
 """Runs of the simulation, each a recording of its own: a stamp that goes back begins the next one.
 
-Topics reach a reset one by one, in any order; so each topic has its own place in the row of runs, and a run is closed once
-every topic that was in it has gone on. What is valid at all times (the body, the law) is given to each new recording.
+Topics reach a reset one by one, in any order; so each topic has its own place in the row of runs, and a run is closed
+once every topic that was in it has gone on. What is valid at all times (the body, the law) is given to each new one.
 """
 
 import time
@@ -39,7 +39,11 @@ class Runs:
     """
 
     def __init__(
-        self, destinations: list[Destination], name: str, warn: Say, crowded: Callable[[str], bool] = lambda topic: False
+        self,
+        destinations: list[Destination],
+        name: str,
+        warn: Say,
+        crowded: Callable[[str], bool] = lambda topic: False,
     ) -> None:
         self._destinations, self._name, self._warn, self._crowded = destinations, name, warn, crowded
         self._place: dict[str, tuple[int, int]] = {}  # topic: number of its run, last stamp
@@ -65,7 +69,9 @@ class Runs:
                 return []
             number += 1
             if number not in self._runs:
-                self._warn(f"stamps of {topic} went back from {last / 1e9:g} s to {stamp / 1e9:g} s: a new recording begins")
+                self._warn(
+                    f"stamps of {topic} went back from {last / 1e9:g} s to {stamp / 1e9:g} s: a new recording begins"
+                )
                 self._begin(number)
         self._place[topic] = (number, stamp)
         if stamp < last:
@@ -143,7 +149,9 @@ class Runs:
         often = len(self._resets) == RESETS and now - self._resets[0] < SPAN
         if often and self._crowded(topic):
             if not self._warned:
-                self._warn(f"stamps of {topic} go back and forth, it has more than one publisher: older ones are left out")
+                self._warn(
+                    f"stamps of {topic} go back and forth, it has more than one publisher: older ones are left out"
+                )
                 self._warned = True
             return True
         self._resets.append(now)

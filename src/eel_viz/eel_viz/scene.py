@@ -1,7 +1,7 @@
 """What stands around the swimmer: a water floor with metres, the colour legend, and the path of the head.
 
-The floor is a grid of 12 m by 12 m that jumps along by whole metres, so it has no edge, and sinks by whole metres if the
-swimmer comes near; its labels say where it is in the world frame.
+The floor is a grid of 12 m by 12 m that jumps along by whole metres, so it has no edge, and sinks by whole metres if
+the swimmer comes near; its labels say where it is in the world frame.
 """
 
 import numpy as np
@@ -29,12 +29,8 @@ class Water:
             c = k / 2
             lines += [[(c, -HALF, 0), (c, HALF, 0)], [(-HALF, c, 0), (HALF, c, 0)]]
             shades += [colours.WATER_LINE if k % 2 else colours.WATER_LINE_MAJOR] * 2
-        stream.log(
-            entities.GRID, rr.LineStrips3D(lines, colors=shades, radii=rr.Radius.ui_points(0.5)), static=True
-        )
-        stream.log(
-            entities.SHADOW, rr.LineStrips3D.from_fields(colors=[(4, 10, 17)], radii=[0.03]), static=True
-        )
+        stream.log(entities.GRID, rr.LineStrips3D(lines, colors=shades, radii=rr.Radius.ui_points(0.5)), static=True)
+        stream.log(entities.SHADOW, rr.LineStrips3D.from_fields(colors=[(4, 10, 17)], radii=[0.03]), static=True)
 
     def draw(self, position: np.ndarray) -> None:
         """Floor and shadow for a backbone `position`, (M, 3) [m]."""
@@ -53,16 +49,21 @@ class Water:
     def _place(self, x: int, y: int, floor: int) -> None:
         self._stream.log(entities.GRID, rr.Transform3D(translation=(x, y, floor)))
         right, front = x + LABELLED, y - 1  # where they do not stand before the swimmer, as the camera looks at first
-        places = [(i, front, floor) for i in range(x - LABELLED, right)] + [(right, j, floor) for j in range(front, y + 4)]
+        places = [(i, front, floor) for i in range(x - LABELLED, right)] + [
+            (right, j, floor) for j in range(front, y + 4)
+        ]
         texts = [f"x {i} m" for i in range(x - LABELLED, right)] + [f"y {j} m" for j in range(front, y + 4)]
         texts[places.index((right, front, floor))] = f"x {right}, y {front}, z {floor} m"
         self._stream.log(
             entities.GRID_LABELS,
             rr.Points3D(
-                places, labels=texts, show_labels=True, radii=rr.Radius.ui_points(2.0),
+                places,
+                labels=texts,
+                show_labels=True,
+                radii=rr.Radius.ui_points(2.0),
                 colors=[colours.WATER_LABEL] * len(texts),
             ),
-        )  # fmt: skip
+        )
 
 
 def log_legend(stream: rr.RecordingStream, *, limit: float, unit: str, name: str) -> None:
@@ -86,9 +87,7 @@ def log_legend(stream: rr.RecordingStream, *, limit: float, unit: str, name: str
     texts = [f"-{limit:g}", f"{name} [{unit}]", f"+{limit:g}"]
     stream.log(
         f"{entities.LEGEND}/labels",
-        rr.Points3D(
-            places, labels=texts, show_labels=True, radii=rr.Radius.ui_points(0.1), colors=[colours.LABEL] * 3
-        ),
+        rr.Points3D(places, labels=texts, show_labels=True, radii=rr.Radius.ui_points(0.1), colors=[colours.LABEL] * 3),
         static=True,
     )
 

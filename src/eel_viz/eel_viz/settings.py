@@ -1,4 +1,4 @@
-"""What the user can set: each once, with unit, default, bounds and description. The node declares its parameters from it."""
+"""What the user can set, each once, with unit, default, bounds and description; the node's parameters come from it."""
 
 import math
 from dataclasses import dataclass, field, fields
@@ -30,19 +30,30 @@ class Settings:
     port: int = setting(9876, "port of the served data (gRPC), on this machine alone", minimum=1024, maximum=65535)
     web_port: int = setting(9090, "port of the served web viewer", minimum=1024, maximum=65535)
     blueprint: str = setting("overview", "arrangement shown first: overview, torques or motion")
-    rate: float = setting(30.0, "samples per second that a live viewer gets; a file gets all", unit="Hz", minimum=0.1, maximum=1000.0)
+    rate: float = setting(
+        30.0, "samples per second that a live viewer gets; a file gets all", unit="Hz", minimum=0.1, maximum=1000.0
+    )
     skin_rate: float = setting(
-        25.0, "skin, arrows and curves drawn per second of simulation time in a file", unit="Hz", minimum=0.1, maximum=1000.0
+        25.0,
+        "skin, arrows and curves drawn per second of simulation time in a file",
+        unit="Hz",
+        minimum=0.1,
+        maximum=1000.0,
     )
     colour_limit: float = setting(0.25, "torque C3 from which on colours are deepest", unit="N m", minimum=1e-9)
-    torque_limit: float = setting(0.6, "torque at the plot's edge; grows if need be, like those below", unit="N m", minimum=1e-9)
+    torque_limit: float = setting(
+        0.6, "torque at the plot's edge; grows if need be, like those below", unit="N m", minimum=1e-9
+    )
     force_limit: float = setting(2.0, "force at the plot's edge", unit="N", minimum=1e-9)
     curvature_limit: float = setting(5.0, "curvature at the plot's edge", unit="rad/m", minimum=1e-9)
     load_scale: float = setting(0.03, "length of the arrow of a load of 1 N/m", unit="m^2/N", minimum=0.0)
-    end_force_scale: float = setting(0.5, "length of the arrow of a force of 1 N at nose or tail", unit="m/N", minimum=0.0)
+    end_force_scale: float = setting(
+        0.5, "length of the arrow of a force of 1 N at nose or tail", unit="m/N", minimum=0.0
+    )
     memory_limit: str = setting("1GiB", "memory that served data may take before the oldest are dropped")
     stop_with_publisher: bool = setting(
-        False, "leave, with status 0, some time after the publishers of the swimmer have gone; they must have been there"
+        False,
+        "leave, with status 0, some time after the publishers of the swimmer have gone; they must have been there",
     )
 
     def __post_init__(self) -> None:
@@ -89,5 +100,9 @@ def _checked(item, value):
 def limits(metadata) -> str:
     """The bounds in words, such as ">= 0.1 Hz and <= 1000 Hz"."""
     unit = f" {metadata['unit']}" if metadata["unit"] else ""
-    words = [f"{sign} {metadata[key]:g}{unit}" for sign, key in ((">=", "minimum"), ("<=", "maximum")) if metadata[key] is not None]
+    words = [
+        f"{sign} {metadata[key]:g}{unit}"
+        for sign, key in ((">=", "minimum"), ("<=", "maximum"))
+        if metadata[key] is not None
+    ]
     return " and ".join(words) or "a finite number"

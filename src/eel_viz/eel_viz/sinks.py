@@ -1,10 +1,11 @@
 """Where a recording goes: a file, a viewer that runs already, or served data that any viewer can come to, now or later.
 
 A destination makes one Rerun stream for each run. What is served lives in a server of this process, to which the
-streams are clients: nothing blocks when no viewer is there, memory is bounded, and an open viewer moves on to the new run.
-A stream straight to an absent viewer would block for ever in the end; so the viewer's port is probed first.
+streams are clients: nothing blocks when no viewer is there, memory is bounded, and an open viewer moves on to the new
+run. A stream straight to an absent viewer would block for ever in the end; so the viewer's port is probed first.
 """
 
+import contextlib
 import datetime
 import os
 import pathlib
@@ -112,9 +113,13 @@ class Served(Destination):
             return
         command = [native_viewer(), "--port", str(free_port()), "--hide-welcome-screen", self.uri]
         subprocess.Popen(
-            command, env={**os.environ, "RERUN_APP_ONLY": "true"}, start_new_session=True,
-            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-        )  # fmt: skip
+            command,
+            env={**os.environ, "RERUN_APP_ONLY": "true"},
+            start_new_session=True,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
 
     def show_in_browser(self) -> None:
         """Serve the web viewer too, and say where."""
@@ -144,7 +149,9 @@ class Connected(Destination):
             self._missed = False
             return rr.GrpcSink(self.settings.viewer)
         if not self._missed:
-            self.warn(f"no viewer listens at {self.settings.viewer}: start one with `rerun`, it is tried again while running")
+            self.warn(
+                f"no viewer listens at {self.settings.viewer}: start one with `rerun`, it is tried again while running"
+            )
             self._missed = True
         return None
 
@@ -176,8 +183,6 @@ def display() -> bool:
 
 def close_stream(stream: rr.RecordingStream) -> None:
     """Bring out what is on its way, within `CLOSING_LIMIT`, and end the stream: a file is then complete."""
-    try:
+    with contextlib.suppress(RuntimeError):  # the viewer has gone; a file is complete all the same
         stream.flush(timeout_sec=CLOSING_LIMIT)
-    except RuntimeError:
-        pass  # the viewer has gone; a file is complete all the same
     stream.disconnect()

@@ -17,7 +17,9 @@ SIDES = 12
 class Skin:
     """The mesh of one body. `x`, `half_width`, `half_height` [m], each (B,), as in the message `BodyGeometry`."""
 
-    def __init__(self, x: np.ndarray, half_width: np.ndarray, half_height: np.ndarray, *, rings: int = RINGS, sides: int = SIDES):
+    def __init__(
+        self, x: np.ndarray, half_width: np.ndarray, half_height: np.ndarray, *, rings: int = RINGS, sides: int = SIDES
+    ):
         length = float(x[-1])
         self.x = length * _graded(rings)  # [m], (rings,)
         fine = np.linspace(0.0, 1.0, 400) ** 2 * length
@@ -52,7 +54,7 @@ class Skin:
         return self._resampling
 
     def place(self, x: np.ndarray, position: np.ndarray, orientation: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Vertices [m] and normals in the world, float32 (rings * sides, 3), for a backbone at stations `x` [m], (M,)."""
+        """Vertices [m] and normals in the world, float32 (rings * sides, 3), of a backbone at stations `x`, (M,) [m]."""
         points, axes = self.resampling(x).centre_line(position, orientation)
         turn = np.swapaxes(axes, 1, 2)
         vertices = points[:, None, :] + self._offset @ turn

@@ -44,10 +44,10 @@ class Summary:
 
     def text(self) -> str:
         """Markdown, one paragraph a line."""
-        lines = [", ".join(([f"law **{self.law}**"] if self.law is not None else []) + ([self.state] if self.state else []))]
+        law = "" if self.law is None else f"law **{self.law}**"
+        lines = [", ".join(part for part in (law, self.state) if part)]
         if self._last is not None and self._first is not None:
-            stamp, position = self._last
-            seconds = (stamp - self._first[0]) / 1e9
+            seconds = (self._last[0] - self._first[0]) / 1e9
             mean = self._path / seconds if seconds > 0 else 0.0
             lines.append(f"mean speed **{mean:.3f} m/s**, path {self._path:.2f} m")
         torque, x, stamp = self._peak
