@@ -13,9 +13,9 @@ the same form.
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
-from .kernel import OPTIONS
+from .compiled import compiled
+
 
 AXES = {"pitch": 0, "yaw": 1}
 MOMENT_POINTS = 10  # Gauss points per interval for the Magnus moments
@@ -83,7 +83,7 @@ class Tabulation:
         return tuple(np.ascontiguousarray(part.reshape(shape)) for part, shape in zip(cuts, shapes))
 
 
-@njit(**OPTIONS)
+@compiled
 def quintic(s, length, sign, factor, row):
     """Factors (3, m) [value, rate, acceleration] of the value, rate and acceleration at one end of an interval of `length`,
     at the fraction `s` from that end; the polynomials vanish with two derivatives at the other end. `sign` -1: from the end."""
@@ -102,7 +102,7 @@ def quintic(s, length, sign, factor, row):
     factor[2, row + 2] = scale * d2 * (1.0 - s) * (1.0 - s * (8.0 - 10.0 * s))
 
 
-@njit(**OPTIONS)
+@compiled
 def factors(drive, time, factor):
     """Factors c_m (3, m) at `time` [s]: value, rate [1/s] and acceleration [1/s^2]."""
     own = time - drive.origin
@@ -152,7 +152,7 @@ def factors(drive, time, factor):
                 quintic(max(0.0, part), length, 1.0, factor, drive.blend + 3 * axis)
 
 
-@njit(**OPTIONS)
+@compiled
 def combine(axis, rows, factor, result):
     """Sum over rows of factor (m,) times rows (m, n), apart for pitch and yaw, into `result` (2, n)."""
     result[:] = 0.0
@@ -163,7 +163,7 @@ def combine(axis, rows, factor, result):
                 result[k, i] += c * rows[m, i]
 
 
-@njit(**OPTIONS)
+@compiled
 def combine_moments(axis, rows, factor, result):
     """Sum over rows of factor (m,) times rows (m, 3, n), apart for pitch and yaw, into `result` (3, 2, n)."""
     result[:] = 0.0

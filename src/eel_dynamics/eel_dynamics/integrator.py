@@ -12,10 +12,10 @@ step. Steps end at the breakpoints of the shape, where its derivatives jump.
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from .compiled import compiled
 from .drive import combine, combine_moments, factors
-from .kernel import OPTIONS, add_head_twist, configure, momentum_rates, twist_of_momentum
+from .kernel import add_head_twist, configure, momentum_rates, twist_of_momentum
 from .wrench import accelerate, actuator_power
 
 STATE = 13
@@ -119,7 +119,7 @@ def dormand_prince() -> Method:
     return Method(a, np.array([0.0, 0.2, 0.3, 0.8, 8 / 9, 1.0, 1.0]), error, dense, True)
 
 
-@njit(**OPTIONS)
+@compiled
 def normalise(y):
     """Make the orientation of state `y` a unit quaternion."""
     size = np.sqrt(y[3] * y[3] + y[4] * y[4] + y[5] * y[5] + y[6] * y[6])
@@ -127,7 +127,7 @@ def normalise(y):
         y[k] /= size
 
 
-@njit(**OPTIONS)
+@compiled
 def rotate(y, inverse, vector, at):
     """Rotate `vector[at:at+3]` in place by the orientation of state `y` (world from head), or by its inverse."""
     x, v, z, w = y[3], y[4], y[5], y[6]
@@ -141,7 +141,7 @@ def rotate(y, inverse, vector, at):
     vector[at + 2] = c + w * tc + x * tb - v * ta
 
 
-@njit(**OPTIONS)
+@compiled
 def settle(swimmer, drive, fields, time, y, momentum, twist):
     """Configure the body at `time` and find the head's `twist` from the momentum of state `y`. False where it has none."""
     factors(drive, time, fields.factor)
@@ -155,7 +155,7 @@ def settle(swimmer, drive, fields, time, y, momentum, twist):
     return twist_of_momentum(swimmer, fields, momentum, twist)
 
 
-@njit(**OPTIONS)
+@compiled
 def rate_of_state(swimmer, drive, fields, current, time, y, step, dy):
     """Rate `dy` (13,) of state `y` at `time` (eq. 27 in the momentum form). False where the inertia is singular."""
     if not settle(swimmer, drive, fields, time, y, step.momentum, step.twist):
@@ -179,7 +179,7 @@ def rate_of_state(swimmer, drive, fields, current, time, y, step, dy):
     return True
 
 
-@njit(**OPTIONS)
+@compiled
 def powers_of_state(swimmer, drive, fields, balance, time, y, step, power):
     """Powers (4,) [W] of actuators, wake, nose and drag in state `y` at `time`, by the acceleration form."""
     if not settle(swimmer, drive, fields, time, y, step.momentum, step.twist):
@@ -193,7 +193,7 @@ def powers_of_state(swimmer, drive, fields, balance, time, y, step, power):
     return True
 
 
-@njit(**OPTIONS)
+@compiled
 def interpolate(method, step, theta, y):
     """State `y` (13,) at the fraction `theta` of the step."""
     for k in range(STATE):
@@ -206,7 +206,7 @@ def interpolate(method, step, theta, y):
     normalise(y)
 
 
-@njit(**OPTIONS)
+@compiled
 def works_upto(step, theta, series, work):
     """Works (4,) [J] at the fraction `theta` of the step: the integral of the cubic through the powers at Lobatto's points."""
     for k in range(WORKS):
@@ -219,7 +219,7 @@ def works_upto(step, theta, series, work):
         power *= theta
 
 
-@njit(**OPTIONS)
+@compiled
 def state_at(method, series, step, time, y, work):
     """State `y` (13,) and works (4,) at `time` [s] within the step."""
     length = step.time[1]
@@ -233,29 +233,33 @@ def state_at(method, series, step, time, y, work):
         works_upto(step, theta, series, work)
 
 
-@njit(**OPTIONS)
+@compiled
+def error_of(method, step, first, last):
+    """Size of the error estimate of entries `first` to `last` of the state, per length of the step."""
+    square = 0.0
+    for k in range(first, last):
+        error = 0.0
+        for i in range(method.a.shape[0]):
+            error += method.error[i] * step.k[i, k]
+        square += error * error
+    return np.sqrt(square)
+
+
+@compiled
 def error_by_tolerance(method, control, step, length):
     """The error estimate of the trial step by the tolerance: of position by the body's length, of orientation by one, of
     the momenta by their greatest size so far; the worst of the four. A good step has 1 or less."""
-    trial, scale = step.trial, np.empty(4)
-    scale[0], scale[1] = control.length, 1.0
-    scale[3] = max(step.scale[1], np.sqrt(trial[10] ** 2 + trial[11] ** 2 + trial[12] ** 2), control.momentum_floor)
-    scale[2] = max(step.scale[0], np.sqrt(trial[7] ** 2 + trial[8] ** 2 + trial[9] ** 2), scale[3] * control.length)
-    worst = 0.0
-    for group in range(4):
-        first = (0, 3, 7, 10, 13)[group]
-        last = (0, 3, 7, 10, 13)[group + 1]
-        square = 0.0
-        for k in range(first, last):
-            error = 0.0
-            for i in range(method.a.shape[0]):
-                error += method.error[i] * step.k[i, k]
-            square += error * error
-        worst = max(worst, np.sqrt(square) * length / (control.tolerance * scale[group]))
-    return worst
+    trial = step.trial
+    linear = max(step.scale[1], np.sqrt(trial[10] ** 2 + trial[11] ** 2 + trial[12] ** 2), control.momentum_floor)
+    angular = max(step.scale[0], np.sqrt(trial[7] ** 2 + trial[8] ** 2 + trial[9] ** 2), linear * control.length)
+    worst = error_of(method, step, 0, 3) / control.length
+    worst = max(worst, error_of(method, step, 3, 7))
+    worst = max(worst, error_of(method, step, 7, 10) / angular)
+    worst = max(worst, error_of(method, step, 10, 13) / linear)
+    return worst * length / control.tolerance
 
 
-@njit(**OPTIONS)
+@compiled
 def attempt(swimmer, drive, fields, current, method, control, step, start, length):
     """Try a step of `length` [s] from `step.end` at `start`, into `step.trial`. Returns a status and the error by tolerance."""
     stages = method.a.shape[0]
@@ -278,7 +282,7 @@ def attempt(swimmer, drive, fields, current, method, control, step, start, lengt
     return MARCHED, error_by_tolerance(method, control, step, length) if method.adaptive else 0.0
 
 
-@njit(**OPTIONS)
+@compiled
 def begin(swimmer, drive, fields, balance, current, method, control, step, start):
     """Have the first stage of the next step (and the powers there) ready: from the step before, or evaluated anew."""
     last = method.a.shape[0] - 1
@@ -294,7 +298,7 @@ def begin(swimmer, drive, fields, balance, current, method, control, step, start
     return True
 
 
-@njit(**OPTIONS)
+@compiled
 def fitted(method, control, step, start, target, tiny):
     """Length [s] of the next step: as proposed, or such that steps end on `target` without a sliver before it."""
     left = target - start
@@ -306,7 +310,7 @@ def fitted(method, control, step, start, target, tiny):
     return min(length, 0.5 * left) if length > 0.5 * left else length
 
 
-@njit(**OPTIONS)
+@compiled
 def accept(step, start, length, series):
     """Make the trial step the step."""
     works_upto(step, 1.0, series, step.work)
@@ -321,7 +325,7 @@ def accept(step, start, length, series):
     step.scale[1] = max(step.scale[1], np.sqrt(step.end[10] ** 2 + step.end[11] ** 2 + step.end[12] ** 2))
 
 
-@njit(**OPTIONS)
+@compiled
 def march(swimmer, drive, fields, balance, current, method, control, breakpoints, lobatto, series, step, until):
     """March until the step holds the time `until` [s]. Returns MARCHED, or why it could not."""
     tiny = 1e-12 * max(1.0, abs(until))

@@ -11,10 +11,10 @@ water. With that momentum as the state, neither accelerations nor the second der
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
-OPTIONS = {"cache": True, "nogil": True, "error_model": "numpy", "fastmath": {"contract", "reassoc", "nsz", "arcp"}}
+from .compiled import compiled
 
+ZERO, ONE = np.uintp(0), np.uintp(1)  # indices that are unsigned need no test for Python's negative ones
 PRINTED, LAMINAR, BLENDED = 0, 1, 2  # laws of friction, as in the scene
 
 
@@ -57,7 +57,7 @@ def fields_of(nodes: int, rows: int) -> Fields:
     )
 
 
-@njit(**OPTIONS)
+@compiled
 def turns(bend, turn):
     """Rotations over intervals, as quaternions (4, n), by the sixth-order Magnus series of R' = R hat(K).
 
@@ -88,7 +88,7 @@ def turns(bend, turn):
         turn[0, i], turn[1, i], turn[2, i], turn[3, i] = s * e1, s * e2, s * e3, c
 
 
-@njit(**OPTIONS)
+@compiled
 def axes_of(x, y, z, w, R, i):
     """Columns t1, t2, t3 of the rotation of the unit quaternion (x, y, z, w), into R[:, i]."""
     R[0, i], R[1, i], R[2, i] = 1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)
@@ -96,7 +96,7 @@ def axes_of(x, y, z, w, R, i):
     R[6, i], R[7, i], R[8, i] = 2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)
 
 
-@njit(**OPTIONS)
+@compiled
 def orient(turn, q, R):
     """Section axes, q (4, n) and R (9, n), from head to tail by the product of the rotations between nodes (eq. 25)."""
     x, y, z, w = 0.0, 0.0, 0.0, 1.0
@@ -112,22 +112,24 @@ def orient(turn, q, R):
         axes_of(x, y, z, w, R, i)
 
 
-@njit(**OPTIONS)
+@compiled
 def integrate(swimmer, integrand, result):
-    """Integral (k, n) from the nose to each node of the `integrand` (k, n), k at a time, by panels."""
+    """Integral (3, n) from the nose to each node of the `integrand` (3, n), by panels."""
     matrix, first, count = swimmer.matrix, swimmer.first, swimmer.count
-    for k in range(result.shape[0]):
-        for i in range(matrix.shape[0]):
-            begin = first[i]
-            total = 0.0
-            for j in range(count[i]):
-                total += matrix[i, j] * integrand[k, begin + j]
-            if begin > 0:
-                total += result[k, begin - 1]
-            result[k, i] = total
+    for i in range(matrix.shape[0]):
+        begin = first[i]
+        x = y = z = 0.0
+        if begin > ZERO:
+            x, y, z = result[0, begin - ONE], result[1, begin - ONE], result[2, begin - ONE]
+        for j in range(count[i]):
+            weight, node = matrix[i, j], begin + j
+            x += weight * integrand[0, node]
+            y += weight * integrand[1, node]
+            z += weight * integrand[2, node]
+        result[0, i], result[1, i], result[2, i] = x, y, z
 
 
-@njit(**OPTIONS)
+@compiled
 def shape_velocities(swimmer, fields):
     """Positions and the velocities due to the change of shape alone: r' = t1, omega' = R Kdot, v' = omega x t1."""
     R, rate, f, omega = fields.R, fields.rate, fields.integrand, fields.omega
@@ -145,7 +147,7 @@ def shape_velocities(swimmer, fields):
     integrate(swimmer, f[:3], fields.v)
 
 
-@njit(**OPTIONS)
+@compiled
 def gather_inertia(swimmer, fields):
     """Inertia (6, 6) of body and water about the head, I_o of section 6, the nose's m_o included; lower triangle."""
     R, r = fields.R, fields.r
@@ -199,7 +201,7 @@ def gather_inertia(swimmer, fields):
     inertia[3, 3], inertia[4, 3], inertia[4, 4], inertia[5, 3], inertia[5, 4], inertia[5, 5] = vxx + swimmer.nose_mass, vxy, vyy, vxz, vyz, vzz
 
 
-@njit(**OPTIONS)
+@compiled
 def gather_momentum(swimmer, fields, momentum):
     """Momentum (6,) of body and water about the head due to `omega`, `v` (the nose's m_o not in it)."""
     R, r, omega, v = fields.R, fields.r, fields.omega, fields.v
@@ -227,7 +229,7 @@ def gather_momentum(swimmer, fields, momentum):
     momentum[0], momentum[1], momentum[2], momentum[3], momentum[4], momentum[5] = lx, ly, lz, px, py, pz
 
 
-@njit(**OPTIONS)
+@compiled
 def factorise(matrix):
     """Cholesky factor of a symmetric positive definite matrix, in place, from and to its lower triangle. False if it is not."""
     n = matrix.shape[0]
@@ -247,7 +249,7 @@ def factorise(matrix):
     return True
 
 
-@njit(**OPTIONS)
+@compiled
 def solve(factor, vector):
     """Solve with the Cholesky `factor`, in place."""
     n = factor.shape[0]
@@ -263,7 +265,7 @@ def solve(factor, vector):
         vector[i] = total / factor[i, i]
 
 
-@njit(**OPTIONS)
+@compiled
 def add_head_twist(fields, twist):
     """Add the motion of the head, `twist` (6,), to the velocities due to the change of shape: the true ones."""
     r, omega, v = fields.r, fields.omega, fields.v
@@ -277,31 +279,30 @@ def add_head_twist(fields, twist):
         v[2, i] += twist[5] + twist[0] * y - twist[1] * x
 
 
-@njit(**OPTIONS)
-def turbulent_part(swimmer, i, speed):
-    """Part of the turbulent law in the friction at section i for the axial speed |V1| [m/s]; Re = |V1| X/nu (section 7.2.1)."""
-    if swimmer.friction == PRINTED:
-        return 1.0 if speed > swimmer.transition[i] else 0.0
-    if swimmer.friction != BLENDED or speed <= 0.5 * swimmer.transition[i]:
+@compiled
+def turbulent_part(law, transition, speed):
+    """Part of the turbulent law in the friction of a section for the axial speed |V1| [m/s]; `transition` [m/s]: where
+    Re = |V1| X/nu is 8e4 (section 7.2.1)."""
+    if law == PRINTED:
+        return 1.0 if speed > transition else 0.0
+    if law != BLENDED or speed <= 0.5 * transition:
         return 0.0
-    if speed >= 2.0 * swimmer.transition[i]:
+    if speed >= 2.0 * transition:
         return 1.0
-    part = np.log(2.0 * speed / swimmer.transition[i]) / np.log(4.0)  # f_r(ln Re; ln 4e4, ln 1.6e5), eq. (64)
+    part = np.log(2.0 * speed / transition) / np.log(4.0)  # f_r(ln Re; ln 4e4, ln 1.6e5), eq. (64)
     return part - np.sin(2.0 * np.pi * part) / (2.0 * np.pi)
 
 
-@njit(**OPTIONS)
-def friction(swimmer, i, part, speed):
-    """1/2 rho_f k1 |V1| [kg/m/s] at section i for the axial speed |V1| [m/s], `part` of it by the turbulent law."""
-    force = 0.0
-    if part < 1.0:
-        force += (1.0 - part) * swimmer.laminar[i] * np.sqrt(speed)
+@compiled
+def friction(laminar, turbulent, part, speed):
+    """1/2 rho_f k1 |V1| [kg/m/s] of a section for the axial speed |V1| [m/s], `part` of it by the turbulent law."""
+    force = (1.0 - part) * laminar * np.sqrt(speed)
     if part > 0.0:
-        force += part * swimmer.turbulent[i] * speed**0.8
+        force += part * turbulent * speed**0.8
     return force
 
 
-@njit(**OPTIONS)
+@compiled
 def share_friction(swimmer, fields):
     """Part (n,) of the turbulent law in the friction of each node, from the true velocities.
 
@@ -327,13 +328,13 @@ def share_friction(swimmer, fields):
             end += swimmer.weight[i]
     elif swimmer.friction == BLENDED:
         for i in range(n):
-            part[i] = turbulent_part(swimmer, i, abs(R[0, i] * v[0, i] + R[1, i] * v[1, i] + R[2, i] * v[2, i]))
+            part[i] = turbulent_part(BLENDED, swimmer.transition[i], abs(R[0, i] * v[0, i] + R[1, i] * v[1, i] + R[2, i] * v[2, i]))
     else:
         for i in range(n):
             part[i] = 0.0
 
 
-@njit(**OPTIONS)
+@compiled
 def add_resistive_loads(swimmer, fields, wrench):
     """Add the drag along the body to `wrench` (6,), on the body (section 7.2.1). Returns its power [W]."""
     R, r, omega, v = fields.R, fields.r, fields.omega, fields.v
@@ -346,7 +347,7 @@ def add_resistive_loads(swimmer, fields, wrench):
         v3 = R[6, i] * vx + R[7, i] * vy + R[8, i] * vz
         roll = R[0, i] * omega[0, i] + R[1, i] * omega[1, i] + R[2, i] * omega[2, i]
         weight = swimmer.weight[i]
-        n1 = -weight * friction(swimmer, i, fields.part[i], abs(v1)) * v1
+        n1 = -weight * friction(swimmer.laminar[i], swimmer.turbulent[i], fields.part[i], abs(v1)) * v1
         n2 = -weight * swimmer.drag2[i] * abs(v2) * v2
         n3 = -weight * swimmer.drag3[i] * abs(v3) * v3
         c1 = -weight * swimmer.drag_roll[i] * abs(roll) * roll
@@ -369,7 +370,7 @@ def add_resistive_loads(swimmer, fields, wrench):
     return power
 
 
-@njit(**OPTIONS)
+@compiled
 def add_wake(swimmer, fields, wrench):
     """Add the momentum that the tail takes in from the wake, w_tail of eq. (60), to `wrench` (6,).
 
@@ -396,7 +397,7 @@ def add_wake(swimmer, fields, wrench):
     return v1, energy
 
 
-@njit(**OPTIONS)
+@compiled
 def configure(swimmer, fields):
     """Configuration and shape velocities of the body from `bend` and `rate` (the first loop of section 7.1)."""
     turns(fields.bend, fields.turn)
@@ -404,7 +405,7 @@ def configure(swimmer, fields):
     shape_velocities(swimmer, fields)
 
 
-@njit(**OPTIONS)
+@compiled
 def momentum_of_twist(swimmer, fields, twist, momentum):
     """Momentum (6,) of body, water and nose for the head's `twist` (6,), in a configured body."""
     gather_momentum(swimmer, fields, momentum)
@@ -415,7 +416,7 @@ def momentum_of_twist(swimmer, fields, twist, momentum):
             momentum[i] += (inertia[i, j] if j <= i else inertia[j, i]) * twist[j]
 
 
-@njit(**OPTIONS)
+@compiled
 def twist_of_momentum(swimmer, fields, momentum, twist):
     """The head's `twist` (6,) in a configured body of the given `momentum` (6,): I_o^-1 times what the shape's change leaves.
 
@@ -431,7 +432,7 @@ def twist_of_momentum(swimmer, fields, momentum, twist):
     return True
 
 
-@njit(**OPTIONS)
+@compiled
 def momentum_rates(swimmer, fields, momentum, twist, rates):
     """Rates (6,) of momentum about the moving head, of world vectors, in the head's present axes; adds the head's twist
     to the velocities in `fields`."""

@@ -6,11 +6,11 @@ The fields go on from the nodes to the stations by the same integrals that made 
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from .compiled import compiled
 from .drive import combine, combine_moments
 from .integrator import MARCHED, SINGULAR, WORKS, march, powers_of_state, rotate, state_at
-from .kernel import OPTIONS, axes_of, friction, turbulent_part, turns
+from .kernel import ONE, ZERO, axes_of, friction, turbulent_part, turns
 from .wrench import kinetic_energies, section_wrench
 
 
@@ -72,19 +72,23 @@ def station_fields_of(stations: int) -> StationFields:
     return StationFields(*(np.zeros((*size, stations)) for size in sizes), np.zeros(6))
 
 
-@njit(**OPTIONS)
+@compiled
 def extend(section, integrand, at_nodes, at_head, result):
-    """Field (k, M) at the stations from its derivative `integrand` and its values (k, n) at the nodes, `at_head` at the nose."""
-    for k in range(result.shape[0]):
-        for i in range(result.shape[1]):
-            begin = section.first[i]
-            total = at_nodes[k, begin - 1] if begin > 0 else at_head[k]
-            for j in range(section.count[i]):
-                total += section.matrix[i, j] * integrand[k, begin + j]
-            result[k, i] = total
+    """Field (3, M) at the stations from its derivative `integrand` and its values at the nodes (3, n), `at_head` at the nose."""
+    for i in range(result.shape[1]):
+        begin = section.first[i]
+        x, y, z = at_head[0], at_head[1], at_head[2]
+        if begin > ZERO:
+            x, y, z = at_nodes[0, begin - ONE], at_nodes[1, begin - ONE], at_nodes[2, begin - ONE]
+        for j in range(section.count[i]):
+            weight, node = section.matrix[i, j], begin + j
+            x += weight * integrand[0, node]
+            y += weight * integrand[1, node]
+            z += weight * integrand[2, node]
+        result[0, i], result[1, i], result[2, i] = x, y, z
 
 
-@njit(**OPTIONS)
+@compiled
 def cross_fields(a, b, result):
     """a x b of fields (3, n) into `result`."""
     for i in range(result.shape[1]):
@@ -93,7 +97,7 @@ def cross_fields(a, b, result):
         result[2, i] = a[0, i] * b[1, i] - a[1, i] * b[0, i]
 
 
-@njit(**OPTIONS)
+@compiled
 def place(stations, drive, fields, here, y, sample, out):
     """Backbone, orientation and curvature at the stations."""
     combine_moments(drive.axis, drive.station_bend, fields.factor[0], here.bend)
@@ -123,7 +127,7 @@ def place(stations, drive, fields, here, y, sample, out):
             out.backbone[sample, i, k] += y[k]
 
 
-@njit(**OPTIONS)
+@compiled
 def velocities(stations, fields, here, twist):
     """True velocities at the stations, relative to the water."""
     R, f = fields.R, fields.integrand
@@ -136,7 +140,7 @@ def velocities(stations, fields, here, twist):
     extend(stations.section, f[:3], fields.v, twist[3:], here.v)
 
 
-@njit(**OPTIONS)
+@compiled
 def accelerations(stations, fields, balance, here):
     """True accelerations at the stations."""
     R, f, omega = fields.R, fields.integrand, fields.omega
@@ -156,11 +160,12 @@ def accelerations(stations, fields, balance, here):
     extend(stations.section, f[:3], balance.acc, balance.head[3:], here.acc)
 
 
-@njit(**OPTIONS)
+@compiled
 def internal_wrench(stations, fields, balance, here, result, distributed, sample, out):
     """Internal torque and force at the stations: the balance of the part behind each (eq. 50, 51)."""
     section = stations.section
-    extend(section, balance.density, balance.upto, here.zero, here.upto)
+    extend(section, balance.density[:3], balance.upto[:3], here.zero, here.upto[:3])
+    extend(section, balance.density[3:], balance.upto[3:], here.zero, here.upto[3:])
     for i in range(here.R.shape[1]):
         for k in range(6):
             fields.wrench[k] = balance.tail[k] - balance.total[k] + here.upto[k, i]
@@ -172,7 +177,7 @@ def internal_wrench(stations, fields, balance, here, result, distributed, sample
             out.force[sample, i, 0] += energy
 
 
-@njit(**OPTIONS)
+@compiled
 def loads(stations, here, distributed, sample, out):
     """The water's force on the body per length at the stations: the reactive part, the rate at which a strip's water gives
     up momentum (eq. 50), and the resistive part; and the force -T_f t1 at the tail (eq. 51)."""
@@ -214,7 +219,8 @@ def loads(stations, here, distributed, sample, out):
             f3 += energy * k2
         r1 = r2 = r3 = 0.0
         if section.resistive:
-            r1 = -friction(section, i, turbulent_part(section, i, abs(u[0])), abs(u[0])) * u[0]
+            part = turbulent_part(section.friction, section.transition[i], abs(u[0]))
+            r1 = -friction(section.laminar[i], section.turbulent[i], part, abs(u[0])) * u[0]
             r2 = -section.drag2[i] * abs(u[1]) * u[1]
             r3 = -section.drag3[i] * abs(u[2]) * u[2]
         rows = out.resistive_force[sample, i], out.fluid_force[sample, i]
@@ -222,7 +228,7 @@ def loads(stations, here, distributed, sample, out):
         rows[1][0], rows[1][1], rows[1][2] = f1 + r1, f2 + r2, f3 + r3
 
 
-@njit(**OPTIONS)
+@compiled
 def observe(swimmer, stations, drive, fields, balance, here, step, current, distributed, want_wrench, want_load, time, y, sample, out):
     """Fill instant `sample` of `out` with what state `y` (13,) at `time` shows. False where the state is singular."""
     if not powers_of_state(swimmer, drive, fields, balance, time, y, step, out.powers[sample]):
@@ -238,7 +244,8 @@ def observe(swimmer, stations, drive, fields, balance, here, step, current, dist
     rotate(y, True, out.twist[sample], 3)
     for k in range(3):
         out.twist[sample, 3 + k] += twist[3 + k]
-    out.head_acceleration[sample, :] = balance.head
+    for k in range(6):
+        out.head_acceleration[sample, k] = balance.head[k]
     mass = 0.0
     for i in range(fields.r.shape[1]):
         part = swimmer.weight[i] * swimmer.mass[i]
@@ -278,7 +285,7 @@ def observe(swimmer, stations, drive, fields, balance, here, step, current, dist
     return True
 
 
-@njit(**OPTIONS)
+@compiled
 def record(swimmer, stations, drive, fields, balance, here, step, current, distributed, method, control, breakpoints, lobatto, series, want_wrench, want_load, times, y, work, works, out):
     """March through `times` (T,) [s], ascending, and fill one instant of `out` and of `works` (T, 4) at each; `y` (13,) and
     `work` (4,) end as the last. Returns the number of instants filled, and a status."""

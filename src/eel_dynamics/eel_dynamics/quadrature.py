@@ -61,7 +61,7 @@ class Grid:
         total = sum(panel.points for panel in panels)
         widest = max(panel.points for panel in panels)
         x, weight, matrix = np.empty(total), np.empty(total), np.zeros((total, widest))
-        first, count = np.empty(total, dtype=np.int64), np.empty(total, dtype=np.int64)
+        first, count = np.empty(total, dtype=np.uintp), np.empty(total, dtype=np.uintp)
         begin = 0
         for panel in panels:
             span = slice(begin, begin + panel.points)
@@ -97,7 +97,7 @@ class Grid:
                 if kind == "integral":
                     part = part * panel.locate(radau_points(panel.points))[1]
                 rows[here, : panel.points] = part
-        return rows, begins[home].astype(np.int64), np.array([self.panels[k].points for k in home], dtype=np.int64)
+        return rows, begins[home].astype(np.uintp), np.array([self.panels[k].points for k in home], dtype=np.uintp)
 
 
 @lru_cache(maxsize=None)

@@ -23,8 +23,8 @@ class Swimmer(NamedTuple):
     x: np.ndarray  # m
     weight: np.ndarray  # m, of the integral over the body
     matrix: np.ndarray  # (n, p) m, of the integral from a panel's start to a node
-    first: np.ndarray  # (n,) int, first node of the node's panel
-    count: np.ndarray  # (n,) int, nodes of the panel
+    first: np.ndarray  # (n,) unsigned, first node of the node's panel
+    count: np.ndarray  # (n,) unsigned, nodes of the panel
     mass: np.ndarray  # kg/m, of the body
     added2: np.ndarray  # kg/m, added mass along E2
     added3: np.ndarray  # kg/m, along E3

@@ -10,9 +10,9 @@ angular velocity and of the velocity of the nose, in the head's axes.
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
-from .kernel import OPTIONS, add_wake, friction, integrate, share_friction, solve
+from .compiled import compiled
+from .kernel import add_wake, friction, integrate, share_friction, solve
 
 
 class Balance(NamedTuple):
@@ -44,7 +44,7 @@ def balance_of(nodes: int) -> Balance:
     )
 
 
-@njit(**OPTIONS)
+@compiled
 def shape_accelerations(swimmer, fields, balance):
     """Accelerations of the sections where the head has none: alpha and acc with zero at the nose."""
     R, omega, f, rate, accel = fields.R, fields.omega, fields.integrand, fields.rate, fields.accel
@@ -70,7 +70,7 @@ def shape_accelerations(swimmer, fields, balance):
     integrate(swimmer, f[:3], balance.acc)
 
 
-@njit(**OPTIONS)
+@compiled
 def add_head_acceleration(fields, balance):
     """Add the head's acceleration to the accelerations of the sections: the true ones."""
     r, alpha, acc, head = fields.r, balance.alpha, balance.acc, balance.head
@@ -84,7 +84,7 @@ def add_head_acceleration(fields, balance):
         acc[2, i] += head[5] + head[0] * y - head[1] * x
 
 
-@njit(**OPTIONS)
+@compiled
 def section_densities(swimmer, fields, balance):
     """The section's balance f_N = M Vdot + Omega x M V - n, f_C = J Omegadot + Omega x J Omega + V x M V - c, moved to the
     head, into `density` (6, n). Returns the drag's power [W]."""
@@ -115,7 +115,7 @@ def section_densities(swimmer, fields, balance):
         g2 = j2 * e2 + o3 * s1 - o1 * s3 + v3 * p1 - v1 * p3
         g3 = j3 * e3 + o1 * s2 - o2 * s1 + v1 * p2 - v2 * p1
         if swimmer.resistive:
-            n1 = friction(swimmer, i, fields.part[i], abs(v1)) * v1
+            n1 = friction(swimmer.laminar[i], swimmer.turbulent[i], fields.part[i], abs(v1)) * v1
             n2 = swimmer.drag2[i] * abs(v2) * v2
             n3 = swimmer.drag3[i] * abs(v3) * v3
             c1 = swimmer.drag_roll[i] * abs(o1) * o1
@@ -133,7 +133,7 @@ def section_densities(swimmer, fields, balance):
     return power
 
 
-@njit(**OPTIONS)
+@compiled
 def gather(swimmer, density, total):
     """Integral (6,) over the body of `density` (6, n)."""
     for k in range(6):
@@ -143,7 +143,7 @@ def gather(swimmer, density, total):
         total[k] = value
 
 
-@njit(**OPTIONS)
+@compiled
 def accelerate(swimmer, fields, twist, balance):
     """Head's acceleration, accelerations and balance of the sections, in a configured body whose `fields` hold the true
     velocities and the Cholesky factor of the inertia I_o."""
@@ -169,7 +169,7 @@ def accelerate(swimmer, fields, twist, balance):
     balance.powers[3] = drag
 
 
-@njit(**OPTIONS)
+@compiled
 def section_wrench(R, r, omega, v, i, added2, added3, added_roll, wrench, result):
     """Internal torque and force (6,) at section i, in its axes and about it, from the `wrench` (6,) about the head that the
     part behind passes on: Ad*^-1 w - (V1 J_f1 Omega1 E1; V1 M_f V). Returns T_f [J/m]."""
@@ -189,10 +189,11 @@ def section_wrench(R, r, omega, v, i, added2, added3, added_roll, wrench, result
     return 0.5 * (added_roll * roll * roll + added2 * v2 * v2 + added3 * v3 * v3)
 
 
-@njit(**OPTIONS)
+@compiled
 def actuator_power(swimmer, fields, balance, section):
     """- integral of C . Kdot [W] over the body, from an accelerated body; leaves the integrals of the balance in `upto`."""
-    integrate(swimmer, balance.density, balance.upto)
+    integrate(swimmer, balance.density[:3], balance.upto[:3])
+    integrate(swimmer, balance.density[3:], balance.upto[3:])
     power = 0.0
     for i in range(fields.R.shape[1]):
         for k in range(6):
@@ -203,7 +204,7 @@ def actuator_power(swimmer, fields, balance, section):
     return power
 
 
-@njit(**OPTIONS)
+@compiled
 def kinetic_energies(swimmer, fields):
     """Kinetic energy [J] of the body, and of the water (without the nose's 1/2 m_o V1^2)."""
     R, omega, v = fields.R, fields.omega, fields.v

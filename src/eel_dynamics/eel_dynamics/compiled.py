@@ -1,0 +1,38 @@
+"""How the hot loops are compiled: by numba, once, and kept on disk for the next process.
+
+Numba keeps a compiled function for as long as its own file is unchanged, but not the files of the functions that it
+calls: after an upgrade, old and new loops would mix. Here a function is kept for as long as the whole package is unchanged.
+"""
+
+import hashlib
+from pathlib import Path
+
+from numba import njit
+
+# No reference counting (`_nrt`): the loops allocate nothing, and counting the arrays of a call costs more than the call.
+# No "nnan", "ninf" of fast-math: a state that is not finite must be seen.
+OPTIONS = {
+    "cache": True,
+    "nogil": True,
+    "error_model": "numpy",
+    "fastmath": {"contract", "reassoc", "nsz", "arcp"},
+    "forceinline": True,
+    "_nrt": False,
+}
+
+
+def _stamp() -> str:
+    content = hashlib.sha256()
+    for path in sorted(Path(__file__).parent.glob("*.py")):
+        content.update(path.name.encode() + path.read_bytes())
+    return content.hexdigest()
+
+
+STAMP = _stamp()
+
+
+def compiled(function):
+    """Decorator: compile `function` on its first call, or load it as compiled by an earlier process."""
+    dispatcher = njit(**OPTIONS)(function)
+    dispatcher._cache._cache_file._source_stamp = STAMP
+    return dispatcher
