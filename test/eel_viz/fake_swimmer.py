@@ -70,7 +70,7 @@ def body_message(stations: int) -> BodyGeometry:
 
 
 def diagnostics(nanoseconds: int) -> DiagnosticArray:
-    status = DiagnosticStatus(level=b"\0", name="dynamics", message="running", hardware_id="simulation")
+    status = DiagnosticStatus(level=b"\0", name="/dynamics", message="running", hardware_id="simulation")
     status.values = [KeyValue(key="law", value="falling"), KeyValue(key="real_time_factor", value="0")]
     message = DiagnosticArray(status=[status])
     message.header.stamp = Time(sec=nanoseconds // 10**9, nanosec=nanoseconds % 10**9)

@@ -13,9 +13,9 @@ from ament_index_python.packages import PackageNotFoundError, get_package_share_
 
 _SEPARATOR = "=" * 80
 _FIELD = re.compile(r"^\s*([A-Za-z][\w/]*)(?:<=\d+)?(?:\[[^\]]*\])?\s+[A-Za-z]\w*")
-_PRIMITIVES = set(
-    ["bool", "byte", "char", "string", "wstring", "float32", "float64", "int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint64"]
-)
+_PRIMITIVES = {"bool", "byte", "char", "string", "wstring", "float32", "float64"} | {
+    f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)
+}
 
 
 def message_class(name: str) -> type:

@@ -5,19 +5,19 @@ another (see `Rates`). What belongs together has the same time, and that is all 
 from the backbone and its colour from the torque, whichever comes first.
 """
 
-from collections import OrderedDict
 from dataclasses import dataclass
 
 import numpy as np
 import rerun as rr
 
 from eel_viz import colours, entities
-from eel_viz.centre_line import Resampling
+from eel_viz.arrows import Arrows
 from eel_viz.heat_map import HeatMap
 from eel_viz.messages import Backbone, Body, Load, Pose, Profiles, Status, Twist
-from eel_viz.orientation import attitude, world_from_section
+from eel_viz.orientation import attitude
 from eel_viz.profile_plot import ProfilePlot
 from eel_viz.scene import Track, Water, log_legend
+from eel_viz.series import log_styles
 from eel_viz.settings import Settings
 from eel_viz.skin import Skin
 from eel_viz.summary import Summary
@@ -25,8 +25,6 @@ from eel_viz.summary import Summary
 ENVELOPE_PERIOD = 250_000_000  # ns
 HEAT_MAP_PERIOD = 160_000_000
 SUMMARY_PERIOD = 500_000_000
-ARROWS = 24  # along the body
-KEPT = 512  # backbones and loads that wait for each other
 LEVELS = ("INFO", "WARN", "ERROR", "WARN")
 
 
@@ -49,8 +47,6 @@ class Loggers:
         self._slots: dict[str, int] = {}
         self._stations: dict[str, np.ndarray] = {}
         self._skin: Skin | None = None
-        self._backbones: OrderedDict[int, Backbone] = OrderedDict()
-        self._loads: OrderedDict[int, Load] = OrderedDict()
         self._statuses: dict[str, tuple[int, str]] = {}
         self.summary = Summary()
         stream.log(entities.WORLD, rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
@@ -72,7 +68,11 @@ class Loggers:
         )
         self._heat_map = HeatMap(stream, limit=settings.colour_limit)
         log_legend(stream, limit=settings.colour_limit, unit="N m", name="C3")
-        self._style()
+        self._arrows = Arrows(stream, load_scale=settings.load_scale, end_scale=settings.end_force_scale)
+        log_styles(stream)
+        stream.log(entities.BACKBONE, rr.LineStrips3D.from_fields(colors=[colours.LABEL], radii=[0.001]), static=True)
+        for path in (entities.HEAD, entities.TAIL):
+            stream.log(path, rr.TransformAxes3D(0.12), static=True)
 
     # --- the swimmer ---------------------------------------------------------------------------------------------
     def body(self, body: Body) -> None:
@@ -112,7 +112,7 @@ class Loggers:
             self._scalars(entities.LINEAR, twist.linear)
             self._scalars(entities.ANGULAR, twist.angular)
 
-    def odometry(self, stamp: int, pose: Pose, twist: Twist) -> None:
+    def odom(self, stamp: int, pose: Pose, twist: Twist) -> None:
         """The numbers of odom; what they show is drawn from head_pose and head_twist."""
         if self._due("odom", stamp, self._number_period):
             values = {"position": pose.position, "orientation": pose.orientation}
@@ -139,7 +139,7 @@ class Loggers:
         if self._skin is not None:
             vertices, normals = self._skin.place(backbone.x, position, backbone.orientation)
             self._stream.log(entities.SKIN, rr.Mesh3D.from_fields(vertex_positions=vertices, vertex_normals=normals))
-        self._pair(stamp, backbone, self._backbones, self._loads)
+        self._arrows.backbone(stamp, backbone)
 
     def internal_wrench(self, stamp: int, wrench: Profiles) -> None:
         """Torques and forces along the body; C3 colours the skin and makes the heat map."""
@@ -184,7 +184,7 @@ class Loggers:
             values = {**load.profiles.values, "tail_force": load.tail, "nose_force": load.nose}
             self._numbers(entities.LOAD_NUMBERS, "HydrodynamicLoad", values, load.profiles.x)
         if self._due("arrows", stamp, self._drawing_period):
-            self._pair(stamp, load, self._loads, self._backbones)
+            self._arrows.load(stamp, load)
 
     def energy(self, stamp: int, energy: dict[str, float]) -> None:
         """The ledger's terms."""
@@ -236,61 +236,6 @@ class Loggers:
     def _text(self, stamp: int, text: str, level: str) -> None:
         self._at(stamp)
         self._stream.log(entities.LOG, rr.TextLog(text, level=level))
-
-    def _pair(self, stamp: int, arrived, own: OrderedDict, other: OrderedDict) -> None:
-        """Arrows need a backbone and a load of the same time; each waits for the other, the oldest is given up."""
-        if stamp not in other:
-            own[stamp] = arrived
-            if len(own) > KEPT:
-                own.popitem(last=False)
-            return
-        partner = other.pop(stamp)
-        load, backbone = (arrived, partner) if isinstance(arrived, Load) else (partner, arrived)
-        self._draw_load(load, backbone)
-
-    def _draw_load(self, load: Load, backbone: Backbone) -> None:
-        x = np.linspace(backbone.x[0], backbone.x[-1], ARROWS + 2)[1:-1]
-        origins, axes = Resampling(backbone.x, x).centre_line(backbone.position, backbone.orientation)
-        force = Resampling(load.profiles.x, x).linear(load.profiles.together("force_1", "force_2", "force_3"))
-        vectors = np.einsum("nij,nj->ni", axes, force) * self._settings.load_scale
-        self._stream.log(
-            entities.LOAD,
-            rr.Arrows3D.from_fields(origins=origins.astype(np.float32), vectors=vectors.astype(np.float32)),
-        )
-        ends = [0, -1]
-        forces = world_from_section(backbone.orientation[ends], np.stack([load.nose, load.tail]))
-        self._stream.log(
-            entities.LOAD_ENDS,
-            rr.Arrows3D.from_fields(
-                origins=backbone.position[ends].astype(np.float32),
-                vectors=(forces * self._settings.end_force_scale).astype(np.float32),
-            ),
-        )
-
-    def _style(self) -> None:
-        log = self._stream.log
-        log(entities.BACKBONE, rr.LineStrips3D.from_fields(colors=[colours.LABEL], radii=[0.001]), static=True)
-        log(entities.LOAD, rr.Arrows3D.from_fields(colors=[colours.TEAL], radii=[0.0022]), static=True)
-        log(entities.LOAD_ENDS, rr.Arrows3D.from_fields(colors=[colours.MAGENTA], radii=[0.004]), static=True)
-        for path in (entities.HEAD, entities.TAIL):
-            log(path, rr.TransformAxes3D(0.12), static=True)
-        series = {
-            entities.POSITION: (("x [m]", "y [m]", "z [m]"), colours.AXIS),
-            entities.ORIENTATION: (("qx", "qy", "qz", "qw"), (*colours.AXIS, colours.GREY)),
-            entities.ATTITUDE: (("heading", "pitch", "roll"), (colours.AXIS[2], colours.AXIS[1], colours.AXIS[0])),
-            entities.LINEAR: (("x", "y", "z"), colours.AXIS),
-            entities.ANGULAR: (("x", "y", "z"), colours.AXIS),
-            entities.SPEED: (("speed [m/s]",), (colours.AXIS[2],)),
-            entities.DEPTH: (("depth [m]",), (colours.AXIS[0],)),
-            entities.POWER: (
-                ("actuator", "wake", "nose", "drag"),
-                (colours.AXIS[1], colours.AXIS[0], colours.GREY, colours.MAGENTA),
-            ),
-            entities.KINETIC: (("body", "fluid"), (colours.AXIS[0], colours.AXIS[2])),
-            entities.RESIDUAL: (("residual [J]",), (colours.MAGENTA,)),
-        }
-        for path, (names, shades) in series.items():
-            log(path, rr.SeriesLines(names=list(names), colors=list(shades), widths=[1.5] * len(names)), static=True)
 
 
 def _period(rate: float) -> int:

@@ -99,8 +99,8 @@ def _await_listening(process: subprocess.Popen, port: int, said: IO[bytes]) -> N
             lines = said.read().decode(errors="replace").splitlines()
             reason = next((line for line in lines if "graphics" in line or "render" in line.lower()), "")
             raise CannotRender(
-                f"the viewer ended with status {process.returncode} ({reason.strip() or 'no reason given'}); it needs a "
-                "Vulkan driver: apt-get install --no-install-recommends mesa-vulkan-drivers"
+                f"the viewer ended with status {process.returncode} ({reason.strip() or 'no reason given'}); it needs "
+                "a Vulkan driver: apt-get install --no-install-recommends mesa-vulkan-drivers"
             )
         if time.monotonic() > limit:
             raise CannotRender(f"the viewer did not start within {START_LIMIT:g} s")

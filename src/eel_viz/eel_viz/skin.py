@@ -54,7 +54,7 @@ class Skin:
         return self._resampling
 
     def place(self, x: np.ndarray, position: np.ndarray, orientation: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Vertices [m] and normals in the world, float32 (rings * sides, 3), of a backbone at stations `x`, (M,) [m]."""
+        """Vertices [m] and normals in the world, float32 (rings * sides, 3), of a backbone at stations `x` [m]."""
         points, axes = self.resampling(x).centre_line(position, orientation)
         turn = np.swapaxes(axes, 1, 2)
         vertices = points[:, None, :] + self._offset @ turn
