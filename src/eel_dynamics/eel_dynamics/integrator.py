@@ -277,7 +277,7 @@ def attempt(swimmer, drive, fields, current, method, control, step, start, lengt
     total = 0.0
     for k in range(STATE):
         total += abs(step.trial[k]) + abs(step.k[stages - 1, k])
-    if not np.isfinite(total):
+    if not total < 1e300:  # NaN too
         return NOT_FINITE, np.inf
     return MARCHED, error_by_tolerance(method, control, step, length) if method.adaptive else 0.0
 
@@ -341,7 +341,7 @@ def march(swimmer, drive, fields, balance, current, method, control, breakpoints
         proposed = step.time[2]
         length = fitted(method, control, step, start, target, tiny)
         status, error = attempt(swimmer, drive, fields, current, method, control, step, start, length)
-        while status != MARCHED or error > 1.0:
+        while status != MARCHED or not error <= 1.0:
             step.count[1] += 1
             length *= 0.1 if status != MARCHED else max(0.2, 0.9 * error**-0.2)
             proposed = length

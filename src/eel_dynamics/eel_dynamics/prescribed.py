@@ -11,7 +11,7 @@ from .body import Body
 from .drive import combine, combine_moments, factors
 from .kernel import add_head_twist, add_wake, configure, share_friction
 from .scene import Scene
-from .simulation import Simulation, row
+from .simulation import Simulation, checked_row
 from .wrench import add_head_acceleration, gather, section_densities, shape_accelerations
 
 FINE = Accuracy(name="prescribed", resolution=100.0)
@@ -52,7 +52,7 @@ def hydrodynamic_wrench(body: Body, law: Law, time: float, twist, twist_rate, sc
 
     A current of the scene is taken along the head's axes (head and world coincide). `ValueError` names what does not fit.
     """
-    twist, twist_rate = row("twist", twist, 6), row("twist_rate", twist_rate, 6)
+    twist, twist_rate = checked_row("twist", twist, 6), checked_row("twist_rate", twist_rate, 6)
     if not np.isfinite(time):
         raise ValueError(f"time must be finite, got {time!r} s")
     swimmer = Simulation(body=body, scene=scene, accuracy=FINE, stations=2)

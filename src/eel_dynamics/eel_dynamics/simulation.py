@@ -94,7 +94,7 @@ class Simulation:
         self.scene = Scene() if scene is None else _instance("scene", scene, Scene)
         self.accuracy = Accuracy.of(accuracy)
         self.x = _stations(stations, self.body.length)
-        self._start = row("position", position, 3), _unit("orientation", orientation), row("twist", twist, 6)
+        self._start = checked_row("position", position, 3), _unit("orientation", orientation), checked_row("twist", twist, 6)
         if self.scene.planar:
             _check_planar(*self._start)
         if not (np.isfinite(default_transition) and default_transition > 0.0):
@@ -164,17 +164,17 @@ class Simulation:
         Natural cubic splines in X; between instants the quintic that meets value, rate and acceleration at both. It takes
         over as soon as two instants bracket the present. `ValueError` names what does not fit.
         """
-        x = row("curvature samples x", x, None)
+        x = checked_row("curvature samples x", x, None)
         if len(x) < 2 or np.any(np.diff(x) <= 0.0):
             raise ValueError(f"curvature samples x must rise over 2 points or more, got {len(x)} points")
         if x[0] < -1e-9 * self.body.length or x[-1] > self.body.length * (1.0 + 1e-9):
             raise ValueError(f"curvature samples x must lie within 0 to {self.body.length} m, got {x[0]} to {x[-1]}")
         names = "pitch", "pitch_rate", "pitch_accel", "yaw", "yaw_rate", "yaw_accel"
-        values = [row(f"curvature samples {name}", row, len(x)) for name, row in zip(names, (pitch, pitch_rate, pitch_accel, yaw, yaw_rate, yaw_accel))]
+        values = [checked_row(f"curvature samples {name}", row, len(x)) for name, row in zip(names, (pitch, pitch_rate, pitch_accel, yaw, yaw_rate, yaw_accel))]
         if self.scene.planar and any(np.any(row) for row in values[:3]):
             raise ValueError("curvature samples pitch must be 0 in a planar scene")
         if not np.isfinite(time) or time <= self.time:
-            raise ValueError(f"curvature samples must lie ahead of the simulation ({self.time:.6f} s), got {time:.6f} s")
+            raise ValueError(f"curvature samples time must lie ahead of the simulation ({self.time:.6f} s), got {time} s")
         self.shape.add(float(time), self.time, x, np.reshape(values, (2, 3, len(x))))
         self.ready = True
 
@@ -370,7 +370,7 @@ def _instance(name: str, value, kind: type):
     return value
 
 
-def row(name: str, values, size: int | None) -> np.ndarray:
+def checked_row(name: str, values, size: int | None) -> np.ndarray:
     try:
         array = np.array(values, dtype=float)
     except (TypeError, ValueError):
@@ -383,7 +383,7 @@ def row(name: str, values, size: int | None) -> np.ndarray:
 
 
 def _unit(name: str, quaternion) -> np.ndarray:
-    array = row(name, quaternion, 4)
+    array = checked_row(name, quaternion, 4)
     size = np.linalg.norm(array)
     if abs(size - 1.0) > 1e-6:
         raise ValueError(f"{name} must be a unit quaternion (x, y, z, w), got norm {size:.6g}")
@@ -395,7 +395,7 @@ def _stations(stations, length: float) -> np.ndarray:
         if not 2 <= stations <= 100_000:
             raise ValueError(f"stations must be 2 or more, or their X in m, got {stations!r}")
         return np.linspace(0.0, length, int(stations))
-    x = row("stations", stations, None)
+    x = checked_row("stations", stations, None)
     if len(x) < 1 or np.any(np.diff(x) <= 0.0) or x[0] < 0.0 or x[-1] > length * (1 + 1e-12):
         raise ValueError(f"stations must rise within 0 to {length} m, got {stations!r}")
     return np.minimum(x, length)
