@@ -11,7 +11,7 @@ UNBOUNDED = 1e9  # upper end of a range that has none
 
 
 def declare_settings(node: Node) -> Settings:
-    """Declare a parameter for each field, fixed at start, and read what the user gave; ValueError says what is wrong."""
+    """Declare a parameter for each field, fixed at start, and read the user's; ValueError names what is wrong."""
     values = {}
     for item in fields(Settings):
         default = list(item.default) if isinstance(item.default, tuple) else item.default

@@ -22,7 +22,7 @@ from eel_viz.settings import Settings
 from eel_viz.skin import Skin
 from eel_viz.summary import Summary
 
-ENVELOPE_PERIOD = 250_000_000  # ns
+ENVELOPE_PERIOD = 500_000_000  # ns
 HEAT_MAP_PERIOD = 160_000_000
 SUMMARY_PERIOD = 500_000_000
 LEVELS = ("INFO", "WARN", "ERROR", "WARN")

@@ -26,7 +26,7 @@ class Columns:
     @property
     def time(self) -> np.ndarray:
         """(T,) [s]."""
-        return self.stamps * 1e-9
+        return self.stamps / 1e9
 
     def __getitem__(self, name: str) -> np.ndarray:
         """All values of a component, one row for each stamp that has it; ragged ones stay a list of arrays."""

@@ -1,0 +1,60 @@
+"""The made-up swimmer through the loggers into a file, without ROS."""
+
+from pathlib import Path
+
+import made_up
+from eel_viz.loggers import Loggers, Rates
+from eel_viz.settings import Settings
+from eel_viz.sinks import File, close_stream
+
+from eel_viz import messages
+
+
+def sample(swimmer: made_up.Swimmer, stamp: int) -> dict:
+    """What `Loggers` is given at `stamp` [ns]: method name to arguments."""
+    t = stamp * 1e-9
+    head, curvature, wrench, load = swimmer.head(t), swimmer.curvature(t), swimmer.wrench(t), swimmer.load(t)
+    pose = messages.Pose(position=head["position"], orientation=head["orientation"])
+    twist = messages.Twist(linear=head["linear"], angular=head["angular"])
+    return {
+        "head_pose": (pose,),
+        "head_twist": (twist,),
+        "odom": (pose, twist),
+        "backbone": (messages.Backbone(**swimmer.backbone(t)),),
+        "curvature": (profiles(curvature, messages.CURVATURE_FIELDS),),
+        "internal_wrench": (profiles(wrench, messages.WRENCH_FIELDS),),
+        "hydrodynamic_load": (
+            messages.Load(
+                profiles=profiles(load, messages.LOAD_FIELDS), tail=load["tail_force"], nose=load["nose_force"]
+            ),
+        ),
+        "energy": (swimmer.energy(t),),
+    }
+
+
+def profiles(fields: dict, names: tuple[str, ...]) -> messages.Profiles:
+    return messages.Profiles(x=fields["x"], values={name: fields[name] for name in names})
+
+
+def body() -> messages.Body:
+    return messages.Body(**made_up.body())
+
+
+def record(path: Path, seconds: float, rate: float, *, stations: int = 51, **settings) -> dict[int, dict]:
+    """Log everything; returns what was logged, by stamp [ns]."""
+    chosen = Settings(recording=str(path), **settings)
+    said: list[str] = []
+    destination = File(chosen, said.append, said.append)
+    stream = destination.open(1, "made up")
+    loggers = Loggers(stream, chosen, Rates(numbers=0.0, drawings=chosen.skin_rate))
+    loggers.body(body())
+    loggers.law(0, "made up")
+    swimmer = made_up.Swimmer(stations)
+    logged = {}
+    for k in range(round(seconds * rate) + 1):
+        stamp = round(k * 1e9 / rate)
+        logged[stamp] = sample(swimmer, stamp)
+        for method, arguments in logged[stamp].items():
+            getattr(loggers, method)(stamp, *arguments)
+    close_stream(stream)
+    return logged

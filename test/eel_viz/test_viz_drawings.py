@@ -1,0 +1,164 @@
+"""Plots against X, the heat map, colours and summary: what is drawn, read back from a recording."""
+
+import numpy as np
+import pytest
+import rerun as rr
+from eel_viz.heat_map import HeatMap
+from eel_viz.profile_plot import ProfilePlot, grown_limit
+from eel_viz.reading import read
+from eel_viz.summary import Summary
+from hypothesis import given
+from hypothesis import strategies as st
+
+from eel_viz import colours, entities, heat_map, profile_plot
+
+X = np.linspace(0.0, 2.0, 21)
+
+
+@pytest.fixture
+def stream(tmp_path):
+    made = rr.RecordingStream("eel_test")
+    made.path = tmp_path / "drawn.rrd"
+    made.set_log_time_enabled(False)
+    made.save(made.path)
+    return made
+
+
+def at(stream, seconds):
+    stream.set_time(entities.TIMELINE, duration=seconds)
+
+
+@given(limit=st.floats(1e-3, 1e3), value=st.floats(1e-6, 1e6))
+def test_a_limit_grows_to_a_round_value_that_holds(limit, value):
+    grown = grown_limit(limit, value)
+    assert grown >= value * (1 - 1e-9)
+    if value <= limit:
+        assert grown == limit
+    else:
+        mantissa = grown / 10 ** np.floor(np.log10(grown) + 1e-12)
+        assert min(abs(mantissa - step) for step in (1, 2, 5, 10)) < 1e-9
+        assert grown <= 2.5 * value * (1 + 1e-9)
+
+
+def test_curves_are_drawn_in_the_frame_s_units(stream):
+    plot = ProfilePlot(stream, entities.TORQUE, names=("C1", "C2"), unit="N m", limit=2.0)
+    at(stream, 0.5)
+    values = np.stack([np.linspace(-2.0, 2.0, 21), 0 * X], axis=1)
+    plot.include(X, values)
+    plot.draw(X, values)
+    stream.disconnect()
+    curves = read(stream.path, f"{entities.TORQUE}/{entities.CURVES}")
+    np.testing.assert_array_equal(curves.stamps, [500_000_000])
+    strips = curves["strips"][0]
+    np.testing.assert_allclose(strips[0, :, 0], profile_plot.WIDTH * X / 2.0, atol=1e-6)
+    np.testing.assert_allclose(strips[0, :, 1], np.linspace(0.5, -0.5, 21), atol=1e-7)  # y points down
+    np.testing.assert_array_equal(strips[1, :, 1], 0.0)
+    ticks = read(stream.path, f"{entities.TORQUE}/{entities.TICKS}")["labels"][0]
+    assert list(ticks) == ["+2", "0", "-2", "0", "0.4", "0.8", "1.2", "1.6", "2", "[N m] over X [m]"]
+
+
+def test_nothing_leaves_the_frame_and_ticks_follow(stream):
+    plot = ProfilePlot(stream, entities.FORCE, names=("N1",), unit="N", limit=1.0)
+    for k, size in enumerate((0.9, 1.2, 7.0, 0.1)):
+        at(stream, float(k))
+        values = np.full((21, 1), size)
+        plot.include(X, values)
+        plot.draw(X, values)
+    stream.disconnect()
+    curves = read(stream.path, f"{entities.FORCE}/{entities.CURVES}")
+    drawn = np.array([row[0][0][1] for row in curves["strips"]])
+    np.testing.assert_allclose(drawn, [-0.45, -0.3, -0.35, -0.005], atol=1e-7)
+    ticks = read(stream.path, f"{entities.FORCE}/{entities.TICKS}")
+    np.testing.assert_array_equal(ticks.stamps, [0, 1_000_000_000, 2_000_000_000])
+    assert [row[0] for row in ticks["labels"]] == ["+1", "+2", "+10"]
+
+
+def test_the_envelope_is_the_least_and_the_greatest_so_far(stream):
+    plot = ProfilePlot(stream, entities.FORCE, names=("N1",), unit="N", limit=4.0)
+    for k, phase in enumerate((0.0, 1.0, 2.0)):
+        at(stream, float(k))
+        plot.include(X, np.sin(X + phase)[:, None])
+        plot.draw_envelope()
+    stream.disconnect()
+    low, high = read(stream.path, f"{entities.FORCE}/{entities.ENVELOPE}")["strips"][-1]
+    seen = np.stack([np.sin(X + phase) for phase in (0.0, 1.0, 2.0)])
+    np.testing.assert_allclose(np.array(low)[:, 1], -seen.min(axis=0) / 8, atol=1e-7)
+    np.testing.assert_allclose(np.array(high)[:, 1], -seen.max(axis=0) / 8, atol=1e-7)
+
+
+def test_the_envelope_starts_anew_with_other_stations(stream):
+    plot = ProfilePlot(stream, entities.FORCE, names=("N1",), unit="N", limit=4.0)
+    at(stream, 0.0)
+    plot.include(X, np.full((21, 1), 3.0))
+    shorter = np.linspace(0.0, 2.0, 5)
+    plot.include(shorter, np.full((5, 1), 1.0))
+    plot.draw_envelope()
+    stream.disconnect()
+    low, high = read(stream.path, f"{entities.FORCE}/{entities.ENVELOPE}")["strips"][-1]
+    assert len(low) == len(high) == 5
+    np.testing.assert_allclose(np.array(high)[:, 1], -1.0 / 8, atol=1e-7)
+
+
+def image(path):
+    rows = read(path, entities.HEAT_MAP_IMAGE)["buffer"]
+    return np.frombuffer(np.array(rows[-1]).astype(np.uint8).tobytes(), np.uint8).reshape(
+        heat_map.ROWS, heat_map.COLUMNS
+    )
+
+
+def test_the_heat_map_rolls_and_shows_gaps_by_the_next_value(stream):
+    drawing = HeatMap(stream, limit=1.0)
+    step = round(heat_map.STEP * 1e9)
+    drawing.include(0, X, np.full(21, -1.0))
+    drawing.include(step // 2, X, np.full(21, 0.7))  # the same column: left as it is
+    drawing.include(3 * step, X, X / 2.0)
+    at(stream, 1.0)
+    drawing.draw()
+    stream.disconnect()
+    shown = image(stream.path)
+    assert np.all(shown[:, :-4] == heat_map.NO_DATA)
+    assert np.all(shown[:, -4] == 1)  # the deepest blue; 0 is kept for no data
+    rows = np.linspace(0.0, 1.0, heat_map.ROWS)  # the head at the top
+    np.testing.assert_array_equal(shown[:, -1], colours.diverging_index(rows, 1.0))
+    np.testing.assert_array_equal(shown[:, -3], shown[:, -1])
+
+
+def test_the_heat_map_forgets_what_is_older_than_its_length(stream):
+    drawing = HeatMap(stream, limit=1.0)
+    drawing.include(0, X, np.full(21, 1.0))
+    drawing.include(10**12, X, np.full(21, 0.0))
+    at(stream, 1.0)
+    drawing.draw()
+    stream.disconnect()
+    assert set(np.unique(image(stream.path))) == {colours.diverging_index(np.zeros(1), 1.0)[0]}
+
+
+def test_diverging_colours_are_ordered_and_differ_in_hue_from_the_middle():
+    values = np.linspace(-1.5, 1.5, 301)
+    shades = colours.diverging(values, 1.0).astype(int)
+    np.testing.assert_array_equal(shades[0], colours.DIVERGING[0])
+    np.testing.assert_array_equal(shades[-1], colours.DIVERGING[-1])
+    middle = colours.diverging(np.array([0.0]), 1.0)[0].astype(int)
+    assert np.ptp(middle) < 8  # grey
+    warmth = shades[:, 0] - shades[:, 2]  # red less blue
+    assert np.all(np.diff(warmth[60:240]) >= -6)
+    assert warmth[75] < -60
+    assert warmth[225] > 60
+    brightness = shades.sum(axis=1)
+    assert brightness[150] > brightness[60] > brightness[30]
+
+
+def test_the_summary_counts_path_speed_and_greatest_torque():
+    summary = Summary()
+    for k in range(5):
+        summary.move(k * 10**9, np.array([0.5 * k, 0.0, 0.0]))
+    summary.strain(2 * 10**9, np.array([0.0, 0.5, 1.0]), np.array([0.1, -0.7, 0.2]))
+    summary.strain(3 * 10**9, np.array([0.0, 0.5, 1.0]), np.array([0.6, 0.1, 0.2]))
+    summary.law, summary.state = "falling", "swimming"
+    summary.values = {"accuracy": "standard", "warnings": "", "unknown": "7"}
+    text = summary.text()
+    assert "law **falling**, swimming" in text
+    assert "mean speed **0.500 m/s**, path 2.00 m" in text
+    assert "greatest C3 **-0.700 N m** at X 0.50 m, 2.00 s" in text
+    assert "accuracy standard" in text
+    assert "warnings" not in text

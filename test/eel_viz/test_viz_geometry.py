@@ -1,0 +1,146 @@
+"""Axes, the line between stations, and the skin: against circles and ellipses that are known exactly."""
+
+import made_up
+import numpy as np
+import pytest
+from eel_viz.centre_line import Resampling
+from eel_viz.orientation import attitude, world_from_body, world_from_section
+from eel_viz.skin import Skin
+
+
+def about_z(angle):
+    zero = np.zeros_like(angle)
+    return np.stack([zero, zero, np.sin(angle / 2), np.cos(angle / 2)], axis=-1)
+
+
+def circle(stations, curvature=2.0):
+    """A backbone bent to the right (K3 > 0) in the plane z = 0: x, position, orientation, and the exact line."""
+    x = np.linspace(0.0, 1.0, stations)
+
+    def line(s):
+        return np.stack([-np.sin(curvature * s), -(1 - np.cos(curvature * s)), 0 * s], axis=-1) / curvature
+
+    # t1 = -ex of the section = (-cos, -sin, 0): turned by +K s about z
+    return x, line(x), about_z(curvature * x), line
+
+
+def test_rotation_matrices_are_those_of_the_quaternions():
+    rng = np.random.default_rng(1)
+    q = rng.normal(size=(20, 4))
+    q /= np.linalg.norm(q, axis=1, keepdims=True)
+    matrices = world_from_body(q)
+    np.testing.assert_allclose(
+        matrices @ np.swapaxes(matrices, 1, 2), np.broadcast_to(np.eye(3), (20, 3, 3)), atol=1e-14
+    )
+    np.testing.assert_allclose(np.linalg.det(matrices), 1.0, atol=1e-14)
+    v = rng.normal(size=(20, 3))
+    xyz, w = q[:, :3], q[:, 3:]
+    turned = v + 2 * np.cross(xyz, np.cross(xyz, v) + w * v)
+    np.testing.assert_allclose(np.einsum("nij,nj->ni", matrices, v), turned, atol=1e-14)
+
+
+def test_section_axes_are_half_a_turn_from_the_body_axes():
+    at_rest = np.array([0.0, 0.0, 0.0, 1.0])
+    for section, world in (((1, 0, 0), (-1, 0, 0)), ((0, 1, 0), (0, -1, 0)), ((0, 0, 1), (0, 0, 1))):
+        np.testing.assert_array_equal(world_from_section(at_rest, np.array(section)), world)
+    left = about_z(np.array(np.pi / 2))  # nose to +y, so the tail is at -y
+    np.testing.assert_allclose(world_from_section(left, np.array([1.0, 0, 0])), (0, -1, 0), atol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("quaternion", "expected"),
+    [
+        (about_z(np.array(0.3)), (0.3, 0.0, 0.0)),
+        ((0.0, np.sin(-0.1), 0.0, np.cos(-0.1)), (0.0, 0.2, 0.0)),  # about -y: nose up
+        ((np.sin(0.2), 0.0, 0.0, np.cos(0.2)), (0.0, 0.0, 0.4)),
+    ],
+)
+def test_attitude_signs(quaternion, expected):
+    np.testing.assert_allclose(attitude(np.array(quaternion)), expected, atol=1e-14)
+
+
+def test_the_line_between_stations_converges_at_fourth_order():
+    target = np.linspace(0.0, 1.0, 97)
+    errors = []
+    for stations in (11, 21, 41):
+        x, position, orientation, line = circle(stations)
+        points, _ = Resampling(x, target).centre_line(position, orientation)
+        errors.append(np.abs(points - line(target)).max())
+    slopes = np.log2(np.array(errors[:-1]) / errors[1:])
+    np.testing.assert_allclose(slopes, 4.0, atol=0.2)
+
+
+def test_the_line_passes_through_the_stations():
+    x, position, orientation, _ = circle(7)
+    points, axes = Resampling(x, x).centre_line(position, orientation)
+    np.testing.assert_allclose(points, position, atol=1e-15)
+    np.testing.assert_allclose(axes[:, :, 0], world_from_section(orientation, np.array([1.0, 0, 0])), atol=1e-14)
+    np.testing.assert_allclose(np.linalg.det(axes), 1.0, atol=1e-14)
+
+
+@pytest.fixture
+def skin():
+    body = made_up.body(201)
+    return Skin(body["x"], body["half_width"], body["half_height"])
+
+
+def straight(stations=51):
+    x = np.linspace(0.0, 1.0, stations)
+    position = np.stack([-x, 0 * x, 0 * x], axis=1)
+    return x, position, about_z(0 * x)
+
+
+def test_every_ring_is_the_body_s_ellipse(skin):
+    vertices, _ = skin.place(*straight())
+    rings = vertices.reshape(len(skin.x), -1, 3)
+    np.testing.assert_allclose(rings[:, :, 0], -np.broadcast_to(skin.x[:, None], rings.shape[:2]), atol=1e-7)
+    given, exact = made_up.body(201), made_up.body(100_001)
+    for k, x in enumerate(skin.x[1:], start=1):
+        # 1e-5 of the squares between the given points; 3 % of the true ones, where 5 mm are coarse for the nose
+        for body, tolerance in ((given, 1e-5), (exact, 3e-2)):
+            b2, a2 = (np.interp(x, body["x"], body[name] ** 2) for name in ("half_width", "half_height"))
+            np.testing.assert_allclose(rings[k, :, 1] ** 2 / b2 + rings[k, :, 2] ** 2 / a2, 1.0, rtol=tolerance)
+    assert np.abs(rings[:, :, 2]).max() == pytest.approx(0.05, rel=1e-2)
+    assert rings[-1, :, 1].max() < 0.1 * rings[-1, :, 2].max()  # the tail is an upright edge
+    np.testing.assert_array_equal(rings[0], 0.0)
+
+
+def test_the_mesh_is_closed_and_faces_outwards(skin):
+    x, position, orientation, _ = circle(51)
+    vertices, _ = skin.place(x, position, orientation)
+    triangles = skin.triangles.astype(int)
+    edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+    directed = {tuple(edge) for edge in edges}
+    sides = len(vertices) // len(skin.x)
+    nose = set(range(sides))  # one point, so its edges have no length
+    open_edges = [(a, b) for a, b in directed if (b, a) not in directed and not {a, b} <= nose]
+    assert open_edges == []
+    a, b, c = (vertices[triangles[:, k]].astype(float) for k in range(3))
+    volume = np.einsum("ni,ni->n", a, np.cross(b, c)).sum() / 6
+    body = made_up.body(2001)
+    exact = np.trapezoid(np.pi * body["half_width"] * body["half_height"], body["x"])
+    assert volume == pytest.approx(exact, rel=0.06)  # a twelve-sided section has 0.955 of its ellipse
+
+
+def test_normals_are_those_of_the_surface(skin):
+    vertices, normals = skin.place(*straight())
+    sides = len(vertices) // len(skin.x)
+    points, normals = (array.reshape(len(skin.x), sides, 3).astype(float) for array in (vertices, normals))
+    np.testing.assert_allclose(np.linalg.norm(normals, axis=2), 1.0, atol=1e-6)
+    np.testing.assert_allclose(normals[0], np.broadcast_to((1.0, 0.0, 0.0), (sides, 3)), atol=1e-6)
+    along = points[2:] - points[:-2]
+    around = np.roll(points, -1, axis=1) - np.roll(points, 1, axis=1)
+    for tangent, normal in ((along[2:-1], normals[3:-2]), (around[3:-2], normals[3:-2])):
+        cosine = np.einsum("rsi,rsi->rs", tangent, normal) / np.linalg.norm(tangent, axis=2)
+        assert np.abs(cosine).max() < 0.05
+
+
+def test_a_value_for_each_vertex(skin):
+    x = np.linspace(0.0, 1.0, 51)
+    spread = skin.spread(x, 3.0 * x).reshape(len(skin.x), -1)
+    np.testing.assert_allclose(spread, np.broadcast_to(3.0 * skin.x[:, None], spread.shape), atol=1e-14)
+
+
+def test_the_mesh_stays_when_the_number_of_stations_changes(skin):
+    shapes = {skin.place(*straight(stations))[0].shape for stations in (5, 51, 200)}
+    assert len(shapes) == 1

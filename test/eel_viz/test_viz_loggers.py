@@ -1,0 +1,257 @@
+"""Everything that is logged, read back and compared number by number with what was given."""
+
+import made_up
+import numpy as np
+import pytest
+from eel_viz.blueprint import arrangement
+from eel_viz.centre_line import Resampling
+from eel_viz.colours import diverging
+from eel_viz.orientation import attitude, world_from_section
+from eel_viz.reading import read
+from eel_viz.skin import Skin
+from made_up_recording import body
+
+from eel_viz import entities
+
+SINGLE = 1e-6  # Rerun's geometry is single precision
+
+
+@pytest.fixture
+def made(record_made_up):
+    return record_made_up(1.0, 100.0)
+
+
+def drawn_stamps(samples, rate=25.0):
+    """The first stamp of every period."""
+    period = 1e9 / rate
+    slots = [int((stamp + 1000) // period) for stamp in samples]
+    return [stamp for k, stamp in enumerate(samples) if k == 0 or slots[k] != slots[k - 1]]
+
+
+def given(samples, topic, pick):
+    return np.array([pick(*arguments[topic]) for arguments in samples.values()])
+
+
+def assert_exact(path, entity, component, samples, expected):
+    columns = read(path, entity)
+    np.testing.assert_array_equal(columns.stamps_of[component], list(samples), err_msg=entity)
+    np.testing.assert_array_equal(columns[component], expected, err_msg=f"{entity} {component}")
+
+
+def test_scalars_are_exact_and_complete(made):
+    path, samples = made
+    powers = ("actuator_power", "wake_power", "nose_power", "drag_power")
+    expected = {
+        entities.POSITION: given(samples, "head_pose", lambda pose: pose.position),
+        entities.ORIENTATION: given(samples, "head_pose", lambda pose: pose.orientation),
+        entities.ATTITUDE: given(samples, "head_pose", lambda pose: np.degrees(attitude(pose.orientation))),
+        entities.DEPTH: given(samples, "head_pose", lambda pose: [-pose.position[2]]),
+        entities.LINEAR: given(samples, "head_twist", lambda twist: twist.linear),
+        entities.ANGULAR: given(samples, "head_twist", lambda twist: twist.angular),
+        entities.SPEED: given(samples, "head_twist", lambda twist: [np.linalg.norm(twist.linear)]),
+        entities.POWER: given(samples, "energy", lambda energy: [energy[name] for name in powers]),
+        entities.KINETIC: given(samples, "energy", lambda energy: [energy["kinetic_body"], energy["kinetic_fluid"]]),
+        entities.RESIDUAL: given(samples, "energy", lambda energy: [energy["residual"]]),
+    }
+    for entity, values in expected.items():
+        assert_exact(path, entity, "scalars", samples, values)
+
+
+def test_profiles_are_exact_and_complete(made):
+    path, samples = made
+    for topic, entity, profiles in (
+        ("internal_wrench", entities.WRENCH_NUMBERS, lambda wrench: wrench),
+        ("curvature", entities.CURVATURE_NUMBERS, lambda curvature: curvature),
+        ("hydrodynamic_load", entities.LOAD_NUMBERS, lambda load: load.profiles),
+    ):
+        first = profiles(*samples[0][topic])
+        for name in first.values:
+            values = given(samples, topic, lambda message, name=name, profiles=profiles: profiles(message).values[name])
+            assert_exact(path, entity, name, samples, values)
+        stations = read(path, entity)
+        np.testing.assert_array_equal(stations["x"], [first.x])  # once, since it stays
+    for name in ("tail", "nose"):
+        values = given(samples, "hydrodynamic_load", lambda load, name=name: getattr(load, name))
+        assert_exact(path, entities.LOAD_NUMBERS, f"{name}_force", samples, values)
+
+
+def test_odometry_is_exact(made):
+    path, samples = made
+    for name, k in (("position", 0), ("orientation", 0), ("linear", 1), ("angular", 1)):
+        values = given(samples, "odom", lambda *both, name=name, k=k: getattr(both[k], name))
+        assert_exact(path, entities.ODOMETRY_NUMBERS, name, samples, values)
+
+
+def test_body_and_law(made):
+    path, _ = made
+    logged = read(path, entities.BODY_NUMBERS, static=True)
+    for name in ("x", "half_width", "half_height"):
+        np.testing.assert_array_equal(logged[name][0], getattr(body(), name))
+    assert (logged["length"][0][0], logged["mass"][0][0]) == (body().length, body().mass)
+    text = read(path, entities.LOG)
+    assert text["text"][0][0] == "law 'made up' published"
+    assert "law **made up**" in read(path, entities.RUN)["text"][-1][0]
+
+
+def test_the_backbone_is_there_with_every_sample(made):
+    path, samples = made
+    columns = read(path, entities.BACKBONE)
+    np.testing.assert_array_equal(columns.stamps, list(samples))
+    expected = given(samples, "backbone", lambda backbone: backbone.position)
+    np.testing.assert_allclose(columns["strips"][:, 0], expected, atol=SINGLE)
+
+
+def test_skin_and_frames_at_the_drawing_rate(made):
+    path, samples = made
+    stamps = drawn_stamps(samples)
+    assert len(stamps) == 26
+    skin = Skin(body().x, body().half_width, body().half_height)
+    logged = read(path, entities.SKIN)
+    for name in ("vertex_positions", "vertex_normals", "vertex_colors"):
+        np.testing.assert_array_equal(logged.stamps_of[name], stamps)
+    triangles = read(path, entities.SKIN, static=True)["triangle_indices"][0]
+    np.testing.assert_array_equal(triangles, skin.triangles)
+    heads, tails, follow = (read(path, entity) for entity in (entities.HEAD, entities.TAIL, entities.FOLLOW))
+    for k, stamp in enumerate(stamps):
+        backbone = samples[stamp]["backbone"][0]
+        vertices, normals = skin.place(backbone.x, backbone.position, backbone.orientation)
+        np.testing.assert_allclose(logged["vertex_positions"][k], vertices, atol=SINGLE)
+        np.testing.assert_allclose(logged["vertex_normals"][k], normals, atol=SINGLE)
+        wrench = samples[stamp]["internal_wrench"][0]
+        shades = diverging(skin.spread(wrench.x, wrench.values["torque_3"]), 0.25).astype(np.uint32)
+        packed = (shades[:, 0] << 24) + (shades[:, 1] << 16) + (shades[:, 2] << 8) + 255
+        np.testing.assert_array_equal(np.array(logged["vertex_colors"][k], dtype=np.uint32), packed)
+        pose = samples[stamp]["head_pose"][0]
+        np.testing.assert_allclose(heads["translation"][k][0], pose.position, atol=SINGLE)
+        np.testing.assert_allclose(heads["quaternion"][k][0], pose.orientation, atol=SINGLE)
+        np.testing.assert_allclose(tails["translation"][k][0], backbone.position[-1], atol=SINGLE)
+        np.testing.assert_allclose(tails["quaternion"][k][0], backbone.orientation[-1], atol=SINGLE)
+        np.testing.assert_allclose(follow["translation"][k][0], backbone.position.mean(axis=0), atol=SINGLE)
+
+
+def test_the_track_is_the_path_of_the_head_without_gaps(made):
+    path, samples = made
+    stamps = drawn_stamps(samples)
+    track = read(path, entities.TRACK)
+    np.testing.assert_array_equal(track.stamps, stamps[1:])
+    heads = np.array([samples[stamp]["head_pose"][0].position for stamp in stamps])
+    np.testing.assert_allclose(track["strips"][:, 0, 0], heads[:-1], atol=SINGLE)
+    np.testing.assert_allclose(track["strips"][:, 0, 1], heads[1:], atol=SINGLE)
+
+
+def test_arrows_are_the_load_in_the_world(record_made_up):
+    path, samples = record_made_up(0.4, 100.0, load_scale=0.5, end_force_scale=2.0)
+    stamps = drawn_stamps(samples)
+    arrows, ends = read(path, entities.LOAD), read(path, entities.LOAD_ENDS)
+    np.testing.assert_array_equal(arrows.stamps, stamps)
+    for k, stamp in enumerate(stamps):
+        backbone, load = samples[stamp]["backbone"][0], samples[stamp]["hydrodynamic_load"][0]
+        force = world_from_section(backbone.orientation, load.profiles.together("force_1", "force_2", "force_3"))
+        x = np.linspace(0.0, 1.0, 26)[1:-1]
+        expected = 0.5 * Resampling(backbone.x, x).linear(force)
+        size = max(np.abs(expected).max(), 1e-3)
+        # axes are blended between stations before they turn the force: second order in their distance
+        np.testing.assert_allclose(arrows["vectors"][k], expected, atol=5e-3 * size)
+        both = world_from_section(backbone.orientation[[0, -1]], np.stack([load.nose, load.tail]))
+        np.testing.assert_allclose(ends["vectors"][k], 2.0 * both, atol=SINGLE)
+        np.testing.assert_allclose(ends["origins"][k], backbone.position[[0, -1]], atol=SINGLE)
+
+
+def test_the_floor_stays_below_and_its_labels_say_where(record_made_up):
+    path, samples = record_made_up(10.0, 25.0)
+    grid = read(path, entities.GRID)
+    place = dict(zip(grid.stamps.tolist(), np.array(grid["translation"])[:, 0], strict=True))
+    floor = None
+    for stamp, arguments in samples.items():
+        floor = place.get(stamp, floor)
+        position = arguments["backbone"][0].position
+        assert position[:, 2].min() - floor[2] >= 0.4
+        np.testing.assert_array_equal(np.floor(position.mean(axis=0)[:2]), floor[:2])
+    labels = read(path, entities.GRID_LABELS)
+    for (x, y, z), texts, points in zip(place.values(), labels["labels"], labels["positions"], strict=True):
+        for text, point in zip(texts, points, strict=True):
+            assert point[2] == z
+            for axis, value in zip("xyz", point, strict=True):
+                if f"{axis} " in text:
+                    assert f"{axis} {value:.0f}" in text
+        assert max(abs(np.array(points)[:, 0] - x).max(), abs(np.array(points)[:, 1] - y).max()) < 6
+
+
+def test_stations_may_change_in_mid_run(record_made_up, tmp_path):
+    from eel_viz.loggers import Loggers, Rates
+    from eel_viz.settings import Settings
+    from eel_viz.sinks import File, close_stream
+    from made_up_recording import sample
+
+    settings = Settings(recording=str(tmp_path / "changing.rrd"))
+    stream = File(settings, print, print).open(1, "changing")
+    loggers = Loggers(stream, settings, Rates())
+    loggers.body(body())
+    for k, stations in enumerate((51, 51, 21, 101)):
+        for method, arguments in sample(made_up.Swimmer(stations), k * 10**9).items():
+            getattr(loggers, method)(k * 10**9, *arguments)
+    close_stream(stream)
+    numbers = read(tmp_path / "changing.rrd", entities.WRENCH_NUMBERS)
+    assert [len(row) for row in numbers.values["x"]] == [51, 21, 101]
+    assert [len(row) for row in numbers.values["torque_3"]] == [51, 51, 21, 101]
+    assert len(read(tmp_path / "changing.rrd", entities.SKIN)["vertex_positions"]) == 4
+
+
+def test_the_order_of_topics_does_not_matter(tmp_path):
+    from eel_viz.loggers import Loggers, Rates
+    from eel_viz.settings import Settings
+    from eel_viz.sinks import File, close_stream
+    from made_up_recording import sample
+
+    paths = []
+    for name, turn in (("forwards", 1), ("backwards", -1)):
+        settings = Settings(recording=str(tmp_path / f"{name}.rrd"))
+        stream = File(settings, print, print).open(1, name)
+        loggers = Loggers(stream, settings, Rates())
+        loggers.body(body())
+        for k in range(10):
+            for method, arguments in list(sample(made_up.Swimmer(), k * 10**8).items())[::turn]:
+                getattr(loggers, method)(k * 10**8, *arguments)
+        close_stream(stream)
+        paths.append(tmp_path / f"{name}.rrd")
+    for entity, component in (
+        (entities.LOAD, "vectors"),
+        (entities.SKIN, "vertex_colors"),
+        (entities.SKIN, "vertex_positions"),
+        (entities.SPEED, "scalars"),
+        (f"{entities.TORQUE}/curves", "strips"),
+    ):
+        forwards, backwards = (read(path, entity) for path in paths)
+        np.testing.assert_array_equal(forwards.stamps, backwards.stamps)
+        np.testing.assert_array_equal(forwards[component], backwards[component])
+
+
+def test_a_lower_rate_for_a_live_viewer(tmp_path):
+    from eel_viz.loggers import Loggers, Rates
+    from eel_viz.settings import Settings
+    from eel_viz.sinks import File, close_stream
+    from made_up_recording import sample
+
+    settings = Settings(recording=str(tmp_path / "live.rrd"))
+    stream = File(settings, print, print).open(1, "live")
+    loggers = Loggers(stream, settings, Rates(numbers=10.0, drawings=10.0))
+    for k in range(101):
+        for method, arguments in sample(made_up.Swimmer(), k * 10**7).items():
+            getattr(loggers, method)(k * 10**7, *arguments)
+    close_stream(stream)
+    for entity in (entities.SPEED, entities.WRENCH_NUMBERS, entities.BACKBONE, entities.POWER):
+        assert len(read(tmp_path / "live.rrd", entity).stamps) == 11, entity
+
+
+def test_the_recording_carries_its_blueprint(made):
+    from rerun.chunk import RrdReader
+
+    path, _ = made
+    assert len(RrdReader(str(path)).blueprints()) == 1
+    with pytest.raises(ValueError, match="blueprint must be one of overview, torques, motion, got 'best'"):
+        arrangement("best")
+
+
+def test_a_run_of_ten_seconds_at_50_hz_is_small(record_made_up):
+    path, _ = record_made_up(10.0, 50.0)
+    assert path.stat().st_size < 7e6

@@ -1,0 +1,204 @@
+"""Runs and where they go: files, ports, viewers that are absent, and stamps that go back."""
+
+import os
+import socket
+
+import made_up
+import numpy as np
+import pytest
+from eel_viz.reading import read
+from eel_viz.runs import Runs
+from eel_viz.settings import Settings
+from eel_viz.sinks import Connected, File, Served, destinations
+from made_up_recording import body, sample
+
+from eel_viz import entities, runs
+
+SECOND = 10**9
+
+
+class Ears:
+    """What was said."""
+
+    def __init__(self):
+        self.said, self.warned = [], []
+
+
+@pytest.fixture
+def ears():
+    return Ears()
+
+
+@pytest.fixture
+def file(tmp_path, ears):
+    return File(Settings(recording=str(tmp_path / "run.rrd")), ears.said.append, ears.warned.append)
+
+
+def send(made, stamp, topics=None):
+    for topic, arguments in sample(made_up.Swimmer(11), stamp).items():
+        if topics is None or topic in topics:
+            for loggers in made.at(topic, stamp):
+                getattr(loggers, topic)(stamp, *arguments)
+
+
+def test_a_stamp_that_goes_back_begins_a_new_recording(file, ears, tmp_path):
+    made = Runs([file], "eel", ears.warned.append)
+    made.body(body())
+    made.law("falling")
+    for stamp in (0, SECOND, 2 * SECOND, 0, SECOND):
+        send(made, stamp)
+    made.close()
+    for name, stamps in (("run.rrd", [0, SECOND, 2 * SECOND]), ("run-2.rrd", [0, SECOND])):
+        for entity in (entities.POSITION, entities.WRENCH_NUMBERS, entities.LOAD_NUMBERS, entities.POWER):
+            np.testing.assert_array_equal(read(tmp_path / name, entity).stamps, stamps)
+        assert read(tmp_path / name, entities.SKIN, static=True)["triangle_indices"].shape[1] > 100
+        assert read(tmp_path / name, entities.LOG)["text"][0][0] == "law 'falling' published"
+    assert [line for line in ears.warned if "went back" in line] == [
+        "stamps of head_pose went back from 2 s to 0 s: a new recording begins"
+    ]
+
+
+def test_topics_may_reach_a_reset_at_different_times(file, ears, tmp_path):
+    made = Runs([file], "eel", ears.warned.append)
+    early, late = ("head_pose", "backbone"), ("internal_wrench", "energy")
+    send(made, 0, late)
+    for stamp in (0, SECOND, 0, SECOND):  # two runs
+        send(made, stamp, early)
+    for stamp in (SECOND, 2 * SECOND, 0):  # still the first, then the next
+        send(made, stamp, late)
+    made.close()
+    np.testing.assert_array_equal(read(tmp_path / "run.rrd", entities.WRENCH_NUMBERS).stamps, [0, SECOND, 2 * SECOND])
+    np.testing.assert_array_equal(read(tmp_path / "run-2.rrd", entities.WRENCH_NUMBERS).stamps, [0])
+    np.testing.assert_array_equal(read(tmp_path / "run-2.rrd", entities.POSITION).stamps, [0, SECOND])
+    assert not (tmp_path / "run-3.rrd").exists()
+
+
+def test_two_publishers_do_not_begin_a_recording_with_every_message(file, ears, tmp_path):
+    made = Runs([file], "eel", ears.warned.append, crowded=lambda topic: True)
+    for k in range(50):
+        send(made, 100 * SECOND + k, ("head_pose",))
+        send(made, k, ("head_pose",))
+    made.close()
+    assert len(list(tmp_path.iterdir())) <= runs.RESETS + 1
+    assert sum("more than one publisher" in line for line in ears.warned) == 1
+
+
+def test_resets_in_quick_succession_are_taken(file, ears, tmp_path):
+    made = Runs([file], "eel", ears.warned.append)
+    for _ in range(6):
+        for stamp in (0, SECOND):
+            send(made, stamp, ("head_pose",))
+    made.close()
+    assert sorted(path.name for path in tmp_path.iterdir()) == [
+        "run-2.rrd",
+        "run-3.rrd",
+        "run-4.rrd",
+        "run-5.rrd",
+        "run-6.rrd",
+        "run.rrd",
+    ]
+
+
+def test_a_late_start_shows_the_present(file, ears, tmp_path):
+    made = Runs([file], "eel", ears.warned.append)
+    for stamp in (500 * SECOND, 501 * SECOND):
+        send(made, stamp)
+    made.close()
+    assert not ears.warned
+    np.testing.assert_array_equal(read(tmp_path / "run.rrd", entities.SPEED).time, [500.0, 501.0])
+
+
+def test_a_file_that_is_there_is_replaced_with_a_warning(file, ears, tmp_path):
+    (tmp_path / "run.rrd").write_text("something else")
+    Runs([file], "eel", ears.warned.append).close()
+    assert ears.warned == [f"{tmp_path / 'run.rrd'} is there already and is replaced"]
+
+
+def test_folders_are_made(tmp_path, ears):
+    path = tmp_path / "a" / "b" / "run.rrd"
+    Runs([File(Settings(recording=str(path)), ears.said.append, ears.warned.append)], "eel", print).close()
+    assert path.exists()
+    assert not ears.warned
+
+
+@pytest.mark.parametrize("path", ["/proc/none/run.rrd", "/dev/null/run.rrd", "{folder}"])
+def test_a_path_that_cannot_be_written(path, tmp_path, ears):
+    path = path.format(folder=tmp_path)
+    file = File(Settings(recording=path), ears.said.append, ears.warned.append)
+    with pytest.raises(ValueError, match=r"recording .* cannot be written"):
+        Runs([file], "eel", print)
+
+
+def test_without_a_name_the_file_is_called_after_the_time(tmp_path, ears, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Runs([File(Settings(), ears.said.append, ears.warned.append)], "eel", print).close()
+    (made,) = os.listdir(tmp_path)
+    assert made.startswith("eel-20")
+    assert made.endswith(".rrd")
+
+
+@pytest.fixture
+def taken():
+    """A port in use."""
+    with socket.socket() as holder:
+        holder.bind(("127.0.0.1", 0))
+        holder.listen()
+        yield holder.getsockname()[1]
+
+
+def test_a_port_in_use_is_said_and_another_one_taken(taken, ears):
+    served = Served(Settings(port=taken), ears.said.append, ears.warned.append)
+    served.close()
+    assert len(ears.warned) == 1
+    assert f"port {taken} is in use, taking " in ears.warned[0]
+    assert str(taken) not in served.uri
+
+
+def test_a_viewer_that_is_absent_is_said_once_and_found_later(ears, tmp_path, monkeypatch):
+    from eel_viz.render import free_port
+
+    port = free_port()
+    settings = Settings(viewer=f"rerun+http://127.0.0.1:{port}/proxy", recording=str(tmp_path / "run.rrd"))
+    say, warn = ears.said.append, ears.warned.append
+    file, viewer = File(settings, say, warn), Connected(settings, say, warn)
+    made = Runs([file, viewer], "eel", warn)
+    monkeypatch.setattr(runs, "RETRY", 0.0)
+    for k in range(3):
+        send(made, k * SECOND)
+        made.attend()
+    assert len(ears.warned) == 1
+    assert "no viewer listens at" in ears.warned[0]
+    host = Served(Settings(port=port), ears.said.append, ears.warned.append)  # stands in for the viewer
+    made.attend()
+    send(made, 3 * SECOND)
+    made.close()
+    host.close()
+    assert f"connected to the viewer at {settings.viewer}" in ears.said
+    assert len(read(tmp_path / "run.rrd", entities.SPEED).stamps) == 4
+
+
+def test_a_viewer_s_address_that_is_none():
+    with pytest.raises(ValueError, match="viewer must look like"):
+        Connected(Settings(viewer="somewhere"), print, print)
+
+
+def test_auto_saves_without_a_display_and_opens_a_window_with_one(monkeypatch, tmp_path, ears):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
+    (chosen,) = destinations(Settings(), ears.said.append, ears.warned.append)
+    assert isinstance(chosen, File)
+    monkeypatch.setenv("DISPLAY", ":99")
+    opened = []
+    monkeypatch.setattr(Served, "show_in_window", lambda self: opened.append(self.uri))
+    (chosen,) = destinations(Settings(), ears.said.append, ears.warned.append)
+    chosen.close()
+    assert opened == [chosen.uri]
+
+
+def test_spawn_without_a_display_warns_and_serves(monkeypatch, ears):
+    monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
+    (chosen,) = destinations(Settings(sink=("spawn",)), ears.said.append, ears.warned.append)
+    chosen.close()
+    assert "there is no display: no viewer is opened" in ears.warned
