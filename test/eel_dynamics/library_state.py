@@ -6,9 +6,9 @@ import numpy as np
 from reference import Reference, rotation
 from reference import scene as reference_scene
 
-from eel_dynamics import Body, Scene, Simulation, hydrodynamic_wrench, simulate
+from eel_dynamics import Accuracy, Body, Scene, Simulation, hydrodynamic_wrench, simulate
 
-FINE = "reference"  # the most accurate preset
+DENSE = Accuracy(name="dense", resolution=300.0, tolerance=1e-12)  # more nodes than any preset: physics, not presets
 
 
 def library_body(body):
@@ -34,7 +34,7 @@ def namespace_body(body, kinks=()):
     )
 
 
-def snapshot(body, law, time=0.0, twist=(0,) * 6, orientation=(0, 0, 0, 1), settings=None, stations=21, accuracy=FINE):
+def snapshot(body, law, time=0.0, twist=(0,) * 6, orientation=(0, 0, 0, 1), settings=None, stations=21, accuracy=DENSE):
     """What the library observes where the law is at `time` and the head has `twist` [rad/s, m/s] (over ground)."""
     simulation = Simulation(
         body=body,
@@ -49,15 +49,15 @@ def snapshot(body, law, time=0.0, twist=(0,) * 6, orientation=(0, 0, 0, 1), sett
 
 
 def expected(reference, law, time, twist, orientation=(0, 0, 0, 1)):
-    """The same from the reference: (shape, twist relative to the water, rate of that twist, rate of the twist)."""
+    """The same from the reference: shape, twist relative to the water, rate of its components, head acceleration."""
     shape = law.curvature(time, reference.space.x)
     drift = rotation(orientation).T @ np.asarray(reference.scene.current, float)
     relative = np.array(twist, float)
     relative[3:] -= drift
     relative_rate = reference.acceleration(*shape, relative)
-    rate = relative_rate.copy()
-    rate[3:] -= np.cross(relative[:3], drift)
-    return shape, relative, relative_rate, rate
+    acceleration = relative_rate.copy()  # the true one, the same in the water's frame as over ground
+    acceleration[3:] += np.cross(relative[:3], relative[3:])
+    return shape, relative, relative_rate, acceleration
 
 
 def prescribed(body, law, time, twist, twist_rate, settings):
@@ -80,7 +80,8 @@ def distance(got, wanted, scale=None):
 
 
 __all__ = [
-    "FINE",
+    "DENSE",
+    "Accuracy",
     "Body",
     "Reference",
     "Scene",

@@ -20,9 +20,9 @@ OUT = Path(__file__).parent / "data" / "falling.json"
 
 
 CASES = {  # settings of the scene, then (tolerance in time, panels per span, nodes per panel) of two runs
-    "no drag": ({"resistive": False}, (1e-11, 1, 14), (1e-12, 1, 16)),
-    "laminar": ({"friction": "laminar"}, (1e-8, 3, 16), (1e-9, 4, 16)),
-    "printed": ({"friction": "printed"}, (1e-6, 2, 16), (1e-7, 4, 16)),
+    "no drag": ({"resistive": False}, (1e-11, 2, 16), (1e-12, 3, 16)),
+    "laminar": ({"friction": "laminar"}, (1e-9, 12, 10), (1e-10, 20, 10)),
+    "printed": ({"friction": "printed"}, (1e-7, 12, 10), (1e-8, 20, 10)),
 }
 
 

@@ -68,7 +68,8 @@ class Reference:
     """One body in one scene. `motion` below is (K, dK/dt, d2K/dt2, mu): curvature fields (N, 3) and head twist (6,)."""
 
     def __init__(self, body, settings=None, splits=(), **space):
-        self.scene = settings = settings or scene()
+        self.body, self.scene = body, settings or scene()
+        settings = self.scene
         self.space = Space(sorted({*body.kinks, *splits}), **space)  # `splits`: kinks of the law
         self.length = body.kinks[-1]
         at_tail = np.array([self.length])
@@ -94,19 +95,19 @@ class Reference:
     # -- kinematics -------------------------------------------------------------------------------------------------
     def configuration(self, K):
         """Rotations (N, 3, 3) and positions (N, 3): R' = R hat(K) by Picard's iteration, r' = R E1, eq. (25)."""
-        hat, count = _hat(K), len(K)
+        hat = _hat(K)
         R = increment = np.broadcast_to(np.eye(3), hat.shape)
         for _ in range(200):
-            increment = (self.space.cumulate @ (increment @ hat).reshape(count, 9)).reshape(count, 3, 3)
+            increment = self.space.cumulate(increment @ hat)
             R = R + increment
             if np.max(np.abs(increment)) < 1e-20:
                 break
-        return R, self.space.cumulate @ R[:, :, 0]
+        return R, self.space.cumulate(R[:, :, 0])
 
     def shape_velocity(self, R, K_rate):
         """Angular and linear velocities (N, 3) of the sections while the head is held."""
-        omega = self.space.cumulate @ np.einsum("xij,xj->xi", R, K_rate)
-        return omega, self.space.cumulate @ np.cross(omega, R[:, :, 0])
+        omega = self.space.cumulate(np.einsum("xij,xj->xi", R, K_rate))
+        return omega, self.space.cumulate(np.cross(omega, R[:, :, 0]))
 
     def twists(self, K, K_rate, mu):
         """Section twists eta(X), (..., N, 6), for head twists mu (..., 6)."""
@@ -152,12 +153,13 @@ class Reference:
         torque, force = R @ section[:3], R @ section[3:]
         return np.concatenate([torque + np.cross(r, force), force]), energy
 
-    def resistive(self, eta):
-        """Resistive torque and force per length (N, 3), section axes, of section 7.2.1."""
-        a, b, settings = self.a, self.b, self.scene
+    def resistive(self, eta, x=None):
+        """Resistive torque and force per length (N, 3), section axes, of section 7.2.1; at the nodes or at `x`."""
+        x, settings = self.space.x if x is None else x, self.scene
+        a, b = self.body.half_height(x), self.body.half_width(x)
         perimeter = np.pi * (1.5 * (a + b) - np.sqrt(a * b)) * (0.5 if settings.perimeter == "printed" else 1.0)
         square = eta * np.abs(eta)
-        friction = skin_friction(np.abs(eta[:, 3]) * self.space.x / settings.viscosity, settings.friction)
+        friction = skin_friction(np.abs(eta[:, 3]) * x / settings.viscosity, settings.friction)
         factors = -0.5 * self.water * settings.resistive
         roll = DRAG_ROLL * np.pi * (a**2 - b**2) ** 2 * square[:, 0]
         forces = friction * perimeter, 2 * DRAG_LATERAL * a, 2 * DRAG_VERTICAL * b
@@ -220,9 +222,9 @@ class Reference:
         resistive_torque, resistive_force = self.resistive(eta)
         t1, V1, energy = R[:, :, 0], eta[:, 3:4], np.sum(self.inertia_fluid * eta**2, axis=1) / 2
         nose = self.nose_force(mu, mu_rate)
-        n_sum = -nose * E1 + integrate @ (rates[1] + rates[3] - to_axes(resistive_force))  # n + V1 p_f
+        n_sum = -nose * E1 + integrate(rates[1] + rates[3] - to_axes(resistive_force))  # n + V1 p_f
         c_slope = rates[0] + rates[2] + np.cross(to_axes(eta[:, 3:]), p_f) - np.cross(t1, n_sum)
-        c_sum = integrate @ (c_slope - to_axes(resistive_torque))  # c + V1 sigma_f
+        c_sum = integrate(c_slope - to_axes(resistive_torque))  # c + V1 sigma_f
         force, torque = to_section(n_sum - V1 * p_f), to_section(c_sum - V1 * sigma_f)
         tail_energy = self.tail_added @ self.at_tail(eta) ** 2 / 2
         tail_residual = np.concatenate([self.at_tail(torque), self.at_tail(force) + tail_energy * E1])

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from cases import falling_law, kern_body, random_law, random_twist
+from cases import FALLING_BREAKS, falling_law, kern_body, random_law, random_twist
 from library_state import Body, Scene, Simulation, library_body, rotation, simulate, snapshot
 from reference import boyer_body
 
@@ -50,20 +50,23 @@ def test_closure_at_every_published_instant():
         assert abs(got.closure_force) < ROUND_OFF * np.abs(got.force).max()
 
 
-def test_acceleration_is_the_derivative_of_the_marched_twist():
+@pytest.mark.parametrize("settings, tolerance", [({"resistive": False}, 1e-7), ({"friction": "laminar"}, 1e-5)])
+def test_acceleration_is_the_derivative_of_the_marched_twist(settings, tolerance):
     """Closure follows from how the acceleration was solved; that it moves the head is checked here.
 
-    Difference quotient of order 6 at 0.01 s of the march's samples: (2 pi)^7 h^6 / 140 = 3e-9 for the gait's first
-    harmonic, some 1e-6 for its fifth. The samples lie on the march's grid or are interpolated at its order.
+    Difference quotient of order 6 at 0.005 s of the march's samples: (2 pi)^7 h^6 / 140 = 4e-11 for the gait's first
+    harmonic, 100 times that for its third; the march's dense output adds some 1e-9. Drag has kinks in time where V2
+    changes sign somewhere along the body. Left out: the three samples about each corner of the law's ramps.
     """
-    step = 0.01
-    run = simulate(
-        falling_law(), duration=3.0, scene=Scene(friction="laminar"), accuracy="reference", sample_period=step
-    )
+    step = 0.005
+    run = simulate(falling_law(), duration=3.0, scene=Scene(**settings), accuracy="reference", sample_period=step)
     w = run.twist
+    true = run.head_acceleration.copy()  # of the velocity as a vector; its components turn with the head
+    true[:, 3:] -= np.cross(w[:, :3], w[:, 3:])
     slope = (-w[:-6] + 9 * w[1:-5] - 45 * w[2:-4] + 45 * w[4:-2] - 9 * w[5:-1] + w[6:]) / (60 * step)
-    scale = np.abs(run.head_acceleration).max(axis=0)
-    assert np.all(np.abs(slope - run.head_acceleration[3:-3]).max(axis=0) < 1e-4 * scale)
+    smooth = np.all(np.abs(run.time[3:-3, None] - FALLING_BREAKS) > 3.5 * step, axis=1)
+    error = np.abs(slope - true[3:-3])[smooth].max(axis=0)
+    assert np.all(error < tolerance * np.abs(true).max(axis=0))
 
 
 def test_twist_is_the_derivative_of_the_marched_pose():

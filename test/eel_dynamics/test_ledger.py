@@ -35,14 +35,15 @@ def test_residual_is_small(name):
 
 
 def test_powers_integrate_to_the_energy_term_by_term():
-    """The published terms, integrated here by Gregory's rule, give the published energies: no term hides another."""
+    """The published powers add up to the slope of the published energies: no term hides another."""
     law = random_law(np.random.default_rng(4), spline=False, size=0.7)
     run = simulate(law, duration=2.0, scene=Scene(friction="laminar"), accuracy="reference", sample_period=0.005)
     energy = run.energy.kinetic_body + run.energy.kinetic_fluid
     powers = sum(getattr(run.energy, term) for term in TERMS)
     slope = (energy[:-4] - 8 * energy[1:-3] + 8 * energy[3:-1] - energy[4:]) / (12 * 0.005)
-    # fourth-order difference of a signal of 10 rad/s at 0.005 s: (0.05)^4 / 30 = 2e-7 of the power, ramps' corners more
-    assert distance(slope, powers[2:-2]) < 1e-4
+    smooth = np.all(np.abs(run.time[2:-2, None] - (0.1, 0.4, 1.3, 2.0)) > 0.013, axis=1)  # away from the ramps' corners
+    # fourth-order difference of a signal of 10 rad/s at 0.005 s: (0.05)^4 / 30 = 2e-7 of the power, more for harmonics
+    assert distance(slope[smooth], powers[2:-2][smooth]) < 1e-5
     for term in TERMS:
         assert np.max(np.abs(getattr(run.energy, term))) > 1e-6 * np.max(np.abs(powers)), term
 

@@ -23,12 +23,12 @@ def plane_momentum(space, time, turn, heading, velocity):
     angle = 2 * np.pi * (x / WAVELENGTH - time / PERIOD) + PHASE
     curvature = np.polynomial.polynomial.polyval(x, AMPLITUDE) * np.sin(angle)
     curvature_rate = -2 * np.pi / PERIOD * np.polynomial.polynomial.polyval(x, AMPLITUDE) * np.cos(angle)
-    direction = heading + space.cumulate @ curvature
-    spin = turn + space.cumulate @ curvature_rate
+    direction = heading + space.cumulate(curvature)
+    spin = turn + space.cumulate(curvature_rate)
     t1 = np.stack([np.cos(direction), np.sin(direction)], axis=1)
     t2 = np.stack([-np.sin(direction), np.cos(direction)], axis=1)
-    r = space.cumulate @ t1
-    v = velocity + space.cumulate @ (spin[:, None] * t2)
+    r = space.cumulate(t1)
+    v = velocity + space.cumulate(spin[:, None] * t2)
     added = 1000 * np.pi * boyer_body().half_height(x) ** 2
     momentum = (added * np.sum(v * t2, axis=1))[:, None] * t2
     return r, v, t1, t2, momentum
@@ -87,7 +87,7 @@ def linear_theory(size, speed=0.7, period=1.1, samples=32):
         thrust.append(-wrench[3])
         K, K_rate, _ = (field[:, 2] for field in law.curvature(time, space.x))
         h_x.append(space.weights @ K)
-        h_t.append(space.weights @ (space.cumulate @ K_rate))
+        h_t.append(space.weights @ space.cumulate(K_rate))
     h_t, h_x, m = np.array(h_t), np.array(h_x), 1000 * np.pi * 0.03**2
     return np.mean(thrust), m / 2 * np.mean(h_t**2 - speed**2 * h_x**2)
 

@@ -15,7 +15,12 @@ STRAIGHT = Law(name="straight")
 def test_coasting(speed):
     """Without friction the nose alone brakes: V = V0 / (1 + rho k_o |V0| t / (2 (m + m_o)))."""
     run = simulate(
-        STRAIGHT, duration=10.0, scene=Scene(friction="none"), twist=(0, 0, 0, speed, 0, 0), sample_period=1.0
+        STRAIGHT,
+        duration=10.0,
+        scene=Scene(friction="none"),
+        twist=(0, 0, 0, speed, 0, 0),
+        sample_period=1.0,
+        accuracy="fine",
     )
     added = 1000 * np.pi * 0.32 * 0.025 * 0.05 * 0.05
     drag, mass = np.pi * 0.036 * 0.025 * 0.05, Body.boyer2010().mass + added
