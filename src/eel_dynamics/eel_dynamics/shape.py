@@ -37,6 +37,20 @@ class Shape:
         self.drive: Drive = None
         self._follow(_constant(np.zeros((2, tabulation.width))))
 
+    def move(self, tabulation: Tabulation, values_at_nodes):
+        """Go over to another tabulation. `values_at_nodes(rows)` takes fields at the old nodes (..., n) to the new points.
+
+        Call it right before another source takes over: what remains of the present one are values at the old nodes.
+        """
+        nodes = self.tabulation.nodes
+        convert = lambda rows: tabulation.columns(values_at_nodes(rows[..., :nodes]))  # noqa: E731
+        self._source = self._source | {"rows": convert(self._source["rows"])}
+        if self._blend is not None:
+            self._blend = (convert(self._blend[0]), *self._blend[1:])
+        self.samples = [(time, convert(rows)) for time, rows in self.samples]
+        self.tabulation, self._spline = tabulation, None
+        self._follow(self._source)
+
     # -- laws
 
     def adopt(self, law: Law, *, origin: float, time: float, transition: float):
@@ -178,6 +192,12 @@ class Shape:
             blend_start=float(blend_start),
             blend_end=float(blend_end),
         )
+
+
+def waves_of_law(law: Law, length: float) -> float:
+    """How many waves a law bends a body of `length` [m] into, at most; a spline counts an eighth of its intervals."""
+    waves = [length * abs(term.wave_number) / (2.0 * np.pi) for term in law.terms]
+    return max([*waves, *((len(term.knots) - 1) / 8.0 for term in law.terms)], default=0.0)
 
 
 def _constant(value: np.ndarray) -> dict:

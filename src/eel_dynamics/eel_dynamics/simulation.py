@@ -20,6 +20,7 @@ from .integrator import (
     classical,
     dormand_prince,
     march,
+    settle,
     state_at,
     step_of,
 )
@@ -28,7 +29,7 @@ from .profiles import Profiles, observe, profiles_of, record, station_fields_of
 from .quadrature import Grid
 from .scene import Scene
 from .sections import panels_of, stations_of, swimmer_of
-from .shape import Shape
+from .shape import Shape, waves_of_law
 from .wrench import balance_of
 
 LONGEST_STEP = 0.25  # of the shortest time over which the shape changes
@@ -94,31 +95,32 @@ class Simulation:
         self.scene = Scene() if scene is None else _instance("scene", scene, Scene)
         self.accuracy = Accuracy.of(accuracy)
         self.x = _stations(stations, self.body.length)
+        self._out = profiles_of(1, len(self.x))
+        self._current = np.array(self.scene.current)
+        self._distributed = self.scene.tail_pressure == "distributed"
+        self._method = dormand_prince() if self.accuracy.step is None else classical()
+        self._step = step_of(len(self._method.c))
         self._start = checked_row("position", position, 3), _unit("orientation", orientation), checked_row("twist", twist, 6)
         if self.scene.planar:
             _check_planar(*self._start)
         if not (np.isfinite(default_transition) and default_transition > 0.0):
             raise ValueError(f"default_transition must be finite and > 0 s, got {default_transition!r}")
-        self._build()
+        self._build(self.accuracy.points_per_length(1.0))
         self.shape = Shape(self._tabulation, float(default_transition))
         self.ready = False
         self.time = 0.0
         self._take_initial_state()
 
-    def _build(self):
-        grid = Grid.of(panels_of(self.body, self.accuracy.resolution))
-        self._grid = grid
+    def _build(self, resolution: float):
+        """Tabulate body and scene on a grid of `resolution` points per body length."""
+        grid = Grid.of(panels_of(self.body, resolution))
+        self._grid, self._resolution = grid, resolution
         self.swimmer = swimmer_of(self.body, self.scene, grid)
         self._stations = stations_of(self.body, self.scene, grid, self.x)
         base = np.where(self._stations.node >= 0, grid.x[self._stations.node], 0.0)
         self._tabulation = Tabulation(grid.x, grid.previous, self.x, base)
         self.balance = balance_of(len(grid.x))
         self._here = station_fields_of(len(self.x))
-        self._out = profiles_of(1, len(self.x))
-        self._current = np.array(self.scene.current)
-        self._method = dormand_prince() if self.accuracy.step is None else classical()
-        self._step = step_of(len(self._method.c))
-        self._distributed = self.scene.tail_pressure == "distributed"
 
     # -- what drives the body
 
@@ -152,6 +154,7 @@ class Simulation:
         if not (np.isfinite(blend) and blend > 0.0):
             raise ValueError(f"transition must be finite and > 0 s, got {transition!r}")
         first = not self.ready and self.time == 0.0
+        self._refine(waves_of_law(law, self.body.length))
         self.shape.adopt(law, origin=float(origin), time=self.time, transition=0.0 if first else float(blend))
         if first:
             self._take_initial_state()
@@ -175,8 +178,26 @@ class Simulation:
             raise ValueError("curvature samples pitch must be 0 in a planar scene")
         if not np.isfinite(time) or time <= self.time:
             raise ValueError(f"curvature samples time must lie ahead of the simulation ({self.time:.6f} s), got {time} s")
+        self._refine((len(x) - 1) / 8.0)
         self.shape.add(float(time), self.time, x, np.reshape(values, (2, 3, len(x))))
         self.ready = True
+
+    def _refine(self, waves: float):
+        """Have a grid that is fine enough for a shape of `waves` waves on the body; the head's motion goes on as it is."""
+        resolution = self.accuracy.points_per_length(waves)
+        if resolution <= self._resolution * (1.0 + 1e-9):
+            return
+        old, twist = self._grid, self._twist()
+        self._build(resolution)
+        rows, first, count = old.rows_at(self._tabulation.x, "value")
+
+        def values(fields):
+            return sum(rows[:, j] * fields[..., np.minimum(first + j, len(old.x) - 1).astype(np.int64)] for j in range(rows.shape[1]))
+
+        self.shape.move(self._tabulation, values)
+        self._use_drive()
+        self._set_momentum(twist)
+        self._restart()
 
     # -- march
 
@@ -334,23 +355,35 @@ class Simulation:
         self._y[:3], self._y[3:7] = position, orientation
         self._motion_scale = np.inf
         self._use_drive()
-        fields, drive, momentum = self.fields, self.drive, np.zeros(6)
         relative = twist.copy()
         relative[3:] -= _matrix(orientation).T @ self._current
+        self._set_momentum(relative)
+        speed, spin = np.linalg.norm(relative[3:]), np.linalg.norm(relative[:3])
+        self._motion_scale = min(self.body.length / speed if speed else np.inf, 1.0 / spin if spin else np.inf)
+        self._step.time[:], self._step.count[:] = 0.0, 0
+        self._step.scale[:] = np.linalg.norm(self._y[7:10]), np.linalg.norm(self._y[10:13])
+        self._restart()
+        self._observe_into(self._out, 0, False, False)
+        self.kinetic_at_start = float(self._out.kinetic[0].sum())
+
+
+    def _twist(self) -> np.ndarray:
+        """Twist (6,) of the head relative to the water, in its axes, of the present state."""
+        twist = np.zeros(6)
+        if not settle(*self._loops[:3], self.time, self._y, np.zeros(6), twist):
+            raise self._stopped(SINGULAR)
+        return twist
+
+    def _set_momentum(self, twist: np.ndarray):
+        """Give the present state the momentum of the head's `twist` (6,) relative to the water."""
+        drive, fields, momentum = self.drive, self.fields, np.zeros(6)
         factors(drive, self.time, fields.factor)
         combine_moments(drive.axis, drive.bend, fields.factor[0], fields.bend)
         combine(drive.axis, drive.node, fields.factor[1], fields.rate)
         configure(self.swimmer, fields)
-        momentum_of_twist(self.swimmer, fields, relative, momentum)
-        world = _matrix(orientation)
+        momentum_of_twist(self.swimmer, fields, twist, momentum)
+        world = _matrix(self._y[3:7])
         self._y[7:10], self._y[10:13] = world @ momentum[:3], world @ momentum[3:]
-        speed, spin = np.linalg.norm(relative[3:]), np.linalg.norm(relative[:3])
-        self._motion_scale = min(self.body.length / speed if speed else np.inf, 1.0 / spin if spin else np.inf)
-        self._step.time[:], self._step.count[:] = 0.0, 0
-        self._step.scale[:] = np.linalg.norm(momentum[:3]), np.linalg.norm(momentum[3:])
-        self._restart()
-        self._observe_into(self._out, 0, False, False)
-        self.kinetic_at_start = float(self._out.kinetic[0].sum())
 
 
 def _matrix(quaternion) -> np.ndarray:
