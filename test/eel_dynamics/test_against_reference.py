@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from cases import SPLINE_KNOTS, falling_law, kern_body, random_law, random_twist
 from library_state import (
+    DENSE,
     Body,
     Reference,
     Scene,
@@ -14,6 +15,7 @@ from library_state import (
     expected,
     library_body,
     namespace_body,
+    prescribed,
     random_quaternion,
     reference_scene,
     rotation,
@@ -131,22 +133,45 @@ def test_body_of_arrays():
     assert distance(got.torque, reference.space.evaluate(fields.torque, STATIONS)) < 1e-5
 
 
+@pytest.mark.parametrize("settings", [*SMOOTH_SCENES, {"friction": "laminar", "current": (0.3, -0.2, 0.1)}], ids=str)
+@pytest.mark.parametrize("body", BODIES)
+def test_prescribed_motion(body, settings):
+    """`hydrodynamic_wrench` against the fluid's momentum, differentiated; head and world axes coincide."""
+    seed = list(BODIES).index(body)
+    rng = np.random.default_rng(seed)
+    law, time, twist, rate = random_law(rng, spline=False), rng.uniform(0, 3), random_twist(rng), rng.normal(size=6)
+    reference = Reference(BODIES[body], reference_scene(**settings), panels_per_span=6)
+    relative, relative_rate = twist.copy(), rate.copy()
+    relative[3:] -= reference.scene.current
+    relative_rate[3:] += np.cross(twist[:3], reference.scene.current)  # the current's components turn against the head
+    wanted = reference.fluid_wrench(*law.curvature(time, reference.space.x), relative, relative_rate)
+    got = prescribed(library_body(BODIES[body]), law, time, twist, rate, settings)
+    tolerance = EXACT if "resistive" in settings else KINKS
+    scale = max(np.abs(wanted).max(), 1e-3)
+    assert distance(got, wanted, scale) < tolerance
+
+
 DATA = json.loads((Path(__file__).parent / "data" / "falling.json").read_text())
 
 
 @pytest.mark.parametrize(
     "case, accuracy, tolerance",
     [
+        ("no drag", DENSE, 1e-8),
         ("no drag", "reference", 1e-6),
-        ("no drag", "fine", 1e-4),
-        ("laminar", "reference", 1e-4),
+        ("no drag", "standard", 1e-3),
+        ("laminar", "reference", 5e-7),
         ("laminar", "standard", 1e-3),
-        ("printed", "reference", 1e-3),
+        ("printed", "reference", 1e-5),
         ("printed", "standard", 1e-3),
     ],
 )
 def test_falling_gait(case, accuracy, tolerance):
-    """Head position over 10 s against the reference's DOP853 march (data/falling.json), relative to path or length."""
+    """Head position over 10 s against the reference's DOP853 march (data/falling.json), relative to path or length.
+
+    Without drag the two agree to 1e-9 after 10 s; with it the reference's own kinks in space leave 5e-8, the printed
+    friction's jump 1e-6 (`converged_to`). The standard preset must give the 1e-3 that the suite promises everywhere.
+    """
     wanted = np.array(DATA[case]["state"])
     scene = Scene(**DATA[case]["scene"], ledger=False, internal_wrench=False)
     run = simulate(falling_law(), duration=10.0, scene=scene, accuracy=accuracy, sample_period=0.5)
