@@ -16,7 +16,6 @@ OPTIONS = {
     "nogil": True,
     "error_model": "numpy",
     "fastmath": {"contract", "reassoc", "nsz", "arcp"},
-    "forceinline": True,
     "_nrt": False,
 }
 
@@ -33,6 +32,14 @@ STAMP = _stamp()
 
 def compiled(function):
     """Decorator: compile `function` on its first call, or load it as compiled by an earlier process."""
-    dispatcher = njit(**OPTIONS)(function)
+    return _kept(njit(**OPTIONS)(function))
+
+
+def inlined(function):
+    """Decorator: as `compiled`, and built into whoever calls it; for the parts of one evaluation."""
+    return _kept(njit(**OPTIONS, forceinline=True)(function))
+
+
+def _kept(dispatcher):
     dispatcher._cache._cache_file._source_stamp = STAMP
     return dispatcher

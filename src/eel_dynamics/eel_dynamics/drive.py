@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .compiled import compiled
+from .compiled import compiled, inlined
 
 
 AXES = {"pitch": 0, "yaw": 1}
@@ -83,7 +83,7 @@ class Tabulation:
         return tuple(np.ascontiguousarray(part.reshape(shape)) for part, shape in zip(cuts, shapes))
 
 
-@compiled
+@inlined
 def quintic(s, length, sign, factor, row):
     """Factors (3, m) [value, rate, acceleration] of the value, rate and acceleration at one end of an interval of `length`,
     at the fraction `s` from that end; the polynomials vanish with two derivatives at the other end. `sign` -1: from the end."""
@@ -152,7 +152,7 @@ def factors(drive, time, factor):
                 quintic(max(0.0, part), length, 1.0, factor, drive.blend + 3 * axis)
 
 
-@compiled
+@inlined
 def combine(axis, rows, factor, result):
     """Sum over rows of factor (m,) times rows (m, n), apart for pitch and yaw, into `result` (2, n)."""
     result[:] = 0.0
@@ -163,7 +163,7 @@ def combine(axis, rows, factor, result):
                 result[k, i] += c * rows[m, i]
 
 
-@compiled
+@inlined
 def combine_moments(axis, rows, factor, result):
     """Sum over rows of factor (m,) times rows (m, 3, n), apart for pitch and yaw, into `result` (3, 2, n)."""
     result[:] = 0.0

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .compiled import compiled
+from .compiled import compiled, inlined
 from .drive import combine, combine_moments, factors
 from .kernel import add_head_twist, configure, momentum_rates, twist_of_momentum
 from .wrench import accelerate, actuator_power
@@ -119,7 +119,7 @@ def dormand_prince() -> Method:
     return Method(a, np.array([0.0, 0.2, 0.3, 0.8, 8 / 9, 1.0, 1.0]), error, dense, True)
 
 
-@compiled
+@inlined
 def normalise(y):
     """Make the orientation of state `y` a unit quaternion."""
     size = np.sqrt(y[3] * y[3] + y[4] * y[4] + y[5] * y[5] + y[6] * y[6])
@@ -127,7 +127,7 @@ def normalise(y):
         y[k] /= size
 
 
-@compiled
+@inlined
 def rotate(y, inverse, vector, at):
     """Rotate `vector[at:at+3]` in place by the orientation of state `y` (world from head), or by its inverse."""
     x, v, z, w = y[3], y[4], y[5], y[6]
@@ -141,7 +141,7 @@ def rotate(y, inverse, vector, at):
     vector[at + 2] = c + w * tc + x * tb - v * ta
 
 
-@compiled
+@inlined
 def settle(swimmer, drive, fields, time, y, momentum, twist):
     """Configure the body at `time` and find the head's `twist` from the momentum of state `y`. False where it has none."""
     factors(drive, time, fields.factor)
@@ -193,7 +193,7 @@ def powers_of_state(swimmer, drive, fields, balance, time, y, step, power):
     return True
 
 
-@compiled
+@inlined
 def interpolate(method, step, theta, y):
     """State `y` (13,) at the fraction `theta` of the step."""
     for k in range(STATE):
@@ -206,7 +206,7 @@ def interpolate(method, step, theta, y):
     normalise(y)
 
 
-@compiled
+@inlined
 def works_upto(step, theta, series, work):
     """Works (4,) [J] at the fraction `theta` of the step: the integral of the cubic through the powers at Lobatto's points."""
     for k in range(WORKS):
@@ -219,7 +219,7 @@ def works_upto(step, theta, series, work):
         power *= theta
 
 
-@compiled
+@inlined
 def state_at(method, series, step, time, y, work):
     """State `y` (13,) and works (4,) at `time` [s] within the step."""
     length = step.time[1]
@@ -233,7 +233,7 @@ def state_at(method, series, step, time, y, work):
         works_upto(step, theta, series, work)
 
 
-@compiled
+@inlined
 def error_of(method, step, first, last):
     """Size of the error estimate of entries `first` to `last` of the state, per length of the step."""
     square = 0.0
@@ -245,7 +245,7 @@ def error_of(method, step, first, last):
     return np.sqrt(square)
 
 
-@compiled
+@inlined
 def error_by_tolerance(method, control, step, length):
     """The error estimate of the trial step by the tolerance: of position by the body's length, of orientation by one, of
     the momenta by their greatest size so far; the worst of the four. A good step has 1 or less."""
@@ -298,7 +298,7 @@ def begin(swimmer, drive, fields, balance, current, method, control, step, start
     return True
 
 
-@compiled
+@inlined
 def fitted(method, control, step, start, target, tiny):
     """Length [s] of the next step: as proposed, or such that steps end on `target` without a sliver before it."""
     left = target - start
@@ -310,7 +310,7 @@ def fitted(method, control, step, start, target, tiny):
     return min(length, 0.5 * left) if length > 0.5 * left else length
 
 
-@compiled
+@inlined
 def accept(step, start, length, series):
     """Make the trial step the step."""
     works_upto(step, 1.0, series, step.work)

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .compiled import compiled
+from .compiled import inlined
 
 ZERO, ONE = np.uintp(0), np.uintp(1)  # indices that are unsigned need no test for Python's negative ones
 PRINTED, LAMINAR, BLENDED = 0, 1, 2  # laws of friction, as in the scene
@@ -57,7 +57,7 @@ def fields_of(nodes: int, rows: int) -> Fields:
     )
 
 
-@compiled
+@inlined
 def turns(bend, turn):
     """Rotations over intervals, as quaternions (4, n), by the sixth-order Magnus series of R' = R hat(K).
 
@@ -88,7 +88,7 @@ def turns(bend, turn):
         turn[0, i], turn[1, i], turn[2, i], turn[3, i] = s * e1, s * e2, s * e3, c
 
 
-@compiled
+@inlined
 def axes_of(x, y, z, w, R, i):
     """Columns t1, t2, t3 of the rotation of the unit quaternion (x, y, z, w), into R[:, i]."""
     R[0, i], R[1, i], R[2, i] = 1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)
@@ -96,7 +96,7 @@ def axes_of(x, y, z, w, R, i):
     R[6, i], R[7, i], R[8, i] = 2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)
 
 
-@compiled
+@inlined
 def orient(turn, q, R):
     """Section axes, q (4, n) and R (9, n), from head to tail by the product of the rotations between nodes (eq. 25)."""
     x, y, z, w = 0.0, 0.0, 0.0, 1.0
@@ -112,7 +112,7 @@ def orient(turn, q, R):
         axes_of(x, y, z, w, R, i)
 
 
-@compiled
+@inlined
 def integrate(swimmer, integrand, result):
     """Integral (3, n) from the nose to each node of the `integrand` (3, n), by panels."""
     matrix, first, count = swimmer.matrix, swimmer.first, swimmer.count
@@ -129,7 +129,7 @@ def integrate(swimmer, integrand, result):
         result[0, i], result[1, i], result[2, i] = x, y, z
 
 
-@compiled
+@inlined
 def shape_velocities(swimmer, fields):
     """Positions and the velocities due to the change of shape alone: r' = t1, omega' = R Kdot, v' = omega x t1."""
     R, rate, f, omega = fields.R, fields.rate, fields.integrand, fields.omega
@@ -147,7 +147,7 @@ def shape_velocities(swimmer, fields):
     integrate(swimmer, f[:3], fields.v)
 
 
-@compiled
+@inlined
 def gather_inertia(swimmer, fields):
     """Inertia (6, 6) of body and water about the head, I_o of section 6, the nose's m_o included; lower triangle."""
     R, r = fields.R, fields.r
@@ -201,7 +201,7 @@ def gather_inertia(swimmer, fields):
     inertia[3, 3], inertia[4, 3], inertia[4, 4], inertia[5, 3], inertia[5, 4], inertia[5, 5] = vxx + swimmer.nose_mass, vxy, vyy, vxz, vyz, vzz
 
 
-@compiled
+@inlined
 def gather_momentum(swimmer, fields, momentum):
     """Momentum (6,) of body and water about the head due to `omega`, `v` (the nose's m_o not in it)."""
     R, r, omega, v = fields.R, fields.r, fields.omega, fields.v
@@ -229,7 +229,7 @@ def gather_momentum(swimmer, fields, momentum):
     momentum[0], momentum[1], momentum[2], momentum[3], momentum[4], momentum[5] = lx, ly, lz, px, py, pz
 
 
-@compiled
+@inlined
 def factorise(matrix):
     """Cholesky factor of a symmetric positive definite matrix, in place, from and to its lower triangle. False if it is not."""
     n = matrix.shape[0]
@@ -249,7 +249,7 @@ def factorise(matrix):
     return True
 
 
-@compiled
+@inlined
 def solve(factor, vector):
     """Solve with the Cholesky `factor`, in place."""
     n = factor.shape[0]
@@ -265,7 +265,7 @@ def solve(factor, vector):
         vector[i] = total / factor[i, i]
 
 
-@compiled
+@inlined
 def add_head_twist(fields, twist):
     """Add the motion of the head, `twist` (6,), to the velocities due to the change of shape: the true ones."""
     r, omega, v = fields.r, fields.omega, fields.v
@@ -279,7 +279,7 @@ def add_head_twist(fields, twist):
         v[2, i] += twist[5] + twist[0] * y - twist[1] * x
 
 
-@compiled
+@inlined
 def turbulent_part(law, transition, speed):
     """Part of the turbulent law in the friction of a section for the axial speed |V1| [m/s]; `transition` [m/s]: where
     Re = |V1| X/nu is 8e4 (section 7.2.1)."""
@@ -293,7 +293,7 @@ def turbulent_part(law, transition, speed):
     return part - np.sin(2.0 * np.pi * part) / (2.0 * np.pi)
 
 
-@compiled
+@inlined
 def friction(laminar, turbulent, part, speed):
     """1/2 rho_f k1 |V1| [kg/m/s] of a section for the axial speed |V1| [m/s], `part` of it by the turbulent law."""
     force = (1.0 - part) * laminar * np.sqrt(speed)
@@ -302,7 +302,7 @@ def friction(laminar, turbulent, part, speed):
     return force
 
 
-@compiled
+@inlined
 def share_friction(swimmer, fields):
     """Part (n,) of the turbulent law in the friction of each node, from the true velocities.
 
@@ -334,7 +334,7 @@ def share_friction(swimmer, fields):
             part[i] = 0.0
 
 
-@compiled
+@inlined
 def add_resistive_loads(swimmer, fields, wrench):
     """Add the drag along the body to `wrench` (6,), on the body (section 7.2.1). Returns its power [W]."""
     R, r, omega, v = fields.R, fields.r, fields.omega, fields.v
@@ -370,7 +370,7 @@ def add_resistive_loads(swimmer, fields, wrench):
     return power
 
 
-@compiled
+@inlined
 def add_wake(swimmer, fields, wrench):
     """Add the momentum that the tail takes in from the wake, w_tail of eq. (60), to `wrench` (6,).
 
@@ -397,7 +397,7 @@ def add_wake(swimmer, fields, wrench):
     return v1, energy
 
 
-@compiled
+@inlined
 def configure(swimmer, fields):
     """Configuration and shape velocities of the body from `bend` and `rate` (the first loop of section 7.1)."""
     turns(fields.bend, fields.turn)
@@ -405,7 +405,7 @@ def configure(swimmer, fields):
     shape_velocities(swimmer, fields)
 
 
-@compiled
+@inlined
 def momentum_of_twist(swimmer, fields, twist, momentum):
     """Momentum (6,) of body, water and nose for the head's `twist` (6,), in a configured body."""
     gather_momentum(swimmer, fields, momentum)
@@ -416,7 +416,7 @@ def momentum_of_twist(swimmer, fields, twist, momentum):
             momentum[i] += (inertia[i, j] if j <= i else inertia[j, i]) * twist[j]
 
 
-@compiled
+@inlined
 def twist_of_momentum(swimmer, fields, momentum, twist):
     """The head's `twist` (6,) in a configured body of the given `momentum` (6,): I_o^-1 times what the shape's change leaves.
 
@@ -432,7 +432,7 @@ def twist_of_momentum(swimmer, fields, momentum, twist):
     return True
 
 
-@compiled
+@inlined
 def momentum_rates(swimmer, fields, momentum, twist, rates):
     """Rates (6,) of momentum about the moving head, of world vectors, in the head's present axes; adds the head's twist
     to the velocities in `fields`."""

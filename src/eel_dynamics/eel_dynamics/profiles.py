@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .compiled import compiled
+from .compiled import compiled, inlined
 from .drive import combine, combine_moments
 from .integrator import MARCHED, SINGULAR, WORKS, march, powers_of_state, rotate, state_at
 from .kernel import ONE, ZERO, axes_of, friction, turbulent_part, turns
@@ -72,7 +72,7 @@ def station_fields_of(stations: int) -> StationFields:
     return StationFields(*(np.zeros((*size, stations)) for size in sizes), np.zeros(6))
 
 
-@compiled
+@inlined
 def extend(section, integrand, at_nodes, at_head, result):
     """Field (3, M) at the stations from its derivative `integrand` and its values at the nodes (3, n), `at_head` at the nose."""
     for i in range(result.shape[1]):
@@ -88,7 +88,7 @@ def extend(section, integrand, at_nodes, at_head, result):
         result[0, i], result[1, i], result[2, i] = x, y, z
 
 
-@compiled
+@inlined
 def cross_fields(a, b, result):
     """a x b of fields (3, n) into `result`."""
     for i in range(result.shape[1]):

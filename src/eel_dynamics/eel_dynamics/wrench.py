@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .compiled import compiled
+from .compiled import inlined
 from .kernel import add_wake, friction, integrate, share_friction, solve
 
 
@@ -44,7 +44,7 @@ def balance_of(nodes: int) -> Balance:
     )
 
 
-@compiled
+@inlined
 def shape_accelerations(swimmer, fields, balance):
     """Accelerations of the sections where the head has none: alpha and acc with zero at the nose."""
     R, omega, f, rate, accel = fields.R, fields.omega, fields.integrand, fields.rate, fields.accel
@@ -70,7 +70,7 @@ def shape_accelerations(swimmer, fields, balance):
     integrate(swimmer, f[:3], balance.acc)
 
 
-@compiled
+@inlined
 def add_head_acceleration(fields, balance):
     """Add the head's acceleration to the accelerations of the sections: the true ones."""
     r, alpha, acc, head = fields.r, balance.alpha, balance.acc, balance.head
@@ -84,7 +84,7 @@ def add_head_acceleration(fields, balance):
         acc[2, i] += head[5] + head[0] * y - head[1] * x
 
 
-@compiled
+@inlined
 def section_densities(swimmer, fields, balance):
     """The section's balance f_N = M Vdot + Omega x M V - n, f_C = J Omegadot + Omega x J Omega + V x M V - c, moved to the
     head, into `density` (6, n). Returns the drag's power [W]."""
@@ -133,7 +133,7 @@ def section_densities(swimmer, fields, balance):
     return power
 
 
-@compiled
+@inlined
 def gather(swimmer, density, total):
     """Integral (6,) over the body of `density` (6, n)."""
     for k in range(6):
@@ -143,7 +143,7 @@ def gather(swimmer, density, total):
         total[k] = value
 
 
-@compiled
+@inlined
 def accelerate(swimmer, fields, twist, balance):
     """Head's acceleration, accelerations and balance of the sections, in a configured body whose `fields` hold the true
     velocities and the Cholesky factor of the inertia I_o."""
@@ -169,7 +169,7 @@ def accelerate(swimmer, fields, twist, balance):
     balance.powers[3] = drag
 
 
-@compiled
+@inlined
 def section_wrench(R, r, omega, v, i, added2, added3, added_roll, wrench, result):
     """Internal torque and force (6,) at section i, in its axes and about it, from the `wrench` (6,) about the head that the
     part behind passes on: Ad*^-1 w - (V1 J_f1 Omega1 E1; V1 M_f V). Returns T_f [J/m]."""
@@ -189,7 +189,7 @@ def section_wrench(R, r, omega, v, i, added2, added3, added_roll, wrench, result
     return 0.5 * (added_roll * roll * roll + added2 * v2 * v2 + added3 * v3 * v3)
 
 
-@compiled
+@inlined
 def actuator_power(swimmer, fields, balance, section):
     """- integral of C . Kdot [W] over the body, from an accelerated body; leaves the integrals of the balance in `upto`."""
     integrate(swimmer, balance.density[:3], balance.upto[:3])
@@ -204,7 +204,7 @@ def actuator_power(swimmer, fields, balance, section):
     return power
 
 
-@compiled
+@inlined
 def kinetic_energies(swimmer, fields):
     """Kinetic energy [J] of the body, and of the water (without the nose's 1/2 m_o V1^2)."""
     R, omega, v = fields.R, fields.omega, fields.v
