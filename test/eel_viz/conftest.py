@@ -32,3 +32,20 @@ def can_draw(tmp_path_factory):
             pass
     except (CannotRender, ConnectionError) as reason:
         pytest.skip(f"no picture: {reason}")
+
+
+@pytest.fixture
+def network(fresh_domain):
+    """A node in this process, spun by hand."""
+    import rclpy
+    from rclpy.executors import SingleThreadedExecutor
+
+    context = rclpy.Context()
+    rclpy.init(context=context, domain_id=fresh_domain)
+    node = rclpy.create_node("tester", context=context)
+    node.executor_of_test = SingleThreadedExecutor(context=context)
+    node.executor_of_test.add_node(node)
+    yield node
+    node.executor_of_test.shutdown()
+    node.destroy_node()
+    rclpy.try_shutdown(context=context)

@@ -1,0 +1,272 @@
+"""The visualiser as a process, over DDS: nothing is lost, nothing bad comes through, and it ends well."""
+
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+import made_up
+import numpy as np
+import pytest
+from eel_viz.reading import read
+from eel_viz.render import native_viewer
+from fake_swimmer import TOPICS, body_message, messages
+
+from eel_viz import entities
+
+SWIMMER = str(Path(__file__).with_name("fake_swimmer.py"))
+SAMPLED = (
+    entities.POSITION,
+    entities.SPEED,
+    entities.ODOMETRY_NUMBERS,
+    entities.BACKBONE,
+    entities.CURVATURE_NUMBERS,
+    entities.WRENCH_NUMBERS,
+    entities.LOAD_NUMBERS,
+    entities.POWER,
+)
+
+
+def verify(path):
+    """Rerun's own check of a file that is complete."""
+    done = subprocess.run([native_viewer(), "rrd", "verify", str(path)], capture_output=True, text=True, timeout=60)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def visualise(start, recording, *parameters, **remap):
+    settings = ["sink:=[save]", f"recording:={recording}", *parameters]
+    arguments = [word for setting in settings for word in ("-p", setting)]
+    node = start("visualiser", "--ros-args", *arguments, *[word for rule in remap.values() for word in ("-r", rule)])
+    node.wait_for_output("saving to")
+    return node
+
+
+def heard(publishers, limit=20.0):
+    deadline = time.monotonic() + limit
+    while min(publisher.get_subscription_count() for publisher in publishers) < 1:
+        assert time.monotonic() < deadline, "the visualiser was not found"
+        time.sleep(0.02)
+
+
+def test_a_run_without_a_pace_is_complete_and_a_reset_begins_a_second_file(start, fresh_domain, tmp_path):
+    count, rate = 501, 100.0
+    node = visualise(start, tmp_path / "run.rrd", "stop_with_publisher:=true")
+    swimmer = start("python", SWIMMER, "5.0", "100.0", "51", "1", "2")
+    assert node.wait(90.0) == 0, node.output() + swimmer.output()
+    for topic in TOPICS:
+        assert f"{topic} {2 * count}" in node.output()
+    stamps = [round(k * 1e9 / rate) for k in range(count)]
+    for name in ("run.rrd", "run-2.rrd"):
+        verify(tmp_path / name)
+        for entity in SAMPLED:
+            np.testing.assert_array_equal(read(tmp_path / name, entity).stamps, stamps, err_msg=f"{name} {entity}")
+        assert read(tmp_path / name, entities.SKIN)["vertex_positions"].shape[0] == 126  # 25 Hz
+        model = made_up.Swimmer()
+        wrench = read(tmp_path / name, entities.WRENCH_NUMBERS)
+        for field in ("torque_3", "force_1"):
+            expected = [model.wrench(stamp * 1e-9)[field] for stamp in stamps]
+            np.testing.assert_array_equal(wrench[field], expected)
+        expected = [model.head(stamp * 1e-9)["position"] for stamp in stamps]
+        np.testing.assert_array_equal(read(tmp_path / name, entities.POSITION)["scalars"], expected)
+    assert "went back from 5 s to 0 s" in node.output()
+
+
+@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_in_mid_run_leaves_a_complete_file(start, network, tmp_path, sent):
+    publishers = {topic: network.create_publisher(kind, topic, 10) for topic, kind in TOPICS.items()}
+    node = visualise(start, tmp_path / "run.rrd")
+    heard(publishers.values())
+    model = made_up.Swimmer(11)
+    for k in range(100):
+        for topic, message in messages(model, k * 10**7).items():
+            publishers[topic].publish(message)
+        time.sleep(0.005)
+    began = time.monotonic()
+    assert node.interrupt(sent) == 0, node.output()
+    assert time.monotonic() - began < 1.0
+    assert "Traceback" not in node.output()
+    assert "received: " in node.output()
+    verify(tmp_path / "run.rrd")
+    assert len(read(tmp_path / "run.rrd", entities.POSITION).stamps) > 50
+
+
+def test_bad_messages_are_said_once_each_and_the_rest_goes_on(start, network, tmp_path):
+    from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+
+    from eel_msgs.msg import BodyGeometry
+
+    latched = QoSProfile(depth=5, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    publishers = {topic: network.create_publisher(kind, topic, 100) for topic, kind in TOPICS.items()}
+    body = network.create_publisher(BodyGeometry, "body", latched)
+    node = visualise(start, tmp_path / "run.rrd")
+    heard([*publishers.values(), body])
+
+    def send(k, stations=11, spoil=lambda sample: None):
+        sample = messages(made_up.Swimmer(stations), k * 10**8)
+        spoil(sample)
+        for topic, message in sample.items():
+            publishers[topic].publish(message)
+
+    def nan_everywhere(sample):
+        sample["head_pose"].pose.position.x = float("nan")
+        sample["head_twist"].twist.angular.y = float("nan")
+        sample["backbone"].position[5] = float("inf")
+        sample["internal_wrench"].torque_3[2] = float("nan")
+        sample["energy"].residual = float("nan")
+
+    def sizes_that_do_not_fit(sample):
+        sample["backbone"].orientation = sample["backbone"].orientation[:-1]
+        sample["hydrodynamic_load"].force_2 = []
+        sample["curvature"].yaw = [1.0] * 12
+
+    def no_unit_quaternions(sample):
+        sample["head_pose"].pose.orientation.w = 3.0
+
+    send(0)  # profiles before the body is known
+    for k, spoil in enumerate((nan_everywhere, sizes_that_do_not_fit, no_unit_quaternions), start=1):
+        for _ in range(3):
+            send(k, spoil=spoil)
+    bad = body_message(11)
+    bad.half_width[3] = -1.0
+    body.publish(bad)
+    body.publish(body_message(11))
+    node.wait_for_output("half_width has negative values")
+    time.sleep(0.5)  # topics are not in order among each other
+    send(4, stations=2)
+    send(5, stations=101)
+    send(6)
+    time.sleep(1.0)
+    assert node.interrupt() == 0, node.output()
+    output = node.output()
+    for words in (
+        "head_pose: position has values that are not finite",
+        "head_pose: orientation must have quaternions of unit norm",
+        "head_twist: angular has values that are not finite",
+        "backbone: position has values that are not finite",
+        "backbone: orientation must have 44 numbers to fit x, got 43",
+        "internal_wrench: torque_3 has values that are not finite",
+        "hydrodynamic_load: force_2 must have 11 numbers to fit x, got 0",
+        "curvature: yaw must have 11 numbers to fit x, got 12",
+        "energy: residual is nan",
+        "body: half_width has negative values, the least is -1 m",
+    ):
+        assert output.count(words) == 1, f"{words}\n{output}"
+    assert "Traceback" not in output
+    for entity in (entities.POSITION, entities.SPEED, entities.BACKBONE, entities.WRENCH_NUMBERS, entities.POWER):
+        columns = read(tmp_path / "run.rrd", entity)
+        assert {0, 4 * 10**8, 5 * 10**8, 6 * 10**8} <= set(columns.stamps.tolist()), entity
+        for name, rows in columns.values.items():
+            assert all(np.all(np.isfinite(row)) for row in rows), f"{entity} {name}"
+    skins = read(tmp_path / "run.rrd", entities.SKIN)
+    assert {4 * 10**8, 5 * 10**8, 6 * 10**8} <= set(skins.stamps_of["vertex_positions"].tolist())
+    verify(tmp_path / "run.rrd")
+
+
+@pytest.mark.parametrize(
+    ("setting", "words"),
+    [
+        ("sink:=[floppy]", "sink must be some of spawn, connect, serve, save or auto, got 'floppy'"),
+        ("sink:=7", "sink must be a list of texts, got 7"),
+        ("recording:=/proc/none/run.rrd", "recording '/proc/none/run.rrd' cannot be written"),
+        ("rate:=0", "rate must be >= 0.1 Hz"),
+        ("rate:=0.0", "rate"),
+        ("rate:=often", "rate must be a number, got 'often'"),
+        ("port:=1", "port"),
+        ("blueprint:=mine", "blueprint must be one of overview, torques, motion, got 'mine'"),
+    ],
+)
+def test_what_cannot_be_is_refused_in_one_line_with_status_2(start, tmp_path, monkeypatch, setting, words):
+    monkeypatch.chdir(tmp_path)
+    given = [setting] if setting.startswith("sink") else ["sink:=[save]", setting]
+    node = start("visualiser", "--ros-args", *[word for one in given for word in ("-p", one)])
+    assert node.wait(30.0) == 2, node.output()
+    said = [line for line in node.output().splitlines() if line.strip()]
+    assert len(said) == 1, node.output()
+    assert words in said[0]
+
+
+def test_parameters_take_integers_and_describe_themselves(start, network, tmp_path):
+    from rclpy.parameter_client import AsyncParameterClient
+
+    node = visualise(start, tmp_path / "run.rrd", "rate:=10", "torque_limit:=2", "stop_with_publisher:=false")
+    client = AsyncParameterClient(network, "visualiser")
+    assert client.wait_for_services(timeout_sec=20.0)
+
+    def ask(future):
+        network.executor_of_test.spin_until_future_complete(future, timeout_sec=20.0)
+        return future.result()
+
+    described = {one.name: one for one in ask(client.describe_parameters(["rate", "sink", "port"])).descriptors}
+    assert described["rate"].read_only
+    assert "samples per second" in described["rate"].description
+    assert described["rate"].floating_point_range[0].from_value == 0.1
+    assert described["port"].integer_range[0].to_value == 65535
+    assert "spawn (a viewer window)" in described["sink"].description
+    values = ask(client.get_parameters(["use_sim_time", "blueprint"])).values
+    assert values[0].bool_value
+    assert values[1].string_value == "overview"
+    assert node.interrupt() == 0
+
+
+def test_a_namespace_keeps_swimmers_apart(start, network, tmp_path):
+    node = visualise(start, tmp_path / "run.rrd", space="__ns:=/second")
+    mine = network.create_publisher(TOPICS["head_pose"], "/second/head_pose", 100)
+    other = network.create_publisher(TOPICS["head_pose"], "/head_pose", 100)
+    heard([mine])
+    for k in range(5):
+        message = messages(made_up.Swimmer(5), k * 10**8)["head_pose"]
+        mine.publish(message)
+        other.publish(messages(made_up.Swimmer(5), (k + 50) * 10**8)["head_pose"])
+    time.sleep(1.0)
+    assert node.interrupt() == 0
+    np.testing.assert_array_equal(read(tmp_path / "run.rrd", entities.POSITION).stamps, np.arange(5) * 10**8)
+
+
+def test_a_law_that_is_heard_from_either_kind_of_publisher_is_shown_once(start, network, tmp_path):
+    from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+
+    from eel_msgs.msg import CurvatureLaw
+
+    latched = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    early = network.create_publisher(CurvatureLaw, "curvature_law", latched)
+    early.publish(CurvatureLaw(name="before the start"))
+    node = visualise(start, tmp_path / "run.rrd")
+    heard([early])
+    volatile = network.create_publisher(CurvatureLaw, "curvature_law", 10)
+    heard([volatile])
+    time.sleep(1.0)
+    early.publish(CurvatureLaw(name="latched"))
+    time.sleep(0.5)
+    volatile.publish(CurvatureLaw(name="volatile"))
+    time.sleep(1.0)
+    assert node.interrupt() == 0
+    texts = [row[0] for row in read(tmp_path / "run.rrd", entities.LOG)["text"]]
+    assert texts == [f"law {name!r} published" for name in ("before the start", "latched", "volatile")]
+
+
+def test_served_data_reaches_a_viewer_that_comes_later(start, network, tmp_path, can_draw):
+    from eel_viz.render import free_port, viewer
+
+    port, web = free_port(), free_port()
+    settings = ["sink:=[serve, save]", f"recording:={tmp_path / 'run.rrd'}", f"port:={port}", f"web_port:={web}"]
+    node = start("visualiser", "--ros-args", *[word for setting in settings for word in ("-p", setting)])
+    node.wait_for_output(f"http://127.0.0.1:{web}/")
+    publisher = network.create_publisher(TOPICS["head_twist"], "head_twist", 100)
+    heard([publisher])
+    for k in range(20):
+        publisher.publish(messages(made_up.Swimmer(5), k * 10**8)["head_twist"])
+    time.sleep(1.0)
+    with viewer((640, 360)) as client:
+        client.open([f"rerun+http://127.0.0.1:{port}/proxy"])
+        deadline = time.monotonic() + 30
+        ends = []
+        while time.monotonic() < deadline and 19 * 10**8 not in ends:
+            time.sleep(0.3)
+            recordings = client.get_state().recordings
+            ends = [
+                timeline.end for one in recordings for timeline in one.timelines if timeline.name == entities.TIMELINE
+            ]
+        assert 19 * 10**8 in ends
+    assert node.interrupt() == 0, node.output()
+    verify(tmp_path / "run.rrd")
+    assert len(read(tmp_path / "run.rrd", entities.SPEED).stamps) == 20

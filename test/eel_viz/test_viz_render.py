@@ -1,0 +1,80 @@
+"""Each arrangement drawn by the real viewer: all views are there, none complains, and the picture is not empty."""
+
+import io
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from eel_viz.render import CannotRender, _await_listening, render, viewer
+from eel_viz.settings import BLUEPRINTS
+
+from eel_viz import entities
+
+VIEWS = {
+    "overview": {"3D": 1, "2D": 3, "TimeSeries": 3, "TextDocument": 1},
+    "torques": {"3D": 1, "2D": 4},
+    "motion": {"3D": 1, "TimeSeries": 5},
+}
+
+
+def pixels(png: bytes) -> np.ndarray:
+    from PIL import Image
+
+    return np.asarray(Image.open(io.BytesIO(png)).convert("RGB")).astype(int)
+
+
+@pytest.mark.parametrize("name", BLUEPRINTS)
+def test_every_view_is_shown_without_a_complaint(can_draw, tmp_path, name):
+    from made_up_recording import record
+
+    record(tmp_path / "made_up.rrd", 2.0, 50.0, blueprint=name)
+    with viewer((1280, 720)) as client:
+        client.open([str(tmp_path / "made_up.rrd")])
+        client.set_time(entities.TIMELINE, duration=1.5, play_state="paused")
+        client.take_screenshot()
+        state = client.get_state()
+    shown = [view for view in state.views if view.visible]
+    assert [(view.name, view.reports) for view in state.views if view.reports] == []
+    kinds = [view.view_class for view in shown]
+    for kind, count in VIEWS[name].items():
+        assert sum(found == kind for found in kinds) >= count, kinds
+
+
+def test_a_picture_shows_the_swimmer_and_changes_with_time(can_draw, tmp_path):
+    from made_up_recording import record
+
+    record(tmp_path / "made_up.rrd", 2.0, 50.0)
+    pictures = []
+    for at in (1.1, 1.6):
+        render(tmp_path / "made_up.rrd", tmp_path / f"{at}.png", at=at, size=(1280, 720))
+        pictures.append(pixels((tmp_path / f"{at}.png").read_bytes()))
+    assert pictures[0].shape == (720, 1280, 3)
+    for picture in pictures:
+        scene = picture[100:480, :680]
+        red, blue = scene[:, :, 0] - scene[:, :, 2], scene[:, :, 2] - scene[:, :, 0]
+        assert (red > 40).sum() > 300  # skin and path of the head
+        assert (blue > 30).sum() > 3000  # water lines, skin
+    assert (np.abs(pictures[0] - pictures[1]).sum(axis=2) > 60).sum() > 2000
+
+
+def test_the_command_says_what_it_cannot_do(tmp_path):
+    def run(*arguments):
+        command = [sys.executable, "-m", "eel_viz.render", *arguments]
+        return subprocess.run(command, capture_output=True, text=True, timeout=100)
+
+    missing = run(str(tmp_path / "none.rrd"), "-o", str(tmp_path / "none.png"))
+    assert missing.returncode == 2
+    assert "recording must be a file" in missing.stderr
+    assert run("a.rrd").returncode == 2
+    assert run("a.rrd", "-o", "a.png", "--size", "big").returncode == 2
+
+
+def test_a_viewer_that_panics_is_one_line_that_says_what_to_install(tmp_path):
+    said = (tmp_path / "said").open("w+b")
+    said.write(b"note: something\nError: Failed to get render context\n")
+    process = subprocess.Popen([sys.executable, "-c", "raise SystemExit(102)"])
+    process.wait()
+    with pytest.raises(CannotRender, match=r"status 102 .Error: Failed to get render context.*mesa-vulkan-drivers"):
+        _await_listening(process, 1, said)
+    said.close()
