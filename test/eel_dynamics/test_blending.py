@@ -1,0 +1,158 @@
+"""Changes of what drives the body: curvature, its rate and its acceleration never jump, and the head follows."""
+
+import numpy as np
+import pytest
+from cases import SPLINE_KNOTS, random_law
+from library_state import Scene, Simulation, distance, simulate
+
+from eel_gaits import Law
+
+STEP = 1e-3
+X = np.array([0.0, 0.1, 0.35, 0.6, 1.0])
+
+
+def law_of(seed, **changes):
+    law = random_law(np.random.default_rng(seed), size=0.5)
+    return Law(*law.terms, name=str(seed), **changes)
+
+
+def record(simulation, until):
+    """Time (T,), curvature and rate (T, M, 3) at steps of STEP from the present on."""
+    out = []
+    for k in range(1, round((until - simulation.time) / STEP) + 1):
+        simulation.advance(simulation.time + STEP)
+        got = simulation.observe(wrench=False, load=False)
+        out.append((got.time, got.curvature.copy(), got.curvature_rate.copy()))
+        assert k < 10_000
+    return tuple(np.array(column) for column in zip(*out, strict=True))
+
+
+def check_smooth(time, curvature, rate):
+    """The rate is the slope of the curvature, and its own slope has no jump.
+
+    Central differences at 1 ms of motions of some 20 rad/s: errors of (0.02)^2 / 6 of the rate. A jump of the value
+    by 1 % would be a rate 10 times too large; jumps of rate and acceleration show in the differences of the rate.
+    """
+    slope = (curvature[2:] - curvature[:-2]) / (time[2:] - time[:-2])[:, None, None]
+    scale = np.abs(rate).max()
+    assert distance(slope, rate[1:-1], scale) < 1e-3
+    acceleration = np.diff(rate, axis=0) / STEP
+    jumps = np.abs(np.diff(acceleration, axis=0)).max()
+    assert jumps < 0.03 * np.abs(acceleration).max()
+
+
+def test_a_law_taken_on_in_mid_swim_and_another_in_mid_blend():
+    simulation = Simulation(stations=X)
+    simulation.adopt(law_of(1))
+    before = record(simulation, 0.5)
+    simulation.adopt(law_of(2), origin=0.2, transition=0.6)
+    blend = record(simulation, 0.8)
+    simulation.adopt(law_of(3, transition=0.4), origin=-0.3)  # half-way through the first blend
+    after = record(simulation, 1.5)
+    check_smooth(*(np.concatenate(columns) for columns in zip(before, blend, after, strict=True)))
+    # the first follows its law from the start; the last is on its own law, at its own time, after its transition
+    for (time, curvature, rate), law, origin in ((before, law_of(1), 0.0), (after, law_of(3), -0.3)):
+        value, slope, _ = law.curvature(time[-1] - origin, X)
+        assert curvature[-1] == pytest.approx(value, abs=1e-12)
+        assert rate[-1] == pytest.approx(slope, abs=1e-11)
+    value, slope, _ = law_of(2).curvature(0.8 - 0.2, X)
+    assert not np.allclose(blend[1][-1], value, atol=1e-3)  # the second never came to its own
+
+
+def test_the_first_law_needs_no_blend_and_the_last_adopted_counts():
+    simulation = Simulation(stations=X)
+    simulation.adopt(law_of(1))
+    simulation.adopt(law_of(2), transition=0.5)
+    got = simulation.observe()
+    assert got.curvature == pytest.approx(law_of(2).curvature(0.0, X)[0], abs=1e-13)
+    assert got.curvature_rate == pytest.approx(law_of(2).curvature(0.0, X)[1], abs=1e-12)
+
+
+def test_the_default_transition_holds_where_none_is_given():
+    simulation = Simulation(stations=X, default_transition=0.3)
+    simulation.adopt(law_of(1))
+    simulation.advance(0.2)
+    simulation.adopt(law_of(2))
+    simulation.advance(0.49)
+    assert distance(simulation.observe().curvature, law_of(2).curvature(0.49, X)[0]) > 1e-9
+    simulation.advance(0.51)
+    assert simulation.observe().curvature == pytest.approx(law_of(2).curvature(0.51, X)[0], abs=1e-12)
+
+
+def test_adopting_the_same_law_again_changes_nothing():
+    law = law_of(4)
+    plain = simulate(law, duration=1.0, sample_period=0.5, accuracy="fine")
+    simulation = Simulation(accuracy="fine")
+    simulation.adopt(law)
+    simulation.advance(0.37)
+    simulation.adopt(law)
+    simulation.advance(1.0)
+    assert simulation.observe().position == pytest.approx(plain.position[-1], abs=1e-6)
+
+
+def samples_of(law, time, x):
+    """The arguments of `add_samples`: x, then value, rate and acceleration in pitch and in yaw."""
+    fields = law.curvature(time, x)
+    return (time, x, *(field[:, axis] for axis in (1, 2) for field in fields))
+
+
+def test_samples_of_a_law_swim_like_the_law():
+    """A controller that sends a law's values every 20 ms on 41 points: quintics in time, splines in X."""
+    law = Law(*law_of(5).terms)
+    x = np.union1d(np.linspace(0, 1, 41), SPLINE_KNOTS)
+    exact = simulate(law, duration=1.0, sample_period=0.5, accuracy="fine", stations=X)
+    simulation = Simulation(accuracy="fine", stations=X)
+    simulation.adopt(law)
+    for time in np.arange(1, 53) * 0.02:
+        simulation.add_samples(*samples_of(law, time, x))
+    simulation.advance(1.0)
+    got = simulation.observe()
+    assert got.curvature == pytest.approx(exact.curvature[-1], abs=2e-3)  # natural ends of the splines in X
+    assert got.position == pytest.approx(exact.position[-1], abs=2e-3)
+
+
+def test_samples_take_over_smoothly_and_rest_follows_when_they_stop():
+    law, controller = law_of(6), law_of(7)
+    simulation = Simulation(stations=X, default_transition=0.4)
+    simulation.adopt(law)
+    first = record(simulation, 0.3)
+    x = np.linspace(0, 1, 21)
+    for time in np.arange(31, 91) * 0.01:
+        simulation.add_samples(*samples_of(controller, time, x))
+    assert simulation.samples_until == pytest.approx(0.9)
+    assert not simulation.resting
+    rest = record(simulation, 2.2)
+    assert simulation.resting
+    check_smooth(*(np.concatenate(columns) for columns in zip(first, rest, strict=True)))
+    assert np.abs(rest[2][-1]).max() < 1e-9 * np.abs(rest[2]).max()  # at rest: the rate is gone
+    for time in np.arange(2.3, 2.8, 0.01):  # and they return
+        simulation.add_samples(*samples_of(controller, time, x))
+    check_smooth(*record(simulation, 2.7))
+    assert not simulation.resting
+
+
+def test_reset_swims_again_from_the_start():
+    simulation = Simulation(twist=(0, 0, 0.1, -0.2, 0, 0))
+    simulation.adopt(law_of(8), origin=0.0)
+    simulation.advance(0.6)
+    once = simulation.observe()
+    position, twist, work = once.position.copy(), once.twist.copy(), once.actuator_work
+    simulation.reset()
+    assert simulation.time == 0.0
+    start = simulation.observe()
+    assert np.all(start.position == 0)
+    assert start.actuator_work == 0.0
+    simulation.advance(0.6)
+    again = simulation.observe()
+    assert np.array_equal(again.position, position)
+    assert np.array_equal(again.twist, twist)
+    assert again.actuator_work == work
+
+
+def test_a_planar_scene_blends_too():
+    rng = np.random.default_rng(9)
+    simulation = Simulation(scene=Scene(planar=True), stations=X)
+    simulation.adopt(random_law(rng, pitch=False))
+    first = record(simulation, 0.2)
+    simulation.adopt(random_law(rng, pitch=False), transition=0.3)
+    check_smooth(*(np.concatenate(columns) for columns in zip(first, record(simulation, 0.7), strict=True)))
