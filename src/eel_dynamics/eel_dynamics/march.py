@@ -172,8 +172,7 @@ class March:
             snapshot = simulation.observe(**parts)
             self.accounts.add(snapshot)
         except SimulationStopped as error:
-            self._failed = True
-            self._report.begin("stopped", f"simulation {error}; reset starts it again", ERROR)
+            self._fail(error)
             return
         self.time = self._next_time
         publishers.publish(snapshot, self._stamp(self._sample))
@@ -182,6 +181,10 @@ class March:
         self._report_resting()
         self._report_delay(now)
         self._sample += 1
+
+    def _fail(self, error: SimulationStopped):
+        self._failed = True
+        self._report.begin("stopped", f"simulation {error}; reset starts it again", ERROR)
 
     @property
     def _next_time(self) -> float:
@@ -217,6 +220,8 @@ class March:
             simulation.adopt(law, origin=origin)
         except ValueError as error:
             self._report.event("law", f"law {law.name!r} refused: {error}", ERROR, differing=True)
+        except SimulationStopped as error:
+            self._fail(error)
         else:
             self._origin = origin
             self._report.end("resting")
@@ -234,7 +239,6 @@ class March:
         self._pace.restart(self._sample, time.monotonic(), parameters.real_time_factor)
 
     def _reset(self):
-        self._simulation.reset()
         self._sample, self.time, self._origin = 0, 0.0, 0.0
         self._failed = False
         self.accounts = Accounts()
@@ -242,7 +246,12 @@ class March:
         self._report.end("stopped")
         self._report.end("resting")
         self._pace.restart(0, time.monotonic())
-        self._report.info("reset to t = 0 s")
+        try:
+            self._simulation.reset()
+        except SimulationStopped as error:
+            self._fail(error)
+        else:
+            self._report.info("reset to t = 0 s")
 
     def _report_resting(self):
         if self._simulation.resting:

@@ -93,9 +93,8 @@ class Sample:
         for field, kind in message.get_fields_and_field_types().items():
             if kind == "sequence<double>":
                 count = {"position": 3, "orientation": 4}.get(field, 1) * len(self._x)
-                buffer = array.array("d", bytes(8 * count))
-                setattr(message, field, buffer)
-                views[field] = np.frombuffer(buffer, dtype=float)
+                setattr(message, field, array.array("d", bytes(8 * count)))
+                views[field] = np.frombuffer(getattr(message, field), dtype=float)  # the message may have copied it
         if "x" in views:
             views["x"][:] = self._x
         return views

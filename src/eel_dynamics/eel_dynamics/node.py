@@ -119,13 +119,14 @@ def main(args=None) -> int:
     ending.start(lambda: spin(executor, ending))
     done, error = ending.wait()
     node.march.stop()
+    ending.over = True
+    executor.wake()
+    joined = ending.join(HASTE)
     if error is not None:
         node.get_logger().fatal("".join(traceback.format_exception(error)))
     node.tell(final=True)
     node.wait_for_acknowledgements(FAREWELL if done else HASTE)
-    ending.over = True
-    executor.wake()
-    if not ending.join(HASTE):
+    if not joined:
         leave_at_once(int(error is not None))
     executor.shutdown()
     node.destroy_node()

@@ -1,0 +1,134 @@
+"""A ROS node for tests: hears every topic of a dynamics node without loss, publishes laws and samples, calls services."""
+
+import time
+from collections import defaultdict
+
+from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import PoseStamped, TwistStamped
+from nav_msgs.msg import Odometry
+from rcl_interfaces.srv import DescribeParameters, GetParameters, SetParameters
+from rclpy.context import Context
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.parameter import Parameter, parameter_value_to_python
+from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
+from rosgraph_msgs.msg import Clock
+from std_srvs.srv import SetBool, Trigger
+
+from eel_msgs.msg import (
+    Backbone,
+    BodyGeometry,
+    Curvature,
+    CurvatureLaw,
+    CurvatureSamples,
+    EnergyLedger,
+    HydrodynamicLoad,
+    InternalWrench,
+)
+
+LIMIT = 90.0  # s; discovery was seen to take 2.75 s, a first compilation takes most of a minute
+LOSSLESS = QoSProfile(history=HistoryPolicy.KEEP_ALL)
+LATCHED = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+SAMPLES = {
+    "head_pose": PoseStamped,
+    "head_twist": TwistStamped,
+    "odom": Odometry,
+    "backbone": Backbone,
+    "curvature": Curvature,
+    "internal_wrench": InternalWrench,
+    "hydrodynamic_load": HydrodynamicLoad,
+    "energy": EnergyLedger,
+}
+
+
+def nanoseconds(stamp) -> int:
+    return stamp.sec * 1_000_000_000 + stamp.nanosec
+
+
+class SwimClient:
+    """Hears the topics `topics` of the dynamics node in `namespace`; messages are in `heard[topic]`, in order."""
+
+    def __init__(self, *, domain, topics=tuple(SAMPLES), namespace="", clock=False):
+        self.context = Context()
+        self.context.init(domain_id=domain)
+        self.node = Node("swim_client", namespace=namespace, context=self.context, start_parameter_services=False)
+        self.executor = SingleThreadedExecutor(context=self.context)
+        self.executor.add_node(self.node)
+        self.heard = defaultdict(list)
+        self.arrivals = defaultdict(list)  # s, steady clock
+        for topic in topics:
+            self.listen(topic, SAMPLES[topic])
+        self.listen("body", BodyGeometry, LATCHED)
+        self.listen("/diagnostics", DiagnosticArray)
+        if clock:
+            self.listen("/clock", Clock)
+        self.laws = self.node.create_publisher(CurvatureLaw, "curvature_law", LATCHED)
+        self.samples = self.node.create_publisher(CurvatureSamples, "curvature_samples", LOSSLESS)
+
+    def close(self):
+        self.executor.shutdown()
+        self.node.destroy_node()
+        self.context.try_shutdown()
+
+    def listen(self, topic, kind, quality=LOSSLESS):
+        def keep(message):
+            self.heard[topic].append(message)
+            self.arrivals[topic].append(time.monotonic())
+
+        return self.node.create_subscription(kind, topic, keep, quality)
+
+    def spin(self, seconds):
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            self.executor.spin_once(timeout_sec=0.02)
+
+    def until(self, condition, what, limit=LIMIT):
+        """Spins until the condition holds; AssertionError, with what was awaited, after `limit`."""
+        deadline = time.monotonic() + limit
+        while not condition():
+            assert time.monotonic() < deadline, f"no {what} within {limit} s"
+            self.executor.spin_once(timeout_sec=0.02)
+
+    def latest(self, topic):
+        self.until(lambda: self.heard[topic], f"message on {topic}")
+        return self.heard[topic][-1]
+
+    def until_time(self, seconds, topic="head_pose"):
+        """Spins until a sample at that simulation time or later has come."""
+        self.until(
+            lambda: self.heard[topic] and nanoseconds(self.heard[topic][-1].header.stamp) >= seconds * 1e9,
+            f"{topic} at {seconds} s",
+        )
+
+    def call(self, kind, name, **request):
+        service = self.node.create_client(kind, name)
+        try:
+            self.until(service.service_is_ready, f"service {name}")
+            answer = service.call_async(kind.Request(**request))
+            self.until(answer.done, f"answer from {name}")
+            return answer.result()
+        finally:
+            self.node.destroy_client(service)
+
+    def reset(self):
+        return self.call(Trigger, "dynamics/reset")
+
+    def pause(self, paused):
+        return self.call(SetBool, "dynamics/pause", data=paused)
+
+    def set(self, **values):
+        parameters = [Parameter(name, value=value).to_parameter_msg() for name, value in values.items()]
+        return self.call(SetParameters, "dynamics/set_parameters", parameters=parameters).results
+
+    def get(self, *names):
+        answer = self.call(GetParameters, "dynamics/get_parameters", names=names)
+        return [parameter_value_to_python(value) for value in answer.values]
+
+    def describe(self, *names):
+        return self.call(DescribeParameters, "dynamics/describe_parameters", names=names).descriptors
+
+    def diagnosis(self, message=None):
+        """(level, message, values) of the latest /diagnostics, or of the one given."""
+        status = (message or self.latest("/diagnostics")).status[0]
+        return status.level[0], status.message, {pair.key: pair.value for pair in status.values}

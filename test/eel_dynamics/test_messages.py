@@ -1,0 +1,190 @@
+"""Snapshots as messages: REP-103 axes where interfaces are in ROS frames, the paper's section axes where they are not."""
+
+import copy
+
+import numpy as np
+import pytest
+from eel_dynamics.assembly import simulation_of
+from eel_dynamics.messages import Sample, body_message, diagnostic_array, samples_from_message
+from eel_dynamics.parameters import DynamicsParameters
+from rclpy.serialization import deserialize_message, serialize_message
+
+from eel_dynamics import Body, Scene, Simulation
+from eel_gaits import falling
+from eel_msgs.msg import CurvatureSamples
+
+TURN = np.diag([-1.0, -1.0, 1.0])
+
+
+def matrix(quaternion):
+    x, y, z, w = quaternion
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+
+
+def xyz(vector):
+    return np.array([vector.x, vector.y, vector.z])
+
+
+def xyzw(quaternion):
+    return np.array([quaternion.x, quaternion.y, quaternion.z, quaternion.w])
+
+
+@pytest.fixture(scope="module")
+def swum():
+    """A snapshot in the middle of a turn in three dimensions, and the messages filled from it."""
+    simulation = Simulation(stations=17, position=(0.3, -0.2, 0.1), orientation=(0.1, 0.2, 0.3, np.sqrt(0.86)))
+    simulation.adopt(falling())
+    simulation.advance(2.3)
+    snapshot = simulation.observe()
+    sample = Sample(simulation.x, simulation.scene, "odom", "base_link")
+    sample.set_time(2_300_000_000)
+    for name in sample.messages:
+        sample.fill(name, snapshot)
+    return snapshot, sample.messages
+
+
+def test_headers(swum):
+    _, messages = swum
+    for name, message in messages.items():
+        if name == "/tf":
+            continue
+        assert (message.header.stamp.sec, message.header.stamp.nanosec) == (2, 300_000_000)
+        world = name in ("head_pose", "odom", "backbone", "energy")
+        assert message.header.frame_id == ("odom" if world else "base_link"), name
+    assert messages["odom"].child_frame_id == "base_link"
+
+
+def test_pose_is_turned_half_a_turn_about_z(swum):
+    snapshot, messages = swum
+    for pose in (messages["head_pose"].pose, messages["odom"].pose.pose):
+        assert np.array_equal(xyz(pose.position), TURN @ snapshot.position)
+        expected = TURN @ matrix(snapshot.orientation) @ TURN
+        assert np.allclose(matrix(xyzw(pose.orientation)), expected, rtol=0, atol=1e-15)
+
+
+def test_twist_is_in_the_head_frame(swum):
+    snapshot, messages = swum
+    for twist in (messages["head_twist"].twist, messages["odom"].twist.twist):
+        assert np.array_equal(xyz(twist.angular), TURN @ snapshot.twist[:3])
+        assert np.array_equal(xyz(twist.linear), TURN @ snapshot.twist[3:])
+
+
+def test_backbone_starts_at_the_head_and_runs_along_minus_x_of_its_sections(swum):
+    snapshot, messages = swum
+    points = np.reshape(messages["backbone"].position, (-1, 3))
+    turns = np.reshape(messages["backbone"].orientation, (-1, 4))
+    pose = messages["head_pose"].pose
+    assert np.allclose(points[0], xyz(pose.position), rtol=0, atol=1e-15)
+    assert np.allclose(matrix(turns[0]), matrix(xyzw(pose.orientation)), rtol=0, atol=1e-15)
+    assert np.array_equal(points, snapshot.backbone @ TURN)
+    middle = len(points) // 2  # the chord through a section's neighbours is along its tangent, up to curvature squared
+    chord = points[middle + 1] - points[middle - 1]
+    ahead = matrix(turns[middle]) @ [1.0, 0.0, 0.0]
+    assert np.dot(chord, ahead) / np.linalg.norm(chord) < -0.99
+
+
+def test_profiles_keep_section_axes(swum):
+    snapshot, messages = swum
+    curvature, wrench, load = messages["curvature"], messages["internal_wrench"], messages["hydrodynamic_load"]
+    for message in (curvature, wrench, load, messages["backbone"]):
+        assert np.array_equal(message.x, snapshot.x)
+    assert np.array_equal(curvature.pitch, snapshot.curvature[:, 1]) and np.array_equal(curvature.yaw, snapshot.curvature[:, 2])
+    assert np.array_equal(curvature.pitch_rate, snapshot.curvature_rate[:, 1])
+    assert np.array_equal(curvature.yaw_rate, snapshot.curvature_rate[:, 2])
+    for axis in range(3):
+        assert np.array_equal(getattr(wrench, f"torque_{axis + 1}"), snapshot.torque[:, axis])
+        assert np.array_equal(getattr(wrench, f"force_{axis + 1}"), snapshot.force[:, axis])
+        assert np.array_equal(getattr(load, f"force_{axis + 1}"), snapshot.fluid_force[:, axis])
+        assert np.array_equal(getattr(load, f"resistive_{axis + 1}"), snapshot.resistive_force[:, axis])
+    assert np.array_equal(xyz(load.tail_force), snapshot.tail_force)
+    assert np.array_equal(xyz(load.nose_force), snapshot.nose_force)
+    assert np.any(curvature.yaw) and np.any(wrench.torque_3) and np.any(load.force_2)
+
+
+def test_energy_has_every_field(swum):
+    snapshot, messages = swum
+    names = [name for name in messages["energy"].get_fields_and_field_types() if name != "header"]
+    assert len(names) == 7
+    for name in names:
+        assert getattr(messages["energy"], name) == getattr(snapshot.energy, name)
+
+
+def test_messages_pass_through_the_wire_unchanged(swum):
+    _, messages = swum
+    for message in messages.values():
+        assert deserialize_message(serialize_message(message), type(message)) == message
+
+
+def test_refilling_replaces_all_that_was_there(swum):
+    snapshot, messages = swum
+    before = copy.deepcopy(messages)
+    simulation = Simulation(stations=17)
+    simulation.adopt(falling())
+    sample = Sample(simulation.x, simulation.scene, "odom", "base_link")
+    for name in sample.messages:
+        sample.fill(name, simulation.observe())
+    sample.set_time(2_300_000_000)
+    for name in sample.messages:
+        assert sample.fill(name, snapshot) == before[name], name
+
+
+def test_what_the_scene_leaves_out_is_not_offered():
+    messages = Sample(np.linspace(0, 1, 5), Scene(internal_wrench=False, ledger=False), "odom", "base_link").messages
+    assert "internal_wrench" not in messages and "energy" not in messages and "curvature" in messages
+
+
+def test_start_is_given_in_ros_frames_and_published_back():
+    """The conversion in and the conversion out are each other's inverse; swimming forward is along +x."""
+    orientation = (0.1, -0.2, 0.3, np.sqrt(0.86))
+    values = DynamicsParameters(
+        initial_position=(1.0, 2.0, 3.0),
+        initial_orientation=orientation,
+        initial_linear_velocity=(0.4, 0.1, -0.2),
+        initial_angular_velocity=(0.3, -0.5, 0.7),
+    )
+    simulation = simulation_of(values, Scene(current=(0.5, 0.25, 0.0)))
+    assert simulation.scene.current == (-0.5, -0.25, 0.0)
+    snapshot = simulation.observe()
+    assert snapshot.twist[3] == pytest.approx(-0.4)  # library: forward is V1 < 0
+    sample = Sample(simulation.x, simulation.scene, "odom", "base_link")
+    pose = sample.fill("head_pose", snapshot).pose
+    twist = sample.fill("head_twist", snapshot).twist
+    assert np.allclose(xyz(pose.position), (1.0, 2.0, 3.0), rtol=0, atol=1e-15)
+    assert np.allclose(xyzw(pose.orientation), orientation, rtol=0, atol=1e-15)
+    assert np.allclose(xyz(twist.linear), (0.4, 0.1, -0.2), rtol=0, atol=1e-12)
+    assert np.allclose(xyz(twist.angular), (0.3, -0.5, 0.7), rtol=0, atol=1e-12)
+
+
+def test_body_has_its_outline_and_mass():
+    body = Body.boyer2010()
+    message = body_message(body, Scene(), np.linspace(0.0, 1.0, 11), "base_link")
+    x = np.array(message.x)
+    assert x[0] == 0.0 and x[-1] == body.length and np.all(np.diff(x) > 0.0)
+    assert set(np.linspace(0.0, 1.0, 11)) <= set(x)
+    assert message.mass == pytest.approx(1.944, abs=5e-4) and message.length == 1.0
+    assert np.array_equal(message.half_width, body.half_width(x)) and np.array_equal(message.half_height, body.half_height(x))
+    assert body_message(body, Scene(density=500.0), x, "base_link").mass == pytest.approx(0.5 * message.mass)
+
+
+def test_samples_keep_their_names():
+    message = CurvatureSamples(x=[0.0, 1.0], pitch=[1.0, 2.0], pitch_rate=[3.0, 4.0], pitch_accel=[5.0, 6.0])
+    message.yaw, message.yaw_rate, message.yaw_accel = [7.0, 8.0], [9.0, 10.0], [11.0, 12.0]
+    message.header.stamp.sec, message.header.stamp.nanosec = 3, 250_000_000
+    values = samples_from_message(message)
+    assert values["time"] == 3.25
+    for name in ("x", "pitch", "pitch_rate", "pitch_accel", "yaw", "yaw_rate", "yaw_accel"):
+        assert list(values[name]) == list(getattr(message, name))
+
+
+def test_diagnostics_are_text():
+    message = diagnostic_array(1.25, "/left/dynamics", 1, "late", {"law": "falling", "time": 1.25, "samples_published": 126})
+    status = message.status[0]
+    assert (message.header.stamp.sec, message.header.stamp.nanosec) == (1, 250_000_000)
+    assert (status.level, status.name, status.message) == (b"\x01", "/left/dynamics", "late")
+    assert {pair.key: pair.value for pair in status.values} == {"law": "falling", "time": "1.25", "samples_published": "126"}

@@ -1,0 +1,194 @@
+"""Laws over DDS: blended without a jump, good ones taken from anybody, bad ones refused with one clear error."""
+
+import math
+import time
+
+import numpy as np
+import pytest
+from eel_gaits import Law, Term, falling
+from eel_gaits.messages import law_to_message
+from eel_msgs.msg import CurvatureLaw
+from rclpy.qos import QoSProfile
+from swim_client import nanoseconds
+
+GENTLE = ("--ros-args", "-p", "rate:=200", "-p", "real_time_factor:=0.5", "-p", "wait_for_subscribers:=1")
+
+
+def bend(amount, name="bend", transition=0.0):
+    return Law(Term(axis="yaw", amplitude=(amount,), phase=math.pi / 2), name=name, transition=transition)
+
+
+def wave(amplitude, period, name, transition):
+    term = Term(axis="yaw", amplitude=(amplitude, 1.0), wavelength=1.0, period=period)
+    lift = Term(axis="pitch", amplitude=(0.5 * amplitude,), phase=math.pi / 2)
+    return Law(term, lift, name=name, transition=transition)
+
+
+def test_laws_in_mid_blend_never_make_the_curvature_jump(start, client):
+    """Three laws, each sent before the blend of the last is over. The published curvature, its rate and the second
+    difference of it are what one smooth function gives: no jump in K, dK/dt or d2K/dt2."""
+    swim = client(topics=("curvature",))
+    swim.laws.publish(law_to_message(wave(1.0, 1.0, "first", 0.0)))
+    start("dynamics", *GENTLE)
+    swim.until_time(0.5, "curvature")
+    for amplitude, period, name in ((3.0, 0.7, "second"), (-2.0, 1.3, "third"), (4.0, 0.9, "fourth")):
+        swim.laws.publish(law_to_message(wave(amplitude, period, name, 0.6)))
+        swim.spin(0.25)
+    end = nanoseconds(swim.latest("curvature").header.stamp) / 1e9 + 0.7
+    swim.until_time(end, "curvature")
+
+    messages = swim.heard["curvature"]
+    step = 1.0 / 200
+    stamps = np.array([nanoseconds(message.header.stamp) for message in messages])
+    assert np.array_equal(stamps, np.round(np.arange(len(stamps)) * 1e9 * step)), "samples were lost"
+    for value, rate in (("yaw", "yaw_rate"), ("pitch", "pitch_rate")):
+        K = np.array([getattr(message, value) for message in messages])
+        rates = np.array([getattr(message, rate) for message in messages])
+        acceleration = np.gradient(rates, step, axis=0)
+        greatest = np.abs(acceleration).max()
+        assert np.ptp(K[:, 25]) > 1.0  # something did happen
+        # K is the integral of its published rate (trapezoidal rule, error step^3/12 of the third derivative per step) ...
+        assert np.abs(np.diff(K, axis=0) - 0.5 * step * (rates[1:] + rates[:-1])).max() < 1e-3 * greatest * step
+        # ... and the rate has a continuous derivative: its second difference stays far below a jump of the acceleration
+        jump = np.abs(np.diff(rates, 2, axis=0)).max() / step
+        assert jump < 0.2 * greatest, (jump, greatest)
+    last = messages[-1]
+    own = wave(4.0, 0.9, "fourth", 0.6).curvature(stamps[-1] / 1e9, np.array(last.x))[0]
+    assert np.allclose(last.yaw, own[:, 2], atol=1e-9) and np.allclose(last.pitch, own[:, 1], atol=1e-9)
+
+
+def test_stamp_is_where_the_laws_own_time_begins(start, client):
+    swim = client(topics=("curvature",))
+    message = law_to_message(falling())
+    message.header.stamp.nanosec = 500_000_000
+    swim.laws.publish(message)
+    start("dynamics", "--ros-args")
+    swim.until_time(1.5, "curvature")
+    for heard in swim.heard["curvature"][::10]:
+        t = nanoseconds(heard.header.stamp) / 1e9
+        assert np.allclose(heard.yaw, falling().curvature(t - 0.5, np.array(heard.x))[0][:, 2], atol=1e-9)
+
+
+def test_a_volatile_publisher_is_heard_and_repeating_changes_nothing(start, client):
+    """As `ros2 topic pub -r 20` does it: default quality of service, the same law over and over."""
+    swim = client(topics=("curvature",))
+    publisher = swim.node.create_publisher(CurvatureLaw, "curvature_law", QoSProfile(depth=10))
+    node = start("dynamics", "--ros-args")
+    node.wait_for_output("waiting for a law", 90.0)
+    message = law_to_message(bend(1.5, transition=0.3))
+
+    def said_until(seconds):
+        deadline = time.monotonic() + 60.0
+        while not (swim.heard["curvature"] and nanoseconds(swim.heard["curvature"][-1].header.stamp) > seconds * 1e9):
+            assert time.monotonic() < deadline
+            publisher.publish(message)
+            swim.spin(0.05)
+
+    said_until(0.5)
+    message = law_to_message(bend(-1.0, name="other", transition=0.3))
+    said_until(nanoseconds(swim.latest("curvature").header.stamp) / 1e9 + 1.0)
+    assert np.allclose(swim.latest("curvature").yaw, -1.0)  # repeating did not begin the blend anew
+    assert node.output().count("taken on") == 2, node.output()
+
+
+def test_latency_of_a_law(start, client):
+    """From publishing a law to the first sample that moves by it: a period at most, and the way through DDS."""
+    swim = client(topics=("curvature",))
+    swim.laws.publish(law_to_message(bend(0.0)))
+    start("dynamics", "--ros-args")
+    swim.until_time(0.5, "curvature")
+    delays = []
+    for k in range(9):
+        swim.spin(0.2 + 0.003 * k)
+        before, seen = swim.heard["curvature"][-1].yaw[25], len(swim.heard["curvature"])
+        sent = time.monotonic()
+        swim.laws.publish(law_to_message(bend(1.0 + k % 2, name=f"law {k}", transition=0.05)))
+        swim.until(lambda before=before: abs(swim.heard["curvature"][-1].yaw[25] - before) > 1e-9, "change")
+        first = next(j for j in range(seen, 10**9) if abs(swim.heard["curvature"][j].yaw[25] - before) > 1e-9)
+        delays.append(swim.arrivals["curvature"][first] - sent)
+    assert np.median(delays) < 0.02, delays  # the median: others may be using the machine
+
+
+def edited(**changes):
+    """A good law's message with fields of its first term, or of itself, changed."""
+    message = law_to_message(Law(Term(amplitude=(1.0,), wavelength=1.0, period=1.0), name="bad"))
+    for name, value in changes.items():
+        setattr(message if hasattr(message, name) else message.terms[0], name, value)
+    return message
+
+
+BAD = {
+    "not finite": (edited(amplitude=[math.nan]), ("terms[0].amplitude", "nan")),
+    "negative period": (edited(period=-1.0), ("terms[0].period", "-1")),
+    "unknown axis": (edited(axis=7), ("terms[0].axis", "7")),
+    "arrays that do not fit": (edited(knots=[0.0, 0.5, 1.0]), ("terms[0].amplitude", "knot", "3")),
+    "negative transition": (edited(transition=-2.0), ("transition", "-2")),
+    "too many terms": (edited(terms=edited().terms * 1001), ("terms", "1001")),
+}
+
+
+def test_bad_laws_leave_the_good_one_in_force(start, client):
+    swim = client(topics=("curvature", "head_pose", "internal_wrench", "energy"))
+    swim.laws.publish(law_to_message(bend(0.5, name="good")))
+    node = start("dynamics", "--ros-args")
+    swim.until_time(0.2)
+    wall_time = law_to_message(bend(9.0, name="bad"))
+    wall_time.header.stamp.sec = int(time.time())
+    negative = law_to_message(bend(9.0, name="bad"))
+    negative.header.stamp.sec = -3
+    laws = {
+        **BAD,
+        "wall time": (wall_time, ("header.stamp", str(wall_time.header.stamp.sec), "use_sim_time")),
+        "negative stamp": (negative, ("header.stamp", "-3")),
+    }
+    for what, (message, _) in laws.items():
+        before = node.output().count("[ERROR]")
+        swim.laws.publish(message)
+        swim.until(lambda before=before: node.output().count("[ERROR]") > before, f"error for {what}", 20.0)
+    swim.until_time(nanoseconds(swim.latest("head_pose").header.stamp) / 1e9 + 1.2)
+    errors = [line for line in node.output().splitlines() if "[ERROR]" in line]
+    assert len(errors) == len(laws), node.output()
+    for line, (what, (_, words)) in zip(errors, laws.items(), strict=True):
+        assert all(word in line for word in (*words, "'bad'", "refused")), (what, line)
+    assert all(np.allclose(message.yaw, 0.5) for message in swim.heard["curvature"])
+    for topic in ("head_pose", "internal_wrench", "energy"):
+        assert "nan" not in repr(swim.heard[topic][-1])
+    assert node.status is None
+    swim.laws.publish(law_to_message(bend(0.7, name="next", transition=0.1)))
+    swim.until(lambda: np.allclose(swim.heard["curvature"][-1].yaw, 0.7), "the next good law")
+
+
+def test_pitch_in_a_planar_scene_is_refused(start, client):
+    swim = client(topics=("head_pose",))
+    swim.laws.publish(law_to_message(falling()))
+    node = start("dynamics", "--ros-args", "-p", "scene.planar:=true")
+    node.wait_for_output("pitch", 90.0)
+    assert "[ERROR]" in node.output() and node.status is None
+    swim.laws.publish(law_to_message(bend(1.0)))
+    swim.until_time(0.2)
+    assert swim.latest("head_pose").pose.position.z == 0.0
+
+
+def test_two_publishers_of_laws_are_a_warning_while_it_lasts(start, client):
+    swim = client(topics=("head_pose",))
+    swim.laws.publish(law_to_message(bend(0.5)))
+    node = start("dynamics", "--ros-args")
+    swim.until_time(0.2)
+    second = swim.node.create_publisher(CurvatureLaw, "curvature_law", QoSProfile(depth=1))
+    swim.until(lambda: swim.diagnosis()[0] == 1, "warning")
+    assert "2 publishers of curvature_law" in swim.diagnosis()[1] and swim.diagnosis()[2]["publishers_of_laws"] == "2"
+    swim.node.destroy_publisher(second)
+    swim.until(lambda: swim.diagnosis()[0] == 0, "end of the warning")
+    assert node.output().count("2 publishers of curvature_law") == 1
+
+
+@pytest.mark.parametrize("early", [True, False])
+def test_the_law_may_come_before_or_after_the_node(start, client, early):
+    swim = client(topics=("head_pose",))
+    if early:
+        swim.laws.publish(law_to_message(bend(0.5, name="only")))
+    node = start("dynamics", "--ros-args")
+    node.wait_for_output("taken on" if early else "waiting for a law", 90.0)
+    swim.laws.publish(law_to_message(bend(0.5, name="only")))
+    swim.until_time(0.1)
+    assert node.output().count("waiting for a law") <= 1 and node.output().count("'only' taken on") == 1

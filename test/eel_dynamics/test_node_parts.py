@@ -1,0 +1,281 @@
+"""The parts of the dynamics node that need no ROS: parameters, pace, the right to /clock, reports, patience, laws as heard."""
+
+import math
+from dataclasses import fields
+from types import SimpleNamespace
+
+import pytest
+from eel_dynamics.clock_right import ClockRight
+from eel_dynamics.feed import LawFeed
+from eel_dynamics.pacing import Pace
+from eel_dynamics.parameters import DynamicsParameters, checked, default_of, from_values
+from eel_dynamics.publishers import Patience
+from eel_dynamics.report import ERROR, OK, WARN, Report
+
+from eel_dynamics import Scene
+from eel_gaits import Law
+
+
+class Log:
+    def __init__(self):
+        self.lines = []
+
+    def info(self, text):
+        self.lines.append(("info", text))
+
+    def warning(self, text):
+        self.lines.append(("warning", text))
+
+    def error(self, text):
+        self.lines.append(("error", text))
+
+
+# parameters
+
+
+@pytest.mark.parametrize("kind", [DynamicsParameters, Scene])
+def test_defaults_pass_their_own_checks(kind):
+    values = {item.name: default_of(item) for item in fields(kind)}
+    assert from_values(kind, values) == kind()
+
+
+@pytest.mark.parametrize("kind", [DynamicsParameters, Scene])
+def test_every_parameter_is_described(kind):
+    for item in fields(kind):
+        assert item.metadata["description"] and "unit" in item.metadata, item.name
+
+
+@pytest.mark.parametrize("kind", [DynamicsParameters, Scene])
+def test_every_float_takes_an_integer(kind):
+    for item in fields(kind):
+        if isinstance(item.default, float) or item.default is None:
+            number = checked(item, 1, item.name)
+            assert number == 1.0 and isinstance(number, float), item.name
+        if isinstance(item.default, tuple):
+            assert checked(item, [1] * len(item.default), item.name) == (1.0,) * len(item.default)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "expected"),
+    [
+        ("rate", 0, "rate must be > 0 Hz and <= 10000 Hz, got 0"),
+        ("rate", -5.0, "rate must be > 0 Hz and <= 10000 Hz, got -5"),
+        ("rate", math.nan, "rate must be a finite number, got nan"),
+        ("rate", "fast", "rate must be a finite number, got 'fast'"),
+        ("rate", True, "rate must be a finite number, got True"),
+        ("real_time_factor", -1.0, "real_time_factor must be >= 0 and <= 1e+06, got -1"),
+        ("stations", 1, "stations must be >= 2 and <= 10000, got 1"),
+        ("stations", 51.0, "stations must be an integer, got 51.0"),
+        ("clock", 1, "clock must be true or false, got 1"),
+        ("body", 3, "body must be a text, got 3"),
+        ("accuracy", [1.0], "accuracy must be a text or a number, got [1.0]"),
+        ("initial_position", [0.0, 1.0], "initial_position must be 3 finite numbers, got [0.0, 1.0]"),
+        ("initial_position", [0.0, 1.0, math.inf], "initial_position must be 3 finite numbers, got [0.0, 1.0, inf]"),
+        ("initial_position", 1.0, "initial_position must be 3 finite numbers, got 1.0"),
+        ("initial_orientation", [0.0, 0.0, 0.0, 2.0], "initial_orientation must be a unit quaternion, got [0.0, 0.0, 0.0, 2.0] of norm 2"),
+        ("world_frame", "", "world_frame must not be empty"),
+    ],
+)
+def test_bad_parameter_is_named_with_its_value(name, value, expected):
+    values = {item.name: default_of(item) for item in fields(DynamicsParameters)} | {name: value}
+    with pytest.raises(ValueError) as caught:
+        from_values(DynamicsParameters, values)
+    assert str(caught.value) == expected
+
+
+def test_rounded_quaternion_is_made_unit():
+    values = DynamicsParameters(initial_orientation=(0.0, 0.0, 0.7071, 0.7071))
+    assert math.hypot(*values.initial_orientation) == pytest.approx(1.0, abs=1e-15)
+
+
+def test_number_of_samples():
+    assert DynamicsParameters(duration=10.0, rate=100.0).last_sample == 1000
+    assert DynamicsParameters(duration=0.3, rate=10.0).last_sample == 3
+    assert DynamicsParameters(duration=0.35, rate=10.0).last_sample == 3
+    assert DynamicsParameters().last_sample == math.inf
+
+
+# pace
+
+
+def test_pace_gives_due_times():
+    pace = Pace(0.01, 2.0)
+    pace.restart(5, 100.0)
+    assert pace.due(5) == 100.0 and pace.due(9) == pytest.approx(100.02)
+    pace.restart(9, 200.0, 0.5)
+    assert pace.due(10) == pytest.approx(200.02)
+
+
+def test_pace_keeps_small_delays_and_gives_up_great_ones():
+    pace = Pace(0.01, 1.0)
+    pace.restart(0, 0.0)
+    assert pace.settle(1, 0.03) == 0.0 and pace.due(2) == pytest.approx(0.02)  # will be caught up with
+    assert pace.settle(2, 1.02) == pytest.approx(1.0)
+    assert pace.lost == pytest.approx(1.0) and pace.due(3) == pytest.approx(1.03)
+
+
+def test_no_pace_is_never_late():
+    pace = Pace(0.01, 0.0)
+    pace.restart(0, 50.0)
+    assert pace.due(1000) == -math.inf and pace.settle(1000, 1e9) == 0.0
+
+
+# the right to /clock
+
+
+def race(first_age, own, other, leaves):
+    """Simulates two publishers that meet; `leaves`: whether the other follows the same rules. Who publishes at the end."""
+    ours, theirs = ClockRight(), ClockRight()
+    now, ours_on, theirs_on = 0.0, ours.judge(0.0, (), set()), False
+    while now < 40.0:
+        now += 0.25
+        if now == first_age:
+            theirs_on = True if not leaves else theirs.judge(now, (), set())
+        seen = now > first_age + 1.0  # discovery takes a second
+        ours_on_before = ours_on
+        ours_on = ours.judge(now, own if ours_on else (), {other} if theirs_on and seen else set())
+        if leaves and now > first_age:
+            theirs_on = theirs.judge(now, other if theirs_on else (), {own} if ours_on_before and seen else set())
+    return ours_on, theirs_on
+
+
+@pytest.mark.parametrize("own", [(1,), (3,)])
+def test_the_older_of_two_keeps_the_clock(own):
+    assert race(20.0, own, (2,), leaves=True) == (True, False)
+
+
+@pytest.mark.parametrize("own", [(1,), (3,)])
+def test_of_two_that_start_together_one_publishes(own):
+    assert sorted(race(0.5, own, (2,), leaves=True)) == [False, True]
+
+
+@pytest.mark.parametrize("own", [(1,), (3,)])
+@pytest.mark.parametrize("age", [0.5, 20.0])
+def test_a_publisher_that_never_leaves_gets_the_clock(own, age):
+    assert race(age, own, (2,), leaves=False) == (False, True)
+
+
+def test_the_clock_comes_back_when_the_other_is_gone():
+    right = ClockRight()
+    assert not right.judge(0.0, (), {(1,)})
+    assert right.judge(1.0, (), set())
+
+
+# reports
+
+
+def test_lasting_condition_is_logged_once_and_shown_while_it_lasts():
+    log = Log()
+    report = Report(log)
+    for _ in range(3):
+        report.begin("laws", "two publishers")
+    assert log.lines == [("warning", "two publishers")] and report.state() == (WARN, ["two publishers"])
+    report.end("laws", "one again")
+    report.end("laws", "one again")
+    assert log.lines[1:] == [("info", "one again")] and report.state() == (OK, [])
+
+
+def test_event_is_logged_at_most_once_a_second():
+    now = [0.0]
+    log = Log()
+    report = Report(log, lambda: now[0])
+    for step in range(25):
+        now[0] = 0.1 * step
+        report.event("late", f"late at {step}")
+    assert [text for _, text in log.lines] == ["late at 0", "late at 10", "late at 20"]
+    assert report.state() == (WARN, ["late at 24"])
+    now[0] = 10.0
+    assert report.state() == (OK, [])
+
+
+def test_differing_events_are_all_logged_if_asked():
+    log = Log()
+    report = Report(log, lambda: 0.0)
+    for text in ("one", "one", "two"):
+        report.event("law", text, ERROR, differing=True)
+    assert log.lines == [("error", "one"), ("error", "two")]
+    assert report.state()[0] == ERROR
+
+
+def test_patience_is_one_account_for_all_topics():
+    patience = Patience()
+    patience.begin(0.0)
+    assert not patience.over(4.9, 5.0) and patience.over(5.0, 5.0)
+    patience.begin(5.1)
+    assert patience.over(5.2, 5.0)  # the next topic of the same subscriber: no further wait
+    patience.begin(100.0)
+    assert not patience.over(104.0, 5.0)
+    patience.renew()
+    patience.begin(104.5)
+    assert not patience.over(109.0, 5.0)
+
+
+# laws as heard
+
+
+class March:
+    def __init__(self, time=0.0):
+        self.time, self.laws = time, []
+
+    def take_law(self, law, origin):
+        self.laws.append((law, origin))
+
+
+def message(name="wave", sec=0, nanosec=0):
+    return SimpleNamespace(name=name, header=SimpleNamespace(stamp=SimpleNamespace(sec=sec, nanosec=nanosec)))
+
+
+def feed(march, log, law_of=lambda message: Law(name=message.name)):
+    return LawFeed(march, Report(log), law_of=law_of, samples_of=None)
+
+
+def info(number):
+    return {"source_timestamp": 1000 + number, "publication_sequence_number": number}
+
+
+def test_a_law_delivered_twice_is_taken_once():
+    march = March()
+    heard = feed(march, Log())
+    for number, name in ((1, "a"), (2, "b"), (1, "a"), (2, "b"), (3, "a")):
+        heard.hear_law(message(name), info(number))
+    assert [law.name for law, _ in march.laws] == ["a", "b", "a"]
+
+
+def test_origin_is_the_stamp():
+    march = March()
+    feed(march, Log()).hear_law(message(sec=3, nanosec=500_000_000), info(1))
+    assert march.laws[0][1] == 3.5
+
+
+@pytest.mark.parametrize(
+    ("stamp", "words"),
+    [
+        ({"sec": -1}, ("header.stamp", "-1")),
+        ({"nanosec": 2_000_000_000}, ("header.stamp", "2000000000")),
+        ({"sec": 1_700_000_000}, ("1700000000", "wall time", "use_sim_time")),
+        ({"sec": 3611}, ("3611",)),
+    ],
+)
+def test_bad_stamp_is_refused(stamp, words):
+    march, log = March(time=10.0), Log()
+    feed(march, log).hear_law(message(**stamp), info(1))
+    assert not march.laws
+    ((level, text),) = log.lines
+    assert level == "error" and all(word in text for word in words), text
+
+
+def test_stamp_up_to_an_hour_ahead_is_taken():
+    march = March(time=10.0)
+    feed(march, Log()).hear_law(message(sec=3609), info(1))
+    assert march.laws[0][1] == 3609.0
+
+
+def test_bad_law_is_one_error_that_names_the_field():
+    def refuse(message):
+        raise ValueError("terms[0].period must be >= 0 s, got -1.0")
+
+    march, log = March(), Log()
+    heard = feed(march, log, refuse)
+    heard.hear_law(message("jump"), info(1))
+    assert not march.laws
+    assert log.lines == [("error", "law 'jump' refused: terms[0].period must be >= 0 s, got -1.0")]

@@ -1,0 +1,95 @@
+"""A run without a pace, over DDS: every sample once, equal to what the library computes, and a good end."""
+
+import numpy as np
+import pytest
+from eel_gaits.messages import law_to_message
+from swim_client import LIMIT, SAMPLES, nanoseconds
+
+from eel_dynamics import Simulation
+from eel_gaits import falling
+
+FLAT_OUT = ("-p", "real_time_factor:=0", "-p", "wait_for_subscribers:=1")
+
+
+def test_ten_seconds_are_1001_samples_on_every_topic(start, client):
+    heard = client(clock=True)
+    heard.laws.publish(law_to_message(falling()))
+    node = start("dynamics", "--ros-args", *FLAT_OUT, "-p", "duration:=10")
+    heard.until(lambda: all(len(heard.heard[topic]) >= 1001 for topic in SAMPLES), "1001 samples on every topic")
+    assert node.wait(20.0) == 0, node.output()
+    heard.spin(0.3)
+    stamps = [round(k * 1e9 / 100) for k in range(1001)]
+    for topic in SAMPLES:
+        assert [nanoseconds(message.header.stamp) for message in heard.heard[topic]] == stamps, topic
+    ticks = [nanoseconds(message.clock) for message in heard.heard["/clock"]]
+    assert ticks == sorted(ticks) and set(ticks) == set(stamps)
+    assert len(heard.heard["body"]) == 1
+    assert "WARN" not in node.output() and "ERROR" not in node.output()
+
+    simulation = Simulation()
+    simulation.adopt(falling())
+    for k in range(0, 1001, 50):
+        simulation.advance(k / 100)
+        snapshot = simulation.observe()
+        pose, wrench = heard.heard["head_pose"][k].pose, heard.heard["internal_wrench"][k]
+        position = np.array([-pose.position.x, -pose.position.y, pose.position.z])
+        assert np.allclose(position, snapshot.position, rtol=0, atol=1e-12)
+        assert np.allclose(wrench.torque_3, snapshot.torque[:, 2], rtol=0, atol=1e-11)
+
+    level, text, values = heard.diagnosis()
+    assert (level, text) == (0, "finished")
+    assert values["law"] == "falling" and values["accuracy"] == "standard" and values["samples_published"] == "1001"
+    assert float(values["time"]) == 10.0 and float(values["real_time_factor"]) > 1.0
+    assert float(values["actuator_work"]) == pytest.approx(snapshot.actuator_work, rel=1e-6)
+    assert abs(float(values["energy_residual"])) < 1e-3 * float(values["actuator_work"])
+    assert 0.0 <= float(values["closure_force_relative"]) < 1e-10
+    assert 0.0 <= float(values["closure_torque_relative"]) < 1e-10
+
+
+def test_rate_that_does_not_divide_a_second(start, client):
+    heard = client(topics=("head_pose",))
+    heard.laws.publish(law_to_message(falling()))
+    node = start("dynamics", "--ros-args", *FLAT_OUT, "-p", "duration:=1", "-p", "rate:=30")
+    assert node.wait(LIMIT) == 0, node.output()
+    heard.until(lambda: len(heard.heard["head_pose"]) >= 31, "31 samples")
+    stamps = [nanoseconds(message.header.stamp) for message in heard.heard["head_pose"]]
+    assert stamps == [round(k * 1e9 / 30) for k in range(31)]
+
+
+def test_heavy_topics_alone_and_frames_by_parameter(start, client):
+    heard = client(topics=("hydrodynamic_load", "odom"))
+    heard.laws.publish(law_to_message(falling()))
+    more = ("-p", "duration:=1", "-p", "stations:=7", "-p", "world_frame:=map", "-p", "head_frame:=eel/head")
+    assert start("dynamics", "--ros-args", *FLAT_OUT, *more).wait(LIMIT) == 0
+    heard.until(lambda: len(heard.heard["odom"]) >= 101 and len(heard.heard["hydrodynamic_load"]) >= 101, "101 samples")
+    assert len(heard.heard["hydrodynamic_load"][-1].force_2) == 7 and any(heard.heard["hydrodynamic_load"][-1].force_2)
+    assert heard.heard["hydrodynamic_load"][-1].header.frame_id == "eel/head"
+    assert (heard.heard["odom"][-1].header.frame_id, heard.heard["odom"][-1].child_frame_id) == ("map", "eel/head")
+
+
+def test_start_in_ros_frames(start, client):
+    heard = client(topics=("head_pose", "head_twist"))
+    heard.laws.publish(law_to_message(falling()))
+    begin = ("-p", "initial_position:=[1.0, 2.0, -0.5]", "-p", "initial_orientation:=[0.0, 0.0, 0.7071068, 0.7071068]")
+    motion = ("-p", "initial_linear_velocity:=[1, 0, 0]", "-p", "duration:=0.5", "-p", "scene.current:=[0, 2, 0]")
+    assert start("dynamics", "--ros-args", *FLAT_OUT, *begin, *motion).wait(LIMIT) == 0
+    heard.until(lambda: len(heard.heard["head_pose"]) >= 51, "51 samples")
+    first, last = heard.heard["head_pose"][0].pose.position, heard.heard["head_pose"][-1].pose.position
+    assert (first.x, first.y, first.z) == pytest.approx((1.0, 2.0, -0.5), abs=1e-12)
+    assert heard.heard["head_twist"][0].twist.linear.x == pytest.approx(1.0, abs=1e-9)
+    # heads along +y (a quarter turn to the left), in water that flows along +y twice as fast: it is carried faster than 1 m/s
+    assert last.y - first.y > 0.5 and abs(last.x - first.x) < 0.1
+
+
+def test_two_eels_in_namespaces(start, client):
+    ears = {name: client(topics=("head_pose",), namespace=name) for name in ("left", "right")}
+    for name, amplitude in (("left", 1.0), ("right", 2.0)):
+        ears[name].laws.publish(law_to_message(falling(pitch_bend=amplitude)))
+    nodes = [start("dynamics", "--ros-args", "-r", f"__ns:=/{name}", *FLAT_OUT, "-p", "duration:=2") for name in ears]
+    for node in nodes:
+        assert node.wait(LIMIT) == 0, node.output()
+    for name, ear in ears.items():
+        ear.until(lambda ear=ear: len(ear.heard["head_pose"]) >= 201, "201 samples")
+        ear.until(lambda ear=ear, name=name: any(m.status[0].name == f"/{name}/dynamics" for m in ear.heard["/diagnostics"]), "diagnostics")
+    ends = [ear.heard["head_pose"][-1].pose for ear in ears.values()]
+    assert ends[0] != ends[1]
