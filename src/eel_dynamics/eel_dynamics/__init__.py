@@ -6,7 +6,8 @@ from .energy import EnergyLedger
 from .prescribed import HydrodynamicWrench, hydrodynamic_wrench
 from .run import Run, simulate
 from .scene import Scene
-from .simulation import Simulation, SimulationStopped, Snapshot
+from .simulation import Simulation, SimulationStopped
+from .snapshot import Snapshot
 
 __all__ = [
     "Accuracy",

@@ -23,7 +23,7 @@ WORKS = 4
 LOBATTO = np.array([0.0, 0.5 - np.sqrt(5.0) / 10.0, 0.5 + np.sqrt(5.0) / 10.0, 1.0])
 LOBATTO_SERIES = np.linalg.inv(np.vander(LOBATTO, increasing=True))  # coefficients of the cubic through values there
 
-MARCHED, NOT_FINITE, STEP_TOO_SMALL, SINGULAR = 0, 1, 2, 3
+MARCHED, NOT_FINITE, STEP_TOO_SMALL, SINGULAR, TOO_MANY_STEPS = 0, 1, 2, 3, 4
 
 
 class Method(NamedTuple):
@@ -44,6 +44,7 @@ class Control(NamedTuple):
     smallest: float  # s
     length: float  # m, scale of positions
     momentum_floor: float  # kg m/s, below which momentum counts as none
+    most_steps: float  # per second of motion, and at least once
     ledger: bool
 
 
@@ -329,8 +330,12 @@ def accept(step, start, length, series):
 def march(swimmer, drive, fields, balance, current, method, control, breakpoints, lobatto, series, step, until):
     """March until the step holds the time `until` [s]. Returns MARCHED, or why it could not."""
     tiny = 1e-12 * max(1.0, abs(until))
+    left = control.most_steps * (1.0 + until - (step.time[0] + step.time[1]))
     while step.time[0] + step.time[1] < until - tiny:
         start = step.time[0] + step.time[1]
+        left -= 1.0
+        if left < 0.0:
+            return TOO_MANY_STEPS
         target = np.inf
         for j in range(len(breakpoints)):
             if breakpoints[j] > start + tiny:

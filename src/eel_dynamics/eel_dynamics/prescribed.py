@@ -7,11 +7,12 @@ import numpy as np
 from eel_gaits.law import Law
 
 from .accuracy import Accuracy
+from .arguments import checked_row
 from .body import Body
 from .drive import combine, combine_moments, factors
 from .kernel import add_head_twist, add_wake, configure, share_friction
 from .scene import Scene
-from .simulation import Simulation, checked_row
+from .simulation import Simulation
 from .wrench import add_head_acceleration, gather, section_densities, shape_accelerations
 
 FINE = Accuracy(name="prescribed", resolution=100.0)

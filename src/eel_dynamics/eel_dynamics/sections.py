@@ -101,11 +101,12 @@ def _tabulate(body: Body, scene: Scene, x, weight, matrix, first, count) -> Swim
     added2, added3, added_roll = added_masses(body, scene, a**2, b**2)
     inertia2, inertia3 = density * area * a**2 / 4.0, density * area * b**2 / 4.0
     half_rho = 0.5 * scene.fluid_density if scene.resistive else 0.0
-    perimeter = np.pi * (1.5 * (a + b) - np.sqrt(a * b)) * (0.5 if scene.perimeter == "printed" else 1.0)
+    behind = np.maximum(x, 1e-9 * body.length)  # at the nose c_f P has a limit, as c_f grows like X^-1/2 and P like X^1/2
+    c, d = body.half_height(behind), body.half_width(behind)
+    perimeter = np.pi * (1.5 * (c + d) - np.sqrt(c * d)) * (0.5 if scene.perimeter == "printed" else 1.0)
     nose_area = np.pi * body.nose[0] * body.nose[1] if scene.nose else 0.0
     reactive_rho = scene.fluid_density if scene.reactive else 0.0
     rubbed = 0.0 if scene.friction == "none" else half_rho
-    behind = np.where(x > 0.0, x, np.inf)  # friction has no length to act on at the nose
     return Swimmer(
         x=np.ascontiguousarray(x, dtype=float),
         weight=weight,

@@ -131,12 +131,8 @@ class Shape:
 
     @property
     def time_scale(self) -> float:
-        """Shortest time [s] over which the shape changes: of its periods, ramps, blend, samples; inf where it stands still."""
-        drive = self.drive
-        scales = list(drive.period[drive.period > 0.0]) + list(drive.ramps[:, 1] - drive.ramps[:, 0])
-        scales += [drive.blend_end - drive.blend_start] if drive.blend >= 0 else []
-        scales += [2.0 * (drive.segment_end - drive.segment_start)] if drive.segment >= 0 else []
-        return float(min(scales, default=np.inf))
+        """Shortest period [s] of the law; inf where it has none. Ramps, blends and samples begin and end on steps anyway."""
+        return float(min(self.drive.period[self.drive.period > 0.0], default=np.inf))
 
     def end_blend(self, now: float):
         """Drop a blend that is over, so that it costs nothing."""

@@ -1,21 +1,22 @@
 """A swimmer in water, marched in time and observed: the algorithm of section 7.1 of Boyer, Porez and Leroyer (2010)."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from eel_gaits.law import Law
 
 from .accuracy import Accuracy
+from .arguments import check_planar, checked_instance, checked_quaternion, checked_row, checked_stations
 from .body import Body
 from .drive import Tabulation, combine, combine_moments, factors
 from .energy import EnergyLedger
+from .frames import matrix_of
 from .integrator import (
     LOBATTO,
     LOBATTO_SERIES,
     MARCHED,
     NOT_FINITE,
     SINGULAR,
+    TOO_MANY_STEPS,
     Control,
     classical,
     dormand_prince,
@@ -30,9 +31,11 @@ from .quadrature import Grid
 from .scene import Scene
 from .sections import panels_of, stations_of, swimmer_of
 from .shape import Shape, waves_of_law
+from .snapshot import Snapshot
 from .wrench import balance_of
 
 LONGEST_STEP = 0.25  # of the shortest time over which the shape changes
+MOST_STEPS = 20_000.0  # per period of the law, or second; the most exact runs need a tenth of it
 SLOWEST = 1e-3  # body lengths per time scale, below which the head counts as at rest
 
 
@@ -42,33 +45,6 @@ class SimulationStopped(RuntimeError):
     def __init__(self, time: float, quantity: str, value: float, hint: str):
         super().__init__(f"stopped at t = {time:.6g} s: {quantity} ({value:.3g}); {hint}")
         self.time, self.quantity, self.value, self.hint = time, quantity, value, hint
-
-
-@dataclass(frozen=True)
-class Snapshot:
-    """One instant, library axes, SI units; M stations. Its arrays are views of work space: copy what is to be kept."""
-
-    time: float
-    position: np.ndarray  # (3,) m, head, world
-    orientation: np.ndarray  # (4,) x y z w, world from head
-    twist: np.ndarray  # (6,) (Omega, V) rad/s, m/s, head's axes
-    head_acceleration: np.ndarray  # (6,) rad/s^2, m/s^2, true acceleration of the head in its axes
-    center_of_mass: np.ndarray  # (3,) m, world
-    x: np.ndarray  # (M,) m
-    backbone: np.ndarray  # (M, 3) m, world
-    section_orientation: np.ndarray  # (M, 4) x y z w, world from section
-    curvature: np.ndarray  # (M, 3) rad/m
-    curvature_rate: np.ndarray  # (M, 3) rad/m/s
-    torque: np.ndarray | None  # (M, 3) N m, section axes
-    force: np.ndarray | None  # (M, 3) N, section axes
-    fluid_force: np.ndarray | None  # (M, 3) N/m, section axes
-    resistive_force: np.ndarray | None  # (M, 3) N/m, section axes
-    tail_force: np.ndarray | None  # (3,) N, section axes at the tail
-    nose_force: np.ndarray | None  # (3,) N, section axes at the nose
-    energy: EnergyLedger | None
-    closure_torque: float | None  # N m, what is left of the internal torque at the nose
-    closure_force: float | None  # N, what is left of the internal force there, less the load on the nose
-    actuator_work: float | None  # J since the start
 
 
 class Simulation:
@@ -91,23 +67,23 @@ class Simulation:
         twist=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
         default_transition: float = 1.0,
     ):
-        self.body = Body.boyer2010() if body is None else _instance("body", body, Body)
-        self.scene = Scene() if scene is None else _instance("scene", scene, Scene)
+        self.body = Body.boyer2010() if body is None else checked_instance("body", body, Body)
+        self.scene = Scene() if scene is None else checked_instance("scene", scene, Scene)
         self.accuracy = Accuracy.of(accuracy)
-        self.x = _stations(stations, self.body.length)
+        self.x = checked_stations(stations, self.body.length)
         self._out = profiles_of(1, len(self.x))
         self._current = np.array(self.scene.current)
         self._distributed = self.scene.tail_pressure == "distributed"
         self._method = dormand_prince() if self.accuracy.step is None else classical()
         self._step = step_of(len(self._method.c))
-        self._start = checked_row("position", position, 3), _unit("orientation", orientation), checked_row("twist", twist, 6)
+        self._start = checked_row("position", position, 3), checked_quaternion("orientation", orientation), checked_row("twist", twist, 6)
         if self.scene.planar:
-            _check_planar(*self._start)
+            check_planar(*self._start)
         if not (np.isfinite(default_transition) and default_transition > 0.0):
             raise ValueError(f"default_transition must be finite and > 0 s, got {default_transition!r}")
         self._build(self.accuracy.points_per_length(1.0))
         self.shape = Shape(self._tabulation, float(default_transition))
-        self.ready = False
+        self.ready = self._started = False
         self.time = 0.0
         self._take_initial_state()
 
@@ -145,7 +121,7 @@ class Simulation:
         The first law, before the start, needs no blend; a later one takes over during `transition` [s], or the law's own, or
         the default. `ValueError` for a law that the scene does not allow.
         """
-        _instance("law", law, Law)
+        checked_instance("law", law, Law)
         if self.scene.planar and any(term.axis == "pitch" for term in law.terms):
             raise ValueError(f"law {law.name!r} has a pitch term: a planar scene cannot bend out of its plane")
         if not np.isfinite(origin):
@@ -153,7 +129,7 @@ class Simulation:
         blend = transition or law.transition or self.shape.default_transition
         if not (np.isfinite(blend) and blend > 0.0):
             raise ValueError(f"transition must be finite and > 0 s, got {transition!r}")
-        first = not self.ready and self.time == 0.0
+        first = not self._started
         self._refine(waves_of_law(law, self.body.length))
         self.shape.adopt(law, origin=float(origin), time=self.time, transition=0.0 if first else float(blend))
         if first:
@@ -207,6 +183,7 @@ class Simulation:
             raise RuntimeError("no law has been adopted")
         if not np.isfinite(time) or time < self.time:
             raise ValueError(f"time must be finite and >= the present {self.time} s, got {time!r}")
+        self._started = True
         while True:
             self.shape.pass_event(self.time)
             if self.shape.drive is not self.drive:
@@ -215,8 +192,6 @@ class Simulation:
             self._march_to(min(time, event))
             if time <= event:
                 break
-        if self.shape.sampled and time == event:
-            return
         self.shape.end_blend(self.time)
         if self.shape.drive is not self.drive:
             self._use_drive()
@@ -234,6 +209,9 @@ class Simulation:
             return SimulationStopped(self.time, "inertia of body and water is not positive definite", np.nan, "check the body's section data")
         if status == NOT_FINITE:
             return SimulationStopped(self.time, "momentum is not finite", np.nan, "take a smaller accuracy step, or a slower law")
+        if status == TOO_MANY_STEPS:
+            density = self._control.most_steps
+            return SimulationStopped(self.time, "more steps per second than any motion of a swimmer needs", density, "take a slower or gentler law")
         return SimulationStopped(self.time, "step for the wanted accuracy is too small", self._control.smallest, "take a coarser accuracy, or a slower law")
 
     # -- observe
@@ -294,7 +272,7 @@ class Simulation:
         """State and time to the start; the last law kept, with its own t = 0 at 0."""
         law = self.shape.law
         self.shape = Shape(self._tabulation, self.shape.default_transition)
-        self.time, self.ready = 0.0, False
+        self.time, self.ready, self._started = 0.0, False, False
         if law is None:
             self._take_initial_state()
         else:
@@ -314,15 +292,15 @@ class Simulation:
         self.fields = fields_of(len(self._grid.x), len(self.drive.axis))
         self._breakpoints = self.shape.breakpoints()
         scale = min(self.shape.time_scale, self._motion_scale)
-        smallest = 1e-9 * min(scale, 1.0)
         longest = LONGEST_STEP * min(scale, 10.0)
         mass = float(np.sum(self.swimmer.weight * self.swimmer.mass))
         self._control = Control(
             tolerance=self.accuracy.tolerance,
             step=longest if self.accuracy.step is None else float(self.accuracy.step),
-            smallest=smallest,
+            smallest=1e-11 * min(scale, 1.0),
             length=self.body.length,
             momentum_floor=SLOWEST * mass * self.body.length / min(scale, 10.0),
+            most_steps=MOST_STEPS / min(scale, 1.0),
             ledger=bool(self.scene.ledger),
         )
 
@@ -356,7 +334,7 @@ class Simulation:
         self._motion_scale = np.inf
         self._use_drive()
         relative = twist.copy()
-        relative[3:] -= _matrix(orientation).T @ self._current
+        relative[3:] -= matrix_of(orientation).T @ self._current
         self._set_momentum(relative)
         speed, spin = np.linalg.norm(relative[3:]), np.linalg.norm(relative[:3])
         self._motion_scale = min(self.body.length / speed if speed else np.inf, 1.0 / spin if spin else np.inf)
@@ -382,61 +360,5 @@ class Simulation:
         combine(drive.axis, drive.node, fields.factor[1], fields.rate)
         configure(self.swimmer, fields)
         momentum_of_twist(self.swimmer, fields, twist, momentum)
-        world = _matrix(self._y[3:7])
+        world = matrix_of(self._y[3:7])
         self._y[7:10], self._y[10:13] = world @ momentum[:3], world @ momentum[3:]
-
-
-def _matrix(quaternion) -> np.ndarray:
-    x, y, z, w = quaternion
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-        ]
-    )
-
-
-def _instance(name: str, value, kind: type):
-    if not isinstance(value, kind):
-        raise ValueError(f"{name} must be a {kind.__name__}, got {value!r}")
-    return value
-
-
-def checked_row(name: str, values, size: int | None) -> np.ndarray:
-    try:
-        array = np.array(values, dtype=float)
-    except (TypeError, ValueError):
-        raise ValueError(f"{name} must be numbers, got {values!r}") from None
-    if array.ndim != 1 or (size is not None and len(array) != size):
-        raise ValueError(f"{name} must be {'a row of' if size is None else size} numbers, got {array.size}")
-    if not np.all(np.isfinite(array)):
-        raise ValueError(f"{name} must be finite, got {array[~np.isfinite(array)][0]} at index {np.flatnonzero(~np.isfinite(array))[0]}")
-    return array
-
-
-def _unit(name: str, quaternion) -> np.ndarray:
-    array = checked_row(name, quaternion, 4)
-    size = np.linalg.norm(array)
-    if abs(size - 1.0) > 1e-6:
-        raise ValueError(f"{name} must be a unit quaternion (x, y, z, w), got norm {size:.6g}")
-    return array / size
-
-
-def _stations(stations, length: float) -> np.ndarray:
-    if isinstance(stations, (int, np.integer)) and not isinstance(stations, bool):
-        if not 2 <= stations <= 100_000:
-            raise ValueError(f"stations must be 2 or more, or their X in m, got {stations!r}")
-        return np.linspace(0.0, length, int(stations))
-    x = checked_row("stations", stations, None)
-    if len(x) < 1 or np.any(np.diff(x) <= 0.0) or x[0] < 0.0 or x[-1] > length * (1 + 1e-12):
-        raise ValueError(f"stations must rise within 0 to {length} m, got {stations!r}")
-    return np.minimum(x, length)
-
-
-def _check_planar(position, orientation, twist):
-    """`ValueError` unless the initial state lies in the plane z = const and stays there."""
-    if np.any(np.abs(orientation[:2]) > 1e-12):
-        raise ValueError(f"orientation must be a turn about z in a planar scene, got {orientation.tolist()}")
-    if twist[0] or twist[1] or twist[5]:
-        raise ValueError(f"twist must lie in the plane of a planar scene (Omega_1 = Omega_2 = V_3 = 0), got {twist.tolist()}")

@@ -1,0 +1,48 @@
+"""Checks at the entry: `ValueError` names the argument that does not fit, and what it got."""
+
+import numpy as np
+
+
+def checked_instance(name: str, value, kind: type):
+    if not isinstance(value, kind):
+        raise ValueError(f"{name} must be a {kind.__name__}, got {value!r}")
+    return value
+
+
+def checked_row(name: str, values, size: int | None) -> np.ndarray:
+    try:
+        array = np.array(values, dtype=float)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name} must be numbers, got {values!r}") from None
+    if array.ndim != 1 or (size is not None and len(array) != size):
+        raise ValueError(f"{name} must be {'a row of' if size is None else size} numbers, got {array.size}")
+    if not np.all(np.isfinite(array)):
+        raise ValueError(f"{name} must be finite, got {array[~np.isfinite(array)][0]} at index {np.flatnonzero(~np.isfinite(array))[0]}")
+    return array
+
+
+def checked_quaternion(name: str, quaternion) -> np.ndarray:
+    array = checked_row(name, quaternion, 4)
+    size = np.linalg.norm(array)
+    if abs(size - 1.0) > 1e-6:
+        raise ValueError(f"{name} must be a unit quaternion (x, y, z, w), got norm {size:.6g}")
+    return array / size
+
+
+def checked_stations(stations, length: float) -> np.ndarray:
+    if isinstance(stations, (int, np.integer)) and not isinstance(stations, bool):
+        if not 2 <= stations <= 100_000:
+            raise ValueError(f"stations must be 2 or more, or their X in m, got {stations!r}")
+        return np.linspace(0.0, length, int(stations))
+    x = checked_row("stations", stations, None)
+    if len(x) < 1 or np.any(np.diff(x) <= 0.0) or x[0] < 0.0 or x[-1] > length * (1 + 1e-12):
+        raise ValueError(f"stations must rise within 0 to {length} m, got {stations!r}")
+    return np.minimum(x, length)
+
+
+def check_planar(position, orientation, twist):
+    """`ValueError` unless the initial state lies in the plane z = const and stays there."""
+    if np.any(np.abs(orientation[:2]) > 1e-12):
+        raise ValueError(f"orientation must be a turn about z in a planar scene, got {orientation.tolist()}")
+    if twist[0] or twist[1] or twist[5]:
+        raise ValueError(f"twist must lie in the plane of a planar scene (Omega_1 = Omega_2 = V_3 = 0), got {twist.tolist()}")
