@@ -1,0 +1,126 @@
+"""How the dynamics node starts and ends: parameters that do not fit, signals at any moment, a cold cache."""
+
+import signal
+import time
+
+import pytest
+from eel_gaits import falling
+from eel_gaits.messages import law_to_message
+from swim_client import LIMIT
+
+BAD = {
+    "rate of 0": (("rate:=0",), ("rate", "> 0", "got 0")),
+    "rate as text": (("rate:=fast",), ("rate", "'fast'")),
+    "rate too high": (("rate:=1e9",), ("rate", "<= 10000", "1e+09")),
+    "negative factor": (("real_time_factor:=-1",), ("real_time_factor", "-1")),
+    "unknown accuracy": (("accuracy:=perfect",), ("accuracy", "perfect")),
+    "impossible accuracy": (("accuracy:=-0.5",), ("accuracy", "-0.5")),
+    "unknown friction": (("scene.friction:=sticky",), ("friction", "sticky", "printed")),
+    "negative density": (("scene.density:=-3.0",), ("density", "-3")),
+    "current of two": (("scene.current:=[1.0, 2.0]",), ("current", "3", "[1.0, 2.0]")),
+    "unknown body": (("body:=whale",), ("body", "whale", "boyer2010")),
+    "missing body file": (("body:=/nowhere/fish.csv",), ("body", "/nowhere/fish.csv")),
+    "long quaternion": (("initial_orientation:=[0.0, 0.0, 0.0, 2.0]",), ("initial_orientation", "unit", "2")),
+    "one station": (("stations:=1",), ("stations", "1")),
+}
+
+
+@pytest.mark.parametrize("what", BAD)
+def test_bad_parameter_is_one_line_and_status_2(start, what):
+    given, words = BAD[what]
+    node = start("dynamics", "--ros-args", *(part for each in given for part in ("-p", each)))
+    assert node.wait(LIMIT) == 2, node.output()
+    lines = [line for line in node.output().splitlines() if line.strip() and "compiling" not in line]
+    assert len(lines) == 1 and lines[0].startswith("dynamics: ") and all(word in lines[0] for word in words), node.output()
+
+
+def body_file(tmp_path, rows):
+    path = tmp_path / "body.csv"
+    path.write_text("x,half_width,half_height\n" + "\n".join(",".join(map(str, row)) for row in rows) + "\n")
+    return path
+
+
+@pytest.mark.parametrize(
+    ("rows", "words"),
+    [
+        ([(0, 0, 0), (0.3, -0.02, 0.03), (0.6, 0.02, 0.03), (1, 0.01, 0.01)], ("half_width", "-0.02")),
+        ([(0, 0, 0), (0.6, 0.02, 0.03), (0.3, 0.02, 0.03), (1, 0.01, 0.01)], ("x", "rise")),
+        ([(0, 0, 0), (1, 0.01, 0.01)], ("x", "4 points")),
+    ],
+    ids=["negative", "unsorted", "too short"],
+)
+def test_bad_body_file_is_one_line_and_status_2(start, tmp_path, rows, words):
+    node = start("dynamics", "--ros-args", "-p", f"body:={body_file(tmp_path, rows)}")
+    assert node.wait(LIMIT) == 2, node.output()
+    lines = [line for line in node.output().splitlines() if line.strip() and "compiling" not in line]
+    assert len(lines) == 1 and all(word in lines[0] for word in words), node.output()
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("dynamics:\n  ros__parameters:\n    rate: 0.0\n", ("rate", "> 0")),
+        ("dynamics:\n  ros__parameters:\n    scene:\n      planar: maybe\n", ("scene.planar", "maybe")),
+        ("dynamics:\n  ros__parameters:\n    scene:\n      current: [0.5, 0, 0]\n", ("yaml",)),
+    ],
+    ids=["out of range", "no switch", "numbers of two kinds"],
+)
+def test_bad_parameter_file_is_one_line_and_status_2(start, tmp_path, text, words):
+    path = tmp_path / "parameters.yaml"
+    path.write_text(text)
+    node = start("dynamics", "--ros-args", "--params-file", str(path))
+    assert node.wait(LIMIT) == 2, node.output()
+    lines = [line for line in node.output().splitlines() if line.startswith("dynamics: ")]
+    assert len(lines) == 1 and all(word in lines[0] for word in words), node.output()
+    assert "Traceback" not in node.output()
+
+
+def test_body_from_a_file_and_numbers_of_every_kind(start, client, tmp_path):
+    rows = [(0, 0, 0), (0.2, 0.02, 0.04), (0.6, 0.02, 0.03), (1.0, 0.01, 0.02), (1.2, 0.005, 0.01)]
+    swim = client(topics=("head_pose",))
+    swim.laws.publish(law_to_message(falling()))
+    numbers = ("-p", "rate:=50", "-p", "scene.current:=[0, 0, 0]", "-p", "scene.fluid_density:=1025", "-p", "accuracy:=0.01")
+    start("dynamics", "--ros-args", "-p", f"body:={body_file(tmp_path, rows)}", *numbers)
+    swim.until_time(0.3)
+    assert swim.latest("body").length == 1.2
+
+
+@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("factor", [1, 0])
+def test_signal_ends_a_run_within_a_second(start, client, sent, factor):
+    swim = client(topics=("head_pose",))
+    swim.laws.publish(law_to_message(falling()))
+    node = start("dynamics", "--ros-args", "-p", f"real_time_factor:={factor}")
+    swim.until_time(0.3)
+    began = time.monotonic()
+    assert node.interrupt(sent) == 0, node.output()
+    assert time.monotonic() - began < 1.0
+    assert "Traceback" not in node.output()
+
+
+@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
+def test_signal_ends_a_first_compilation(start, monkeypatch, tmp_path, sent):
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "cache"))
+    node = start("dynamics")
+    node.wait_for_output("compiling", LIMIT)
+    time.sleep(2.0)
+    began = time.monotonic()
+    assert node.interrupt(sent) == 0, node.output()
+    assert time.monotonic() - began < 1.0
+    assert "Traceback" not in node.output()
+
+
+def test_two_signals_are_as_good_as_one(start):
+    node = start("dynamics")
+    node.wait_for_output("waiting for a law", LIMIT)
+    node.process.send_signal(signal.SIGINT)
+    node.process.send_signal(signal.SIGTERM)
+    assert node.wait(5.0) == 0 and "Traceback" not in node.output()
+
+
+def test_first_publication_is_soon(start, client):
+    """With everything compiled: from the start of the process to the first tick of /clock."""
+    start("dynamics").wait_for_output("waiting for a law", LIMIT)  # compiled, if it was not
+    began = time.monotonic()
+    start("dynamics", "--ros-args", "-r", "__ns:=/second", "-p", "clock:=false").wait_for_output("waiting for a law", LIMIT)
+    assert time.monotonic() - began < 4.0  # 1.5 s on a machine of one's own
