@@ -3,6 +3,8 @@
 Squares, because a half-axis grows like sqrt(X) at a rounded nose, where only its square is smooth.
 """
 
+from functools import cached_property
+
 import numpy as np
 from numpy.polynomial import chebyshev
 
@@ -19,7 +21,10 @@ class FunctionProfile:
         self._function = function
         self._bounds = np.array(bounds)
         self._check()
-        self._slopes = [self._fit(start, end) for start, end in zip(bounds[:-1], bounds[1:])]
+
+    @cached_property
+    def _slopes(self) -> list[chebyshev.Chebyshev]:
+        return [self._fit(start, end) for start, end in zip(self._bounds[:-1], self._bounds[1:])]
 
     def _value(self, x: np.ndarray) -> np.ndarray:
         try:

@@ -68,7 +68,7 @@ class Grid:
             fraction = radau_points(panel.points)
             x[span], scale = panel.locate(fraction)
             x[begin + panel.points - 1] = panel.end
-            matrix[span, : panel.points] = integration_matrix(panel.points, fraction) * scale
+            matrix[span, : panel.points] = collocation_matrix(panel.points) * scale
             weight[span] = matrix[begin + panel.points - 1, : panel.points]
             first[span], count[span] = begin, panel.points
             begin += panel.points
@@ -113,6 +113,12 @@ def radau_points(points: int) -> np.ndarray:
         zeros = zeros - legendre.legval(zeros, series) / legendre.legval(zeros, slope)
     zeros[-1] = 1.0
     return 0.5 * (zeros + 1.0)
+
+
+@lru_cache(maxsize=None)
+def collocation_matrix(points: int) -> np.ndarray:
+    """Integral from 0 to each Radau point of the polynomial through the Radau points: (points, points)."""
+    return integration_matrix(points, radau_points(points))
 
 
 def interpolation_matrix(points: int, at) -> np.ndarray:

@@ -75,7 +75,7 @@ class Simulation:
         self._current = np.array(self.scene.current)
         self._distributed = self.scene.tail_pressure == "distributed"
         self._method = dormand_prince() if self.accuracy.step is None else classical()
-        self._step = step_of(len(self._method.c))
+        self.step = step_of(len(self._method.c))
         self._start = checked_row("position", position, 3), checked_quaternion("orientation", orientation), checked_row("twist", twist, 6)
         if self.scene.planar:
             check_planar(*self._start)
@@ -197,11 +197,11 @@ class Simulation:
             self._use_drive()
 
     def _march_to(self, time: float):
-        status = march(*self._loops, self._current, *self._marching, self._step, time)
+        status = march(*self._loops, self._current, *self._marching, self.step, time)
         if status != MARCHED:
             self._restart()
             raise self._stopped(status)
-        state_at(self._method, LOBATTO_SERIES, self._step, time, self._y, self._work)
+        state_at(self._method, LOBATTO_SERIES, self.step, time, self.state, self._work)
         self.time = time
 
     def _stopped(self, status: int) -> SimulationStopped:
@@ -247,7 +247,7 @@ class Simulation:
 
     def _observe_into(self, out, sample: int, wrench: bool, load: bool):
         swimmer, *loops = self._loops
-        if not observe(swimmer, self._stations, *loops, *self._observing, wrench, load, self.time, self._y, sample, out):
+        if not observe(swimmer, self._stations, *loops, *self._observing, wrench, load, self.time, self.state, sample, out):
             raise self._stopped(SINGULAR)
 
     def record(self, times: np.ndarray, wrench: bool, load: bool) -> tuple[Profiles, np.ndarray, int, SimulationStopped | None]:
@@ -256,7 +256,7 @@ class Simulation:
         out, works = profiles_of(len(times), len(self.x), wrench, load), np.zeros((len(times), 4))
         swimmer, *loops = self._loops
         done, status = record(
-            swimmer, self._stations, *loops, *self._observing, *self._marching, wrench, load, times, self._y, self._work, works, out
+            swimmer, self._stations, *loops, *self._observing, *self._marching, wrench, load, times, self.state, self._work, works, out
         )
         self.time = float(times[done - 1]) if done else self.time
         return out, works, done, None if status == MARCHED else self._stopped(status)
@@ -264,7 +264,7 @@ class Simulation:
     @property
     def evaluations(self) -> tuple[int, int, int]:
         """Steps, rejected steps and evaluations of the head's dynamics so far."""
-        return tuple(int(value) for value in self._step.count)
+        return tuple(int(value) for value in self.step.count)
 
     # -- states
 
@@ -314,13 +314,13 @@ class Simulation:
 
     @property
     def _observing(self):
-        return self._here, self._step, self._current, self._distributed
+        return self._here, self.step, self._current, self._distributed
 
     def _restart(self):
         """Let the next step begin at the present state, with what drives the body now."""
         self._use_drive()
-        step = self._step
-        step.end[:] = self._y
+        step = self.step
+        step.end[:] = self.state
         step.work[:] = self._work
         step.time[0], step.time[1] = self.time, 0.0
         if step.time[2] == 0.0:
@@ -329,8 +329,8 @@ class Simulation:
 
     def _take_initial_state(self):
         position, orientation, twist = self._start
-        self._y, self._work = np.zeros(13), np.zeros(4)
-        self._y[:3], self._y[3:7] = position, orientation
+        self.state, self._work = np.zeros(13), np.zeros(4)
+        self.state[:3], self.state[3:7] = position, orientation
         self._motion_scale = np.inf
         self._use_drive()
         relative = twist.copy()
@@ -338,8 +338,8 @@ class Simulation:
         self._set_momentum(relative)
         speed, spin = np.linalg.norm(relative[3:]), np.linalg.norm(relative[:3])
         self._motion_scale = min(self.body.length / speed if speed else np.inf, 1.0 / spin if spin else np.inf)
-        self._step.time[:], self._step.count[:] = 0.0, 0
-        self._step.scale[:] = np.linalg.norm(self._y[7:10]), np.linalg.norm(self._y[10:13])
+        self.step.time[:], self.step.count[:] = 0.0, 0
+        self.step.scale[:] = np.linalg.norm(self.state[7:10]), np.linalg.norm(self.state[10:13])
         self._restart()
         self._observe_into(self._out, 0, False, False)
         self.kinetic_at_start = float(self._out.kinetic[0].sum())
@@ -348,7 +348,7 @@ class Simulation:
     def _twist(self) -> np.ndarray:
         """Twist (6,) of the head relative to the water, in its axes, of the present state."""
         twist = np.zeros(6)
-        if not settle(*self._loops[:3], self.time, self._y, np.zeros(6), twist):
+        if not settle(*self._loops[:3], self.time, self.state, np.zeros(6), twist):
             raise self._stopped(SINGULAR)
         return twist
 
@@ -360,5 +360,5 @@ class Simulation:
         combine(drive.axis, drive.node, fields.factor[1], fields.rate)
         configure(self.swimmer, fields)
         momentum_of_twist(self.swimmer, fields, twist, momentum)
-        world = matrix_of(self._y[3:7])
-        self._y[7:10], self._y[10:13] = world @ momentum[:3], world @ momentum[3:]
+        world = matrix_of(self.state[3:7])
+        self.state[7:10], self.state[10:13] = world @ momentum[:3], world @ momentum[3:]

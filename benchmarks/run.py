@@ -1,0 +1,119 @@
+"""Speed and accuracy, measured: `python benchmarks/run.py [NAME ...]`, one line per figure with its unit.
+
+Each figure is the median of repeats in one process; ratios come from repeats taken in turn. Timings mean something on an
+otherwise idle machine only.
+"""
+
+import platform
+import statistics
+import subprocess
+import sys
+import time
+
+import numpy as np
+from eel_dynamics import Accuracy, Body, Scene, Simulation, simulate
+from eel_dynamics.integrator import rate_of_state
+from eel_gaits import falling, straight
+from numba import njit
+
+REPEATS = 9
+BODY = Body.boyer2010()
+
+
+@njit
+def _evaluate(count, swimmer, drive, fields, current, time, y, step, dy):
+    for _ in range(count):
+        rate_of_state(swimmer, drive, fields, current, time, y, step, dy)
+
+
+def median_seconds(action, repeats: int = REPEATS) -> float:
+    """Median wall time [s] of `action` over `repeats` calls, after one that does not count."""
+    action()
+    times = []
+    for _ in range(repeats):
+        start = time.perf_counter()
+        action()
+        times.append(time.perf_counter() - start)
+    return statistics.median(times)
+
+
+def evaluation():
+    """One evaluation of the head's dynamics (momentum form, three dimensions, all loads), against the number of nodes."""
+    for resolution in (8.0, 13.0, 36.0, 80.0, 180.0):
+        swimmer = Simulation(body=BODY, accuracy=Accuracy(name="bench", resolution=resolution))
+        swimmer.adopt(falling())
+        swimmer.advance(2.3)
+        nodes, count, dy = len(swimmer.swimmer.x), 2000, np.zeros(13)
+        state, step = swimmer.observe(), swimmer.step
+        arguments = swimmer.swimmer, swimmer.drive, swimmer.fields, np.zeros(3), state.time, swimmer.state, step, dy
+        seconds = median_seconds(lambda: _evaluate(count, *arguments)) / count  # noqa: B023
+        yield f"{nodes:4d} nodes", seconds * 1e6, "us per evaluation"
+
+
+def falling_gait():
+    """10 s of the falling gait: times real time, and the error of the head's position by its path (against a finer run)."""
+    lean = Scene(ledger=False, internal_wrench=False)
+    finest = simulate(falling(), body=BODY, accuracy=1e-9, scene=lean)
+    for name, scene, period in (("motion alone", lean, 10.0), ("ledger, wrench, 201 samples", Scene(), 0.05)):
+        for accuracy in (1e-2, 1e-3, 1e-4, 1e-6):
+            run = simulate(falling(), body=BODY, accuracy=accuracy, scene=scene, sample_period=period)
+            seconds = median_seconds(lambda: simulate(falling(), body=BODY, accuracy=accuracy, scene=scene, sample_period=period))  # noqa: B023
+            error = np.linalg.norm(run.position[-1] - finest.position[-1]) / finest.path_length
+            yield f"{name}, target {accuracy:g}", 10.0 / seconds, f"times real time, error {error:.1e}, {run.evaluations} evaluations"
+
+
+def switches():
+    """What a switch of the scene costs: time of 10 s of a straight gait by that with everything on, at equal accuracy."""
+    scenes = {
+        "everything": Scene(),
+        "no ledger": Scene(ledger=False),
+        "no internal wrench": Scene(internal_wrench=False),
+        "no ledger, no wrench": Scene(ledger=False, internal_wrench=False),
+        "  and no friction": Scene(ledger=False, internal_wrench=False, friction="none"),
+        "  and no drag": Scene(ledger=False, internal_wrench=False, resistive=False),
+        "  and planar": Scene(ledger=False, internal_wrench=False, planar=True),
+    }
+    step = Accuracy(name="bench", resolution=20.0, step=0.02)
+    times = {name: [] for name in scenes}
+    for repeat in range(REPEATS + 1):
+        for name, scene in scenes.items():
+            start = time.perf_counter()
+            simulate(straight(), body=BODY, accuracy=step, scene=scene)
+            if repeat:
+                times[name].append(time.perf_counter() - start)
+    whole = statistics.median(times["everything"])
+    for name, values in times.items():
+        yield name, statistics.median(values) / whole, f"of {whole * 1e3:.1f} ms"
+
+
+def start():
+    """A fresh process with a warm cache: import of the library, and the first step and sample."""
+    code = (
+        "import time; a = time.perf_counter(); from eel_dynamics import simulate; from eel_gaits import falling; b = time.perf_counter(); "
+        "simulate(falling(), 0.05); print(b - a, time.perf_counter() - b)"
+    )
+    runs = [tuple(map(float, subprocess.check_output([sys.executable, "-c", code], text=True).split())) for _ in range(5)]
+    yield "import", statistics.median(first for first, _ in runs), "s"
+    yield "first step and sample", statistics.median(second for _, second in runs), "s"
+
+
+FIGURES = {"evaluation": evaluation, "falling": falling_gait, "switches": switches, "start": start}
+
+
+def main(names: list[str]) -> int:
+    """Run the named figures, or all. Exit status 2 for an unknown name."""
+    unknown = [name for name in names if name not in FIGURES]
+    if unknown:
+        print(f"run.py: unknown figure {unknown[0]!r}, must be one of {', '.join(FIGURES)}", file=sys.stderr)
+        return 2
+    commit = subprocess.run(["git", "describe", "--always", "--dirty"], capture_output=True, text=True).stdout.strip()
+    print(f"{platform.processor() or platform.machine()}, Python {platform.python_version()}, commit {commit or 'unknown'}, medians of {REPEATS}")
+    for name in names or FIGURES:
+        print(f"{name}: {FIGURES[name].__doc__}")
+        for label, value, unit in FIGURES[name]():
+            print(f"  {label:42s} {value:10.4g} {unit}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
