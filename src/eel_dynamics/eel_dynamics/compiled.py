@@ -1,7 +1,7 @@
 """How the hot loops are compiled: by numba, once, and kept on disk for the next process.
 
 Numba keeps a compiled function for as long as its own file is unchanged, but not the files of the functions that it
-calls: after an upgrade, old and new loops would mix. Here a function is kept for as long as the whole package is unchanged.
+calls: after an upgrade, old and new loops would mix. Here a function is kept for as long as every file that holds compiled functions is unchanged.
 """
 
 import hashlib
@@ -21,9 +21,11 @@ OPTIONS = {
 
 
 def _stamp() -> str:
-    content = hashlib.sha256()
+    content = hashlib.sha256(Path(__file__).read_bytes())
     for path in sorted(Path(__file__).parent.glob("*.py")):
-        content.update(path.name.encode() + path.read_bytes())
+        source = path.read_bytes()
+        if b"from .compiled import" in source:
+            content.update(path.name.encode() + source)
     return content.hexdigest()
 
 
