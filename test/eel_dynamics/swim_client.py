@@ -1,4 +1,4 @@
-"""A ROS node for tests: hears every topic of a dynamics node without loss, publishes laws and samples, calls services."""
+"""A ROS node for tests: hears a dynamics node without loss, publishes laws and samples, calls services."""
 
 import time
 from collections import defaultdict

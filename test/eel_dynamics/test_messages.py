@@ -1,4 +1,4 @@
-"""Snapshots as messages: REP-103 axes where interfaces are in ROS frames, the paper's section axes where they are not."""
+"""Snapshots as messages: REP-103 axes where a message is in a ROS frame, section axes where it is not."""
 
 import copy
 
@@ -94,7 +94,9 @@ def test_profiles_keep_section_axes(swum):
     curvature, wrench, load = messages["curvature"], messages["internal_wrench"], messages["hydrodynamic_load"]
     for message in (curvature, wrench, load, messages["backbone"]):
         assert np.array_equal(message.x, snapshot.x)
-    assert np.array_equal(curvature.pitch, snapshot.curvature[:, 1]) and np.array_equal(curvature.yaw, snapshot.curvature[:, 2])
+    assert np.array_equal(curvature.pitch, snapshot.curvature[:, 1]) and np.array_equal(
+        curvature.yaw, snapshot.curvature[:, 2]
+    )
     assert np.array_equal(curvature.pitch_rate, snapshot.curvature_rate[:, 1])
     assert np.array_equal(curvature.yaw_rate, snapshot.curvature_rate[:, 2])
     for axis in range(3):
@@ -168,7 +170,9 @@ def test_body_has_its_outline_and_mass():
     assert x[0] == 0.0 and x[-1] == body.length and np.all(np.diff(x) > 0.0)
     assert set(np.linspace(0.0, 1.0, 11)) <= set(x)
     assert message.mass == pytest.approx(1.944, abs=5e-4) and message.length == 1.0
-    assert np.array_equal(message.half_width, body.half_width(x)) and np.array_equal(message.half_height, body.half_height(x))
+    assert np.array_equal(message.half_width, body.half_width(x)) and np.array_equal(
+        message.half_height, body.half_height(x)
+    )
     assert body_message(body, Scene(density=500.0), x, "base_link").mass == pytest.approx(0.5 * message.mass)
 
 
@@ -183,8 +187,14 @@ def test_samples_keep_their_names():
 
 
 def test_diagnostics_are_text():
-    message = diagnostic_array(1.25, "/left/dynamics", 1, "late", {"law": "falling", "time": 1.25, "samples_published": 126})
+    message = diagnostic_array(
+        1.25, "/left/dynamics", 1, "late", {"law": "falling", "time": 1.25, "samples_published": 126}
+    )
     status = message.status[0]
     assert (message.header.stamp.sec, message.header.stamp.nanosec) == (1, 250_000_000)
     assert (status.level, status.name, status.message) == (b"\x01", "/left/dynamics", "late")
-    assert {pair.key: pair.value for pair in status.values} == {"law": "falling", "time": "1.25", "samples_published": "126"}
+    assert {pair.key: pair.value for pair in status.values} == {
+        "law": "falling",
+        "time": "1.25",
+        "samples_published": "126",
+    }

@@ -1,14 +1,15 @@
-"""Control of a run over DDS: pause, reset, pace, parameters, what stops a simulation, and what its time does meanwhile."""
+"""Control of a run over DDS: pause, reset, pace, parameters, what stops a simulation, and /clock meanwhile."""
 
 import math
 import time
 
 import numpy as np
 import pytest
-from eel_gaits import Law, Term, falling
 from eel_gaits.messages import law_to_message
 from rosgraph_msgs.msg import Clock
 from swim_client import nanoseconds
+
+from eel_gaits import Law, Term, falling
 
 
 def seconds(message):
@@ -45,10 +46,12 @@ def test_reset_begins_again_with_the_same_law(start, client):
     start("dynamics", "--ros-args", "-p", "real_time_factor:=4", "-p", "wait_for_subscribers:=1")
     swim.until_time(2.0)
     answer = swim.reset()
-    assert answer.success and answer.message == "at t = 0 s"
+    assert answer.success and answer.message == "reset at t = 0 s"
     stamps = [seconds(message) for message in swim.heard["head_pose"]]
     again = next((k for k in range(1, len(stamps)) if stamps[k] < stamps[k - 1]), len(stamps))
-    swim.until(lambda: len(swim.heard["head_pose"]) > again and seconds(swim.heard["head_pose"][-1]) > 2.0, "the second run")
+    swim.until(
+        lambda: len(swim.heard["head_pose"]) > again and seconds(swim.heard["head_pose"][-1]) > 2.0, "the second run"
+    )
     first = {seconds(m): m.pose for m in swim.heard["head_pose"][:again]}
     second = {seconds(m): m.pose for m in swim.heard["head_pose"][again:]}
     assert min(second) == 0.0
@@ -65,7 +68,9 @@ def test_pace_follows_the_real_time_factor(start, client):
     swim.until_time(2.0)
 
     def factor(begin, end):
-        times = {round(seconds(m), 3): at for m, at in zip(swim.heard["head_pose"], swim.arrivals["head_pose"], strict=True)}
+        times = {
+            round(seconds(m), 3): at for m, at in zip(swim.heard["head_pose"], swim.arrivals["head_pose"], strict=True)
+        }
         return (end - begin) / (times[end] - times[begin])
 
     assert factor(0.5, 2.0) == pytest.approx(2.0, rel=0.1)
@@ -138,7 +143,9 @@ def test_late_run_says_so_seldom(start, client):
     swim = client(topics=("head_pose",))
     swim.laws.publish(law_to_message(falling()))
     node = start("dynamics", "--ros-args", "-p", "real_time_factor:=100000")
-    swim.until(lambda: swim.heard["/diagnostics"] and float(swim.diagnosis()[2]["late"]) > 0.0, "late in the diagnostics")
+    swim.until(
+        lambda: swim.heard["/diagnostics"] and float(swim.diagnosis()[2]["late"]) > 0.0, "late in the diagnostics"
+    )
     began = time.monotonic()
     said = node.output().count("late by")
     swim.spin(3.0)

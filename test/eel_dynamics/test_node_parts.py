@@ -1,4 +1,4 @@
-"""The parts of the dynamics node that need no ROS: parameters, pace, the right to /clock, reports, patience, laws as heard."""
+"""The parts of the dynamics node without ROS: parameters, pace, the right to /clock, reports, laws as heard."""
 
 import math
 from dataclasses import fields
@@ -72,7 +72,11 @@ def test_every_float_takes_an_integer(kind):
         ("initial_position", [0.0, 1.0], "initial_position must be 3 finite numbers, got [0.0, 1.0]"),
         ("initial_position", [0.0, 1.0, math.inf], "initial_position must be 3 finite numbers, got [0.0, 1.0, inf]"),
         ("initial_position", 1.0, "initial_position must be 3 finite numbers, got 1.0"),
-        ("initial_orientation", [0.0, 0.0, 0.0, 2.0], "initial_orientation must be a unit quaternion, got [0.0, 0.0, 0.0, 2.0] of norm 2"),
+        (
+            "initial_orientation",
+            [0.0, 0.0, 0.0, 2.0],
+            "initial_orientation must be a unit quaternion, got [0.0, 0.0, 0.0, 2.0] of norm 2",
+        ),
         ("world_frame", "", "world_frame must not be empty"),
     ],
 )
@@ -124,7 +128,7 @@ def test_no_pace_is_never_late():
 
 
 def race(first_age, own, other, leaves):
-    """Simulates two publishers that meet; `leaves`: whether the other follows the same rules. Who publishes at the end."""
+    """Who publishes in the end, of two that meet; `leaves`: whether the other follows the same rules."""
     ours, theirs = ClockRight(), ClockRight()
     now, ours_on, theirs_on = 0.0, ours.judge(0.0, (), set()), False
     while now < 40.0:

@@ -77,7 +77,7 @@ def test_start_in_ros_frames(start, client):
     first, last = heard.heard["head_pose"][0].pose.position, heard.heard["head_pose"][-1].pose.position
     assert (first.x, first.y, first.z) == pytest.approx((1.0, 2.0, -0.5), abs=1e-12)
     assert heard.heard["head_twist"][0].twist.linear.x == pytest.approx(1.0, abs=1e-9)
-    # heads along +y (a quarter turn to the left), in water that flows along +y twice as fast: it is carried faster than 1 m/s
+    # heads along +y (a quarter turn to the left), in water that flows along +y twice as fast: it is carried along
     assert last.y - first.y > 0.5 and abs(last.x - first.x) < 0.1
 
 
@@ -90,6 +90,9 @@ def test_two_eels_in_namespaces(start, client):
         assert node.wait(LIMIT) == 0, node.output()
     for name, ear in ears.items():
         ear.until(lambda ear=ear: len(ear.heard["head_pose"]) >= 201, "201 samples")
-        ear.until(lambda ear=ear, name=name: any(m.status[0].name == f"/{name}/dynamics" for m in ear.heard["/diagnostics"]), "diagnostics")
+        ear.until(
+            lambda ear=ear, name=name: any(m.status[0].name == f"/{name}/dynamics" for m in ear.heard["/diagnostics"]),
+            "diagnostics",
+        )
     ends = [ear.heard["head_pose"][-1].pose for ear in ears.values()]
     assert ends[0] != ends[1]

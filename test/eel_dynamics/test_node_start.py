@@ -4,9 +4,10 @@ import signal
 import time
 
 import pytest
-from eel_gaits import falling
 from eel_gaits.messages import law_to_message
 from swim_client import LIMIT
+
+from eel_gaits import falling
 
 BAD = {
     "rate of 0": (("rate:=0",), ("rate", "> 0", "got 0")),
@@ -31,7 +32,9 @@ def test_bad_parameter_is_one_line_and_status_2(start, what):
     node = start("dynamics", "--ros-args", *(part for each in given for part in ("-p", each)))
     assert node.wait(LIMIT) == 2, node.output()
     lines = [line for line in node.output().splitlines() if line.strip() and "compiling" not in line]
-    assert len(lines) == 1 and lines[0].startswith("dynamics: ") and all(word in lines[0] for word in words), node.output()
+    assert len(lines) == 1 and lines[0].startswith("dynamics: ") and all(word in lines[0] for word in words), (
+        node.output()
+    )
 
 
 def body_file(tmp_path, rows):
@@ -79,7 +82,16 @@ def test_body_from_a_file_and_numbers_of_every_kind(start, client, tmp_path):
     rows = [(0, 0, 0), (0.2, 0.02, 0.04), (0.6, 0.02, 0.03), (1.0, 0.01, 0.02), (1.2, 0.005, 0.01)]
     swim = client(topics=("head_pose",))
     swim.laws.publish(law_to_message(falling()))
-    numbers = ("-p", "rate:=50", "-p", "scene.current:=[0, 0, 0]", "-p", "scene.fluid_density:=1025", "-p", "accuracy:=0.01")
+    numbers = (
+        "-p",
+        "rate:=50",
+        "-p",
+        "scene.current:=[0, 0, 0]",
+        "-p",
+        "scene.fluid_density:=1025",
+        "-p",
+        "accuracy:=0.01",
+    )
     start("dynamics", "--ros-args", "-p", f"body:={body_file(tmp_path, rows)}", *numbers)
     swim.until_time(0.3)
     assert swim.latest("body").length == 1.2
@@ -122,5 +134,7 @@ def test_first_publication_is_soon(start, client):
     """With everything compiled: from the start of the process to the first tick of /clock."""
     start("dynamics").wait_for_output("waiting for a law", LIMIT)  # compiled, if it was not
     began = time.monotonic()
-    start("dynamics", "--ros-args", "-r", "__ns:=/second", "-p", "clock:=false").wait_for_output("waiting for a law", LIMIT)
+    start("dynamics", "--ros-args", "-r", "__ns:=/second", "-p", "clock:=false").wait_for_output(
+        "waiting for a law", LIMIT
+    )
     assert time.monotonic() - began < 4.0  # 1.5 s on a machine of one's own

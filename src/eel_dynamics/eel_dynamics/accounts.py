@@ -1,4 +1,4 @@
-"""The run's checks on itself, worst so far: energy ledger and closure of the internal wrench (model checks, for /diagnostics)."""
+"""The run's checks on itself, worst so far, for /diagnostics: energy ledger, closure of the wrench."""
 
 import math
 
@@ -7,9 +7,9 @@ import numpy as np
 from .simulation import SimulationStopped
 
 CHECKED = (
-    "position orientation twist backbone section_orientation curvature curvature_rate "
-    "torque force fluid_force resistive_force tail_force nose_force"
-).split()
+    *("position", "orientation", "twist", "backbone", "section_orientation", "curvature", "curvature_rate"),
+    *("torque", "force", "fluid_force", "resistive_force", "tail_force", "nose_force"),
+)
 
 
 class Accounts:
@@ -62,4 +62,6 @@ def _ratio(value, scale):
 
 
 def _not_finite(snapshot, name, values):
-    return SimulationStopped(time=snapshot.time, quantity=name, value=float(np.ravel(values)[~np.isfinite(np.ravel(values))][0]), hint="")
+    return SimulationStopped(
+        time=snapshot.time, quantity=name, value=float(np.ravel(values)[~np.isfinite(np.ravel(values))][0]), hint=""
+    )

@@ -11,7 +11,7 @@ from .simulation import Simulation
 
 
 def simulation_of(parameters: DynamicsParameters, scene: Scene) -> Simulation:
-    """The simulation at its start; the scene's current is in the ROS world frame. `ValueError` says what does not fit."""
+    """The simulation at its start; the scene's current is in the ROS world frame. `ValueError`: what does not fit."""
     twist = (*parameters.initial_angular_velocity, *parameters.initial_linear_velocity)
     return Simulation(
         body=_body_of(parameters.body),

@@ -1,9 +1,9 @@
 """Whether this node may publish /clock: one publisher on the network, and the one that was there first.
 
-Each publisher knows the others by their identifiers alone, and learns of them up to some seconds late. So that two nodes
-of this kind never both stay and never both leave, each gives the other time to leave before it leaves itself: a node that
-started lately gives little, one that has been publishing for long gives more, and of two alike the one with the greater
-identifier goes first. A publisher of another kind never leaves; this node then does when its time is over.
+Each publisher knows the others by their identifiers alone, and learns of them up to some seconds late. So that two
+nodes of this kind never both stay and never both leave, each gives the other time to leave before it leaves itself: a
+node that started lately gives little, one that has been publishing for long gives more, and of two alike the one with
+the greater identifier goes first. A publisher of another kind never leaves; this node does when that time is over.
 """
 
 import time
@@ -23,7 +23,7 @@ class ClockRight:
         self._grace = 0.0  # s: time it gives the other
 
     def judge(self, now: float, own: tuple, others: set) -> bool:
-        """Whether to publish at `now` [s, steady clock]; `own` identifier (empty while unknown), `others` of the rest."""
+        """Whether to publish at `now` [s, steady clock]; `own` identifier (empty while unknown), `others`: the rest."""
         if not self.publishing:
             if not others:
                 self.publishing, self._since, self._met = True, now, None

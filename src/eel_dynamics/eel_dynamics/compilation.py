@@ -1,5 +1,7 @@
-"""The compiled loops, made before they are needed. A compilation holds its process up and cannot be interrupted, so where
-nothing is in the cache yet it is done in a process apart, which can be ended at any time.
+"""The compiled loops, made before they are needed.
+
+A compilation holds its process up and cannot be interrupted, so where something is not in the cache yet, it is done in
+a process apart, which can be ended at any time.
 """
 
 import subprocess
@@ -27,6 +29,14 @@ class _Refusal(event.Listener):
         pass
 
 
+def ensure(say, interrupted) -> bool:
+    """Has all loops compiled; False where `interrupted(seconds)`, which waits so long, became true in the meantime."""
+    if load():
+        return True
+    say("compiling the physics, which takes up to a minute and is kept for the next start")
+    return compile_apart(interrupted)
+
+
 def load() -> bool:
     """Loads all loops from the cache; False where some would have to be compiled."""
     refusal = _Refusal()
@@ -41,9 +51,13 @@ def load() -> bool:
 
 
 def compile_apart(interrupted) -> bool:
-    """Fills the cache from a process apart; False where `interrupted(seconds)`, which waits so long, has become true."""
+    """Fills the cache from a process apart; False once `interrupted(seconds)`, which waits so long, is true."""
     compiler = subprocess.Popen(
-        [sys.executable, "-c", WARM_UP], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True
+        [sys.executable, "-c", WARM_UP],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
     )
     while compiler.poll() is None:
         if interrupted(POLL):

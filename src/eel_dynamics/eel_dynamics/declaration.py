@@ -13,8 +13,8 @@ from .scene import Scene
 class Declaration:
     """Declares all parameters of `node`; `ValueError` names one that does not fit.
 
-    Attributes: values, the DynamicsParameters in force; scene. Those that can be set during the run are checked, a number
-    without a point is taken for one with it, and `changed(values)` is called afterwards.
+    Attributes: values, the DynamicsParameters in force; scene. Those that can be set during the run are checked, a
+    number without a point is taken for one with it, and `changed(values)` is called afterwards.
     """
 
     def __init__(self, node, changed):
@@ -32,7 +32,9 @@ class Declaration:
         for item in fields(kind):
             # Declared twice: first with any type, to see what the user gave and say in one line what is wrong with it.
             name = prefix + item.name
-            given[item.name] = node.declare_parameter(name, default_of(item), ParameterDescriptor(dynamic_typing=True)).value
+            given[item.name] = node.declare_parameter(
+                name, default_of(item), ParameterDescriptor(dynamic_typing=True)
+            ).value
             node.undeclare_parameter(name)
             value = checked(item, given[item.name], name)
             value = default_of(item) if value is None else list(value) if isinstance(value, tuple) else value
@@ -46,7 +48,11 @@ class Declaration:
     def _converted(self, parameter):
         item = self._fields.get(parameter.name)
         try:
-            return parameter if item is None else Parameter(parameter.name, value=checked(item, parameter.value, item.name))
+            return (
+                parameter
+                if item is None
+                else Parameter(parameter.name, value=checked(item, parameter.value, item.name))
+            )
         except ValueError:
             return parameter
 

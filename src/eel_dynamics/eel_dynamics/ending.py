@@ -9,13 +9,21 @@ import time
 
 
 class Ending:
-    """Made in the main thread, before anything that lasts. A signal may interrupt any line, so its handler only puts into a queue."""
+    """Made in the main thread, before anything that lasts.
+
+    A signal may interrupt any line, so its handler only puts into a queue.
+    """
 
     def __init__(self):
         self._declared = queue.SimpleQueue()
         self.over = False  # for workers to look at
+        self.signalled = False
         for number in (signal.SIGINT, signal.SIGTERM):
-            signal.signal(number, lambda number, frame: self._declared.put((False, None)))
+            signal.signal(number, self._hear)
+
+    def _hear(self, number, frame):
+        self.signalled = True
+        self._declared.put((False, None))
 
     def start(self, work):
         """Runs `work()` in a thread; where it returns or raises, the process is to end."""

@@ -1,7 +1,7 @@
 """What the swimmer is told to do: laws and samples of laws as they arrive, checked, each taken once.
 
-Laws come over two subscriptions (one that also hears what was published before it, one that hears any publisher), so that
-most arrive twice.
+Laws come over two subscriptions (one that also hears what was published before it, one that hears any publisher), so
+that most arrive twice.
 """
 
 from collections import deque
@@ -14,7 +14,7 @@ FAR_AHEAD = 3600.0  # s: a stamp so far ahead of the simulation is wall time by 
 class LawFeed:
     """Hears laws and samples, and hands them to `march` (methods time, take_law, take_samples).
 
-    law_of, samples_of: messages to a `Law`, to the arguments of `Simulation.add_samples`; ValueError says what is wrong.
+    law_of, samples_of: a message to a `Law`, to the arguments of `Simulation.add_samples`; ValueError: what is wrong.
     """
 
     def __init__(self, march, report, *, law_of, samples_of):
@@ -49,10 +49,12 @@ class LawFeed:
     def _checked_stamp(self, stamp) -> float:
         time = stamp.sec + 1e-9 * stamp.nanosec
         if stamp.sec < 0 or stamp.nanosec >= 1_000_000_000:
-            raise ValueError(f"header.stamp must be >= 0 s, with nanosec < 1e9, got sec {stamp.sec}, nanosec {stamp.nanosec}")
+            raise ValueError(
+                f"header.stamp must be >= 0 s, with nanosec < 1e9, got sec {stamp.sec}, nanosec {stamp.nanosec}"
+            )
         if time > self._march.time + FAR_AHEAD:
             raise ValueError(
-                f"header.stamp must be simulation time, at most {FAR_AHEAD:g} s ahead of {self._march.time:g} s, got {time:.3f} s: "
-                "that looks like wall time, does its publisher use use_sim_time?"
+                f"header.stamp must be simulation time, at most {FAR_AHEAD:g} s ahead of {self._march.time:g} s, "
+                f"got {time:.3f} s: that looks like wall time, does its publisher have use_sim_time set?"
             )
         return time

@@ -1,7 +1,7 @@
 """The run, in a thread of its own: waits, paces, advances the simulation, has each sample published.
 
-Everything that touches the simulation happens in this thread; what other threads want of it are orders, carried out between
-two samples. No ROS here: `publishers` and `report` come from the node.
+Everything that touches the simulation happens in this thread; what other threads want of it are orders, carried out
+between two samples. No ROS here: `publishers` and `report` come from the node.
 """
 
 import math

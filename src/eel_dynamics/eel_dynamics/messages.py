@@ -10,11 +10,20 @@ from dataclasses import Field
 import numpy as np
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
-from eel_msgs.msg import Backbone, BodyGeometry, Curvature, CurvatureSamples, EnergyLedger, HydrodynamicLoad, InternalWrench
 from geometry_msgs.msg import PoseStamped, TransformStamped, TwistStamped
 from nav_msgs.msg import Odometry
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from rosgraph_msgs.msg import Clock
+
+from eel_msgs.msg import (
+    Backbone,
+    BodyGeometry,
+    Curvature,
+    CurvatureSamples,
+    EnergyLedger,
+    HydrodynamicLoad,
+    InternalWrench,
+)
 
 from .frames import turn_quaternion, turn_vector
 from .parameters import limits
@@ -165,7 +174,7 @@ def body_message(body, scene: Scene, x: np.ndarray, head_frame: str) -> BodyGeom
 
 
 def samples_from_message(message: CurvatureSamples) -> dict[str, np.ndarray | float]:
-    """The arguments of `Simulation.add_samples`: time [s], x [m], curvatures with two time derivatives, section axes."""
+    """The arguments of `Simulation.add_samples`: time [s], x [m], curvatures and two time derivatives, section axes."""
     names = ("x", "pitch", "pitch_rate", "pitch_accel", "yaw", "yaw_rate", "yaw_accel")
     return {"time": seconds_of(message.header.stamp)} | {name: np.array(getattr(message, name)) for name in names}
 
@@ -173,7 +182,10 @@ def samples_from_message(message: CurvatureSamples) -> dict[str, np.ndarray | fl
 def diagnostic_array(time: float, name: str, level: int, text: str, values: dict) -> DiagnosticArray:
     """One status of the node `name` at simulation time `time` [s], its values as text."""
     status = DiagnosticStatus(level=bytes([level]), name=name, message=text, hardware_id="simulation")
-    status.values = [KeyValue(key=key, value=f"{value:.9g}" if isinstance(value, float) else str(value)) for key, value in values.items()]
+    status.values = [
+        KeyValue(key=key, value=f"{value:.9g}" if isinstance(value, float) else str(value))
+        for key, value in values.items()
+    ]
     message = DiagnosticArray(status=[status])
     message.header.stamp.sec, message.header.stamp.nanosec = divmod(round(time * SECOND), SECOND)
     return message
@@ -184,7 +196,9 @@ def descriptor_of(item: Field) -> ParameterDescriptor:
     metadata = item.metadata
     unit = f" [{metadata['unit']}]" if metadata.get("unit") else ""
     none = "; 0: not overridden" if item.default is None else ""
-    descriptor = ParameterDescriptor(description=metadata["description"] + unit + none, read_only=not metadata.get("changeable"))
+    descriptor = ParameterDescriptor(
+        description=metadata["description"] + unit + none, read_only=not metadata.get("changeable")
+    )
     if "choices" in metadata:
         descriptor.additional_constraints = "one of " + ", ".join(metadata["choices"])
     elif "minimum" in metadata:
@@ -193,11 +207,13 @@ def descriptor_of(item: Field) -> ParameterDescriptor:
         if isinstance(item.default, int):
             descriptor.integer_range = [IntegerRange(from_value=int(low), to_value=int(high))]
         else:
-            descriptor.floating_point_range = [FloatingPointRange(from_value=float(low), to_value=float("inf") if high is None else float(high))]
+            descriptor.floating_point_range = [
+                FloatingPointRange(from_value=float(low), to_value=float("inf") if high is None else float(high))
+            ]
     return descriptor
 
 
 def _set(target, names: str, values):
     """Sets the components of a geometry message to a row of numbers."""
-    for name, value in zip(names, values.tolist()):
+    for name, value in zip(names, values.tolist(), strict=True):
         setattr(target, name, value)

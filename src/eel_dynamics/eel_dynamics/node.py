@@ -1,6 +1,6 @@
 """The dynamics node: declares its parameters, hears laws, has the simulation march, publishes, and tells how it goes.
 
-The march has a thread of its own (march.py), callbacks run in another, and the main thread waits for the end or a signal.
+The march has a thread of its own (march.py), callbacks run in another, and the main thread waits for the end.
 """
 
 import sys
@@ -9,7 +9,6 @@ import traceback
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from eel_gaits.messages import law_from_message
-from eel_msgs.msg import BodyGeometry, CurvatureLaw, CurvatureSamples
 from rclpy.clock import Clock, ClockType
 from rclpy.duration import Duration
 from rclpy.exceptions import NameValidationException, ParameterException
@@ -21,9 +20,11 @@ from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
 from rclpy.signals import SignalHandlerOptions
 from std_srvs.srv import SetBool, Trigger
 
+from eel_msgs.msg import BodyGeometry, CurvatureLaw, CurvatureSamples
+
 from .assembly import simulation_of
 from .clock_right import ClockWatch
-from .compilation import compile_apart, load
+from .compilation import ensure
 from .declaration import Declaration
 from .ending import Ending, leave_at_once
 from .feed import LawFeed
@@ -34,7 +35,6 @@ from .report import Report
 from .status import Status
 
 LATCHED = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-LIVE = QoSProfile(depth=100)
 LOSSLESS = QoSProfile(history=HistoryPolicy.KEEP_ALL)  # reliable, as the others are
 PROMPT = 1.0  # s: a service has answered by then
 FAREWELL = 5.0  # s: longest wait for acknowledgements at the end of a run
@@ -52,8 +52,9 @@ class DynamicsNode(Node):
         simulation = simulation_of(values, scene)
         self.outlets = Publishers(
             Sample(simulation.x, scene, values.world_frame, values.head_frame),
-            create=lambda kind, topic, lossless: self.create_publisher(kind, topic, LOSSLESS if lossless else LIVE),
+            create=lambda kind, topic, depth: self.create_publisher(kind, topic, depth or LOSSLESS),
             destroy=self.destroy_publisher,
+            received=lambda publisher, seconds: publisher.wait_for_all_acked(Duration(seconds=seconds)),
             refusal=rclpy_implementation.RCLError,
             values=lambda: self.parameters.values,
             stopped=lambda: self.march.stopped,
@@ -67,7 +68,9 @@ class DynamicsNode(Node):
 
         feed = LawFeed(self.march, report, law_of=law_from_message, samples_of=samples_from_message)
         for quality in (LATCHED, QoSProfile(depth=10)):  # the first hears earlier laws too, the second any publisher
-            self.create_subscription(CurvatureLaw, "curvature_law", lambda message, info: feed.hear_law(message, info), quality)
+            self.create_subscription(
+                CurvatureLaw, "curvature_law", lambda message, info: feed.hear_law(message, info), quality
+            )
         self.create_subscription(CurvatureSamples, "curvature_samples", feed.hear_samples, LOSSLESS)
         self.create_service(Trigger, "~/reset", self._reset)
         self.create_service(SetBool, "~/pause", self._pause)
@@ -83,21 +86,21 @@ class DynamicsNode(Node):
         name = self.get_fully_qualified_name()
         self._diagnostics.publish(diagnostic_array(self.march.time, name, level, text, values))
 
-    def wait_for_acknowledgements(self, seconds: float):
+    def see_off(self, seconds: float, interrupted):
         """Waits until subscribers have received everything, at most so long."""
-        mine = [self._diagnostics, self._body]
-        if not self.outlets.wait_for_acknowledgements(mine, lambda publisher, wait: publisher.wait_for_all_acked(Duration(seconds=wait)), seconds):
+        received = self.outlets.wait_until_received([self._diagnostics, self._body], seconds, interrupted)
+        if not received and not interrupted():
             self.get_logger().warning(f"some subscriber has not received everything within {seconds:g} s")
 
     def _reset(self, request, response):
-        done = self.march.reset().wait(PROMPT)
-        response.success, response.message = True, "at t = 0 s" if done else "to be done after the present sample"
-        return response
+        return self._answer(response, self.march.reset(), "reset")
 
     def _pause(self, request, response):
-        done = self.march.pause(request.data).wait(PROMPT)
-        state = "paused" if request.data else "going on"
-        response.success, response.message = True, f"{state} at t = {self.march.time:g} s" if done else "to be done after the present sample"
+        return self._answer(response, self.march.pause(request.data), "paused" if request.data else "going on")
+
+    def _answer(self, response, done, state):
+        response.success = done.wait(PROMPT)
+        response.message = f"{state} at t = {self.march.time:g} s" if response.success else "to be done soon"
         return response
 
 
@@ -106,7 +109,7 @@ def main(args=None) -> int:
     ending = Ending()
     try:
         rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
-        if not load() and not compiled(ending):
+        if not ensure(get_logger("dynamics").info, ending.comes_within):
             return 0
         node = DynamicsNode()
     except (ValueError, RuntimeError, ParameterException, NameValidationException) as error:
@@ -125,19 +128,13 @@ def main(args=None) -> int:
     if error is not None:
         node.get_logger().fatal("".join(traceback.format_exception(error)))
     node.tell(final=True)
-    node.wait_for_acknowledgements(FAREWELL if done else HASTE)
+    node.see_off(FAREWELL if done else HASTE, lambda: done and ending.signalled)
     if not joined:
         leave_at_once(int(error is not None))
     executor.shutdown()
     node.destroy_node()
     rclpy.try_shutdown()
     return int(error is not None)
-
-
-def compiled(ending) -> bool:
-    """Fills the cache of compiled loops; False where a signal came in between."""
-    get_logger("dynamics").info("compiling the physics, which takes up to a minute and is kept for the next start")
-    return compile_apart(ending.comes_within)
 
 
 def spin(executor, ending):

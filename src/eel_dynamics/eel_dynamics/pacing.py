@@ -1,7 +1,7 @@
 """When each sample is due on the steady clock.
 
-Sample k is due at start + (k - first) * period / factor. A run that falls behind by more than a few periods gives the lost
-time up rather than hurry after it: it keeps its accuracy, not its pace.
+Sample k is due at start + (k - first) * period / factor. A run that falls behind by more than a few periods gives the
+lost time up rather than hurry after it: it keeps its accuracy, not its pace.
 """
 
 import math

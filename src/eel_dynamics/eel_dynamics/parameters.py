@@ -1,7 +1,7 @@
 """The dynamics node's parameters: each one once, with its default, unit, bounds and description.
 
-The node declares its ROS parameters from these fields (and from `Scene`'s, as `scene.*`) and overlays what the user gave.
-Poses and velocities are in ROS (REP-103) frames: world `odom`, head `base_link`.
+The node declares its ROS parameters from these fields (and from `Scene`'s, as `scene.*`) and overlays what the user
+gave. Poses and velocities are in ROS (REP-103) frames: world `odom`, head `base_link`.
 """
 
 import math
@@ -20,28 +20,49 @@ class DynamicsParameters:
     number (a text or a number), changeable (at run time).
     """
 
-    accuracy: str = _parameter("standard", "preset (draft, standard, fine, reference) or a target relative error", number=True)
-    rate: float = _parameter(100.0, "samples published per simulated second", "Hz", minimum=0.0, exclusive=True, maximum=1e4)
-    real_time_factor: float = _parameter(
-        1.0, "simulated seconds per second; 0: as fast as it goes, fixed at start", minimum=0.0, maximum=1e6, changeable=True
+    accuracy: str = _parameter(
+        "standard", "preset (draft, standard, fine, reference) or a target relative error", number=True
     )
-    duration: float = _parameter(0.0, "simulated time after which the node leaves with status 0; 0: no end", "s", minimum=0.0, maximum=1e9)
+    rate: float = _parameter(
+        100.0, "samples published per simulated second", "Hz", minimum=0.0, exclusive=True, maximum=1e4
+    )
+    real_time_factor: float = _parameter(
+        1.0,
+        "simulated seconds per second; 0: as fast as it goes, fixed at start",
+        minimum=0.0,
+        maximum=1e6,
+        changeable=True,
+    )
+    duration: float = _parameter(
+        0.0, "simulated time after which the node leaves with status 0; 0: no end", "s", minimum=0.0, maximum=1e9
+    )
     stations: int = _parameter(51, "points along the backbone where profiles are given", minimum=2, maximum=10_000)
-    body: str = _parameter("boyer2010", "name of a body, or a .csv or .npz file with columns x, half_width, half_height [m]")
+    body: str = _parameter(
+        "boyer2010", "name of a body, or a .csv or .npz file with columns x, half_width, half_height [m]"
+    )
     default_transition: float = _parameter(
         1.0, "blending time of a law that names none", "s", minimum=0.0, exclusive=True, maximum=1e4
     )
     initial_position: tuple = _parameter((0.0, 0.0, 0.0), "of the head at the start, in the world frame", "m")
     initial_orientation: tuple = _parameter((0.0, 0.0, 0.0, 1.0), "of the head at the start, unit quaternion x y z w")
     initial_linear_velocity: tuple = _parameter((0.0, 0.0, 0.0), "of the head at the start, in the head frame", "m/s")
-    initial_angular_velocity: tuple = _parameter((0.0, 0.0, 0.0), "of the head at the start, in the head frame", "rad/s")
+    initial_angular_velocity: tuple = _parameter(
+        (0.0, 0.0, 0.0), "of the head at the start, in the head frame", "rad/s"
+    )
     world_frame: str = _parameter("odom", "frame id of the world")
     head_frame: str = _parameter("base_link", "frame id of the head")
     clock: bool = _parameter(True, "publish /clock, unless another publisher of it is on the network", changeable=True)
     publish_tf: bool = _parameter(True, "publish world to head on /tf, where tf2_msgs is installed", changeable=True)
-    wait_for_subscribers: int = _parameter(0, "subscribers to wait for before the first sample", minimum=0, maximum=1000)
+    wait_for_subscribers: int = _parameter(
+        0, "subscribers to wait for before the first sample", minimum=0, maximum=1000
+    )
     subscriber_timeout: float = _parameter(
-        5.0, "longest wait for a stuck subscriber or a silent controller, at real_time_factor 0", "s", minimum=0.0, maximum=3600.0, changeable=True
+        5.0,
+        "longest wait for a stuck subscriber or a silent controller, at real_time_factor 0",
+        "s",
+        minimum=0.0,
+        maximum=3600.0,
+        changeable=True,
     )
 
     def __post_init__(self):
@@ -50,7 +71,9 @@ class DynamicsParameters:
                 raise ValueError(f"{name} must not be empty")
         norm = math.sqrt(math.fsum(value * value for value in self.initial_orientation))
         if abs(norm - 1.0) > 1e-3:
-            raise ValueError(f"initial_orientation must be a unit quaternion, got {list(self.initial_orientation)} of norm {norm:g}")
+            raise ValueError(
+                f"initial_orientation must be a unit quaternion, got {list(self.initial_orientation)} of norm {norm:g}"
+            )
         object.__setattr__(self, "initial_orientation", tuple(value / norm for value in self.initial_orientation))
 
     @property
@@ -77,7 +100,9 @@ def checked(item: Field, value, name: str):
         if item.metadata.get("number") and isinstance(value, (int, float)) and not isinstance(value, bool):
             return float(value)
         if not isinstance(value, str):
-            raise ValueError(f"{name} must be a text{' or a number' if item.metadata.get('number') else ''}, got {_shown(value)}")
+            raise ValueError(
+                f"{name} must be a text{' or a number' if item.metadata.get('number') else ''}, got {_shown(value)}"
+            )
         if value not in item.metadata.get("choices", (value,)):
             raise ValueError(f"{name} must be one of {', '.join(item.metadata['choices'])}, got {value!r}")
     elif isinstance(default, tuple):

@@ -1,45 +1,52 @@
 """The topics of a run: each sample goes to those that someone hears, at real time or without loss.
 
 At real time a slow subscriber misses samples and nobody waits. Without a pace, publishers are reliable and keep all: a
-history that is full makes `publish` fail, and it is tried again until the subscriber has caught up, or is taken for stuck.
-Its topics then change to a history that forgets, so that the run and the other subscribers go on.
+history that is full makes `publish` fail, and it is tried again until the subscriber has caught up, or is taken for
+stuck. Its topics then change to a history that forgets, so that the run and the other subscribers go on.
 """
 
 import time
 
+LIVE_DEPTH = 100  # samples: history at real time
+LONG_DEPTH = 5000  # samples: history once a subscriber has been given up, as long as that which keeps all
 RETRY = 0.002  # s between two attempts: lets the other threads run
+SLICE = 0.2  # s: a wait at the end looks so often whether it is interrupted
 CALM = 1.0  # s without a change after which partial subscribers are taken to be complete
 HEAVY = {"internal_wrench": "wrench", "hydrodynamic_load": "load"}  # topic: what Simulation.observe computes for it
 
 
 class Channel:
-    """One topic: its publisher, made by `create(message_type, topic, lossless)`."""
+    """One topic: its publisher, made by `create(message_type, topic, depth)`; depth None: all is kept until taken."""
 
     def __init__(self, create, message_type, topic: str, lossless: bool):
         self.topic, self.message_type = topic, message_type
         self._create = create
         self.lossless = lossless
-        self.publisher = create(message_type, topic, lossless)
+        self.publisher = create(message_type, topic, None if lossless else LIVE_DEPTH)
 
     def forget(self, destroy):
-        """Changes to a history that forgets what a stuck subscriber has not taken."""
+        """Changes to a history that forgets what a stuck subscriber has not taken, long enough for the others."""
         destroy(self.publisher)
         self.lossless = False
-        self.publisher = self._create(self.message_type, self.topic, False)
+        self.publisher = self._create(self.message_type, self.topic, LONG_DEPTH)
 
 
 class Publishers:
     """All topics of samples, and /clock.
 
-    sample: the messages (messages.Sample). create: see Channel; destroy(publisher). refusal: the exception of a publish
+    sample: the messages (messages.Sample). create: see Channel; destroy(publisher).
+    received(publisher, seconds): waits until all is acknowledged, whether it is. refusal: the exception of a publish
     that failed. values(): the DynamicsParameters in force. stopped(): whether the run is over.
     """
 
-    def __init__(self, sample, *, create, destroy, refusal, values, stopped, report):
+    def __init__(self, sample, *, create, destroy, received, refusal, values, stopped, report):
         self._sample, self._create, self._destroy, self._refusal = sample, create, destroy, refusal
+        self._received = received
         self._values, self._stopped, self._report = values, stopped, report
         self._lossless = values().real_time_factor == 0.0
-        self._channels = {name: Channel(create, type(message), name, self._lossless) for name, message in sample.messages.items()}
+        self._channels = {
+            name: Channel(create, type(message), name, self._lossless) for name, message in sample.messages.items()
+        }
         self._clock = None
         self._patience = Patience()
         self._audience, self._audience_since = None, 0.0
@@ -83,14 +90,15 @@ class Publishers:
             self._audience, self._audience_since = counts, now
         return min(counts) >= wanted or (max(counts) >= wanted and now - self._audience_since > CALM)
 
-    def wait_for_acknowledgements(self, others: list, acknowledged, seconds: float) -> bool:
-        """Waits until all is received, of `others` (publishers) too, at most so long; acknowledged(publisher, seconds) -> bool."""
+    def wait_until_received(self, others: list, seconds: float, interrupted) -> bool:
+        """Waits until all is received, of `others` (publishers) too; False after `seconds`, or once `interrupted()`."""
         end = time.monotonic() + seconds
         clock = [self._clock] if self._clock is not None else []
-        channels = [*self._channels.values(), *clock]
-        for publisher in [channel.publisher for channel in channels if channel.lossless] + others:
-            if not acknowledged(publisher, max(0.0, end - time.monotonic())):
-                return False
+        waiting = [channel.publisher for channel in [*self._channels.values(), *clock]] if self._lossless else []
+        for publisher in waiting + others:
+            while not self._received(publisher, min(SLICE, max(0.0, end - time.monotonic()))):
+                if time.monotonic() >= end or interrupted():
+                    return False
         return True
 
     def _send(self, channel: Channel, message):
@@ -108,24 +116,27 @@ class Publishers:
                     self._patience.begin(now)
                 if self._patience.over(now, self._values().subscriber_timeout):
                     self._give_up(channel)
-                    return
-                self._report.event("slow subscriber", f"waiting for a subscriber of {channel.topic}, whose history is full")
+                    continue
+                self._report.event(
+                    "slow subscriber", f"waiting for a subscriber of {channel.topic}, whose history is full"
+                )
                 time.sleep(RETRY)
             else:
-                if start is not None:
+                if start is not None and channel.lossless:
                     self._patience.renew()
                 return
 
     def _give_up(self, channel: Channel):
         self._report.begin(
             "stuck " + channel.topic,
-            f"a subscriber of {channel.topic} has been stuck for {self._values().subscriber_timeout:g} s: going on without it, it will miss samples",
+            f"a subscriber of {channel.topic} has been stuck for {self._values().subscriber_timeout:g} s: "
+            "going on without it, it will miss samples",
         )
         channel.forget(self._destroy)
 
 
 class Patience:
-    """How long subscribers have been waited for: one account for all topics, since who is stuck is stuck on all of them."""
+    """How long subscribers have been waited for: one account for all topics, as who is stuck is stuck on all."""
 
     def __init__(self):
         self._since = None  # s, steady clock

@@ -32,7 +32,7 @@ class Report:
             self.info(text)
 
     def event(self, kind: str, text: str, level: int = WARN, differing: bool = False):
-        """Something that happened; of one kind at most one a second is logged, but every `differing` text if so asked."""
+        """Something that happened; of one kind one a second is logged at most, or every `differing` text if asked."""
         now = self._now()
         _, last, logged, _ = self._events.get(kind, (OK, "", -math.inf, 0.0))
         if now - logged >= REPEAT or (differing and text != last):

@@ -9,7 +9,7 @@ class Status:
         self._seen = (0.0, 0.0)  # s: simulation time, wall time marched
 
     def collect(self, publishers_of_laws: int, final: bool = False) -> tuple[int, str, dict]:
-        """Level, text, values; the real-time factor is that since the collection before, at the end that of the whole run."""
+        """Level, text, values; the real-time factor is that since the last collection, at the end that of the run."""
         march = self._march
         if publishers_of_laws > 1:
             self._report.begin("laws", f"{publishers_of_laws} publishers of curvature_law: the later message wins")

@@ -1,0 +1,265 @@
+"""Who waits for whom: subscribers slow, stuck or late, controllers that drive and die, others on /clock."""
+
+import math
+import os
+import signal
+import sys
+import time
+
+import numpy as np
+import pytest
+from eel_gaits.messages import law_to_message
+from rosgraph_msgs.msg import Clock
+from swim_client import LIMIT, LOSSLESS, SAMPLES, nanoseconds
+
+from eel_gaits import Law, Term, falling
+from eel_msgs.msg import CurvatureSamples
+
+FLAT_OUT = ("--ros-args", "-p", "real_time_factor:=0", "-p", "wait_for_subscribers:=1")
+
+LISTENER = """
+import sys, time
+import rclpy
+from eel_msgs.msg import Backbone
+from rclpy.qos import HistoryPolicy, QoSProfile
+rclpy.init()
+node = rclpy.create_node("listener")
+heard = 0
+def count(message):
+    global heard
+    heard += 1
+node.create_subscription(Backbone, "backbone", count, QoSProfile(history=HistoryPolicy.KEEP_ALL))
+print("listening", flush=True)
+while True:
+    rclpy.spin_once(node, timeout_sec=0.1)
+"""
+
+
+def seconds(message):
+    return nanoseconds(message.clock if isinstance(message, Clock) else message.header.stamp) / 1e9
+
+
+def test_a_subscriber_that_is_slow_for_a_while_loses_nothing(start, client):
+    """It does not take anything for 2 s while 12,000 samples are made: more than what the histories of both sides hold
+    (5,000 each). The publisher waits for it."""
+    swim = client(topics=("head_pose",))
+    swim.laws.publish(law_to_message(falling()))
+    node = start("dynamics", *FLAT_OUT, "-p", "duration:=12", "-p", "rate:=1000", "-p", "subscriber_timeout:=60")
+    node.wait_for_output("waiting for a subscriber", LIMIT)
+    time.sleep(1.0)
+    swim.until(lambda: len(swim.heard["head_pose"]) >= 12001, "12001 samples")
+    stamps = [nanoseconds(message.header.stamp) for message in swim.heard["head_pose"]]
+    assert stamps == [k * 1_000_000 for k in range(12001)]
+    assert node.wait(20.0) == 0 and "stuck" not in node.output()
+
+
+def test_a_stuck_subscriber_delays_a_run_once_and_costs_the_others_nothing(start, client):
+    stuck = start(sys.executable, "-c", LISTENER)
+    stuck.wait_for_output("listening")
+    swim = client(topics=("backbone", "head_pose"))
+    swim.laws.publish(law_to_message(falling()))
+    node = start(
+        "dynamics",
+        *FLAT_OUT[:-1],
+        "wait_for_subscribers:=2",
+        "-p",
+        "duration:=8",
+        "-p",
+        "rate:=1000",
+        "-p",
+        "subscriber_timeout:=2",
+    )
+    node.wait_for_output("waiting for", LIMIT)
+    swim.until(lambda: len(swim.heard["head_pose"]) > 100, "the first samples")
+    os.kill(stuck.process.pid, signal.SIGSTOP)
+    try:
+        began = time.monotonic()
+        swim.until(lambda: len(swim.heard["head_pose"]) >= 8001, "all samples of the other topic")
+        assert time.monotonic() - began < 30.0
+        assert "has been stuck for 2 s" in node.output() and node.output().count("has been stuck") == 1, node.output()
+        swim.until(lambda: len(swim.heard["backbone"]) >= 8001, "all samples of the same topic")
+        assert node.wait(20.0) == 0
+        assert any(swim.diagnosis(message)[0] == 1 for message in swim.heard["/diagnostics"])
+    finally:
+        os.kill(stuck.process.pid, signal.SIGCONT)
+
+
+def test_at_real_time_nobody_is_waited_for(start, client):
+    stuck = start(sys.executable, "-c", LISTENER)
+    stuck.wait_for_output("listening")
+    swim = client(topics=("backbone",))
+    swim.laws.publish(law_to_message(falling()))
+    node = start("dynamics", "--ros-args", "-p", "rate:=500")
+    swim.until_time(0.5, "backbone")
+    os.kill(stuck.process.pid, signal.SIGSTOP)
+    try:
+        begin, began = seconds(swim.heard["backbone"][-1]), time.monotonic()
+        swim.until_time(begin + 4.0, "backbone")  # more than its history
+        assert time.monotonic() - began < 8.0
+        assert "stuck" not in node.output() and "waiting for a subscriber" not in node.output()
+    finally:
+        os.kill(stuck.process.pid, signal.SIGCONT)
+
+
+def test_first_sample_waits_for_the_subscribers_asked_for(start, client):
+    first = client(topics=tuple(SAMPLES))
+    first.laws.publish(law_to_message(falling()))
+    node = start("dynamics", *FLAT_OUT[:-1], "wait_for_subscribers:=2", "-p", "duration:=1")
+    node.wait_for_output("waiting for 2 subscribers", LIMIT)
+    first.spin(3.0)
+    assert not first.heard["head_pose"]
+    second = client(topics=tuple(SAMPLES))
+    for each in (first, second):
+        each.until(
+            lambda each=each: all(len(each.heard[topic]) >= 101 for topic in SAMPLES), "101 samples of each topic"
+        )
+    assert node.wait(20.0) == 0
+
+
+# controllers
+
+
+def instant(t, amplitude=1.0, period=1.0):
+    """K3 = amplitude (1 + X) sin(2 pi t / period) at time t, with two derivatives."""
+    x, w = np.linspace(0.0, 1.0, 11), 2.0 * math.pi / period
+    message = CurvatureSamples(x=x.tolist())
+    message.header.stamp.sec, message.header.stamp.nanosec = divmod(round(t * 1e9), 1_000_000_000)
+    for name in ("pitch", "pitch_rate", "pitch_accel"):
+        setattr(message, name, [0.0] * 11)
+    message.yaw = (amplitude * math.sin(w * t) * (1.0 + x)).tolist()
+    message.yaw_rate = (amplitude * w * math.cos(w * t) * (1.0 + x)).tolist()
+    message.yaw_accel = (-amplitude * w * w * math.sin(w * t) * (1.0 + x)).tolist()
+    return message
+
+
+def test_controller_without_a_law_drives_flat_out(start, client):
+    """A controller that answers each sample with an instant ahead: the simulation waits for it."""
+    swim = client(topics=("curvature",))
+    node = start("dynamics", *FLAT_OUT, "-p", "rate:=50", "-p", "default_transition:=0.1")
+    node.wait_for_output("waiting for a law", LIMIT)
+    swim.until(lambda: swim.samples.get_subscription_count() == 1, "the node's subscription")
+    for k in (1, 2, 3):
+        swim.samples.publish(instant(0.02 * k))
+    sent = 3
+    deadline = time.monotonic() + LIMIT
+    while not (swim.heard["curvature"] and seconds(swim.heard["curvature"][-1]) >= 2.0):
+        assert time.monotonic() < deadline, node.output()
+        swim.executor.spin_once(timeout_sec=0.02)
+        while swim.heard["curvature"] and sent < 50 * seconds(swim.heard["curvature"][-1]) + 3:
+            sent += 1
+            swim.samples.publish(instant(0.02 * sent))
+    assert [nanoseconds(m.header.stamp) for m in swim.heard["curvature"]] == [
+        20_000_000 * k for k in range(len(swim.heard["curvature"]))
+    ]
+    for message in swim.heard["curvature"][10:]:  # after the blend
+        expected = math.sin(2 * math.pi * seconds(message)) * (1.0 + np.array(message.x))
+        assert np.allclose(message.yaw, expected, rtol=0, atol=1e-4)
+    assert "run out" not in node.output()
+
+
+@pytest.mark.parametrize("factor", ["1", "0"])
+def test_dying_controller_brings_the_shape_to_rest_and_may_come_back(start, client, factor):
+    swim = client(topics=("curvature",))
+    swim.laws.publish(law_to_message(Law(name="still")))
+    options = (
+        "-p",
+        f"real_time_factor:={factor}",
+        "-p",
+        "rate:=100",
+        "-p",
+        "default_transition:=0.3",
+        "-p",
+        "subscriber_timeout:=1",
+    )
+    node = start(
+        "dynamics",
+        "--ros-args",
+        *options,
+        "-p",
+        "wait_for_subscribers:=1",
+        *(("-p", "duration:=400") if factor == "0" else ()),
+    )
+    swim.until(lambda: swim.samples.get_subscription_count() == 1, "the node's subscription")
+    swim.until(lambda: swim.heard["curvature"], "a first sample")
+    swim.pause(True)
+
+    def drive():
+        swim.spin(0.2)
+        begin = seconds(swim.heard["curvature"][-1])
+        times = begin + 0.05 * np.arange(1, 11)
+        for t in times:
+            swim.samples.publish(instant(t))
+        swim.spin(0.3)
+        return times[-1]
+
+    end = drive()
+    swim.pause(False)
+    swim.until_time(end + 1.0, "curvature")
+    moved = [m for m in swim.heard["curvature"] if seconds(m) <= end]
+    after = [m for m in swim.heard["curvature"] if seconds(m) >= end]
+    assert max(np.abs(m.yaw).max() for m in moved) > 0.5
+    assert np.allclose(swim.heard["curvature"][-1].yaw_rate, 0.0, atol=1e-12)  # at rest
+    steps = np.abs(np.diff([m.yaw_rate for m in after], axis=0)).max()
+    assert steps < 0.05 * max(np.abs(m.yaw_rate).max() for m in moved) + 2.0  # comes to rest without a jump
+    assert node.output().count("have run out") == 1
+    swim.pause(True)
+    end = drive()
+    swim.pause(False)
+    swim.until_time(end, "curvature")
+    node.wait_for_output("are back", 20.0)
+    swim.until_time(end + 1.0, "curvature")
+    assert node.output().count("have run out") == 2
+
+
+def test_bad_samples_are_refused(start, client):
+    swim = client(topics=("curvature",))
+    swim.laws.publish(law_to_message(Law(name="still")))
+    node = start("dynamics", "--ros-args")
+    swim.until_time(0.2, "curvature")
+    short, late, odd = instant(1e3), instant(0.0), instant(1e3)
+    short.yaw = [1.0]
+    odd.pitch = [math.nan] * 11
+    for message, words in ((short, ("yaw", "11", "1")), (late, ("ahead", "0.0")), (odd, ("pitch", "nan"))):
+        before = node.output().count("[ERROR]")
+        swim.spin(1.1)  # errors of one kind are said once a second
+        swim.samples.publish(message)
+        swim.until(lambda before=before: node.output().count("[ERROR]") > before, f"error {words}", 20.0)
+        line = [line for line in node.output().splitlines() if "[ERROR]" in line][-1]
+        assert "samples" in line and all(word in line for word in words), line
+    assert not np.any(swim.latest("curvature").yaw) and node.status is None
+
+
+# /clock
+
+
+def test_second_publisher_of_clock_is_left_alone(start, client):
+    swim = client(topics=("head_pose",))
+    other = swim.node.create_publisher(Clock, "/clock", LOSSLESS)
+    node = start("dynamics", "--ros-args")
+    node.wait_for_output("/clock is published by /swim_client already", LIMIT)
+    swim.until(lambda: swim.node.count_publishers("/clock") == 1, "the node's leaving /clock to the other")
+    swim.until(lambda: swim.diagnosis()[0] == 1 and "/clock" in swim.diagnosis()[1], "warning in the diagnostics")
+    swim.node.destroy_publisher(other)
+    swim.until(lambda: swim.node.count_publishers("/clock") == 1, "its return")
+
+
+def test_of_two_nodes_the_first_keeps_the_clock(start, client):
+    swim = client(topics=(), clock=True)
+    first = start("dynamics", "--ros-args", "-r", "__ns:=/first")
+    first.wait_for_output("waiting for a law", LIMIT)
+    swim.spin(5.0)
+    second = start("dynamics", "--ros-args", "-r", "__ns:=/second")
+    second.wait_for_output("/clock is published by /first/dynamics already", LIMIT)
+    swim.spin(5.0)
+    publishers = {info.node_namespace for info in swim.node.get_publishers_info_by_topic("/clock")}
+    assert publishers == {"/first"}
+
+
+def test_clock_can_be_off(start, client):
+    swim = client(topics=("head_pose",), clock=True)
+    swim.laws.publish(law_to_message(Law(Term(amplitude=(1.0,), period=1.0))))
+    start("dynamics", "--ros-args", "-p", "clock:=false")
+    swim.until_time(0.5)
+    assert not swim.heard["/clock"] and swim.node.count_publishers("/clock") == 0
+    assert swim.set(clock=True)[0].successful
+    swim.until(lambda: swim.heard["/clock"], "clock")
