@@ -85,7 +85,8 @@ class Publishers:
 
     def audience_complete(self, wanted: int, now: float) -> bool:
         """Whether every topic has `wanted` subscribers, or some have and nobody has come or gone for a while."""
-        counts = [channel.publisher.get_subscription_count() for channel in self._channels.values()]
+        own = [channel for name, channel in self._channels.items() if not name.startswith("/")]
+        counts = [channel.publisher.get_subscription_count() for channel in own]
         if counts != self._audience:
             self._audience, self._audience_since = counts, now
         return min(counts) >= wanted or (max(counts) >= wanted and now - self._audience_since > CALM)
