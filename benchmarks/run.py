@@ -1,7 +1,7 @@
 """Speed and accuracy, measured: `python benchmarks/run.py [NAME ...]`, one line per figure with its unit.
 
-Each figure is the median of repeats in one process; ratios come from repeats taken in turn. Timings mean something on an
-otherwise idle machine only.
+Each figure is the median of repeats in one process; ratios come from repeats taken in turn. Timings mean something on
+an otherwise idle machine only.
 """
 
 import platform
@@ -9,12 +9,14 @@ import statistics
 import subprocess
 import sys
 import time
+from functools import partial
 
 import numpy as np
-from eel_dynamics import Accuracy, Body, Scene, Simulation, simulate
 from eel_dynamics.integrator import rate_of_state
-from eel_gaits import falling, straight
 from numba import njit
+
+from eel_dynamics import Accuracy, Body, Scene, Simulation, simulate
+from eel_gaits import falling, straight
 
 REPEATS = 9
 BODY = Body.boyer2010()
@@ -38,7 +40,8 @@ def median_seconds(action, repeats: int = REPEATS) -> float:
 
 
 def evaluation():
-    """One evaluation of the head's dynamics (momentum form, three dimensions, all loads), against the number of nodes."""
+    """One evaluation of the head's dynamics (momentum form, three dimensions, all loads), against the number of
+    nodes."""
     for resolution in (8.0, 13.0, 36.0, 80.0, 180.0):
         swimmer = Simulation(body=BODY, accuracy=Accuracy(name="bench", resolution=resolution))
         swimmer.adopt(falling())
@@ -51,19 +54,26 @@ def evaluation():
 
 
 def falling_gait():
-    """10 s of the falling gait: times real time, and the error of the head's position by its path (against a finer run)."""
+    """10 s of the falling gait: times real time, and the error of the head's position by its path (against a finer
+    run)."""
     lean = Scene(ledger=False, internal_wrench=False)
     finest = simulate(falling(), body=BODY, accuracy=1e-9, scene=lean)
     for name, scene, period in (("motion alone", lean, 10.0), ("ledger, wrench, 201 samples", Scene(), 0.05)):
         for accuracy in (1e-2, 1e-3, 1e-4, 1e-6):
-            run = simulate(falling(), body=BODY, accuracy=accuracy, scene=scene, sample_period=period)
-            seconds = median_seconds(lambda: simulate(falling(), body=BODY, accuracy=accuracy, scene=scene, sample_period=period))  # noqa: B023
+            swim = partial(simulate, falling(), body=BODY, accuracy=accuracy, scene=scene, sample_period=period)
+            run = swim()
+            seconds = median_seconds(swim)
             error = np.linalg.norm(run.position[-1] - finest.position[-1]) / finest.path_length
-            yield f"{name}, target {accuracy:g}", 10.0 / seconds, f"times real time, error {error:.1e}, {run.evaluations} evaluations"
+            yield (
+                f"{name}, target {accuracy:g}",
+                10.0 / seconds,
+                f"times real time, error {error:.1e}, {run.evaluations} evaluations",
+            )
 
 
 def switches():
-    """What a switch of the scene costs: time of 10 s of a straight gait by that with everything on, at equal accuracy."""
+    """What a switch of the scene costs: time of 10 s of a straight gait by that with everything on, at equal
+    accuracy."""
     scenes = {
         "everything": Scene(),
         "no ledger": Scene(ledger=False),
@@ -89,10 +99,12 @@ def switches():
 def start():
     """A fresh process with a warm cache: import of the library, and the first step and sample."""
     code = (
-        "import time; a = time.perf_counter(); from eel_dynamics import simulate; from eel_gaits import falling; b = time.perf_counter(); "
-        "simulate(falling(), 0.05); print(b - a, time.perf_counter() - b)"
+        "import time; a = time.perf_counter(); from eel_dynamics import simulate; from eel_gaits import falling; "
+        "b = time.perf_counter(); simulate(falling(), 0.05); print(b - a, time.perf_counter() - b)"
     )
-    runs = [tuple(map(float, subprocess.check_output([sys.executable, "-c", code], text=True).split())) for _ in range(5)]
+    runs = [
+        tuple(map(float, subprocess.check_output([sys.executable, "-c", code], text=True).split())) for _ in range(5)
+    ]
     yield "import", statistics.median(first for first, _ in runs), "s"
     yield "first step and sample", statistics.median(second for _, second in runs), "s"
 
@@ -107,7 +119,8 @@ def main(names: list[str]) -> int:
         print(f"run.py: unknown figure {unknown[0]!r}, must be one of {', '.join(FIGURES)}", file=sys.stderr)
         return 2
     commit = subprocess.run(["git", "describe", "--always", "--dirty"], capture_output=True, text=True).stdout.strip()
-    print(f"{platform.processor() or platform.machine()}, Python {platform.python_version()}, commit {commit or 'unknown'}, medians of {REPEATS}")
+    machine = f"{platform.processor() or platform.machine()}, Python {platform.python_version()}"
+    print(f"{machine}, commit {commit or 'unknown'}, medians of {REPEATS}")
     for name in names or FIGURES:
         print(f"{name}: {FIGURES[name].__doc__}")
         for label, value, unit in FIGURES[name]():

@@ -27,8 +27,8 @@ WAVES_POWER = 0.85  # points grow with this power of the number of waves on the 
 
 @dataclass(frozen=True, kw_only=True)
 class Accuracy:
-    """Settings of a run. `resolution`: points per body length; `tolerance`: relative error per adaptive step; `step` [s]:
-    where given, steps of the classical Runge-Kutta method of this length instead."""
+    """Settings of a run. `resolution`: points per body length; `tolerance`: relative error per adaptive step; `step`
+    [s]: where given, steps of the classical Runge-Kutta method of this length instead."""
 
     name: str
     resolution: float
@@ -37,7 +37,9 @@ class Accuracy:
 
     def __post_init__(self):
         if not (np.isfinite(self.resolution) and 1.0 <= self.resolution <= 1000.0):
-            raise ValueError(f"accuracy resolution must lie in 1 to 1000 points per body length, got {self.resolution!r}")
+            raise ValueError(
+                f"accuracy resolution must lie in 1 to 1000 points per body length, got {self.resolution!r}"
+            )
         if not (np.isfinite(self.tolerance) and self.tolerance > 0.0):
             raise ValueError(f"accuracy tolerance must be > 0, got {self.tolerance!r}")
         if self.step is not None and not (np.isfinite(self.step) and self.step > 0.0):
@@ -60,11 +62,15 @@ class Accuracy:
             try:
                 target = float(name)
             except ValueError:
-                raise ValueError(f"accuracy must be one of {', '.join(PRESETS)} or a target relative error, got {value!r}") from None
+                raise ValueError(
+                    f"accuracy must be one of {', '.join(PRESETS)} or a target relative error, got {value!r}"
+                ) from None
         try:
             target = float(target)
         except (TypeError, ValueError):
-            raise ValueError(f"accuracy must be one of {', '.join(PRESETS)} or a target relative error, got {value!r}") from None
+            raise ValueError(
+                f"accuracy must be one of {', '.join(PRESETS)} or a target relative error, got {value!r}"
+            ) from None
         if not FINEST <= target <= COARSEST:
             raise ValueError(f"accuracy must be a target relative error from {FINEST:g} to {COARSEST:g}, got {value!r}")
         return _from_target(f"{target:g}", target)

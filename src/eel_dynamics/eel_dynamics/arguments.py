@@ -10,6 +10,7 @@ def checked_instance(name: str, value, kind: type):
 
 
 def checked_row(name: str, values, size: int | None) -> np.ndarray:
+    """`values` as (size,) finite floats; any size where it is None."""
     try:
         array = np.array(values, dtype=float)
     except (TypeError, ValueError):
@@ -17,7 +18,8 @@ def checked_row(name: str, values, size: int | None) -> np.ndarray:
     if array.ndim != 1 or (size is not None and len(array) != size):
         raise ValueError(f"{name} must be {'a row of' if size is None else size} numbers, got {array.size}")
     if not np.all(np.isfinite(array)):
-        raise ValueError(f"{name} must be finite, got {array[~np.isfinite(array)][0]} at index {np.flatnonzero(~np.isfinite(array))[0]}")
+        index = np.flatnonzero(~np.isfinite(array))[0]
+        raise ValueError(f"{name} must be finite, got {array[index]} at index {index}")
     return array
 
 
@@ -45,4 +47,6 @@ def check_planar(position, orientation, twist):
     if np.any(np.abs(orientation[:2]) > 1e-12):
         raise ValueError(f"orientation must be a turn about z in a planar scene, got {orientation.tolist()}")
     if twist[0] or twist[1] or twist[5]:
-        raise ValueError(f"twist must lie in the plane of a planar scene (Omega_1 = Omega_2 = V_3 = 0), got {twist.tolist()}")
+        raise ValueError(
+            f"twist must lie in the plane of a planar scene (Omega_1 = Omega_2 = V_3 = 0), got {twist.tolist()}"
+        )

@@ -20,8 +20,9 @@ class Body:
     length: [m]. half_width, half_height: functions of X [m] that return m, or arrays [m] with `x=` [m] (rising from 0
     to the length; interpolated in their squares by a monotone cubic between kinks). kinks: X [m] inside (0, length)
     where a half-axis or one of its derivatives jumps. nose: half-axes and length (a_o, b_o, c_o) [m] of the cap in
-    m_o = rho_f pi k a_o b_o c_o and k_o = pi c_p a_o b_o; by default those at the end of the first panel, and its length.
-    density: [kg/m^3]. nose_added_mass: k. nose_drag: c_p. roll_drag, lateral_drag, vertical_drag: c_1, c_2, c_3.
+    m_o = rho_f pi k a_o b_o c_o and k_o = pi c_p a_o b_o; by default those at the end of the first panel, and its
+    length. density: [kg/m^3]. nose_added_mass: k. nose_drag: c_p. roll_drag, lateral_drag, vertical_drag: c_1, c_2,
+    c_3.
 
     `ValueError` names the argument that does not fit, and what it got.
     """
@@ -46,7 +47,9 @@ class Body:
         if x is not None:
             x = _array("x", x)
             if len(x) < 4 or np.any(np.diff(x) <= 0.0) or x[0] != 0.0:
-                raise ValueError(f"body x must rise from 0 over 4 points or more, got {len(x)} points from {x[:1]} to {x[-1:]}")
+                raise ValueError(
+                    f"body x must rise from 0 over 4 points or more, got {len(x)} points from {x[:1]} to {x[-1:]}"
+                )
             length = x[-1] if length is None else length
             if abs(x[-1] - _positive("length", length, "m")) > 1e-9 * x[-1]:
                 raise ValueError(f"body x must end at the length {length} m, got {x[-1]}")
@@ -58,7 +61,11 @@ class Body:
         self.kinks = self._checked_kinks(kinks)
         self.panel_ends = (*(self.kinks or (PANEL_OF_NOSE * self.length,)), self.length)
         bounds = (0.0, *self.panel_ends)
-        kind = FunctionProfile if x is None else (lambda name, values, bounds: ArrayProfile(name, x, _array(name, values), bounds))
+        kind = (
+            FunctionProfile
+            if x is None
+            else (lambda name, values, bounds: ArrayProfile(name, x, _array(name, values), bounds))
+        )
         self._half_width = kind("half_width", half_width, bounds)
         self._half_height = kind("half_height", half_height, bounds)
         self.nose = self._checked_nose(nose)
@@ -79,13 +86,18 @@ class Body:
     def squares(self, x) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """a^2, b^2 [m^2] and their derivatives by X [m] at `x` (M,) [m]; a kink takes the derivative ahead of it."""
         x = np.asarray(x, dtype=float)
-        return self._half_height.square(x), self._half_width.square(x), self._half_height.slope(x), self._half_width.slope(x)
+        return (
+            self._half_height.square(x),
+            self._half_width.square(x),
+            self._half_height.slope(x),
+            self._half_width.slope(x),
+        )
 
     @property
     def volume(self) -> float:
         """Integral of pi a b dX [m^3]."""
-        from .sections import panels_of
         from .quadrature import Grid
+        from .sections import panels_of
 
         grid = Grid.of(panels_of(self, resolution=40))
         return float(np.sum(grid.weight * np.pi * self.half_width(grid.x) * self.half_height(grid.x)))
@@ -137,7 +149,13 @@ class Body:
             s = np.asarray(x, dtype=float) / length
             return length * height * np.sqrt(np.maximum(0.0, 1.0 - ((s - middle) / middle) ** 2))
 
-        return Body(length=length, half_width=half_width, half_height=half_height, kinks=(head * length, tail * length), name="kern2006")
+        return Body(
+            length=length,
+            half_width=half_width,
+            half_height=half_height,
+            kinks=(head * length, tail * length),
+            name="kern2006",
+        )
 
     @staticmethod
     def named(name: str) -> "Body":
@@ -156,8 +174,12 @@ class Body:
             raise ValueError(f"body file {path} cannot be read: {error}") from None
         missing = [key for key in ("x", "half_width", "half_height") if key not in columns]
         if missing:
-            raise ValueError(f"body file {path} must have columns x, half_width, half_height; {', '.join(missing)} missing")
-        return Body(x=columns["x"], half_width=columns["half_width"], half_height=columns["half_height"], name=path.stem)
+            raise ValueError(
+                f"body file {path} must have columns x, half_width, half_height; {', '.join(missing)} missing"
+            )
+        return Body(
+            x=columns["x"], half_width=columns["half_width"], half_height=columns["half_height"], name=path.stem
+        )
 
     def _checked_kinks(self, kinks) -> tuple[float, ...]:
         values = _array("kinks", kinks)
@@ -198,7 +220,9 @@ def _positive(name: str, value, unit: str, zero: bool = False) -> float:
     except (TypeError, ValueError):
         number = np.nan
     if not np.isfinite(number) or number < 0.0 or (number == 0.0 and not zero):
-        raise ValueError(f"body {name} must be finite and {'>=' if zero else '>'} 0 {unit}".rstrip() + f", got {value!r}")
+        raise ValueError(
+            f"body {name} must be finite and {'>=' if zero else '>'} 0 {unit}".rstrip() + f", got {value!r}"
+        )
     return number
 
 

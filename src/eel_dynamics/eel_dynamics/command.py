@@ -1,7 +1,7 @@
 """`simulate`: swim a gait offline, print the summary, keep the run.
 
-    simulate falling
-    simulate straight --set wavelength=0.8 --scene friction=laminar --accuracy 1e-6 --out run.npz
+simulate falling
+simulate straight --set wavelength=0.8 --scene friction=laminar --accuracy 1e-6 --out run.npz
 """
 
 import argparse
@@ -12,7 +12,6 @@ from dataclasses import fields
 from pathlib import Path
 
 import numpy as np
-
 from eel_gaits.registry import GAITS, gait
 
 from .accuracy import PRESETS
@@ -21,10 +20,27 @@ from .run import Run, simulate
 from .scene import Scene
 from .simulation import SimulationStopped
 
-ARRAYS = (
-    "time position orientation twist head_acceleration center_of_mass x backbone section_orientation curvature curvature_rate torque force "
-    "fluid_force resistive_force tail_force nose_force closure_torque closure_force"
-).split()
+ARRAYS = [
+    "time",
+    "position",
+    "orientation",
+    "twist",
+    "head_acceleration",
+    "center_of_mass",
+    "x",
+    "backbone",
+    "section_orientation",
+    "curvature",
+    "curvature_rate",
+    "torque",
+    "force",
+    "fluid_force",
+    "resistive_force",
+    "tail_force",
+    "nose_force",
+    "closure_torque",
+    "closure_force",
+]
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -67,15 +83,27 @@ def _parser() -> argparse.ArgumentParser:
     scene = ", ".join(item.name for item in fields(Scene))
     parser = argparse.ArgumentParser(prog="simulate", description="Swim a gait offline and print the summary.")
     parser.add_argument("gait", nargs="?", default="falling", help=f"one of {', '.join(sorted(GAITS))} (falling)")
-    parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="a number of the gait; may be repeated")
+    parser.add_argument(
+        "--set", action="append", default=[], metavar="NAME=VALUE", help="a number of the gait; may be repeated"
+    )
     parser.add_argument("--duration", type=float, default=10.0, help="s (10)")
-    parser.add_argument("--accuracy", default="standard", help=f"{', '.join(PRESETS)}, or a target relative error (standard)")
-    parser.add_argument("--body", default="boyer2010", help=f"{', '.join(NAMED)}, or a .csv or .npz file with columns x, half_width, half_height [m]")
-    parser.add_argument("--scene", action="append", default=[], metavar="NAME=VALUE", help=f"physics: {scene}; may be repeated")
+    parser.add_argument(
+        "--accuracy", default="standard", help=f"{', '.join(PRESETS)}, or a target relative error (standard)"
+    )
+    parser.add_argument(
+        "--body",
+        default="boyer2010",
+        help=f"{', '.join(NAMED)}, or a .csv or .npz file with columns x, half_width, half_height [m]",
+    )
+    parser.add_argument(
+        "--scene", action="append", default=[], metavar="NAME=VALUE", help=f"physics: {scene}; may be repeated"
+    )
     parser.add_argument("--sample-period", type=float, default=0.05, help="s (0.05)")
     parser.add_argument("--stations", type=int, default=51, help="points along the body (51)")
     parser.add_argument("--load", action="store_true", help="keep the water's load along the body too")
-    parser.add_argument("--out", metavar="FILE", help=".npz: every array of the run; .csv: head, energies, one line per sample")
+    parser.add_argument(
+        "--out", metavar="FILE", help=".npz: every array of the run; .csv: head, energies, one line per sample"
+    )
     return parser
 
 
@@ -120,7 +148,7 @@ def _checked_out(out: str | None) -> Path | None:
 
 
 def _write(run: Run, path: Path):
-    energy = {} if run.energy is None else {name: run.energy[name] for name in run.energy.keys()}
+    energy = {} if run.energy is None else vars(run.energy)
     if path.suffix == ".npz":
         arrays = {name: getattr(run, name) for name in ARRAYS if getattr(run, name) is not None}
         np.savez_compressed(path, **arrays, **{f"energy_{name}": values for name, values in energy.items()})
@@ -128,7 +156,10 @@ def _write(run: Run, path: Path):
     columns = {"time": run.time}
     groups = (("position", "xyz"), ("orientation", "xyzw"), ("center_of_mass", "xyz"))
     columns |= {f"{name}_{axis}": getattr(run, name)[:, k] for name, axes in groups for k, axis in enumerate(axes)}
-    columns |= {f"{name}_{axis}": run.twist[:, k] for k, (name, axis) in enumerate((name, axis) for name in ("omega", "v") for axis in "123")}
+    columns |= {
+        f"{name}_{axis}": run.twist[:, k]
+        for k, (name, axis) in enumerate((name, axis) for name in ("omega", "v") for axis in "123")
+    }
     with open(path, "w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow([*columns, *energy])

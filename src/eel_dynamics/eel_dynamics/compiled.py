@@ -1,7 +1,8 @@
 """How the hot loops are compiled: by numba, once, and kept on disk for the next process.
 
 Numba keeps a compiled function for as long as its own file is unchanged, but not the files of the functions that it
-calls: after an upgrade, old and new loops would mix. Here a function is kept for as long as every file that holds compiled functions is unchanged.
+calls: after an upgrade, old and new loops would mix. Here a function is kept for as long as every file that holds
+compiled functions is unchanged.
 """
 
 import hashlib
@@ -9,8 +10,8 @@ from pathlib import Path
 
 from numba import njit
 
-# No reference counting (`_nrt`): the loops allocate nothing, and counting the arrays of a call costs more than the call.
-# No "nnan", "ninf" of fast-math: a state that is not finite must be seen.
+# No reference counting (`_nrt`): the loops allocate nothing, and counting the arrays of a call costs more than the
+# call. No "nnan", "ninf" of fast-math: a state that is not finite must be seen.
 OPTIONS = {
     "cache": True,
     "nogil": True,

@@ -6,16 +6,15 @@ Every law is a sum of fields of X times functions of time alone,
 
 since sin(kX + phase - wt) = sin(kX + phase) cos wt - cos(kX + phase) sin wt. The rows are tabulated once: at the nodes,
 at the stations, and as the Magnus moments of the intervals that lead to both; an instant needs the factors c_m only.
-The difference between a motion and the law that takes over, and the quintic between two instants of a controller, are of
-the same form.
+The difference between a motion and the law that takes over, and the quintic between two instants of a controller, are
+of the same form.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-from .compiled import compiled, inlined
-
+from .compiled import inlined
 
 AXES = {"pitch": 0, "yaw": 1}
 MOMENT_POINTS = 10  # Gauss points per interval for the Magnus moments
@@ -26,6 +25,7 @@ class Drive(NamedTuple):
 
     axis: np.ndarray  # (m,) int, 0 pitch (K2), 1 yaw (K3)
     node: np.ndarray  # (m, n) rad/m at the nodes, per unit of factor
+    angle: np.ndarray  # (m, n) rad, integral from the nose to the nodes
     bend: np.ndarray  # (m, 3, n) rad, Magnus moments between the nodes
     station: np.ndarray  # (m, s) rad/m
     station_bend: np.ndarray  # (m, 3, s) rad, from the node before each station
@@ -71,7 +71,12 @@ class Tabulation:
         moments = np.einsum("...ig,kg->...ki", inside, self._moments) * self._length
         flat = values.shape[:-1]
         return np.concatenate(
-            (values[..., :n], moments[..., :n].reshape(*flat, 3 * n), values[..., n : n + s], moments[..., n:].reshape(*flat, 3 * s)),
+            (
+                values[..., :n],
+                moments[..., :n].reshape(*flat, 3 * n),
+                values[..., n : n + s],
+                moments[..., n:].reshape(*flat, 3 * s),
+            ),
             axis=-1,
         )
 
@@ -80,13 +85,14 @@ class Tabulation:
         n, s, m = self.nodes, self.stations, len(rows)
         cuts = np.split(rows, [n, 4 * n, 4 * n + s], axis=1)
         shapes = (m, n), (m, 3, n), (m, s), (m, 3, s)
-        return tuple(np.ascontiguousarray(part.reshape(shape)) for part, shape in zip(cuts, shapes))
+        return tuple(np.ascontiguousarray(part.reshape(shape)) for part, shape in zip(cuts, shapes, strict=True))
 
 
 @inlined
 def quintic(s, length, sign, factor, row):
-    """Factors (3, m) [value, rate, acceleration] of the value, rate and acceleration at one end of an interval of `length`,
-    at the fraction `s` from that end; the polynomials vanish with two derivatives at the other end. `sign` -1: from the end."""
+    """Factors (3, m) [value, rate, acceleration] of the value, rate and acceleration at one end of an interval of
+    `length`, at the fraction `s` from that end; the polynomials vanish with two derivatives at the other end. `sign`
+    -1: from the end."""
     s2, s3 = s * s, s * s * s
     d, d2 = sign / length, 1.0 / (length * length)
     factor[0, row] = 1.0 - s3 * (10.0 - s * (15.0 - 6.0 * s))
@@ -102,7 +108,7 @@ def quintic(s, length, sign, factor, row):
     factor[2, row + 2] = scale * d2 * (1.0 - s) * (1.0 - s * (8.0 - 10.0 * s))
 
 
-@compiled
+@inlined
 def factors(drive, time, factor):
     """Factors c_m (3, m) at `time` [s]: value, rate [1/s] and acceleration [1/s^2]."""
     own = time - drive.origin

@@ -41,4 +41,6 @@ class EnergyLedger:
     def of(kinetic: np.ndarray, powers: np.ndarray, works: np.ndarray, start: float) -> "EnergyLedger":
         """From kinetic energies (..., 2), powers (..., 4), works (..., 4), and the kinetic energy at the start [J]."""
         residual = kinetic.sum(axis=-1) - start - works.sum(axis=-1)
-        return EnergyLedger(kinetic[..., 0], kinetic[..., 1], *np.moveaxis(powers, -1, 0), residual, *np.moveaxis(works, -1, 0))
+        return EnergyLedger(
+            kinetic[..., 0], kinetic[..., 1], *np.moveaxis(powers, -1, 0), residual, *np.moveaxis(works, -1, 0)
+        )

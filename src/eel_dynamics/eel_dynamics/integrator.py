@@ -1,12 +1,12 @@
 """March of the head in time: explicit Runge-Kutta steps of the momentum form, with dense output, compiled.
 
-State y (17,), world axes: position of the head 0:3 [m]; orientation 3:7, quaternion x y z w; momentum of body, water and
-nose about the head 7:10 [kg m^2/s] and linear 10:13 [kg m/s]; work of actuators, wake, nose and drag since the start
-13:17 [J]. The works are integrals along the way, from the acceleration form at the Lobatto points of each step.
+State y (17,), world axes: position of the head 0:3 [m]; orientation 3:7, quaternion x y z w; momentum of body, water
+and nose about the head 7:10 [kg m^2/s] and linear 10:13 [kg m/s]; work of actuators, wake, nose and drag since the
+start 13:17 [J]. The works are integrals along the way, from the acceleration form at the Lobatto points of each step.
 
-Two methods: the pair of Dormand and Prince of orders 5(4) with a step chosen by its error estimate (J. Comp. Appl. Math.
-6 (1980); dense output of order 4 by Shampine, Math. Comp. 46 (1986)), and the classical Runge-Kutta method with a given
-step. Steps end at the breakpoints of the shape, where its derivatives jump.
+Two methods: the pair of Dormand and Prince of orders 5(4) with a step chosen by its error estimate (J. Comp. Appl.
+Math. 6 (1980); dense output of order 4 by Shampine, Math. Comp. 46 (1986)), and the classical Runge-Kutta method with a
+given step. Steps end at the breakpoints of the shape, where its derivatives jump.
 """
 
 from typing import NamedTuple
@@ -16,6 +16,7 @@ import numpy as np
 from .compiled import compiled, inlined
 from .drive import combine, combine_moments, factors
 from .kernel import add_head_twist, configure, momentum_rates, twist_of_momentum
+from .planar import rate_of_state_plane
 from .wrench import accelerate, actuator_power
 
 STATE = 13
@@ -46,6 +47,7 @@ class Control(NamedTuple):
     momentum_floor: float  # kg m/s, below which momentum counts as none
     most_steps: float  # per second of motion, and at least once
     ledger: bool
+    planar: bool
 
 
 class Step(NamedTuple):
@@ -144,7 +146,8 @@ def rotate(y, inverse, vector, at):
 
 @inlined
 def settle(swimmer, drive, fields, time, y, momentum, twist):
-    """Configure the body at `time` and find the head's `twist` from the momentum of state `y`. False where it has none."""
+    """Configure the body at `time` and find the head's `twist` from the momentum of state `y`. False where it has
+    none."""
     factors(drive, time, fields.factor)
     combine_moments(drive.axis, drive.bend, fields.factor[0], fields.bend)
     combine(drive.axis, drive.node, fields.factor[1], fields.rate)
@@ -209,7 +212,8 @@ def interpolate(method, step, theta, y):
 
 @inlined
 def works_upto(step, theta, series, work):
-    """Works (4,) [J] at the fraction `theta` of the step: the integral of the cubic through the powers at Lobatto's points."""
+    """Works (4,) [J] at the fraction `theta` of the step: the integral of the cubic through the powers at Lobatto's
+    points."""
     for k in range(WORKS):
         work[k] = step.work[k]
     power = theta
@@ -218,6 +222,14 @@ def works_upto(step, theta, series, work):
             for k in range(WORKS):
                 work[k] += step.time[1] * power / (j + 1.0) * series[j, i] * step.power[i, k]
         power *= theta
+
+
+@inlined
+def evaluate(swimmer, drive, fields, current, control, time, y, step, dy):
+    """Rate `dy` (13,) of state `y` at `time`, by the scene's kernel. False where the inertia is singular."""
+    if control.planar:
+        return rate_of_state_plane(swimmer, drive, fields, current, time, y, step, dy)
+    return rate_of_state(swimmer, drive, fields, current, time, y, step, dy)
 
 
 @inlined
@@ -248,8 +260,8 @@ def error_of(method, step, first, last):
 
 @inlined
 def error_by_tolerance(method, control, step, length):
-    """The error estimate of the trial step by the tolerance: of position by the body's length, of orientation by one, of
-    the momenta by their greatest size so far; the worst of the four. A good step has 1 or less."""
+    """The error estimate of the trial step by the tolerance: of position by the body's length, of orientation by one,
+    of the momenta by their greatest size so far; the worst of the four. A good step has 1 or less."""
     trial = step.trial
     linear = max(step.scale[1], np.sqrt(trial[10] ** 2 + trial[11] ** 2 + trial[12] ** 2), control.momentum_floor)
     angular = max(step.scale[0], np.sqrt(trial[7] ** 2 + trial[8] ** 2 + trial[9] ** 2), linear * control.length)
@@ -262,7 +274,8 @@ def error_by_tolerance(method, control, step, length):
 
 @compiled
 def attempt(swimmer, drive, fields, current, method, control, step, start, length):
-    """Try a step of `length` [s] from `step.end` at `start`, into `step.trial`. Returns a status and the error by tolerance."""
+    """Try a step of `length` [s] from `step.end` at `start`, into `step.trial`. Returns a status and the error by
+    tolerance."""
     stages = method.a.shape[0]
     for i in range(1, stages):
         for k in range(STATE):
@@ -273,7 +286,9 @@ def attempt(swimmer, drive, fields, current, method, control, step, start, lengt
         if i == stages - 1:
             normalise(step.trial)
         step.count[2] += 1
-        if not rate_of_state(swimmer, drive, fields, current, start + method.c[i] * length, step.trial, step, step.k[i]):
+        if not evaluate(
+            swimmer, drive, fields, current, control, start + method.c[i] * length, step.trial, step, step.k[i]
+        ):
             return SINGULAR, np.inf
     total = 0.0
     for k in range(STATE):
@@ -289,9 +304,11 @@ def begin(swimmer, drive, fields, balance, current, method, control, step, start
     last = method.a.shape[0] - 1
     if step.fresh[0] == 1:
         step.count[2] += 1
-        if not rate_of_state(swimmer, drive, fields, current, start, step.end, step, step.k[last]):
+        if not evaluate(swimmer, drive, fields, current, control, start, step.end, step, step.k[last]):
             return False
-        if control.ledger and not powers_of_state(swimmer, drive, fields, balance, start, step.end, step, step.power[3]):
+        if control.ledger and not powers_of_state(
+            swimmer, drive, fields, balance, start, step.end, step, step.power[3]
+        ):
             return False
         step.fresh[0] = 0
     for k in range(STATE):
@@ -362,6 +379,8 @@ def march(swimmer, drive, fields, balance, current, method, control, breakpoints
         if control.ledger:
             for j in range(1, 4):
                 interpolate(method, step, lobatto[j], step.trial)
-                if not powers_of_state(swimmer, drive, fields, balance, start + lobatto[j] * length, step.trial, step, step.power[j]):
+                if not powers_of_state(
+                    swimmer, drive, fields, balance, start + lobatto[j] * length, step.trial, step, step.power[j]
+                ):
                     return SINGULAR
     return MARCHED

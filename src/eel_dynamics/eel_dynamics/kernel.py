@@ -31,6 +31,7 @@ class Fields(NamedTuple):
     omega: np.ndarray  # (3, n) rad/s, angular velocity of the sections
     v: np.ndarray  # (3, n) m/s, velocity of the sections
     part: np.ndarray  # (n,) part of the turbulent law in the friction
+    rubbing: np.ndarray  # (n,) kg/m/s, 1/2 rho_f k1 |V1|
     integrand: np.ndarray  # (6, n) scratch
     inertia: np.ndarray  # (6, 6) of body and water about the head
     wrench: np.ndarray  # (6,) scratch
@@ -50,6 +51,7 @@ def fields_of(nodes: int, rows: int) -> Fields:
         omega=np.zeros((3, nodes)),
         v=np.zeros((3, nodes)),
         part=np.zeros(nodes),
+        rubbing=np.zeros(nodes),
         integrand=np.zeros((6, nodes)),
         inertia=np.zeros((6, 6)),
         wrench=np.zeros(6),
@@ -79,8 +81,18 @@ def turns(bend, turn):
         e3 = b3 - (c1 * w2 - u2 * w1) / 240.0
         z = 0.25 * (e1 * e1 + e2 * e2 + e3 * e3)  # half angle squared
         if z < 0.25:
-            s = 0.5 * (1.0 - z / 6.0 * (1.0 - z / 20.0 * (1.0 - z / 42.0 * (1.0 - z / 72.0 * (1.0 - z / 110.0 * (1.0 - z / 156.0))))))
-            c = 1.0 - z / 2.0 * (1.0 - z / 12.0 * (1.0 - z / 30.0 * (1.0 - z / 56.0 * (1.0 - z / 90.0 * (1.0 - z / 132.0 * (1.0 - z / 182.0))))))
+            s = 0.5 * (
+                1.0
+                - z
+                / 6.0
+                * (1.0 - z / 20.0 * (1.0 - z / 42.0 * (1.0 - z / 72.0 * (1.0 - z / 110.0 * (1.0 - z / 156.0)))))
+            )
+            c = 1.0 - z / 2.0 * (
+                1.0
+                - z
+                / 12.0
+                * (1.0 - z / 30.0 * (1.0 - z / 56.0 * (1.0 - z / 90.0 * (1.0 - z / 132.0 * (1.0 - z / 182.0)))))
+            )
         else:
             half = np.sqrt(z)
             s = 0.5 * np.sin(half) / half
@@ -185,7 +197,11 @@ def gather_inertia(swimmer, fields):
         czx += dzx
         czy += dzy
         czz += dzz
-        j, j2, j3 = weight * swimmer.inertia1[i], weight * (swimmer.inertia2[i] - swimmer.inertia1[i]), weight * (swimmer.inertia3[i] - swimmer.inertia1[i])
+        j, j2, j3 = (
+            weight * swimmer.inertia1[i],
+            weight * (swimmer.inertia2[i] - swimmer.inertia1[i]),
+            weight * (swimmer.inertia3[i] - swimmer.inertia1[i]),
+        )
         # J - (r x M) x r
         wxx += j + j2 * bx * bx + j3 * cx * cx + dxz * y - dxy * z
         wxy += j2 * bx * by + j3 * cx * cy + dyz * y - dyy * z
@@ -194,11 +210,25 @@ def gather_inertia(swimmer, fields):
         wyz += j2 * by * bz + j3 * cy * cz + dzx * z - dzz * x
         wzz += j + j2 * bz * bz + j3 * cz * cz + dzy * x - dzx * y
     inertia = fields.inertia
-    inertia[0, 0], inertia[1, 0], inertia[1, 1], inertia[2, 0], inertia[2, 1], inertia[2, 2] = wxx, wxy, wyy, wxz, wyz, wzz
+    inertia[0, 0], inertia[1, 0], inertia[1, 1], inertia[2, 0], inertia[2, 1], inertia[2, 2] = (
+        wxx,
+        wxy,
+        wyy,
+        wxz,
+        wyz,
+        wzz,
+    )
     inertia[3, 0], inertia[4, 0], inertia[5, 0] = cxx, cxy, cxz
     inertia[3, 1], inertia[4, 1], inertia[5, 1] = cyx, cyy, cyz
     inertia[3, 2], inertia[4, 2], inertia[5, 2] = czx, czy, czz
-    inertia[3, 3], inertia[4, 3], inertia[4, 4], inertia[5, 3], inertia[5, 4], inertia[5, 5] = vxx + swimmer.nose_mass, vxy, vyy, vxz, vyz, vzz
+    inertia[3, 3], inertia[4, 3], inertia[4, 4], inertia[5, 3], inertia[5, 4], inertia[5, 5] = (
+        vxx + swimmer.nose_mass,
+        vxy,
+        vyy,
+        vxz,
+        vyz,
+        vzz,
+    )
 
 
 @inlined
@@ -231,7 +261,8 @@ def gather_momentum(swimmer, fields, momentum):
 
 @inlined
 def factorise(matrix):
-    """Cholesky factor of a symmetric positive definite matrix, in place, from and to its lower triangle. False if it is not."""
+    """Cholesky factor of a symmetric positive definite matrix, in place, from and to its lower triangle. False if it is
+    not."""
     n = matrix.shape[0]
     for j in range(n):
         total = matrix[j, j]
@@ -306,8 +337,8 @@ def friction(laminar, turbulent, part, speed):
 def share_friction(swimmer, fields):
     """Part (n,) of the turbulent law in the friction of each node, from the true velocities.
 
-    The printed law jumps at one X, inside the stretch of the body that a node stands for (its weight, laid end to end). The
-    node on that stretch takes both laws in proportion, so that the load changes without a jump as the place moves.
+    The printed law jumps at one X, inside the stretch of the body that a node stands for (its weight, laid end to end).
+    The node on that stretch takes both laws in proportion, so that the load changes without a jump as the place moves.
     """
     R, v, part = fields.R, fields.v, fields.part
     n = R.shape[1]
@@ -328,10 +359,22 @@ def share_friction(swimmer, fields):
             end += swimmer.weight[i]
     elif swimmer.friction == BLENDED:
         for i in range(n):
-            part[i] = turbulent_part(BLENDED, swimmer.transition[i], abs(R[0, i] * v[0, i] + R[1, i] * v[1, i] + R[2, i] * v[2, i]))
+            part[i] = turbulent_part(
+                BLENDED, swimmer.transition[i], abs(R[0, i] * v[0, i] + R[1, i] * v[1, i] + R[2, i] * v[2, i])
+            )
     else:
         for i in range(n):
             part[i] = 0.0
+
+
+@inlined
+def rub(swimmer, fields):
+    """Friction 1/2 rho_f k1 |V1| (n,) [kg/m/s] of the nodes, from the true velocities."""
+    R, v = fields.R, fields.v
+    share_friction(swimmer, fields)
+    for i in range(R.shape[1]):
+        speed = abs(R[0, i] * v[0, i] + R[1, i] * v[1, i] + R[2, i] * v[2, i])
+        fields.rubbing[i] = friction(swimmer.laminar[i], swimmer.turbulent[i], fields.part[i], speed)
 
 
 @inlined
@@ -339,7 +382,7 @@ def add_resistive_loads(swimmer, fields, wrench):
     """Add the drag along the body to `wrench` (6,), on the body (section 7.2.1). Returns its power [W]."""
     R, r, omega, v = fields.R, fields.r, fields.omega, fields.v
     tx = ty = tz = fx = fy = fz = power = 0.0
-    share_friction(swimmer, fields)
+    rub(swimmer, fields)
     for i in range(R.shape[1]):
         vx, vy, vz = v[0, i], v[1, i], v[2, i]
         v1 = R[0, i] * vx + R[1, i] * vy + R[2, i] * vz
@@ -347,7 +390,7 @@ def add_resistive_loads(swimmer, fields, wrench):
         v3 = R[6, i] * vx + R[7, i] * vy + R[8, i] * vz
         roll = R[0, i] * omega[0, i] + R[1, i] * omega[1, i] + R[2, i] * omega[2, i]
         weight = swimmer.weight[i]
-        n1 = -weight * friction(swimmer.laminar[i], swimmer.turbulent[i], fields.part[i], abs(v1)) * v1
+        n1 = -weight * fields.rubbing[i] * v1
         n2 = -weight * swimmer.drag2[i] * abs(v2) * v2
         n3 = -weight * swimmer.drag3[i] * abs(v3) * v3
         c1 = -weight * swimmer.drag_roll[i] * abs(roll) * roll
@@ -418,7 +461,8 @@ def momentum_of_twist(swimmer, fields, twist, momentum):
 
 @inlined
 def twist_of_momentum(swimmer, fields, momentum, twist):
-    """The head's `twist` (6,) in a configured body of the given `momentum` (6,): I_o^-1 times what the shape's change leaves.
+    """The head's `twist` (6,) in a configured body of the given `momentum` (6,): I_o^-1 times what the shape's change
+    leaves.
 
     False where the inertia is not positive definite. Leaves the Cholesky factor of I_o in `fields.inertia`.
     """
@@ -442,7 +486,7 @@ def momentum_rates(swimmer, fields, momentum, twist, rates):
     add_wake(swimmer, fields, rates)
     if swimmer.resistive:
         add_resistive_loads(swimmer, fields, rates)
-    ox, oy, oz, vx, vy, vz = twist[0], twist[1], twist[2], twist[3], twist[4], twist[5]
+    _, oy, oz, vx, vy, vz = twist[0], twist[1], twist[2], twist[3], twist[4], twist[5]
     nose = swimmer.nose_mass
     # n_nose less what is the derivative of m_o V1 E1 (its gyroscopic part), and the nose's drag
     rates[3] -= nose * (oy * vz - oz * vy) + swimmer.nose_drag * vx * abs(vx)

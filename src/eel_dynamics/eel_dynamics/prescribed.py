@@ -3,14 +3,13 @@
 from dataclasses import dataclass
 
 import numpy as np
-
 from eel_gaits.law import Law
 
 from .accuracy import Accuracy
 from .arguments import checked_row
 from .body import Body
 from .drive import combine, combine_moments, factors
-from .kernel import add_head_twist, add_wake, configure, share_friction
+from .kernel import add_head_twist, add_wake, configure, rub
 from .scene import Scene
 from .simulation import Simulation
 from .wrench import add_head_acceleration, gather, section_densities, shape_accelerations
@@ -20,8 +19,8 @@ FINE = Accuracy(name="prescribed", resolution=100.0)
 
 @dataclass(frozen=True)
 class HydrodynamicWrench:
-    """Wrenches (torque, force) (6,) [N m, N] of the water on the body, about the head, in its axes. `numpy.asarray` gives
-    the sum of the parts."""
+    """Wrenches (torque, force) (6,) [N m, N] of the water on the body, about the head, in its axes. `numpy.asarray`
+    gives the sum of the parts."""
 
     inertia: np.ndarray  # (6,) - d/dt of the water's momentum along the body
     wake: np.ndarray  # (6,) momentum and pressure through the plane of the tail
@@ -47,11 +46,14 @@ class HydrodynamicWrench:
         return np.array(self.total, dtype=dtype)
 
 
-def hydrodynamic_wrench(body: Body, law: Law, time: float, twist, twist_rate, scene: Scene | None = None) -> HydrodynamicWrench:
-    """The water's wrench on `body` bent by `law` at `time` [s], its head moving with `twist` (6,) = (Omega, V) [rad/s, m/s]
-    and `twist_rate` (6,) = (Omegadot, Vdot), the rates of these components in the head's axes.
+def hydrodynamic_wrench(
+    body: Body, law: Law, time: float, twist, twist_rate, scene: Scene | None = None
+) -> HydrodynamicWrench:
+    """The water's wrench on `body` bent by `law` at `time` [s], its head moving with `twist` (6,) = (Omega, V) [rad/s,
+    m/s] and `twist_rate` (6,) = (Omegadot, Vdot), the rates of these components in the head's axes.
 
-    A current of the scene is taken along the head's axes (head and world coincide). `ValueError` names what does not fit.
+    A current of the scene is taken along the head's axes (head and world coincide). `ValueError` names what does not
+    fit.
     """
     twist, twist_rate = checked_row("twist", twist, 6), checked_row("twist_rate", twist_rate, 6)
     if not np.isfinite(time):
@@ -77,7 +79,7 @@ def hydrodynamic_wrench(body: Body, law: Law, time: float, twist, twist_rate, sc
     section_densities(alone, fields, balance)
     gather(alone, balance.density, inertia)
     if water.resistive:
-        share_friction(water, fields)
+        rub(water, fields)
         section_densities(alone._replace(resistive=True), fields, balance)
         gather(alone, balance.density, both)
     else:

@@ -4,6 +4,7 @@ Squares, because a half-axis grows like sqrt(X) at a rounded nose, where only it
 """
 
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -24,7 +25,7 @@ class FunctionProfile:
 
     @cached_property
     def _slopes(self) -> list[chebyshev.Chebyshev]:
-        return [self._fit(start, end) for start, end in zip(self._bounds[:-1], self._bounds[1:])]
+        return [self._fit(start, end) for start, end in pairwise(self._bounds)]
 
     def _value(self, x: np.ndarray) -> np.ndarray:
         try:
@@ -55,7 +56,7 @@ class FunctionProfile:
 
     def _check(self):
         length = self._bounds[-1]
-        x = np.concatenate([np.linspace(start, end, 64) for start, end in zip(self._bounds[:-1], self._bounds[1:])])
+        x = np.concatenate([np.linspace(start, end, 64) for start, end in pairwise(self._bounds)])
         values = self._value(x)
         if not np.all(np.isfinite(values)):
             worst = np.flatnonzero(~np.isfinite(values))[0]
@@ -72,9 +73,13 @@ class ArrayProfile:
         if values.shape != x.shape:
             raise ValueError(f"body {name} must have as many values as x, {len(x)}, got {len(values)}")
         _check_shape(name, x, values, x[-1])
-        cuts = [0] + [int(np.argmin(np.abs(x - kink))) for kink in bounds[1:-1] if np.min(np.abs(x - kink)) < 1e-9 * x[-1]] + [len(x) - 1]
+        cuts = (
+            [0]
+            + [int(np.argmin(np.abs(x - kink))) for kink in bounds[1:-1] if np.min(np.abs(x - kink)) < 1e-9 * x[-1]]
+            + [len(x) - 1]
+        )
         self._starts = x[cuts[:-1]]
-        self._pieces = [PchipInterpolator(x[i : j + 1], values[i : j + 1] ** 2) for i, j in zip(cuts[:-1], cuts[1:])]
+        self._pieces = [PchipInterpolator(x[i : j + 1], values[i : j + 1] ** 2) for i, j in pairwise(cuts)]
         self._slopes = [piece.derivative() for piece in self._pieces]
         self._length = x[-1]
 
@@ -102,7 +107,9 @@ def _check_shape(name: str, x: np.ndarray, values: np.ndarray, length: float):
         worst = np.argmin(values)
         raise ValueError(f"body {name} must be >= 0 m, got {values[worst]:.6g} at X = {x[worst]:.6g} m")
     if values[0] > 1e-9 * length:
-        raise ValueError(f"body {name} must be 0 m at the nose (X = 0): a blunt nose would shed a wake, got {values[0]:.6g}")
+        raise ValueError(
+            f"body {name} must be 0 m at the nose (X = 0): a blunt nose would shed a wake, got {values[0]:.6g}"
+        )
     inside = (x > 0.0) & (x < length)
     if np.any(values[inside] == 0.0):
         worst = x[inside][np.argmin(values[inside])]

@@ -1,6 +1,7 @@
 """What a sample shows: pose, velocities, energies, and the profiles along the body at the stations, compiled.
 
-The fields go on from the nodes to the stations by the same integrals that made them, so a profile is as exact as the run.
+The fields go on from the nodes to the stations by the same integrals that made them, so a profile is as exact as the
+run.
 """
 
 from typing import NamedTuple
@@ -39,12 +40,32 @@ class Profiles(NamedTuple):
 
 def profiles_of(samples: int, stations: int, wrench: bool = True, load: bool = True) -> Profiles:
     """Space for `samples` instants at `stations` stations; the profiles that are not asked for have no instants."""
-    sizes = {"orientation": (4,), "twist": (6,), "head_acceleration": (6,), "kinetic": (2,), "powers": (4,), "closure": (2,)}
-    along = {"backbone": 3, "section_orientation": 4, "curvature": 3, "curvature_rate": 3, "torque": 3, "force": 3, "fluid_force": 3, "resistive_force": 3}
+    sizes = {
+        "orientation": (4,),
+        "twist": (6,),
+        "head_acceleration": (6,),
+        "kinetic": (2,),
+        "powers": (4,),
+        "closure": (2,),
+    }
+    along = {
+        "backbone": 3,
+        "section_orientation": 4,
+        "curvature": 3,
+        "curvature_rate": 3,
+        "torque": 3,
+        "force": 3,
+        "fluid_force": 3,
+        "resistive_force": 3,
+    }
     asked = {"torque": wrench, "force": wrench, "fluid_force": load, "resistive_force": load}
     return Profiles(
         *(
-            np.zeros((samples if asked.get(name, True) else 0, stations, along[name]) if name in along else (samples, *sizes.get(name, (3,))))
+            np.zeros(
+                (samples if asked.get(name, True) else 0, stations, along[name])
+                if name in along
+                else (samples, *sizes.get(name, (3,)))
+            )
             for name in Profiles._fields
         )
     )
@@ -74,7 +95,8 @@ def station_fields_of(stations: int) -> StationFields:
 
 @inlined
 def extend(section, integrand, at_nodes, at_head, result):
-    """Field (3, M) at the stations from its derivative `integrand` and its values at the nodes (3, n), `at_head` at the nose."""
+    """Field (3, M) at the stations from its derivative `integrand` and its values at the nodes (3, n), `at_head` at the
+    nose."""
     for i in range(result.shape[1]):
         begin = section.first[i]
         x, y, z = at_head[0], at_head[1], at_head[2]
@@ -111,10 +133,20 @@ def place(stations, drive, fields, here, y, sample, out):
         if node >= 0:
             x, v, z, w = fields.q[0, node], fields.q[1, node], fields.q[2, node], fields.q[3, node]
         e, f, g, h = here.turn[0, i], here.turn[1, i], here.turn[2, i], here.turn[3, i]
-        x, v, z, w = w * e + x * h + v * g - z * f, w * f - x * g + v * h + z * e, w * g + x * f - v * e + z * h, w * h - x * e - v * f - z * g
+        x, v, z, w = (
+            w * e + x * h + v * g - z * f,
+            w * f - x * g + v * h + z * e,
+            w * g + x * f - v * e + z * h,
+            w * h - x * e - v * f - z * g,
+        )
         axes_of(x, v, z, w, here.R, i)
         q = out.section_orientation[sample, i]
-        q[0], q[1], q[2], q[3] = d * x + a * w + b * z - c * v, d * v - a * z + b * w + c * x, d * z + a * v - b * x + c * w, d * w - a * x - b * v - c * z
+        q[0], q[1], q[2], q[3] = (
+            d * x + a * w + b * z - c * v,
+            d * v - a * z + b * w + c * x,
+            d * z + a * v - b * x + c * w,
+            d * w - a * x - b * v - c * z,
+        )
         for k in range(2):
             out.curvature[sample, i, 1 + k] = here.curvature[k, i]
             out.curvature_rate[sample, i, 1 + k] = here.rate[k, i]
@@ -169,7 +201,18 @@ def internal_wrench(stations, fields, balance, here, result, distributed, sample
     for i in range(here.R.shape[1]):
         for k in range(6):
             fields.wrench[k] = balance.tail[k] - balance.total[k] + here.upto[k, i]
-        energy = section_wrench(here.R, here.r, here.omega, here.v, i, section.added2[i], section.added3[i], section.added_roll[i], fields.wrench, result)
+        energy = section_wrench(
+            here.R,
+            here.r,
+            here.omega,
+            here.v,
+            i,
+            section.added2[i],
+            section.added3[i],
+            section.added_roll[i],
+            fields.wrench,
+            result,
+        )
         for k in range(3):
             out.torque[sample, i, k] = result[k]
             out.force[sample, i, k] = result[3 + k]
@@ -179,8 +222,8 @@ def internal_wrench(stations, fields, balance, here, result, distributed, sample
 
 @compiled
 def loads(stations, here, distributed, sample, out):
-    """The water's force on the body per length at the stations: the reactive part, the rate at which a strip's water gives
-    up momentum (eq. 50), and the resistive part; and the force -T_f t1 at the tail (eq. 51)."""
+    """The water's force on the body per length at the stations: the reactive part, the rate at which a strip's water
+    gives up momentum (eq. 50), and the resistive part; and the force -T_f t1 at the tail (eq. 51)."""
     section, R = stations.section, here.R
     for i in range(R.shape[1]):
         u = (
@@ -198,7 +241,7 @@ def loads(stations, here, distributed, sample, out):
             R[3, i] * here.acc[0, i] + R[4, i] * here.acc[1, i] + R[5, i] * here.acc[2, i],
             R[6, i] * here.acc[0, i] + R[7, i] * here.acc[1, i] + R[8, i] * here.acc[2, i],
         )
-        k2, k3, rate2, rate3 = here.curvature[0, i], here.curvature[1, i], here.rate[0, i], here.rate[1, i]
+        k2, k3 = here.curvature[0, i], here.curvature[1, i]
         m2, m3, j1 = section.added2[i], section.added3[i], section.added_roll[i]
         n2, n3, i1 = stations.added2_slope[i], stations.added3_slope[i], stations.added_roll_slope[i]
         p2, p3 = m2 * u[1], m3 * u[2]
@@ -229,7 +272,23 @@ def loads(stations, here, distributed, sample, out):
 
 
 @compiled
-def observe(swimmer, stations, drive, fields, balance, here, step, current, distributed, want_wrench, want_load, time, y, sample, out):
+def observe(
+    swimmer,
+    stations,
+    drive,
+    fields,
+    balance,
+    here,
+    step,
+    current,
+    distributed,
+    want_wrench,
+    want_load,
+    time,
+    y,
+    sample,
+    out,
+):
     """Fill instant `sample` of `out` with what state `y` (13,) at `time` shows. False where the state is singular."""
     if not powers_of_state(swimmer, drive, fields, balance, time, y, step, out.powers[sample]):
         return False
@@ -278,7 +337,16 @@ def observe(swimmer, stations, drive, fields, balance, here, step, current, dist
         for k in range(6):
             fields.wrench[k] = 0.0
         energy = section_wrench(
-            fields.R, fields.r, fields.omega, fields.v, tail, swimmer.added2[tail], swimmer.added3[tail], swimmer.added_roll[tail], fields.wrench, step.rates
+            fields.R,
+            fields.r,
+            fields.omega,
+            fields.v,
+            tail,
+            swimmer.added2[tail],
+            swimmer.added3[tail],
+            swimmer.added_roll[tail],
+            fields.wrench,
+            step.rates,
         )
         out.tail_force[sample, 0] = 0.0 if distributed else -energy
         out.nose_force[sample, 0] = balance.nose[0]
@@ -286,16 +354,56 @@ def observe(swimmer, stations, drive, fields, balance, here, step, current, dist
 
 
 @compiled
-def record(swimmer, stations, drive, fields, balance, here, step, current, distributed, method, control, breakpoints, lobatto, series, want_wrench, want_load, times, y, work, works, out):
-    """March through `times` (T,) [s], ascending, and fill one instant of `out` and of `works` (T, 4) at each; `y` (13,) and
-    `work` (4,) end as the last. Returns the number of instants filled, and a status."""
+def record(
+    swimmer,
+    stations,
+    drive,
+    fields,
+    balance,
+    here,
+    step,
+    current,
+    distributed,
+    method,
+    control,
+    breakpoints,
+    lobatto,
+    series,
+    want_wrench,
+    want_load,
+    times,
+    y,
+    work,
+    works,
+    out,
+):
+    """March through `times` (T,) [s], ascending, and fill one instant of `out` and of `works` (T, 4) at each; `y` (13,)
+    and `work` (4,) end as the last. Returns the number of instants filled, and a status."""
     for sample in range(len(times)):
-        status = march(swimmer, drive, fields, balance, current, method, control, breakpoints, lobatto, series, step, times[sample])
+        status = march(
+            swimmer, drive, fields, balance, current, method, control, breakpoints, lobatto, series, step, times[sample]
+        )
         if status != MARCHED:
             return sample, status
         state_at(method, series, step, times[sample], y, work)
         for k in range(WORKS):
             works[sample, k] = work[k]
-        if not observe(swimmer, stations, drive, fields, balance, here, step, current, distributed, want_wrench, want_load, times[sample], y, sample, out):
+        if not observe(
+            swimmer,
+            stations,
+            drive,
+            fields,
+            balance,
+            here,
+            step,
+            current,
+            distributed,
+            want_wrench,
+            want_load,
+            times[sample],
+            y,
+            sample,
+            out,
+        ):
             return sample, SINGULAR
     return len(times), MARCHED

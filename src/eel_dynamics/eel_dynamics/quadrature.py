@@ -10,7 +10,7 @@ that hold sqrt(X) are smooth.
 """
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -100,7 +100,7 @@ class Grid:
         return rows, begins[home].astype(np.uintp), np.array([self.panels[k].points for k in home], dtype=np.uintp)
 
 
-@lru_cache(maxsize=None)
+@cache
 def radau_points(points: int) -> np.ndarray:
     """The right Radau points in (0, 1], ascending: zeros of P_p - P_(p-1) on (-1, 1], mapped."""
     if points == 1:
@@ -115,7 +115,7 @@ def radau_points(points: int) -> np.ndarray:
     return 0.5 * (zeros + 1.0)
 
 
-@lru_cache(maxsize=None)
+@cache
 def collocation_matrix(points: int) -> np.ndarray:
     """Integral from 0 to each Radau point of the polynomial through the Radau points: (points, points)."""
     return integration_matrix(points, radau_points(points))
@@ -137,6 +137,6 @@ def integration_matrix(points: int, upto) -> np.ndarray:
     return np.linalg.solve(_basis(points).T, integrals.T).T
 
 
-@lru_cache(maxsize=None)
+@cache
 def _basis(points: int) -> np.ndarray:
     return legendre.legvander(2.0 * radau_points(points) - 1.0, points - 1)

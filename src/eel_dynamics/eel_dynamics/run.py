@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-
 from eel_gaits.law import Law
 
 from .accuracy import Accuracy
@@ -83,7 +82,9 @@ class Run:
         if self.torque is not None:
             size, x, time = self.greatest_torque()
             lines.append(f"greatest torque     {size:.4g} N m at X = {x:.3f} m, t = {time:.3f} s")
-            lines.append(f"closure at the nose {np.max(self.closure_torque):.1e} N m, {np.max(self.closure_force):.1e} N")
+            lines.append(
+                f"closure at the nose {np.max(self.closure_torque):.1e} N m, {np.max(self.closure_force):.1e} N"
+            )
         if self.energy is not None:
             e = self.energy
             kinetic = e.kinetic_body[-1] + e.kinetic_fluid[-1] - e.kinetic_body[0] - e.kinetic_fluid[0]
@@ -116,15 +117,24 @@ def simulate(
 ) -> Run:
     """Swim `law` for `duration` [s] and sample every `sample_period` [s], from t = 0 on.
 
-    stations: number of equidistant stations, or their X (M,) [m]. position [m], orientation (x y z w), twist ((Omega, V) in
-    the head's axes): the head's initial state. load: the water's load along the body too. The steps in time do not depend on
-    the sampling. `ValueError` names what does not fit; `SimulationStopped` carries the samples so far as `run`.
+    stations: number of equidistant stations, or their X (M,) [m]. position [m], orientation (x y z w), twist ((Omega,
+    V) in the head's axes): the head's initial state. load: the water's load along the body too. The steps in time do
+    not depend on the sampling. `ValueError` names what does not fit; `SimulationStopped` carries the samples so far as
+    `run`.
     """
     if not (np.isfinite(duration) and duration >= 0.0):
         raise ValueError(f"duration must be finite and >= 0 s, got {duration!r}")
     if not (np.isfinite(sample_period) and sample_period > 0.0):
         raise ValueError(f"sample_period must be finite and > 0 s, got {sample_period!r}")
-    swimmer = Simulation(body=body, scene=scene, accuracy=accuracy, stations=stations, position=position, orientation=orientation, twist=twist)
+    swimmer = Simulation(
+        body=body,
+        scene=scene,
+        accuracy=accuracy,
+        stations=stations,
+        position=position,
+        orientation=orientation,
+        twist=twist,
+    )
     swimmer.adopt(law)
     times = np.arange(int(np.floor(duration / sample_period + 1e-9)) + 1) * float(sample_period)
     wrench = swimmer.scene.internal_wrench
@@ -138,7 +148,11 @@ def simulate(
 
 def _run_of(swimmer: Simulation, law: Law, times, out, works, wrench: bool, load: bool) -> Run:
     done = len(times)
-    energy = EnergyLedger.of(out.kinetic[:done], out.powers[:done], works, swimmer.kinetic_at_start) if swimmer.scene.ledger else None
+    energy = (
+        EnergyLedger.of(out.kinetic[:done], out.powers[:done], works, swimmer.kinetic_at_start)
+        if swimmer.scene.ledger
+        else None
+    )
     steps, _, evaluations = swimmer.evaluations
     return Run(
         law=law,

@@ -26,24 +26,43 @@ def _choice(default, choices, description):
 class Scene:
     """Physics of a run. Immutable; every field has a default. `ValueError` names a field that does not fit."""
 
-    planar: bool = _switch(False, "motion in the plane z = 0 only: one angle in place of a rotation; a pitch term is refused")
+    planar: bool = _switch(
+        False, "motion in the plane z = 0 only: one angle in place of a rotation; a pitch term is refused"
+    )
     reactive: bool = _switch(True, "inertia of the water: added mass M_f, J_f, wake, nose's added mass m_o")
     resistive: bool = _switch(True, "drag of the water: k_o, k1 (friction), k2, k3 (cross flow), k4 (roll)")
     friction: str = _choice("printed", FRICTION, "law of the axial friction c_f(Re)")
     nose: bool = _switch(True, "loads on the rounded nose: added mass m_o and drag k_o")
     perimeter: str = _choice("ellipse", PERIMETER, "perimeter of a section: the ellipse's, or half of it as printed")
-    added_mass: str = _choice("corrected", ADDED_MASS, "added mass across each half-axis: the ellipse's, or swapped as printed in eq. (37)")
+    added_mass: str = _choice(
+        "corrected", ADDED_MASS, "added mass across each half-axis: the ellipse's, or swapped as printed in eq. (37)"
+    )
     internal_wrench: bool = _switch(True, "internal force and torque along the body at output instants")
     ledger: bool = _switch(True, "energy ledger, integrated along with the motion")
-    tail_pressure: str = _choice("lumped", TAIL_PRESSURE, "pressure force of the water behind: -T_f t1 at the tail, or -d/dX(T_f t1) along the body")
+    tail_pressure: str = _choice(
+        "lumped",
+        TAIL_PRESSURE,
+        "pressure force of the water behind: -T_f t1 at the tail, or -d/dX(T_f t1) along the body",
+    )
     current: tuple[float, float, float] = field(
-        default=(0.0, 0.0, 0.0), metadata={"unit": "m/s", "description": "uniform velocity of the water, in the world frame"}
+        default=(0.0, 0.0, 0.0),
+        metadata={"unit": "m/s", "description": "uniform velocity of the water, in the world frame"},
     )
     density: float | None = field(
-        default=None, metadata={"unit": "kg/m^3", "description": "density of the body, overrides the body's own", "minimum": 0.0, "exclusive": True}
+        default=None,
+        metadata={
+            "unit": "kg/m^3",
+            "description": "density of the body, overrides the body's own",
+            "minimum": 0.0,
+            "exclusive": True,
+        },
     )
-    fluid_density: float = field(default=1000.0, metadata={"unit": "kg/m^3", "description": "density of the water", "minimum": 0.0})
-    viscosity: float = field(default=1e-6, metadata={"unit": "m^2/s", "description": "kinematic viscosity of the water", "minimum": 0.0})
+    fluid_density: float = field(
+        default=1000.0, metadata={"unit": "kg/m^3", "description": "density of the water", "minimum": 0.0}
+    )
+    viscosity: float = field(
+        default=1e-6, metadata={"unit": "m^2/s", "description": "kinematic viscosity of the water", "minimum": 0.0}
+    )
 
     def __post_init__(self):
         for item in fields(self):
@@ -53,7 +72,9 @@ class Scene:
                     raise ValueError(f"scene {item.name} must be True or False, got {value!r}")
             elif "choices" in item.metadata:
                 if value not in item.metadata["choices"]:
-                    raise ValueError(f"scene {item.name} must be one of {', '.join(item.metadata['choices'])}, got {value!r}")
+                    raise ValueError(
+                        f"scene {item.name} must be one of {', '.join(item.metadata['choices'])}, got {value!r}"
+                    )
             elif item.name == "current":
                 object.__setattr__(self, "current", _vector("scene current", value))
             elif not (item.name == "density" and value is None):

@@ -1,10 +1,13 @@
-"""What the loops need of the body and the scene, tabulated once: section data at the nodes (model of sections 3.3, 4.2, 7.2.1).
+"""What the loops need of the body and the scene, tabulated once: section data at the nodes (model of sections 3.3, 4.2,
+7.2.1).
 
 Half-axes a along E3, b along E2. Body: m_b = rho_b pi a b, J2 = rho_b pi a^3 b/4, J3 = rho_b pi a b^3/4, J1 = J2 + J3.
 Water: J_f1 = rho_f pi/8 (a^2 - b^2)^2, M_f = rho_f pi diag(0, a^2, b^2) (eq. 37 with its semi-axes exchanged: the added
-mass for motion along an axis of an ellipse goes with the square of the other half-axis; Lamb; section 4.3 of the paper).
+mass for motion along an axis of an ellipse goes with the square of the other half-axis; Lamb; section 4.3 of the
+paper).
 """
 
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -45,13 +48,14 @@ class Swimmer(NamedTuple):
 
 
 def panels_of(body: Body, resolution: float) -> tuple[Panel, ...]:
-    """Panels between the kinks of `body`, with about `resolution` points per length of the body, and three to spare each."""
+    """Panels between the kinks of `body`, with about `resolution` points per length of the body, and three to spare
+    each."""
     panels, start = [], 0.0
     for end in body.panel_ends:
         points = (4 if start == 0.0 else 3) + round(resolution * (end - start) / body.length)
         parts = -(-points // WIDEST_PANEL) if start > 0.0 else 1
         edges = np.linspace(start, end, parts + 1)
-        for left, right in zip(edges[:-1], edges[1:]):
+        for left, right in pairwise(edges):
             panels.append(Panel(start=float(left), end=float(right), points=-(-points // parts), graded=start == 0.0))
         start = end
     return tuple(panels)
@@ -70,7 +74,8 @@ def swimmer_of(body: Body, scene: Scene, grid: Grid) -> Swimmer:
 
 
 class Stations(NamedTuple):
-    """Section data where profiles are given, M stations; `matrix` integrates from the start of a station's panel to it."""
+    """Section data where profiles are given, M stations; `matrix` integrates from the start of a station's panel to
+    it."""
 
     section: Swimmer  # (M,) each
     node: np.ndarray  # (M,) int, the last node at or before the station, -1: none
@@ -101,7 +106,9 @@ def _tabulate(body: Body, scene: Scene, x, weight, matrix, first, count) -> Swim
     added2, added3, added_roll = added_masses(body, scene, a**2, b**2)
     inertia2, inertia3 = density * area * a**2 / 4.0, density * area * b**2 / 4.0
     half_rho = 0.5 * scene.fluid_density if scene.resistive else 0.0
-    behind = np.maximum(x, 1e-9 * body.length)  # at the nose c_f P has a limit, as c_f grows like X^-1/2 and P like X^1/2
+    behind = np.maximum(
+        x, 1e-9 * body.length
+    )  # at the nose c_f P has a limit, as c_f grows like X^-1/2 and P like X^1/2
     c, d = body.half_height(behind), body.half_width(behind)
     perimeter = np.pi * (1.5 * (c + d) - np.sqrt(c * d)) * (0.5 if scene.perimeter == "printed" else 1.0)
     nose_area = np.pi * body.nose[0] * body.nose[1] if scene.nose else 0.0

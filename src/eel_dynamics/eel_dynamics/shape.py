@@ -1,14 +1,13 @@
 """Which law or samples the body follows, and how it passes smoothly from one to the next.
 
 When a new law or controller takes over, the difference between the present motion and the new one (value, rate and
-acceleration) dies out as a quintic over a transition, added to the new one: the curvature, its rate and its acceleration
-never jump. When a controller's samples run out, the shape comes to rest by the same means.
+acceleration) dies out as a quintic over a transition, added to the new one: the curvature, its rate and its
+acceleration never jump. When a controller's samples run out, the shape comes to rest by the same means.
 """
 
 from bisect import insort
 
 import numpy as np
-
 from eel_gaits.law import Law
 from eel_gaits.spline import natural_spline
 
@@ -28,7 +27,9 @@ class Shape:
         self.default_transition = default_transition
         self.law: Law | None = None
         self.origin = 0.0
-        self.samples: list[tuple[float, np.ndarray]] = []  # (time, rows (2, 3, width)), from the start of the segment on
+        self.samples: list[
+            tuple[float, np.ndarray]
+        ] = []  # (time, rows (2, 3, width)), from the start of the segment on
         self.sampled = False
         self.resting = False
         self._blend: tuple[np.ndarray, float, float] | None = None
@@ -38,7 +39,8 @@ class Shape:
         self._follow(_constant(np.zeros((2, tabulation.width))))
 
     def move(self, tabulation: Tabulation, values_at_nodes):
-        """Go over to another tabulation. `values_at_nodes(rows)` takes fields at the old nodes (..., n) to the new points.
+        """Go over to another tabulation. `values_at_nodes(rows)` takes fields at the old nodes (..., n) to the new
+        points.
 
         Call it right before another source takes over: what remains of the present one are values at the old nodes.
         """
@@ -69,9 +71,10 @@ class Shape:
             matrix = self.tabulation.columns(natural_spline(x, np.eye(len(x)), self.tabulation.x))
             self._spline = (x, matrix)
         if self.sampled and len(self.samples) > 1 and time <= self.samples[1][0]:
-            raise ValueError(f"curvature samples must come after the instant being approached ({self.samples[1][0]:.6f} s), got {time:.6f} s")
+            ahead = f"the instant being approached ({self.samples[1][0]:.6f} s)"
+            raise ValueError(f"curvature samples time must come after {ahead}, got {time:.6f} s")
         if any(time == known for known, _ in self.samples):
-            raise ValueError(f"curvature samples at {time:.6f} s came twice")
+            raise ValueError(f"curvature samples time must be new, got {time:.6f} s twice")
         insort(self.samples, (time, values @ self._spline[1]), key=lambda sample: sample[0])
 
     @property
@@ -87,7 +90,8 @@ class Shape:
         return later[0] if len(later) > 1 else np.inf
 
     def pass_event(self, now: float):
-        """Change the source as due at `now` [s]: to samples that bracket the time, to their next interval, or to rest."""
+        """Change the source as due at `now` [s]: to samples that bracket the time, to their next interval, or to
+        rest."""
         if self.sampled:
             if now < self.samples[1][0]:
                 return
@@ -95,7 +99,7 @@ class Shape:
             if len(self.samples) > 1:
                 self._follow(self._segment())
                 return
-            value, rate, acceleration = self.at(now)
+            value, _, _ = self.at(now)
             self._take_over(_constant(value), now, self.default_transition)
             self.samples, self.sampled, self.resting = [], False, True
             return
@@ -131,7 +135,8 @@ class Shape:
 
     @property
     def time_scale(self) -> float:
-        """Shortest period [s] of the law; inf where it has none. Ramps, blends and samples begin and end on steps anyway."""
+        """Shortest period [s] of the law; inf where it has none. Ramps, blends and samples begin and end on steps
+        anyway."""
         return float(min(self.drive.period[self.drive.period > 0.0], default=np.inf))
 
     def end_blend(self, now: float):
@@ -171,6 +176,7 @@ class Shape:
         self.drive = Drive(
             axis=np.asarray(axis, dtype=np.int64),
             node=node,
+            angle=np.cumsum(bend[:, 0], axis=1),
             bend=bend,
             station=station,
             station_bend=station_bend,
@@ -221,10 +227,10 @@ def _law_rows(law: Law, tabulation: Tabulation, origin: float) -> dict:
         angle = [term.wave_number * tabulation.x + term.phase for term in terms]
         amplitude = [term.amplitude_at(tabulation.x) for term in terms]
         sine.append(len(rows))
-        rows.append(sum(a * np.sin(b) for a, b in zip(amplitude, angle)))
+        rows.append(sum(a * np.sin(b) for a, b in zip(amplitude, angle, strict=True)))
         cosine.append(len(rows) if duration else -1)
         if duration:
-            rows.append(sum(a * np.cos(b) for a, b in zip(amplitude, angle)))
+            rows.append(sum(a * np.cos(b) for a, b in zip(amplitude, angle, strict=True)))
         axis += [AXES[name]] * (2 if duration else 1)
         period.append(duration)
         first.append(len(ramps))

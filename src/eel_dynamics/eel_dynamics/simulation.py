@@ -1,7 +1,6 @@
 """A swimmer in water, marched in time and observed: the algorithm of section 7.1 of Boyer, Porez and Leroyer (2010)."""
 
 import numpy as np
-
 from eel_gaits.law import Law
 
 from .accuracy import Accuracy
@@ -50,9 +49,9 @@ class SimulationStopped(RuntimeError):
 class Simulation:
     """One swimmer, from its initial state on. Adopt a law (or add samples), advance, observe.
 
-    body, scene: what swims in what. accuracy: preset, target relative error, or `Accuracy`. stations: how many, or their
-    X (M,) [m]. position [m], orientation (x y z w, world from head), twist ((Omega, V) [rad/s, m/s], head's axes): the
-    initial state, in the library's axes. default_transition [s]: of blends where a law gives none.
+    body, scene: what swims in what. accuracy: preset, target relative error, or `Accuracy`. stations: how many, or
+    their X (M,) [m]. position [m], orientation (x y z w, world from head), twist ((Omega, V) [rad/s, m/s], head's
+    axes): the initial state, in the library's axes. default_transition [s]: of blends where a law gives none.
     `ValueError` names the argument that does not fit.
     """
 
@@ -76,7 +75,11 @@ class Simulation:
         self._distributed = self.scene.tail_pressure == "distributed"
         self._method = dormand_prince() if self.accuracy.step is None else classical()
         self.step = step_of(len(self._method.c))
-        self._start = checked_row("position", position, 3), checked_quaternion("orientation", orientation), checked_row("twist", twist, 6)
+        self._start = (
+            checked_row("position", position, 3),
+            checked_quaternion("orientation", orientation),
+            checked_row("twist", twist, 6),
+        )
         if self.scene.planar:
             check_planar(*self._start)
         if not (np.isfinite(default_transition) and default_transition > 0.0):
@@ -118,8 +121,8 @@ class Simulation:
     def adopt(self, law: Law, origin: float = 0.0, transition: float | None = None):
         """Follow `law` from the present time on; `origin` [s] is the simulation time of its own t = 0.
 
-        The first law, before the start, needs no blend; a later one takes over during `transition` [s], or the law's own, or
-        the default. `ValueError` for a law that the scene does not allow.
+        The first law, before the start, needs no blend; a later one takes over during `transition` [s], or the law's
+        own, or the default. `ValueError` for a law that the scene does not allow.
         """
         checked_instance("law", law, Law)
         if self.scene.planar and any(term.axis == "pitch" for term in law.terms):
@@ -138,10 +141,11 @@ class Simulation:
         self._restart()
 
     def add_samples(self, time, x, pitch, pitch_rate, pitch_accel, yaw, yaw_rate, yaw_accel):
-        """One instant of a controller: curvature [rad/m], its rate and acceleration at the points `x` [m], `time` [s] ahead.
+        """One instant of a controller: curvature [rad/m], its rate and acceleration at the points `x` [m], `time` [s]
+        ahead.
 
-        Natural cubic splines in X; between instants the quintic that meets value, rate and acceleration at both. It takes
-        over as soon as two instants bracket the present. `ValueError` names what does not fit.
+        Natural cubic splines in X; between instants the quintic that meets value, rate and acceleration at both. It
+        takes over as soon as two instants bracket the present. `ValueError` names what does not fit.
         """
         x = checked_row("curvature samples x", x, None)
         if len(x) < 2 or np.any(np.diff(x) <= 0.0):
@@ -149,26 +153,35 @@ class Simulation:
         if x[0] < -1e-9 * self.body.length or x[-1] > self.body.length * (1.0 + 1e-9):
             raise ValueError(f"curvature samples x must lie within 0 to {self.body.length} m, got {x[0]} to {x[-1]}")
         names = "pitch", "pitch_rate", "pitch_accel", "yaw", "yaw_rate", "yaw_accel"
-        values = [checked_row(f"curvature samples {name}", row, len(x)) for name, row in zip(names, (pitch, pitch_rate, pitch_accel, yaw, yaw_rate, yaw_accel))]
+        values = [
+            checked_row(f"curvature samples {name}", row, len(x))
+            for name, row in zip(names, (pitch, pitch_rate, pitch_accel, yaw, yaw_rate, yaw_accel), strict=True)
+        ]
         if self.scene.planar and any(np.any(row) for row in values[:3]):
             raise ValueError("curvature samples pitch must be 0 in a planar scene")
         if not np.isfinite(time) or time <= self.time:
-            raise ValueError(f"curvature samples time must lie ahead of the simulation ({self.time:.6f} s), got {time} s")
+            raise ValueError(
+                f"curvature samples time must lie ahead of the simulation ({self.time:.6f} s), got {time} s"
+            )
         self._refine((len(x) - 1) / 8.0)
         self.shape.add(float(time), self.time, x, np.reshape(values, (2, 3, len(x))))
         self.ready = True
 
     def _refine(self, waves: float):
-        """Have a grid that is fine enough for a shape of `waves` waves on the body; the head's motion goes on as it is."""
+        """Have a grid that is fine enough for a shape of `waves` waves on the body; the head's motion goes on as it
+        is."""
         resolution = self.accuracy.points_per_length(waves)
         if resolution <= self._resolution * (1.0 + 1e-9):
             return
         old, twist = self._grid, self._twist()
         self._build(resolution)
-        rows, first, count = old.rows_at(self._tabulation.x, "value")
+        rows, first, _ = old.rows_at(self._tabulation.x, "value")
 
         def values(fields):
-            return sum(rows[:, j] * fields[..., np.minimum(first + j, len(old.x) - 1).astype(np.int64)] for j in range(rows.shape[1]))
+            return sum(
+                rows[:, j] * fields[..., np.minimum(first + j, len(old.x) - 1).astype(np.int64)]
+                for j in range(rows.shape[1])
+            )
 
         self.shape.move(self._tabulation, values)
         self._use_drive()
@@ -206,18 +219,33 @@ class Simulation:
 
     def _stopped(self, status: int) -> SimulationStopped:
         if status == SINGULAR:
-            return SimulationStopped(self.time, "inertia of body and water is not positive definite", np.nan, "check the body's section data")
+            return SimulationStopped(
+                self.time, "inertia of body and water is not positive definite", np.nan, "check the body's section data"
+            )
         if status == NOT_FINITE:
-            return SimulationStopped(self.time, "momentum is not finite", np.nan, "take a smaller accuracy step, or a slower law")
+            return SimulationStopped(
+                self.time, "momentum is not finite", np.nan, "take a smaller accuracy step, or a slower law"
+            )
         if status == TOO_MANY_STEPS:
             density = self._control.most_steps
-            return SimulationStopped(self.time, "more steps per second than any motion of a swimmer needs", density, "take a slower or gentler law")
-        return SimulationStopped(self.time, "step for the wanted accuracy is too small", self._control.smallest, "take a coarser accuracy, or a slower law")
+            return SimulationStopped(
+                self.time,
+                "more steps per second than any motion of a swimmer needs",
+                density,
+                "take a slower or gentler law",
+            )
+        return SimulationStopped(
+            self.time,
+            "step for the wanted accuracy is too small",
+            self._control.smallest,
+            "take a coarser accuracy, or a slower law",
+        )
 
     # -- observe
 
     def observe(self, wrench: bool = True, load: bool = True) -> Snapshot:
-        """What the present instant shows; `wrench` and `load` ask for the internal wrench and the water's load along the body."""
+        """What the present instant shows; `wrench` and `load` ask for the internal wrench and the water's load along
+        the body."""
         wrench = wrench and self.scene.internal_wrench
         self._observe_into(self._out, 0, wrench, load)
         out, ledger = self._out, self.scene.ledger
@@ -239,7 +267,9 @@ class Simulation:
             resistive_force=out.resistive_force[0] if load else None,
             tail_force=out.tail_force[0] if load else None,
             nose_force=out.nose_force[0] if load else None,
-            energy=EnergyLedger.of(out.kinetic[0], out.powers[0], self._work.copy(), self.kinetic_at_start) if ledger else None,
+            energy=EnergyLedger.of(out.kinetic[0], out.powers[0], self._work.copy(), self.kinetic_at_start)
+            if ledger
+            else None,
             closure_torque=float(out.closure[0, 0]) if wrench else None,
             closure_force=float(out.closure[0, 1]) if wrench else None,
             actuator_work=float(self._work[0]) if ledger else None,
@@ -247,16 +277,31 @@ class Simulation:
 
     def _observe_into(self, out, sample: int, wrench: bool, load: bool):
         swimmer, *loops = self._loops
-        if not observe(swimmer, self._stations, *loops, *self._observing, wrench, load, self.time, self.state, sample, out):
+        if not observe(
+            swimmer, self._stations, *loops, *self._observing, wrench, load, self.time, self.state, sample, out
+        ):
             raise self._stopped(SINGULAR)
 
-    def record(self, times: np.ndarray, wrench: bool, load: bool) -> tuple[Profiles, np.ndarray, int, SimulationStopped | None]:
+    def record(
+        self, times: np.ndarray, wrench: bool, load: bool
+    ) -> tuple[Profiles, np.ndarray, int, SimulationStopped | None]:
         """March through `times` (T,) [s] under the law in force, observing each: the profiles, the works (T, 4) [J] of
         actuators, wake, nose and drag, how many instants were reached, and what stopped it, if anything did."""
         out, works = profiles_of(len(times), len(self.x), wrench, load), np.zeros((len(times), 4))
         swimmer, *loops = self._loops
         done, status = record(
-            swimmer, self._stations, *loops, *self._observing, *self._marching, wrench, load, times, self.state, self._work, works, out
+            swimmer,
+            self._stations,
+            *loops,
+            *self._observing,
+            *self._marching,
+            wrench,
+            load,
+            times,
+            self.state,
+            self._work,
+            works,
+            out,
         )
         self.time = float(times[done - 1]) if done else self.time
         return out, works, done, None if status == MARCHED else self._stopped(status)
@@ -302,6 +347,7 @@ class Simulation:
             momentum_floor=SLOWEST * mass * self.body.length / min(scale, 10.0),
             most_steps=MOST_STEPS / min(scale, 1.0),
             ledger=bool(self.scene.ledger),
+            planar=bool(self.scene.planar),
         )
 
     @property
@@ -343,7 +389,6 @@ class Simulation:
         self._restart()
         self._observe_into(self._out, 0, False, False)
         self.kinetic_at_start = float(self._out.kinetic[0].sum())
-
 
     def _twist(self) -> np.ndarray:
         """Twist (6,) of the head relative to the water, in its axes, of the present state."""

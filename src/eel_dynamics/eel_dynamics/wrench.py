@@ -2,9 +2,9 @@
 
     alpha' = R Kddot + omega x R Kdot        acc' = alpha x t1 + omega x (omega x t1)
 
-are linear in the head's acceleration; the balance of the whole body gives that; the balance of the part behind a section
-gives the wrench there. Same axes and conventions as in the kernel. The head's acceleration is the true one: of the
-angular velocity and of the velocity of the nose, in the head's axes.
+are linear in the head's acceleration; the balance of the whole body gives that; the balance of the part behind a
+section gives the wrench there. Same axes and conventions as in the kernel. The head's acceleration is the true one: of
+the angular velocity and of the velocity of the nose, in the head's axes.
 """
 
 from typing import NamedTuple
@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .compiled import inlined
-from .kernel import add_wake, friction, integrate, share_friction, solve
+from .kernel import add_wake, integrate, rub, solve
 
 
 class Balance(NamedTuple):
@@ -86,13 +86,23 @@ def add_head_acceleration(fields, balance):
 
 @inlined
 def section_densities(swimmer, fields, balance):
-    """The section's balance f_N = M Vdot + Omega x M V - n, f_C = J Omegadot + Omega x J Omega + V x M V - c, moved to the
-    head, into `density` (6, n). Returns the drag's power [W]."""
+    """The section's balance f_N = M Vdot + Omega x M V - n, f_C = J Omegadot + Omega x J Omega + V x M V - c, moved to
+    the head, into `density` (6, n). Returns the drag's power [W]."""
     R, r, omega, v, density = fields.R, fields.r, fields.omega, fields.v, balance.density
     alpha, acc = balance.alpha, balance.acc
     power = 0.0
     for i in range(R.shape[1]):
-        ax, ay, az, bx, by, bz, cx, cy, cz = R[0, i], R[1, i], R[2, i], R[3, i], R[4, i], R[5, i], R[6, i], R[7, i], R[8, i]
+        ax, ay, az, bx, by, bz, cx, cy, cz = (
+            R[0, i],
+            R[1, i],
+            R[2, i],
+            R[3, i],
+            R[4, i],
+            R[5, i],
+            R[6, i],
+            R[7, i],
+            R[8, i],
+        )
         ux, uy, uz = v[0, i], v[1, i], v[2, i]
         v1, v2, v3 = ax * ux + ay * uy + az * uz, bx * ux + by * uy + bz * uz, cx * ux + cy * uy + cz * uz
         ux, uy, uz = omega[0, i], omega[1, i], omega[2, i]
@@ -115,7 +125,7 @@ def section_densities(swimmer, fields, balance):
         g2 = j2 * e2 + o3 * s1 - o1 * s3 + v3 * p1 - v1 * p3
         g3 = j3 * e3 + o1 * s2 - o2 * s1 + v1 * p2 - v2 * p1
         if swimmer.resistive:
-            n1 = friction(swimmer.laminar[i], swimmer.turbulent[i], fields.part[i], abs(v1)) * v1
+            n1 = fields.rubbing[i] * v1
             n2 = swimmer.drag2[i] * abs(v2) * v2
             n3 = swimmer.drag3[i] * abs(v3) * v3
             c1 = swimmer.drag_roll[i] * abs(o1) * o1
@@ -149,7 +159,7 @@ def accelerate(swimmer, fields, twist, balance):
     velocities and the Cholesky factor of the inertia I_o."""
     shape_accelerations(swimmer, fields, balance)
     if swimmer.resistive:
-        share_friction(swimmer, fields)
+        rub(swimmer, fields)
     section_densities(swimmer, fields, balance)
     gather(swimmer, balance.density, balance.total)
     for k in range(6):
@@ -171,8 +181,8 @@ def accelerate(swimmer, fields, twist, balance):
 
 @inlined
 def section_wrench(R, r, omega, v, i, added2, added3, added_roll, wrench, result):
-    """Internal torque and force (6,) at section i, in its axes and about it, from the `wrench` (6,) about the head that the
-    part behind passes on: Ad*^-1 w - (V1 J_f1 Omega1 E1; V1 M_f V). Returns T_f [J/m]."""
+    """Internal torque and force (6,) at section i, in its axes and about it, from the `wrench` (6,) about the head that
+    the part behind passes on: Ad*^-1 w - (V1 J_f1 Omega1 E1; V1 M_f V). Returns T_f [J/m]."""
     x, y, z = r[0, i], r[1, i], r[2, i]
     nx, ny, nz = wrench[3], wrench[4], wrench[5]
     tx, ty, tz = wrench[0] - (y * nz - z * ny), wrench[1] - (z * nx - x * nz), wrench[2] - (x * ny - y * nx)
@@ -191,14 +201,26 @@ def section_wrench(R, r, omega, v, i, added2, added3, added_roll, wrench, result
 
 @inlined
 def actuator_power(swimmer, fields, balance, section):
-    """- integral of C . Kdot [W] over the body, from an accelerated body; leaves the integrals of the balance in `upto`."""
+    """- integral of C . Kdot [W] over the body, from an accelerated body; leaves the integrals of the balance in
+    `upto`."""
     integrate(swimmer, balance.density[:3], balance.upto[:3])
     integrate(swimmer, balance.density[3:], balance.upto[3:])
     power = 0.0
     for i in range(fields.R.shape[1]):
         for k in range(6):
             fields.wrench[k] = balance.tail[k] - balance.total[k] + balance.upto[k, i]
-        section_wrench(fields.R, fields.r, fields.omega, fields.v, i, swimmer.added2[i], swimmer.added3[i], swimmer.added_roll[i], fields.wrench, section)
+        section_wrench(
+            fields.R,
+            fields.r,
+            fields.omega,
+            fields.v,
+            i,
+            swimmer.added2[i],
+            swimmer.added3[i],
+            swimmer.added_roll[i],
+            fields.wrench,
+            section,
+        )
         power -= swimmer.weight[i] * (section[1] * fields.rate[0, i] + section[2] * fields.rate[1, i])
     balance.powers[0] = power
     return power
@@ -218,7 +240,11 @@ def kinetic_energies(swimmer, fields):
         o3 = R[6, i] * omega[0, i] + R[7, i] * omega[1, i] + R[8, i] * omega[2, i]
         fluid = swimmer.added2[i] * v2 * v2 + swimmer.added3[i] * v3 * v3 + swimmer.added_roll[i] * o1 * o1
         solid = swimmer.mass[i] * (v1 * v1 + v2 * v2 + v3 * v3)
-        solid += (swimmer.inertia1[i] - swimmer.added_roll[i]) * o1 * o1 + swimmer.inertia2[i] * o2 * o2 + swimmer.inertia3[i] * o3 * o3
+        solid += (
+            (swimmer.inertia1[i] - swimmer.added_roll[i]) * o1 * o1
+            + swimmer.inertia2[i] * o2 * o2
+            + swimmer.inertia3[i] * o3 * o3
+        )
         body += 0.5 * swimmer.weight[i] * solid
         water += 0.5 * swimmer.weight[i] * fluid
     return body, water
