@@ -7,6 +7,8 @@ from eel_viz.centre_line import Resampling
 from eel_viz.orientation import attitude, world_from_body, world_from_section
 from eel_viz.skin import Skin
 
+from eel_viz import camera
+
 
 def about_z(angle):
     zero = np.zeros_like(angle)
@@ -144,3 +146,12 @@ def test_a_value_for_each_vertex(skin):
 def test_the_mesh_stays_when_the_number_of_stations_changes(skin):
     shapes = {skin.place(*straight(stations))[0].shape for stations in (5, 51, 200)}
     assert len(shapes) == 1
+
+
+def test_the_camera_s_target_is_the_middle_of_the_picture_and_right_is_right():
+    np.testing.assert_allclose(camera.in_picture(camera.TARGET), (0.0, 0.0), atol=1e-15)
+    np.testing.assert_allclose(camera.in_picture(camera.before_eye(2.0, 0.4, -0.6)), (0.2, -0.3), atol=1e-14)
+    ahead, up = camera.in_picture(camera.TARGET + np.array([(0.1, 0.0, 0.0), (0.0, 0.0, 0.1)]))
+    assert ahead[0] > 0  # swimming to +x is to the right
+    assert up[1] > 0
+    assert abs(up[0]) < 1e-15

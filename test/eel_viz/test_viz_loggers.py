@@ -11,7 +11,7 @@ from eel_viz.reading import read
 from eel_viz.skin import Skin
 from made_up_recording import body
 
-from eel_viz import entities
+from eel_viz import camera, entities
 
 SINGLE = 1e-6  # Rerun's geometry is single precision
 
@@ -168,13 +168,24 @@ def test_the_floor_stays_below_and_its_labels_say_where(record_made_up):
         assert position[:, 2].min() - floor[2] >= 0.4
         np.testing.assert_array_equal(np.floor(position.mean(axis=0)[:2]), floor[:2])
     labels = read(path, entities.GRID_LABELS)
-    for (x, y, z), texts, points in zip(place.values(), labels["labels"], labels["positions"], strict=True):
-        for text, point in zip(texts, points, strict=True):
-            assert point[2] == z
+    shown = {
+        stamp: (texts, points)
+        for stamp, texts, points in zip(labels.stamps.tolist(), labels["labels"], labels["positions"], strict=True)
+    }
+    present, floor, counts = ((), ()), None, []
+    for stamp, arguments in samples.items():
+        present, floor = shown.get(stamp, present), place.get(stamp, floor)
+        position = arguments["backbone"][0].position
+        seen = camera.in_picture(position - position.mean(axis=0))
+        counts.append(len(present[0]))
+        for text, point in zip(*present, strict=True):
+            assert point[2] == floor[2]
+            assert max(abs(point[0] - floor[0]), abs(point[1] - floor[1])) < 6
             for axis, value in zip("xyz", point, strict=True):
-                if f"{axis} " in text:
-                    assert f"{axis} {value:.0f}" in text
-        assert max(abs(np.array(points)[:, 0] - x).max(), abs(np.array(points)[:, 1] - y).max()) < 6
+                assert f"{axis} " not in text or f"{axis} {value:.0f}" in text
+            distance = np.abs(camera.in_picture(np.array(point) - position.mean(axis=0)) - seen)
+            assert not np.any((distance[:, 0] < 0.1) & (distance[:, 1] < 0.07)), "a label stands before the swimmer"
+    assert min(counts) >= 4
 
 
 def test_stations_may_change_in_mid_run(record_made_up, tmp_path):

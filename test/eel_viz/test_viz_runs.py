@@ -6,6 +6,7 @@ import socket
 import made_up
 import numpy as np
 import pytest
+from eel_viz.messages import Status
 from eel_viz.reading import read
 from eel_viz.runs import Runs
 from eel_viz.settings import Settings
@@ -97,6 +98,19 @@ def test_resets_in_quick_succession_are_taken(file, ears, tmp_path):
         "run-6.rrd",
         "run.rrd",
     ]
+
+
+def test_diagnostics_at_their_own_time_or_at_the_newest_if_that_is_wall_time(file, ears, tmp_path):
+    made = Runs([file], "eel", ears.warned.append)
+    for stamp in (0, 3 * SECOND):
+        send(made, stamp, ("head_pose",))
+    for stamp, state in ((2 * SECOND, "swimming"), (1_795_234_285 * SECOND, "elsewhere")):
+        made.diagnostics(stamp, [Status(name="/dynamics", level=1, message=state, values={})])
+    made.close()
+    log = read(tmp_path / "run.rrd", entities.LOG)
+    assert log.stamps.tolist() == [2 * SECOND, 3 * SECOND]
+    assert [row[0] for row in log["text"]] == ["/dynamics: swimming", "/dynamics: elsewhere"]
+    assert {row[0] for row in log["level"]} == {"WARN"}
 
 
 def test_a_late_start_shows_the_present(file, ears, tmp_path):

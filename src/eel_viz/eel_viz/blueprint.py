@@ -7,7 +7,7 @@ carries all three as tabs, the one asked for in front.
 import rerun.blueprint as rrb
 from rerun.blueprint.archetypes import EntityBehavior
 
-from eel_viz import colours, entities, heat_map, profile_plot, scene
+from eel_viz import camera, colours, entities, heat_map, profile_plot
 from eel_viz.settings import BLUEPRINTS
 
 _PAST = rrb.VisibleTimeRanges(
@@ -93,7 +93,7 @@ def following_view() -> rrb.Spatial3DView:
         contents=[f"{entities.WORLD}/**"],
         background=colours.WATER_BACKGROUND,
         line_grid=rrb.LineGrid3D(visible=False),
-        eye_controls=rrb.EyeControls3D(position=scene.EYE, look_target=scene.EYE_TARGET, eye_up=(0, 0, 1)),
+        eye_controls=rrb.EyeControls3D(position=camera.EYE, look_target=camera.TARGET, eye_up=(0, 0, 1)),
         overrides={entities.TRACK: [_PAST], **_hidden(entities.HEAD, entities.TAIL)},
     )
 

@@ -11,7 +11,7 @@ import rerun as rr
 from eel_viz import colours, entities
 
 COLUMNS = 200
-ROWS = 45
+ROWS = 41
 STEP = 0.04  # s; the map is 8 s long
 NO_DATA = 0
 BOUNDS_X = (-17.0, COLUMNS + 24.0)

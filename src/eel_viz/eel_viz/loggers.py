@@ -103,7 +103,7 @@ class Loggers:
                 rr.Transform3D(translation=pose.position, quaternion=rr.Quaternion(xyzw=pose.orientation)),
             )
         if self._due("summary", stamp, SUMMARY_PERIOD):
-            self._stream.log(entities.RUN, rr.TextDocument(self.summary.text(), media_type="text/markdown"))
+            self._summarise(stamp)
 
     def head_twist(self, stamp: int, twist: Twist) -> None:
         """Speed, and the velocities of the head in its own axes."""
@@ -202,8 +202,8 @@ class Loggers:
     def diagnostics(self, stamp: int, statuses: list[Status]) -> None:
         """Each status whose level or words have changed, as text; the values go into the summary."""
         for status in statuses:
-            self.summary.state = status.message
-            self.summary.values.update(status.values)
+            if self.summary.status(stamp, status.message, status.values):
+                self._summarise(self.summary.stamp)
             if self._statuses.get(status.name) != (status.level, status.message):
                 self._statuses[status.name] = (status.level, status.message)
                 self._text(stamp, f"{status.name}: {status.message}", LEVELS[min(status.level, 3)])
@@ -232,6 +232,10 @@ class Loggers:
             self._stations[path] = x
             values = {"x": x, **values}
         self._stream.log(path, rr.DynamicArchetype(name, components=values))
+
+    def _summarise(self, stamp: int) -> None:
+        self._at(stamp)
+        self._stream.log(entities.RUN, rr.TextDocument(self.summary.text(), media_type="text/markdown"))
 
     def _text(self, stamp: int, text: str, level: str) -> None:
         self._at(stamp)

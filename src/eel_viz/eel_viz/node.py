@@ -113,7 +113,7 @@ class Visualiser(Node):
         own = self.get_namespace().rstrip("/")
         statuses = [each for each in messages.read_diagnostics(message) if each.name.rpartition("/")[0] == own]
         if statuses:
-            self._runs.diagnostics(statuses)
+            self._runs.diagnostics(stamp_of(message), statuses)
 
     def _say(self, text: str) -> None:
         self.get_logger().info(text)

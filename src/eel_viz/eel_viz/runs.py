@@ -13,6 +13,7 @@ from eel_viz.messages import Body, Status
 from eel_viz.sinks import Destination, Say, close_stream
 
 RETRY = 2.0  # s of wall time between two attempts at an absent viewer
+WALL_TIME = 10**17  # ns: later stamps are no simulation time
 RESETS, SPAN = 3, 10.0  # so many resets within so many seconds, with several publishers: not a reset
 
 
@@ -49,7 +50,7 @@ class Runs:
         self._place: dict[str, tuple[int, int]] = {}  # topic: number of its run, last stamp
         self._body: Body | None = None
         self._law: str | None = None
-        self._statuses: list[Status] = []
+        self._statuses: tuple[int, list[Status]] = (0, [])
         self._resets: deque[float] = deque(maxlen=RESETS)
         self._tried = time.monotonic()
         self._warned = False
@@ -92,11 +93,11 @@ class Runs:
         for loggers in self._newest.loggers.values():
             loggers.law(self.latest, name)
 
-    def diagnostics(self, statuses: list[Status]) -> None:
-        """Statuses, at the newest time there is: their own stamps may be wall time."""
-        self._statuses = statuses
+    def diagnostics(self, stamp: int, statuses: list[Status]) -> None:
+        """Statuses at `stamp` [ns]; if that is wall time, at the newest time there is."""
+        self._statuses = (stamp if stamp < WALL_TIME else self.latest, statuses)
         for loggers in self._newest.loggers.values():
-            loggers.diagnostics(self.latest, statuses)
+            loggers.diagnostics(*self._statuses)
 
     def attend(self) -> None:
         """Now and then: try the destinations that were not there."""
@@ -134,7 +135,7 @@ class Runs:
                 loggers.body(self._body)
             if self._law is not None:
                 loggers.law(run.latest, self._law)
-            loggers.diagnostics(run.latest, self._statuses)
+            loggers.diagnostics(run.latest, self._statuses[1])
 
     def _close_before(self, number: int) -> None:
         for old in [each for each in self._runs if each < number]:

@@ -7,13 +7,11 @@ the swimmer comes near; its labels say where it is in the world frame.
 import numpy as np
 import rerun as rr
 
-from eel_viz import colours, entities
+from eel_viz import camera, colours, entities
 
 HALF = 6  # m, from the middle of the grid to its edge
 CLEARANCE = 0.4  # m, between swimmer and floor at least
-LABELLED = 2  # m, from the swimmer to the labels
-EYE = np.array((-0.46, -0.92, 0.55))  # m, camera in the frame that follows the swimmer
-EYE_TARGET = (0.03, 0.0, -0.05)  # m, where it looks
+LABEL_SIZE = (0.13, 0.085)  # half of a label with the swimmer's thickness, as tangents in the picture
 LEGEND_AT = (0.5, -0.21, -0.2)  # m, from the camera: ahead, to the right, up
 LEGEND_SIZE = (0.16, 0.009)  # m
 
@@ -24,6 +22,7 @@ class Water:
     def __init__(self, stream: rr.RecordingStream) -> None:
         self._stream = stream
         self._at: tuple[int, int, int] | None = None
+        self._labelled: dict[tuple[int, int, int], str] = {}
         lines, shades = [], []
         for k in range(-2 * HALF, 2 * HALF + 1):
             c = k / 2
@@ -33,7 +32,7 @@ class Water:
         stream.log(entities.SHADOW, rr.LineStrips3D.from_fields(colors=[(4, 10, 17)], radii=[0.03]), static=True)
 
     def draw(self, position: np.ndarray) -> None:
-        """Floor and shadow for a backbone `position`, (M, 3) [m]."""
+        """Floor, shadow and labels for a backbone `position`, (M, 3) [m]."""
         middle = position.mean(axis=0)
         x, y = (int(np.floor(value)) for value in middle[:2])
         floor = -1 if self._at is None else self._at[2]
@@ -41,40 +40,51 @@ class Water:
             floor -= 1
         if self._at != (x, y, floor):
             self._at = (x, y, floor)
-            self._place(x, y, floor)
+            self._stream.log(entities.GRID, rr.Transform3D(translation=self._at))
         shadow = np.array(position[:: max(1, len(position) // 24)], dtype=np.float32)
         shadow[:, 2] = floor + 0.002
         self._stream.log(entities.SHADOW, rr.LineStrips3D.from_fields(strips=[shadow]))
+        labels = _clear_labels(_labels(x, y, floor), position - middle, middle)
+        if labels != self._labelled:
+            self._labelled = labels
+            self._label(labels)
 
-    def _place(self, x: int, y: int, floor: int) -> None:
-        self._stream.log(entities.GRID, rr.Transform3D(translation=(x, y, floor)))
-        right, front = x + LABELLED, y - 1  # where they do not stand before the swimmer, as the camera looks at first
-        places = [(i, front, floor) for i in range(x - LABELLED, right)] + [
-            (right, j, floor) for j in range(front, y + 4)
-        ]
-        texts = [f"x {i} m" for i in range(x - LABELLED, right)] + [f"y {j} m" for j in range(front, y + 4)]
-        texts[places.index((right, front, floor))] = f"x {right}, y {front}, z {floor} m"
+    def _label(self, labels: dict[tuple[int, int, int], str]) -> None:
         self._stream.log(
             entities.GRID_LABELS,
             rr.Points3D(
-                places,
-                labels=texts,
+                list(labels),
+                labels=list(labels.values()),
                 show_labels=True,
                 radii=rr.Radius.ui_points(2.0),
-                colors=[colours.WATER_LABEL] * len(texts),
+                colors=[colours.WATER_LABEL] * len(labels),
             ),
         )
 
 
+def _labels(x: int, y: int, floor: int) -> dict[tuple[int, int, int], str]:
+    """Places [m] on the floor around (x, y), and what to write there: a row of x, a row of y, a corner with all."""
+    right, far = x + 2, y + 4
+    row = {(i, far, floor): f"x {i} m" for i in range(right - 5, right)}
+    column = {(right, j, floor): f"y {j} m" for j in range(y - 1, far)}
+    return {**row, **column, (right, far, floor): f"x {right}, y {far}, z {floor} m"}
+
+
+def _clear_labels(labels: dict, swimmer: np.ndarray, middle: np.ndarray) -> dict:
+    """Those of `labels` that are not before or behind the `swimmer`, (M, 3) [m] about its `middle`, in the picture."""
+    seen = camera.in_picture(swimmer)
+    places = camera.in_picture(np.array(list(labels), dtype=float) - middle)
+    apart = np.abs(places[:, None] - seen) / LABEL_SIZE
+    clear = np.all(np.max(apart, axis=2) > 1.0, axis=1)
+    return {place: text for (place, text), free in zip(labels.items(), clear, strict=True) if free}
+
+
 def log_legend(stream: rr.RecordingStream, *, limit: float, unit: str, name: str) -> None:
     """A bar of the skin's colours in the lower left corner of the following view, as its camera stands at first."""
-    ahead = _unit(np.subtract(EYE_TARGET, EYE))
-    right = _unit(np.cross(ahead, (0.0, 0.0, 1.0)))
-    up = np.cross(right, ahead)
     steps = 33
-    middle = EYE + LEGEND_AT[0] * ahead + LEGEND_AT[1] * right + LEGEND_AT[2] * up
-    along = np.linspace(-0.5, 0.5, steps)[:, None] * LEGEND_SIZE[0] * right
-    vertices = np.concatenate([middle + along, middle + along + LEGEND_SIZE[1] * up])
+    middle = camera.before_eye(*LEGEND_AT)
+    along = np.linspace(-0.5, 0.5, steps)[:, None] * LEGEND_SIZE[0] * camera.RIGHT
+    vertices = np.concatenate([middle + along, middle + along + LEGEND_SIZE[1] * camera.UP])
     k = np.arange(steps - 1)
     triangles = np.concatenate([np.stack([k, k + 1, k + steps], 1), np.stack([k + 1, k + steps + 1, k + steps], 1)])
     shades = np.tile(colours.diverging(np.linspace(-1.0, 1.0, steps), 1.0), (2, 1))
@@ -83,7 +93,7 @@ def log_legend(stream: rr.RecordingStream, *, limit: float, unit: str, name: str
         rr.Mesh3D(vertex_positions=vertices, triangle_indices=triangles, vertex_colors=shades),
         static=True,
     )
-    places = [middle + share * LEGEND_SIZE[0] * right for share in (-0.5, 0.0, 0.5)]
+    places = [middle + share * LEGEND_SIZE[0] * camera.RIGHT for share in (-0.5, 0.0, 0.5)]
     texts = [f"-{limit:g}", f"{name} [{unit}]", f"+{limit:g}"]
     stream.log(
         f"{entities.LEGEND}/labels",
@@ -109,7 +119,3 @@ class Track:
         if self._last is not None:
             self._stream.log(entities.TRACK, rr.LineStrips3D.from_fields(strips=[np.stack([self._last, position])]))
         self._last = np.array(position)
-
-
-def _unit(vector: np.ndarray) -> np.ndarray:
-    return vector / np.linalg.norm(vector)

@@ -23,6 +23,7 @@ from eel_viz.settings import Settings
 
 APPLICATION = "eel"
 CLOSING_LIMIT = 3.0  # s for what is still on its way
+FILE_TICK = 2.0  # s: a file need not be quick, and each batch of an entity costs it some 700 bytes
 HOST = "127.0.0.1"
 
 Say = Callable[[str], None]
@@ -40,7 +41,7 @@ class Destination:
         sink = self._sink(run)
         if sink is None:
             return None
-        stream = rr.RecordingStream(APPLICATION)
+        stream = rr.RecordingStream(APPLICATION, batcher_config=self._batches())
         stream.set_log_time_enabled(False)
         stream.set_sinks(sink, default_blueprint=self._blueprint())
         stream.send_recording_name(name)
@@ -48,6 +49,10 @@ class Destination:
 
     def close(self) -> None:
         """End what is not a run's: a server."""
+
+    def _batches(self) -> rr.ChunkBatcherConfig:
+        """How data are gathered before they are sent."""
+        return rr.ChunkBatcherConfig.DEFAULT()
 
     def _blueprint(self) -> rrb.Blueprint:
         return arrangement(self.settings.blueprint, live=self._live)
@@ -68,6 +73,9 @@ class File(Destination):
         """The file of run number `run`."""
         first = self._first
         return first if run == 1 else first.with_name(f"{first.stem}-{run}{first.suffix}")
+
+    def _batches(self) -> rr.ChunkBatcherConfig:
+        return rr.ChunkBatcherConfig(flush_tick=FILE_TICK)
 
     def _sink(self, run: int) -> rr.FileSink:
         path = self.path(run)

@@ -10,7 +10,7 @@ import numpy as np
 
 from eel_viz.centre_line import Resampling
 
-RINGS = 30
+RINGS = 28
 SIDES = 12
 
 
