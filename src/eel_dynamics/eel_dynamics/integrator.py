@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .compiled import compiled, inlined
+from .compiled import compiled, inlined, spliced
 from .drive import combine, combine_moments, factors
 from .kernel import add_head_twist, configure, momentum_rates, twist_of_momentum
 from .planar import rate_of_state_plane
@@ -197,7 +197,7 @@ def powers_of_state(swimmer, drive, fields, balance, time, y, step, power):
     return True
 
 
-@inlined
+@spliced
 def interpolate(method, step, theta, y):
     """State `y` (13,) at the fraction `theta` of the step."""
     for k in range(STATE):
@@ -210,7 +210,7 @@ def interpolate(method, step, theta, y):
     normalise(y)
 
 
-@inlined
+@spliced
 def works_upto(step, theta, series, work):
     """Works (4,) [J] at the fraction `theta` of the step: the integral of the cubic through the powers at Lobatto's
     points."""
@@ -224,7 +224,7 @@ def works_upto(step, theta, series, work):
         power *= theta
 
 
-@inlined
+@spliced
 def evaluate(swimmer, drive, fields, current, control, time, y, step, dy):
     """Rate `dy` (13,) of state `y` at `time`, by the scene's kernel. False where the inertia is singular."""
     if control.planar:
@@ -232,7 +232,7 @@ def evaluate(swimmer, drive, fields, current, control, time, y, step, dy):
     return rate_of_state(swimmer, drive, fields, current, time, y, step, dy)
 
 
-@inlined
+@spliced
 def state_at(method, series, step, time, y, work):
     """State `y` (13,) and works (4,) at `time` [s] within the step."""
     length = step.time[1]
@@ -246,7 +246,7 @@ def state_at(method, series, step, time, y, work):
         works_upto(step, theta, series, work)
 
 
-@inlined
+@spliced
 def error_of(method, step, first, last):
     """Size of the error estimate of entries `first` to `last` of the state, per length of the step."""
     square = 0.0
@@ -258,7 +258,7 @@ def error_of(method, step, first, last):
     return np.sqrt(square)
 
 
-@inlined
+@spliced
 def error_by_tolerance(method, control, step, length):
     """The error estimate of the trial step by the tolerance: of position by the body's length, of orientation by one,
     of the momenta by their greatest size so far; the worst of the four. A good step has 1 or less."""
@@ -272,7 +272,7 @@ def error_by_tolerance(method, control, step, length):
     return worst * length / control.tolerance
 
 
-@compiled
+@spliced
 def attempt(swimmer, drive, fields, current, method, control, step, start, length):
     """Try a step of `length` [s] from `step.end` at `start`, into `step.trial`. Returns a status and the error by
     tolerance."""
@@ -298,7 +298,7 @@ def attempt(swimmer, drive, fields, current, method, control, step, start, lengt
     return MARCHED, error_by_tolerance(method, control, step, length) if method.adaptive else 0.0
 
 
-@compiled
+@spliced
 def begin(swimmer, drive, fields, balance, current, method, control, step, start):
     """Have the first stage of the next step (and the powers there) ready: from the step before, or evaluated anew."""
     last = method.a.shape[0] - 1
@@ -316,7 +316,7 @@ def begin(swimmer, drive, fields, balance, current, method, control, step, start
     return True
 
 
-@inlined
+@spliced
 def fitted(method, control, step, start, target, tiny):
     """Length [s] of the next step: as proposed, or such that steps end on `target` without a sliver before it."""
     left = target - start
@@ -328,7 +328,7 @@ def fitted(method, control, step, start, target, tiny):
     return min(length, 0.5 * left) if length > 0.5 * left else length
 
 
-@inlined
+@spliced
 def accept(step, start, length, series):
     """Make the trial step the step."""
     works_upto(step, 1.0, series, step.work)
@@ -343,7 +343,7 @@ def accept(step, start, length, series):
     step.scale[1] = max(step.scale[1], np.sqrt(step.end[10] ** 2 + step.end[11] ** 2 + step.end[12] ** 2))
 
 
-@compiled
+@spliced
 def march(swimmer, drive, fields, balance, current, method, control, breakpoints, lobatto, series, step, until):
     """March until the step holds the time `until` [s]. Returns MARCHED, or why it could not."""
     tiny = 1e-12 * max(1.0, abs(until))

@@ -10,7 +10,7 @@ import numpy as np
 
 from .compiled import compiled, inlined
 from .drive import combine, combine_moments
-from .integrator import MARCHED, SINGULAR, WORKS, march, powers_of_state, rotate, state_at
+from .integrator import MARCHED, SINGULAR, march, powers_of_state, rotate, state_at
 from .kernel import ONE, ZERO, axes_of, friction, turbulent_part, turns
 from .wrench import kinetic_energies, section_wrench
 
@@ -354,7 +354,7 @@ def observe(
 
 
 @compiled
-def record(
+def swim(
     swimmer,
     stations,
     drive,
@@ -369,26 +369,27 @@ def record(
     breakpoints,
     lobatto,
     series,
+    look,
     want_wrench,
     want_load,
     times,
     y,
-    work,
     works,
     out,
 ):
-    """March through `times` (T,) [s], ascending, and fill one instant of `out` and of `works` (T, 4) at each; `y` (13,)
-    and `work` (4,) end as the last. Returns the number of instants filled, and a status."""
+    """March through `times` (T,) [s], ascending: the state `y` (13,) ends as the last, `works` (T, 4) holds each; where
+    `look`, one instant of `out` is filled at each. Returns the number of instants reached, and a status.
+
+    The one entry to all loops: what is compiled once for it serves every use.
+    """
     for sample in range(len(times)):
         status = march(
             swimmer, drive, fields, balance, current, method, control, breakpoints, lobatto, series, step, times[sample]
         )
         if status != MARCHED:
             return sample, status
-        state_at(method, series, step, times[sample], y, work)
-        for k in range(WORKS):
-            works[sample, k] = work[k]
-        if not observe(
+        state_at(method, series, step, times[sample], y, works[sample])
+        if look and not observe(
             swimmer,
             stations,
             drive,

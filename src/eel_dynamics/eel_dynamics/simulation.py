@@ -19,13 +19,11 @@ from .integrator import (
     Control,
     classical,
     dormand_prince,
-    march,
     settle,
-    state_at,
     step_of,
 )
 from .kernel import configure, fields_of, momentum_of_twist
-from .profiles import Profiles, observe, profiles_of, record, station_fields_of
+from .profiles import Profiles, profiles_of, station_fields_of, swim
 from .quadrature import Grid
 from .scene import Scene
 from .sections import panels_of, stations_of, swimmer_of
@@ -210,11 +208,10 @@ class Simulation:
             self._use_drive()
 
     def _march_to(self, time: float):
-        status = march(*self._loops, self._current, *self._marching, self.step, time)
+        status = self._swim(np.array([time]), self._works, self._out, look=False)[1]
         if status != MARCHED:
             self._restart()
             raise self._stopped(status)
-        state_at(self._method, LOBATTO_SERIES, self.step, time, self.state, self._work)
         self.time = time
 
     def _stopped(self, status: int) -> SimulationStopped:
@@ -247,7 +244,7 @@ class Simulation:
         """What the present instant shows; `wrench` and `load` ask for the internal wrench and the water's load along
         the body."""
         wrench = wrench and self.scene.internal_wrench
-        self._observe_into(self._out, 0, wrench, load)
+        self._look(wrench, load)
         out, ledger = self._out, self.scene.ledger
         return Snapshot(
             time=self.time,
@@ -267,20 +264,13 @@ class Simulation:
             resistive_force=out.resistive_force[0] if load else None,
             tail_force=out.tail_force[0] if load else None,
             nose_force=out.nose_force[0] if load else None,
-            energy=EnergyLedger.of(out.kinetic[0], out.powers[0], self._work.copy(), self.kinetic_at_start)
+            energy=EnergyLedger.of(out.kinetic[0], out.powers[0], self._works[0].copy(), self.kinetic_at_start)
             if ledger
             else None,
             closure_torque=float(out.closure[0, 0]) if wrench else None,
             closure_force=float(out.closure[0, 1]) if wrench else None,
-            actuator_work=float(self._work[0]) if ledger else None,
+            actuator_work=float(self._works[0, 0]) if ledger else None,
         )
-
-    def _observe_into(self, out, sample: int, wrench: bool, load: bool):
-        swimmer, *loops = self._loops
-        if not observe(
-            swimmer, self._stations, *loops, *self._observing, wrench, load, self.time, self.state, sample, out
-        ):
-            raise self._stopped(SINGULAR)
 
     def record(
         self, times: np.ndarray, wrench: bool, load: bool
@@ -288,23 +278,40 @@ class Simulation:
         """March through `times` (T,) [s] under the law in force, observing each: the profiles, the works (T, 4) [J] of
         actuators, wake, nose and drag, how many instants were reached, and what stopped it, if anything did."""
         out, works = profiles_of(len(times), len(self.x), wrench, load), np.zeros((len(times), 4))
-        swimmer, *loops = self._loops
-        done, status = record(
-            swimmer,
+        done, status = self._swim(times, works, out, wrench=wrench, load=load)
+        if done:
+            self.time, self._works[0] = float(times[done - 1]), works[done - 1]
+        return out, works, done, None if status == MARCHED else self._stopped(status)
+
+    def _look(self, wrench: bool, load: bool):
+        """Fill the one instant of `_out` with the present."""
+        if self._swim(np.array([self.time]), self._works, self._out, wrench=wrench, load=load)[1] != MARCHED:
+            raise self._stopped(SINGULAR)
+
+    def _swim(self, times, works, out, *, look: bool = True, wrench: bool = False, load: bool = False):
+        return swim(
+            self.swimmer,
             self._stations,
-            *loops,
-            *self._observing,
-            *self._marching,
+            self.drive,
+            self.fields,
+            self.balance,
+            self._here,
+            self.step,
+            self._current,
+            self._distributed,
+            self._method,
+            self._control,
+            self._breakpoints,
+            LOBATTO,
+            LOBATTO_SERIES,
+            look,
             wrench,
             load,
             times,
             self.state,
-            self._work,
             works,
             out,
         )
-        self.time = float(times[done - 1]) if done else self.time
-        return out, works, done, None if status == MARCHED else self._stopped(status)
 
     @property
     def evaluations(self) -> tuple[int, int, int]:
@@ -350,24 +357,12 @@ class Simulation:
             planar=bool(self.scene.planar),
         )
 
-    @property
-    def _loops(self):
-        return self.swimmer, self.drive, self.fields, self.balance
-
-    @property
-    def _marching(self):
-        return self._method, self._control, self._breakpoints, LOBATTO, LOBATTO_SERIES
-
-    @property
-    def _observing(self):
-        return self._here, self.step, self._current, self._distributed
-
     def _restart(self):
         """Let the next step begin at the present state, with what drives the body now."""
         self._use_drive()
         step = self.step
         step.end[:] = self.state
-        step.work[:] = self._work
+        step.work[:] = self._works[0]
         step.time[0], step.time[1] = self.time, 0.0
         if step.time[2] == 0.0:
             step.time[2] = 0.1 * self._control.step
@@ -375,7 +370,7 @@ class Simulation:
 
     def _take_initial_state(self):
         position, orientation, twist = self._start
-        self.state, self._work = np.zeros(13), np.zeros(4)
+        self.state, self._works = np.zeros(13), np.zeros((1, 4))
         self.state[:3], self.state[3:7] = position, orientation
         self._motion_scale = np.inf
         self._use_drive()
@@ -387,13 +382,13 @@ class Simulation:
         self.step.time[:], self.step.count[:] = 0.0, 0
         self.step.scale[:] = np.linalg.norm(self.state[7:10]), np.linalg.norm(self.state[10:13])
         self._restart()
-        self._observe_into(self._out, 0, False, False)
+        self._look(False, False)
         self.kinetic_at_start = float(self._out.kinetic[0].sum())
 
     def _twist(self) -> np.ndarray:
         """Twist (6,) of the head relative to the water, in its axes, of the present state."""
         twist = np.zeros(6)
-        if not settle(*self._loops[:3], self.time, self.state, np.zeros(6), twist):
+        if not settle(self.swimmer, self.drive, self.fields, self.time, self.state, np.zeros(6), twist):
             raise self._stopped(SINGULAR)
         return twist
 
