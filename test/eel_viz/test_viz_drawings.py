@@ -150,18 +150,24 @@ def test_diverging_colours_are_ordered_and_differ_in_hue_from_the_middle():
 
 def test_the_summary_counts_path_speed_and_greatest_torque():
     summary = Summary()
+    summary.law = "falling"
     summary.status(9 * 10**9, "finished", {"accuracy": "fine"})  # later than the head is
     summary.status(
-        10**9, "swimming", {"accuracy": "standard", "closure_torque_relative": "1.23456e-14", "warnings": ""}
+        10**9, "waiting", {"accuracy": "standard", "closure_torque_relative": "1.23456e-14", "real_time_factor": "0.0"}
     )
     for k in range(5):
         summary.move(k * 10**9, np.array([0.5 * k, 0.0, 0.0]))
+        if k == 2:
+            assert "law **falling**, waiting\n" in summary.text()
+            assert "real-time factor 0" in summary.text()
+    assert "waiting" not in summary.text()  # that was 3 s ago
+    assert "real-time factor" not in summary.text()
+    assert summary.status(3 * 10**9, "swimming", {})  # late
     summary.strain(2 * 10**9, np.array([0.0, 0.5, 1.0]), np.array([0.1, -0.7, 0.2]))
     summary.strain(3 * 10**9, np.array([0.0, 0.5, 1.0]), np.array([0.6, 0.1, 0.2]))
-    summary.law = "falling"
     text = summary.text()
     assert "law **falling**, swimming" in text
     assert "mean speed **0.500 m/s**, path 2.00 m" in text
     assert "greatest C3 **-0.700 N m** at X 0.50 m, 2.00 s" in text
-    assert "accuracy standard, closure 1.23e-14" in text
+    assert "accuracy standard, real-time factor 0, closure 1.23e-14" in text
     assert "warnings" not in text

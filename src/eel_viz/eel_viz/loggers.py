@@ -70,7 +70,7 @@ class Loggers:
         log_legend(stream, limit=settings.colour_limit, unit="N m", name="C3")
         self._arrows = Arrows(stream, load_scale=settings.load_scale, end_scale=settings.end_force_scale)
         log_styles(stream)
-        stream.log(entities.BACKBONE, rr.LineStrips3D.from_fields(colors=[colours.LABEL], radii=[0.001]), static=True)
+        stream.log(entities.BACKBONE, rr.LineStrips3D.from_fields(colors=[colours.LABEL], radii=[0.0004]), static=True)
         for path in (entities.HEAD, entities.TAIL):
             stream.log(path, rr.TransformAxes3D(0.12), static=True)
 

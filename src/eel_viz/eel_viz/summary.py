@@ -7,6 +7,7 @@ import numpy as np
 
 from eel_viz.messages import Body
 
+FRESH = 2_000_000_000  # ns: what the diagnostics said longer ago is not told as the present
 TOLD = {  # keys of the diagnostics, and the words for them
     "warnings": "**warnings:**",
     "accuracy": "accuracy",
@@ -14,6 +15,7 @@ TOLD = {  # keys of the diagnostics, and the words for them
     "closure_torque_relative": "closure",
     "energy_residual_worst": "worst residual [J]",
 }
+PRESENT = ("warnings", "real_time_factor")  # those that may be otherwise a moment later
 
 
 class Summary:
@@ -22,7 +24,7 @@ class Summary:
     def __init__(self) -> None:
         self.law: str | None = None
         self.body: Body | None = None
-        self.state = ""  # in the diagnostics' words
+        self._state: tuple[int, str] = (0, "")  # in the diagnostics' words, and when [ns]
         self._statuses: list[tuple[int, str, dict[str, str]]] = []  # to come
         self.values: dict[str, str] = {}  # of the diagnostics
         self._first: tuple[int, np.ndarray] | None = None
@@ -53,7 +55,8 @@ class Summary:
     def _take_statuses(self) -> bool:
         taken = False
         while self._statuses and self._last is not None and self._statuses[0][0] <= self._last[0]:
-            _, self.state, values = self._statuses.pop(0)
+            stamp, state, values = self._statuses.pop(0)
+            self._state = (stamp, state)
             self.values.update(values)
             taken = True
         return taken
@@ -66,7 +69,8 @@ class Summary:
     def text(self) -> str:
         """Markdown, one paragraph a line."""
         law = "" if self.law is None else f"law **{self.law}**"
-        lines = [", ".join(part for part in (law, self.state) if part)]
+        fresh = self.stamp - self._state[0] <= FRESH
+        lines = [", ".join(part for part in (law, self._state[1] if fresh else "") if part)]
         if self._last is not None and self._first is not None:
             seconds = (self._last[0] - self._first[0]) / 1e9
             mean = self._path / seconds if seconds > 0 else 0.0
@@ -74,9 +78,8 @@ class Summary:
         torque, x, stamp = self._peak
         if torque:
             lines.append(f"greatest C3 **{torque:+.3f} N m** at X {x:.2f} m, {stamp / 1e9:.2f} s")
-        lines.append(
-            ", ".join(f"{words} {_short(self.values[key])}" for key, words in TOLD.items() if self.values.get(key))
-        )
+        told = [key for key in TOLD if self.values.get(key) and (fresh or key not in PRESENT)]
+        lines.append(", ".join(f"{TOLD[key]} {_short(self.values[key])}" for key in told))
         if self.body is not None:
             lines.append(f"body {self.body.length:.3g} m, {self.body.mass:.4g} kg")
         return "\n\n".join(line for line in lines if line)
