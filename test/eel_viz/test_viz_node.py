@@ -123,6 +123,7 @@ def test_bad_messages_are_said_once_each_and_the_rest_goes_on(start, network, tm
         sample["head_pose"].pose.orientation.w = 3.0
 
     send(0)  # profiles before the body is known
+    node.wait_for_output("no body has come: the backbone is drawn as a line, without skin")
     for k, spoil in enumerate((nan_everywhere, sizes_that_do_not_fit, no_unit_quaternions), start=1):
         for _ in range(3):
             send(k, spoil=spoil)
@@ -148,6 +149,10 @@ def test_bad_messages_are_said_once_each_and_the_rest_goes_on(start, network, tm
         "hydrodynamic_load: force_2 must have 11 numbers to fit x, got 0",
         "curvature: yaw must have 11 numbers to fit x, got 12",
         "energy: residual is nan",
+        "backbone has 2 stations: the shape between them is a guess",
+        "backbone has 2 stations and had 11: it is drawn, its envelope begins anew",
+        "internal_wrench has 2 stations and had 11",
+        "no body has come",
         "body: half_width has negative values, the least is -1 m",
     ):
         assert output.count(words) == 1, f"{words}\n{output}"

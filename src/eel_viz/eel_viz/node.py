@@ -25,6 +25,8 @@ from eel_viz.sinks import destinations
 NAME = "visualiser"
 DEFAULTS = ["--ros-args", "-p", "use_sim_time:=true", "--"]  # what the user says comes after, and wins
 GONE = 1.0  # s without publishers and messages, after which `stop_with_publisher` ends the node
+COARSE = 4  # stations, below which a backbone says little about the shape
+BODY_LIMIT = 2.0  # s after the first backbone in which the body should have come
 SWIMMER = "head_pose"  # whose publishers' leaving that is
 
 SAMPLES = {  # topic, and method of `Loggers`: type, and what the method is given besides the stamp
@@ -56,6 +58,8 @@ class Visualiser(Node):
         )
         self.received = Counter()
         self._complaints = set()
+        self._stations = {}  # topic: how many
+        self._first_backbone = None  # s
         self._last_law = None
         self._last_message = time.monotonic()
         self._present = False
@@ -69,6 +73,8 @@ class Visualiser(Node):
     def attend(self) -> bool:
         """Now and then: look after the sinks; False once the swimmer has gone and the node is to follow."""
         self._runs.attend()
+        if self._first_backbone and not self.received["body"] and time.monotonic() - self._first_backbone > BODY_LIMIT:
+            self._warn_once("no body", "no body has come: the backbone is drawn as a line, without skin")
         if not self.settings.stop_with_publisher:
             return True
         now = time.monotonic()
@@ -90,16 +96,28 @@ class Visualiser(Node):
             try:
                 show(message)
             except BadMessage as problem:
-                if (topic, problem.field) not in self._complaints:
-                    self._complaints.add((topic, problem.field))
-                    self._warn(f"{topic}: {problem}: left out, and those like it")
+                self._warn_once((topic, problem.field), f"{topic}: {problem}: left out, and those like it")
 
         self.create_subscription(kind, topic, receive, keep_all(latched=latched))
 
     def _sample(self, topic, message, read) -> None:
         stamp, values = stamp_of(message), read(message)
+        if hasattr(message, "x"):
+            self._watch_stations(topic, len(message.x))
         for loggers in self._runs.at(topic, stamp):
             getattr(loggers, topic)(stamp, *values)
+
+    def _watch_stations(self, topic, count) -> None:
+        if self._stations.setdefault(topic, count) != count:
+            text = (
+                f"{topic} has {count} stations and had {self._stations[topic]}: it is drawn, its envelope begins anew"
+            )
+            self._warn_once((topic, "stations"), text)
+            self._stations[topic] = count
+        if topic == "backbone":
+            self._first_backbone = self._first_backbone or time.monotonic()
+            if count < COARSE:
+                self._warn_once("coarse", f"backbone has {count} stations: the shape between them is a guess")
 
     def _body(self, message) -> None:
         self._runs.body(messages.read_body(message))
@@ -117,6 +135,11 @@ class Visualiser(Node):
 
     def _say(self, text: str) -> None:
         self.get_logger().info(text)
+
+    def _warn_once(self, fault, text: str) -> None:
+        if fault not in self._complaints:
+            self._complaints.add(fault)
+            self._warn(text)
 
     def _warn(self, text: str) -> None:
         self.get_logger().warning(text)
