@@ -1,5 +1,6 @@
 """A ROS node for tests: hears a dynamics node without loss, publishes laws and samples, calls services."""
 
+import re
 import time
 from collections import defaultdict
 
@@ -44,6 +45,11 @@ SAMPLES = {
 
 def nanoseconds(stamp) -> int:
     return stamp.sec * 1_000_000_000 + stamp.nanosec
+
+
+def is_finite(message) -> bool:
+    """Whether no number of the message is NaN or infinite."""
+    return not re.search(r"\b(nan|inf)\b", repr(message))
 
 
 class SwimClient:

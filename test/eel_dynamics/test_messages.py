@@ -10,7 +10,7 @@ from eel_dynamics.parameters import DynamicsParameters
 from rclpy.serialization import deserialize_message, serialize_message
 
 from eel_dynamics import Body, Scene, Simulation
-from eel_gaits import falling
+from eel_gaits import Law, falling
 from eel_msgs.msg import CurvatureSamples
 
 TURN = np.diag([-1.0, -1.0, 1.0])
@@ -198,3 +198,12 @@ def test_diagnostics_are_text():
         "time": "1.25",
         "samples_published": "126",
     }
+
+
+def test_zero_is_never_minus_zero():
+    simulation = Simulation(stations=5)
+    simulation.adopt(Law(name="still"))
+    sample = Sample(simulation.x, simulation.scene, "odom", "base_link")
+    for name in ("head_pose", "head_twist", "odom"):
+        assert "-0.0" not in repr(sample.fill(name, simulation.observe()))
+    assert "-0.0" not in repr(list(sample.fill("backbone", simulation.observe()).orientation))

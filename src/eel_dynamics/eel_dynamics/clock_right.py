@@ -65,7 +65,7 @@ class ClockWatch:
         if not wanted:
             self._right = ClockRight()
         if wanted and others:
-            names = ", ".join(sorted(f"{namespace.rstrip('/')}/{name}" for namespace, name in others.values()))
+            names = ", ".join(sorted(_full_name(*each) for each in others.values()))
             state = "this node does not" if not allowed else "one of the two has to go"
             self._report.begin("clock", f"/clock is published by {names} already: {state}")
         else:
@@ -73,3 +73,8 @@ class ClockWatch:
         if allowed != self._offered:
             self._offered = allowed
             self._offer(allowed)
+
+
+def _full_name(namespace: str, name: str) -> str:
+    """A node's full name; of a node just discovered the publisher is known before the name is."""
+    return "a node just discovered" if "UNKNOWN" in name else f"{namespace.rstrip('/')}/{name}"

@@ -7,6 +7,8 @@ import sys
 import threading
 import time
 
+POLL = 0.1  # s: a signal in the very moment before a wait does not end that wait
+
 
 class Ending:
     """Made in the main thread, before anything that lasts.
@@ -48,6 +50,8 @@ class Ending:
 
     def wait(self) -> tuple[bool, Exception | None]:
         """Waits for the end: (whether a worker has done its work, the error of one that has failed)."""
+        while not self.comes_within(POLL):
+            pass
         return self._declared.get()
 
     def join(self, seconds: float) -> bool:
@@ -60,7 +64,8 @@ class Ending:
 
 
 def leave_at_once(status: int):
-    """Ends the process although some thread is still at work, such as a compilation that cannot be interrupted."""
+    """Ends the process without the interpreter's tidying up, which takes half a second of unloading compiled loops, and
+    although some thread may still be at work."""
     sys.stdout.flush()
     sys.stderr.flush()
     os._exit(status)

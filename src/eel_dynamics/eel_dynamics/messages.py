@@ -131,8 +131,8 @@ class Sample:
 
     def _fill_backbone(self, snapshot):
         views = self._views["backbone"]
-        views["position"].reshape(-1, 3)[:] = turn_vector(snapshot.backbone)
-        views["orientation"].reshape(-1, 4)[:] = turn_quaternion(snapshot.section_orientation)
+        views["position"].reshape(-1, 3)[:] = turn_vector(snapshot.backbone) + 0.0
+        views["orientation"].reshape(-1, 4)[:] = turn_quaternion(snapshot.section_orientation) + 0.0
 
     def _fill_curvature(self, snapshot):
         views = self._views["curvature"]
@@ -215,5 +215,5 @@ def descriptor_of(item: Field) -> ParameterDescriptor:
 
 def _set(target, names: str, values):
     """Sets the components of a geometry message to a row of numbers."""
-    for name, value in zip(names, values.tolist(), strict=True):
+    for name, value in zip(names, (values + 0.0).tolist(), strict=True):  # + 0.0: no minus zero
         setattr(target, name, value)

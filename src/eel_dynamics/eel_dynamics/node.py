@@ -38,7 +38,7 @@ LATCHED = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 LOSSLESS = QoSProfile(history=HistoryPolicy.KEEP_ALL)  # reliable, as the others are
 PROMPT = 1.0  # s: a service has answered by then
 FAREWELL = 5.0  # s: longest wait for acknowledgements at the end of a run
-HASTE = 0.3  # s: likewise after a signal
+HASTE = 0.2  # s: likewise after a signal
 
 
 class DynamicsNode(Node):
@@ -128,13 +128,12 @@ def main(args=None) -> int:
     if error is not None:
         node.get_logger().fatal("".join(traceback.format_exception(error)))
     node.tell(final=True)
-    node.see_off(FAREWELL if done else HASTE, lambda: done and ending.signalled)
-    if not joined:
-        leave_at_once(int(error is not None))
-    executor.shutdown()
-    node.destroy_node()
-    rclpy.try_shutdown()
-    return int(error is not None)
+    node.see_off(FAREWELL if done else HASTE, lambda: ending.signalled)
+    if joined:
+        executor.shutdown()
+        node.destroy_node()
+        rclpy.try_shutdown()
+    return leave_at_once(int(error is not None))
 
 
 def spin(executor, ending):
