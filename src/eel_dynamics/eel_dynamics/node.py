@@ -31,6 +31,7 @@ from .feed import LawFeed
 from .march import March
 from .messages import Sample, body_message, diagnostic_array, samples_from_message
 from .publishers import Publishers
+from .repair import repair_soon
 from .report import Report
 from .status import Status
 
@@ -107,6 +108,7 @@ class DynamicsNode(Node):
 def main(args=None) -> int:
     """Runs the node; status 0 after its duration, SIGINT or SIGTERM, 2 if it cannot start as asked, 1 if it fails."""
     ending = Ending()
+    repair_soon()
     try:
         rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
         if not ensure(get_logger("dynamics").info, ending.comes_within):
@@ -133,6 +135,7 @@ def main(args=None) -> int:
         executor.shutdown()
         node.destroy_node()
         rclpy.try_shutdown()
+        rclpy.get_default_context().destroy()  # says goodbye to the network, which would wait 20 s for news otherwise
     return leave_at_once(int(error is not None))
 
 
