@@ -121,7 +121,7 @@ def test_parameters_are_described(start, client):
 
 def test_law_that_cannot_be_swum_stops_once_and_reset_starts_again(start, client):
     swim = client(topics=("head_pose", "internal_wrench", "energy"), clock=True)
-    monster = Law(Term(amplitude=(1e200,), wavelength=1.0, period=1e-3), name="monster")
+    monster = Law(Term(amplitude=(1e6,), period=1.0), name="monster")  # wound up a hundred thousand times
     swim.laws.publish(law_to_message(monster))
     node = start("dynamics", "--ros-args")
     node.wait_for_output("stopped at t =", 90.0)
@@ -137,6 +137,16 @@ def test_law_that_cannot_be_swum_stops_once_and_reset_starts_again(start, client
     assert swim.reset().success
     swim.until_time(0.5)
     swim.until(lambda: swim.diagnosis()[0] == 0, "good diagnostics")
+
+
+def test_law_that_cannot_be_begun_is_refused(start, client):
+    swim = client(topics=("head_pose",), clock=True)
+    swim.laws.publish(law_to_message(Law(Term(amplitude=(1e200,), wavelength=1.0, period=1e-3), name="beyond")))
+    node = start("dynamics", "--ros-args")
+    node.wait_for_output("law 'beyond' refused: law 'beyond' cannot be begun", 90.0)
+    swim.laws.publish(law_to_message(falling()))
+    swim.until_time(0.3)
+    assert all(is_finite(message) for message in swim.heard["head_pose"])
 
 
 def test_late_run_says_so_seldom(start, client):

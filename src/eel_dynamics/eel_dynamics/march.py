@@ -86,7 +86,7 @@ class March:
     def law(self) -> str:
         """Name of what the swimmer follows."""
         simulation = self._simulation
-        if simulation.shape.sampled or simulation.resting:
+        if simulation.sampled or simulation.resting:
             return "curvature_samples"
         return simulation.law.name if simulation.law is not None else ""
 

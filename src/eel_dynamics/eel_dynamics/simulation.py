@@ -1,5 +1,7 @@
 """A swimmer in water, marched in time and observed: the algorithm of section 7.1 of Boyer, Porez and Leroyer (2010)."""
 
+from copy import copy
+
 import numpy as np
 from eel_gaits.law import Law
 
@@ -112,6 +114,11 @@ class Simulation:
         return self.shape.until
 
     @property
+    def sampled(self) -> bool:
+        """A controller's samples drive the shape at present."""
+        return self.shape.sampled
+
+    @property
     def resting(self) -> bool:
         """A controller's samples have run out: the shape comes to rest."""
         return self.shape.resting
@@ -132,9 +139,16 @@ class Simulation:
             raise ValueError(f"transition must be finite and > 0 s, got {transition!r}")
         first = not self._started
         self._refine(waves_of_law(law, self.body.length))
+        before = copy(self.shape)
         self.shape.adopt(law, origin=float(origin), time=self.time, transition=0.0 if first else float(blend))
         if first:
-            self._take_initial_state()
+            try:
+                with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is reported below
+                    self._take_initial_state()
+            except SimulationStopped as stopped:
+                self.shape = before
+                self._take_initial_state()
+                raise ValueError(f"law {law.name!r} cannot be begun: {stopped.quantity}") from None
         self.ready = True
         self._restart()
 
@@ -384,6 +398,8 @@ class Simulation:
         self._restart()
         self._look(False, False)
         self.kinetic_at_start = float(self._out.kinetic[0].sum())
+        if not np.isfinite(self.kinetic_at_start):
+            raise SimulationStopped(self.time, "kinetic energy", self.kinetic_at_start, "start slower")
 
     def _twist(self) -> np.ndarray:
         """Twist (6,) of the head relative to the water, in its axes, of the present state."""
