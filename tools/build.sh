@@ -71,11 +71,10 @@ link_executables() {
 
 compile_kernels() {
     local key
-    # numba's cache does not see that a function called from another file has changed: start afresh when any source has.
-    key="$(find src/eel_gaits src/eel_dynamics -name '*.py' -print0 | sort -z | xargs -0 sha256sum | key_of "$(cat install/stamp)")"
+    key="$({ grep -l 'from .compiled import' src/eel_dynamics/eel_dynamics/*.py; echo src/eel_dynamics/eel_dynamics/compiled.py; } |
+        sort | xargs sha256sum | key_of "$(cat install/stamp)")"
     stamped build/numba_cache/stamp "$key" && return
     say "compiling the kernels (numba, cached in build/numba_cache)"
-    rm -rf build/numba_cache
     mkdir -p build/numba_cache
     tools/run.sh python -c "from eel_dynamics import Simulation; Simulation().warm_up()"
     printf '%s' "$key" > build/numba_cache/stamp
