@@ -24,7 +24,7 @@ deadline = time.monotonic() + 30
 while time.monotonic() < deadline:
     rclpy.spin_once(node, timeout_sec=0.1)
     names = {s.name for a in statuses for s in a.status}
-    if all(len(p) == 51 for p in poses.values()) and all(any(space in name for name in names) for space in poses):
+    if all(len(p) == 301 for p in poses.values()) and all(any(space in name for name in names) for space in poses):
         break
 clocks = node.get_publishers_info_by_topic("/clock")
 print(json.dumps({
@@ -44,10 +44,10 @@ def test_two_eels(start, fresh_domain, tmp_path):
     for space, gait in (("/left", "falling"), ("/right", "straight")):
         remap = ("--ros-args", "-r", f"__ns:={space}")
         start("gait_generator", *remap, "-p", f"gait:={gait}")
-        start("dynamics", *remap, "-p", "duration:=0.5", "-p", "real_time_factor:=0", "-p", "wait_for_subscribers:=1")
+        start("dynamics", *remap, "-p", "duration:=3.0", "-p", "real_time_factor:=0", "-p", "wait_for_subscribers:=1")
     assert listener.wait(60.0) == 0, listener.output()
     heard = json.loads([line for line in listener.output().splitlines() if line.startswith("{")][-1])
-    assert heard["count"] == {"/left": 51, "/right": 51}
+    assert heard["count"] == {"/left": 301, "/right": 301}
     assert heard["end"]["/left"] != heard["end"]["/right"]
     assert {"/left/head_pose", "/right/head_pose", "/clock", "/diagnostics"} <= set(heard["topics"])
     assert "/head_pose" not in heard["topics"] and "/left/clock" not in heard["topics"]

@@ -7,6 +7,7 @@ mass for motion along an axis of an ellipse goes with the square of the other ha
 paper).
 """
 
+import math
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -52,13 +53,18 @@ def panels_of(body: Body, resolution: float) -> tuple[Panel, ...]:
     each."""
     panels, start = [], 0.0
     for end in body.panel_ends:
-        points = (4 if start == 0.0 else 3) + round(resolution * (end - start) / body.length)
+        points = (4 if start == 0.0 else 3) + nearest(resolution * (end - start) / body.length)
         parts = -(-points // WIDEST_PANEL) if start > 0.0 else 1
         edges = np.linspace(start, end, parts + 1)
         for left, right in pairwise(edges):
             panels.append(Panel(start=float(left), end=float(right), points=-(-points // parts), graded=start == 0.0))
         start = end
     return tuple(panels)
+
+
+def nearest(count: float) -> int:
+    """The nearest whole number, halves upwards: the last bit of `count` differs from one version of numpy to the next."""
+    return math.floor(count + 0.5 + 1e-9)
 
 
 def added_masses(body: Body, scene: Scene, a_squared, b_squared):
