@@ -14,24 +14,31 @@ import numpy as np
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-PACKAGES = ("eel_msgs", "eel_gaits", "eel_dynamics")
 SWIM = """
 import json, sys
-import numpy, numba, rclpy
+import numpy
 from eel_dynamics import simulate
 from eel_gaits import falling
-from eel_msgs.msg import Backbone
-from rclpy.serialization import deserialize_message, serialize_message
 
 run = simulate(falling(), duration=0.5, accuracy="draft")
-message = Backbone(x=run.x, position=run.backbone[-1].ravel())
-back = deserialize_message(serialize_message(message), Backbone)
+json.dump({"numpy": numpy.__version__, "position": run.position.tolist(), "torque": run.torque.tolist()}, sys.stdout)
+"""
+TALK = """
+import json, sys
+import numpy
+from eel_dynamics import messages
+from eel_gaits import falling
+from eel_gaits.messages import law_from_message, law_to_message
+from eel_msgs.msg import Backbone, CurvatureLaw
+from rclpy.serialization import deserialize_message, serialize_message
+
+backbone = Backbone(x=numpy.linspace(0.0, 1.0, 51))
+law = deserialize_message(serialize_message(law_to_message(falling())), CurvatureLaw)
 json.dump({
     "numpy": numpy.__version__,
-    "built": sys.modules["eel_msgs"].__file__,
-    "position": run.position.tolist(),
-    "torque": run.torque.tolist(),
-    "same": list(back.position) == run.backbone[-1].ravel().tolist(),
+    "built": [sys.modules[name].__file__ for name in ("eel_msgs", "eel_gaits", "eel_dynamics")],
+    "backbone": deserialize_message(serialize_message(backbone), Backbone) == backbone,
+    "law": law_from_message(law) == falling(),
 }, sys.stdout)
 """
 
@@ -55,32 +62,52 @@ def numpy1(tmp_path_factory):
     environment = {name: value for name, value in os.environ.items() if name not in ("PYTHONPATH", "NUMBA_CACHE_DIR")}
     environment["AMENT_PREFIX_PATH"] = environment["CMAKE_PREFIX_PATH"] = sys.prefix
     environment["PATH"] = f"{python.parent}:{environment['PATH']}"
-    colcon = [python, Path(sys.prefix) / "bin/colcon", "--log-base", folder / "log", "build"]
-    done = subprocess.run(
-        [*colcon, "--base-paths", ROOT / "src", "--packages-select", *PACKAGES, "--build-base", folder / "build",
-         "--install-base", folder / "install", "--cmake-args", f"-DPython3_EXECUTABLE={python}"],
-        env=environment, capture_output=True, text=True, timeout=100,
-    )  # fmt: skip
-    assert done.returncode == 0, done.stdout + done.stderr
-    installed = [next((folder / "install" / package).glob("lib/python3.*/site-packages")) for package in PACKAGES]
-    environment["PYTHONPATH"] = ":".join(map(str, installed))
-    environment["LD_LIBRARY_PATH"] = f"{folder}/install/eel_msgs/lib:{environment['LD_LIBRARY_PATH']}"
-    environment["NUMBA_CACHE_DIR"] = str(folder / "numba_cache")
     return python, environment, folder
 
 
+def build(numpy1) -> dict[str, str]:
+    """Build the packages with colcon; environment variables in which they are found."""
+    python, environment, folder = numpy1
+    done = subprocess.run(
+        [python, Path(sys.prefix) / "bin/colcon", "--log-base", folder / "log", "build", "--base-paths", ROOT / "src",
+         "--packages-select", "eel_msgs", "eel_gaits", "eel_dynamics", "--build-base", folder / "build", "--install-base", folder / "install",
+         "--cmake-args", f"-DPython3_EXECUTABLE={python}"],
+        env=environment, cwd=folder, capture_output=True, text=True, timeout=100,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stdout + done.stderr
+    installed = [os.fspath(path) for path in (folder / "install").glob("*/lib/python3.*/site-packages")]
+    libraries = [os.fspath(path) for path in (folder / "install").glob("*/lib")]
+    return environment | {
+        "PYTHONPATH": ":".join(installed),
+        "LD_LIBRARY_PATH": ":".join([*libraries, environment["LD_LIBRARY_PATH"]]),
+    }
+
+
 @pytest.mark.timeout(300)
-def test_builds_and_swims_with_numpy_1(numpy1):
+def test_builds_swims_and_talks_with_numpy_1(numpy1):
     from eel_dynamics import simulate
     from eel_gaits import falling
 
     python, environment, folder = numpy1
-    done = subprocess.run([python, "-c", SWIM], env=environment, cwd=folder, capture_output=True, text=True, timeout=200)
-    assert done.returncode == 0, done.stderr
-    result = json.loads(done.stdout)
-    assert result["numpy"].startswith("1.26.")
-    assert Path(result["built"]).is_relative_to(folder / "install")
-    assert result["same"]
+    sources = {"PYTHONPATH": f"{ROOT}/src/eel_gaits:{ROOT}/src/eel_dynamics", "NUMBA_CACHE_DIR": os.fspath(folder / "numba_cache")}
+    swim = subprocess.Popen(
+        [python, "-c", SWIM], env=environment | sources, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    try:  # it compiles its loops while the packages are built
+        environment = build(numpy1)
+        talk = subprocess.run([python, "-c", TALK], env=environment, cwd=folder, capture_output=True, text=True, timeout=60)
+        assert talk.returncode == 0, talk.stderr
+        said = json.loads(talk.stdout)
+        output, errors = swim.communicate(timeout=200)
+    finally:
+        swim.kill()
+    assert said["numpy"].startswith("1.26.")
+    assert all(Path(path).is_relative_to(folder / "install") for path in said["built"])
+    assert said["backbone"] and said["law"]
+
+    assert swim.returncode == 0, errors
+    swum = json.loads(output)
+    assert swum["numpy"].startswith("1.26.")
     here = simulate(falling(), duration=0.5, accuracy="draft")
-    np.testing.assert_allclose(result["position"], here.position, rtol=0, atol=1e-12)
-    np.testing.assert_allclose(result["torque"], here.torque, rtol=0, atol=1e-10)
+    np.testing.assert_allclose(swum["position"], here.position, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(swum["torque"], here.torque, rtol=0, atol=1e-10)
