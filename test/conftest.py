@@ -34,7 +34,7 @@ def fresh_domain(monkeypatch):
 
 
 def starter(folder):
-    """Yields start(executable, *arguments) -> NodeProcess, and ends what was started; output goes to files in `folder`."""
+    """Yields start(executable, *arguments) -> NodeProcess, and ends what it started; output goes to `folder`."""
     started: list[NodeProcess] = []
 
     def start_node(executable: str, *arguments: str) -> NodeProcess:

@@ -9,6 +9,7 @@ import statistics
 import subprocess
 import sys
 import time
+from collections import Counter
 from pathlib import Path
 
 from node_process import NodeProcess
@@ -39,7 +40,9 @@ def main() -> int:
         counts = (summary.published, summary.received, shown)
         print("  samples            {} published, {} received here, {} in {}".format(*counts, RECORDING))
         if set(counts) != {expected}:
-            raise DemoError("of {} samples, {} were published, {} came here and {} reached the recording".format(expected, *counts))
+            raise DemoError(
+                "of {} samples, {} were published, {} came here and {} reached the recording".format(expected, *counts)
+            )
         if summary.failures:
             raise DemoError("; ".join(summary.failures))
         say(f"the library alone runs it {library_speed():,.0f} times faster than real time")
@@ -47,7 +50,7 @@ def main() -> int:
     except (DemoError, ValueError) as error:
         print(f"[demo] failed: {error}", file=sys.stderr)
         return 1
-    say(f"done in {time.monotonic() - began:.1f} s; look at it again with: rerun {RECORDING}   (after: source setup.bash)")
+    say(f"done in {time.monotonic() - began:.1f} s; to look at it: source setup.bash; rerun {RECORDING}")
     return 0
 
 
@@ -60,13 +63,18 @@ def swim() -> dict[str, list]:
     for stale in (RECORDING, PICTURE):
         stale.unlink(missing_ok=True)
     sink = "[spawn, save]" if display else "[save]"
-    say(f"three nodes on ROS domain {domain.number}, " + ("at real time, in the viewer" if display else "as fast as they go (no display)"))
+    say(
+        f"three nodes on ROS domain {domain.number}, "
+        + ("at real time, in the viewer" if display else "as fast as they go (no display)")
+    )
     reception = Reception(domain.number)
     nodes: list[NodeProcess] = []
 
     def start(executable: str, *settings: str) -> NodeProcess:
         arguments = [word for setting in settings for word in ("-p", setting)]
-        node = NodeProcess(executable, "--ros-args", *arguments, environment=environment, log=OUT / f"log/{executable}.txt")
+        node = NodeProcess(
+            executable, "--ros-args", *arguments, environment=environment, log=OUT / f"log/{executable}.txt"
+        )
         nodes.append(node)
         return node
 
@@ -90,8 +98,10 @@ def swim() -> dict[str, list]:
         reception.close()
 
 
-def await_end(awaited: NodeProcess, nodes: list[NodeProcess], *, limit: float, finished: tuple[NodeProcess, ...] = ()) -> None:
-    """Until `awaited` has left with status 0; DemoError if another of `nodes` but the `finished` ends, or `limit` [s] passes."""
+def await_end(
+    awaited: NodeProcess, nodes: list[NodeProcess], *, limit: float, finished: tuple[NodeProcess, ...] = ()
+) -> None:
+    """Until `awaited` has left with status 0; DemoError if another, not `finished`, ends, or `limit` [s] passes."""
     deadline = time.monotonic() + limit
     while awaited.status is None:
         if time.monotonic() > deadline:
@@ -107,11 +117,25 @@ def await_end(awaited: NodeProcess, nodes: list[NodeProcess], *, limit: float, f
 
 
 def count_recorded(path: Path) -> int:
-    """Samples of the head's position in a recording."""
-    from eel_viz.entities import POSITION
+    """Samples in a recording: those of the topic of which it has the fewest."""
+    from eel_viz import entities
     from rerun.chunk import RrdReader
 
-    return sum(chunk.num_rows for chunk in RrdReader(str(path)).stream().filter(content=POSITION) if not chunk.is_static)
+    topics = (
+        entities.POSITION,
+        entities.SPEED,
+        entities.POWER,
+        entities.BACKBONE,
+        entities.WRENCH_NUMBERS,
+        entities.CURVATURE_NUMBERS,
+        entities.LOAD_NUMBERS,
+        entities.ODOMETRY_NUMBERS,
+    )
+    rows = Counter()
+    for chunk in RrdReader(str(path)).stream():
+        if not chunk.is_static:
+            rows[chunk.entity_path] += chunk.num_rows
+    return min(rows[topic] for topic in topics)
 
 
 def library_speed() -> float:

@@ -1,5 +1,6 @@
 """A ROS node as a process of its own, which ends when its owner does, whatever way the owner ends."""
 
+import contextlib
 import ctypes
 import os
 import signal
@@ -70,7 +71,5 @@ class NodeProcess:
             self.process.kill()
             self.process.wait()
         if descendants:
-            try:
+            with contextlib.suppress(ProcessLookupError):
                 os.killpg(self.process.pid, signal.SIGKILL)
-            except ProcessLookupError:
-                pass

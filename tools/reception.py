@@ -1,5 +1,6 @@
 """Every message of a run, as a subscriber on the network receives it: KEEP_ALL, in a thread of its own."""
 
+import contextlib
 import threading
 from collections import defaultdict
 
@@ -39,10 +40,8 @@ class Reception:
         self._thread.start()
 
     def _spin(self) -> None:
-        try:
+        with contextlib.suppress(ExternalShutdownException):
             self._executor.spin()
-        except ExternalShutdownException:
-            pass
 
     def close(self) -> None:
         """Stop listening; the messages stay."""

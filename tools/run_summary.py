@@ -36,7 +36,9 @@ class RunSummary:
         """What breaks the limits; empty for a sound run."""
         found = []
         if not self.residual <= RESIDUAL_LIMIT * abs(self.work):
-            found.append(f"energy residual {self.residual:.3g} J exceeds {RESIDUAL_LIMIT:g} of the actuators' work {self.work:.4g} J")
+            found.append(
+                f"energy residual {self.residual:.3g} J exceeds {RESIDUAL_LIMIT:g} of the work {self.work:.4g} J"
+            )
         for name, value in (("force", self.closure_force), ("torque", self.closure_torque)):
             if not value <= CLOSURE_LIMIT:
                 found.append(f"closure of the {name} {value:.3g} exceeds {CLOSURE_LIMIT:g} of its greatest value")
@@ -101,18 +103,21 @@ def summarise(messages: dict[str, list]) -> RunSummary:
 def describe(summary: RunSummary) -> str:
     """The summary for a terminal, one fact a line."""
     x, y, z = summary.position
-    return "\n".join(
-        f"  {name:<18} {text}"
-        for name, text in (
-            ("law", summary.law),
-            ("final pose", f"x {x:+.4f}  y {y:+.4f}  z {z:+.4f} m,  quaternion x y z w " + " ".join(f"{q:+.4f}" for q in summary.orientation)),
-            ("path of the head", f"{summary.path_length:.4f} m in {summary.duration:g} s, mean speed {summary.mean_speed:.4f} m/s"),
-            ("greatest torque", f"{summary.torque:.4f} N m at X = {summary.torque_x:.3f} m, t = {summary.torque_time:.2f} s"),
-            ("energy", f"actuators {summary.work:+.4f} J, wake {summary.wake:+.4f} J, drag {summary.drag:+.4f} J, kinetic at the end {summary.kinetic:.4f} J"),
-            ("energy residual", f"{summary.residual:.2e} J, {summary.residual / abs(summary.work):.1e} of the actuators' work (limit {RESIDUAL_LIMIT:g})"),
-            ("closure residual", f"force {summary.closure_force:.1e}, torque {summary.closure_torque:.1e} of the greatest (limit {CLOSURE_LIMIT:g})"),
-        )
-    )
+    turn = " ".join(f"{number:+.4f}" for number in summary.orientation)
+    facts = {
+        "law": summary.law,
+        "final pose": f"x {x:+.4f}  y {y:+.4f}  z {z:+.4f} m,  quaternion x y z w {turn}",
+        "path of the head": f"{summary.path_length:.4f} m in {summary.duration:g} s, "
+        f"mean speed {summary.mean_speed:.4f} m/s",
+        "greatest torque": f"{summary.torque:.4f} N m at X = {summary.torque_x:.3f} m, t = {summary.torque_time:.2f} s",
+        "energy": f"actuators {summary.work:+.4f} J, wake {summary.wake:+.4f} J, drag {summary.drag:+.4f} J, "
+        f"kinetic at the end {summary.kinetic:.4f} J",
+        "energy residual": f"{summary.residual:.2e} J, {summary.residual / abs(summary.work):.1e} of the actuators' "
+        f"work (limit {RESIDUAL_LIMIT:g})",
+        "closure residual": f"force {summary.closure_force:.1e}, torque {summary.closure_torque:.1e} of the greatest "
+        f"(limit {CLOSURE_LIMIT:g})",
+    }
+    return "\n".join(f"  {name:<18} {text}" for name, text in facts.items())
 
 
 def _field(messages: list, name: str) -> np.ndarray:

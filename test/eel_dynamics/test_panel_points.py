@@ -1,9 +1,10 @@
-"""The number of points in a panel does not hang on the last bit of the resolution, which differs between versions of numpy."""
+"""How many points a panel has does not hang on the resolution's last bit, which differs between versions of numpy."""
 
 import numpy as np
 import pytest
-from eel_dynamics import Body
 from eel_dynamics.sections import nearest, panels_of
+
+from eel_dynamics import Body
 
 
 @pytest.mark.parametrize("resolution", [10.0, 30.0, 50.0])

@@ -67,7 +67,15 @@ def swim(start, folder: Path, *, remap: tuple[str, ...] = ()) -> Results:
     recording, bag = folder / "swim.rrd", folder / "bag"
     recorder = start("record", "--output", str(bag), "--stop-with-publisher", *remap)
     visualiser = start(
-        "visualiser", "--ros-args", "-p", "sink:=[save]", "-p", f"recording:={recording}", "-p", "stop_with_publisher:=true", *remap
+        "visualiser",
+        "--ros-args",
+        "-p",
+        "sink:=[save]",
+        "-p",
+        f"recording:={recording}",
+        "-p",
+        "stop_with_publisher:=true",
+        *remap,
     )
     start("gait_generator", "--ros-args", "-p", "gait:=falling", *remap)
     dynamics = start(

@@ -53,7 +53,20 @@ def numpy1(tmp_path_factory):
     python = folder / "venv/bin/python"
     site = next((folder / "venv/lib").glob("python3.*/site-packages"))
     pins = ROOT / "test/system/numpy1.txt"
-    install = [sys.executable, "-m", "pip", "install", "--quiet", "--require-hashes", "--only-binary", ":all:", "--target", site, "-r", pins]
+    install = [
+        sys.executable,
+        "-m",
+        "pip",
+        "install",
+        "--quiet",
+        "--require-hashes",
+        "--only-binary",
+        ":all:",
+        "--target",
+        site,
+        "-r",
+        pins,
+    ]
     done = subprocess.run(install, capture_output=True, text=True, timeout=100)
     if done.returncode:
         pytest.skip(f"numpy 1.26 could not be had (no network?): {done.stderr.strip().splitlines()[-1]}")
@@ -70,7 +83,8 @@ def build(numpy1) -> dict[str, str]:
     python, environment, folder = numpy1
     done = subprocess.run(
         [python, Path(sys.prefix) / "bin/colcon", "--log-base", folder / "log", "build", "--base-paths", ROOT / "src",
-         "--packages-select", "eel_msgs", "eel_gaits", "eel_dynamics", "--build-base", folder / "build", "--install-base", folder / "install",
+         "--packages-select", "eel_msgs", "eel_gaits", "eel_dynamics", "--build-base", folder / "build",
+         "--install-base", folder / "install",
          "--cmake-args", f"-DPython3_EXECUTABLE={python}"],
         env=environment, cwd=folder, capture_output=True, text=True, timeout=100,
     )  # fmt: skip
@@ -89,13 +103,23 @@ def test_builds_swims_and_talks_with_numpy_1(numpy1):
     from eel_gaits import falling
 
     python, environment, folder = numpy1
-    sources = {"PYTHONPATH": f"{ROOT}/src/eel_gaits:{ROOT}/src/eel_dynamics", "NUMBA_CACHE_DIR": os.fspath(folder / "numba_cache")}
+    sources = {
+        "PYTHONPATH": f"{ROOT}/src/eel_gaits:{ROOT}/src/eel_dynamics",
+        "NUMBA_CACHE_DIR": os.fspath(folder / "numba_cache"),
+    }
     swim = subprocess.Popen(
-        [python, "-c", SWIM], env=environment | sources, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        [python, "-c", SWIM],
+        env=environment | sources,
+        cwd=folder,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
     )
     try:  # it compiles its loops while the packages are built
         environment = build(numpy1)
-        talk = subprocess.run([python, "-c", TALK], env=environment, cwd=folder, capture_output=True, text=True, timeout=60)
+        talk = subprocess.run(
+            [python, "-c", TALK], env=environment, cwd=folder, capture_output=True, text=True, timeout=60
+        )
         assert talk.returncode == 0, talk.stderr
         said = json.loads(talk.stdout)
         output, errors = swim.communicate(timeout=200)

@@ -1,4 +1,4 @@
-"""The four packages as colcon and rosdep see them: manifests that name what the sources import, executables in place."""
+"""The four packages as colcon and rosdep see them: manifests name what the sources import, executables in place."""
 
 import ast
 import os
@@ -16,14 +16,25 @@ EXECUTABLES = {
     "eel_dynamics": {"dynamics", "simulate"},
     "eel_viz": {"visualiser", "record", "echo"},
 }
-ROSDEP_KEY = {"numpy": "python3-numpy", "numba": "python3-numba", "scipy": "python3-scipy", "matplotlib": "python3-matplotlib", "yaml": "python3-yaml"}
+ROSDEP_KEY = {
+    "numpy": "python3-numpy",
+    "numba": "python3-numba",
+    "scipy": "python3-scipy",
+    "matplotlib": "python3-matplotlib",
+    "yaml": "python3-yaml",
+}
 ROS_SIDE = {  # the modules that may import ROS, and those of the command line that are made of them
     "eel_gaits": {"node", "messages"},
     "eel_dynamics": {"node", "messages", "declaration"},
     "eel_viz": {"node", "messages", "declaration", "lifetime", "quality", "definitions", "record", "echo"},
 }
 OPTIONAL = {"tf2_msgs"}  # used where it is installed
-FROM_REQUIREMENTS = {"rerun", "rosbags", "mcap", "pyarrow"}  # no rosdep key: requirements.txt brings them (pyarrow with rerun)
+FROM_REQUIREMENTS = {
+    "rerun",
+    "rosbags",
+    "mcap",
+    "pyarrow",
+}  # no rosdep key: requirements.txt brings them (pyarrow with rerun)
 
 
 def imported_modules(package: str) -> set[str]:
@@ -86,7 +97,14 @@ def test_library_imports_without_ros(package):
     """Everything but the nodes and the message glue runs where there is no ROS at all."""
     folder = ROOT / "src" / package / package
     with_ros = ROS_SIDE[package]
-    modules = [package, *(f"{package}.{path.stem}" for path in folder.glob("*.py") if path.stem not in with_ros | {"__init__", "__main__"})]
+    modules = [
+        package,
+        *(
+            f"{package}.{path.stem}"
+            for path in folder.glob("*.py")
+            if path.stem not in with_ros | {"__init__", "__main__"}
+        ),
+    ]
     blocked = ["rclpy", "eel_msgs", "std_msgs", "geometry_msgs", "rcl_interfaces", "builtin_interfaces", "nav_msgs"]
     code = f"import sys\nfor name in {blocked!r}: sys.modules[name] = None\nimport {', '.join(modules)}"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)

@@ -21,16 +21,26 @@ def tracked() -> list[Path]:
 def test_no_index_address(tracked):
     pattern = re.compile(r"(index-url|find-links|trusted-host|pypi\.org|pythonhosted|--registry)", re.IGNORECASE)
     allowed = {ROOT / "tools/lock.sh", Path(__file__)}  # the first keeps them out, the second is this list
-    assert [str(path) for path in tracked if path not in allowed and pattern.search(path.read_bytes().decode(errors="ignore"))] == []
+    assert [
+        str(path)
+        for path in tracked
+        if path not in allowed and pattern.search(path.read_bytes().decode(errors="ignore"))
+    ] == []
 
 
 def test_no_path_of_a_developers_machine(tracked):
     # in two halves, so that this file is not a finding
-    pattern = re.compile("|".join(("/ro" + "ot/", "/wo" + "rk/", "/ho" + r"me/\w", "/Use" + "rs/", r"\.\./sha" + "red")))
+    pattern = re.compile(
+        "|".join(("/ro" + "ot/", "/wo" + "rk/", "/ho" + r"me/\w", "/Use" + "rs/", r"\.\./sha" + "red"))
+    )
     found = []
     for path in tracked:
         if path.suffix not in (".png", ".npz", ".rrd"):
-            found += [f"{path.relative_to(ROOT)}:{number}" for number, line in enumerate(path.read_text(errors="ignore").splitlines(), 1) if pattern.search(line)]
+            found += [
+                f"{path.relative_to(ROOT)}:{number}"
+                for number, line in enumerate(path.read_text(errors="ignore").splitlines(), 1)
+                if pattern.search(line)
+            ]
     assert found == []
 
 
@@ -51,7 +61,9 @@ def test_every_requirement_is_pinned_with_hashes(name):
 def test_requirements_agree_with_one_another():
     pins: dict[str, str] = {}
     for name in REQUIREMENTS:
-        for package, version in re.findall(r"^([a-z0-9-]+)(?:\[[a-z,]+\])?==(\S+)", (ROOT / name).read_text(), re.MULTILINE):
+        for package, version in re.findall(
+            r"^([a-z0-9-]+)(?:\[[a-z,]+\])?==(\S+)", (ROOT / name).read_text(), re.MULTILINE
+        ):
             assert pins.setdefault(package, version) == version, f"{package} in {name}"
 
 
@@ -59,3 +71,9 @@ def test_colcon_looks_only_at_the_packages():
     for folder in ("test", "benchmarks"):
         if (ROOT / folder).exists():
             assert (ROOT / folder / "COLCON_IGNORE").exists(), folder
+
+
+@pytest.mark.parametrize("rule", [("check",), ("format", "--check")])
+def test_lint(rule):
+    done = subprocess.run(["ruff", *rule, "--no-cache", ROOT], cwd=ROOT, capture_output=True, text=True, timeout=60)
+    assert done.returncode == 0, done.stdout + done.stderr

@@ -17,7 +17,10 @@ def shell(script: str, **environment: str) -> subprocess.CompletedProcess:
 
 
 def test_brings_python_and_nodes():
-    done = shell(f"source '{ROOT}/setup.bash' && python -c 'import eel_dynamics, eel_gaits, eel_msgs.msg, eel_viz, rclpy' && command -v " + " ".join(NODES))
+    done = shell(
+        f"source '{ROOT}/setup.bash' && "
+        "python -c 'import eel_dynamics, eel_gaits, eel_msgs.msg, eel_viz, rclpy' && command -v " + " ".join(NODES)
+    )
     assert done.returncode == 0, done.stderr
     found = done.stdout.split()
     assert [Path(path).name for path in found] == list(NODES)
@@ -28,7 +31,9 @@ def test_shadows_no_command_of_the_system():
     done = shell(f"source '{ROOT}/setup.bash'; ls {ROOT}/install/bin")
     ours = done.stdout.split()
     assert ours
-    assert [name for name in ours if any(Path(folder, name).exists() for folder in ("/usr/bin", "/bin", "/usr/sbin"))] == []
+    assert [
+        name for name in ours if any(Path(folder, name).exists() for folder in ("/usr/bin", "/bin", "/usr/sbin"))
+    ] == []
 
 
 def test_twice_is_as_good_as_once():
@@ -39,7 +44,10 @@ def test_twice_is_as_good_as_once():
 
 @pytest.mark.parametrize("options", ["-eu", "-e", "-u", "+eu"])
 def test_leaves_the_shell_as_it_was(options):
-    done = shell(f"set {options}; before=$-; source '{ROOT}/setup.bash'; [ \"$before\" = \"$-\" ]; compgen -v | grep _eel || true; compgen -A function | grep _eel || true; pwd")
+    done = shell(
+        f'set {options}; before=$-; source \'{ROOT}/setup.bash\'; [ "$before" = "$-" ]; '
+        "compgen -v | grep _eel || true; compgen -A function | grep _eel || true; pwd"
+    )
     assert done.returncode == 0, done.stderr
     assert done.stdout == "/\n"
 

@@ -1,4 +1,4 @@
-"""The suite as a user runs it: three processes over DDS, every topic recorded twice, compared with the library's own run.
+"""The suite as a user runs it: three processes over DDS, every topic recorded twice, compared with the library's run.
 
 Messages and Rerun's scalars are double precision: equal but for the order of additions. Rerun's geometry is single
 precision: 1e-6.
@@ -77,10 +77,15 @@ def test_odometry_is_pose_and_twist(results):
     poses, twists, odometry = (results.messages(topic) for topic in ("/head_pose", "/head_twist", "/odom"))
     assert {(m.header.frame_id, m.child_frame_id) for m in odometry} == {("odom", "base_link")}
     for select, of_pose in ((triple, "position"), (quadruple, "orientation")):
-        together, alone = ([getattr(p, of_pose) for p in group] for group in ([m.pose.pose for m in odometry], [m.pose for m in poses]))
+        together, alone = (
+            [getattr(p, of_pose) for p in group] for group in ([m.pose.pose for m in odometry], [m.pose for m in poses])
+        )
         np.testing.assert_array_equal(select(together), select(alone))
     for of_twist in ("linear", "angular"):
-        together, alone = ([getattr(t, of_twist) for t in group] for group in ([m.twist.twist for m in odometry], [m.twist for m in twists]))
+        together, alone = (
+            [getattr(t, of_twist) for t in group]
+            for group in ([m.twist.twist for m in odometry], [m.twist for m in twists])
+        )
         np.testing.assert_array_equal(triple(together), triple(alone))
     assert {m.header.frame_id for m in twists} == {"base_link"}
 
@@ -88,7 +93,9 @@ def test_odometry_is_pose_and_twist(results):
 def test_shape(results, library):
     backbone, curvature = results.messages("/backbone"), results.messages("/curvature")
     assert_same(field(backbone, "position").reshape(SAMPLES, STATIONS, 3), turned(library.backbone))
-    assert_same(field(backbone, "orientation").reshape(SAMPLES, STATIONS, 4), turned_quaternions(library.section_orientation))
+    assert_same(
+        field(backbone, "orientation").reshape(SAMPLES, STATIONS, 4), turned_quaternions(library.section_orientation)
+    )
     for axis, name in ((1, "pitch"), (2, "yaw")):
         assert_same(field(curvature, name), library.curvature[:, :, axis])
         assert_same(field(curvature, f"{name}_rate"), library.curvature_rate[:, :, axis])
@@ -130,7 +137,9 @@ def test_rerun_has_every_scalar(results, library):
         entities.ANGULAR: turned(library.twist[:, :3]),
         entities.SPEED: np.linalg.norm(library.twist[:, 3:], axis=1, keepdims=True),
         entities.KINETIC: np.stack([library.energy.kinetic_body, library.energy.kinetic_fluid], axis=1),
-        entities.POWER: np.stack([getattr(library.energy, f"{name}_power") for name in ("actuator", "wake", "nose", "drag")], axis=1),
+        entities.POWER: np.stack(
+            [getattr(library.energy, f"{name}_power") for name in ("actuator", "wake", "nose", "drag")], axis=1
+        ),
     }
     for path, values in expected.items():
         times, rows = results.column(path, "scalars")
@@ -142,9 +151,15 @@ def test_rerun_has_every_profile_as_the_messages_do(results):
     from eel_viz import entities
 
     topics = {
-        entities.WRENCH_NUMBERS: ("/internal_wrench", ("torque_1", "torque_2", "torque_3", "force_1", "force_2", "force_3")),
+        entities.WRENCH_NUMBERS: (
+            "/internal_wrench",
+            ("torque_1", "torque_2", "torque_3", "force_1", "force_2", "force_3"),
+        ),
         entities.CURVATURE_NUMBERS: ("/curvature", ("pitch", "pitch_rate", "yaw", "yaw_rate")),
-        entities.LOAD_NUMBERS: ("/hydrodynamic_load", ("force_1", "force_2", "force_3", "resistive_1", "resistive_2", "resistive_3")),
+        entities.LOAD_NUMBERS: (
+            "/hydrodynamic_load",
+            ("force_1", "force_2", "force_3", "resistive_1", "resistive_2", "resistive_3"),
+        ),
     }
     for path, (topic, names) in topics.items():
         messages = results.messages(topic)

@@ -73,7 +73,8 @@ class Run:
         """The run in a few lines, each number with its unit."""
         row = lambda values: "(" + ", ".join(f"{value:+.4f}" for value in values) + ")"  # noqa: E731
         lines = [
-            f"{self.law.name}: {self.body.name}, {self.body.length:g} m, {self.body_mass:.4g} kg, {self.time[-1]:g} s, accuracy {self.accuracy.name}",
+            f"{self.law.name}: {self.body.name}, {self.body.length:g} m, {self.body_mass:.4g} kg, "
+            f"{self.time[-1]:g} s, accuracy {self.accuracy.name}",
             f"final position      {row(self.position[-1])} m",
             f"final orientation   {row(self.orientation[-1])} x y z w",
             f"head's path         {self.path_length:.4f} m",
@@ -89,7 +90,8 @@ class Run:
             e = self.energy
             kinetic = e.kinetic_body[-1] + e.kinetic_fluid[-1] - e.kinetic_body[0] - e.kinetic_fluid[0]
             lines.append(
-                f"energy [J]          actuators {e.actuator_work[-1]:+.4g}, wake {e.wake_work[-1]:+.4g}, nose {e.nose_work[-1]:+.4g}, "
+                f"energy [J]          actuators {e.actuator_work[-1]:+.4g}, wake {e.wake_work[-1]:+.4g}, "
+                f"nose {e.nose_work[-1]:+.4g}, "
                 f"drag {e.drag_work[-1]:+.4g}, kinetic {kinetic:+.4g}, residual {e.residual[-1]:+.1e}"
             )
         lines.append(f"cost                {self.steps} steps, {self.evaluations} evaluations of the head's dynamics")

@@ -63,7 +63,7 @@ def panels_of(body: Body, resolution: float) -> tuple[Panel, ...]:
 
 
 def nearest(count: float) -> int:
-    """The nearest whole number, halves upwards: the last bit of `count` differs from one version of numpy to the next."""
+    """The nearest whole number, halves upwards: the last bit of `count` differs between versions of numpy."""
     return math.floor(count + 0.5 + 1e-9)
 
 
