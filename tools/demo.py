@@ -118,8 +118,9 @@ def await_end(
 
 def count_recorded(path: Path) -> int:
     """Samples in a recording: those of the topic of which it has the fewest."""
-    from eel_viz import entities
     from rerun.chunk import RrdReader
+
+    from eel_viz import entities
 
     topics = (
         entities.POSITION,
