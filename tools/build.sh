@@ -24,7 +24,7 @@ make_environment() {
         return
     fi
     find_python   # sets $python, or ends with one line
-    say "virtual environment .venv with $("$python" -V) and ROS 2 Jazzy (about 130 packages, 2 GB; minutes on a slow line)"
+    say "virtual environment .venv with $("$python" -V) and ROS 2 Jazzy (about 170 packages, 2 GB; minutes on a slow line)"
     rm -rf .venv build install log
     "$python" -m venv .venv
     touch .venv/COLCON_IGNORE
