@@ -11,7 +11,7 @@ demo: build   ## swim the falling gait through the three nodes; leaves out/falli
 	@$(RUN) python tools/demo.py
 
 test: build   ## all tests but the long ones (ARGS=... goes to pytest)
-	@$(RUN) python -m pytest -m "not soak" $(ARGS)
+	@$(RUN) tools/test.sh $(ARGS)
 
 soak: build   ## the long tests (ARGS=... goes to pytest)
 	@$(RUN) python -m pytest -m soak $(ARGS)
