@@ -1,6 +1,7 @@
 """`simulate`: swim a gait offline, print the summary, keep the run.
 
 simulate falling
+simulate falling --duration 20 --periods 4 --actuators 8
 simulate straight --set wavelength=0.8 --scene friction=laminar --accuracy 1e-6 --out run.npz
 """
 
@@ -63,6 +64,13 @@ def main(arguments: list[str] | None = None) -> int:
             stations=options.stations,
             load=options.load,
         )
+        seconds = time.perf_counter() - start
+        if out is not None:
+            _write(run, out)
+        print(run.summary(options.periods))
+        print(f"wall time           {seconds:.3f} s, loading or compiling the loops included")
+        if options.actuators is not None:
+            print(run.actuators(options.actuators).table())
     except SimulationStopped as stopped:
         print(f"simulate: {stopped}", file=sys.stderr)
         if out is not None and len(stopped.run.time):
@@ -71,10 +79,7 @@ def main(arguments: list[str] | None = None) -> int:
     except (ValueError, OSError) as error:
         print(f"simulate: {error}", file=sys.stderr)
         return 2
-    print(run.summary())
-    print(f"wall time           {time.perf_counter() - start:.3f} s, loading or compiling the loops included")
     if out is not None:
-        _write(run, out)
         print(f"written to          {out}")
     return 0
 
@@ -101,6 +106,12 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--sample-period", type=float, default=0.05, help="s (0.05)")
     parser.add_argument("--stations", type=int, default=51, help="points along the body (51)")
     parser.add_argument("--load", action="store_true", help="keep the water's load along the body too")
+    parser.add_argument(
+        "--periods", type=int, metavar="N", help="figures of the gait over the last N whole periods (later half)"
+    )
+    parser.add_argument(
+        "--actuators", type=int, metavar="N", help="print the demand on a robot of N motors in pitch and N in yaw"
+    )
     parser.add_argument(
         "--out", metavar="FILE", help=".npz: every array of the run; .csv: head, energies, one line per sample"
     )

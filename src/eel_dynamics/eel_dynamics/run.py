@@ -6,10 +6,13 @@ import numpy as np
 from eel_gaits.law import Law
 
 from .accuracy import Accuracy
+from .actuators import Actuators, actuators_of
+from .analysis import Analysis
 from .body import Body
 from .energy import EnergyLedger
 from .scene import Scene
 from .simulation import Simulation, SimulationStopped
+from .summary import describe
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,33 +72,18 @@ class Run:
         sample, station = np.unravel_index(np.argmax(size), size.shape)
         return float(size[sample, station]), float(self.x[station]), float(self.time[sample])
 
-    def summary(self) -> str:
-        """The run in a few lines, each number with its unit."""
-        row = lambda values: "(" + ", ".join(f"{value:+.4f}" for value in values) + ")"  # noqa: E731
-        lines = [
-            f"{self.law.name}: {self.body.name}, {self.body.length:g} m, {self.body_mass:.4g} kg, "
-            f"{self.time[-1]:g} s, accuracy {self.accuracy.name}",
-            f"final position      {row(self.position[-1])} m",
-            f"final orientation   {row(self.orientation[-1])} x y z w",
-            f"head's path         {self.path_length:.4f} m",
-            f"mean speed          {self.mean_speed:.4f} m/s, centre of mass, start to end",
-        ]
-        if self.torque is not None:
-            size, x, time = self.greatest_torque()
-            lines.append(f"greatest torque     {size:.4g} N m at X = {x:.3f} m, t = {time:.3f} s")
-            lines.append(
-                f"closure at the nose {np.max(self.closure_torque):.1e} N m, {np.max(self.closure_force):.1e} N"
-            )
-        if self.energy is not None:
-            e = self.energy
-            kinetic = e.kinetic_body[-1] + e.kinetic_fluid[-1] - e.kinetic_body[0] - e.kinetic_fluid[0]
-            lines.append(
-                f"energy [J]          actuators {e.actuator_work[-1]:+.4g}, wake {e.wake_work[-1]:+.4g}, "
-                f"nose {e.nose_work[-1]:+.4g}, "
-                f"drag {e.drag_work[-1]:+.4g}, kinetic {kinetic:+.4g}, residual {e.residual[-1]:+.1e}"
-            )
-        lines.append(f"cost                {self.steps} steps, {self.evaluations} evaluations of the head's dynamics")
-        return "\n".join(lines)
+    def analysis(self, periods: int | None = None) -> Analysis:
+        """What researchers read off a run (speed, Strouhal number, power, efficiency ...), over its last `periods`
+        whole periods, or those of its later half. `ValueError` for a run that is too short to have one."""
+        return Analysis(self, periods)
+
+    def actuators(self, joints: int) -> Actuators:
+        """The demand on a robot of `joints` motors in pitch and as many in yaw: angles, speeds, torques, powers."""
+        return actuators_of(self, joints)
+
+    def summary(self, periods: int | None = None) -> str:
+        """The run in lines, each number with its unit: as a whole, then over its last `periods` whole periods."""
+        return describe(self, periods)
 
     @property
     def body_mass(self) -> float:

@@ -1,0 +1,133 @@
+"""Whole periods of a run's gait, over which its figures are averaged.
+
+Samples are joined by cubic splines, so that a window need not begin or end at a sample. Positions are those over the
+water: a current is taken out.
+"""
+
+import math
+from functools import cached_property
+
+import numpy as np
+from eel_gaits.law import Law, Term
+
+LONGEST_COMMON = 12  # of the strongest wave's periods, after which the whole gait must repeat
+FEWEST_SAMPLES = 8  # in a period
+FINE = 64  # points in a period, where a path or its width is measured
+
+
+def strength(term: Term, x: np.ndarray, time: np.ndarray) -> float:
+    """Greatest curvature [rad/m] of `term` over the stations `x` [m] and the instants `time` [s]."""
+    return float(np.max(np.abs(term.amplitude_at(x))) * np.max(np.abs(term.envelope_at(time)[0])))
+
+
+def strongest(law: Law, x, time, *, axes=("yaw", "pitch"), travelling: bool = False) -> Term | None:
+    """The periodic term of greatest curvature, yaw before pitch whatever their strength; None where there is none.
+
+    x (M,) [m] and time (T,) [s]: where and when strength is measured. travelling: waves with a wavelength only.
+    """
+    found = []
+    for axis in axes:
+        terms = [
+            term for term in law.terms if term.axis == axis and term.period and (term.wavelength or not travelling)
+        ]
+        if terms:
+            found.append(max(terms, key=lambda term: strength(term, x, time)))
+    return next((term for term in found if strength(term, x, time) > 0.0), found[0] if found else None)
+
+
+def common_period(law: Law, x, time) -> float:
+    """Time [s] after which the gait repeats: the least whole multiple of the strongest wave's period that is one of
+    every other term's too. `ValueError` for a law without period, or where that multiple is above 12."""
+    first = strongest(law, x, time)
+    if first is None:
+        raise ValueError(f"law {law.name!r} has no periodic term: it has no period to average over")
+    periods = {first.period} | {term.period for term in law.terms if term.period and strength(term, x, time) > 0.0}
+    for multiple in range(1, LONGEST_COMMON + 1):
+        ratios = [multiple * first.period / period for period in periods]
+        if all(abs(ratio - round(ratio)) < 1e-9 * ratio and round(ratio) for ratio in ratios):
+            return multiple * first.period
+    listed = ", ".join(f"{period:g}" for period in sorted(periods))
+    raise ValueError(f"law {law.name!r} does not repeat within {LONGEST_COMMON} periods: it has periods {listed} s")
+
+
+class Window:
+    """The last `periods` whole periods of `run` (None: as many as make up the later half of the run, at least one).
+
+    run, periods; period [s]: after which the gait repeats; start, end [s]; wave: the strongest wave (yaw, else pitch).
+    `ValueError` where the run is too short, its samples too few, or its time does not rise (a reset in it).
+    """
+
+    def __init__(self, run, periods: int | None = None):
+        time = np.asarray(run.time, dtype=float)
+        falls = np.flatnonzero(np.diff(time) <= 0.0)
+        if len(falls):
+            raise ValueError(
+                f"run time must rise: it goes back from {time[falls[0]]:g} to {time[falls[0] + 1]:g} s (a reset?)"
+            )
+        self.run, self.period = run, common_period(run.law, run.x, time)
+        self.wave = strongest(run.law, run.x, time)
+        self.travelling_wave = strongest(run.law, run.x, time, axes=("yaw",), travelling=True)
+        whole = math.floor((time[-1] - time[0]) / self.period + 1e-9)
+        if whole < 1:
+            raise ValueError(f"run must hold a whole period of {self.period:g} s, got {time[-1] - time[0]:g} s")
+        if periods is None:
+            periods = (whole + 1) // 2
+        if isinstance(periods, bool) or not isinstance(periods, (int, np.integer)) or not 1 <= periods <= whole:
+            raise ValueError(f"periods must be a whole number from 1 to {whole}, those of the run, got {periods!r}")
+        if np.max(np.diff(time)) > self.wave.period / FEWEST_SAMPLES * (1.0 + 1e-9):
+            raise ValueError(
+                f"run must have {FEWEST_SAMPLES} samples or more in a period of {self.wave.period:g} s, "
+                f"got a sample period of {np.max(np.diff(time)):g} s"
+            )
+        self.periods, self.end = int(periods), float(time[-1])
+        self.start = max(float(time[0]), self.end - self.periods * self.period)
+        self.inside = (time >= self.start - 1e-9 * self.period) & (time <= self.end)
+
+    def __repr__(self) -> str:
+        return f"Window({self.periods} periods of {self.period:g} s, {self.start:g} to {self.end:g} s)"
+
+    @property
+    def duration(self) -> float:
+        """Length of the window [s]."""
+        return self.end - self.start
+
+    def instants(self, start: float, end: float) -> np.ndarray:
+        """Instants [s] from `start` to `end` [s], 64 in a period of the strongest wave."""
+        return np.linspace(start, end, max(1, round((end - start) / self.wave.period * FINE)) + 1)
+
+    def mean(self, values: np.ndarray) -> np.ndarray:
+        """Mean over the window of samples (T, ...), the spline through them integrated."""
+        return self.spline(values).integrate(self.start, self.end) / self.duration
+
+    def rate(self, work: np.ndarray, power: np.ndarray) -> float:
+        """Mean power [W] over the window of `work` (T,) [J], whose derivative is `power` (T,) [W]."""
+        from scipy.interpolate import CubicHermiteSpline
+
+        curve = CubicHermiteSpline(self.run.time, work, power)
+        return float(curve(self.end) - curve(self.start)) / self.duration
+
+    def spline(self, values: np.ndarray):
+        """Cubic spline in time through samples (T, ...)."""
+        from scipy.interpolate import CubicSpline
+
+        return CubicSpline(self.run.time, values, axis=0)
+
+    @cached_property
+    def center_of_mass(self):
+        """Spline of the centre of mass over the water, (3,) m."""
+        return self.spline(self.run.center_of_mass - self._drift)
+
+    @cached_property
+    def tail(self):
+        """Spline of the tail over the water, (3,) m. `ValueError` where the last station is not the tail."""
+        length = self.run.body.length
+        if abs(self.run.x[-1] - length) > 1e-9 * length:
+            raise ValueError(
+                f"run must have a station at the tail, X = {length:g} m, got the last at {self.run.x[-1]:g} m"
+            )
+        return self.spline(self.run.backbone[:, -1] - self._drift)
+
+    @property
+    def _drift(self) -> np.ndarray:
+        """Way of the water since t = 0 (T, 3) [m]."""
+        return np.outer(self.run.time, self.run.scene.current)
