@@ -9,7 +9,9 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-NEEDED = ["bash", "sh", "env", "sed", "awk", "cat", "tee", "uname", "find", "sort", "xargs", "sha256sum", "cut", "flock", "rm", "mkdir", "touch", "dirname"]
+NEEDED = """
+    bash sh env sed awk cat tee uname find sort xargs sha256sum cut flock rm mkdir touch dirname
+"""
 
 
 @pytest.fixture
@@ -20,7 +22,7 @@ def machine(tmp_path):
     shutil.copytree(ROOT / "tools", copy / "tools")
     for path in ROOT.glob("requirements*.txt"):
         shutil.copy(path, copy)
-    for name in [*NEEDED, "cc", "c++", "make"]:
+    for name in [*NEEDED.split(), "cc", "c++", "make"]:
         (commands / name).symlink_to(shutil.which(name))
 
     def build(*, lacks=(), python=sys.executable):
