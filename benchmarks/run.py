@@ -122,7 +122,7 @@ def main(names: list[str]) -> int:
     machine = f"{platform.processor() or platform.machine()}, Python {platform.python_version()}"
     print(f"{machine}, commit {commit or 'unknown'}, medians of {REPEATS}")
     for name in names or FIGURES:
-        print(f"{name}: {FIGURES[name].__doc__}")
+        print(f"{name}: {' '.join(FIGURES[name].__doc__.split())}")
         for label, value, unit in FIGURES[name]():
             print(f"  {label:42s} {value:10.4g} {unit}")
     return 0
