@@ -1,0 +1,79 @@
+"""What researchers read off a run, against the same figures computed here from the arrays, and what is undefined."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from eel_dynamics.friction_power import drag_powers
+
+from eel_dynamics import Body, Scene, simulate
+from eel_gaits import Law, Ramp, Term, straight
+
+
+@pytest.fixture(scope="module")
+def run():
+    return simulate(straight(), 8.0, sample_period=0.02, stations=101)
+
+
+def test_speed_power_and_efficiency(run):
+    a = run.analysis(4)
+    last = run.time >= 4.0 - 1e-9
+    # The averaged centre of mass of a straight swimmer goes straight: its path is the way per period.
+    way = run.center_of_mass[-1] - run.center_of_mass[200]
+    assert a.mean_speed == pytest.approx(
+        np.linalg.norm(way) / 4.0, rel=2e-2
+    )  # still gaining speed, and turning a little
+    assert a.stride == pytest.approx(a.mean_speed) and a.slip == pytest.approx(a.mean_speed)  # l = T = wavelength = 1
+    assert a.reynolds == pytest.approx(a.mean_speed / 1e-6)
+    e = run.energy
+    work = e.actuator_work[-1] - e.actuator_work[200]
+    assert a.actuator_power == pytest.approx(work / 4.0, rel=1e-9)
+    assert a.actuator_power == pytest.approx(np.mean(e.actuator_power[last][:-1]), rel=1e-3)
+    assert a.positive_actuator_power >= a.actuator_power
+    assert a.cost_of_transport == pytest.approx(a.actuator_power / (run.body_mass * a.mean_speed))
+    assert a.hydromechanical_efficiency == pytest.approx(1.0 + a.wake_power / a.actuator_power)
+    assert 0.0 < a.propulsive_efficiency < a.hydromechanical_efficiency < 1.0
+    assert 0.2 < a.strouhal < 0.5  # live eels: near 0.32 (Tytell 2004)
+    assert np.all(a.peak_torque >= a.rms_torque - 1e-12)
+
+
+def test_friction_power_is_what_the_load_along_the_body_says():
+    run = simulate(straight(), 4.0, sample_period=0.05, stations=401, load=True)
+    step = 1e-4  # s, of central differences of the backbone
+    near = simulate(straight(), 3.0 + step, sample_period=step, stations=401)
+    velocity = (near.backbone[-1] - near.backbone[-3]) / (2.0 * step)
+    tangent = np.gradient(near.backbone[-2], near.x, axis=0)
+    k = round(3.0 / 0.05)
+    density = run.resistive_force[k][:, 0] * np.sum(velocity * tangent, axis=1)
+    expected = np.sum(0.5 * (density[1:] + density[:-1]) * np.diff(run.x))
+    assert drag_powers(run)[k, 0] == pytest.approx(expected, rel=2e-3)  # differences and the trapezoidal rule
+
+
+def test_motors_add_up_like_one_over_n_squared(run):
+    differences = [run.actuators(n).relative_difference for n in (8, 16, 32)]
+    assert differences[2] < 0.02
+    assert all(3.0 < coarse / fine < 5.0 for coarse, fine in pairwise(differences))
+    motors = run.actuators(10)
+    assert motors.x[0] == pytest.approx(0.05) and motors.yaw.angle.shape == (401, 10)
+    assert np.sum(motors.yaw.angle[-1]) == pytest.approx(
+        np.sum(0.5 * (run.curvature[-1, 1:, 2] + run.curvature[-1, :-1, 2]) * np.diff(run.x)), abs=1e-3
+    )
+    assert np.all(motors.pitch.angle == 0.0)
+
+
+def test_undefined_and_refused(run):
+    still = simulate(Law(Term(amplitude=(0.0,), wavelength=1.0, period=1.0)), 2.0, sample_period=0.05)
+    a = still.analysis()
+    assert a.mean_speed == 0.0 and a.strouhal is None and a.cost_of_transport is None and a.slip is None
+    assert a.hydromechanical_efficiency is None and "nan" not in still.summary() and "undefined" in still.summary()
+    with pytest.raises(ValueError, match="whole period"):
+        simulate(straight(), 0.5).analysis()
+    with pytest.raises(ValueError, match="no periodic term"):
+        simulate(Law(Term(amplitude=(1.0,), phase=np.pi / 2, envelope=(Ramp(0, 1, 1),))), 2.0).analysis()
+    bare = simulate(straight(), 2.0, scene=Scene(ledger=False, internal_wrench=False), body=Body.kern2006())
+    with pytest.raises(ValueError, match="ledger"):
+        _ = bare.analysis().actuator_power
+    with pytest.raises(ValueError, match="internal_wrench"):
+        bare.actuators(4)
+    with pytest.raises(ValueError, match="joints"):
+        run.actuators(0)
