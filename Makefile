@@ -1,7 +1,7 @@
 # The two commands are `make demo` and `make test`; each does all the set-up itself, inside this folder.
 SHELL := /bin/bash
 .DEFAULT_GOAL := help
-.PHONY: help demo test build bench lint soak clean
+.PHONY: help demo test build bench lint soak robustness clean
 RUN := tools/run.sh
 
 help:   ## this list
@@ -18,6 +18,9 @@ soak: build   ## the long tests (ARGS=... goes to pytest)
 
 bench: build   ## speed and accuracy figures (ARGS=NAME for one of them)
 	@$(RUN) python benchmarks/run.py $(ARGS)
+
+robustness: build   ## write the table of faults in docs/robustness.md from the tests
+	@$(RUN) python tools/fault_table.py
 
 lint: build   ## ruff: rules and format
 	@$(RUN) ruff check .

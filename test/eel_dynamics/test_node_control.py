@@ -16,6 +16,11 @@ def seconds(message):
     return nanoseconds(message.clock if isinstance(message, Clock) else message.header.stamp) / 1e9
 
 
+@pytest.mark.fault(
+    "time",
+    "waiting for a law, and a pause",
+    "/clock ticks on at the time that stands; afterwards the run does not hurry",
+)
 def test_clock_ticks_while_waiting_and_while_paused(start, client):
     swim = client(topics=("head_pose",), clock=True)
     start("dynamics", "--ros-args")
@@ -39,6 +44,9 @@ def test_clock_ticks_while_waiting_and_while_paused(start, client):
     assert np.all(np.diff([seconds(message) for message in swim.heard["/clock"]]) >= 0.0)
 
 
+@pytest.mark.fault(
+    "time", "a reset in mid-run", "the same law from its own t = 0: the second run repeats the first, bit by bit"
+)
 def test_reset_begins_again_with_the_same_law(start, client):
     swim = client(topics=("head_pose",))
     message = law_to_message(falling())
@@ -119,6 +127,11 @@ def test_parameters_are_described(start, client):
     assert friction.additional_constraints == "one of printed, laminar, blended, none" and friction.description
 
 
+@pytest.mark.fault(
+    "laws",
+    "a law that no body can swim (a million rad/m)",
+    "the simulation stops at its last good state with one error; nothing NaN is published; reset starts it again",
+)
 def test_law_that_cannot_be_swum_stops_once_and_reset_starts_again(start, client):
     swim = client(topics=("head_pose", "internal_wrench", "energy"), clock=True)
     monster = Law(Term(amplitude=(1e6,), period=1.0), name="monster")  # wound up a hundred thousand times
@@ -139,6 +152,7 @@ def test_law_that_cannot_be_swum_stops_once_and_reset_starts_again(start, client
     swim.until(lambda: swim.diagnosis()[0] == 0, "good diagnostics")
 
 
+@pytest.mark.fault("laws", "a law whose rates overflow at the start", "refused; the next law is taken")
 def test_law_that_cannot_be_begun_is_refused(start, client):
     swim = client(topics=("head_pose",), clock=True)
     swim.laws.publish(law_to_message(Law(Term(amplitude=(1e200,), wavelength=1.0, period=1e-3), name="beyond")))
@@ -149,6 +163,11 @@ def test_law_that_cannot_be_begun_is_refused(start, client):
     assert all(is_finite(message) for message in swim.heard["head_pose"])
 
 
+@pytest.mark.fault(
+    "load",
+    "a pace that the machine cannot keep",
+    "WARN with the delay, once a second at most; accuracy is kept, not the pace",
+)
 def test_late_run_says_so_seldom(start, client):
     swim = client(topics=("head_pose",))
     swim.laws.publish(law_to_message(falling()))

@@ -39,6 +39,11 @@ def seconds(message):
     return nanoseconds(message.clock if isinstance(message, Clock) else message.header.stamp) / 1e9
 
 
+@pytest.mark.fault(
+    "subscribers",
+    "a subscriber that takes nothing for 2 s, as fast as it goes",
+    "the run waits for it; it gets every sample",
+)
 def test_a_subscriber_that_is_slow_for_a_while_loses_nothing(start, client):
     """It does not take anything for 2 s while 12,000 samples are made: more than what the histories of both sides hold
     (5,000 each). The publisher waits for it."""
@@ -53,6 +58,11 @@ def test_a_subscriber_that_is_slow_for_a_while_loses_nothing(start, client):
     assert node.wait(20.0) == 0 and "stuck" not in node.output()
 
 
+@pytest.mark.fault(
+    "subscribers",
+    "a subscriber stopped by SIGSTOP, as fast as it goes",
+    "waited for `subscriber_timeout`, once; then WARN, and all others get every sample",
+)
 def test_a_stuck_subscriber_delays_a_run_once_and_costs_the_others_nothing(start, client):
     stuck = start(sys.executable, "-c", LISTENER)
     stuck.wait_for_output("listening")
@@ -84,6 +94,7 @@ def test_a_stuck_subscriber_delays_a_run_once_and_costs_the_others_nothing(start
         os.kill(stuck.process.pid, signal.SIGCONT)
 
 
+@pytest.mark.fault("subscribers", "a subscriber stopped by SIGSTOP, at real time", "no effect on the run")
 def test_at_real_time_nobody_is_waited_for(start, client):
     stuck = start(sys.executable, "-c", LISTENER)
     stuck.wait_for_output("listening")
@@ -101,6 +112,9 @@ def test_at_real_time_nobody_is_waited_for(start, client):
         os.kill(stuck.process.pid, signal.SIGCONT)
 
 
+@pytest.mark.fault(
+    "subscribers", "a subscriber that comes late, with wait_for_subscribers", "the first sample waits for it"
+)
 def test_first_sample_waits_for_the_subscribers_asked_for(start, client):
     first = client(topics=tuple(SAMPLES))
     first.laws.publish(law_to_message(falling()))
@@ -157,6 +171,11 @@ def test_controller_without_a_law_drives_flat_out(start, client):
     assert "run out" not in node.output()
 
 
+@pytest.mark.fault(
+    "samples",
+    "a controller that dies in mid-stroke",
+    "the shape comes to rest smoothly, one warning; it goes on when samples return",
+)
 @pytest.mark.parametrize("factor", ["1", "0"])
 def test_dying_controller_brings_the_shape_to_rest_and_may_come_back(start, client, factor):
     swim = client(topics=("curvature",))
@@ -211,6 +230,10 @@ def test_dying_controller_brings_the_shape_to_rest_and_may_come_back(start, clie
     assert node.output().count("have run out") == 2
 
 
+@pytest.mark.fault("samples", "a sample that comes too late", "refused with one error; the shape stays as it is")
+@pytest.mark.fault(
+    "samples", "a sample with NaN, or with arrays that do not fit", "refused with one error that names the array"
+)
 def test_bad_samples_are_refused(start, client):
     swim = client(topics=("curvature",))
     swim.laws.publish(law_to_message(Law(name="still")))
@@ -232,6 +255,11 @@ def test_bad_samples_are_refused(start, client):
 # /clock
 
 
+@pytest.mark.fault(
+    "neighbours",
+    "another publisher of /clock",
+    "WARN; this node leaves /clock to it, and takes it up again when it has gone",
+)
 def test_second_publisher_of_clock_is_left_alone(start, client):
     swim = client(topics=("head_pose",))
     other = swim.node.create_publisher(Clock, "/clock", LOSSLESS)
@@ -245,6 +273,7 @@ def test_second_publisher_of_clock_is_left_alone(start, client):
     swim.until(lambda: swim.node.count_publishers("/clock") == 1, "its return")
 
 
+@pytest.mark.fault("neighbours", "a second dynamics node on the network", "the first keeps /clock")
 def test_of_two_nodes_the_first_keeps_the_clock(start, client):
     swim = client(topics=(), clock=True)
     first = start("dynamics", "--ros-args", "-r", "__ns:=/first")

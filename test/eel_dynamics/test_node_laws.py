@@ -25,6 +25,11 @@ def wave(amplitude, period, name, transition):
     return Law(term, lift, name=name, transition=transition)
 
 
+@pytest.mark.fault(
+    "laws",
+    "a law that changes in the middle of a blend, three times",
+    "the curvature, its rate and its acceleration never jump",
+)
 def test_laws_in_mid_blend_never_make_the_curvature_jump(start, client):
     """Three laws, each sent before the blend of the last is over. The published curvature, its rate and the second
     difference of it are what one smooth function gives: no jump in K, dK/dt or d2K/dt2."""
@@ -70,6 +75,7 @@ def test_stamp_is_where_the_laws_own_time_begins(start, client):
         assert np.allclose(heard.yaw, falling().curvature(t - 0.5, np.array(heard.x))[0][:, 2], atol=1e-9)
 
 
+@pytest.mark.fault("laws", "the same law published over and over", "taken on once, its blend does not begin anew")
 def test_a_volatile_publisher_is_heard_and_repeating_changes_nothing(start, client):
     """As `ros2 topic pub -r 20` does it: default quality of service, the same law over and over."""
     swim = client(topics=("curvature",))
@@ -128,6 +134,17 @@ BAD = {
 }
 
 
+@pytest.mark.fault(
+    "laws", "a law with NaN or infinity", "refused with one error that names the field; the law in force stays"
+)
+@pytest.mark.fault(
+    "laws",
+    "arrays that do not fit each other, a negative period or transition, an unknown axis",
+    "refused with one error that names the field",
+)
+@pytest.mark.fault("laws", "1,001 terms", "refused: at most 1,000")
+@pytest.mark.fault("laws", "a negative stamp", "refused")
+@pytest.mark.fault("laws", "a stamp of wall time", "refused, with the hint to use_sim_time")
 def test_bad_laws_leave_the_good_one_in_force(start, client):
     swim = client(topics=("curvature", "head_pose", "internal_wrench", "energy"))
     swim.laws.publish(law_to_message(bend(0.5, name="good")))
@@ -159,6 +176,7 @@ def test_bad_laws_leave_the_good_one_in_force(start, client):
     swim.until(lambda: np.allclose(swim.heard["curvature"][-1].yaw, 0.7), "the next good law")
 
 
+@pytest.mark.fault("laws", "a law with pitch in a planar scene", "refused; the next law is taken")
 def test_pitch_in_a_planar_scene_is_refused(start, client):
     swim = client(topics=("head_pose",))
     swim.laws.publish(law_to_message(falling()))
@@ -170,6 +188,9 @@ def test_pitch_in_a_planar_scene_is_refused(start, client):
     assert swim.latest("head_pose").pose.position.z == 0.0
 
 
+@pytest.mark.fault(
+    "laws", "two publishers of laws at once", "WARN in /diagnostics while it lasts; the later message wins"
+)
 def test_two_publishers_of_laws_are_a_warning_while_it_lasts(start, client):
     swim = client(topics=("head_pose",))
     swim.laws.publish(law_to_message(bend(0.5)))

@@ -26,6 +26,11 @@ BAD = {
 }
 
 
+@pytest.mark.fault(
+    "parameters",
+    "a parameter of the dynamics node out of its bounds, of another type or unknown",
+    "one line that names it, what it must be and what it got; status 2",
+)
 @pytest.mark.parametrize("what", BAD)
 def test_bad_parameter_is_one_line_and_status_2(start, what):
     given, words = BAD[what]
@@ -43,6 +48,9 @@ def body_file(tmp_path, rows):
     return path
 
 
+@pytest.mark.fault(
+    "parameters", "a body file with negative, unsorted or too few values", "one line that names the column; status 2"
+)
 @pytest.mark.parametrize(
     ("rows", "words"),
     [
@@ -59,6 +67,7 @@ def test_bad_body_file_is_one_line_and_status_2(start, tmp_path, rows, words):
     assert len(lines) == 1 and all(word in lines[0] for word in words), node.output()
 
 
+@pytest.mark.fault("parameters", "a parameter file that is wrong", "one line, status 2, no traceback")
 @pytest.mark.parametrize(
     ("text", "words"),
     [
@@ -97,6 +106,9 @@ def test_body_from_a_file_and_numbers_of_every_kind(start, client, tmp_path):
     assert swim.latest("body").length == 1.2
 
 
+@pytest.mark.fault(
+    "ending", "SIGINT or SIGTERM in mid-run, at real time and as fast as it goes", "exit within 1 s, status 0"
+)
 @pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
 @pytest.mark.parametrize("factor", [1, 0])
 def test_signal_ends_a_run_within_a_second(start, client, sent, factor):
@@ -110,6 +122,7 @@ def test_signal_ends_a_run_within_a_second(start, client, sent, factor):
     assert "Traceback" not in node.output()
 
 
+@pytest.mark.fault("ending", "SIGINT or SIGTERM while the physics is being compiled", "exit within 1 s, status 0")
 @pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
 def test_signal_ends_a_first_compilation(start, monkeypatch, tmp_path, sent):
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "cache"))
@@ -122,6 +135,7 @@ def test_signal_ends_a_first_compilation(start, monkeypatch, tmp_path, sent):
     assert "Traceback" not in node.output()
 
 
+@pytest.mark.fault("ending", "two signals at once", "status 0, no traceback")
 def test_two_signals_are_as_good_as_one(start):
     node = start("dynamics")
     node.wait_for_output("waiting for a law", LIMIT)

@@ -86,6 +86,9 @@ def test_a_parameter_of_the_same_gait_keeps_the_time_another_gait_starts_at_now(
     assert client.law(count + 1) == (turning(wavelength=0.8, yaw_bend=-1.0, transition=2.0), 12.5)
 
 
+@pytest.mark.fault(
+    "time", "time that jumps back, at the gait generator", "its law begins at 0 again, as the receiver's does"
+)
 def test_after_time_went_back_the_law_has_its_start_at_zero(generator, client):
     generator()
     client.listen()
@@ -135,6 +138,11 @@ def test_a_gait_and_its_numbers_set_together(generator, client):
     assert client.law(2)[0] == turning(yaw_bend=-2.0, period=1.5, bend_start=5.0, bend_full=6.0)
 
 
+@pytest.mark.fault(
+    "parameters",
+    "a gait's parameter set to what cannot be, while it runs",
+    "refused with the reason; nothing changes, nothing is published",
+)
 def test_a_refused_set_says_why_and_changes_nothing(generator, client):
     generator("-p", "period:=2.0")
     client.listen()
@@ -165,6 +173,7 @@ def test_a_refused_set_says_why_and_changes_nothing(generator, client):
     assert len(client.messages) == 2
 
 
+@pytest.mark.fault("parameters", "a bad parameter of the gait generator", "one line, status 2")
 @pytest.mark.parametrize(
     ("argument", "line"),
     [
@@ -205,6 +214,7 @@ def test_a_signal_ends_it_with_status_0_within_a_second(generator, sent, delay):
     assert "Traceback" not in process.output()
 
 
+@pytest.mark.fault("ending", "a second signal while the gait generator ends", "status 0, no traceback")
 @pytest.mark.parametrize("delay", [0.0, 0.04, 0.08, 0.12])
 def test_a_second_signal_does_no_harm(generator, delay):
     process = generator()

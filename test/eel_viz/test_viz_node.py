@@ -71,6 +71,11 @@ def test_a_run_without_a_pace_is_complete_and_a_reset_begins_a_second_file(start
     assert "went back from 5 s to 0 s" in node.output()
 
 
+@pytest.mark.fault(
+    "ending",
+    "SIGINT or SIGTERM while the visualiser records",
+    "exit within 1 s, status 0; the file passes Rerun's own check",
+)
 @pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_in_mid_run_leaves_a_complete_file(start, network, tmp_path, sent):
     publishers = {topic: network.create_publisher(kind, topic, 10) for topic, kind in TOPICS.items()}
@@ -90,6 +95,11 @@ def test_a_signal_in_mid_run_leaves_a_complete_file(start, network, tmp_path, se
     assert len(read(tmp_path / "run.rrd", entities.POSITION).stamps) > 50
 
 
+@pytest.mark.fault(
+    "neighbours",
+    "messages with NaN, sizes that do not fit, quaternions of another norm",
+    "the visualiser says each once, leaves it out and shows the rest",
+)
 def test_bad_messages_are_said_once_each_and_the_rest_goes_on(start, network, tmp_path):
     from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
@@ -167,6 +177,9 @@ def test_bad_messages_are_said_once_each_and_the_rest_goes_on(start, network, tm
     verify(tmp_path / "run.rrd")
 
 
+@pytest.mark.fault(
+    "parameters", "a bad parameter of the visualiser, or a file that cannot be written", "one line, status 2"
+)
 @pytest.mark.parametrize(
     ("setting", "words"),
     [

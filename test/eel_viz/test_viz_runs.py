@@ -42,6 +42,11 @@ def send(made, stamp, topics=None):
                 getattr(loggers, topic)(stamp, *arguments)
 
 
+@pytest.mark.fault(
+    "time",
+    "time that jumps back, at the visualiser",
+    "a new recording begins, with a number before its suffix; each is complete",
+)
 def test_a_stamp_that_goes_back_begins_a_new_recording(file, ears, tmp_path):
     made = Runs([file], "eel", ears.warned.append)
     made.body(body())
@@ -74,6 +79,9 @@ def test_topics_may_reach_a_reset_at_different_times(file, ears, tmp_path):
     assert not (tmp_path / "run-3.rrd").exists()
 
 
+@pytest.mark.fault(
+    "neighbours", "two simulations on the same topics", "one warning; the visualiser leaves the older stamps out"
+)
 def test_two_publishers_do_not_begin_a_recording_with_every_message(file, ears, tmp_path):
     made = Runs([file], "eel", ears.warned.append, crowded=lambda topic: True)
     for k in range(50):
@@ -122,6 +130,7 @@ def test_a_late_start_shows_the_present(file, ears, tmp_path):
     np.testing.assert_array_equal(read(tmp_path / "run.rrd", entities.SPEED).time, [500.0, 501.0])
 
 
+@pytest.mark.fault("names", "a `recording` that is there already", "replaced, and said")
 def test_a_file_that_is_there_is_replaced_with_a_warning(file, ears, tmp_path):
     (tmp_path / "run.rrd").write_text("something else")
     Runs([file], "eel", ears.warned.append).close()
@@ -160,6 +169,7 @@ def taken():
         yield holder.getsockname()[1]
 
 
+@pytest.mark.fault("neighbours", "the visualiser's port in use", "another one is taken, and said")
 def test_a_port_in_use_is_said_and_another_one_taken(taken, ears):
     served = Served(Settings(port=taken), ears.said.append, ears.warned.append)
     served.close()
@@ -168,6 +178,9 @@ def test_a_port_in_use_is_said_and_another_one_taken(taken, ears):
     assert str(taken) not in served.uri
 
 
+@pytest.mark.fault(
+    "subscribers", "no viewer at the address to connect to", "said once, tried again; the file is complete"
+)
 def test_a_viewer_that_is_absent_is_said_once_and_found_later(ears, tmp_path, monkeypatch):
     from eel_viz.render import free_port
 

@@ -22,6 +22,9 @@ def time_to_end(node, sent) -> float:
     return time.monotonic() - began
 
 
+@pytest.mark.fault(
+    "ending", "SIGINT or SIGTERM after the first log line of any node", "exit within 1 s, status 0, no traceback"
+)
 @pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
 @pytest.mark.parametrize("executable", NODES)
 def test_signal_ends_a_node(start, tmp_path, monkeypatch, executable, sent):
@@ -34,6 +37,9 @@ def test_signal_ends_a_node(start, tmp_path, monkeypatch, executable, sent):
     assert min(times) < LIMIT, times
 
 
+@pytest.mark.fault(
+    "ending", "SIGINT or SIGTERM when a law has just been taken on", "exit within 1 s, status 0, no traceback"
+)
 @pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
 def test_signal_ends_a_swim(start, fresh_domain, sent):
     start("gait_generator")

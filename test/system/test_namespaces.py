@@ -37,6 +37,9 @@ rclpy.shutdown()
 """
 
 
+@pytest.mark.fault(
+    "neighbours", "two eels in two namespaces", "each hears and says its own; only /clock and /diagnostics are shared"
+)
 @pytest.mark.timeout(90)
 def test_two_eels(start, fresh_domain, tmp_path):
     listener = start(sys.executable, "-c", LISTEN)

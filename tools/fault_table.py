@@ -1,0 +1,93 @@
+"""The table of faults in docs/robustness.md, written from the tests: `make robustness`.
+
+A test that shows what happens at a fault says so by a decorator, once for each fault that it shows:
+
+    @pytest.mark.fault("laws", "a law with NaN or infinity", "refused with one error that names the field")
+
+The table is what stands between two marker lines of the page; test/system/test_fault_table.py fails where it is stale.
+"""
+
+import ast
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+PAGE = ROOT / "docs" / "robustness.md"
+BEGIN, END = "<!-- faults: written by `make robustness` -->", "<!-- end of faults -->"
+GROUPS = {  # key in the decorator: heading, in the order of the page
+    "laws": "Laws",
+    "samples": "Curvature samples of a controller",
+    "nodes": "Nodes that die, come back or come late",
+    "time": "Time and resets",
+    "subscribers": "Subscribers and viewers that are slow or stuck",
+    "load": "Overload and long runs",
+    "ending": "Signals, kills and full disks",
+    "neighbours": "Others on the network",
+    "names": "Names, paths and files",
+    "parameters": "Parameters",
+}
+
+
+@dataclass(frozen=True)
+class Fault:
+    """One row: what goes wrong, what happens then, and the test that shows it."""
+
+    group: str
+    fault: str
+    outcome: str
+    test: str  # file::function, from the root
+
+
+def faults_of(path: Path) -> list[Fault]:
+    """The rows that one test file declares, in its order. ValueError for a decorator that is not three texts."""
+    found = []
+    for function in ast.walk(ast.parse(path.read_text())):
+        if not isinstance(function, ast.FunctionDef):
+            continue
+        for decorator in function.decorator_list:
+            if not (isinstance(decorator, ast.Call) and ast.unparse(decorator.func) == "pytest.mark.fault"):
+                continue
+            place = f"{path.relative_to(ROOT)}::{function.name}"
+            texts = [ast.literal_eval(argument) for argument in decorator.args]
+            if len(texts) != 3 or texts[0] not in GROUPS:
+                raise ValueError(f"{place}: fault must have a group of {', '.join(GROUPS)}, a fault and an outcome")
+            found.append(Fault(*texts, place))
+    return found
+
+
+def faults() -> list[Fault]:
+    """All rows: by group, and in each by test file and place in it."""
+    rows = [row for path in sorted((ROOT / "test").glob("*/test_*.py")) for row in faults_of(path)]
+    return sorted(rows, key=lambda row: list(GROUPS).index(row.group))
+
+
+def table() -> str:
+    """The rows as Markdown, a table for each group."""
+    lines = []
+    for group, heading in GROUPS.items():
+        rows = [row for row in faults() if row.group == group]
+        if rows:
+            lines += [f"### {heading}", "| fault | what happens | test |", "|---|---|---|"]
+            lines += [f"| {row.fault} | {row.outcome} | `{row.test.removeprefix('test/')}` |" for row in rows]
+            lines.append("")
+    return "\n".join(lines)
+
+
+def with_table(page: str) -> str:
+    """The page's text with the present table between its marker lines."""
+    before, begin, rest = page.partition(BEGIN)
+    _, end, after = rest.partition(END)
+    if not begin or not end:
+        raise ValueError(f"{PAGE.relative_to(ROOT)} must have the lines {BEGIN!r} and {END!r}")
+    return f"{before}{BEGIN}\n{table()}{END}{after}"
+
+
+def main() -> int:
+    PAGE.write_text(with_table(PAGE.read_text()))
+    print(f"{PAGE.relative_to(ROOT)}: {len(faults())} faults")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
