@@ -1,6 +1,7 @@
 """Dynamics of an elongated swimmer in three dimensions, after Boyer, Porez and Leroyer (2010)."""
 
 from .accuracy import Accuracy
+from .batch import Batch, simulate_batch
 from .body import Body
 from .energy import EnergyLedger
 from .prescribed import HydrodynamicWrench, hydrodynamic_wrench
@@ -11,6 +12,7 @@ from .snapshot import Snapshot
 
 __all__ = [
     "Accuracy",
+    "Batch",
     "Body",
     "EnergyLedger",
     "HydrodynamicWrench",
@@ -21,4 +23,5 @@ __all__ = [
     "Snapshot",
     "hydrodynamic_wrench",
     "simulate",
+    "simulate_batch",
 ]

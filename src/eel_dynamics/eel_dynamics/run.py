@@ -112,10 +112,7 @@ def simulate(
     not depend on the sampling. `ValueError` names what does not fit; `SimulationStopped` carries the samples so far as
     `run`.
     """
-    if not (np.isfinite(duration) and duration >= 0.0):
-        raise ValueError(f"duration must be finite and >= 0 s, got {duration!r}")
-    if not (np.isfinite(sample_period) and sample_period > 0.0):
-        raise ValueError(f"sample_period must be finite and > 0 s, got {sample_period!r}")
+    times = checked_times(duration, sample_period)
     swimmer = Simulation(
         body=body,
         scene=scene,
@@ -126,36 +123,57 @@ def simulate(
         twist=twist,
     )
     swimmer.adopt(law)
-    times = np.arange(int(np.floor(duration / sample_period + 1e-9)) + 1) * float(sample_period)
     wrench = swimmer.scene.internal_wrench
     out, works, done, stopped = swimmer.record(times, wrench, bool(load))
-    run = _run_of(swimmer, law, times[:done], out, works[:done], wrench, load)
+    steps, _, evaluations = swimmer.evaluations
+    run = run_of(
+        law=law,
+        body=swimmer.body,
+        scene=swimmer.scene,
+        accuracy=swimmer.accuracy,
+        x=swimmer.x,
+        times=times[:done],
+        out=out,
+        works=works[:done],
+        kinetic_at_start=swimmer.kinetic_at_start,
+        wrench=wrench,
+        load=load,
+        steps=steps,
+        evaluations=evaluations,
+    )
     if stopped is not None:
         stopped.run = run
         raise stopped
     return run
 
 
-def _run_of(swimmer: Simulation, law: Law, times, out, works, wrench: bool, load: bool) -> Run:
+def checked_times(duration, sample_period) -> np.ndarray:
+    """Instants (T,) [s] of the samples; `ValueError` for a duration or a period that makes no sense."""
+    if not (np.isfinite(duration) and duration >= 0.0):
+        raise ValueError(f"duration must be finite and >= 0 s, got {duration!r}")
+    if not (np.isfinite(sample_period) and sample_period > 0.0):
+        raise ValueError(f"sample_period must be finite and > 0 s, got {sample_period!r}")
+    return np.arange(int(np.floor(duration / sample_period + 1e-9)) + 1) * float(sample_period)
+
+
+def run_of(
+    *, law, body, scene, accuracy, x, times, out, works, kinetic_at_start, wrench, load, steps, evaluations
+) -> Run:
+    """The `Run` of samples `out` (a `Profiles`) and `works`, of which those at `times` were reached."""
     done = len(times)
-    energy = (
-        EnergyLedger.of(out.kinetic[:done], out.powers[:done], works, swimmer.kinetic_at_start)
-        if swimmer.scene.ledger
-        else None
-    )
-    steps, _, evaluations = swimmer.evaluations
+    energy = EnergyLedger.of(out.kinetic[:done], out.powers[:done], works, kinetic_at_start) if scene.ledger else None
     return Run(
         law=law,
-        body=swimmer.body,
-        scene=swimmer.scene,
-        accuracy=swimmer.accuracy,
+        body=body,
+        scene=scene,
+        accuracy=accuracy,
         time=times,
         position=out.position[:done],
         orientation=out.orientation[:done],
         twist=out.twist[:done],
         head_acceleration=out.head_acceleration[:done],
         center_of_mass=out.center_of_mass[:done],
-        x=swimmer.x,
+        x=x,
         backbone=out.backbone[:done],
         section_orientation=out.section_orientation[:done],
         curvature=out.curvature[:done],

@@ -1,0 +1,81 @@
+"""The arguments of a batch, one for all or one for each, as one set for each swimmer."""
+
+from typing import NamedTuple
+
+import numpy as np
+from eel_gaits.law import Law
+
+from .accuracy import Accuracy
+from .arguments import check_planar, checked_instance, checked_quaternion, checked_row
+from .body import Body
+from .scene import Scene
+
+
+class Swimmer(NamedTuple):
+    """What one swimmer of a batch is, and how it begins."""
+
+    law: Law
+    body: Body
+    scene: Scene
+    accuracy: Accuracy
+    position: np.ndarray  # (3,) m, head, world
+    orientation: np.ndarray  # (4,) x y z w, world from head
+    twist: np.ndarray  # (6,) (Omega, V) rad/s, m/s, head's axes
+
+
+def swimmers_of(laws, bodies, scenes, accuracy, positions, orientations, twists) -> list[Swimmer]:
+    """B swimmers. Each argument is one for all, or a sequence of B (rows of an array (B, .) for the last three); a
+    sequence of length 1 counts as one for all. `ValueError` names what does not fit, and the swimmer's number."""
+    columns = _broadcast(
+        laws=_several("laws", laws, Law),
+        bodies=_several("bodies", Body.boyer2010() if bodies is None else bodies, Body),
+        scenes=_several("scenes", Scene() if scenes is None else scenes, Scene),
+        accuracy=[Accuracy.of(each) for each in (accuracy if isinstance(accuracy, (list, tuple)) else [accuracy])],
+        positions=_rows("positions", positions, lambda name, row: checked_row(name, row, 3)),
+        orientations=_rows("orientations", orientations, checked_quaternion),
+        twists=_rows("twists", twists, lambda name, row: checked_row(name, row, 6)),
+    )
+    swimmers = [Swimmer(*row) for row in zip(*columns, strict=True)]
+    for index, swimmer in enumerate(swimmers):
+        if swimmer.scene.planar:
+            _check_planar(index, swimmer)
+    return swimmers
+
+
+def _broadcast(**given) -> list[list]:
+    count = max((len(values) for values in given.values() if len(values) != 1), default=1)
+    longest = next((name for name, values in given.items() if len(values) == count), "")
+    for name, values in given.items():
+        if len(values) == 0:
+            raise ValueError(f"{name} must hold one or more, got none")
+        if len(values) not in (1, count):
+            raise ValueError(f"{name} must be one, or as many as {longest} ({count}), got {len(values)}")
+    return [values * count if len(values) == 1 else values for values in given.values()]
+
+
+def _several(name: str, values, kind: type) -> list:
+    values = [values] if isinstance(values, kind) else values
+    try:
+        values = list(values)
+    except TypeError:
+        raise ValueError(f"{name} must be a {kind.__name__} or a sequence of them, got {values!r}") from None
+    return [checked_instance(f"{name}[{index}]", value, kind) for index, value in enumerate(values)]
+
+
+def _rows(name: str, values, check) -> list[np.ndarray]:
+    try:
+        array = np.array(values, dtype=float)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name} must be one row of numbers for all or one for each, got {values!r}") from None
+    if array.ndim == 1:
+        return [check(name, array)]
+    return [check(f"{name}[{index}]", row) for index, row in enumerate(np.atleast_1d(array))]
+
+
+def _check_planar(index: int, swimmer: Swimmer):
+    try:
+        check_planar(swimmer.position, swimmer.orientation, swimmer.twist)
+        if any(term.axis == "pitch" for term in swimmer.law.terms):
+            raise ValueError(f"law {swimmer.law.name!r} has a pitch term: a planar scene cannot bend out of its plane")
+    except ValueError as error:
+        raise ValueError(f"swimmer {index}: {error}") from None
