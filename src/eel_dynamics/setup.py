@@ -20,6 +20,7 @@ setup(
         "console_scripts": [
             "dynamics = eel_dynamics.node:main",
             "simulate = eel_dynamics.command:main",
+            "figures = eel_dynamics.figures.command:main",
         ]
     },
 )

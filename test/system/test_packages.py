@@ -13,7 +13,7 @@ ROOT = Path(__file__).resolve().parents[2]
 PYTHON_PACKAGES = ("eel_gaits", "eel_dynamics", "eel_viz")
 EXECUTABLES = {
     "eel_gaits": {"gait_generator"},
-    "eel_dynamics": {"dynamics", "simulate"},
+    "eel_dynamics": {"dynamics", "simulate", "figures"},
     "eel_viz": {"visualiser", "record", "echo"},
 }
 ROSDEP_KEY = {
@@ -97,14 +97,8 @@ def test_library_imports_without_ros(package):
     """Everything but the nodes and the message glue runs where there is no ROS at all."""
     folder = ROOT / "src" / package / package
     with_ros = ROS_SIDE[package]
-    modules = [
-        package,
-        *(
-            f"{package}.{path.stem}"
-            for path in folder.glob("*.py")
-            if path.stem not in with_ros | {"__init__", "__main__"}
-        ),
-    ]
+    paths = [path for path in folder.rglob("*.py") if path.stem not in with_ros | {"__init__", "__main__"}]
+    modules = [package, *(".".join(path.relative_to(folder.parent).with_suffix("").parts) for path in paths)]
     blocked = ["rclpy", "eel_msgs", "std_msgs", "geometry_msgs", "rcl_interfaces", "builtin_interfaces", "nav_msgs"]
     code = f"import sys\nfor name in {blocked!r}: sys.modules[name] = None\nimport {', '.join(modules)}"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
