@@ -230,6 +230,63 @@ def test_dying_controller_brings_the_shape_to_rest_and_may_come_back(start, clie
     assert node.output().count("have run out") == 2
 
 
+@pytest.mark.fault("samples", "samples out of order", "put in order; the motion is the same")
+@pytest.mark.fault(
+    "samples", "a sample repeated, or a second one for the same instant", "refused: the first one counts"
+)
+@pytest.mark.fault(
+    "samples", "samples missing, or too sparse for the motion", "bridged by one quintic: what was sent is met, no jump"
+)
+@pytest.mark.fault(
+    "samples", "samples that jump from one instant to the next", "met one after the other, fast but smoothly"
+)
+def test_irregular_samples_make_one_smooth_motion(start, client):
+    """Sent while the run is paused: shuffled, some twice, some missing for 0.3 s, at the end every 0.4 s alone (of a
+    motion of period 1 s), in the middle a jump of 1 rad/m within 20 ms."""
+    swim = client(topics=("curvature",))
+    swim.laws.publish(law_to_message(Law(name="still")))
+    node = start("dynamics", "--ros-args", "-p", "rate:=500", "-p", "default_transition:=0.1")
+    swim.until(lambda: swim.samples.get_subscription_count() == 1, "the node's subscription")
+    swim.until(lambda: swim.heard["curvature"], "a first sample")
+    swim.pause(True)
+    swim.spin(0.2)
+    begin = math.ceil(50 * seconds(swim.heard["curvature"][-1]) + 1) / 50
+    steps = [0.02 * k for k in range(51) if not 15 < k < 30] + [1.4, 1.8, 2.2]
+    jump = 0.7
+    sent = {begin + step: instant(begin + step) for step in steps}
+    for time_of, message in sent.items():
+        if time_of >= begin + jump - 1e-6:
+            message.yaw = [value + 1.0 for value in message.yaw]
+    order = np.random.default_rng(1).permutation(sorted(sent))
+    for count, time_of in enumerate(order):
+        swim.samples.publish(sent[time_of])
+        if count % 10 == 0:  # a second one, that wants something else
+            other = instant(time_of)
+            other.yaw = [9.0] * 11
+            swim.samples.publish(other)
+    swim.spin(0.3)
+    swim.pause(False)
+    end = begin + steps[-1]
+    swim.until_time(end + 0.3, "curvature")
+    assert "twice" in node.output() and node.output().count("have run out") == 1, node.output()
+
+    heard = {round(seconds(m) / 0.002): m for m in swim.heard["curvature"]}
+    for time_of, message in sent.items():
+        if time_of > begin + 0.15:  # after the blend from rest
+            got = heard[round(time_of / 0.002)]
+            expected = np.array(message.yaw)[0] + (np.array(message.yaw)[-1] - message.yaw[0]) * np.array(got.x)
+            assert np.allclose(got.yaw, expected, rtol=0, atol=1e-9), time_of
+    K = np.array([message.yaw[25] for message in swim.heard["curvature"]])
+    rates = np.array([message.yaw_rate[25] for message in swim.heard["curvature"]])
+    stamps = np.array([seconds(message) for message in swim.heard["curvature"]])
+    assert np.allclose(np.diff(stamps), 0.002, rtol=0, atol=1e-8), "samples were lost"
+    acceleration = np.gradient(rates, 0.002)
+    greatest = np.abs(acceleration).max()  # that of the jump, whatever it is: finite, and K and its rate go along
+    assert np.abs(np.diff(K) - 0.001 * (rates[1:] + rates[:-1])).max() < 0.1 * greatest * 0.002**2 + 1e-12
+    away = (stamps < begin + jump - 0.05) | (stamps > begin + jump + 0.05)
+    assert np.abs(K[away]).max() < 4.5  # bridged, not thrown about: 1.5 is the motion's own amplitude there, plus 1
+
+
 @pytest.mark.fault("samples", "a sample that comes too late", "refused with one error; the shape stays as it is")
 @pytest.mark.fault(
     "samples", "a sample with NaN, or with arrays that do not fit", "refused with one error that names the array"

@@ -126,11 +126,14 @@ def edited(**changes):
 
 BAD = {
     "not finite": (edited(amplitude=[math.nan]), ("terms[0].amplitude", "nan")),
+    "infinite": (edited(wavelength=math.inf), ("terms[0].wavelength", "inf")),
     "negative period": (edited(period=-1.0), ("terms[0].period", "-1")),
     "unknown axis": (edited(axis=7), ("terms[0].axis", "7")),
     "arrays that do not fit": (edited(knots=[0.0, 0.5, 1.0]), ("terms[0].amplitude", "knot", "3")),
     "negative transition": (edited(transition=-2.0), ("transition", "-2")),
     "too many terms": (edited(terms=edited().terms * 1001), ("terms", "1001")),
+    "far too many terms": (edited(terms=edited().terms * 100_000), ("terms", "100000")),
+    "far too many values": (edited(amplitude=[1.0] * 1_000_000), ("terms[0].amplitude", "1000000")),
 }
 
 
@@ -142,7 +145,7 @@ BAD = {
     "arrays that do not fit each other, a negative period or transition, an unknown axis",
     "refused with one error that names the field",
 )
-@pytest.mark.fault("laws", "1,001 terms", "refused: at most 1,000")
+@pytest.mark.fault("laws", "1,001 terms, 100,000 terms, a million coefficients", "refused: at most 1,000 of each")
 @pytest.mark.fault("laws", "a negative stamp", "refused")
 @pytest.mark.fault("laws", "a stamp of wall time", "refused, with the hint to use_sim_time")
 def test_bad_laws_leave_the_good_one_in_force(start, client):
@@ -214,3 +217,39 @@ def test_the_law_may_come_before_or_after_the_node(start, client, early):
     swim.laws.publish(law_to_message(bend(0.5, name="only")))
     swim.until_time(0.1)
     assert node.output().count("waiting for a law") <= 1 and node.output().count("'only' taken on") == 1
+
+
+@pytest.mark.fault(
+    "laws",
+    "1,000 laws a second",
+    "the run keeps its pace and takes the last law before each sample; twenty log lines a second",
+)
+@pytest.mark.fault("laws", "a law without terms", "valid: the body straightens, over the law's transition")
+def test_a_flood_of_laws_and_one_without_terms(start, client):
+    swim = client(topics=("curvature",))
+    swim.laws.publish(law_to_message(bend(0.5, name="first")))
+    node = start("dynamics", "--ros-args", "-p", "rate:=50")
+    swim.until_time(0.3, "curvature")
+    began, sent = time.monotonic(), 0
+    while (now := time.monotonic() - began) < 2.0:
+        while sent < 1000 * now:
+            sent += 1
+            swim.laws.publish(law_to_message(bend(math.sin(0.01 * sent), name=f"law {sent}", transition=0.2)))
+        swim.executor.spin_once(timeout_sec=0.0)
+    assert sent > 1500  # or this machine cannot make a flood
+    begin = nanoseconds(swim.heard["curvature"][0].header.stamp)
+    simulated = (nanoseconds(swim.heard["curvature"][-1].header.stamp) - begin) / 1e9
+    wall = swim.arrivals["curvature"][-1] - swim.arrivals["curvature"][0]
+    assert simulated > 0.5 * wall, node.output()  # a busy machine has its part in this
+    swim.laws.publish(law_to_message(bend(0.25, name="last", transition=0.1)))
+    swim.until(lambda: np.allclose(swim.heard["curvature"][-1].yaw, 0.25), "the last law")
+    assert swim.diagnosis()[0] < 2 and node.output().count("taken on") < 22 * (time.monotonic() - began + 2.0)
+
+    swim.laws.publish(law_to_message(Law(name="nothing", transition=0.5)))
+    swim.until(lambda: not np.any(swim.heard["curvature"][-1].yaw), "a straight body")
+    K = np.array([message.yaw[25] for message in swim.heard["curvature"]])
+    rates = np.array([message.yaw_rate[25] for message in swim.heard["curvature"]])
+    stamps = np.array([nanoseconds(message.header.stamp) for message in swim.heard["curvature"]])
+    assert np.array_equal(np.diff(stamps), np.full(len(stamps) - 1, 20_000_000)), "samples were lost"
+    slope = np.abs(rates).max()  # from one sample to the next K goes no further than its greatest rate allows
+    assert np.abs(np.diff(K)).max() <= 2.0 * slope * 0.02 + 1e-12

@@ -230,7 +230,10 @@ def message(name="wave", sec=0, nanosec=0):
 
 
 def feed(march, log, law_of=lambda message: Law(name=message.name)):
-    return LawFeed(march, Report(log), law_of=law_of, samples_of=None)
+    def opened(message):
+        return message.name, lambda: message
+
+    return LawFeed(march, Report(log), opened=opened, law_of=law_of, samples_of=None)
 
 
 def info(number):

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 from eel_gaits.messages import law_to_message
-from swim_client import LIMIT, SAMPLES, nanoseconds
+from swim_client import LIMIT, SAMPLES, is_finite, nanoseconds
 
 from eel_dynamics import Simulation
-from eel_gaits import falling
+from eel_gaits import Law, Term, falling
 
 FLAT_OUT = ("-p", "real_time_factor:=0", "-p", "wait_for_subscribers:=1")
 
@@ -96,3 +96,22 @@ def test_two_eels_in_namespaces(start, client):
         )
     ends = [ear.heard["head_pose"][-1].pose for ear in ears.values()]
     assert ends[0] != ends[1]
+
+
+@pytest.mark.fault(
+    "laws",
+    "a law that no body can swim, in a run with a duration and without a pace",
+    "ERROR in /diagnostics, the last good state stays the last; status 1, as nobody is there to reset it",
+)
+def test_a_batch_run_that_cannot_go_on_ends_with_status_1(start, client):
+    heard = client(topics=("head_pose", "internal_wrench"))
+    heard.laws.publish(law_to_message(Law(Term(amplitude=(1e6,), period=1.0), name="monster")))
+    node = start("dynamics", "--ros-args", *FLAT_OUT, "-p", "duration:=5")
+    assert node.wait(LIMIT) == 1, node.output()
+    heard.until(lambda: heard.heard["/diagnostics"] and heard.diagnosis()[0] == 2, "error in the diagnostics", 20.0)
+    _, text, values = heard.diagnosis()
+    assert "stopped at t =" in text and "this run ends here, with status 1" in text
+    assert node.output().count("[ERROR]") == 1 and "Traceback" not in node.output()
+    poses = heard.heard["head_pose"]
+    assert poses and all(is_finite(message) for message in poses + heard.heard["internal_wrench"])
+    assert nanoseconds(poses[-1].header.stamp) == round(float(values["time"]) * 1e9) < 5e9

@@ -15,12 +15,14 @@ from .report import ERROR
 from .simulation import SimulationStopped
 
 TICK = 0.05  # s of wall time between two messages on /clock while the simulation stands
+MOST_AHEAD = 10_000  # instants of a controller that wait for their time
 
 
 class March:
     """Publishes samples k = 0 ... `last_sample` at k/rate of the `simulation`, at the pace asked for.
 
-    `run` is the thread's work: it returns after the last sample, or once `stop` is called.
+    `run` is the thread's work: it returns after the last sample, or once `stop` is called. A run that cannot go on
+    waits for a reset; one with a duration and without a pace, which nobody attends, returns, and has `failed`.
     """
 
     def __init__(self, simulation, parameters, publishers, report):
@@ -29,7 +31,7 @@ class March:
         self._wake = threading.Condition()
         self._orders = deque()
         self._sample = 0  # index of the next one
-        self._paused = self._failed = False
+        self._paused = self.failed = False
         self.standing = ""  # what the simulation waits for, in words
         self._last_tick = -math.inf
         self._audience_complete = parameters.wait_for_subscribers == 0
@@ -44,17 +46,22 @@ class March:
 
     # What other threads may call.
 
-    def order(self, action) -> threading.Event:
-        """Has `action()` done between two samples; the event is set when it is."""
+    def order(self, action, replaces: str = "") -> threading.Event:
+        """Has `action()` done between two samples; the event is set when it is.
+
+        It takes the place of the order given just before if that `replaces` the same.
+        """
         done = threading.Event()
         with self._wake:
-            self._orders.append((action, done))
+            if replaces and self._orders and self._orders[-1][2] == replaces:
+                self._orders.pop()
+            self._orders.append((action, done, replaces))
             self._wake.notify()
         return done
 
     def take_law(self, law, origin: float):
-        """Adopts a law whose own t = 0 lies at simulation time `origin` [s]."""
-        self.order(lambda: self._adopt(law, origin))
+        """Adopts a law whose own t = 0 lies at simulation time `origin` [s]; of several before a sample the last."""
+        self.order(lambda: self._adopt(law, origin), "law")
 
     def take_samples(self, samples: dict):
         """Adds one instant of a law, the arguments of `Simulation.add_samples`."""
@@ -99,12 +106,17 @@ class March:
         """Wall time [s] by which the run is behind its pace."""
         return self._pace.lost
 
+    @property
+    def given_up(self) -> bool:
+        """The simulation has stopped, and nobody is expected to reset it."""
+        return self.failed and self._pace.factor == 0.0 and self._parameters.duration > 0.0
+
     # The thread itself.
 
     def run(self):
         """The thread's work."""
         self._pace.restart(0, time.monotonic())
-        while not self.stopped and self._sample <= self._parameters.last_sample:
+        while not self.stopped and self._sample <= self._parameters.last_sample and not self.given_up:
             self._carry_out_orders()
             obstacle = self._obstacle()
             if obstacle:
@@ -114,7 +126,7 @@ class March:
 
     def _obstacle(self) -> str:
         """What keeps the simulation from its next sample, in words; empty if nothing does."""
-        if self._failed:
+        if self.failed:
             return f"stopped at t = {self.time:g} s until it is reset"
         if not self._simulation.ready:
             return "waiting for a law"
@@ -183,8 +195,9 @@ class March:
         self._sample += 1
 
     def _fail(self, error: SimulationStopped):
-        self._failed = True
-        self._report.begin("stopped", f"simulation {error}; reset starts it again", ERROR)
+        self.failed = True
+        then = "this run ends here, with status 1" if self.given_up else "reset starts it again"
+        self._report.begin("stopped", f"simulation {error}; {then}", ERROR)
 
     @property
     def _next_time(self) -> float:
@@ -206,8 +219,9 @@ class March:
             return bool(self._orders) or self.stopped
 
     def _carry_out_orders(self):
-        while self._orders:
-            action, done = self._orders.popleft()
+        for _ in range(len(self._orders)):  # those that come meanwhile wait for the next sample
+            with self._wake:
+                action, done, _ = self._orders.popleft()
             action()
             done.set()
 
@@ -225,11 +239,13 @@ class March:
         else:
             self._origin = origin
             self._report.end("resting")
-            self._report.info(f"law {law.name!r} taken on at t = {simulation.time:g} s")
+            self._report.note("law taken on", f"law {law.name!r} taken on at t = {simulation.time:g} s")
 
     def _add_samples(self, samples: dict):
         simulation = self._simulation
         try:
+            if len(simulation.shape.samples) >= MOST_AHEAD:
+                raise ValueError(f"at most {MOST_AHEAD} may lie ahead of the simulation")
             simulation.add_samples(**samples)
         except ValueError as error:
             self._report.event("samples", f"curvature samples refused: {error}", ERROR)
@@ -240,7 +256,7 @@ class March:
 
     def _reset(self):
         self._sample, self.time, self._origin = 0, 0.0, 0.0
-        self._failed = False
+        self.failed = False
         self.accounts = Accounts()
         self.marched_for, self._marked = 0.0, time.monotonic()
         self._report.end("stopped")

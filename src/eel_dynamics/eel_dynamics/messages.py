@@ -5,20 +5,25 @@ that are kept in section axes (1 = -x, 2 = -y, 3 = +z of base_link) pass unchang
 """
 
 import array
+import struct
+from collections.abc import Callable
 from dataclasses import Field
 
 import numpy as np
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from eel_gaits.law import MAXIMUM_TERMS
 from geometry_msgs.msg import PoseStamped, TransformStamped, TwistStamped
 from nav_msgs.msg import Odometry
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
+from rclpy.serialization import deserialize_message
 from rosgraph_msgs.msg import Clock
 
 from eel_msgs.msg import (
     Backbone,
     BodyGeometry,
     Curvature,
+    CurvatureLaw,
     CurvatureSamples,
     EnergyLedger,
     HydrodynamicLoad,
@@ -171,6 +176,34 @@ def body_message(body, scene: Scene, x: np.ndarray, head_frame: str) -> BodyGeom
     message.half_width = array.array("d", np.asarray(body.half_width(x), dtype=float).tolist())
     message.half_height = array.array("d", np.asarray(body.half_height(x), dtype=float).tolist())
     return message
+
+
+def opened_law(data: bytes) -> tuple[str, Callable[[], CurvatureLaw]]:
+    """The name of a CurvatureLaw as it came over the network, and what makes the message of the rest.
+
+    Making a message of 10^5 terms would hold the process up for a second, so that terms are counted before: ValueError
+    of the second where there are too many. The layout is CDR's (RTPS 2.5, 10.5): 4 bytes that tell it, then header,
+    name and number of terms, each number on a multiple of its size.
+    """
+    order = "<" if data[1:2] == b"\x01" else ">"
+
+    def number(place: int) -> tuple[int, int]:
+        place += -place % 4
+        try:
+            return struct.unpack_from(order + "I", data, 4 + place)[0], place + 4
+        except struct.error:
+            raise ValueError("it ends before its terms") from None
+
+    def make() -> CurvatureLaw:
+        if terms > MAXIMUM_TERMS:
+            raise ValueError(f"terms must be at most {MAXIMUM_TERMS}, got {terms}")
+        return deserialize_message(data, CurvatureLaw)
+
+    size, place = number(8)  # after the stamp: frame_id
+    size, place = number(place + size)  # name
+    name = data[4 + place : 4 + place + size].rstrip(b"\0").decode(errors="replace")
+    terms, _ = number(place + size)
+    return name, make
 
 
 def samples_from_message(message: CurvatureSamples) -> dict[str, np.ndarray | float]:

@@ -29,7 +29,7 @@ from .declaration import Declaration
 from .ending import Ending, leave_at_once
 from .feed import LawFeed
 from .march import March
-from .messages import Sample, body_message, diagnostic_array, samples_from_message
+from .messages import Sample, body_message, diagnostic_array, opened_law, samples_from_message
 from .publishers import Publishers
 from .repair import repair_soon
 from .report import Report
@@ -67,10 +67,15 @@ class DynamicsNode(Node):
         self._body = self.create_publisher(BodyGeometry, "body", LATCHED)
         self._body.publish(body_message(simulation.body, scene, simulation.x, values.head_frame))
 
-        feed = LawFeed(self.march, report, law_of=law_from_message, samples_of=samples_from_message)
-        for quality in (LATCHED, QoSProfile(depth=10)):  # the first hears earlier laws too, the second any publisher
+        feed = LawFeed(self.march, report, opened=opened_law, law_of=law_from_message, samples_of=samples_from_message)
+        # The first hears earlier laws too, the second any publisher.
+        for number, quality in enumerate((LATCHED, QoSProfile(depth=10))):
             self.create_subscription(
-                CurvatureLaw, "curvature_law", lambda message, info: feed.hear_law(message, info), quality
+                CurvatureLaw,
+                "curvature_law",
+                lambda data, info, number=number: feed.hear_law(data, info, number),
+                quality,
+                raw=True,
             )
         self.create_subscription(CurvatureSamples, "curvature_samples", feed.hear_samples, LOSSLESS)
         self.create_service(Trigger, "~/reset", self._reset)
@@ -106,7 +111,8 @@ class DynamicsNode(Node):
 
 
 def main(args=None) -> int:
-    """Runs the node; status 0 after its duration, SIGINT or SIGTERM, 2 if it cannot start as asked, 1 if it fails."""
+    """Runs the node; status 0 after its duration, SIGINT or SIGTERM, 2 if it cannot start as asked, 1 if it fails, or
+    if a simulation that nobody attends (a duration, no pace) cannot go on."""
     ending = Ending()
     repair_soon()
     try:
@@ -136,7 +142,7 @@ def main(args=None) -> int:
         node.destroy_node()
         rclpy.try_shutdown()
         rclpy.get_default_context().destroy()  # says goodbye to the network, which would wait 20 s for news otherwise
-    return leave_at_once(int(error is not None))
+    return leave_at_once(int(error is not None or node.march.given_up))
 
 
 def spin(executor, ending):

@@ -21,6 +21,8 @@ from eel_gaits.spline import natural_spline
 
 AXES = {"pitch": 1, "yaw": 2}  # name of the axis: its column in a curvature array
 MAXIMUM_TERMS = 1000
+MAXIMUM_VALUES = 1000  # coefficients or knots of a term, ramps of an envelope
+MAXIMUM_NAME = 200  # characters
 
 
 @dataclass(frozen=True)
@@ -58,8 +60,8 @@ class Term:
 
     Attributes:
         axis: "yaw" (K3) or "pitch" (K2).
-        amplitude: without knots, the coefficients of a polynomial in X [rad/m, rad/m^2, ...]; with knots, the values
-            [rad/m] there of a natural cubic spline, which goes on as a straight line beyond them.
+        amplitude: at most 1000 values; without knots, the coefficients of a polynomial in X [rad/m, rad/m^2, ...]; with
+            knots, the values [rad/m] there of a natural cubic spline, which goes on as a straight line beyond them.
         knots: [m], strictly increasing, as many as amplitudes and at least 2; or none.
         wavelength: [m]; 0: standing; negative: the wave runs towards the head.
         period: [s]; 0: constant in time but for the envelope.
@@ -160,7 +162,7 @@ class Law:
 
     Attributes:
         terms: at most 1000.
-        name: what the law is called in messages and plots.
+        name: what the law is called in messages and plots; at most 200 characters.
         transition: [s], over which a running swimmer takes the law on; 0: the receiver's own default.
     """
 
@@ -178,7 +180,7 @@ class Law:
         if transition < 0.0:
             raise ValueError(f"transition must be >= 0 s, got {transition}")
         object.__setattr__(self, "terms", tuple(terms))
-        object.__setattr__(self, "name", str(name))
+        object.__setattr__(self, "name", _name(name))
         object.__setattr__(self, "transition", transition)
 
     def curvature(self, time, x):
@@ -205,6 +207,16 @@ def _numbers(name, values):
 
 def _row(name, kind, values):
     try:
-        return tuple(values)
+        values = tuple(values)
     except TypeError:
         raise ValueError(f"{name} must be a row of {kind}, got {values!r}") from None
+    if len(values) > MAXIMUM_VALUES:
+        raise ValueError(f"{name} must have at most {MAXIMUM_VALUES} {kind}, got {len(values)}")
+    return values
+
+
+def _name(value):
+    text = str(value)
+    if len(text) > MAXIMUM_NAME:
+        raise ValueError(f"name must have at most {MAXIMUM_NAME} characters, got {len(text)}")
+    return text

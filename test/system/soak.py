@@ -1,0 +1,142 @@
+"""A long run of the three nodes as fast as they go, every topic heard, and the memory that each process takes.
+
+Memory is the private part of what a process holds in RAM (Linux's `uss`): what it shares with others, compiled loops
+and libraries, comes and goes with the machine's own needs.
+"""
+
+import csv
+import os
+import sys
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import psutil
+
+RATE = 100.0  # Hz
+LOOK = 0.5  # s of wall time between two looks at the memory
+LISTENER = """
+import sys
+import rclpy
+from rclpy.qos import HistoryPolicy, QoSProfile
+from eel_viz.definitions import message_class
+from eel_viz.record import OWN
+
+rclpy.init()
+node = rclpy.create_node("listener")
+every = QoSProfile(history=HistoryPolicy.KEEP_ALL)
+counts = dict.fromkeys((topic for topic in OWN if topic not in ("body", "curvature_law", "curvature_samples")), 0)
+for topic in counts:
+    def count(data, topic=topic):
+        counts[topic] += 1
+    node.create_subscription(message_class(OWN[topic]), topic, count, every, raw=True)
+print("listening", flush=True)
+executor = rclpy.executors.SingleThreadedExecutor()
+executor.add_node(node)
+wanted = int(sys.argv[1])
+while min(counts.values()) < wanted:
+    executor.spin_once(timeout_sec=0.5)
+print("heard", counts, flush=True)
+"""
+NODES = ("dynamics", "gait_generator", "visualiser")
+
+
+@dataclass(frozen=True)
+class Soak:
+    """What a soak left: `time` (N,) [s of simulation], by node the memory (N,) [MB], and the listener's `counts`."""
+
+    time: np.ndarray
+    memory: dict[str, np.ndarray]
+    counts: dict[str, int]
+    wall: float  # s
+
+    def spread(self, node: str, *, after: float) -> float:
+        """Greatest less least memory from simulation time `after` [s] on, as a share of its median."""
+        values = self.memory[node][self.time >= after]
+        return float(np.ptp(values) / np.median(values))
+
+    def write(self, path: Path) -> None:
+        """As .csv, one row a look."""
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with path.open("w", newline="") as file:
+            rows = csv.writer(file)
+            rows.writerow(["simulation_time_s", *(f"{node}_MB" for node in NODES)])
+            rows.writerows(
+                [f"{time:.2f}", *(f"{self.memory[node][k]:.3f}" for node in NODES)] for k, time in enumerate(self.time)
+            )
+
+
+def soak(start, duration: float, *, limit: float, memory_limit: str = "32MiB") -> Soak:
+    """Swim for `duration` [s of simulation], within `limit` [s]; AssertionError where a node does not end well."""
+    samples = round(duration * RATE) + 1
+    listener = start(sys.executable, "-c", LISTENER, str(samples))
+    listener.wait_for_output("listening")
+    visualiser = start(
+        "visualiser", "--ros-args", "-p", "sink:=[serve]", "-p", f"memory_limit:={memory_limit}",
+        "-p", "stop_with_publisher:=true",
+    )  # fmt: skip
+    visualiser.wait_for_output("look at it")
+    gait = start("gait_generator")
+    dynamics = start(
+        "dynamics", "--ros-args", "-p", f"duration:={duration}", "-p", f"rate:={RATE}", "-p", "real_time_factor:=0",
+        "-p", "wait_for_subscribers:=2", "-p", "subscriber_timeout:=60",
+    )  # fmt: skip
+    dynamics.wait_for_output("taken on", 90.0)
+    began = time.monotonic()
+    processes = {
+        name: psutil.Process(node.process.pid) for name, node in zip(NODES, (dynamics, gait, visualiser), strict=True)
+    }
+    clock = Clock()
+    times, memory = [], {node: [] for node in NODES}
+    while dynamics.status is None:
+        assert time.monotonic() - began < limit, f"at {clock.seconds():g} s after {limit:g} s"
+        clock.hear(LOOK)
+        try:
+            looked = {name: process.memory_full_info().uss / 1e6 for name, process in processes.items()}
+        except (psutil.NoSuchProcess, psutil.AccessDenied, psutil.ZombieProcess):
+            break
+        if clock.time > 0.0:
+            times.append(clock.time)
+            for name, value in looked.items():
+                memory[name].append(value)
+    clock.close()
+    wall = time.monotonic() - began
+    for node in (dynamics, visualiser, listener):
+        assert node.wait(60.0) == 0, node.output()
+    assert "stuck" not in dynamics.output(), dynamics.output()
+    heard = listener.output().split("heard ")[1].strip()
+    counts = {word.split(":")[0].strip(" '{}"): int(word.split(":")[1].strip(" }")) for word in heard.split(",")}
+    return Soak(np.array(times), {node: np.array(values) for node, values in memory.items()}, counts, wall)
+
+
+class Clock:
+    """The newest /clock that has come."""
+
+    def __init__(self):
+        import rclpy
+        from rclpy.executors import SingleThreadedExecutor
+        from rclpy.qos import QoSProfile, ReliabilityPolicy
+        from rosgraph_msgs.msg import Clock as Message
+
+        self.time = 0.0  # s
+        self._context = rclpy.Context()
+        rclpy.init(context=self._context, domain_id=int(os.environ["ROS_DOMAIN_ID"]))
+        self._node = rclpy.create_node("soak_clock", context=self._context)
+        newest = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+        self._node.create_subscription(Message, "/clock", self._take, newest)
+        self._executor = SingleThreadedExecutor(context=self._context)
+        self._executor.add_node(self._node)
+
+    def _take(self, message):
+        self.time = message.clock.sec + 1e-9 * message.clock.nanosec
+
+    def hear(self, seconds: float):
+        """Waits so long, then takes the newest tick."""
+        time.sleep(seconds)
+        self._executor.spin_once(timeout_sec=0.1)
+
+    def close(self):
+        self._executor.shutdown()
+        self._node.destroy_node()
+        self._context.try_shutdown()
