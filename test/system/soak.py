@@ -1,7 +1,7 @@
 """A long run of the three nodes as fast as they go, every topic heard, and the memory that each process takes.
 
-Memory is the private part of what a process holds in RAM (Linux's `uss`): what it shares with others, compiled loops
-and libraries, comes and goes with the machine's own needs.
+Memory is what a process has for itself in RAM, without what is mapped from files (Linux's `RssAnon`): compiled loops
+and libraries come and go with the machine's own needs.
 """
 
 import csv
@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-import psutil
 
 RATE = 100.0  # Hz
 LOOK = 0.5  # s of wall time between two looks at the memory
@@ -84,17 +83,15 @@ def soak(start, duration: float, *, limit: float, memory_limit: str = "32MiB") -
     )  # fmt: skip
     dynamics.wait_for_output("taken on", 90.0)
     began = time.monotonic()
-    processes = {
-        name: psutil.Process(node.process.pid) for name, node in zip(NODES, (dynamics, gait, visualiser), strict=True)
-    }
+    processes = dict(zip(NODES, (dynamics, gait, visualiser), strict=True))
     clock = Clock()
     times, memory = [], {node: [] for node in NODES}
     while dynamics.status is None:
-        assert time.monotonic() - began < limit, f"at {clock.seconds():g} s after {limit:g} s"
+        assert time.monotonic() - began < limit, f"at {clock.time:g} s after {limit:g} s"
         clock.hear(LOOK)
         try:
-            looked = {name: process.memory_full_info().uss / 1e6 for name, process in processes.items()}
-        except (psutil.NoSuchProcess, psutil.AccessDenied, psutil.ZombieProcess):
+            looked = {name: anonymous_memory(node.process.pid) for name, node in processes.items()}
+        except (OSError, IndexError):  # one has just ended
             break
         if clock.time > 0.0:
             times.append(clock.time)
@@ -108,6 +105,12 @@ def soak(start, duration: float, *, limit: float, memory_limit: str = "32MiB") -
     heard = listener.output().split("heard ")[1].strip()
     counts = {word.split(":")[0].strip(" '{}"): int(word.split(":")[1].strip(" }")) for word in heard.split(",")}
     return Soak(np.array(times), {node: np.array(values) for node, values in memory.items()}, counts, wall)
+
+
+def anonymous_memory(process: int) -> float:
+    """[MB] of the process with that number."""
+    status = Path(f"/proc/{process}/status").read_text()
+    return float(status.split("RssAnon:")[1].split()[0]) / 1e3
 
 
 class Clock:
