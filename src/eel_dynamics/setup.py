@@ -10,7 +10,7 @@ setup(
         ("share/eel_dynamics", ["package.xml"]),
     ],
     install_requires=["setuptools"],
-    extras_require={"test": ["pytest"]},
+    extras_require={"test": ["pytest"], "cluster": ["dask", "distributed", "xarray"]},
     zip_safe=False,
     maintainer="Eel simulator maintainers",
     maintainer_email="maintainers@eel-simulator.example.org",
@@ -21,6 +21,7 @@ setup(
             "dynamics = eel_dynamics.node:main",
             "simulate = eel_dynamics.command:main",
             "figures = eel_dynamics.figures.command:main",
+            "sweep = eel_dynamics.sweep_command:main",
         ]
     },
 )

@@ -13,7 +13,7 @@ ROOT = Path(__file__).resolve().parents[2]
 PYTHON_PACKAGES = ("eel_gaits", "eel_dynamics", "eel_viz")
 EXECUTABLES = {
     "eel_gaits": {"gait_generator"},
-    "eel_dynamics": {"dynamics", "simulate", "figures"},
+    "eel_dynamics": {"dynamics", "simulate", "figures", "sweep"},
     "eel_viz": {"visualiser", "record", "echo"},
 }
 ROSDEP_KEY = {
@@ -28,7 +28,7 @@ ROS_SIDE = {  # the modules that may import ROS, and those of the command line t
     "eel_dynamics": {"node", "messages", "declaration"},
     "eel_viz": {"node", "messages", "declaration", "lifetime", "quality", "definitions", "record", "echo"},
 }
-OPTIONAL = {"tf2_msgs"}  # used where it is installed
+OPTIONAL = {"tf2_msgs", "distributed", "xarray"}  # used where it is installed
 FROM_REQUIREMENTS = {
     "rerun",
     "rosbags",

@@ -9,6 +9,7 @@ from .run import Run, simulate
 from .scene import Scene
 from .simulation import Simulation, SimulationStopped
 from .snapshot import Snapshot
+from .sweeps import sweep
 
 __all__ = [
     "Accuracy",
@@ -24,4 +25,5 @@ __all__ = [
     "hydrodynamic_wrench",
     "simulate",
     "simulate_batch",
+    "sweep",
 ]

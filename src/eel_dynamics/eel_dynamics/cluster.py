@@ -1,0 +1,63 @@
+"""Work spread over processes, on this machine or on others, by Dask.
+
+A worker that is lost takes nothing with it but time: its work is given to the others.
+"""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+EXTRA = "dask", "distributed", "xarray"
+
+
+def needed() -> dict:
+    """The modules that a sweep needs, by name; one `ImportError` that says how to install it."""
+    from importlib import import_module
+
+    try:
+        return {name: import_module(name) for name in EXTRA}
+    except ImportError as error:
+        raise ImportError(
+            f"a sweep needs {', '.join(EXTRA)} ({error}); install them with: pip install 'eel_dynamics[cluster]'"
+        ) from None
+
+
+@contextmanager
+def connected(scheduler=None, workers: int | None = None):
+    """A Dask client: of the `scheduler` at an address ("tcp://host:8786") or given as client or cluster; None: of a
+    cluster of `workers` processes on this machine (one per core), which ends with the context."""
+    from distributed import Client, LocalCluster
+
+    if isinstance(scheduler, Client):
+        yield scheduler
+        return
+    if scheduler is None:
+        with (
+            LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address="127.0.0.1:0") as cluster,
+            Client(cluster) as client,
+        ):
+            yield client
+        return
+    try:
+        client = Client(scheduler, timeout=10)
+    except (OSError, TimeoutError, ValueError) as error:
+        raise ValueError(f"scheduler cannot be reached at {scheduler!r}: {error}") from None
+    with client:
+        yield client
+
+
+def spread(client, task: Callable, chunks: list, *settings) -> Iterator[tuple]:
+    """`task(chunk, *settings)` for every chunk, on the workers of `client`.
+
+    Yields (chunk, result, None) as they come, or (chunk, None, error) for one that failed: the error is the task's own,
+    or tells that the chunk brought one worker after the other down.
+    """
+    from distributed import as_completed
+
+    futures = {client.submit(task, chunk, *settings, pure=False): chunk for chunk in chunks}
+    try:
+        for future in as_completed(list(futures)):
+            error = future.exception()
+            yield futures[future], None if error else future.result(), error
+            future.release()
+    finally:
+        client.cancel(list(futures))

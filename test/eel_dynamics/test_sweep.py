@@ -1,0 +1,138 @@
+"""Sweeps over a grid of parameters on Dask: labelled, equal to single runs, whole after a lost worker or an end."""
+
+import os
+import signal
+import sys
+
+import numpy as np
+import pytest
+from eel_dynamics.measures import measures_of
+from eel_dynamics.sweep_command import main
+
+from eel_dynamics import Accuracy, Body, Scene, simulate, sweep
+from eel_gaits import straight
+
+xarray = pytest.importorskip("xarray")
+distributed = pytest.importorskip("distributed")
+
+SHORT = {"duration": 1.2, "accuracy": 1e-2, "stations": 11}
+
+
+@pytest.fixture(scope="module")
+def client():
+    """Two worker processes, which are started again when they die."""
+    with (
+        distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address="127.0.0.1:0") as cluster,
+        distributed.Client(cluster) as client,
+    ):
+        yield client
+
+
+def test_labelled_and_equal_to_single_runs(client, tmp_path):
+    grid = {"period": np.array([0.5, 0.8]), "scene.friction": ["laminar", "none"], "body": ["boyer2010", "kern2006"]}
+    out = tmp_path / "periods.nc"
+    data = sweep(grid, scheduler=client, out=out, **SHORT)
+    assert dict(data.sizes) == {"period": 2, "scene.friction": 2, "body": 2}
+    point = data.sel({"period": 0.8, "scene.friction": "none", "body": "kern2006"})
+    run = simulate(straight(period=0.8), body=Body.kern2006(), scene=Scene(friction="none"), **SHORT)
+    alone = measures_of(run)
+    assert alone["cruising_speed"] == run.analysis().mean_speed and alone["greatest_torque"] > 0.0
+    for name, value in alone.items():
+        assert np.array_equal(float(point[name]), value, equal_nan=True), name
+    assert data.cruising_speed.attrs["units"] == "m/s" and data.attrs["gait"] == "straight"
+    assert not data.stopped.any()
+    kept = xarray.load_dataset(out, engine="scipy")
+    assert kept.attrs["sweep"] == data.attrs["sweep"] and kept.head_x.equals(data.head_x)
+    assert list(kept["scene.friction"].values) == ["laminar", "none"]
+    assert not out.with_name("periods.nc.parts").exists()
+    # what is complete is not swum again
+    assert sweep(grid, scheduler="tcp://127.0.0.1:1", out=out, **SHORT).head_x.equals(data.head_x)
+
+
+def test_a_lost_worker_costs_time_only(client):
+    grid = {"period": np.linspace(0.5, 1.0, 12)}
+    whole = sweep(grid, scheduler=client, chunk=1, **SHORT)
+    victims = list(client.run(os.getpid).values())
+    told = []
+
+    def kill_one(done, points):
+        told.append(done)
+        if done == 1:
+            os.kill(victims[0], signal.SIGKILL)
+
+    again = sweep(grid, scheduler=client, chunk=1, progress=kill_one, **SHORT)
+    assert told == list(range(13))
+    assert victims[0] not in client.run(os.getpid).values()
+    assert again.identical(whole)
+
+
+def test_goes_on_where_it_was_broken_off(client, tmp_path):
+    grid, out = {"period": [0.5, 0.6, 0.7, 0.8]}, tmp_path / "sweep.nc"
+    whole = sweep(grid, scheduler=client, **SHORT)
+
+    class BrokenOff(Exception):
+        pass
+
+    def break_off(done, points):
+        if done == 2:
+            raise BrokenOff
+
+    with pytest.raises(BrokenOff):
+        sweep(grid, scheduler=client, out=out, chunk=1, progress=break_off, **SHORT)
+    assert not out.exists()
+    with pytest.raises(ValueError, match="another sweep"):
+        sweep({"period": [0.5, 0.6]}, scheduler=client, out=out, **SHORT)
+    told = []
+    data = sweep(grid, scheduler=client, out=out, chunk=1, progress=lambda *pair: told.append(pair), **SHORT)
+    assert told == [(2, 4), (3, 4), (4, 4)]
+    assert data.identical(whole)
+    with pytest.raises(ValueError, match="another out"):
+        sweep({"period": [0.5, 0.6]}, scheduler=client, out=out, **SHORT)
+
+
+def test_a_point_that_stops_is_told_and_the_others_stay(client):
+    def law(size):
+        return straight(amplitude_0=size)
+
+    grid = {"scene.density": [10.0, 1000.0], "scene.reactive": [False]}
+    long_steps = Accuracy(name="long steps", resolution=10.0, step=0.05)
+    data = sweep(grid, gait=law, numbers={"size": 1.0}, scheduler=client, duration=1.2, accuracy=long_steps)
+    assert data.stopped.values.ravel().tolist() == [True, False]
+    assert "not finite" in str(data.error.values[0, 0]) and data.error.values[1, 0] == ""
+    assert np.isnan(data.head_x.values[0, 0]) and np.isfinite(data.head_x.values[1, 0])
+
+
+def test_command_with_a_cluster_of_its_own(tmp_path, capsys):
+    out = tmp_path / "command.nc"
+    words = f"straight --vary period=0.5:1:3 --duration 1.2 --accuracy 1e-2 --workers 1 --out {out}"
+    assert main(words.split()) == 0
+    assert "3, of which 0 stopped" in capsys.readouterr().out
+    data = xarray.load_dataset(out, engine="scipy")
+    assert data.period.values.tolist() == [0.5, 0.75, 1.0]
+    run = simulate(straight(period=0.75), 1.2, accuracy=1e-2)
+    assert float(data.head_x[1]) == run.position[-1, 0]
+
+
+@pytest.mark.parametrize(
+    "options, words",
+    [
+        (["--vary", "period"], "NAME=VALUES"),
+        (["--vary", "period=1:2:x"], "start:end:count"),
+        (["--vary", "tail=1"], "tail"),
+        (["--vary", "period=-1,1"], "period=-1.0"),
+        (["--vary", "scene.colour=red"], "colour"),
+        (["--vary", "scene.friction=sticky"], "sticky"),
+        (["--vary", "period=1,1"], "twice"),
+        (["--vary", "period=1", "--scheduler", "nowhere"], "nowhere"),
+    ],
+)
+def test_bad_input_of_the_command(options, words, tmp_path, capsys):
+    assert main([*options, "--out", str(tmp_path / "out.nc")]) == 2
+    said = capsys.readouterr().err
+    assert words in said and said.startswith("sweep: ") and said.count("\n") == 1
+
+
+def test_missing_extra_is_one_clear_error(monkeypatch):
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(ImportError, match=r"pip install 'eel_dynamics\[cluster\]'"):
+        sweep({"period": [1.0]})
