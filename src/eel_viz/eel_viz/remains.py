@@ -1,0 +1,62 @@
+"""What is left of an MCAP file whose end is missing: read record by record, as far as it goes.
+
+From outside it is as rosbags' `Reader`; messages come in the order in which they were written.
+"""
+
+import pathlib
+import struct
+from collections.abc import Iterator
+
+import lz4.frame
+import zstandard
+from mcap.exceptions import McapError
+from mcap.records import Channel, McapRecord, Message, Schema
+from mcap.stream_reader import StreamReader
+from rosbags.interfaces import Connection, ConnectionExtRosbag2, MessageDefinition, MessageDefinitionFormat
+
+FORMATS = {"ros2msg": MessageDefinitionFormat.MSG, "ros2idl": MessageDefinitionFormat.IDL}
+TORN = (McapError, struct.error, zstandard.ZstdError, ValueError, RuntimeError, OSError)  # lz4 raises RuntimeError
+
+
+class Remains:
+    """The readable part of the file at `path`; `connections` are there once it is entered."""
+
+    def __init__(self, path: pathlib.Path) -> None:
+        self._path = path
+        self.connections: list[Connection] = []
+
+    def __enter__(self) -> "Remains":
+        schemas: dict[int, Schema] = {}
+        found: dict[int, Connection] = {}
+        for record in self._records():
+            if isinstance(record, Schema):
+                schemas[record.id] = record
+            elif isinstance(record, Channel) and record.schema_id in schemas:
+                found[record.id] = self._connection(record, schemas[record.schema_id])
+        self.connections = list(found.values())
+        return self
+
+    def __exit__(self, *_) -> None:
+        self.connections = []
+
+    def messages(self, connections: list[Connection]) -> Iterator[tuple[Connection, int, bytes]]:
+        """Connection, time of reception [ns] and bytes of each message."""
+        wanted = {connection.id: connection for connection in connections}
+        for record in self._records():
+            if isinstance(record, Message) and record.channel_id in wanted:
+                yield wanted[record.channel_id], record.log_time, record.data
+
+    def _connection(self, channel: Channel, schema: Schema) -> Connection:
+        text = schema.data.decode(errors="replace")
+        form = FORMATS.get(schema.encoding, MessageDefinitionFormat.NONE)
+        about = ConnectionExtRosbag2(channel.message_encoding, [])
+        return Connection(channel.id, channel.topic, schema.name, MessageDefinition(form, text), "", 0, about, self)
+
+    def _records(self) -> Iterator[McapRecord]:
+        with self._path.open("rb") as file:
+            records = iter(StreamReader(file, record_size_limit=self._path.stat().st_size).records)
+            while True:
+                try:
+                    yield next(records)
+                except (StopIteration, *TORN):
+                    return

@@ -1,0 +1,18 @@
+"""The swimmer's topics and their types, in words, for those who need no ROS to know them."""
+
+OWN = {  # relative: below the swimmer's namespace
+    "head_pose": "geometry_msgs/msg/PoseStamped",
+    "head_twist": "geometry_msgs/msg/TwistStamped",
+    "odom": "nav_msgs/msg/Odometry",
+    "backbone": "eel_msgs/msg/Backbone",
+    "curvature": "eel_msgs/msg/Curvature",
+    "internal_wrench": "eel_msgs/msg/InternalWrench",
+    "hydrodynamic_load": "eel_msgs/msg/HydrodynamicLoad",
+    "energy": "eel_msgs/msg/EnergyLedger",
+    "body": "eel_msgs/msg/BodyGeometry",
+    "curvature_law": "eel_msgs/msg/CurvatureLaw",
+    "curvature_samples": "eel_msgs/msg/CurvatureSamples",
+}
+GLOBAL = {"/clock": "rosgraph_msgs/msg/Clock", "/diagnostics": "diagnostic_msgs/msg/DiagnosticArray"}
+LATCHED = ("body", "curvature_law")  # transient local
+SWIMMER = "head_pose"  # whose publishers' leaving is the swimmer's
