@@ -20,6 +20,8 @@ setup(
             "visualiser = eel_viz.node:main",
             "record = eel_viz.record:main",
             "echo = eel_viz.echo:main",
+            "replay = eel_viz.replay:main",
+            "render = eel_viz.render:main",
         ]
     },
 )

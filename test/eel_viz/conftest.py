@@ -25,7 +25,7 @@ def record_made_up(tmp_path):
 @pytest.fixture(scope="session")
 def can_draw(tmp_path_factory):
     """Skips with the reason where the viewer cannot draw."""
-    from eel_viz.render import CannotRender, viewer
+    from eel_viz.viewer import CannotRender, viewer
 
     try:
         with viewer((640, 360)):

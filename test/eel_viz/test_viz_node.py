@@ -9,7 +9,7 @@ import made_up
 import numpy as np
 import pytest
 from eel_viz.reading import read
-from eel_viz.render import native_viewer
+from eel_viz.viewer import native_viewer
 from fake_swimmer import TOPICS, body_message, messages
 
 from eel_viz import entities
@@ -263,7 +263,7 @@ def test_a_law_that_is_heard_from_either_kind_of_publisher_is_shown_once(start, 
 
 
 def test_served_data_reaches_a_viewer_that_comes_later(start, network, tmp_path, can_draw):
-    from eel_viz.render import free_port, viewer
+    from eel_viz.viewer import free_port, viewer
 
     port, web = free_port(), free_port()
     settings = ["sink:=[serve, save]", f"recording:={tmp_path / 'run.rrd'}", f"port:={port}", f"web_port:={web}"]

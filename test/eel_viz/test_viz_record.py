@@ -11,7 +11,7 @@ import pytest
 import yaml
 from eel_viz.definitions import definition, message_class, type_hash
 from eel_viz.echo import as_yaml, picked
-from eel_viz.record import GLOBAL, OWN
+from eel_viz.topics import GLOBAL, OWN
 from fake_swimmer import TOPICS, diagnostics, messages
 from rosbags.highlevel import AnyReader
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore

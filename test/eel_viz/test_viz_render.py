@@ -6,8 +6,9 @@ import sys
 
 import numpy as np
 import pytest
-from eel_viz.render import CannotRender, _await_listening, render, viewer
+from eel_viz.drawing import drawn
 from eel_viz.settings import BLUEPRINTS
+from eel_viz.viewer import CannotRender, _await_listening, viewer
 
 from eel_viz import entities
 
@@ -45,10 +46,8 @@ def test_a_picture_shows_the_swimmer_and_changes_with_time(can_draw, tmp_path):
     from made_up_recording import record
 
     record(tmp_path / "made_up.rrd", 2.0, 50.0)
-    pictures = []
-    for at in (1.1, 1.6):
-        render(tmp_path / "made_up.rrd", tmp_path / f"{at}.png", at=at, size=(1280, 720))
-        pictures.append(pixels((tmp_path / f"{at}.png").read_bytes()))
+    with drawn(tmp_path / "made_up.rrd", size=(1280, 720)) as drawing:
+        pictures = [pixels(drawing.png(at)) for at in (1.1, 1.6)]
     assert pictures[0].shape == (720, 1280, 3)
     for picture in pictures:
         scene = picture[100:480, :680]
@@ -56,18 +55,6 @@ def test_a_picture_shows_the_swimmer_and_changes_with_time(can_draw, tmp_path):
         assert (red > 40).sum() > 300  # skin and path of the head
         assert (blue > 30).sum() > 3000  # water lines, skin
     assert (np.abs(pictures[0] - pictures[1]).sum(axis=2) > 60).sum() > 2000
-
-
-def test_the_command_says_what_it_cannot_do(tmp_path):
-    def run(*arguments):
-        command = [sys.executable, "-m", "eel_viz.render", *arguments]
-        return subprocess.run(command, capture_output=True, text=True, timeout=100)
-
-    missing = run(str(tmp_path / "none.rrd"), "-o", str(tmp_path / "none.png"))
-    assert missing.returncode == 2
-    assert "recording must be a file" in missing.stderr
-    assert run("a.rrd").returncode == 2
-    assert run("a.rrd", "-o", "a.png", "--size", "big").returncode == 2
 
 
 def test_a_viewer_that_panics_is_one_line_that_says_what_to_install(tmp_path):

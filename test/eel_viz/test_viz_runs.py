@@ -182,7 +182,7 @@ def test_a_port_in_use_is_said_and_another_one_taken(taken, ears):
     "subscribers", "no viewer at the address to connect to", "said once, tried again; the file is complete"
 )
 def test_a_viewer_that_is_absent_is_said_once_and_found_later(ears, tmp_path, monkeypatch):
-    from eel_viz.render import free_port
+    from eel_viz.viewer import free_port
 
     port = free_port()
     settings = Settings(viewer=f"rerun+http://127.0.0.1:{port}/proxy", recording=str(tmp_path / "run.rrd"))

@@ -14,7 +14,7 @@ PYTHON_PACKAGES = ("eel_gaits", "eel_dynamics", "eel_viz")
 EXECUTABLES = {
     "eel_gaits": {"gait_generator"},
     "eel_dynamics": {"dynamics", "simulate", "figures", "sweep"},
-    "eel_viz": {"visualiser", "record", "echo"},
+    "eel_viz": {"visualiser", "record", "echo", "replay", "render"},
 }
 ROSDEP_KEY = {
     "numpy": "python3-numpy",
@@ -22,6 +22,7 @@ ROSDEP_KEY = {
     "scipy": "python3-scipy",
     "matplotlib": "python3-matplotlib",
     "yaml": "python3-yaml",
+    "PIL": "python3-pil",
 }
 ROS_SIDE = {  # the modules that may import ROS, and those of the command line that are made of them
     "eel_gaits": {"node", "messages"},
@@ -34,7 +35,8 @@ FROM_REQUIREMENTS = {
     "rosbags",
     "mcap",
     "pyarrow",
-}  # no rosdep key: requirements.txt brings them (pyarrow with rerun)
+    "zstandard",
+}  # no rosdep key: requirements.txt brings them (pyarrow with rerun, zstandard with mcap)
 
 
 def imported_modules(package: str) -> set[str]:

@@ -10,7 +10,7 @@ import pathlib
 import shutil
 import sqlite3
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from rosbags.interfaces import MessageDefinitionFormat
@@ -79,22 +79,32 @@ class Bag:
                 )
         return found
 
-    def messages(self, *topics: str) -> Iterator[tuple[str, int, object]]:
+    def messages(
+        self, *topics: str, unreadable: Callable[[str, str], None] = lambda topic, why: None
+    ) -> Iterator[tuple[str, int, object]]:
         """Topic, time of reception [ns] and message of all messages of `topics`, in the order of reception.
 
-        `ValueError` if a type is not known, or if the bag ends in the middle of something.
+        `unreadable(topic, why)` is told of each message whose bytes do not fit its type. `ValueError` if a type is not
+        known, or if the bag is damaged.
         """
         for name in topics:
             self._learn(self.topics[name])
         for reader in self._readers:
             chosen = [connection for connection in reader.connections if connection.topic in topics]
-            if not chosen:
-                continue
-            try:
-                for connection, stamp, raw in reader.messages(chosen):
-                    yield connection.topic, stamp, self._store.deserialize_cdr(raw, connection.msgtype)
-            except Exception as error:
-                raise ValueError(f"bag {str(self._path)!r} is damaged: {_line(error)}") from error
+            records = reader.messages(chosen) if chosen else iter(())
+            while True:
+                try:
+                    connection, stamp, raw = next(records)
+                except StopIteration:
+                    break
+                except Exception as error:
+                    raise ValueError(f"bag {str(self._path)!r} is damaged: {_line(error)}") from error
+                try:
+                    message = self._store.deserialize_cdr(raw, connection.msgtype)
+                except Exception as error:  # rosbags' own, struct.error, ValueError of numpy or of text
+                    unreadable(connection.topic, _line(error))
+                    continue
+                yield connection.topic, stamp, message
 
     def _open(self) -> None:
         if self._path.is_file() or (self._path / "metadata.yaml").is_file():

@@ -19,11 +19,11 @@ from eel_viz.lifetime import live
 from eel_viz.quality import keep_all
 from eel_viz.runs import Runs
 from eel_viz.sinks import destinations
+from eel_viz.topics import SWIMMER
 
 NAME = "visualiser"
 DEFAULTS = ["--ros-args", "-p", "use_sim_time:=true", "--"]  # what the user says comes after, and wins
 GONE = 1.0  # s without publishers and messages, after which `stop_with_publisher` ends the node
-SWIMMER = "head_pose"  # whose publishers' leaving that is
 
 SAMPLED = {
     "head_pose": PoseStamped,

@@ -2,8 +2,6 @@
 
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 
-LATCHED = ("body", "curvature_law")  # the suite's transient local topics
-
 
 def keep_all(*, reliable: bool = True, latched: bool = False) -> QoSProfile:
     """Keep all, as reliable as the publishers are; `latched` asks for what was published before, too."""

@@ -18,27 +18,13 @@ from rosbags.rosbag2 import StoragePlugin, Writer
 
 from eel_viz.definitions import definition, message_class, type_hash
 from eel_viz.lifetime import live
-from eel_viz.quality import LATCHED, fitting, hears, keep_all
+from eel_viz.quality import fitting, hears, keep_all
+from eel_viz.topics import GLOBAL, LATCHED, OWN, SWIMMER
 
 NAME = "record"
 GONE = 1.0  # s without publishers and messages, after which --stop-with-publisher ends it
 LOOK = 0.2  # s between two looks at who is there
-GLOBAL = {"/clock": "rosgraph_msgs/msg/Clock", "/diagnostics": "diagnostic_msgs/msg/DiagnosticArray"}
-OWN = {
-    "head_pose": "geometry_msgs/msg/PoseStamped",
-    "head_twist": "geometry_msgs/msg/TwistStamped",
-    "odom": "nav_msgs/msg/Odometry",
-    "backbone": "eel_msgs/msg/Backbone",
-    "curvature": "eel_msgs/msg/Curvature",
-    "internal_wrench": "eel_msgs/msg/InternalWrench",
-    "hydrodynamic_load": "eel_msgs/msg/HydrodynamicLoad",
-    "energy": "eel_msgs/msg/EnergyLedger",
-    "body": "eel_msgs/msg/BodyGeometry",
-    "curvature_law": "eel_msgs/msg/CurvatureLaw",
-    "curvature_samples": "eel_msgs/msg/CurvatureSamples",
-}
 UNASKED = ("/rosout", "/parameter_events")  # recorded only by name
-SWIMMER = "head_pose"  # its publishers' leaving ends a recording with --stop-with-publisher
 
 
 class Recorder(Node):

@@ -7,7 +7,6 @@ import pathlib
 import struct
 from collections.abc import Iterator
 
-import lz4.frame
 import zstandard
 from mcap.exceptions import McapError
 from mcap.records import Channel, McapRecord, Message, Schema

@@ -1,149 +1,170 @@
-"""A recording to a picture, without a display: `render RUN.rrd -o PICTURE.png --at 7.0`.
+"""A recording to pictures, or to a film, without a display.
 
-It starts Rerun's native viewer without a window, sets the time, and takes the picture once two in a row are equal, for
-only then everything is loaded. That needs a Vulkan driver; Mesa's software driver (package mesa-vulkan-drivers) does.
+render RUN.rrd -o picture.png --at 7.0
+render RUN.rrd -o frames/ --fps 30           # frames/frame_00000.png ..., and frames/film.mp4 where ffmpeg is
+render RUN.rrd -o swim.webp --fps 15 --size 960x540
 """
 
 import argparse
 import contextlib
-import importlib.util
+import math
 import os
 import pathlib
-import socket
-import subprocess
 import sys
 import tempfile
-import time
-from collections.abc import Iterator
-from typing import IO
+from collections.abc import Callable, Sequence
 
-from eel_viz.entities import TIMELINE
+from eel_viz.drawing import SIZE, Drawing, drawn
+from eel_viz.film import ANIMATIONS, FILMS, FRAME, ffmpeg, film
+from eel_viz.viewer import CannotRender
 
-START_LIMIT = 60.0  # s, until the viewer listens
-PICTURE_LIMIT = 90.0  # s, until two pictures are equal
-
-
-class CannotRender(RuntimeError):
-    """The viewer cannot draw on this machine; the text says why and what to do."""
+NAME = "render"
+FILM = "film.mp4"
+MANY = 100_000  # pictures
 
 
 def render(
     recording: str | os.PathLike[str],
     picture: str | os.PathLike[str],
     *,
-    at: float,
-    size: tuple[int, int] = (1920, 1080),
+    at: float | None = None,
+    size: tuple[int, int] = SIZE,
+    blueprint: str = "",
 ) -> None:
-    """Write the PNG `picture` of `recording` at simulation time `at` [s], `size` in pixels."""
-    path = pathlib.Path(recording).resolve()
-    if not path.is_file():
-        raise ValueError(f"recording must be a file, got {str(recording)!r}")
-    with viewer(size) as client:
-        client.open([str(path)])
-        client.set_time(TIMELINE, duration=at, play_state="paused")
-        png = _settled(client)
-    pathlib.Path(picture).write_bytes(png)
+    """Write the PNG `picture` of `recording` at simulation time `at` [s] (None: its start), `size` in pixels.
+
+    `blueprint`: the arrangement shown; empty: the one the recording has in front.
+    """
+    with drawn(recording, size=size, blueprint=blueprint) as drawing:
+        pathlib.Path(picture).write_bytes(drawing.png(drawing.start if at is None else at))
 
 
-@contextlib.contextmanager
-def viewer(size: tuple[int, int] = (1920, 1080)) -> Iterator:
-    """A `rerun.experimental.ViewerClient` of a viewer without window, which ends with the block."""
-    from rerun.experimental import ViewerClient
-
-    port = free_port()
-    command = [native_viewer(), "--headless", "--window-size", f"{size[0]}x{size[1]}", "--port", str(port)]
-    command += ["--bind", "127.0.0.1", "--hide-welcome-screen"]
-    # with more than errors in the log, notices of the start would be in the picture
-    environment = {**os.environ, "RUST_LOG": "error", "RERUN_APP_ONLY": "true"}
-    with tempfile.TemporaryFile() as said:
-        process = subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=said)
-        try:
-            _await_listening(process, port, said)
-            yield ViewerClient.connect(f"rerun+http://127.0.0.1:{port}/proxy")
-        finally:
-            process.terminate()
-            try:
-                process.wait(timeout=5)
-            except subprocess.TimeoutExpired:
-                process.kill()
-                process.wait()
+def times(drawing: Drawing, *, fps: float, start: float | None, end: float | None, speed: float) -> list[float]:
+    """Times [s] of the pictures of a film with `fps` a second, running `speed` times as fast as the swimmer."""
+    for name, value in (("fps", fps), ("speed", speed)):
+        if not 0.0 < value < math.inf:
+            raise ValueError(f"{name} must be > 0, got {value:g}")
+    start = drawing.start if start is None else start
+    end = drawing.end if end is None else end
+    if not start <= end:
+        raise ValueError(f"end must not come before start, got {start:g} to {end:g} s")
+    count = math.floor((end - start) * fps / speed + 1e-6) + 1
+    if count > MANY:
+        raise ValueError(f"fps {fps:g} from {start:g} to {end:g} s makes {count} pictures, more than {MANY}")
+    return [start + k * speed / fps for k in range(count)]
 
 
-def native_viewer() -> str:
-    """The viewer's own executable: the `rerun` command is a wrapper that would leave it behind when it ends."""
-    package = importlib.util.find_spec("rerun_cli")
-    if package is None:
-        raise CannotRender("rerun-sdk is not installed: its viewer is needed")
-    return str(pathlib.Path(package.origin).parent / "rerun")
+def frames(
+    drawing: Drawing, folder: pathlib.Path, at: Sequence[float], progress: Callable[[str], None] = lambda text: None
+) -> list[pathlib.Path]:
+    """Pictures at the times `at` [s] as frame_00000.png and so on in `folder`; their paths."""
+    written = []
+    for k, moment in enumerate(at):
+        written.append(folder / (FRAME % k))
+        written[-1].write_bytes(drawing.png(min(moment, drawing.end)))
+        progress(f"\r{k + 1} of {len(at)}")
+    return written
 
 
-def free_port() -> int:
-    """A port of this machine that nobody listens on."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
-
-
-def listening(port: int, host: str = "127.0.0.1") -> bool:
-    """Whether somebody listens on `port` of `host`."""
-    with socket.socket() as probe:
-        probe.settimeout(0.5)
-        return probe.connect_ex((host, port)) == 0
-
-
-def _await_listening(process: subprocess.Popen, port: int, said: IO[bytes]) -> None:
-    limit = time.monotonic() + START_LIMIT
-    while not listening(port):
-        if process.poll() is not None:
-            said.seek(0)
-            lines = said.read().decode(errors="replace").splitlines()
-            reason = next((line for line in lines if "graphics" in line or "render" in line.lower()), "")
-            raise CannotRender(
-                f"the viewer ended with status {process.returncode} ({reason.strip() or 'no reason given'}); it needs "
-                "a Vulkan driver: apt-get install --no-install-recommends mesa-vulkan-drivers"
-            )
-        if time.monotonic() > limit:
-            raise CannotRender(f"the viewer did not start within {START_LIMIT:g} s")
-        time.sleep(0.05)
-
-
-def _settled(client) -> bytes:
-    limit = time.monotonic() + PICTURE_LIMIT
-    before = b""
-    while time.monotonic() < limit:
-        time.sleep(0.3)
-        png = client.take_screenshot()
-        if png and png == before and not client.get_state().loading:
-            return png
-        before = png
-    raise CannotRender(f"the viewer did not come to rest within {PICTURE_LIMIT:g} s")
+def parser() -> argparse.ArgumentParser:
+    """What the command line takes."""
+    made = argparse.ArgumentParser(
+        prog=NAME,
+        description="Draw a Rerun recording to a PNG, to many, or to a film, without a display.",
+        epilog="Needs a Vulkan driver; Mesa's software driver will do (apt-get install --no-install-recommends "
+        "mesa-vulkan-drivers). Exit status: 0; 2 for what cannot be; 3 where the viewer cannot draw; with one line "
+        "that says why.",
+    )
+    made.add_argument("recording", help="file .rrd; one that was cut short is drawn as far as it goes")
+    made.add_argument("picture", nargs="?", help="as -o")
+    made.add_argument(
+        "-o",
+        "--output",
+        metavar="OUT",
+        help="with --at a PNG; with --fps a folder, made if need be, for frame_00000.png ... and, where ffmpeg is "
+        f"installed, {FILM}; or a film alone: {', '.join(FILMS)} (the last two do without ffmpeg)",
+    )
+    which = made.add_mutually_exclusive_group()
+    which.add_argument("--at", type=float, metavar="SECONDS", help="simulation time of one picture (default: start)")
+    which.add_argument("--fps", type=float, metavar="N", help="pictures a second of a film")
+    made.add_argument("--start", type=float, metavar="SECONDS", help="of the film (default: the recording's)")
+    made.add_argument("--end", type=float, metavar="SECONDS", help="of the film (default: the recording's)")
+    made.add_argument(
+        "--speed", type=float, default=1.0, metavar="X", help="simulated seconds in a second of the film (default 1)"
+    )
+    made.add_argument("--size", default=f"{SIZE[0]}x{SIZE[1]}", metavar="WxH", help="in pixels (default %(default)s)")
+    made.add_argument(
+        "--blueprint", default="", metavar="NAME", help="arrangement: overview, torques ... (default: the first)"
+    )
+    return made
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Command line; status 0, 2 for wrong arguments, 3 where the viewer cannot draw."""
-    parser = argparse.ArgumentParser(prog="render", description="Draw a Rerun recording to a PNG, without a display.")
-    parser.add_argument("recording", help="file .rrd")
-    parser.add_argument("picture", nargs="?", help="PNG to write (or -o)")
-    parser.add_argument("-o", "--output", metavar="PNG", help="PNG to write")
-    parser.add_argument("--at", type=float, default=0.0, metavar="SECONDS", help="simulation time (default 0)")
-    parser.add_argument("--size", default="1920x1080", metavar="WxH", help="in pixels (default 1920x1080)")
-    chosen = parser.parse_args(arguments)
+    """Command line; status 0, 2 for what cannot be, 3 where the viewer cannot draw, 130 after Ctrl-C."""
+    made = parser()
+    chosen = made.parse_args(arguments)
     output = chosen.output or chosen.picture
     if output is None:
-        parser.error("the PNG to write is missing: -o PICTURE.png")
+        made.error("where to write is missing: -o PICTURE.png, or -o FOLDER with --fps")
     try:
         width, height = (int(number) for number in chosen.size.split("x"))
     except ValueError:
-        parser.error(f"--size must look like 1920x1080, got {chosen.size!r}")
+        made.error(f"--size must look like 1920x1080, got {chosen.size!r}")
     try:
-        render(chosen.recording, output, at=chosen.at, size=(width, height))
+        _draw(chosen, pathlib.Path(output), (width, height))
     except (CannotRender, ConnectionError) as reason:
-        print(f"render: no picture: {reason}", file=sys.stderr)
+        _say(f"{NAME}: no picture: {' '.join(str(reason).split())}\n")
         return 3
     except (ValueError, OSError) as reason:
-        print(f"render: {reason}", file=sys.stderr)
+        _say(f"{NAME}: {reason}\n")
         return 2
+    except KeyboardInterrupt:
+        _say(f"\n{NAME}: interrupted\n")
+        return 130
     return 0
+
+
+def _draw(chosen: argparse.Namespace, output: pathlib.Path, size: tuple[int, int]) -> None:
+    many = chosen.fps is not None
+    alone = many and output.suffix in FILMS
+    if alone and output.suffix not in ANIMATIONS and ffmpeg() is None:
+        raise ValueError(f"ffmpeg is not installed, which {output.suffix} needs; {' and '.join(ANIMATIONS)} do without")
+    if not many and output.suffix != ".png":
+        raise ValueError(f"a picture must end in .png, got {str(output)!r}; --fps N makes many in a folder")
+    _check_writable(output, folder=many and not alone)
+    if not many:
+        render(chosen.recording, output, at=chosen.at, size=size, blueprint=chosen.blueprint)
+        return
+    with contextlib.ExitStack() as stack:
+        drawing = stack.enter_context(drawn(chosen.recording, size=size, blueprint=chosen.blueprint))
+        at = times(drawing, fps=chosen.fps, start=chosen.start, end=chosen.end, speed=chosen.speed)
+        folder = output
+        if alone:
+            folder = pathlib.Path(stack.enter_context(tempfile.TemporaryDirectory()))
+        elif any(folder.glob("frame_*.png")):
+            _say(f"{NAME}: {folder} has pictures already, those of the same number are replaced\n")
+        written = frames(drawing, folder, at, _say if sys.stderr.isatty() else lambda text: None)
+        name = output if alone else folder / FILM
+        print(f"{len(written)} pictures" + ("" if alone else f" in {folder}"))
+        if alone or ffmpeg() is not None:
+            film(folder, len(written), name, fps=chosen.fps)
+            print(f"film {name}, {len(written) / chosen.fps:.3g} s")
+        else:
+            print(f"no film, for ffmpeg is not installed: ffmpeg -framerate {chosen.fps:g} -i "
+                  f"{folder}/frame_%05d.png -pix_fmt yuv420p {name}")  # fmt: skip
+
+
+def _check_writable(output: pathlib.Path, *, folder: bool) -> None:
+    if folder:
+        output.mkdir(parents=True, exist_ok=True)
+    where = output if folder else output.parent
+    if not where.is_dir() or not os.access(where, os.W_OK):
+        raise ValueError(f"{str(output)!r} cannot be written")
+
+
+def _say(text: str) -> None:
+    sys.stderr.write(text)
+    sys.stderr.flush()
 
 
 if __name__ == "__main__":

@@ -18,6 +18,7 @@ from eel_viz.runs import Runs
 from eel_viz.settings import Settings, limits
 from eel_viz.sinks import Say, destinations
 from eel_viz.topics import GLOBAL, OWN
+from eel_viz.viewer import display, open_window
 
 NAME = "replay"
 DIAGNOSTICS = "/diagnostics"
@@ -53,7 +54,7 @@ class Replay:
         first = next((message for _, _, message in self._bag.messages(body)), None) if body in self._topics else None
         if first is not None:
             self._take(intake, "body", first)
-        for topic, _, message in self._bag.messages(*self._topics):
+        for topic, _, message in self._bag.messages(*self._topics, unreadable=self._leave_out):
             if topic == body and first is not None:
                 first = None
                 continue
@@ -63,9 +64,12 @@ class Replay:
         try:
             intake.take(name, message)
         except AttributeError as error:
-            if name not in self._told:
-                self._told.add(name)
-                self._warn(f"{name} is left out, the bag has it from another version of its message: {error}")
+            self._leave_out(name, f"it comes from another version of its message: {error}")
+
+    def _leave_out(self, topic: str, why: str) -> None:
+        if topic not in self._told:
+            self._told.add(topic)
+            self._warn(f"{topic}: {why}: left out, and those like it")
 
     def _found(self, namespace: str | None) -> str:
         spaces = sorted(
@@ -154,6 +158,8 @@ def main(arguments: list[str] | None = None) -> int:
 
     began = time.monotonic()
     try:
+        if chosen.spawn and not display():
+            raise ValueError("--spawn needs a display, and there is none")
         values = {name: getattr(chosen, name) for name in OPTIONS}
         sink = ("save", "connect") if chosen.connect else ("save",)
         settings = Settings.from_values({**values, "sink": sink, "recording": output})
@@ -166,9 +172,7 @@ def main(arguments: list[str] | None = None) -> int:
         return 130
     print(f"replayed in {time.monotonic() - began:.1f} s: {told}")
     if chosen.spawn:
-        from eel_viz.render import show
-
-        show(output)
+        open_window(output)
     return 0
 
 

@@ -7,9 +7,7 @@ run. A stream straight to an absent viewer would block for ever in the end; so t
 
 import contextlib
 import datetime
-import os
 import pathlib
-import subprocess
 from collections.abc import Callable
 from urllib.parse import urlsplit
 
@@ -18,8 +16,8 @@ import rerun.blueprint as rrb
 
 from eel_viz.blueprint import arrangement
 from eel_viz.loggers import Rates
-from eel_viz.render import free_port, listening, native_viewer
 from eel_viz.settings import Settings
+from eel_viz.viewer import display, free_port, listening, open_window
 
 APPLICATION = "eel"
 CLOSING_LIMIT = 3.0  # s for what is still on its way
@@ -119,15 +117,7 @@ class Served(Destination):
         if not display():
             self.warn("there is no display: no viewer is opened")
             return
-        command = [native_viewer(), "--port", str(free_port()), "--hide-welcome-screen", self.uri]
-        subprocess.Popen(
-            command,
-            env={**os.environ, "RERUN_APP_ONLY": "true"},
-            start_new_session=True,
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL,
-        )
+        open_window(self.uri)
 
     def show_in_browser(self) -> None:
         """Serve the web viewer too, and say where."""
@@ -182,11 +172,6 @@ def destinations(settings: Settings, say: Say, warn: Say) -> list[Destination]:
     if "connect" in names:
         found.append(Connected(settings, say, warn))
     return found
-
-
-def display() -> bool:
-    """Whether a window can be opened."""
-    return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
 
 
 def close_stream(stream: rr.RecordingStream) -> None:

@@ -1,0 +1,50 @@
+"""A row of pictures as a film: by ffmpeg where it is installed, or as an animated GIF or WebP without it."""
+
+import os
+import pathlib
+import shutil
+import subprocess
+
+ANIMATIONS = (".gif", ".webp")
+FRAME = "frame_%05d.png"
+FILMS = (".mp4", ".webm", ".mkv", ".mov", *ANIMATIONS)
+
+
+def ffmpeg() -> str | None:
+    """Where ffmpeg is, if it is installed."""
+    return shutil.which("ffmpeg")
+
+
+def film(folder: str | os.PathLike[str], count: int, output: str | os.PathLike[str], *, fps: float) -> None:
+    """Write the film `output` of the first `count` pictures `FRAME` in `folder`, equal in size, `fps` a second.
+
+    `ValueError` says what is missing.
+    """
+    path = pathlib.Path(output)
+    if path.suffix not in FILMS:
+        raise ValueError(f"film must end in one of {', '.join(FILMS)}, got {str(output)!r}")
+    if path.suffix in ANIMATIONS:
+        _animate([pathlib.Path(folder) / (FRAME % k) for k in range(count)], path, fps)
+        return
+    program = ffmpeg()
+    if program is None:
+        raise ValueError(f"ffmpeg is not installed, which {path.suffix} needs; {' and '.join(ANIMATIONS)} do without")
+    even = "pad=ceil(iw/2)*2:ceil(ih/2)*2"  # most codecs want that
+    command = [program, "-y", "-v", "error", "-framerate", f"{fps:g}", "-i", str(pathlib.Path(folder) / FRAME)]
+    command += ["-frames:v", str(count), "-vf", even, "-pix_fmt", "yuv420p", str(path)]
+    done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True)
+    if done.returncode:
+        raise ValueError(f"ffmpeg could not make {path}: {' '.join(done.stderr.split())[-300:]}")
+
+
+def _animate(pictures: list[pathlib.Path], path: pathlib.Path, fps: float) -> None:
+    from PIL import Image
+
+    def picture(name):
+        with Image.open(name) as image:
+            return image.convert("RGB")
+
+    first, *others = pictures
+    picture(first).save(
+        path, save_all=True, append_images=(picture(name) for name in others), duration=1000 / fps, loop=0
+    )

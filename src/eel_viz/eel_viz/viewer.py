@@ -1,0 +1,100 @@
+"""Rerun's native viewer as a process of its own: without a window, for pictures, or with one.
+
+Drawing without a window needs a Vulkan driver; Mesa's software driver (package mesa-vulkan-drivers) does.
+"""
+
+import contextlib
+import importlib.util
+import os
+import pathlib
+import socket
+import subprocess
+import tempfile
+import time
+from collections.abc import Iterator
+from typing import IO
+
+START_LIMIT = 60.0  # s, until the viewer listens
+
+
+class CannotRender(RuntimeError):
+    """The viewer cannot draw on this machine; the text says why and what to do."""
+
+
+@contextlib.contextmanager
+def viewer(size: tuple[int, int] = (1920, 1080)) -> Iterator:
+    """A `rerun.experimental.ViewerClient` of a viewer without window, which ends with the block."""
+    from rerun.experimental import ViewerClient
+
+    port = free_port()
+    command = [native_viewer(), "--headless", "--window-size", f"{size[0]}x{size[1]}", "--port", str(port)]
+    command += ["--bind", "127.0.0.1", "--hide-welcome-screen"]
+    # with more than errors in the log, notices of the start would be in the picture
+    environment = {**os.environ, "RUST_LOG": "error", "RERUN_APP_ONLY": "true"}
+    with tempfile.TemporaryFile() as said:
+        process = subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=said)
+        try:
+            _await_listening(process, port, said)
+            yield ViewerClient.connect(f"rerun+http://127.0.0.1:{port}/proxy")
+        finally:
+            process.terminate()
+            try:
+                process.wait(timeout=5)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
+
+
+def open_window(what: str) -> None:
+    """A viewer on this machine's display, showing `what` (a file or an address); it stays when this process ends."""
+    subprocess.Popen(
+        [native_viewer(), "--port", str(free_port()), "--hide-welcome-screen", what],
+        env={**os.environ, "RERUN_APP_ONLY": "true"},
+        start_new_session=True,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )
+
+
+def display() -> bool:
+    """Whether a window can be opened."""
+    return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
+
+
+def native_viewer() -> str:
+    """The viewer's own executable: the `rerun` command is a wrapper that would leave it behind when it ends."""
+    package = importlib.util.find_spec("rerun_cli")
+    if package is None:
+        raise CannotRender("rerun-sdk is not installed: its viewer is needed")
+    return str(pathlib.Path(package.origin).parent / "rerun")
+
+
+def free_port() -> int:
+    """A port of this machine that nobody listens on."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+def listening(port: int, host: str = "127.0.0.1") -> bool:
+    """Whether somebody listens on `port` of `host`."""
+    with socket.socket() as probe:
+        probe.settimeout(0.5)
+        return probe.connect_ex((host, port)) == 0
+
+
+def _await_listening(process: subprocess.Popen, port: int, said: IO[bytes]) -> None:
+    limit = time.monotonic() + START_LIMIT
+    while not listening(port):
+        if process.poll() is not None:
+            said.seek(0)
+            lines = said.read().decode(errors="replace").splitlines()
+            reason = next((line for line in lines if "graphics" in line or "render" in line.lower()), "")
+            raise CannotRender(
+                f"the viewer ended with status {process.returncode} ({reason.strip() or 'no reason given'}); it needs "
+                "a Vulkan driver: apt-get install --no-install-recommends mesa-vulkan-drivers"
+            )
+        if time.monotonic() > limit:
+            raise CannotRender(f"the viewer did not start within {START_LIMIT:g} s")
+        time.sleep(0.05)

@@ -1,0 +1,47 @@
+"""Two recordings, entity by entity and number by number."""
+
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+from rerun.chunk import RrdReader
+
+TEXT = "/run/"  # what topics tell each other there depends on the order in which they come
+
+
+def contents(path: Path) -> dict[tuple[str, str], tuple[np.ndarray, pa.Array]]:
+    """(entity, component): times [ns] in order, -1 for always, and the values at each."""
+    pieces: dict[tuple[str, str], list] = {}
+    for chunk in RrdReader(str(path)).stream():
+        batch = chunk.to_record_batch()
+        times = np.full(chunk.num_rows, -1)
+        if not chunk.is_static:
+            times = batch.column("sim_time").cast("int64").to_numpy()
+        for name in batch.schema.names:
+            if ":" in name:
+                there = batch.column(name).is_valid().to_numpy(zero_copy_only=False)
+                pieces.setdefault((str(chunk.entity_path), name), []).append(
+                    (times[there], batch.column(name).filter(there))
+                )
+    found = {}
+    for key, parts in pieces.items():
+        times = np.concatenate([part[0] for part in parts])
+        order = np.argsort(times, kind="stable")
+        found[key] = (times[order], pa.concat_arrays([part[1] for part in parts]).take(order))
+    return found
+
+
+def differences(one: Path, other: Path, *, texts: bool = False) -> list[str]:
+    """What is not the same in both, in words; the recordings' own properties apart, and `texts` only on demand."""
+    first, second = contents(one), contents(other)
+    said = [f"{key} is in one alone" for key in sorted(first.keys() ^ second.keys())]
+    for key in sorted(first.keys() & second.keys()):
+        if key[0].startswith("/__properties") or (key[0].startswith(TEXT) and not texts):
+            continue
+        (times, values), (other_times, other_values) = first[key], second[key]
+        if not np.array_equal(times, other_times):
+            said.append(f"{key}: {len(times)} and {len(other_times)} times")
+        elif not values.equals(other_values):
+            where = next(t for t, a, b in zip(times, values, other_values, strict=True) if not a.equals(b))
+            said.append(f"{key}: values at {where} ns and maybe later")
+    return said

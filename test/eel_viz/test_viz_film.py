@@ -1,0 +1,125 @@
+"""`render` as a command: one picture, many, and a film, by one viewer; what cannot be is said in one line."""
+
+import stat
+
+import pytest
+from eel_viz.drawing import drawn
+from eel_viz.film import film
+from eel_viz.render import main, times
+from made_up_recording import record
+from PIL import Image
+
+
+@pytest.fixture(scope="module")
+def recording(tmp_path_factory):
+    path = tmp_path_factory.mktemp("recording") / "made_up.rrd"
+    record(path, 1.0, 50.0)
+    return path
+
+
+@pytest.fixture
+def fake_ffmpeg(tmp_path, monkeypatch):
+    """An ffmpeg that writes down what it is asked for, alone on the PATH."""
+    program = tmp_path / "bin" / "ffmpeg"
+    program.parent.mkdir()
+    program.write_text('#!/bin/sh\nfor last; do :; done\necho "$@" > "$last"\n')
+    program.chmod(program.stat().st_mode | stat.S_IXUSR)
+    monkeypatch.setenv("PATH", f"{program.parent}:/usr/bin:/bin")
+
+
+def refusal(capsys, *arguments) -> str:
+    status = main([str(word) for word in arguments])
+    said = capsys.readouterr().err
+    assert status == 2, said
+    assert len(said.splitlines()) == 1, said
+    return said
+
+
+def test_one_viewer_draws_many_pictures_and_each_is_right(can_draw, recording, tmp_path, capsys, fake_ffmpeg):
+    folder = tmp_path / "frames"
+    words = ["--fps", "10", "--start", "0.6", "--end", "0.8", "--size", "640x361", "--blueprint", "torques"]
+    assert main([str(recording), "-o", str(folder), *words]) == 0
+    assert sorted(path.name for path in folder.iterdir()) == [
+        "film.mp4", "frame_00000.png", "frame_00001.png", "frame_00002.png"
+    ]  # fmt: skip
+    asked = (folder / "film.mp4").read_text()
+    assert f"-framerate 10 -i {folder}/frame_%05d.png -frames:v 3" in asked
+    assert "3 pictures in" in capsys.readouterr().out
+    pictures = [(folder / f"frame_0000{k}.png").read_bytes() for k in range(3)]
+    assert len(set(pictures)) == 3
+    with Image.open(folder / "frame_00000.png") as image:
+        assert image.size == (640, 361)
+    with drawn(recording, size=(640, 361), blueprint="torques") as drawing:
+        assert (drawing.start, drawing.end) == (0.0, 1.0)
+        assert drawing.png(0.8) == pictures[2]  # a viewer's first picture, taken when all has come to rest
+        drawing.arrange("motion")
+        assert drawing.png(0.8) != pictures[2]
+        for wrong in (1.5, -0.1, float("nan")):
+            with pytest.raises(ValueError, match="time must lie in the recording, 0 to 1 s"):
+                drawing.png(wrong)
+        with pytest.raises(ValueError, match=r"blueprint must be one of overview, torques, motion.*, got 'mine'"):
+            drawing.arrange("mine")
+
+
+def test_a_recording_that_was_cut_short_is_drawn(can_draw, tmp_path):
+    record(tmp_path / "long.rrd", 3.0, 50.0)
+    whole = (tmp_path / "long.rrd").read_bytes()
+    (tmp_path / "cut.rrd").write_bytes(whole[: len(whole) * 3 // 4])
+    with drawn(tmp_path / "cut.rrd", size=(320, 200)) as drawing:
+        assert drawing.start == 0.0
+        assert 0.5 < drawing.end <= 3.0
+        assert drawing.png(0.5)
+
+
+def test_films_by_ffmpeg_or_without(tmp_path, monkeypatch, fake_ffmpeg):
+    for k in range(3):
+        Image.new("RGB", (32, 16), (80 * k, 0, 0)).save(tmp_path / f"frame_0000{k}.png")
+    film(tmp_path, 3, tmp_path / "film.webm", fps=12.5)
+    assert "-framerate 12.5" in (tmp_path / "film.webm").read_text()
+    (tmp_path / "bin" / "ffmpeg").write_text("#!/bin/sh\necho no such codec >&2\nexit 1\n")
+    with pytest.raises(ValueError, match=r"ffmpeg could not make .*film.mp4: no such codec"):
+        film(tmp_path, 3, tmp_path / "film.mp4", fps=10)
+    monkeypatch.setenv("PATH", str(tmp_path / "nothing"))
+    with pytest.raises(ValueError, match=r"ffmpeg is not installed, which .mp4 needs; .gif and .webp do without"):
+        film(tmp_path, 3, tmp_path / "film.mp4", fps=10)
+    for suffix in ("gif", "webp"):
+        film(tmp_path, 3, tmp_path / f"film.{suffix}", fps=10)
+        with Image.open(tmp_path / f"film.{suffix}") as image:
+            assert (image.n_frames, image.size) == (3, (32, 16))
+            image.seek(2)
+            assert image.convert("RGB").getpixel((5, 5))[0] == pytest.approx(160, abs=8)  # lossy
+    with pytest.raises(ValueError, match=r"film must end in one of .mp4"):
+        film(tmp_path, 3, tmp_path / "film.txt", fps=10)
+
+
+class TenSeconds:
+    start, end = 0.0, 10.0
+
+
+def test_the_times_of_a_film():
+    assert times(TenSeconds, fps=30, start=None, end=None, speed=1.0)[-1] == pytest.approx(10.0)
+    assert len(times(TenSeconds, fps=30, start=None, end=None, speed=1.0)) == 301
+    assert times(TenSeconds, fps=2, start=1.0, end=3.0, speed=0.5) == pytest.approx([1 + k / 4 for k in range(9)])
+    for name, value in (("fps", 0.0), ("fps", float("inf")), ("speed", -1.0)):
+        with pytest.raises(ValueError, match=f"{name} must be > 0"):
+            times(TenSeconds, **{"fps": 30, "speed": 1.0, "start": None, "end": None, name: value})
+    with pytest.raises(ValueError, match="end must not come before start, got 5 to 2 s"):
+        times(TenSeconds, fps=30, start=5.0, end=2.0, speed=1.0)
+    with pytest.raises(ValueError, match="makes 10000001 pictures"):
+        times(TenSeconds, fps=1e6, start=None, end=None, speed=1.0)
+
+
+def test_what_cannot_be_is_said_in_one_line(recording, tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("PATH", "/nothing")
+    (tmp_path / "text.rrd").write_text("hello")
+    assert "recording must be a file" in refusal(capsys, "none.rrd", "-o", "a.png")
+    assert "is no Rerun recording" in refusal(capsys, "text.rrd", "-o", "a.png")
+    assert "size must be 64 to 8192 pixels" in refusal(capsys, recording, "-o", "a.png", "--size", "10x10")
+    assert "a picture must end in .png, got 'a.jpg'" in refusal(capsys, recording, "-o", "a.jpg")
+    assert "ffmpeg is not installed" in refusal(capsys, recording, "-o", "a.mp4", "--fps", "10")
+    assert "'no/a.png' cannot be written" in refusal(capsys, recording, "-o", "no/a.png")
+    for wrong in ([], ["-o", "a.png", "--size", "big"], ["-o", "a", "--fps", "1", "--at", "2"]):
+        with pytest.raises(SystemExit, match="2"):
+            main([str(recording), *wrong])
+    assert list(tmp_path.iterdir()) == [tmp_path / "text.rrd"]

@@ -1,0 +1,206 @@
+"""`replay`: a bag becomes the recording that the visualiser makes of the same messages, whatever the bag's form."""
+
+import sqlite3
+import subprocess
+import sys
+
+import made_up
+import numpy as np
+import pytest
+from compared import contents, differences
+from eel_viz.bag import Bag
+from eel_viz.reading import read
+from eel_viz.replay import main
+from made_up_bag import write_bag
+from made_up_recording import record
+from rosbags.rosbag2 import CompressionMode, StoragePlugin
+
+from eel_viz import entities
+
+STAMPS = [k * 10**7 for k in range(101)]
+
+
+@pytest.fixture(scope="module")
+def bag(tmp_path_factory):
+    """1 s at 100 Hz, finished well."""
+    return write_bag(tmp_path_factory.mktemp("bag") / "bag")
+
+
+@pytest.fixture(scope="module")
+def logged(tmp_path_factory):
+    """What the loggers make of the same numbers."""
+    path = tmp_path_factory.mktemp("logged") / "logged.rrd"
+    record(path, 1.0, 100.0)
+    return path
+
+
+def said_in_one_line(capsys, *arguments) -> str:
+    """What `replay` says when it refuses, with status 2."""
+    assert main([str(word) for word in arguments]) == 2
+    said = capsys.readouterr().err
+    assert len(said.splitlines()) == 1, said
+    return said
+
+
+def same_numbers(path, logged):
+    found = [line for line in differences(path, logged) if "TextLog" not in line and "TextDocument" not in line]
+    assert found == []
+
+
+@pytest.mark.parametrize(
+    ("storage", "compression"),
+    [
+        (StoragePlugin.MCAP, CompressionMode.NONE),
+        (StoragePlugin.MCAP, CompressionMode.STORAGE),
+        (StoragePlugin.SQLITE3, CompressionMode.NONE),
+        (StoragePlugin.SQLITE3, CompressionMode.FILE),
+        (StoragePlugin.MCAP, CompressionMode.MESSAGE),
+    ],
+    ids=lambda value: value.name.lower(),
+)
+def test_every_number_is_that_of_the_visualisers_loggers(tmp_path, logged, storage, compression):
+    folder = write_bag(tmp_path / "bag", storage=storage, compression=compression)
+    assert main([str(folder), "-o", str(tmp_path / "run.rrd")]) == 0
+    same_numbers(tmp_path / "run.rrd", logged)
+    assert len(contents(tmp_path / "run.rrd")) > 150
+    assert read(tmp_path / "run.rrd", entities.LOG)["text"][0][0] == "law 'made up' published"
+
+
+def test_it_needs_no_ros_at_all(tmp_path, bag, logged):
+    blocked = ["rclpy", "eel_msgs", "std_msgs", "geometry_msgs", "rcl_interfaces", "builtin_interfaces", "nav_msgs"]
+    code = f"import sys\nfor name in {blocked!r}: sys.modules[name] = None\nfrom eel_viz.replay import main\n"
+    code += f"sys.exit(main([{str(bag)!r}, '-o', {str(tmp_path / 'run.rrd')!r}]))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    assert done.returncode == 0, done.stderr
+    assert "replayed in" in done.stdout
+    same_numbers(tmp_path / "run.rrd", logged)
+
+
+def test_a_reset_begins_a_second_file_and_settings_are_taken(tmp_path, capsys):
+    folder = write_bag(tmp_path / "bag", 0.4, runs=2)
+    assert main([str(folder), "-o", str(tmp_path / "run.rrd"), "--skin-rate", "50", "--blueprint", "torques"]) == 0
+    assert "went back from 0.4 s to 0 s" in capsys.readouterr().err
+    for name in ("run.rrd", "run-2.rrd"):
+        np.testing.assert_array_equal(read(tmp_path / name, entities.POSITION).stamps, STAMPS[:41])
+        assert len(read(tmp_path / name, entities.SKIN)["vertex_positions"]) == 21  # 50 Hz
+    expected = [made_up.Swimmer().wrench(stamp * 1e-9)["torque_3"] for stamp in STAMPS[:41]]
+    np.testing.assert_array_equal(read(tmp_path / "run-2.rrd", entities.WRENCH_NUMBERS)["torque_3"], expected)
+
+
+def test_one_of_several_swimmers_is_chosen(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    write_bag(tmp_path / "two", 0.1, namespaces=("/left", "/deep/right"))
+    assert "choose one with --namespace: /deep/right, /left" in said_in_one_line(capsys, "two")
+    words = "no swimmer in namespace 'middle' of the bag; there is: /deep/right, /left"
+    assert words in said_in_one_line(capsys, "two", "--namespace", "middle")
+    assert main(["two", "--namespace", "deep/right/"]) == 0
+    np.testing.assert_array_equal(read(tmp_path / "two.rrd", entities.SPEED).stamps, STAMPS[:11])
+    write_bag(tmp_path / "one", 0.1, namespaces=("/somewhere/else",))
+    assert main(["one"]) == 0  # the only one needs no name
+    np.testing.assert_array_equal(read(tmp_path / "one.rrd", entities.SPEED).stamps, STAMPS[:11])
+
+
+@pytest.mark.parametrize("cut", ["no metadata", "half a file", "no end"])
+def test_a_bag_that_was_not_finished_is_shown_as_far_as_it_goes(tmp_path, capsys, cut):
+    folder = write_bag(tmp_path / "bag", 1.5)  # more than a chunk of 1 MiB
+    file = folder / "bag.mcap"
+    if cut == "no metadata":
+        (folder / "metadata.yaml").unlink()
+    else:
+        whole = file.read_bytes()
+        file.write_bytes(whole[: len(whole) * 3 // 4] if cut == "half a file" else whole[:-20])
+    assert main([str(folder), "-o", str(tmp_path / "run.rrd")]) == 0
+    said = capsys.readouterr().err
+    assert "is unfinished or damaged (" in said
+    assert len(said.splitlines()) == 1
+    stamps = read(tmp_path / "run.rrd", entities.POSITION).stamps
+    np.testing.assert_array_equal(stamps, [k * 10**7 for k in range(len(stamps))])
+    assert 30 < len(stamps) < 150 if cut == "half a file" else len(stamps) == 151
+
+
+def test_a_file_of_a_bag_will_do_and_sqlites_journal_is_heeded(tmp_path):
+    folder = write_bag(tmp_path / "bag", 0.2, storage=StoragePlugin.SQLITE3)
+    (folder / "metadata.yaml").unlink()
+    connection = sqlite3.connect(folder / "bag.db3")
+    connection.execute("PRAGMA journal_mode=WAL")
+    connection.execute("UPDATE messages SET timestamp = timestamp + 0")
+    connection.commit()  # a recorder that is killed leaves it like this: all is in the journal
+    assert (folder / "bag.db3-wal").stat().st_size
+    for path in (folder, folder / "bag.db3"):
+        assert main([str(path), "-o", str(tmp_path / "run.rrd")]) == 0
+        np.testing.assert_array_equal(read(tmp_path / "run.rrd", entities.SPEED).stamps, STAMPS[:21])
+    connection.close()
+
+
+def test_a_bag_without_definitions_is_read_with_the_types_installed_here(tmp_path):
+    folder = write_bag(tmp_path / "bag", 0.1, storage=StoragePlugin.SQLITE3)
+    with sqlite3.connect(folder / "bag.db3") as connection:  # as Humble wrote them
+        connection.execute("DELETE FROM message_definitions")
+    with Bag(folder) as opened:
+        assert {topic.definition for topic in opened.topics.values()} == {""}
+    assert main([str(folder), "-o", str(tmp_path / "run.rrd")]) == 0
+    np.testing.assert_array_equal(read(tmp_path / "run.rrd", entities.SPEED).stamps, STAMPS[:11])
+
+
+def test_bad_messages_and_foreign_types_are_said_once_and_left_out(tmp_path, capsys):
+    from geometry_msgs.msg import Point, PoseStamped
+
+    def spoil(topic, message):
+        if topic == "/energy":
+            message.residual = float("nan")
+        return {"/curvature_law": PoseStamped(), "/odom": Point()}.get(topic, message)
+
+    kinds = {"/curvature_law": "geometry_msgs/msg/PoseStamped", "/head_twist": "geometry_msgs/msg/PoseStamped"}
+    folder = write_bag(tmp_path / "bag", 0.1, spoil=spoil, kinds=kinds)
+    assert main([str(folder), "-o", str(tmp_path / "run.rrd")]) == 0
+    said = capsys.readouterr().err
+    for words in (
+        "energy: residual is nan: left out, and those like it",
+        "/curvature_law is left out: it is geometry_msgs/msg/PoseStamped, not eel_msgs/msg/CurvatureLaw",
+        "/head_twist is left out: it is geometry_msgs/msg/PoseStamped, not geometry_msgs/msg/TwistStamped",
+        "/odom: ",  # bytes that are no Odometry
+    ):
+        assert said.count(words) == 1, said
+    assert len(said.splitlines()) == 4
+    np.testing.assert_array_equal(read(tmp_path / "run.rrd", entities.POSITION).stamps, STAMPS[:11])
+
+
+def test_messages_of_another_version_are_said_once_and_left_out(tmp_path, capsys):
+    folder = write_bag(tmp_path / "bag", 0.1)
+    for file in folder.iterdir():  # as if the field had another name then; as long, so that the file's index holds
+        file.write_bytes(file.read_bytes().replace(b"nose_power", b"snub_power"))
+    from rosbags.rosbag2 import Reader
+
+    with Reader(folder) as reader:
+        assert any("snub_power" in connection.msgdef.data for connection in reader.connections)
+    assert main([str(folder), "-o", str(tmp_path / "run.rrd")]) == 0
+    said = capsys.readouterr().err
+    assert "energy: it comes from another version of its message" in said
+    assert "nose_power" in said
+    assert len(said.splitlines()) == 1
+    np.testing.assert_array_equal(read(tmp_path / "run.rrd", entities.POSITION).stamps, STAMPS[:11])
+
+
+def test_what_is_no_bag_is_said_in_one_line(tmp_path, capsys, bag, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
+    (tmp_path / "empty").mkdir()
+    (tmp_path / "garbage.mcap").write_bytes(b"garbage" * 100)
+    (tmp_path / "text.txt").write_text("hello")
+    (tmp_path / "torn").mkdir()
+    (tmp_path / "torn" / "metadata.yaml").write_text("rosbag2_bagfile_information:\n  version: 9\n")
+    write_bag(tmp_path / "foreign", 0.0, spoil=lambda topic, message: message if topic == "/diagnostics" else None)
+    for path, words in {
+        "none": "bag 'none' does not exist",
+        "empty": "bag 'empty' cannot be read: no metadata.yaml, no .mcap or .db3 file",
+        "garbage.mcap": "bag 'garbage.mcap' cannot be read: ",
+        "text.txt": "'text.txt' is no bag: ",
+        "torn": "bag 'torn' cannot be read: ",
+        "foreign": "the bag has no topic of a swimmer; its topics: /diagnostics",
+    }.items():
+        assert words in said_in_one_line(capsys, path, "-o", "run.rrd")
+    assert "'/proc/none.rrd' cannot be written" in said_in_one_line(capsys, bag, "-o", "/proc/none.rrd")
+    assert "blueprint must be one of overview" in said_in_one_line(capsys, bag, "--blueprint", "mine")
+    assert "skin_rate must be >= 0.1 Hz" in said_in_one_line(capsys, bag, "--skin-rate", "0")
+    assert "--spawn needs a display" in said_in_one_line(capsys, bag, "--spawn")
