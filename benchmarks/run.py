@@ -12,7 +12,9 @@ import time
 from functools import partial
 
 import numpy as np
+from against_paper_scheme import paper_scheme
 from eel_dynamics.integrator import rate_of_state
+from growth import growth
 from numba import njit
 
 from eel_dynamics import Accuracy, Body, Scene, Simulation, simulate
@@ -109,7 +111,14 @@ def start():
     yield "first step and sample", statistics.median(second for _, second in runs), "s"
 
 
-FIGURES = {"evaluation": evaluation, "falling": falling_gait, "switches": switches, "start": start}
+FIGURES = {
+    "evaluation": evaluation,
+    "falling": falling_gait,
+    "switches": switches,
+    "start": start,
+    "growth": growth,
+    "paper_scheme": paper_scheme,
+}
 
 
 def main(names: list[str]) -> int:
@@ -124,7 +133,7 @@ def main(names: list[str]) -> int:
     for name in names or FIGURES:
         print(f"{name}: {' '.join(FIGURES[name].__doc__.split())}")
         for label, value, unit in FIGURES[name]():
-            print(f"  {label:42s} {value:10.4g} {unit}")
+            print(f"  {label:42s} {value:10.4g} {unit}" if value is not None else f"  {label}")
     return 0
 
 
