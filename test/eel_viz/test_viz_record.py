@@ -14,6 +14,7 @@ from eel_viz.echo import as_yaml, picked
 from eel_viz.topics import GLOBAL, OWN
 from fake_swimmer import TOPICS, diagnostics, messages
 from rosbags.highlevel import AnyReader
+from rosbags.rosbag2 import Reader
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 SWIMMER = str(Path(__file__).with_name("fake_swimmer.py"))
@@ -113,6 +114,59 @@ def test_a_signal_closes_the_bag_well(start, network, tmp_path, sent):
     assert time.monotonic() - began < 1.0
     assert "Traceback" not in recorder.output()
     assert len(contents(tmp_path / "bag")["/head_pose"]) == 20
+
+
+def test_a_recorder_that_is_killed_leaves_a_bag_that_opens_with_all_but_the_last_second(start, network, tmp_path):
+    recorder = start("record", "-o", str(tmp_path / "bag"))
+    recorder.wait_for_output("recording to")
+    assert contents(tmp_path / "bag") == {}  # a bag from the beginning
+    publishers = {topic: network.create_publisher(kind, topic, 1000) for topic, kind in TOPICS.items()}
+    for publisher in publishers.values():
+        await_subscription(publisher)
+    sample, sent, began = messages(made_up.Swimmer(51), 0), [], time.monotonic()
+    while time.monotonic() - began < 3.0:
+        sample["head_pose"].pose.position.x = float(len(sent))
+        sent.append(time.time_ns())
+        for topic, message in sample.items():
+            publishers[topic].publish(message)
+        time.sleep(0.01)
+    recorder.process.kill()
+    killed = time.time_ns()
+    recorder.wait(10.0)
+    with Reader(tmp_path / "bag") as reader:
+        raw = sum(1 for _ in reader.messages())
+        assert reader.message_count == raw
+    bag = contents(tmp_path / "bag")
+    assert set(bag) == {f"/{topic}" for topic in TOPICS}
+    for topic, entries in bag.items():
+        assert max(stamp for stamp, _ in entries) > killed - 2.5e9, topic  # a second, and a busy machine's delay
+    received = [message.pose.position.x for _, message in bag["/head_pose"]]
+    assert received == list(range(len(received)))
+    assert len(received) > 20
+
+
+def test_a_full_disk_is_said_in_one_line_and_what_was_written_opens(start, network, tmp_path):
+    limited = f"ulimit -f 600; exec record -o {tmp_path / 'bag'}"  # KiB
+    recorder = start("bash", "-c", limited)
+    recorder.wait_for_output("recording to")
+    publisher = network.create_publisher(TOPICS["backbone"], "backbone", 1000)
+    await_subscription(publisher)
+    message, sent = messages(made_up.Swimmer(51), 0)["backbone"], 0
+    deadline = time.monotonic() + 20
+    while recorder.status is None and time.monotonic() < deadline:
+        message.header.stamp.sec = sent
+        publisher.publish(message)
+        sent += 1
+        time.sleep(0.005)
+    assert recorder.status == 1, recorder.output()
+    assert "Traceback" not in recorder.output()
+    last = recorder.output().strip().splitlines()[-1]
+    assert last.startswith(f"record: {tmp_path / 'bag'}: File too large: the bag ends with the ")
+    kept = contents(tmp_path / "bag")["/backbone"]
+    assert f"the {len(kept)} messages before" in last
+    assert [message.header.stamp.sec for _, message in kept] == list(range(len(kept)))
+    assert len(kept) > 10
+    assert (tmp_path / "bag" / "bag.mcap").stat().st_size <= 600 * 1024
 
 
 def test_named_topics_of_a_namespace_others_qualities_and_a_duration(start, network, tmp_path):

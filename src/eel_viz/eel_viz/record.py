@@ -1,11 +1,11 @@
 """Records topics to a rosbag2 folder in MCAP storage, for `ros2 bag play` and `rosbags`, where there is no `ros2 bag`.
 
-Messages are written as they come, undecoded. The suite's own topics are listened to from the start, so that a run
+Messages are written as they come, undecoded; once a second the bag is made whole (see `growing_bag`), so that whatever
+ends the recorder leaves one that opens. The suite's own topics are listened to from the start, so that a run
 without a pace loses nothing; others as soon as they are discovered. Stamps in the bag are times of reception.
 """
 
 import argparse
-import pathlib
 import sys
 import time
 from collections import Counter
@@ -14,9 +14,9 @@ from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from rclpy.utilities import remove_ros_args
 from rosbags.interfaces import Qos, QosDurability, QosHistory, QosLiveliness, QosReliability, QosTime
-from rosbags.rosbag2 import StoragePlugin, Writer
 
 from eel_viz.definitions import definition, message_class, type_hash
+from eel_viz.growing_bag import GrowingBag
 from eel_viz.lifetime import live
 from eel_viz.quality import fitting, hears, keep_all
 from eel_viz.topics import GLOBAL, LATCHED, OWN, SWIMMER
@@ -24,6 +24,8 @@ from eel_viz.topics import GLOBAL, LATCHED, OWN, SWIMMER
 NAME = "record"
 GONE = 1.0  # s without publishers and messages, after which --stop-with-publisher ends it
 LOOK = 0.2  # s between two looks at who is there
+SAVE = 1.0  # s between two times at which the bag is made whole; it is longer
+SHARE = 20.0  # than so many times what that takes
 UNASKED = ("/rosout", "/parameter_events")  # recorded only by name
 
 
@@ -33,13 +35,11 @@ class Recorder(Node):
     def __init__(self, options: argparse.Namespace) -> None:
         super().__init__(NAME, namespace=options.namespace)
         self._options = options
-        self._folder = pathlib.Path(options.output)
-        try:
-            self._writer = Writer(self._folder, version=9, storage_plugin=StoragePlugin.MCAP)
-            self._writer.open()
-        except Exception as error:  # rosbags' WriterError is no ValueError
-            raise ValueError(f"output {options.output!r}: {error}") from error
+        self._bag = GrowingBag(options.output)
+        self._saved, self._saving = time.monotonic(), 0.0  # s: when it was whole last, and how long that took
+        self.failure = ""
         self.counts: Counter[str] = Counter()
+        self._saved_messages = 0
         self._listening: dict[str, tuple[object, QoSProfile]] = {}
         self._offers: dict[str, list[QoSProfile]] = {}
         self._connections: dict[str, object] = {}
@@ -49,7 +49,7 @@ class Recorder(Node):
         for topic, kind in {**{self.resolve_topic_name(name): kind for name, kind in OWN.items()}, **GLOBAL}.items():
             if self._wanted(topic):
                 self._listen(topic, kind, keep_all(latched=topic.rsplit("/", 1)[-1] in LATCHED))
-        self.get_logger().info(f"recording to {self._folder}, end with Ctrl-C")
+        self.get_logger().info(f"recording to {options.output}, end with Ctrl-C")
 
     def attend(self) -> bool:
         """Now and then: look for new topics; False when it is time to end."""
@@ -57,6 +57,8 @@ class Recorder(Node):
         if now - self._looked >= LOOK:
             self._looked = now
             self._look()
+        if now - self._saved >= max(SAVE, SHARE * self._saving) and not self._save():
+            return False
         if self._options.duration is not None and now - self._began >= self._options.duration:
             return False
         if self._options.stop_with_publisher:
@@ -67,9 +69,25 @@ class Recorder(Node):
 
     def close(self) -> None:
         """Complete the bag, and say what is in it."""
-        self._writer.close()
+        if not self.failure:
+            self._save()
+        self._bag.abort()
         counts = ", ".join(f"{topic} {count}" for topic, count in sorted(self.counts.items())) or "no message"
-        self.get_logger().info(f"recorded in {self._folder}: {counts}")
+        self.get_logger().info(f"recorded in {self._options.output}: {counts}")
+
+    def _save(self) -> bool:
+        """Make the bag whole; whether that was possible."""
+        began = time.monotonic()
+        try:
+            self._bag.save()
+        except OSError as error:
+            saved = self._saved_messages
+            self.failure = f"{self._options.output}: {error.strerror}: the bag ends with the {saved} messages before"
+            return False
+        self._saved = time.monotonic()
+        self._saving = self._saved - began
+        self._saved_messages = self.counts.total()
+        return True
 
     def _look(self) -> None:
         for topic, kinds in self.get_topic_names_and_types():
@@ -99,7 +117,7 @@ class Recorder(Node):
             self._last_message = time.monotonic()
             self._present |= topic == self.resolve_topic_name(SWIMMER)  # a law alone is no swimmer
             self.counts[topic] += 1
-            self._writer.write(self._connections[topic], about.get("received_timestamp") or time.time_ns(), data)
+            self._bag.write(self._connections[topic], about.get("received_timestamp") or time.time_ns(), data)
 
         try:
             subscription = self.create_subscription(message_class(kind), topic, receive, quality, raw=True)
@@ -111,7 +129,7 @@ class Recorder(Node):
 
     def _connect(self, topic: str, kind: str) -> None:
         offers = self._offers.get(topic) or [info.qos_profile for info in self.get_publishers_info_by_topic(topic)]
-        self._connections[topic] = self._writer.add_connection(
+        self._connections[topic] = self._bag.add_connection(
             topic,
             kind,
             msgdef=definition(kind),
@@ -140,10 +158,16 @@ def _stored(offer: QoSProfile) -> Qos:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Command line; status 0 after SIGINT, SIGTERM or the end that was asked for, 2 if it cannot begin."""
+    """Command line; status 0 after SIGINT, SIGTERM or the end that was asked for, 1 if it had to stop (disk full), 2 if
+    it cannot begin."""
     words = sys.argv if arguments is None else [NAME, *arguments]
     parser = argparse.ArgumentParser(
-        prog=NAME, description="Record topics to a rosbag2 folder (MCAP), readable by ros2 bag and rosbags."
+        prog=NAME,
+        description="Record topics to a rosbag2 folder (MCAP), readable by ros2 bag and rosbags: all messages, as they "
+        "come, with the quality of service that their publishers offer.",
+        epilog="The bag is made whole once a second, so that it opens even if the recorder is killed or the disk is "
+        "full. Exit status: 0 after Ctrl-C or the end that was asked for; 1 if it had to stop, 2 if it cannot begin, "
+        "with one line that says why. ROS arguments follow --ros-args.",
     )
     parser.add_argument(
         "topics", nargs="*", help="names; none: every topic of the namespace, /clock, /diagnostics and /tf"
@@ -153,7 +177,17 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--duration", type=float, metavar="SECONDS", help="end after so much wall time")
     parser.add_argument("--stop-with-publisher", action="store_true", help="end when the swimmer has gone")
     options = parser.parse_args(remove_ros_args(args=words)[1:])
-    return live(NAME, words, lambda: Recorder(options), Recorder.attend)
+    made: list[Recorder] = []
+
+    def make() -> Recorder:
+        made.append(Recorder(options))
+        return made[0]
+
+    status = live(NAME, words, make, Recorder.attend)
+    if made and made[0].failure:
+        sys.stderr.write(f"{NAME}: {made[0].failure}\n")
+        return 1
+    return status
 
 
 if __name__ == "__main__":

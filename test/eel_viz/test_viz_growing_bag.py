@@ -1,0 +1,85 @@
+"""The bag that is whole at all times: after each `save`, after more of them, and after one that failed."""
+
+import errno
+import os
+
+import pytest
+import yaml
+from eel_viz.definitions import definition, type_hash
+from eel_viz.growing_bag import GrowingBag
+from mcap.reader import make_reader
+from rosbags.rosbag2 import Reader
+
+KIND = "geometry_msgs/msg/Vector3"
+
+
+def connect(bag, topic="/extra"):
+    return bag.add_connection(topic, KIND, msgdef=definition(KIND), rihs01=type_hash(KIND))
+
+
+def stamps(folder):
+    """Of all messages, by rosbags and, file by file, by mcap's own reader."""
+    with Reader(folder) as reader:
+        found = [stamp for _, stamp, _ in reader.messages()]
+        assert reader.message_count == len(found)
+    with next(folder.glob("*.mcap")).open("rb") as file:
+        other = make_reader(file, validate_crcs=True)
+        assert [message.log_time for _, _, message in other.iter_messages()] == found
+        assert other.get_summary().statistics.message_count == len(found)
+    return found
+
+
+def test_it_is_whole_after_every_save(tmp_path):
+    bag, expected = GrowingBag(tmp_path / "bag"), []
+    assert stamps(tmp_path / "bag") == []
+    for turn in range(4):
+        connection = connect(bag, f"/topic_{turn}")
+        for k in range(50 * turn):
+            expected.append(1000 * turn + k)
+            bag.write(connection, expected[-1], bytes(30_000))  # more than a chunk of 1 MiB a turn
+        bag.save()
+        assert stamps(tmp_path / "bag") == expected
+        bag.save()  # with nothing new
+        assert stamps(tmp_path / "bag") == expected
+    bag.close()
+    assert stamps(tmp_path / "bag") == expected
+    about = yaml.safe_load((tmp_path / "bag" / "metadata.yaml").read_text())["rosbag2_bagfile_information"]
+    assert about["version"] == 9
+    assert about["relative_file_paths"] == ["bag.mcap"]
+    assert about["message_count"] == 300
+
+
+def test_a_save_that_fails_leaves_the_bag_as_it_was(tmp_path, monkeypatch):
+    bag = GrowingBag(tmp_path / "bag")
+    connection = connect(bag)
+    for k in range(20):
+        bag.write(connection, k, bytes(1000))
+    bag.save()
+    before = (tmp_path / "bag" / "bag.mcap").read_bytes()
+    for k in range(20, 40):
+        bag.write(connection, k, bytes(1000))
+    room, write = [7_000], os.pwrite
+
+    def full(descriptor, data, place):
+        if room[0] == 0:
+            room[0] = -1
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        if room[0] < 0:
+            return write(descriptor, data, place)
+        done, room[0] = write(descriptor, data[: room[0]], place), 0
+        return done
+
+    monkeypatch.setattr(os, "pwrite", full)
+    with pytest.raises(OSError, match="No space left on device"):
+        bag.save()
+    assert room == [-1]
+    assert (tmp_path / "bag" / "bag.mcap").read_bytes() == before
+    assert stamps(tmp_path / "bag") == list(range(20))
+
+
+def test_where_it_cannot_be_is_said(tmp_path):
+    (tmp_path / "there").mkdir()
+    with pytest.raises(ValueError, match="exists already, not overwriting"):
+        GrowingBag(tmp_path / "there")
+    with pytest.raises(ValueError, match="bag '/proc/none/bag' cannot be made: No such file or directory"):
+        GrowingBag("/proc/none/bag")
