@@ -49,12 +49,18 @@ def record(path: Path, seconds: float, rate: float, *, stations: int = 51, **set
     loggers = Loggers(stream, chosen, Rates(numbers=0.0, drawings=chosen.skin_rate))
     loggers.body(body())
     loggers.law(0, "made up")
+    sides = [loggers]
+    if chosen.compare:  # the same again
+        sides.append(loggers.other)
+        loggers.other.body(body())
     swimmer = made_up.Swimmer(stations)
     logged = {}
     for k in range(round(seconds * rate) + 1):
         stamp = round(k * 1e9 / rate)
         logged[stamp] = sample(swimmer, stamp)
         for method, arguments in logged[stamp].items():
-            getattr(loggers, method)(stamp, *arguments)
+            for side in sides:
+                getattr(side, method)(stamp, *arguments)
+    loggers.send()
     close_stream(stream)
     return logged

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import rerun as rr
 from eel_viz.heat_map import HeatMap
+from eel_viz.outlet import Outlet
 from eel_viz.profile_plot import ProfilePlot, grown_limit
 from eel_viz.reading import read
 from eel_viz.summary import Summary
@@ -15,17 +16,23 @@ from eel_viz import colours, entities, heat_map, profile_plot
 X = np.linspace(0.0, 2.0, 21)
 
 
+class Drawn(Outlet):
+    """An outlet into the file `path`, which `disconnect` completes."""
+
+    def __init__(self, path):
+        self.path, self.recording = path, rr.RecordingStream("eel_test")
+        self.recording.set_log_time_enabled(False)
+        self.recording.save(path)
+        super().__init__(self.recording, tick=1.0)
+
+    def disconnect(self):
+        self.send()
+        self.recording.disconnect()
+
+
 @pytest.fixture
 def stream(tmp_path):
-    made = rr.RecordingStream("eel_test")
-    made.path = tmp_path / "drawn.rrd"
-    made.set_log_time_enabled(False)
-    made.save(made.path)
-    return made
-
-
-def at(stream, seconds):
-    stream.set_time(entities.TIMELINE, duration=seconds)
+    return Drawn(tmp_path / "drawn.rrd")
 
 
 @given(limit=st.floats(1e-3, 1e3), value=st.floats(1e-6, 1e6))
@@ -42,10 +49,9 @@ def test_a_limit_grows_to_a_round_value_that_holds(limit, value):
 
 def test_curves_are_drawn_in_the_frame_s_units(stream):
     plot = ProfilePlot(stream, entities.TORQUE, names=("C1", "C2"), unit="N m", limit=2.0)
-    at(stream, 0.5)
     values = np.stack([np.linspace(-2.0, 2.0, 21), 0 * X], axis=1)
     plot.include(X, values)
-    plot.draw(X, values)
+    plot.draw(500_000_000, X, values)
     stream.disconnect()
     curves = read(stream.path, f"{entities.TORQUE}/{entities.CURVES}")
     np.testing.assert_array_equal(curves.stamps, [500_000_000])
@@ -60,10 +66,9 @@ def test_curves_are_drawn_in_the_frame_s_units(stream):
 def test_nothing_leaves_the_frame_and_ticks_follow(stream):
     plot = ProfilePlot(stream, entities.FORCE, names=("N1",), unit="N", limit=1.0)
     for k, size in enumerate((0.9, 1.2, 7.0, 0.1)):
-        at(stream, float(k))
         values = np.full((21, 1), size)
         plot.include(X, values)
-        plot.draw(X, values)
+        plot.draw(k * 10**9, X, values)
     stream.disconnect()
     curves = read(stream.path, f"{entities.FORCE}/{entities.CURVES}")
     drawn = np.array([row[0][0][1] for row in curves["strips"]])
@@ -76,9 +81,8 @@ def test_nothing_leaves_the_frame_and_ticks_follow(stream):
 def test_the_envelope_is_the_least_and_the_greatest_so_far(stream):
     plot = ProfilePlot(stream, entities.FORCE, names=("N1",), unit="N", limit=4.0)
     for k, phase in enumerate((0.0, 1.0, 2.0)):
-        at(stream, float(k))
         plot.include(X, np.sin(X + phase)[:, None])
-        plot.draw_envelope()
+        plot.draw_envelope(k * 10**9)
     stream.disconnect()
     low, high = read(stream.path, f"{entities.FORCE}/{entities.ENVELOPE}")["strips"][-1]
     seen = np.stack([np.sin(X + phase) for phase in (0.0, 1.0, 2.0)])
@@ -88,11 +92,10 @@ def test_the_envelope_is_the_least_and_the_greatest_so_far(stream):
 
 def test_the_envelope_starts_anew_with_other_stations(stream):
     plot = ProfilePlot(stream, entities.FORCE, names=("N1",), unit="N", limit=4.0)
-    at(stream, 0.0)
     plot.include(X, np.full((21, 1), 3.0))
     shorter = np.linspace(0.0, 2.0, 5)
     plot.include(shorter, np.full((5, 1), 1.0))
-    plot.draw_envelope()
+    plot.draw_envelope(0)
     stream.disconnect()
     low, high = read(stream.path, f"{entities.FORCE}/{entities.ENVELOPE}")["strips"][-1]
     assert len(low) == len(high) == 5
@@ -112,8 +115,7 @@ def test_the_heat_map_rolls_and_shows_gaps_by_the_next_value(stream):
     drawing.include(0, X, np.full(21, -1.0))
     drawing.include(step // 2, X, np.full(21, 0.7))  # the same column: left as it is
     drawing.include(3 * step, X, X / 2.0)
-    at(stream, 1.0)
-    drawing.draw()
+    drawing.draw(10**9)
     stream.disconnect()
     shown = image(stream.path)
     assert np.all(shown[:, :-4] == heat_map.NO_DATA)
@@ -127,8 +129,7 @@ def test_the_heat_map_forgets_what_is_older_than_its_length(stream):
     drawing = HeatMap(stream, limit=1.0)
     drawing.include(0, X, np.full(21, 1.0))
     drawing.include(10**12, X, np.full(21, 0.0))
-    at(stream, 1.0)
-    drawing.draw()
+    drawing.draw(10**9)
     stream.disconnect()
     assert set(np.unique(image(stream.path))) == {colours.diverging_index(np.zeros(1), 1.0)[0]}
 

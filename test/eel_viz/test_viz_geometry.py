@@ -155,3 +155,29 @@ def test_the_camera_s_target_is_the_middle_of_the_picture_and_right_is_right():
     assert ahead[0] > 0  # swimming to +x is to the right
     assert up[1] > 0
     assert abs(up[0]) < 1e-15
+
+
+def test_the_camera_has_no_lag_behind_a_steady_motion_and_leaves_the_wiggle():
+    from eel_viz.camera import Steady
+
+    steady, speed, sway = Steady(), np.array([0.5, 0.1, -0.2]), np.array([0.0, 0.05, 0.0])
+    behind, moved = [], []
+    for k in range(1000):
+        t = k * 0.04
+        target = speed * t + sway * np.sin(2 * np.pi * t)
+        place = steady.follow(round(t * 1e9), target)
+        if t > 20.0:
+            behind.append(place - speed * t)
+            moved.append(target - speed * t)
+    # a target that stands still between two calls is 0.04 s old at most
+    assert np.abs(np.mean(behind, axis=0)).max() < 0.04 * np.linalg.norm(speed)
+    assert np.ptp(behind, axis=0)[1] < 0.3 * np.ptp(moved, axis=0)[1]
+
+
+def test_the_camera_goes_straight_to_a_swimmer_that_was_away():
+    from eel_viz.camera import Steady
+
+    steady = Steady()
+    np.testing.assert_array_equal(steady.follow(0, np.ones(3)), np.ones(3))
+    assert np.linalg.norm(steady.follow(40_000_000, np.zeros(3))) > 1.5
+    np.testing.assert_array_equal(steady.follow(10**10, np.array([5.0, 0.0, 0.0])), [5.0, 0.0, 0.0])

@@ -16,9 +16,12 @@ from eel_viz import camera, entities
 SINGLE = 1e-6  # Rerun's geometry is single precision
 
 
-@pytest.fixture
-def made(record_made_up):
-    return record_made_up(1.0, 100.0)
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    from made_up_recording import record
+
+    path = tmp_path_factory.mktemp("made") / "made_up.rrd"
+    return path, record(path, 1.0, 100.0)
 
 
 def drawn_stamps(samples, rate=25.0):
@@ -112,6 +115,7 @@ def test_skin_and_frames_at_the_drawing_rate(made):
     triangles = read(path, entities.SKIN, static=True)["triangle_indices"][0]
     np.testing.assert_array_equal(triangles, skin.triangles)
     heads, tails, follow = (read(path, entity) for entity in (entities.HEAD, entities.TAIL, entities.FOLLOW))
+    followed = camera.Steady()
     for k, stamp in enumerate(stamps):
         backbone = samples[stamp]["backbone"][0]
         vertices, normals = skin.place(backbone.x, backbone.position, backbone.orientation)
@@ -126,7 +130,8 @@ def test_skin_and_frames_at_the_drawing_rate(made):
         np.testing.assert_allclose(heads["quaternion"][k][0], pose.orientation, atol=SINGLE)
         np.testing.assert_allclose(tails["translation"][k][0], backbone.position[-1], atol=SINGLE)
         np.testing.assert_allclose(tails["quaternion"][k][0], backbone.orientation[-1], atol=SINGLE)
-        np.testing.assert_allclose(follow["translation"][k][0], backbone.position.mean(axis=0), atol=SINGLE)
+        middle = followed.follow(stamp, backbone.position.mean(axis=0))
+        np.testing.assert_allclose(follow["translation"][k][0], middle, atol=SINGLE)
 
 
 def test_the_track_is_the_path_of_the_head_without_gaps(made):
@@ -161,12 +166,14 @@ def test_the_floor_stays_below_and_its_labels_say_where(record_made_up):
     path, samples = record_made_up(10.0, 25.0)
     grid = read(path, entities.GRID)
     place = dict(zip(grid.stamps.tolist(), np.array(grid["translation"])[:, 0], strict=True))
+    follow = read(path, entities.FOLLOW)
+    middles = dict(zip(follow.stamps.tolist(), np.array(follow["translation"])[:, 0].astype(float), strict=True))
     floor = None
     for stamp, arguments in samples.items():
         floor = place.get(stamp, floor)
         position = arguments["backbone"][0].position
         assert position[:, 2].min() - floor[2] >= 0.4
-        np.testing.assert_array_equal(np.floor(position.mean(axis=0)[:2]), floor[:2])
+        assert np.all(np.abs(middles[stamp][:2] - 0.5 - floor[:2]) <= 0.5 + SINGLE)
     labels = read(path, entities.GRID_LABELS)
     shown = {
         stamp: (texts, points)
@@ -176,14 +183,14 @@ def test_the_floor_stays_below_and_its_labels_say_where(record_made_up):
     for stamp, arguments in samples.items():
         present, floor = shown.get(stamp, present), place.get(stamp, floor)
         position = arguments["backbone"][0].position
-        seen = camera.in_picture(position - position.mean(axis=0))
+        seen = camera.in_picture(position - middles[stamp])
         counts.append(len(present[0]))
         for text, point in zip(*present, strict=True):
             assert point[2] == floor[2]
             assert max(abs(point[0] - floor[0]), abs(point[1] - floor[1])) < 6
             for axis, value in zip("xyz", point, strict=True):
                 assert f"{axis} " not in text or f"{axis} {value:.0f}" in text
-            distance = np.abs(camera.in_picture(np.array(point) - position.mean(axis=0)) - seen)
+            distance = np.abs(camera.in_picture(np.array(point) - middles[stamp]) - seen)
             assert not np.any((distance[:, 0] < 0.1) & (distance[:, 1] < 0.07)), "a label stands before the swimmer"
     assert min(counts) >= 4
 
@@ -201,6 +208,7 @@ def test_stations_may_change_in_mid_run(record_made_up, tmp_path):
     for k, stations in enumerate((51, 51, 21, 101)):
         for method, arguments in sample(made_up.Swimmer(stations), k * 10**9).items():
             getattr(loggers, method)(k * 10**9, *arguments)
+    loggers.send()
     close_stream(stream)
     numbers = read(tmp_path / "changing.rrd", entities.WRENCH_NUMBERS)
     assert [len(row) for row in numbers.values["x"]] == [51, 21, 101]
@@ -223,6 +231,7 @@ def test_the_order_of_topics_does_not_matter(tmp_path):
         for k in range(10):
             for method, arguments in list(sample(made_up.Swimmer(), k * 10**8).items())[::turn]:
                 getattr(loggers, method)(k * 10**8, *arguments)
+        loggers.send()
         close_stream(stream)
         paths.append(tmp_path / f"{name}.rrd")
     for entity, component in (
@@ -249,6 +258,7 @@ def test_a_lower_rate_for_a_live_viewer(tmp_path):
     for k in range(101):
         for method, arguments in sample(made_up.Swimmer(), k * 10**7).items():
             getattr(loggers, method)(k * 10**7, *arguments)
+    loggers.send()
     close_stream(stream)
     for entity in (entities.SPEED, entities.WRENCH_NUMBERS, entities.BACKBONE, entities.POWER):
         assert len(read(tmp_path / "live.rrd", entity).stamps) == 11, entity
@@ -259,7 +269,7 @@ def test_the_recording_carries_its_blueprint(made):
 
     path, _ = made
     assert len(RrdReader(str(path)).blueprints()) == 1
-    with pytest.raises(ValueError, match="blueprint must be one of overview, torques, motion, got 'best'"):
+    with pytest.raises(ValueError, match="blueprint must be one of overview, torques, motion, compare, got 'best'"):
         arrangement("best")
 
 

@@ -16,6 +16,7 @@ VIEWS = {
     "overview": {"3D": 1, "2D": 3, "TimeSeries": 3, "TextDocument": 1},
     "torques": {"3D": 1, "2D": 4},
     "motion": {"3D": 1, "TimeSeries": 5},
+    "compare": {"3D": 1, "2D": 2, "TimeSeries": 3, "TextDocument": 1},
 }
 
 
@@ -29,7 +30,7 @@ def pixels(png: bytes) -> np.ndarray:
 def test_every_view_is_shown_without_a_complaint(can_draw, tmp_path, name):
     from made_up_recording import record
 
-    record(tmp_path / "made_up.rrd", 2.0, 50.0, blueprint=name)
+    record(tmp_path / "made_up.rrd", 2.0, 50.0, blueprint=name, compare="other" if name == "compare" else "")
     with viewer((1280, 720)) as client:
         client.open([str(tmp_path / "made_up.rrd")])
         client.set_time(entities.TIMELINE, duration=1.5, play_state="paused")

@@ -41,7 +41,7 @@ def test_what_is_taken(given, field, taken):
         ({"sink": ["file"]}, "sink must be some of spawn, connect, serve, save or auto, got 'file'"),
         ({"sink": []}, "sink must name at least one of spawn, connect, serve, save, got none"),
         ({"sink": 3}, "sink must be a list of texts, got 3"),
-        ({"blueprint": "mine"}, "blueprint must be one of overview, torques, motion, got 'mine'"),
+        ({"blueprint": "mine"}, "blueprint must be one of overview, torques, motion, compare, got 'mine'"),
         ({"rate": 0}, "rate must be >= 0.1 Hz and <= 1000 Hz, got 0"),
         ({"rate": float("nan")}, "rate must be >= 0.1 Hz and <= 1000 Hz, got nan"),
         ({"rate": True}, "rate must be a number, got True"),
@@ -75,7 +75,7 @@ sys.meta_path.insert(0, Blocked())
 import importlib, pkgutil
 import eel_viz
 assert not {"numpy", "rerun", "pyarrow"} & set(sys.modules), "the package itself must be light"
-with_ros = {"node", "record", "echo", "declaration", "lifetime", "quality", "definitions"}
+with_ros = {"node", "inbox", "record", "echo", "declaration", "lifetime", "quality", "definitions"}
 for module in pkgutil.iter_modules(eel_viz.__path__):
     if module.name not in with_ros:
         importlib.import_module("eel_viz." + module.name)

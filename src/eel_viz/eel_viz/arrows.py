@@ -12,6 +12,7 @@ from eel_viz import colours, entities
 from eel_viz.centre_line import Resampling
 from eel_viz.messages import Backbone, Load
 from eel_viz.orientation import world_from_section
+from eel_viz.outlet import Outlet
 
 ALONG = 24  # arrows between nose and tail
 KEPT = 512  # that wait; the oldest is given up
@@ -20,41 +21,42 @@ KEPT = 512  # that wait; the oldest is given up
 class Arrows:
     """`load_scale` [m per N/m] and `end_scale` [m per N] are the arrows' lengths."""
 
-    def __init__(self, stream: rr.RecordingStream, *, load_scale: float, end_scale: float) -> None:
-        self._stream, self._load_scale, self._end_scale = stream, load_scale, end_scale
+    def __init__(self, outlet: Outlet, *, load_scale: float, end_scale: float) -> None:
+        self._outlet, self._load_scale, self._end_scale = outlet, load_scale, end_scale
         self._backbones: OrderedDict[int, Backbone] = OrderedDict()
         self._loads: OrderedDict[int, Load] = OrderedDict()
-        stream.log(entities.LOAD, rr.Arrows3D.from_fields(colors=[colours.TEAL], radii=[0.0022]), static=True)
-        stream.log(entities.LOAD_ENDS, rr.Arrows3D.from_fields(colors=[colours.MAGENTA], radii=[0.004]), static=True)
+        outlet.fixed(entities.LOAD, rr.Arrows3D.from_fields(colors=[colours.TEAL], radii=[0.0022]))
+        outlet.fixed(entities.LOAD_ENDS, rr.Arrows3D.from_fields(colors=[colours.MAGENTA], radii=[0.004]))
 
     def backbone(self, stamp: int, backbone: Backbone) -> None:
-        """The backbone at `stamp` [ns], which is the stream's present time."""
+        """The backbone at `stamp` [ns]."""
         load = self._loads.pop(stamp, None)
         if load is None:
             _keep(self._backbones, stamp, backbone)
         else:
-            self._draw(backbone, load)
+            self._draw(stamp, backbone, load)
 
     def load(self, stamp: int, load: Load) -> None:
-        """The load at `stamp` [ns], which is the stream's present time."""
+        """The load at `stamp` [ns]."""
         backbone = self._backbones.pop(stamp, None)
         if backbone is None:
             _keep(self._loads, stamp, load)
         else:
-            self._draw(backbone, load)
+            self._draw(stamp, backbone, load)
 
-    def _draw(self, backbone: Backbone, load: Load) -> None:
+    def _draw(self, stamp: int, backbone: Backbone, load: Load) -> None:
         x = np.linspace(backbone.x[0], backbone.x[-1], ALONG + 2)[1:-1]
         origins, axes = Resampling(backbone.x, x).centre_line(backbone.position, backbone.orientation)
         force = Resampling(load.profiles.x, x).linear(load.profiles.together("force_1", "force_2", "force_3"))
-        self._log(entities.LOAD, origins, np.einsum("nij,nj->ni", axes, force) * self._load_scale)
+        self._log(stamp, entities.LOAD, origins, np.einsum("nij,nj->ni", axes, force) * self._load_scale)
         ends = [0, -1]
         forces = world_from_section(backbone.orientation[ends], np.stack([load.nose, load.tail]))
-        self._log(entities.LOAD_ENDS, backbone.position[ends], forces * self._end_scale)
+        self._log(stamp, entities.LOAD_ENDS, backbone.position[ends], forces * self._end_scale)
 
-    def _log(self, path: str, origins: np.ndarray, vectors: np.ndarray) -> None:
-        arrows = rr.Arrows3D.from_fields(origins=origins.astype(np.float32), vectors=vectors.astype(np.float32))
-        self._stream.log(path, arrows)
+    def _log(self, stamp: int, path: str, origins: np.ndarray, vectors: np.ndarray) -> None:
+        self._outlet.row(
+            stamp, path, rr.Arrows3D, origins=origins.astype(np.float32), vectors=vectors.astype(np.float32)
+        )
 
 
 def _keep(waiting: OrderedDict, stamp: int, value) -> None:

@@ -1,7 +1,7 @@
 """How a recording is arranged: functions without data. Each arrangement fits a window of 1280 by 720.
 
-`overview` shows everything at once, `torques` the profiles large, `motion` the path and the velocities; a recording
-carries all three as tabs, the one asked for in front.
+`overview` shows everything at once, `torques` the profiles large, `motion` the path and the velocities, `compare`
+another run laid over this one; a recording carries all as tabs, the one asked for in front.
 """
 
 import rerun.blueprint as rrb
@@ -21,11 +21,14 @@ _PAST = rrb.VisibleTimeRanges(
 )
 
 
-def arrangement(first: str = "overview", *, live: bool = False) -> rrb.Blueprint:
-    """All arrangements, `first` in front; `live` follows the newest data, else the cursor stands at the start."""
+def arrangement(first: str = "overview", *, live: bool = False, compare: bool = False) -> rrb.Blueprint:
+    """All arrangements, `first` in front; `live` follows the newest data, else the cursor stands at the start;
+    `compare`: there is another run to compare with."""
     if first not in BLUEPRINTS:
         raise ValueError(f"blueprint must be one of {', '.join(BLUEPRINTS)}, got {first!r}")
     tabs = {"overview": overview(), "torques": torques(), "motion": motion()}
+    if compare or first == "compare":
+        tabs["compare"] = comparison()
     return rrb.Blueprint(
         rrb.Tabs(*tabs.values(), active_tab=list(tabs).index(first)),
         rrb.TopPanel(state="hidden"),
@@ -85,16 +88,44 @@ def motion() -> rrb.Container:
     )
 
 
-def following_view() -> rrb.Spatial3DView:
+def comparison() -> rrb.Container:
+    """Two runs, and how they differ."""
+    return rrb.Horizontal(
+        rrb.Vertical(
+            following_view("Both swimmers, the other as hoops", both=True, arrows=False),
+            rrb.Horizontal(
+                _series("Distance between the heads [mm]", entities.DISTANCE, legend=False),
+                _series("Speed of both heads [m/s]", entities.SPEED, entities.OTHER_SPEED),
+            ),
+            row_shares=[1.9, 1.0],
+        ),
+        rrb.Vertical(
+            profile_view(entities.COMPARED_TORQUE, "Internal torque C3(X) of both"),
+            profile_view(entities.TORQUE_DIFFERENCE, "Difference of the torques (this - other)"),
+            rrb.Horizontal(
+                rrb.TextDocumentView(name="Both runs", origin=entities.COMPARE_TEXT),
+                _series("Greatest difference of the torques [N m]", entities.TORQUE_DIFFERENCE_MOST, legend=False),
+                column_shares=[1.4, 1.0],
+            ),
+            row_shares=[1.0, 1.0, 1.2],
+        ),
+        column_shares=[1.15, 1.0],
+        name="compare",
+    )
+
+
+def following_view(
+    name: str = "Swimmer, coloured by C3, with the fluid's force", *, both: bool = False, arrows: bool = True
+) -> rrb.Spatial3DView:
     """Three dimensions, the camera moving with the swimmer without turning."""
     return rrb.Spatial3DView(
-        name="Swimmer, coloured by C3, with the fluid's force",
+        name=name,
         origin=entities.FOLLOW,
-        contents=[f"{entities.WORLD}/**"],
+        contents=[f"{entities.WORLD}/**", f"- {entities.TRACK}", *([] if both else [f"- {entities.OTHER}/**"])],
         background=colours.WATER_BACKGROUND,
         line_grid=rrb.LineGrid3D(visible=False),
         eye_controls=rrb.EyeControls3D(position=camera.EYE, look_target=camera.TARGET, eye_up=(0, 0, 1)),
-        overrides={entities.TRACK: [_PAST], **_hidden(entities.HEAD, entities.TAIL)},
+        overrides=_hidden(entities.HEAD, entities.TAIL, *(() if arrows else (entities.LOAD, entities.LOAD_ENDS))),
     )
 
 
@@ -103,7 +134,7 @@ def standing_view() -> rrb.Spatial3DView:
     return rrb.Spatial3DView(
         name="Path in the world",
         origin=entities.WORLD,
-        contents=[f"{entities.WORLD}/**", f"- {entities.LEGEND}/**"],
+        contents=[f"{entities.WORLD}/**", f"- {entities.LEGEND}/**", f"- {entities.OTHER}/**"],
         background=colours.WATER_BACKGROUND,
         line_grid=rrb.LineGrid3D(visible=False),
         eye_controls=rrb.EyeControls3D(position=(-0.7, -2.9, 1.3), look_target=(1.1, -0.1, -0.7), eye_up=(0, 0, 1)),

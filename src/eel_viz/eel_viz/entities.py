@@ -19,7 +19,8 @@ SKIN = "/world/eel/skin"
 BACKBONE = "/world/eel/backbone"
 HEAD = "/world/eel/head"
 TAIL = "/world/eel/tail"
-TRACK = "/world/track"
+TRACK = "/world/track"  # the whole path of the head, piece by piece
+TRAIL = "/world/trail"  # its last seconds, fading
 LOAD = "/world/load/distributed"
 LOAD_ENDS = "/world/load/ends"
 
@@ -63,3 +64,15 @@ ODOMETRY_NUMBERS = "/numbers/odom"
 # --- text --------------------------------------------------------------------------------------------------------
 RUN = "/run/summary"
 LOG = "/run/log"
+
+# --- another run, laid over this one -----------------------------------------------------------------------------
+OTHER = "/world/other"
+OTHER_HOOPS = "/world/other/hoops"
+OTHER_BACKBONE = "/world/other/backbone"
+COMPARE = "/compare"
+COMPARED_TORQUE = "/compare/torque"
+TORQUE_DIFFERENCE = "/compare/torque_difference"
+OTHER_SPEED = "/compare/speed"  # of the other
+DISTANCE = "/compare/distance"  # between the heads [mm]
+TORQUE_DIFFERENCE_MOST = "/compare/torque_difference_most"  # over X and the axes [N m]
+COMPARE_TEXT = "/compare/summary"

@@ -9,6 +9,7 @@ import numpy as np
 import rerun as rr
 
 from eel_viz import colours, entities
+from eel_viz.outlet import Outlet
 
 COLUMNS = 200
 ROWS = 41
@@ -21,13 +22,13 @@ BOUNDS_Y = (-3.0, ROWS + 9.0)
 class HeatMap:
     """Keeps the columns and logs the image; `limit` is the value of the deepest colour."""
 
-    def __init__(self, stream: rr.RecordingStream, *, limit: float) -> None:
-        self._stream, self._limit = stream, limit
+    def __init__(self, outlet: Outlet, *, limit: float) -> None:
+        self._outlet, self._limit = outlet, limit
         self._pixels = np.full((ROWS, COLUMNS), NO_DATA, dtype=np.uint8)
         self._last: int | None = None
         palette = [rr.AnnotationInfo(id=NO_DATA, color=(24, 27, 31))]
         palette += [rr.AnnotationInfo(id=k, color=tuple(int(c) for c in colours.DIVERGING[k])) for k in range(1, 256)]
-        stream.log(entities.HEAT_MAP, rr.AnnotationContext(palette), static=True)
+        outlet.fixed(entities.HEAT_MAP, rr.AnnotationContext(palette))
         self._draw_frame()
 
     def include(self, stamp: int, x: np.ndarray, values: np.ndarray) -> None:
@@ -43,19 +44,18 @@ class HeatMap:
         self._pixels[:, -1] = fresh
         self._last = column
 
-    def draw(self) -> None:
-        """The image at the stream's present time."""
-        self._stream.log(entities.HEAT_MAP_IMAGE, rr.SegmentationImage(self._pixels, draw_order=0.0))
+    def draw(self, stamp: int) -> None:
+        """The image at `stamp` [ns]."""
+        self._outlet.once(stamp, entities.HEAT_MAP_IMAGE, rr.SegmentationImage(self._pixels, draw_order=0.0))
 
     def _draw_frame(self) -> None:
         bar = np.linspace(0, ROWS, 65)
         left, right = COLUMNS + 4.0, COLUMNS + 8.0
         steps = [[((left + right) / 2, y0), ((left + right) / 2, y1)] for y0, y1 in pairwise(bar)]
         shades = colours.diverging(np.linspace(1.0, -1.0, 64), 1.0)
-        self._stream.log(
+        self._outlet.fixed(
             f"{entities.HEAT_MAP_FRAME}/bar",
             rr.LineStrips2D(steps, colors=shades, radii=(right - left) / 2),
-            static=True,
         )
         rise = 4.2
         places = [
@@ -69,7 +69,7 @@ class HeatMap:
         span = COLUMNS * STEP
         places += [(COLUMNS * k / 4, ROWS + 4.5 - rise) for k in range(5)]
         texts += [f"-{span * (1 - k / 4):g} s" for k in range(4)] + ["now"]
-        self._stream.log(
+        self._outlet.fixed(
             f"{entities.HEAT_MAP_FRAME}/labels",
             rr.Points2D(
                 places,
@@ -78,5 +78,4 @@ class HeatMap:
                 show_labels=True,
                 radii=rr.Radius.ui_points(0.1),
             ),
-            static=True,
         )

@@ -40,6 +40,7 @@ class Intake:
         self._complaints: set = set()
         self._stations: dict[str, int] = {}  # of each topic, how many
         self._first_backbone: float | None = None  # s
+        self._last_law = None
         self._others = {"body": self._body, "curvature_law": self._law, "diagnostics": self._diagnostics}
 
     @property
@@ -94,7 +95,9 @@ class Intake:
         self._runs.body(messages.read_body(message))
 
     def _law(self, message) -> None:
-        self._runs.law(message.name)
+        if message != self._last_law:  # latched and live subscriptions may both hear it
+            self._last_law = message
+            self._runs.law(message.name)
 
     def _diagnostics(self, message) -> None:
         statuses = [each for each in messages.read_diagnostics(message) if each.name.rpartition("/")[0] == self._space]

@@ -12,11 +12,20 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
 ATTEND = 0.1  # s between two calls of `attend`
+PAUSE = 0.02  # s between two calls of `work` that found nothing
 
 
-def live(name: str, arguments: list[str], make: Callable[[], Node], attend: Callable[[Node], bool]) -> int:
+def live(
+    name: str,
+    arguments: list[str],
+    make: Callable[[], Node],
+    attend: Callable[[Node], bool],
+    work: Callable[[Node], bool] | None = None,
+) -> int:
     """Make the node, serve it until a signal comes or `attend(node)` says False, and call its `close()`, if it has one.
 
+    With `work` the node fetches its messages itself, there, and says whether it found some; the executor then only has
+    what is rare, such as questions about parameters.
     Returns the exit status: 0, or 2 with one line on stderr if `make` refuses its settings.
     """
     signals: list[int] = []
@@ -39,7 +48,12 @@ def live(name: str, arguments: list[str], make: Callable[[], Node], attend: Call
                 attended = now
                 if not attend(node):
                     break
-            executor.spin_once(timeout_sec=ATTEND)
+                if work is not None:
+                    executor.spin_once(timeout_sec=0.0)
+            if work is None:
+                executor.spin_once(timeout_sec=ATTEND)
+            elif not work(node):
+                time.sleep(PAUSE)
     finally:
         executor.shutdown()
         if hasattr(node, "close"):

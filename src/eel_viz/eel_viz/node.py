@@ -14,10 +14,11 @@ from rclpy.node import Node
 
 from eel_msgs.msg import Backbone, BodyGeometry, Curvature, CurvatureLaw, EnergyLedger, HydrodynamicLoad, InternalWrench
 from eel_viz.declaration import declare_settings
+from eel_viz.inbox import Inbox
 from eel_viz.intake import Intake
 from eel_viz.lifetime import live
 from eel_viz.quality import keep_all
-from eel_viz.runs import Runs
+from eel_viz.runs import OtherRuns, Runs
 from eel_viz.sinks import destinations
 from eel_viz.topics import SWIMMER
 
@@ -43,22 +44,22 @@ class Visualiser(Node):
     def __init__(self):
         super().__init__(NAME)
         self.settings = declare_settings(self)
+        own = self.get_namespace().rstrip("/")
         runs = Runs(
             destinations(self.settings, self._say, self._warn),
-            name=self.get_namespace().strip("/") or "eel",
+            name=own.strip("/") or "eel",
             warn=self._warn,
             crowded=lambda topic: self.count_publishers(topic) > 1,
         )
-        self._intake = Intake(runs, namespace=self.get_namespace(), warn=self._warn)
-        self._last_law = None
+        self._inbox = Inbox(self)
+        self._intake = Intake(runs, namespace=own, warn=self._warn)
         self._last_message = time.monotonic()
         self._present = False
-        for topic, kind in SAMPLED.items():
-            self._listen(topic, kind)
-        self._listen("body", BodyGeometry, latched=True)
-        self._listen("curvature_law", CurvatureLaw, latched=True)
-        self._listen("curvature_law", CurvatureLaw)
-        self._listen("/diagnostics", DiagnosticArray)
+        self._listen(own, self._intake)
+        if self.settings.compare:
+            other = "/" + self.settings.compare.strip("/")
+            intake = Intake(OtherRuns(runs, other), namespace=other, warn=lambda text: self._warn(f"{other}: {text}"))
+            self._listen(other, intake)
 
     def attend(self) -> bool:
         """Now and then: look after the sinks; False once the swimmer has gone and the node is to follow."""
@@ -74,17 +75,26 @@ class Visualiser(Node):
         """Complete the recordings, and say what came."""
         self._say(f"received: {self._intake.close()}")
 
-    def _listen(self, topic, kind, *, latched=False) -> None:
+    def work(self) -> bool:
+        """Show what has come; whether there was any."""
+        return self._inbox.take() > 0
+
+    def _listen(self, space: str, intake: Intake) -> None:
+        """Hear the swimmer in the namespace `space`."""
+        for topic, kind in SAMPLED.items():
+            self._hear(space, intake, topic, kind)
+        self._hear(space, intake, "body", BodyGeometry, latched=True)
+        self._hear(space, intake, "curvature_law", CurvatureLaw, latched=True)
+        self._hear(space, intake, "curvature_law", CurvatureLaw)
+        self._hear("", intake, "diagnostics", DiagnosticArray)
+
+    def _hear(self, space: str, intake: Intake, topic: str, kind: type, *, latched: bool = False) -> None:
         def receive(message):
             self._last_message = time.monotonic()
             self._present |= topic == SWIMMER  # a law alone is no swimmer
-            if topic == "curvature_law":  # both subscriptions may hear it
-                if message == self._last_law:
-                    return
-                self._last_law = message
-            self._intake.take(topic.lstrip("/"), message)
+            intake.take(topic, message)
 
-        self.create_subscription(kind, topic, receive, keep_all(latched=latched))
+        self._inbox.listen(kind, f"{space}/{topic}", receive, keep_all(latched=latched))
 
     def _say(self, text: str) -> None:
         self.get_logger().info(text)
@@ -96,7 +106,7 @@ class Visualiser(Node):
 def main(arguments: list[str] | None = None) -> int:
     """Run the node; the exit status is 0 after SIGINT or SIGTERM, 2 if a parameter is refused at start."""
     given = sys.argv if arguments is None else [NAME, *arguments]
-    return live(NAME, DEFAULTS + given, Visualiser, Visualiser.attend)
+    return live(NAME, DEFAULTS + given, Visualiser, Visualiser.attend, Visualiser.work)
 
 
 if __name__ == "__main__":

@@ -9,6 +9,7 @@ import numpy as np
 import rerun as rr
 
 from eel_viz import colours, entities
+from eel_viz.outlet import Outlet
 
 WIDTH = 5.2
 LABEL_RISE = 0.085  # a label hangs below its point
@@ -17,14 +18,14 @@ BOUNDS_Y = (-0.79, 0.79)
 
 
 class ProfilePlot:
-    """Draws up to three profiles into the entities below `root` of `stream`.
+    """Draws up to three profiles into the entities below `root` of a recording.
 
     `names` are the curves' (C1, C2, C3), `unit` that of the values, `limit` > 0 the value at the upper edge at first.
     """
 
     def __init__(
         self,
-        stream: rr.RecordingStream,
+        outlet: Outlet,
         root: str,
         *,
         names: tuple[str, ...],
@@ -32,7 +33,7 @@ class ProfilePlot:
         limit: float,
         palette: tuple[tuple[int, int, int], ...] = colours.AXIS,
     ):
-        self._stream, self._root, self._names, self._unit = stream, root, names, unit
+        self._outlet, self._root, self._names, self._unit = outlet, root, names, unit
         self.limit = limit
         self._palette = palette
         self._ticks: tuple[float, float] | None = None
@@ -49,24 +50,19 @@ class ProfilePlot:
             np.maximum(self._high, values, out=self._high)
         self.limit = grown_limit(self.limit, float(np.max(np.abs(values))))
 
-    def draw(self, x: np.ndarray, values: np.ndarray) -> None:
-        """The curves of `values`, (M, n), at the stream's present time."""
+    def draw(self, stamp: int, x: np.ndarray, values: np.ndarray) -> None:
+        """The curves of `values`, (M, n), at `stamp` [ns]."""
         length = float(x[-1])
         if self._ticks != (self.limit, length):
             self._ticks = (self.limit, length)
-            self._draw_ticks(length)
-        self._stream.log(
-            f"{self._root}/{entities.CURVES}",
-            rr.LineStrips2D.from_fields(strips=self._drawn(x, values), draw_order=30.0),
-        )
+            self._draw_ticks(stamp, length)
+        self._outlet.row(stamp, f"{self._root}/{entities.CURVES}", rr.LineStrips2D, strips=self._drawn(x, values))
 
-    def draw_envelope(self) -> None:
+    def draw_envelope(self, stamp: int) -> None:
         """The least and the greatest value so far at each station, behind the curves."""
         if self._x is not None:
             strips = np.concatenate([self._drawn(self._x, self._low), self._drawn(self._x, self._high)])
-            self._stream.log(
-                f"{self._root}/{entities.ENVELOPE}", rr.LineStrips2D.from_fields(strips=strips, draw_order=20.0)
-            )
+            self._outlet.row(stamp, f"{self._root}/{entities.ENVELOPE}", rr.LineStrips2D, strips=strips)
 
     def _drawn(self, x: np.ndarray, values: np.ndarray) -> np.ndarray:
         strips = np.empty((values.shape[1], len(x), 2), dtype=np.float32)
@@ -80,34 +76,33 @@ class ProfilePlot:
         grid += [[(WIDTH * k / 5, -0.5), (WIDTH * k / 5, 0.5)] for k in range(6)]
         shades = [colours.TICK] * len(grid)
         shades[2] = colours.FRAME
-        log = self._stream.log
+        log = self._outlet.fixed
         log(
             f"{self._root}/{entities.FRAME}",
             rr.LineStrips2D(grid, colors=shades, radii=rr.Radius.ui_points(0.6), draw_order=10.0),
-            static=True,
         )
         log(
             f"{self._root}/{entities.CURVES}",
-            rr.LineStrips2D.from_fields(colors=palette, radii=rr.Radius.ui_points(1.4)),
-            static=True,
+            rr.LineStrips2D.from_fields(colors=palette, radii=rr.Radius.ui_points(1.4), draw_order=30.0),
         )
         behind = [colours.dim(colour) for colour in palette]
         log(
             f"{self._root}/{entities.ENVELOPE}",
-            rr.LineStrips2D.from_fields(colors=behind * 2, radii=rr.Radius.ui_points(0.7)),
-            static=True,
+            rr.LineStrips2D.from_fields(colors=behind * 2, radii=rr.Radius.ui_points(0.7), draw_order=20.0),
         )
-        keys = [(WIDTH * (0.05 + 0.075 * k), -0.62 - LABEL_RISE) for k in range(len(palette))]
-        log(f"{self._root}/{entities.KEY}", _labels(keys, list(self._names), palette), static=True)
+        widths = [0.16 + 0.075 * len(name) for name in self._names]
+        starts = 0.26 - widths[0] / 2 + np.cumsum([0.0, *widths[:-1]])
+        keys = [(start + width / 2, -0.62 - LABEL_RISE) for start, width in zip(starts, widths, strict=True)]
+        log(f"{self._root}/{entities.KEY}", _labels(keys, list(self._names), palette))
 
-    def _draw_ticks(self, length: float) -> None:
+    def _draw_ticks(self, stamp: int, length: float) -> None:
         places = [(-0.2, -y - LABEL_RISE) for y in (0.5, 0.0, -0.5)]
         texts = [f"{y * self.limit:+.3g}" if y else "0" for y in (1.0, 0.0, -1.0)]
         places += [(WIDTH * k / 5, 0.585 - LABEL_RISE) for k in range(6)]
         texts += [f"{length * k / 5:.3g}" for k in range(6)]
         places.append((WIDTH * 0.88, -0.62 - LABEL_RISE))
         texts.append(f"[{self._unit}] over X [m]")
-        self._stream.log(f"{self._root}/{entities.TICKS}", _labels(places, texts, [colours.LABEL] * len(texts)))
+        self._outlet.once(stamp, f"{self._root}/{entities.TICKS}", _labels(places, texts, [colours.LABEL] * len(texts)))
 
 
 def grown_limit(limit: float, value: float) -> float:

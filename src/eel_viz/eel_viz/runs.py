@@ -27,6 +27,8 @@ class Run:
         self.latest = 0  # ns
 
     def close(self) -> None:
+        for loggers in self.loggers.values():
+            loggers.send()
         for stream in self.streams.values():
             close_stream(stream)
         self.streams.clear()
@@ -50,6 +52,7 @@ class Runs:
         self._place: dict[str, tuple[int, int]] = {}  # topic: number of its run, last stamp
         self._body: Body | None = None
         self._law: str | None = None
+        self._told_other: dict[str, tuple] = {}  # method: its arguments
         self._statuses: tuple[int, list[Status]] = (0, [])
         self._resets: deque[float] = deque(maxlen=RESETS)
         self._tried = time.monotonic()
@@ -99,8 +102,17 @@ class Runs:
         for loggers in self._newest.loggers.values():
             loggers.diagnostics(*self._statuses)
 
+    def tell_other(self, method: str, *values) -> None:
+        """What is valid at all times of the other swimmer: `method` of `Comparison.other` and its arguments."""
+        self._told_other[method] = values
+        for loggers in self._newest.loggers.values():
+            getattr(loggers.other, method)(*values)
+
     def attend(self) -> None:
-        """Now and then: try the destinations that were not there."""
+        """Now and then: send what has waited, and try the destinations that were not there."""
+        for run in self._runs.values():
+            for loggers in run.loggers.values():
+                loggers.attend()
         if time.monotonic() - self._tried > RETRY:
             self._tried = time.monotonic()
             self._open_missing(self._newest)
@@ -129,13 +141,15 @@ class Runs:
             stream = destination.open(run.number, self._name if run.number == 1 else f"{self._name} {run.number}")
             if stream is None:
                 continue
-            loggers = Loggers(stream, destination.settings, destination.rates)
+            loggers = Loggers(stream, destination.settings, destination.rates, self._name)
             run.streams[place], run.loggers[place] = stream, loggers
             if self._body is not None:
                 loggers.body(self._body)
             if self._law is not None:
                 loggers.law(run.latest, self._law)
             loggers.diagnostics(run.latest, self._statuses[1])
+            for method, values in self._told_other.items():
+                getattr(loggers.other, method)(*values)
 
     def _close_before(self, number: int) -> None:
         for old in [each for each in self._runs if each < number]:
@@ -157,3 +171,32 @@ class Runs:
             return True
         self._resets.append(now)
         return False
+
+
+class OtherRuns:
+    """The same runs, for the messages of the swimmer in the namespace `space` that they are compared with."""
+
+    def __init__(self, runs: Runs, space: str) -> None:
+        self._runs, self._space = runs, space
+
+    def at(self, topic: str, stamp: int) -> list:
+        """As `Runs.at`."""
+        return [loggers.other for loggers in self._runs.at(f"{self._space}/{topic}", stamp)]
+
+    def body(self, body: Body) -> None:
+        """As `Runs.body`."""
+        self._runs.tell_other("body", body)
+
+    def law(self, name: str) -> None:
+        """As `Runs.law`."""
+        self._runs.tell_other("law", 0, name)
+
+    def diagnostics(self, stamp: int, statuses: list[Status]) -> None:
+        """As `Runs.diagnostics`."""
+        self._runs.tell_other("diagnostics", stamp if stamp < WALL_TIME else self._runs.latest, statuses)
+
+    def attend(self) -> None:
+        """Nothing: `Runs` does it."""
+
+    def close(self) -> None:
+        """Nothing: `Runs` does it."""

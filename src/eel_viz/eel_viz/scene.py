@@ -1,4 +1,4 @@
-"""What stands around the swimmer: a water floor with metres, the colour legend, and the path of the head.
+"""What stands around the swimmer: a water floor with metres, and the colour legend.
 
 The floor is a grid of 12 m by 12 m that jumps along by whole metres, so it has no edge, and sinks by whole metres if
 the swimmer comes near; its labels say where it is in the world frame.
@@ -8,6 +8,7 @@ import numpy as np
 import rerun as rr
 
 from eel_viz import camera, colours, entities
+from eel_viz.outlet import Outlet
 
 HALF = 6  # m, from the middle of the grid to its edge
 CLEARANCE = 0.4  # m, between swimmer and floor at least
@@ -19,8 +20,8 @@ LEGEND_SIZE = (0.16, 0.009)  # m
 class Water:
     """The floor below the swimmer, the swimmer's shadow on it, and the labels of its metres."""
 
-    def __init__(self, stream: rr.RecordingStream) -> None:
-        self._stream = stream
+    def __init__(self, outlet: Outlet) -> None:
+        self._outlet = outlet
         self._at: tuple[int, int, int] | None = None
         self._labelled: dict[tuple[int, int, int], str] = {}
         lines, shades = [], []
@@ -28,29 +29,30 @@ class Water:
             c = k / 2
             lines += [[(c, -HALF, 0), (c, HALF, 0)], [(-HALF, c, 0), (HALF, c, 0)]]
             shades += [colours.WATER_LINE if k % 2 else colours.WATER_LINE_MAJOR] * 2
-        stream.log(entities.GRID, rr.LineStrips3D(lines, colors=shades, radii=rr.Radius.ui_points(0.5)), static=True)
-        stream.log(entities.SHADOW, rr.LineStrips3D.from_fields(colors=[(4, 10, 17)], radii=[0.03]), static=True)
+        outlet.fixed(entities.GRID, rr.LineStrips3D(lines, colors=shades, radii=rr.Radius.ui_points(0.5)))
+        outlet.fixed(entities.SHADOW, rr.LineStrips3D.from_fields(colors=[(4, 10, 17)], radii=[0.03]))
 
-    def draw(self, position: np.ndarray) -> None:
-        """Floor, shadow and labels for a backbone `position`, (M, 3) [m]."""
-        middle = position.mean(axis=0)
+    def draw(self, stamp: int, position: np.ndarray, middle: np.ndarray) -> None:
+        """Floor, shadow and labels at `stamp` [ns] for a backbone `position`, (M, 3) [m], seen by a camera that
+        follows `middle`, (3,) [m]."""
         x, y = (int(np.floor(value)) for value in middle[:2])
         floor = -1 if self._at is None else self._at[2]
         while float(position[:, 2].min()) - CLEARANCE < floor:
             floor -= 1
         if self._at != (x, y, floor):
             self._at = (x, y, floor)
-            self._stream.log(entities.GRID, rr.Transform3D(translation=self._at))
+            self._outlet.once(stamp, entities.GRID, rr.Transform3D(translation=self._at))
         shadow = np.array(position[:: max(1, len(position) // 24)], dtype=np.float32)
         shadow[:, 2] = floor + 0.002
-        self._stream.log(entities.SHADOW, rr.LineStrips3D.from_fields(strips=[shadow]))
+        self._outlet.row(stamp, entities.SHADOW, rr.LineStrips3D, strips=shadow[None])
         labels = _clear_labels(_labels(x, y, floor), position - middle, middle)
         if labels != self._labelled:
             self._labelled = labels
-            self._label(labels)
+            self._label(stamp, labels)
 
-    def _label(self, labels: dict[tuple[int, int, int], str]) -> None:
-        self._stream.log(
+    def _label(self, stamp: int, labels: dict[tuple[int, int, int], str]) -> None:
+        self._outlet.once(
+            stamp,
             entities.GRID_LABELS,
             rr.Points3D(
                 list(labels),
@@ -79,7 +81,7 @@ def _clear_labels(labels: dict, swimmer: np.ndarray, middle: np.ndarray) -> dict
     return {place: text for (place, text), free in zip(labels.items(), clear, strict=True) if free}
 
 
-def log_legend(stream: rr.RecordingStream, *, limit: float, unit: str, name: str) -> None:
+def log_legend(outlet: Outlet, *, limit: float, unit: str, name: str) -> None:
     """A bar of the skin's colours in the lower left corner of the following view, as its camera stands at first."""
     steps = 33
     middle = camera.before_eye(*LEGEND_AT)
@@ -88,34 +90,13 @@ def log_legend(stream: rr.RecordingStream, *, limit: float, unit: str, name: str
     k = np.arange(steps - 1)
     triangles = np.concatenate([np.stack([k, k + 1, k + steps], 1), np.stack([k + 1, k + steps + 1, k + steps], 1)])
     shades = np.tile(colours.diverging(np.linspace(-1.0, 1.0, steps), 1.0), (2, 1))
-    stream.log(
+    outlet.fixed(
         f"{entities.LEGEND}/bar",
         rr.Mesh3D(vertex_positions=vertices, triangle_indices=triangles, vertex_colors=shades),
-        static=True,
     )
     places = [middle + share * LEGEND_SIZE[0] * camera.RIGHT for share in (-0.5, 0.0, 0.5)]
     texts = [f"-{limit:g}", f"{name} [{unit}]", f"+{limit:g}"]
-    stream.log(
+    outlet.fixed(
         f"{entities.LEGEND}/labels",
         rr.Points3D(places, labels=texts, show_labels=True, radii=rr.Radius.ui_points(0.1), colors=[colours.LABEL] * 3),
-        static=True,
     )
-
-
-class Track:
-    """The path of the head: one short line a frame, which views add up from the start to the cursor."""
-
-    def __init__(self, stream: rr.RecordingStream) -> None:
-        self._stream = stream
-        self._last: np.ndarray | None = None
-        stream.log(
-            entities.TRACK,
-            rr.LineStrips3D.from_fields(colors=[colours.AMBER], radii=[rr.Radius.ui_points(1.3)]),
-            static=True,
-        )
-
-    def draw(self, position: np.ndarray) -> None:
-        """Go on to `position`, (3,) [m]."""
-        if self._last is not None:
-            self._stream.log(entities.TRACK, rr.LineStrips3D.from_fields(strips=[np.stack([self._last, position])]))
-        self._last = np.array(position)

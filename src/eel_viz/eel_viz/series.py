@@ -3,6 +3,7 @@
 import rerun as rr
 
 from eel_viz import colours, entities
+from eel_viz.outlet import Outlet
 
 _ONE, _TWO, _THREE = colours.AXIS
 
@@ -20,8 +21,8 @@ SERIES = {  # entity: (name, colour) of each value
 }
 
 
-def log_styles(stream: rr.RecordingStream) -> None:
+def log_styles(outlet: Outlet) -> None:
     """Names, colours and widths of all lines, for all times."""
     for path, lines in SERIES.items():
         names, shades = zip(*lines, strict=True)
-        stream.log(path, rr.SeriesLines(names=names, colors=shades, widths=[1.5] * len(names)), static=True)
+        outlet.fixed(path, rr.SeriesLines(names=names, colors=shades, widths=[1.5] * len(names)))

@@ -13,7 +13,7 @@ def setting(default, description: str, *, unit: str = "", minimum: float | None 
 
 
 SINKS = ("spawn", "connect", "serve", "save")
-BLUEPRINTS = ("overview", "torques", "motion")
+BLUEPRINTS = ("overview", "torques", "motion", "compare")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -29,7 +29,10 @@ class Settings:
     viewer: str = setting("rerun+http://127.0.0.1:9876/proxy", "address of the viewer to connect to")
     port: int = setting(9876, "port of the served data (gRPC), on this machine alone", minimum=1024, maximum=65535)
     web_port: int = setting(9090, "port of the served web viewer", minimum=1024, maximum=65535)
-    blueprint: str = setting("overview", "arrangement shown first: overview, torques or motion")
+    blueprint: str = setting("overview", "arrangement shown first: overview, torques, motion or compare")
+    compare: str = setting(
+        "", "namespace of another swimmer, laid over this one in the arrangement compare; empty: none"
+    )
     rate: float = setting(
         30.0, "samples per second that a live viewer gets; a file gets all", unit="Hz", minimum=0.1, maximum=1000.0
     )
@@ -64,6 +67,8 @@ class Settings:
                 raise ValueError(f"sink must be some of {', '.join(SINKS)} or auto, got {name!r}")
         if self.blueprint not in BLUEPRINTS:
             raise ValueError(f"blueprint must be one of {', '.join(BLUEPRINTS)}, got {self.blueprint!r}")
+        if self.blueprint == "compare" and not self.compare:
+            raise ValueError("compare must be the other swimmer's namespace for the blueprint compare, got none")
 
     @classmethod
     def from_values(cls, values: dict) -> "Settings":

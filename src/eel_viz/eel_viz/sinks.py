@@ -21,6 +21,7 @@ from eel_viz.viewer import display, free_port, listening, open_window
 
 APPLICATION = "eel"
 CLOSING_LIMIT = 3.0  # s for what is still on its way
+LIVE_TICK = 0.1  # s: a viewer shall move smoothly
 FILE_TICK = 2.0  # s: a file need not be quick, and each batch of an entity costs it some 700 bytes
 HOST = "127.0.0.1"
 
@@ -53,7 +54,7 @@ class Destination:
         return rr.ChunkBatcherConfig.DEFAULT()
 
     def _blueprint(self) -> rrb.Blueprint:
-        return arrangement(self.settings.blueprint, live=self._live)
+        return arrangement(self.settings.blueprint, live=self._live, compare=bool(self.settings.compare))
 
     def _sink(self, run: int) -> rr.FileSink | rr.GrpcSink | None:
         raise NotImplementedError
@@ -63,7 +64,9 @@ class File(Destination):
     """A .rrd file; the second run and later ones get a number before the suffix."""
 
     def __init__(self, settings: Settings, say: Say, warn: Say) -> None:
-        super().__init__(settings, Rates(numbers=0.0, drawings=settings.skin_rate), say, warn, live=False)
+        super().__init__(
+            settings, Rates(numbers=0.0, drawings=settings.skin_rate, tick=FILE_TICK), say, warn, live=False
+        )
         path = settings.recording or f"eel-{datetime.datetime.now():%Y%m%d-%H%M%S}.rrd"
         self._first = pathlib.Path(path)
 
@@ -94,7 +97,9 @@ class Served(Destination):
     """Data served on a port of this machine, for viewers that come and go."""
 
     def __init__(self, settings: Settings, say: Say, warn: Say) -> None:
-        super().__init__(settings, Rates(numbers=settings.rate, drawings=settings.rate), say, warn, live=True)
+        super().__init__(
+            settings, Rates(numbers=settings.rate, drawings=settings.rate, tick=LIVE_TICK), say, warn, live=True
+        )
         port = settings.port
         if listening(port):  # the server would only log it
             port = free_port()
@@ -133,7 +138,9 @@ class Connected(Destination):
     """A viewer that somebody else has started; while it is absent, nothing is sent."""
 
     def __init__(self, settings: Settings, say: Say, warn: Say) -> None:
-        super().__init__(settings, Rates(numbers=settings.rate, drawings=settings.rate), say, warn, live=True)
+        super().__init__(
+            settings, Rates(numbers=settings.rate, drawings=settings.rate, tick=LIVE_TICK), say, warn, live=True
+        )
         address = urlsplit(settings.viewer)
         if address.hostname is None or address.port is None:
             raise ValueError(f"viewer must look like rerun+http://127.0.0.1:9876/proxy, got {settings.viewer!r}")

@@ -84,6 +84,17 @@ class Summary:
             lines.append(f"body {self.body.length:.3g} m, {self.body.mass:.4g} kg")
         return "\n\n".join(line for line in lines if line)
 
+    def figures(self) -> dict[str, str]:
+        """The same in short, by name, to stand beside those of another run."""
+        told = {"law": self.law or ""}
+        told |= {TOLD[key].strip("*:"): _short(self.values[key]) for key in TOLD if self.values.get(key)}
+        if self._last is not None and self._first is not None:
+            seconds = (self._last[0] - self._first[0]) / 1e9
+            told["mean speed [m/s]"] = f"{self._path / seconds:.4f}" if seconds > 0 else "0"
+            told["path [m]"] = f"{self._path:.3f}"
+        told["greatest C3 [N m]"] = f"{self._peak[0]:+.4f}"
+        return told
+
 
 def _short(value: str) -> str:
     """Numbers to three digits; words as they are."""

@@ -1,0 +1,55 @@
+"""Subscriptions that are read when there is time, all at once, instead of one call of the executor for each message.
+
+An executor gathers and waits on everything a node has before each single message: with eight topics that is more work
+than showing them. Here a group that never lets the executor run leaves the messages where they are, in histories that
+keep all, until `take` fetches them.
+"""
+
+from collections.abc import Callable
+
+from rclpy.callback_groups import CallbackGroup
+from rclpy.node import Node
+from rclpy.qos import QoSProfile
+
+BATCH = 64  # messages of one topic before the next has its turn
+
+
+class Untouched(CallbackGroup):
+    """What the executor leaves alone."""
+
+    def can_execute(self, entity) -> bool:
+        """Never."""
+        return False
+
+    def beginning_execution(self, entity) -> bool:
+        """Never."""
+        return False
+
+    def ending_execution(self, entity) -> None:
+        """Nothing has begun."""
+
+
+class Inbox:
+    """The subscriptions of `node`."""
+
+    def __init__(self, node: Node) -> None:
+        self._node, self._group = node, Untouched()
+        self._subscriptions: list[tuple] = []
+
+    def listen(self, kind: type, topic: str, show: Callable, quality: QoSProfile) -> None:
+        """Messages of `kind` on `topic` go to `show`, from `take`."""
+        made = self._node.create_subscription(kind, topic, show, quality, callback_group=self._group)
+        self._subscriptions.append((made, show))
+
+    def take(self) -> int:
+        """Show what has come, `BATCH` of a topic at most; returns how many."""
+        count = 0
+        for subscription, show in self._subscriptions:
+            with subscription.handle:  # else it could be destroyed meanwhile
+                for _ in range(BATCH):
+                    taken = subscription.handle.take_message(subscription.msg_type, False)
+                    if taken is None:
+                        break
+                    show(taken[0])
+                    count += 1
+        return count
