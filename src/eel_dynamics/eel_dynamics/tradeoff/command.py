@@ -1,0 +1,133 @@
+"""`tradeoff`: what exactness costs for a gait, and what leaving physics out would cost, as table and picture.
+
+tradeoff falling
+tradeoff falling straight turning --page docs/tradeoff.md --pictures docs/images
+tradeoff straight --set period=0.7 --quick --rerun trade.rrd
+"""
+
+import argparse
+import sys
+from pathlib import Path
+
+from eel_gaits.registry import GAITS, gait
+
+from ..body import NAMED, Body
+from ..scene import Scene
+from . import measuring, models
+from .page import reference_line, write_page
+from .settings import settings
+from .table import model_table, trade_table, write_csv
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Exit status 0; 2 for bad input or a missing package, with one line."""
+    options = _parser().parse_args(arguments)
+    try:
+        found = _measure_all(options)
+        for trade, poorer in found:
+            print(f"\n{trade.law.name}, {trade.duration:g} s. {reference_line(trade)}\n")
+            print(trade_table(trade, everything=options.all))
+            print()
+            print(model_table(poorer, trade))
+        for path in _write_all(options, found):
+            print(f"written to {path}")
+    except (ValueError, OSError, ImportError) as error:
+        print(f"tradeoff: {error}", file=sys.stderr)
+        return 2
+    return 0
+
+
+def _measure_all(options) -> list[tuple]:
+    numbers = dict(_number(text) for text in options.set)
+    laws = [gait(name, **numbers) for name in options.gaits]
+    body = Body.named(options.body) if options.body in NAMED else Body.from_file(options.body)
+    if not options.repeats >= 1:
+        raise ValueError(f"--repeats must be 1 or more, got {options.repeats}")
+    for folder in (
+        options.pictures,
+        options.page and Path(options.page).parent,
+        options.rerun and Path(options.rerun).parent,
+    ):
+        if folder and not Path(folder).is_dir():
+            raise ValueError(f"{folder} must be a folder that exists")
+    say = lambda text: print(f"tradeoff: {text}", file=sys.stderr, flush=True)  # noqa: E731
+    found = []
+    for law in laws:
+        fixed = {"duration": options.duration, "body": body, "scene": Scene(), "say": say}
+        say(f"gait {law.name}")
+        trade = measuring.measure(law, settings(options.quick), repeats=options.repeats, **fixed)
+        found.append((trade, models.compare(law, trade.reference, **fixed)))
+    return found
+
+
+def _write_all(options, found):
+    folder = Path(options.pictures or "out")
+    folder.mkdir(exist_ok=True)
+    for trade, poorer in found:
+        yield from _draw(trade, poorer, folder)
+        if options.csv:
+            path = folder / f"tradeoff_{trade.law.name}.csv"
+            write_csv(trade, path)
+            yield path
+    if options.page:
+        page = Path(options.page)
+        picture = (folder / f"tradeoff_{found[0][0].law.name}.png").resolve()
+        beside = picture.is_relative_to(page.resolve().parent)
+        write_page(page, found, str(picture.relative_to(page.resolve().parent)) if beside else None)
+        yield page
+    if options.rerun:
+        from .stream import stream
+
+        stream(Path(options.rerun), found)
+        yield options.rerun
+
+
+def _draw(trade, poorer, folder: Path):
+    import matplotlib
+    from matplotlib.figure import Figure
+
+    from ..figures.style import SETTINGS
+    from .drawing import SIZE, draw_trade
+
+    with matplotlib.rc_context(SETTINGS):
+        figure = Figure(figsize=SIZE, layout="constrained")
+        draw_trade(figure, trade, poorer)
+        for suffix in ("png", "svg"):
+            path = folder / f"tradeoff_{trade.law.name}.{suffix}"
+            figure.savefig(path, metadata={"Date": None} if suffix == "svg" else {"Software": None})
+            yield path
+
+
+def _number(text: str) -> tuple[str, float]:
+    name, _, value = text.partition("=")
+    try:
+        return name, float(value)
+    except ValueError:
+        raise ValueError(f"--set must be NAME=NUMBER, got {text!r}") from None
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="tradeoff",
+        description="Measure error and cost of many settings for a gait, mark the Pareto front, and compare with the "
+        "error of models that leave physics out. Takes about a minute per gait.",
+    )
+    names = ", ".join(sorted(GAITS))
+    parser.add_argument("gaits", nargs="*", default=["falling"], metavar="GAIT", help=f"of {names} (falling)")
+    parser.add_argument(
+        "--set", action="append", default=[], metavar="NAME=VALUE", help="a number of the gaits; may be repeated"
+    )
+    parser.add_argument("--duration", type=float, default=10.0, help="s (10)")
+    parser.add_argument("--body", default="boyer2010", help=f"{', '.join(NAMED)}, or a file as for simulate")
+    parser.add_argument("--repeats", type=int, default=5, help="rounds of timing, of which the median counts (5)")
+    parser.add_argument("--quick", action="store_true", help="a ninth of the settings, for a look")
+    parser.add_argument("--all", action="store_true", help="print every setting, not the fronts and presets alone")
+    parser.add_argument("--pictures", metavar="FOLDER", help="for tradeoff_GAIT.png and .svg (out)")
+    parser.add_argument("--csv", action="store_true", help="everything measured, as .csv beside the pictures")
+    parser.add_argument("--page", metavar="FILE.md", help="write tables and picture as a page")
+    parser.add_argument("--rerun", metavar="FILE.rrd", help="write the runs and the trade as a Rerun recording")
+    return parser
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,67 @@
+"""docs/tradeoff.md: the tables, the picture, and how to read them."""
+
+import platform
+import subprocess
+from pathlib import Path
+
+from .models import Model
+from .table import model_table, trade_table
+
+HEAD = """# What exactness costs, and what a scene requires
+
+Made by `tradeoff {gaits} --page {page}`{machine}.
+Times are of the processor, medians of {repeats} rounds in which all settings take turns, of the motion alone (no
+ledger, no wrench, one sample), set-up included; they carry over to another machine as ratios only. Errors are against a
+run of 700 points per body length and a tolerance of 1e-11 per step: of the head's position at the end by its path, and
+of the torque field (51 stations, 201 instants) by its greatest magnitude.
+
+`P`, `T`: on the Pareto front of pose, of torque: no other setting is both cheaper and more exact. Orders: `5(4)` is
+Dormand and Prince's pair with steps chosen by the tolerance; `4` is the classical Runge-Kutta method with fixed steps.
+
+How to read the second table of a gait: a poorer model, solved exactly, is off by that much, so a setting whose own
+error is a tenth of it is exact enough wherever that physics is in doubt. What makes no difference to a gait may be left
+out of its scene.
+"""
+
+
+def write_page(path: Path, found: list[tuple], picture: str | None):
+    """`found`: pairs of a trade and its models. `picture`: of the first gait, as the page refers to it."""
+    gaits = " ".join(trade.law.name for trade, _ in found)
+    text = HEAD.format(gaits=gaits, page=path.name, machine=machine(), repeats=found[0][0].repeats)
+    if picture:
+        text += f"\n![The trade of the {found[0][0].law.name} gait]({picture})\n"
+    for trade, models in found:
+        text += f"\n## {trade.law.name}, {trade.duration:g} s\n\n{reference_line(trade)}\n\n"
+        text += trade_table(trade, markdown=True) + "\n\n"
+        text += model_table(models, trade, markdown=True) + "\n"
+    path.write_text(text, encoding="utf-8")
+
+
+def reference_line(trade) -> str:
+    """How well the reference has converged."""
+    pose, torque = trade.reference_error
+    unstable = f" {len(trade.unstable)} settings diverged." if trade.unstable else ""
+    return (
+        f"The reference differs from one of 500 points and 1e-10 by {pose:.0e} in pose and {torque:.0e} in torque; "
+        f"smaller errors are not told apart.{unstable}"
+    )
+
+
+def machine() -> str:
+    """What it was measured on, in words."""
+    processor = platform.processor() or platform.machine()
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+        processor = next(line.split(":")[1].strip() for line in lines if line.startswith("model name"))
+    except (OSError, StopIteration):
+        pass
+    commit = subprocess.run(
+        ["git", "-C", Path(__file__).resolve().parent, "rev-parse", "--short", "HEAD"],
+        capture_output=True,
+        text=True,
+        check=False,
+    ).stdout.strip()
+    return f" on one core ({processor})" + (f", at commit {commit}" if commit else "")
+
+
+__all__ = ["Model", "reference_line", "write_page"]

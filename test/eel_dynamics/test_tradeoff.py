@@ -1,0 +1,129 @@
+"""The measured trade: errors against a converged run, fronts, poorer models, and what the command leaves behind."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from eel_dynamics.tradeoff import measuring, models, table
+from eel_dynamics.tradeoff.command import main
+from eel_dynamics.tradeoff.drawing import _apart
+from eel_dynamics.tradeoff.settings import settings
+
+from eel_dynamics import Accuracy, Body, Scene, simulate
+from eel_gaits import falling, straight
+
+BODY = Body.boyer2010()
+COARSE = Accuracy(name="coarse", resolution=8.0, tolerance=1e-2)
+MIDDLE = Accuracy(name="middle", resolution=36.0, tolerance=1e-5)
+EXACT = Accuracy(name="exact", resolution=110.0, tolerance=1e-8)
+FIXED = Accuracy(name="fixed", resolution=36.0, step=0.02)
+
+
+@pytest.fixture(scope="module")
+def trade():
+    return measuring.measure(
+        falling(), [COARSE, MIDDLE, EXACT, FIXED], duration=2.5, body=BODY, scene=Scene(), repeats=2
+    )
+
+
+@pytest.fixture(scope="module")
+def poorer(trade):
+    return models.compare(falling(), trade.reference, duration=2.5, body=BODY, scene=Scene())
+
+
+def test_errors_are_those_of_the_definition(trade):
+    row = trade.rows[0]
+    run, reference = trade.rows[0].run, trade.reference
+    assert row.pose_error == np.linalg.norm(run.position[-1] - reference.position[-1]) / 1.0  # the path is shorter
+    sizes = np.linalg.norm(reference.torque, axis=2)
+    assert row.torque_error == np.linalg.norm(run.torque - reference.torque, axis=2).max() / sizes.max()
+    alone = simulate(falling(), 2.5, body=BODY, accuracy=COARSE)
+    assert np.array_equal(alone.position[-1], run.position[-1])  # the switches that cost nothing change nothing
+
+
+def test_finer_is_more_exact_and_the_reference_has_converged(trade):
+    coarse, middle, exact, _ = trade.rows
+    assert coarse.error > 10.0 * middle.error > 100.0 * exact.error / 2.0
+    assert max(trade.reference_error) < 0.1 * exact.error
+    assert coarse.evaluations < middle.evaluations < exact.evaluations
+    assert coarse.nodes < middle.nodes < exact.nodes
+    for row in trade.rows:
+        assert row.seconds > 0.0 and row.times_real_time == 2.5 / row.seconds
+        assert row.memory > 8 * 30 * row.nodes  # 30 fields and more
+
+
+def test_front_holds_what_nothing_beats():
+    rows = [SimpleNamespace(e=e, c=c) for e, c in ((1.0, 1.0), (0.5, 2.0), (0.6, 3.0), (0.5, 2.5), (0.1, 9.0))]
+    found = measuring.front(rows, lambda row: row.e, lambda row: row.c)
+    assert [(row.e, row.c) for row in found] == [(1.0, 1.0), (0.5, 2.0), (0.1, 9.0)]
+
+
+def test_poorer_models_are_told_by_what_they_leave_out(trade, poorer):
+    found = {model.name: model for model in poorer}
+    assert len(found) == len(models.VARIANTS)
+    assert found["planar"].torque_error > 0.1  # the gait bends in pitch
+    assert found["blended friction"].torque_error < 0.1 * found["no friction"].torque_error
+    flat = straight()
+    reference = measuring.swim(flat, 1.0, BODY, Scene(), models.EXACT)
+    planar = next(
+        model
+        for model in models.compare(flat, reference, duration=1.0, body=BODY, scene=Scene())
+        if model.name == "planar"
+    )
+    assert max(planar.pose_error, planar.torque_error) < 1e-7  # a gait in the plane loses nothing
+
+
+def test_tables_name_a_setting_that_is_exact_enough(trade, poorer):
+    text = table.model_table(poorer, trade)
+    setting, _ = table.exact_enough(next(model for model in poorer if model.name == "no friction"), trade)
+    row = next(row for row in trade.rows if row.accuracy.name == setting)
+    model = next(model for model in poorer if model.name == "no friction")
+    assert row.pose_error <= 0.1 * model.pose_error and row.torque_error <= 0.1 * model.torque_error
+    assert text.splitlines()[0].startswith("left out") and len(text.splitlines()) == 1 + len(poorer)
+    lines = table.trade_table(trade, everything=True, markdown=True).splitlines()
+    assert len(lines) == 2 + 4 and all(line.count("|") == len(table.HEAD) + 1 for line in lines)
+
+
+def test_a_setting_that_diverges_is_told_apart():
+    light = Scene(density=10.0, reactive=False)
+    long = Accuracy(name="long steps", resolution=10.0, step=0.05)
+    trade = measuring.measure(straight(), [COARSE, long], duration=0.5, body=BODY, scene=light, repeats=1)
+    assert trade.unstable == [long] and [row.accuracy for row in trade.rows] == [COARSE]
+
+
+def test_labels_keep_apart_about_where_they_belong():
+    assert _apart([0.0, 0.0, 5.0], 1.0) == [-0.5, 0.5, 5.0]
+    moved = _apart([0.0, 0.1, 0.9, 4.0], 1.0)
+    assert np.all(np.diff(moved) >= 1.0 - 1e-12) and moved[-1] == 4.0
+    assert np.mean(moved[:3]) == pytest.approx(np.mean([0.0, 0.1, 0.9]))
+
+
+def test_command_leaves_picture_page_table_and_recording(tmp_path, capsys):
+    words = f"straight --quick --repeats 1 --duration 1 --csv --pictures {tmp_path} --page {tmp_path}/page.md"
+    assert main([*words.split(), "--rerun", str(tmp_path / "trade.rrd")]) == 0
+    said = capsys.readouterr().out
+    for preset in ("draft", "standard", "fine", "reference"):
+        assert preset in said
+    for name in ("tradeoff_straight.png", "tradeoff_straight.svg", "page.md", "trade.rrd"):
+        assert (tmp_path / name).stat().st_size > 3000, name
+    assert "![" in (tmp_path / "page.md").read_text()
+    lines = (tmp_path / "tradeoff_straight.csv").read_text().splitlines()
+    assert len(lines) == 1 + len(settings(quick=True))
+    from rerun.chunk import RrdReader
+
+    entities = {chunk.entity_path for chunk in RrdReader(str(tmp_path / "trade.rrd")).stream()}
+    assert "/straight/runs/standard" in entities and "/straight/table" in entities
+
+
+@pytest.mark.parametrize(
+    "words, named",
+    [
+        ("wriggling", "wriggling"),
+        ("--set period", "period"),
+        ("--repeats 0", "repeats"),
+        ("--pictures /nowhere", "nowhere"),
+    ],
+)
+def test_bad_input_is_named(words, named, capsys):
+    assert main(words.split()) == 2
+    assert named in capsys.readouterr().err
