@@ -13,13 +13,8 @@ ROOT = Path(__file__).resolve().parents[2]
 PYTHON_PACKAGES = ("eel_gaits", "eel_dynamics", "eel_viz")
 EXECUTABLES = {
     "eel_gaits": {"gait_generator"},
-<<<<<<< HEAD
-    "eel_dynamics": {"dynamics", "simulate", "figures", "sweep"},
-    "eel_viz": {"visualiser", "record", "echo", "replay", "render"},
-=======
     "eel_dynamics": {"dynamics", "simulate", "figures", "sweep", "tradeoff"},
-    "eel_viz": {"visualiser", "record", "echo"},
->>>>>>> 35a7f7f (tradeoff: error against cost of every setting for a gait, its front, and the error of models that leave physics out)
+    "eel_viz": {"visualiser", "record", "echo", "replay", "render"},
 }
 ROSDEP_KEY = {
     "numpy": "python3-numpy",
