@@ -1,17 +1,20 @@
 # The two commands are `make demo` and `make test`; each does all the set-up itself, inside this folder.
 SHELL := /bin/bash
 .DEFAULT_GOAL := help
-.PHONY: help demo test build bench lint soak robustness clean
+.PHONY: help demo test validation build bench lint soak robustness clean
 RUN := tools/run.sh
 
 help:   ## this list
-	@sed -n 's/^\([a-z]*\):[^#]*## */make \1\t/p' Makefile | expand -t 12
+	@sed -n 's/^\([a-z]*\):[^#]*## */make \1\t/p' Makefile | expand -t 17
 
 demo: build   ## swim the falling gait through the three nodes; leaves out/falling.rrd and a summary
 	@$(RUN) python tools/demo.py
 
 test: build   ## all tests but the long ones (ARGS=... goes to pytest)
 	@$(RUN) tools/test.sh $(ARGS)
+
+validation: build   ## docs/validation.md anew, from what the tests of the mechanics measure
+	@$(RUN) python tools/validation.py
 
 soak: build   ## the long tests (ARGS=... goes to pytest)
 	@$(RUN) python -m pytest -m soak $(ARGS)

@@ -1,6 +1,41 @@
-"""For the tests of the dynamics node: a client that hears it."""
+"""For the tests of the mechanics, `measured`; for those of the dynamics node, a client that hears it."""
 
 import pytest
+from validation import Checks
+
+CHECKS = Checks()
+
+
+@pytest.fixture(scope="session")
+def measured():
+    """measured(what, value, tolerance, wanted=None, unit=""): asserts, and records for docs/validation.md."""
+    return CHECKS.measure
+
+
+@pytest.fixture(scope="session")
+def checks():
+    """What has been measured in this session so far."""
+    return CHECKS
+
+
+def pytest_collection_modifyitems(items):
+    items.sort(key=lambda item: item.path.name == "test_validation_page.py")  # after all that it looks at
+
+
+def pytest_runtest_setup(item):
+    CHECKS.begin(item)
+
+
+def pytest_sessionfinish(session):
+    if CHECKS.by_name:
+        CHECKS.save()
+
+
+def pytest_terminal_summary(terminalreporter):
+    if CHECKS.by_name:
+        terminalreporter.section("identities: worst measured value (tolerance)")
+        for line in CHECKS.lines():
+            terminalreporter.write_line(line)
 
 
 @pytest.fixture

@@ -48,6 +48,13 @@ def snapshot(body, law, time=0.0, twist=(0,) * 6, orientation=(0, 0, 0, 1), sett
     return simulation.observe(wrench=True, load=True)
 
 
+def momentum(body, law, time, twist, settings, accuracy=DENSE):
+    """Momentum (6,) of body, water and nose about the head, which the march carries; head's axes are the world's."""
+    simulation = Simulation(body=body, scene=Scene(**settings), accuracy=accuracy, stations=2, twist=twist)
+    simulation.adopt(law, origin=-time)
+    return simulation.state[7:13].copy()
+
+
 def expected(reference, law, time, twist, orientation=(0, 0, 0, 1)):
     """The same from the reference: shape, twist relative to the water, rate of its components, head acceleration."""
     shape = law.curvature(time, reference.space.x)
@@ -88,7 +95,9 @@ __all__ = [
     "Simulation",
     "distance",
     "expected",
+    "hydrodynamic_wrench",
     "library_body",
+    "momentum",
     "namespace_body",
     "prescribed",
     "random_quaternion",

@@ -6,6 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from cases import SPLINE_KNOTS, falling_law, kern_body, random_law, random_twist
+from draws import few, numbers, quaternions, scenes, swimmers, twists
+from hypothesis import given
 from library_state import (
     DENSE,
     Body,
@@ -14,6 +16,7 @@ from library_state import (
     distance,
     expected,
     library_body,
+    momentum,
     namespace_body,
     prescribed,
     random_quaternion,
@@ -24,6 +27,7 @@ from library_state import (
 )
 from reference import boyer_body
 
+pytestmark = pytest.mark.identity("Second implementation")
 STATIONS = np.sort(np.concatenate([np.linspace(0, 1, 15), [0.01, 0.05, 0.2, 0.75, 0.96]]))
 BODIES = {"boyer": boyer_body(), "kern": kern_body()}
 # Agreement where every field is smooth between kinks: round-off of both sides, amplified by the stiff roll (a 1 m body
@@ -50,67 +54,110 @@ DRAG_SCENES = [
 ]
 
 
-def check(body, law, time, twist, q, settings, tolerance, splits=(), panels=3, nodes=20):
-    """Everything a snapshot holds, against the reference."""
-    got = snapshot(library_body(body), law, time, twist, q, settings, STATIONS)
+def check(measured, kind, body, law, time, twist, q, settings, tolerance, splits=(), panels=3, nodes=20):
+    """Everything a snapshot holds, against the reference; `kind` of case: its tolerance."""
+    length = body.kinks[-1]
+    stations = np.unique(np.concatenate([length * STATIONS, body.kinks]))
+    got = snapshot(library_body(body), law, time, twist, q, settings, stations)
     reference = Reference(
         body, reference_scene(**settings), splits=splits, panels_per_span=panels, nodes_per_panel=nodes
     )
     shape, relative, relative_rate, acceleration = expected(reference, law, time, twist, q)
     fields, (R, r) = reference.fields(*shape, relative, relative_rate), reference.configuration(shape[0])
-    world, at = rotation(q), lambda field: reference.space.evaluate(field, STATIONS)
+    world, at = rotation(q), lambda field: reference.space.evaluate(field, stations)
     lateral = np.abs(fields.force).max()
 
-    assert distance(got.head_acceleration[:3], acceleration[:3]) < tolerance
-    assert distance(got.head_acceleration[3:], acceleration[3:]) < tolerance
-    assert distance(got.torque, at(fields.torque)) < tolerance
-    assert distance(got.force, at(fields.force)) < tolerance
-    assert distance(got.backbone, at(r) @ world.T, 1.0) < tolerance
+    measured(f"head's angular acceleration, {kind}", distance(got.head_acceleration[:3], acceleration[:3]), tolerance)
+    measured(f"head's acceleration, {kind}", distance(got.head_acceleration[3:], acceleration[3:]), tolerance)
+    measured(f"internal torque along the body, {kind}", distance(got.torque, at(fields.torque)), tolerance)
+    measured(f"internal force along the body, {kind}", distance(got.force, at(fields.force)), tolerance)
     turned = np.array([rotation(each) for each in got.section_orientation])
-    assert distance(turned, world @ at(R.reshape(-1, 9)).reshape(-1, 3, 3), 1.0) < tolerance
-    assert distance(got.tail_force, fields.tail_force, lateral) < tolerance
-    assert distance(got.nose_force, fields.nose_force, lateral) < tolerance
-    inner = ~np.isin(
-        STATIONS, body.kinks
-    )  # at a kink d/dX(V1 p_f) has two values, at the nose c_f P is 0 times infinity
-    resistive = reference.resistive(at(reference.twists(shape[0], shape[1], relative)), STATIONS)[1]
-    assert distance(got.resistive_force[inner], resistive[inner], lateral) < tolerance
+    measured(
+        f"positions (by the length) and axes of the sections, {kind}",
+        [
+            distance(got.backbone, at(r) @ world.T, length),
+            distance(turned, world @ at(R.reshape(-1, 9)).reshape(-1, 3, 3), 1.0),
+            distance(got.center_of_mass, world @ center_of_mass(reference, r), length),
+        ],
+        tolerance,
+    )
+    # at a kink d/dX(V1 p_f) has two values, at the nose c_f P is 0 times infinity
+    inner = ~np.isin(stations, body.kinks)
+    resistive = reference.resistive(at(reference.twists(shape[0], shape[1], relative)), stations)[1]
+    measured(
+        f"drag per length, forces on nose and tail, {kind}",
+        [
+            distance(got.tail_force, fields.tail_force, lateral),
+            distance(got.nose_force, fields.nose_force, lateral),
+            distance(got.resistive_force[inner], resistive[inner], lateral),
+        ],
+        tolerance,
+    )
     reactive, wanted = got.fluid_force - got.resistive_force, at(fields.fluid_force - fields.resistive_force)
-    # the derivative d/dX of the reference's polynomials costs 3 digits
-    assert distance(reactive[inner], wanted[inner], lateral) < max(1e-6, 10 * tolerance)
-    kinetic = reference.energies(shape[0], shape[1], relative)
-    assert got.energy.kinetic_body == pytest.approx(kinetic[0], rel=tolerance)
-    assert got.energy.kinetic_fluid == pytest.approx(kinetic[1], rel=tolerance)
+    # the derivative d/dX of the reference's polynomials costs a digit or two
+    measured(f"reactive force per length, {kind}", distance(reactive[inner], wanted[inner], lateral), 10 * tolerance)
+    kinetic = np.array(reference.energies(shape[0], shape[1], relative))
+    got_kinetic = got.energy.kinetic_body, got.energy.kinetic_fluid
+    measured(f"kinetic energies of body and water, {kind}", distance(got_kinetic, kinetic), tolerance)
     powers = [fields.actuator_power, fields.wake_power, fields.nose_power, fields.drag_power]
     names = ["actuator_power", "wake_power", "nose_power", "drag_power"]
-    assert distance([getattr(got.energy, name) for name in names], powers) < tolerance
+    measured(f"the four powers, {kind}", distance([getattr(got.energy, name) for name in names], powers), tolerance)
+
+
+def center_of_mass(reference, r):
     mass = reference.space.weights * reference.inertia_body[:, 3]
-    assert distance(got.center_of_mass, world @ (mass @ r) / mass.sum(), 1.0) < tolerance
+    return (mass @ r) / mass.sum()
+
+
+@few(25)
+@given(swimmers(), numbers(0.0, 3.0), twists(), quaternions(), scenes())
+def test_any_swimmer_without_drag(measured, swimmer, time, twist, q, settings):
+    check(measured, "any swimmer without drag", *swimmer, time, twist, q, settings, EXACT, nodes=24)
+
+
+@few(12)
+@given(swimmers(), numbers(0.0, 3.0), scenes(current=(0.0, 0.0, 0.0)))
+def test_mass_matrix_and_momentum(measured, swimmer, time, settings):
+    """The march's state is the momentum: at a head at rest, and what each of six unit twists adds: the mass matrix."""
+    body, law = swimmer
+    reference = Reference(body, reference_scene(**settings), panels_per_span=3, nodes_per_panel=24)
+    (K, K_rate, _), still = law.curvature(time, reference.space.x), np.zeros(6)
+    of_shape = momentum(library_body(body), law, time, still, settings)
+    units = np.array([momentum(library_body(body), law, time, unit, settings) for unit in np.eye(6)]) - of_shape
+    matrix = reference.mass_matrix(K)
+    matrix[3, 3] += reference.nose_mass
+    measured(
+        "momentum of body and water that changes shape", distance(of_shape, reference.momentum(K, K_rate, still)), EXACT
+    )
+    for name, rows in (("turning", slice(0, 3)), ("moving", slice(3, 6))):
+        measured(f"mass matrix (6 x 6), columns of a {name} head", distance(units[rows], matrix[rows]), EXACT)
 
 
 @pytest.mark.parametrize("settings", SMOOTH_SCENES, ids=lambda s: "-".join(f"{k}={v}" for k, v in s.items()))
 @pytest.mark.parametrize("body", BODIES)
-def test_smooth_scene(body, settings):
+def test_smooth_scene(measured, body, settings):
     seed = SMOOTH_SCENES.index(settings) + 10 * list(BODIES).index(body)
     rng = np.random.default_rng(seed)
     law = random_law(rng, spline=False)
-    check(BODIES[body], law, rng.uniform(0, 3), random_twist(rng), random_quaternion(rng), settings, EXACT)
+    state = rng.uniform(0, 3), random_twist(rng), random_quaternion(rng)
+    check(measured, "without drag", BODIES[body], law, *state, settings, EXACT)
 
 
 @pytest.mark.parametrize("settings, tolerance", DRAG_SCENES, ids=lambda s: str(s))
 @pytest.mark.parametrize("body", BODIES)
-def test_scene_with_drag(body, settings, tolerance):
+def test_scene_with_drag(measured, body, settings, tolerance):
     rng = np.random.default_rng(len(str(settings)))
     law = random_law(rng, spline=False)
     state = rng.uniform(0, 3), random_twist(rng), random_quaternion(rng)
-    check(BODIES[body], law, *state, settings, tolerance, panels=10, nodes=10)
+    kind = "with drag" if tolerance == KINKS else "with the printed friction, which jumps"
+    check(measured, kind, BODIES[body], law, *state, settings, tolerance, panels=10, nodes=10)
 
 
-def test_law_with_splines():
+def test_law_with_splines(measured):
     """Natural splines: the third derivative of K jumps at the knots, inside the library's panels."""
     rng = np.random.default_rng(5)
     state = random_law(rng), 0.8, random_twist(rng), random_quaternion(rng)
-    check(BODIES["boyer"], *state, {"resistive": False}, 1e-6, splits=SPLINE_KNOTS)
+    check(measured, "law of splines", BODIES["boyer"], *state, {"resistive": False}, 1e-6, splits=SPLINE_KNOTS)
 
 
 def test_body_of_arrays():
@@ -135,7 +182,7 @@ def test_body_of_arrays():
 
 @pytest.mark.parametrize("settings", [*SMOOTH_SCENES, {"friction": "laminar", "current": (0.3, -0.2, 0.1)}], ids=str)
 @pytest.mark.parametrize("body", BODIES)
-def test_prescribed_motion(body, settings):
+def test_prescribed_motion(measured, body, settings):
     """`hydrodynamic_wrench` against the fluid's momentum, differentiated; head and world axes coincide."""
     seed = list(BODIES).index(body)
     rng = np.random.default_rng(seed)
@@ -148,7 +195,8 @@ def test_prescribed_motion(body, settings):
     got = prescribed(library_body(BODIES[body]), law, time, twist, rate, settings)
     tolerance = EXACT if "resistive" in settings else KINKS
     scale = max(np.abs(wanted).max(), 1e-3)
-    assert distance(got, wanted, scale) < tolerance
+    kind = "without drag" if tolerance == EXACT else "with drag"
+    measured(f"the water's wrench for a prescribed motion, {kind}", distance(got, wanted, scale), tolerance)
 
 
 DATA = json.loads((Path(__file__).parent / "data" / "falling.json").read_text())
@@ -166,7 +214,7 @@ DATA = json.loads((Path(__file__).parent / "data" / "falling.json").read_text())
         ("printed", "standard", 1e-3),
     ],
 )
-def test_falling_gait(case, accuracy, tolerance):
+def test_falling_gait(measured, case, accuracy, tolerance):
     """Head position over 10 s against the reference's DOP853 march (data/falling.json), relative to path or length.
 
     Without drag the two agree to 1e-9 after 10 s; with it the reference's own kinks in space leave 5e-8, the printed
@@ -178,4 +226,7 @@ def test_falling_gait(case, accuracy, tolerance):
     at = np.searchsorted(run.time, np.array(DATA["times"]) - 1e-9)
     assert np.allclose(run.time[at], DATA["times"])
     path = np.sum(np.linalg.norm(np.diff(run.position, axis=0), axis=1))
-    assert distance(run.position[at], wanted[:, :3], max(path, 1.0)) < tolerance
+    error = distance(run.position[at], wanted[:, :3], max(path, 1.0))
+    name = "300 points per length" if accuracy is DENSE else f"accuracy {accuracy}"
+    friction = case if case == "no drag" else f"{case} friction"
+    measured(f"head's path over 10 s of the falling gait, {friction}, {name} (by the path)", error, tolerance)

@@ -3,15 +3,18 @@
 import numpy as np
 import pytest
 from eel_gaits.messages import law_to_message
+from scipy.interpolate import CubicSpline
 from swim_client import LIMIT, SAMPLES, is_finite, nanoseconds
 
 from eel_dynamics import Simulation
 from eel_gaits import Law, Term, falling
 
+POWERS = ("actuator", "wake", "nose", "drag")
 FLAT_OUT = ("-p", "real_time_factor:=0", "-p", "wait_for_subscribers:=1")
 
 
-def test_ten_seconds_are_1001_samples_on_every_topic(start, client):
+@pytest.mark.identity("Energy ledger")
+def test_ten_seconds_are_1001_samples_on_every_topic(start, client, measured):
     heard = client(clock=True)
     heard.laws.publish(law_to_message(falling()))
     node = start("dynamics", "--ros-args", *FLAT_OUT, "-p", "duration:=10")
@@ -35,6 +38,14 @@ def test_ten_seconds_are_1001_samples_on_every_topic(start, client):
         position = np.array([-pose.position.x, -pose.position.y, pose.position.z])
         assert np.allclose(position, snapshot.position, rtol=0, atol=1e-12)
         assert np.allclose(wrench.torque_3, snapshot.torque[:, 2], rtol=0, atol=1e-11)
+
+    field = lambda name: np.array([getattr(message, name) for message in heard.heard["energy"]])  # noqa: E731
+    kinetic, powers = field("kinetic_body") + field("kinetic_fluid"), sum(field(f"{name}_power") for name in POWERS)
+    work = np.trapezoid(np.abs(field("actuator_power")), dx=0.01)
+    measured("residual that the live node publishes (by the actuators' work)", np.abs(field("residual")) / work, 1e-3)
+    # the same once more from the published powers, by a spline through 100 Hz: kinks of V|V| in time
+    again = kinetic - kinetic[0] - CubicSpline(np.array(stamps) / 1e9, powers).antiderivative()(np.array(stamps) / 1e9)
+    measured("that residual against the published energies and powers", np.abs(again - field("residual")) / work, 1e-5)
 
     level, text, values = heard.diagnosis()
     assert (level, text) == (0, "finished")

@@ -3,13 +3,14 @@
 import dataclasses
 from types import SimpleNamespace
 
-import numpy as np
 import pytest
-from cases import falling_law
-from library_state import Scene, library_body, simulate
-from reference import boyer_body
+from draws import few, numbers, swimmers
+from hypothesis import given
+from library_state import Scene, distance, library_body, simulate
 
 from eel_gaits import Law, Ramp
+
+pytestmark = pytest.mark.identity("Scaling")
 
 
 def scaled_body(body, size, density=1.0):
@@ -39,27 +40,36 @@ def scaled_law(law, size, duration):
     return Law(*(term(t) for t in law.terms))
 
 
-@pytest.mark.parametrize("size, duration, density", [(2.0, 4.0, 1.0), (0.5, 0.125, 1.0), (3.0, 0.7, 1.2)])
-def test_similar_swimmers(size, duration, density):
+@few(6)
+@given(swimmers(ramps=True), numbers(0.3, 4.0), numbers(0.2, 4.0), numbers(0.5, 2.0))
+def test_similar_swimmers(measured, swimmer, size, duration, density):
     """Lengths times `size`, times times `duration`, densities times `density`, at equal Re = length^2/(time viscosity).
 
-    The step of an adaptive choice scales with the law, so that the runs agree to round-off or, where a preset's step is
-    fixed in seconds, to its error: the tolerance allows for that.
+    Nodes and chosen steps scale along, so that the two runs differ by round-off and what the motion makes of it.
     """
-    law, body = falling_law(), boyer_body()
+    body, law = swimmer
+    length = body.kinks[-1]
     scene = Scene(viscosity=1e-6 * size**2 / duration, fluid_density=1000 * density)
-    options = {"accuracy": "reference", "stations": 11}
-    small = simulate(law, duration=2.0, body=library_body(body), sample_period=0.2, **options)
+    options = {"accuracy": "fine", "stations": 11}
+    small = simulate(law, duration=1.0, body=library_body(body), sample_period=0.1, **options)
     big = simulate(
         scaled_law(law, size, duration),
-        duration=2.0 * duration,
+        duration=duration,
         body=library_body(scaled_body(body, size, density)),
         scene=scene,
-        sample_period=0.2 * duration,
+        sample_period=0.1 * duration,
         **options,
     )
     assert big.time == pytest.approx(small.time * duration, rel=1e-12)
-    assert big.position / size == pytest.approx(small.position, abs=1e-5)
-    assert big.twist[:, :3] * duration == pytest.approx(small.twist[:, :3], abs=1e-3)
-    torque = big.torque * duration**2 / size**5 / density
-    assert torque == pytest.approx(small.torque, abs=1e-4 * np.abs(small.torque).max())
+    pairs = {
+        "path, by the length": (big.position / size, small.position, length),
+        "angular velocity": (big.twist[:, :3] * duration, small.twist[:, :3], None),
+        "torque": (big.torque * duration**2 / size**5 / density, small.torque, None),
+        "actuators' power": (
+            big.energy.actuator_power * duration**3 / size**5 / density,
+            small.energy.actuator_power,
+            None,
+        ),
+    }
+    for name, (got, wanted, scale) in pairs.items():
+        measured(f"{name}, similar swimmer", distance(got, wanted, scale), 1e-10)

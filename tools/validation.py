@@ -1,0 +1,182 @@
+"""What the tests of the mechanics measure: recorded while they run, listed at their end, written as docs/validation.md.
+
+    make validation        # runs those tests and writes the page
+
+A test that carries the marker `identity` calls the fixture `measured(what, value, tolerance)`: it fails where the value
+is beyond its tolerance, and is recorded else, the worst value of all cases.
+"""
+
+import json
+import math
+import subprocess
+import sys
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parent.parent
+RECORD = ROOT / "out" / "validation.json"
+PAGE = ROOT / "docs" / "validation.md"
+
+IDENTITIES = {
+    "Energy ledger": "The change of kinetic energy of body and water is the integral of the four powers: actuators, "
+    "wake, nose, drag.",
+    "Closure": "What the internal wrench leaves over at the nose and at the tail; and, since closure follows from how "
+    "the acceleration was solved, that acceleration against the motion that was marched.",
+    "Lighthill": "Planar motion without drag is Lighthill's theory: large amplitude (1971; eqs (1), (61) of the paper) "
+    "and, in the limit, the linear one (1960).",
+    "No water": "Momentum and angular momentum stay; kinetic energy is the work of the actuators.",
+    "Rigid body": "The straight rigid body has closed forms: Munk's moment, coasting, Euler's top.",
+    "Symmetry": "Another pose, a mirror, the plane, rest, a current.",
+    "Convergence": "Orders in time and in space, and what the presets reach on the falling gait over 10 s.",
+    "Scaling": "Similar swimmers at equal Reynolds number swim alike.",
+    "Second implementation": "The equations again from the kinetic energy alone, differentiated numerically, in "
+    "another direction of integration, by code that shares nothing with the package "
+    "(`test/eel_dynamics/reference.py`).",
+    "Pressure at the tail": "Lumped at the tail or distributed along the body: the same resultant and moment.",
+    "Bodies": "Geometry and section data against what is printed or known.",
+    "Read off a run": "Figures of `Run.analysis()` and `Run.actuators()` against the same, computed another way.",
+}
+
+HEAD = """\
+# Validation
+
+Written by `make validation` from what the tests of the mechanics measured; not by hand. Each line is an assertion of
+`make test`: the worst value over all its cases (random laws, states, bodies and scenes, drawn anew only when a test
+changes; samples; parametrisations) beside its tolerance, whose reason stands in the test. Values without a unit are
+relative to the greatest magnitude of what is compared. Round-off differs from machine to machine in its last digits.
+
+## What this shows, and what it does not
+These checks show that the equations of the model are solved right, and that they are the equations meant. They do not
+show that the model is the sea. It is inviscid slender-body theory with fitted drag; measured against other people's
+numbers, no claim better than these is supported:
+
+| against | difference | source |
+|---|---|---|
+| Navier-Stokes, planar gaits | up to 10 % | Boyer et al., IEEE T-RO 24 (2008) |
+| a swimming robot (AmphiBot III), speed | up to 16 % | Porez, Boyer, Ijspeert, Int. J. Robotics Res. 33 (2014) |
+
+The theory lets the wake feed energy in where the tail leads, V1(l) > 0; the ledger shows it, no check hides it.
+"""
+
+
+@dataclass
+class Check:
+    """One line of the page: what is compared, the worst value, its tolerance, where it is measured, how often."""
+
+    identity: str
+    what: str
+    test: str
+    value: float
+    tolerance: float
+    wanted: float | None
+    unit: str
+    cases: int = field(default=1)
+
+    @property
+    def distance(self) -> float:
+        return abs(self.value - (self.wanted or 0.0))
+
+    @property
+    def measured(self) -> str:
+        if self.wanted is None:
+            return f"{'0' if self.value == 0.0 else f'{self.value:.1e}'} {self.unit}".rstrip()
+        return f"{self.value:.{self._digits}f} {self.unit}".rstrip()
+
+    @property
+    def allowed(self) -> str:
+        if self.wanted is not None:
+            return f"{self.wanted:g} ± {self.tolerance:.2g} {self.unit}".rstrip()
+        return f"{'exact' if self.tolerance == 0.0 else f'{self.tolerance:.0e}'} {self.unit}".rstrip()
+
+    @property
+    def _digits(self) -> int:
+        return max(0, 1 - math.floor(math.log10(self.tolerance)))
+
+    @property
+    def row(self) -> str:
+        return f"| {self.what} | {self.measured} | {self.allowed} | {self.cases} | `{self.test}` |"
+
+
+class Checks:
+    """The checks of a session, in the order of their first measurement."""
+
+    def __init__(self):
+        self.by_name: dict[tuple[str, str], Check] = {}
+        self.identity = self.test = None
+
+    def begin(self, item) -> None:
+        """The test `item` is about to run."""
+        marker = item.get_closest_marker("identity")
+        self.identity = marker.args[0] if marker else None
+        self.test = f"{item.path.name}::{item.originalname}"
+
+    def measure(self, what: str, value, tolerance: float, *, wanted: float | None = None, unit: str = "") -> None:
+        """Assert that the greatest of `value` is at most `tolerance`, or at most that far from `wanted`."""
+        if self.identity not in IDENTITIES:
+            raise ValueError(f"{self.test} must have a marker identity(...) of tools/validation.py to use `measured`")
+        values = np.atleast_1d(np.asarray(value, dtype=float)).ravel()
+        worst = float(values[np.argmax(np.abs(values - (wanted or 0.0)))])
+        check = Check(self.identity, what, self.test, abs(worst) if wanted is None else worst, tolerance, wanted, unit)
+        known = self.by_name.setdefault((self.identity, what), check)
+        if known is not check:
+            if (known.tolerance, known.wanted, known.unit) != (tolerance, wanted, unit):
+                raise ValueError(f"{what}: one tolerance for all cases, got {known.allowed} and {check.allowed}")
+            known.cases += 1
+            if check.distance > known.distance:
+                known.value = check.value
+        said = f"{what}: {check.measured}, tolerance {check.allowed}"
+        assert check.distance <= tolerance, said  # not-a-number fails
+
+    def grouped(self) -> list[tuple[str, list[Check]]]:
+        """Checks by identity, in the order of `IDENTITIES`."""
+        listed = {identity: [] for identity in IDENTITIES}
+        for check in self.by_name.values():
+            listed[check.identity].append(check)
+        return [(identity, group) for identity, group in listed.items() if group]
+
+    def save(self) -> None:
+        RECORD.parent.mkdir(exist_ok=True)
+        RECORD.write_text(json.dumps([asdict(check) for check in self.by_name.values()], indent=1) + "\n")
+
+    @staticmethod
+    def load() -> "Checks":
+        checks = Checks()
+        for fields in json.loads(RECORD.read_text()):
+            check = Check(**fields)
+            checks.by_name[check.identity, check.what] = check
+        return checks
+
+    def lines(self) -> list[str]:
+        """The list at the end of a run of tests."""
+        out = []
+        for identity, group in self.grouped():
+            out.append(identity)
+            out += [f"  {check.measured:>16}  ({check.allowed})  {check.what}" for check in group]
+        return out
+
+    def page(self) -> str:
+        parts = [HEAD]
+        for identity, group in self.grouped():
+            table = ["| compared | measured | tolerance | cases | test |", "|---|---|---|---|---|"]
+            parts.append(
+                "\n".join([f"## {identity}", IDENTITIES[identity], "", *table, *(c.row for c in group)]) + "\n"
+            )
+        return "\n".join(parts)
+
+
+def main() -> int:
+    RECORD.unlink(missing_ok=True)
+    tests = [sys.executable, "-m", "pytest", "-m", "identity and not soak", "test/eel_dynamics", "-q"]
+    status = subprocess.run(tests, cwd=ROOT).returncode
+    if status:
+        return status
+    PAGE.parent.mkdir(exist_ok=True)
+    PAGE.write_text(Checks.load().page(), encoding="utf-8")
+    print(f"wrote {PAGE.relative_to(ROOT)}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
