@@ -3,11 +3,13 @@
 import sqlite3
 import subprocess
 import sys
+from types import SimpleNamespace
 
 import made_up
 import numpy as np
 import pytest
 from compared import contents, differences
+from eel_viz.abreast import abreast
 from eel_viz.bag import Bag
 from eel_viz.reading import read
 from eel_viz.replay import main
@@ -175,7 +177,7 @@ def test_messages_of_another_version_are_said_once_and_left_out(tmp_path, capsys
         assert any("snub_power" in connection.msgdef.data for connection in reader.connections)
     assert main([str(folder), "-o", str(tmp_path / "run.rrd")]) == 0
     said = capsys.readouterr().err
-    assert "energy: it comes from another version of its message" in said
+    assert "energy: type is another version's: " in said
     assert "nose_power" in said
     assert len(said.splitlines()) == 1
     np.testing.assert_array_equal(read(tmp_path / "run.rrd", entities.POSITION).stamps, STAMPS[:11])
@@ -204,3 +206,36 @@ def test_what_is_no_bag_is_said_in_one_line(tmp_path, capsys, bag, monkeypatch):
     assert "blueprint must be one of overview" in said_in_one_line(capsys, bag, "--blueprint", "mine")
     assert "skin_rate must be >= 0.1 Hz" in said_in_one_line(capsys, bag, "--skin-rate", "0")
     assert "--spawn needs a display" in said_in_one_line(capsys, bag, "--spawn")
+
+
+def test_two_bags_or_two_namespaces_are_laid_over_each_other(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    write_bag(tmp_path / "fine", 0.3)
+    write_bag(tmp_path / "coarse", 0.3, 50.0, stations=11)
+    assert main(["fine", "-o", "both.rrd", "--compare", "coarse", "--blueprint", "compare"]) == 0
+    distance = read(tmp_path / "both.rrd", entities.DISTANCE)
+    np.testing.assert_array_equal(distance.stamps, STAMPS[:31])
+    at_other = distance["scalars"][::2, 0]  # where both have a sample
+    np.testing.assert_allclose(at_other, 0.0, atol=1e-9)
+    assert "| fine | coarse |" in read(tmp_path / "both.rrd", entities.COMPARE_TEXT)["text"][-1][0]
+    write_bag(tmp_path / "two", 0.1, namespaces=("/left", "/right"))
+    assert main(["two", "--namespace", "/left", "--compare", "/right"]) == 0
+    np.testing.assert_array_equal(read(tmp_path / "two.rrd", entities.DISTANCE).stamps, STAMPS[:11])
+    assert "no swimmer in namespace '/none'" in said_in_one_line(
+        capsys, "two", "--namespace", "/left", "--compare", "/none"
+    )
+    assert "blueprint compare" in said_in_one_line(capsys, "fine", "--blueprint", "compare")
+
+
+def test_the_one_who_is_behind_in_time_comes_next():
+    def message(nanoseconds):
+        stamp = SimpleNamespace(sec=0, nanosec=nanoseconds)
+        return SimpleNamespace(header=SimpleNamespace(stamp=stamp))
+
+    first = [("body", "a"), ("energy", message(0)), ("energy", message(20)), ("body", "b"), ("energy", message(0))]
+    second = [("energy", message(5)), ("energy", message(30)), ("odom", message(30))]
+    order = [(which, topic) for which, topic, _ in abreast([first, second])]
+    assert order == [
+        (0, "body"), (0, "energy"), (1, "energy"), (0, "energy"), (0, "body"), (0, "energy"), (1, "energy"), (1, "odom")
+    ]  # fmt: skip
+    assert list(abreast([[], []])) == []

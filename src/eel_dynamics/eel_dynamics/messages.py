@@ -32,6 +32,7 @@ from eel_msgs.msg import (
 
 from .frames import turn_quaternion, turn_vector
 from .parameters import limits
+from .records import outline
 from .scene import Scene
 
 try:
@@ -169,12 +170,10 @@ ENERGY_FIELDS = tuple(name for name, kind in EnergyLedger.get_fields_and_field_t
 
 def body_message(body, scene: Scene, x: np.ndarray, head_frame: str) -> BodyGeometry:
     """The body's outline at the stations `x` [m] and, graded towards the nose where it rounds off, in between."""
-    x = np.union1d(x, body.length * np.linspace(0.0, 1.0, 101) ** 2)
     message = BodyGeometry(length=float(body.length), mass=float((scene.density or body.density) * body.volume))
     message.header.frame_id = head_frame
-    message.x = array.array("d", x.tolist())
-    message.half_width = array.array("d", np.asarray(body.half_width(x), dtype=float).tolist())
-    message.half_height = array.array("d", np.asarray(body.half_height(x), dtype=float).tolist())
+    for name, values in outline(body, x).items():
+        setattr(message, name, array.array("d", values.tolist()))
     return message
 
 

@@ -10,6 +10,7 @@ from .actuators import Actuators, actuators_of
 from .analysis import Analysis
 from .body import Body
 from .energy import EnergyLedger
+from .records import records
 from .scene import Scene
 from .simulation import Simulation, SimulationStopped
 from .summary import describe
@@ -84,6 +85,20 @@ class Run:
     def summary(self, periods: int | None = None) -> str:
         """The run in lines, each number with its unit: as a whole, then over its last `periods` whole periods."""
         return describe(self, periods)
+
+    def to_rerun(self, target, compare: "Run | None" = None, **settings) -> None:
+        """Show the run in Rerun, as the visualiser shows a swimmer: `target` is a file to write (.rrd) or a
+        `rerun.RecordingStream`. compare: another run, laid over this one. settings: some of the visualiser's, such as
+        blueprint="torques", skin_rate=50. Needs the package eel_viz and rerun-sdk; loads are shown of runs that were
+        simulated with load=True."""
+        try:
+            from eel_viz.library import to_rerun
+        except ImportError as error:
+            raise ImportError(f"to_rerun needs the package eel_viz, with rerun-sdk: {error}") from error
+        runs = [self] if compare is None else [self, compare]
+        to_rerun(
+            target, [records(run) for run in runs], [f"{run.law.name} {run.accuracy.name}" for run in runs], **settings
+        )
 
     @property
     def body_mass(self) -> float:

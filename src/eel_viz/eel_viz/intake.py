@@ -73,7 +73,10 @@ class Intake:
         return ", ".join(f"{topic} {count}" for topic, count in self.received.items()) or "nothing"
 
     def _sample(self, topic: str, message) -> None:
-        stamp, values = stamp_of(message), SAMPLES[topic](message)
+        try:
+            stamp, values = stamp_of(message), SAMPLES[topic](message)
+        except AttributeError as error:  # from a bag of long ago
+            raise BadMessage("type", f"is another version's: {error}") from error
         if hasattr(message, "x"):
             self._watch_stations(topic, len(message.x))
         for loggers in self._runs.at(topic, stamp):

@@ -7,6 +7,7 @@ brings out what is there, and must be called at the end. Every row has its own t
 import time
 
 import numpy as np
+import pyarrow as pa
 import rerun as rr
 
 from eel_viz.entities import TIMELINE
@@ -67,17 +68,22 @@ class Outlet:
             return
         path, kind, *names = key
         gathered = dict(zip(names, zip(*rows, strict=True), strict=True))
-        joined = {name: _joined(arrays) for name, arrays in gathered.items()}
-        if isinstance(kind, str):
-            columns = rr.DynamicArchetype.columns(kind, components=joined)
-        else:
-            columns = kind.columns(**joined)
         lengths = {name: [len(array) for array in arrays] for name, arrays in gathered.items()}
+        if isinstance(kind, str):
+            lists = {name: _listed(arrays, lengths[name]) for name, arrays in gathered.items()}
+            parts = list(rr.DynamicArchetype.columns(kind, components=lists))
+        else:
+            columns = kind.columns(**{name: _joined(arrays) for name, arrays in gathered.items()})
+            parts = [each.partition(lengths[each.descriptor.component.rpartition(":")[2]]) for each in columns]
         times = rr.TimeColumn(TIMELINE, duration=np.array(stamps, dtype="timedelta64[ns]"))
-        parts = [each.partition(lengths[each.descriptor.component.rpartition(":")[2]]) for each in columns]
         rr.send_columns(path, [times], parts, recording=self._stream)
         stamps.clear()
         rows.clear()
+
+
+def _listed(arrays: tuple[np.ndarray, ...], lengths: list[int]) -> pa.ListArray:
+    """A list for each row; of plain numbers rerun would make a list for each number."""
+    return pa.ListArray.from_arrays(np.cumsum([0, *lengths], dtype=np.int32), np.concatenate(arrays))
 
 
 def _joined(arrays: tuple[np.ndarray, ...]):

@@ -25,7 +25,7 @@ NAME = "record"
 GONE = 1.0  # s without publishers and messages, after which --stop-with-publisher ends it
 LOOK = 0.2  # s between two looks at who is there
 SAVE = 1.0  # s between two times at which the bag is made whole; it is longer
-SHARE = 20.0  # than so many times what that takes
+SHARE = 20.0  # than so many times the processor's time that it takes
 UNASKED = ("/rosout", "/parameter_events")  # recorded only by name
 
 
@@ -36,7 +36,7 @@ class Recorder(Node):
         super().__init__(NAME, namespace=options.namespace)
         self._options = options
         self._bag = GrowingBag(options.output)
-        self._saved, self._saving = time.monotonic(), 0.0  # s: when it was whole last, and how long that took
+        self._saved, self._saving = time.monotonic(), 0.0  # s: when it was whole last, and what that cost
         self.failure = ""
         self.counts: Counter[str] = Counter()
         self._saved_messages = 0
@@ -77,7 +77,7 @@ class Recorder(Node):
 
     def _save(self) -> bool:
         """Make the bag whole; whether that was possible."""
-        began = time.monotonic()
+        began = time.process_time()
         try:
             self._bag.save()
         except OSError as error:
@@ -85,7 +85,7 @@ class Recorder(Node):
             self.failure = f"{self._options.output}: {error.strerror}: the bag ends with the {saved} messages before"
             return False
         self._saved = time.monotonic()
-        self._saving = self._saved - began
+        self._saving = time.process_time() - began
         self._saved_messages = self.counts.total()
         return True
 

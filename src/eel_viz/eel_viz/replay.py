@@ -7,14 +7,17 @@ it goes. A reset in the bag begins a second file, as it does live.
 """
 
 import argparse
+import contextlib
 import os
 import sys
 import time
+from collections.abc import Iterator
 from dataclasses import fields
+from types import SimpleNamespace
 
+from eel_viz.abreast import show
 from eel_viz.bag import Bag
-from eel_viz.intake import SAMPLES, Intake
-from eel_viz.runs import Runs
+from eel_viz.intake import SAMPLES
 from eel_viz.settings import Settings, limits
 from eel_viz.sinks import Say, destinations
 from eel_viz.topics import GLOBAL, OWN
@@ -26,8 +29,8 @@ OPTIONS = ("blueprint", "rate", "skin_rate", "colour_limit", "torque_limit", "fo
 OPTIONS += ("load_scale", "end_force_scale", "viewer")
 
 
-class Replay:
-    """Hands the messages of one swimmer in `bag` to an intake. `namespace`: which; None: the one that is there."""
+class Source:
+    """The messages of one swimmer in `bag`. `namespace`: which; None: the one that is there."""
 
     def __init__(self, bag: Bag, namespace: str | None, warn: Say) -> None:
         self._bag, self._warn = bag, warn
@@ -48,23 +51,20 @@ class Replay:
             self._bag.topics[topic].publishers > 1 for topic, relative in self._topics.items() if relative == name
         )
 
-    def feed(self, intake: Intake) -> None:
-        """All messages, in order; the body first, which is valid at all times."""
+    def __iter__(self) -> Iterator[tuple[str, object]]:
+        """Topic and message of all messages, in order; the body first, which is valid at all times."""
         body = f"{self.namespace}/body"
         first = next((message for _, _, message in self._bag.messages(body)), None) if body in self._topics else None
         if first is not None:
-            self._take(intake, "body", first)
-        for topic, _, message in self._bag.messages(*self._topics, unreadable=self._leave_out):
-            if topic == body and first is not None:
+            yield "body", first
+        for k, (topic, _, message) in enumerate(self._bag.messages(*self._topics, unreadable=self._leave_out)):
+            name = self._topics[topic]
+            if name == "body" and first is not None:
                 first = None
-                continue
-            self._take(intake, self._topics[topic], message)
-
-    def _take(self, intake: Intake, name: str, message) -> None:
-        try:
-            intake.take(name, message)
-        except AttributeError as error:
-            self._leave_out(name, f"it comes from another version of its message: {error}")
+            elif name == "curvature_law":  # its arrays cannot be compared; each counts as a law of its own
+                yield name, SimpleNamespace(name=message.name, place=k)
+            else:
+                yield name, message
 
     def _leave_out(self, topic: str, why: str) -> None:
         if topic not in self._told:
@@ -98,27 +98,39 @@ def replay(
     path: str | os.PathLike[str],
     settings: Settings,
     *,
+    other: str | os.PathLike[str] | None = None,
     namespace: str | None = None,
     say: Say = lambda text: None,
     warn: Say = lambda text: None,
 ) -> str:
-    """The bag at `path` to where `settings.sink` says; returns in words what it held. `ValueError` in one line."""
-    with Bag(path) as bag:
-        source = Replay(bag, namespace, warn)
-        if bag.damage:
-            warn(f"{path} is unfinished or damaged ({bag.damage}): shown as far as it goes")
-        runs = Runs(
+    """The bag at `path` to where `settings.sink` says; returns in words what it held. `ValueError` in one line.
+
+    `other` is a bag to compare it with; `settings.compare`, which is its name, or names the other swimmer's namespace
+    in the same bag.
+    """
+    with contextlib.ExitStack() as stack:
+        paths = [path, *([other] if other else [path] if settings.compare else [])]
+        spaces = [namespace, *([None] if other else [settings.compare])]
+        sources, names = [], []
+        for where, space in zip(paths, spaces, strict=False):
+            bag = stack.enter_context(Bag(where))
+            sources.append(Source(bag, space, warn))
+            names.append(name_of(where) if other else sources[-1].namespace.strip("/") or "eel")
+            if bag.damage:
+                warn(f"{where} is unfinished or damaged ({bag.damage}): shown as far as it goes")
+        return show(
+            sources,
             destinations(settings, say, warn),
-            name=source.namespace.strip("/") or "eel",
+            names=names,
+            namespaces=[source.namespace for source in sources],
             warn=warn,
-            crowded=source.crowded,
+            crowded=sources[0].crowded,
         )
-        intake = Intake(runs, namespace=source.namespace, warn=warn)
-        try:
-            source.feed(intake)
-        finally:
-            told = intake.close()
-        return told
+
+
+def name_of(bag: str | os.PathLike[str]) -> str:
+    """What a bag is called: the name of its folder or file."""
+    return os.path.basename(os.path.abspath(bag)).removesuffix(".mcap").removesuffix(".db3")
 
 
 def parser() -> argparse.ArgumentParser:
@@ -134,6 +146,13 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument("bag", help="folder of the bag, or a file of one")
     made.add_argument("-o", "--output", metavar="RRD", help="recording to write (default: BAG.rrd, in this folder)")
     made.add_argument("--namespace", metavar="NS", help="of the swimmer, where the bag has more than one")
+    made.add_argument(
+        "--compare",
+        default="",
+        metavar="OTHER",
+        help="another bag, or with /NS another namespace of this one: its swimmer is laid over this one's, their "
+        "difference drawn, in the arrangement compare",
+    )
     made.add_argument("--spawn", action="store_true", help="open a viewer on the recording when it is done")
     made.add_argument("--connect", action="store_true", help="send it to a viewer that runs (see --viewer), too")
     for item in fields(Settings):
@@ -151,7 +170,8 @@ def parser() -> argparse.ArgumentParser:
 def main(arguments: list[str] | None = None) -> int:
     """Command line; status 0, 2 with one line on stderr if it cannot be done, 130 after Ctrl-C."""
     chosen = parser().parse_args(arguments)
-    output = chosen.output or f"{os.path.basename(os.path.abspath(chosen.bag)).removesuffix('.mcap')}.rrd"
+    output = chosen.output or f"{name_of(chosen.bag)}.rrd"
+    other = chosen.compare if os.path.exists(chosen.compare) else None
 
     def warn(text: str) -> None:
         sys.stderr.write(f"{NAME}: {text}\n")
@@ -161,9 +181,10 @@ def main(arguments: list[str] | None = None) -> int:
         if chosen.spawn and not display():
             raise ValueError("--spawn needs a display, and there is none")
         values = {name: getattr(chosen, name) for name in OPTIONS}
+        values["compare"] = name_of(other) if other else chosen.compare
         sink = ("save", "connect") if chosen.connect else ("save",)
         settings = Settings.from_values({**values, "sink": sink, "recording": output})
-        told = replay(chosen.bag, settings, namespace=chosen.namespace, say=print, warn=warn)
+        told = replay(chosen.bag, settings, other=other, namespace=chosen.namespace, say=print, warn=warn)
     except (ValueError, OSError) as error:
         warn(" ".join(str(error).split()))
         return 2

@@ -8,9 +8,11 @@ import time
 from collections import deque
 from collections.abc import Callable
 
+from rerun import RecordingStream
+
 from eel_viz.loggers import Loggers
 from eel_viz.messages import Body, Status
-from eel_viz.sinks import Destination, Say, close_stream
+from eel_viz.sinks import Destination, Say
 
 RETRY = 2.0  # s of wall time between two attempts at an absent viewer
 WALL_TIME = 10**17  # ns: later stamps are no simulation time
@@ -23,14 +25,14 @@ class Run:
     def __init__(self, number: int) -> None:
         self.number = number
         self.loggers: dict[int, Loggers] = {}  # by the destination's place in the list
-        self.streams: dict[int, object] = {}
+        self.streams: list[tuple[Destination, RecordingStream]] = []
         self.latest = 0  # ns
 
     def close(self) -> None:
         for loggers in self.loggers.values():
             loggers.send()
-        for stream in self.streams.values():
-            close_stream(stream)
+        for destination, stream in self.streams:
+            destination.end(stream)
         self.streams.clear()
         self.loggers.clear()
 
@@ -142,7 +144,8 @@ class Runs:
             if stream is None:
                 continue
             loggers = Loggers(stream, destination.settings, destination.rates, self._name)
-            run.streams[place], run.loggers[place] = stream, loggers
+            run.streams.append((destination, stream))
+            run.loggers[place] = loggers
             if self._body is not None:
                 loggers.body(self._body)
             if self._law is not None:

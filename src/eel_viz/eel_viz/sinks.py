@@ -46,6 +46,10 @@ class Destination:
         stream.send_recording_name(name)
         return stream
 
+    def end(self, stream: rr.RecordingStream) -> None:
+        """End a run's stream."""
+        close_stream(stream)
+
     def close(self) -> None:
         """End what is not a run's: a server."""
 

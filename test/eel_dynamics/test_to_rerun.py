@@ -1,0 +1,147 @@
+"""`Run.to_rerun`: bit by bit what the visualiser makes of the node's own messages of the same run."""
+
+import subprocess
+import sys
+from copy import deepcopy
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from eel_dynamics.messages import Sample, body_message, diagnostic_array
+from eel_dynamics.records import records
+
+from eel_dynamics import Scene, simulate
+from eel_gaits import falling, straight
+from eel_msgs.msg import CurvatureLaw
+
+PROFILES = ("backbone", "section_orientation", "curvature", "curvature_rate", "torque", "force", "fluid_force")
+PROFILES += ("resistive_force", "tail_force", "nose_force", "position", "orientation", "twist")
+
+
+@pytest.fixture(scope="module")
+def run():
+    return simulate(falling(), duration=1.0, sample_period=0.02, load=True)
+
+
+def node_messages(run, statuses):
+    """Topics and ROS messages, as the node fills and sends them."""
+    yield "body", body_message(run.body, run.scene, run.x, "base_link")
+    yield "curvature_law", CurvatureLaw(name=run.law.name)
+    yield "diagnostics", statuses[0]
+    sample = Sample(run.x, run.scene, "odom", "base_link")
+    for k, time in enumerate(run.time):
+        sample.set_time(round(time * 1e9))
+        energy = SimpleNamespace(**{name: run.energy[name][k] for name in run.energy.keys()})  # noqa: SIM118
+        snapshot = SimpleNamespace(energy=energy, **{name: getattr(run, name)[k] for name in PROFILES})
+        for topic in sample.messages:
+            if not topic.startswith("/"):
+                yield topic, deepcopy(sample.fill(topic, snapshot))  # the node refills what it has sent
+    yield "diagnostics", statuses[1]
+
+
+def test_it_is_what_the_visualiser_makes_of_the_nodes_messages(run, tmp_path):
+    from compared import contents, differences
+    from eel_viz.library import to_rerun
+
+    worst = {
+        "energy_residual_worst": float(np.abs(run.energy.residual).max()),
+        "closure_torque_relative": float(run.closure_torque.max() / np.abs(run.torque).max()),
+    }
+    told = {"law": "falling", "accuracy": "standard"}
+    statuses = [
+        diagnostic_array(0.0, "/simulate", 0, "computed", told),
+        diagnostic_array(1.0, "/simulate", 0, "computed", told | worst),
+    ]
+    run.to_rerun(tmp_path / "run.rrd")
+    to_rerun(tmp_path / "messages.rrd", [node_messages(run, statuses)], ["falling standard"])
+    assert differences(tmp_path / "run.rrd", tmp_path / "messages.rrd", texts=True) == []
+    found = contents(tmp_path / "run.rrd")
+    assert len(found) > 200
+    assert len(found["/numbers/hydrodynamic_load", "HydrodynamicLoad:force_2"][0]) == 51
+
+
+def test_numbers_are_those_of_the_run_in_rep_103_axes(run, tmp_path):
+    from eel_viz.reading import read
+
+    from eel_viz import entities
+
+    run.to_rerun(str(tmp_path / "run.rrd"), skin_rate=10.0, blueprint="torques")
+    position = read(tmp_path / "run.rrd", entities.POSITION)
+    np.testing.assert_array_equal(position.time, np.round(run.time, 9))
+    np.testing.assert_array_equal(position["scalars"], run.position * (-1.0, -1.0, 1.0))
+    wrench = read(tmp_path / "run.rrd", entities.WRENCH_NUMBERS)
+    np.testing.assert_array_equal(wrench["torque_3"], run.torque[:, :, 2])
+    np.testing.assert_array_equal(read(tmp_path / "run.rrd", entities.RESIDUAL)["scalars"][:, 0], run.energy.residual)
+    assert len(read(tmp_path / "run.rrd", entities.SKIN)["vertex_positions"]) == 11  # 10 Hz
+    text = read(tmp_path / "run.rrd", entities.RUN)["text"][-1][0]
+    assert "accuracy standard" in text
+    assert "worst residual" in text
+
+
+def test_a_stream_of_the_caller_s_stays_open(run, tmp_path):
+    import rerun as rr
+    from eel_viz.reading import read
+
+    from eel_viz import entities
+
+    stream = rr.RecordingStream("mine")
+    stream.save(str(tmp_path / "mine.rrd"))
+    run.to_rerun(stream)
+    stream.log("/mine", rr.TextLog("after it"), static=True)
+    stream.flush()
+    stream.disconnect()
+    assert read(tmp_path / "mine.rrd", "/mine", static=True)["text"][0][0] == "after it"
+    np.testing.assert_array_equal(read(tmp_path / "mine.rrd", entities.SPEED).time, np.round(run.time, 9))
+
+
+def test_two_runs_are_laid_over_each_other(run, tmp_path):
+    from eel_viz.reading import read
+
+    from eel_viz import entities
+
+    other = simulate(falling(), duration=1.0, sample_period=0.02, accuracy="draft", stations=26)
+    run.to_rerun(tmp_path / "both.rrd", other, blueprint="compare")
+    distance = read(tmp_path / "both.rrd", entities.DISTANCE)
+    np.testing.assert_array_equal(distance.time, np.round(run.time, 9))
+    expected = 1e3 * np.linalg.norm(run.position - other.position, axis=1)
+    np.testing.assert_allclose(distance["scalars"][:, 0], expected, rtol=1e-9, atol=1e-12)
+    assert expected.max() > 0.0
+    text = read(tmp_path / "both.rrd", entities.COMPARE_TEXT)["text"][-1][0]
+    assert "falling standard" in text
+    assert "falling draft" in text
+
+
+def test_what_a_run_has_not_computed_is_not_shown(tmp_path):
+    bare = simulate(straight(), duration=0.1, scene=Scene(internal_wrench=False, ledger=False))
+    topics = {topic for topic, _ in records(bare)}
+    assert topics == {
+        "body", "curvature_law", "diagnostics", "head_pose", "head_twist", "odom", "backbone", "curvature"
+    }  # fmt: skip
+    bare.to_rerun(tmp_path / "bare.rrd")
+    assert (tmp_path / "bare.rrd").stat().st_size > 1000
+
+
+def test_what_cannot_be_is_said(run, tmp_path):
+    with pytest.raises(ValueError, match="there is no setting colour; see"):
+        run.to_rerun(tmp_path / "run.rrd", colour=1)
+    with pytest.raises(ValueError, match="sink cannot be set"):
+        run.to_rerun(tmp_path / "run.rrd", sink=("spawn",))
+    with pytest.raises(ValueError, match="blueprint must be one of overview"):
+        run.to_rerun(tmp_path / "run.rrd", blueprint="mine")
+    with pytest.raises(ValueError, match=r"recording '/proc/none.rrd' cannot be written"):
+        run.to_rerun("/proc/none.rrd")
+    code = (
+        "import sys\nsys.modules['eel_viz'] = None\nfrom eel_dynamics import simulate\nfrom eel_gaits import falling\n"
+        "run = simulate(falling(), duration=0.1)\n"
+        "try: run.to_rerun('x.rrd')\nexcept ImportError as error: print(error)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=100, cwd=tmp_path)
+    assert "to_rerun needs the package eel_viz, with rerun-sdk" in done.stdout, done.stderr
+
+
+def test_the_library_alone_imports_neither_viz_nor_rerun():
+    code = (
+        "import sys, eel_dynamics, eel_viz\nassert 'rerun' not in sys.modules and 'eel_viz.library' not in sys.modules"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    assert done.returncode == 0, done.stderr
