@@ -6,10 +6,11 @@ import numpy as np
 import pyarrow as pa
 from rerun.chunk import RrdReader
 
+ALWAYS = 2**63 - 1  # ns
 TEXT = "/run/"  # what topics tell each other there depends on the order in which they come
 
 
-def contents(path: Path) -> dict[tuple[str, str], tuple[np.ndarray, pa.Array]]:
+def contents(path: Path, until: int = ALWAYS) -> dict[tuple[str, str], tuple[np.ndarray, pa.Array]]:
     """(entity, component): times [ns] in order, -1 for always, and the values at each."""
     pieces: dict[tuple[str, str], list] = {}
     for chunk in RrdReader(str(path)).stream():
@@ -27,13 +28,17 @@ def contents(path: Path) -> dict[tuple[str, str], tuple[np.ndarray, pa.Array]]:
     for key, parts in pieces.items():
         times = np.concatenate([part[0] for part in parts])
         order = np.argsort(times, kind="stable")
+        order = order[times[order] <= until]
         found[key] = (times[order], pa.concat_arrays([part[1] for part in parts]).take(order))
     return found
 
 
-def differences(one: Path, other: Path, *, texts: bool = False) -> list[str]:
-    """What is not the same in both, in words; the recordings' own properties apart, and `texts` only on demand."""
-    first, second = contents(one), contents(other)
+def differences(one: Path, other: Path, *, texts: bool = False, until: int = ALWAYS) -> list[str]:
+    """What is not the same in both, in words; the recordings' own properties apart, and `texts` only on demand.
+
+    `until`: what comes after it [ns] is not looked at.
+    """
+    first, second = contents(one, until), contents(other, until)
     said = [f"{key} is in one alone" for key in sorted(first.keys() ^ second.keys())]
     for key in sorted(first.keys() & second.keys()):
         if key[0].startswith("/__properties") or (key[0].startswith(TEXT) and not texts):

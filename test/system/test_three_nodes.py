@@ -4,6 +4,8 @@ Messages and Rerun's scalars are double precision: equal but for the order of ad
 precision: 1e-6.
 """
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from run_of_three_nodes import DURATION, RATE, SAMPLES, STATIONS, stamps, swim
@@ -193,3 +195,17 @@ def test_the_bag_replayed_without_ros_is_the_recording_of_the_live_visualiser(re
     assert main([str(results.bag), "-o", str(tmp_path / "replayed.rrd")]) == 0
     assert differences(results.recording, tmp_path / "replayed.rrd") == []
     assert len(contents(tmp_path / "replayed.rrd")) > 150
+
+
+@pytest.mark.timeout(180)
+def test_the_bag_played_to_a_live_visualiser_is_shown_as_the_run_was(results, start, fresh_domain, tmp_path):
+    from compared import differences
+
+    node = start(
+        "visualiser", "--ros-args", "-p", "sink:=[save]", "-p", f"recording:={tmp_path / 'played.rrd'}",
+        "-p", "stop_with_publisher:=true",
+    )  # fmt: skip
+    player = start("python", str(Path(__file__).with_name("bag_player.py")), str(results.bag), "201")  # 2 s of each
+    assert player.wait(120.0) == 0, player.output()
+    assert node.wait(60.0) == 0, node.output()
+    assert differences(results.recording, tmp_path / "played.rrd", until=2 * 10**9) == []

@@ -81,11 +81,11 @@ class Visualiser(Node):
 
     def _listen(self, space: str, intake: Intake) -> None:
         """Hear the swimmer in the namespace `space`."""
-        for topic, kind in SAMPLED.items():
-            self._hear(space, intake, topic, kind)
-        self._hear(space, intake, "body", BodyGeometry, latched=True)
+        self._hear(space, intake, "body", BodyGeometry, latched=True)  # first, for the others need it
         self._hear(space, intake, "curvature_law", CurvatureLaw, latched=True)
         self._hear(space, intake, "curvature_law", CurvatureLaw)
+        for topic, kind in SAMPLED.items():
+            self._hear(space, intake, topic, kind)
         self._hear("", intake, "diagnostics", DiagnosticArray)
 
     def _hear(self, space: str, intake: Intake, topic: str, kind: type, *, latched: bool = False) -> None:
