@@ -13,6 +13,7 @@ from functools import partial
 
 import numpy as np
 from against_paper_scheme import paper_scheme
+from batch import batch
 from eel_dynamics.integrator import rate_of_state
 from growth import growth
 from numba import njit
@@ -117,6 +118,7 @@ FIGURES = {
     "switches": switches,
     "start": start,
     "growth": growth,
+    "batch": batch,
     "paper_scheme": paper_scheme,
 }
 
