@@ -22,8 +22,8 @@ ALONE = 20  # swimmers, one by one
 
 def batch():
     """Falling gaits of periods from 0.8 to 1.4 s, 10 s each, target 1e-3, motion alone with one sample, set-up
-    included: times real time per second of CPU, by calls of simulate and in batches of one thread; then what more threads gain
-    in wall time (which only an idle machine tells) and cost in CPU time."""
+    included: times real time per second of CPU, by calls of simulate and in batches of one thread; then what more
+    threads gain in wall time (which only an idle machine tells) and what they cost in CPU time."""
     cases = {"simulate, one by one": (ALONE, partial(_one_by_one, _laws(ALONE)))}
     cases |= {f"batch of {size}": (size, partial(_together, _laws(size), 1)) for size in SIZES}
     times = times_in_turn({name: swim for name, (_, swim) in cases.items()}, REPEATS)
