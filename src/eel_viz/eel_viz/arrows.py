@@ -45,10 +45,13 @@ class Arrows:
             self._draw(stamp, backbone, load)
 
     def _draw(self, stamp: int, backbone: Backbone, load: Load) -> None:
-        x = np.linspace(backbone.x[0], backbone.x[-1], ALONG + 2)[1:-1]
-        origins, axes = Resampling(backbone.x, x).centre_line(backbone.position, backbone.orientation)
-        force = Resampling(load.profiles.x, x).linear(load.profiles.together("force_1", "force_2", "force_3"))
-        self._log(stamp, entities.LOAD, origins, np.einsum("nij,nj->ni", axes, force) * self._load_scale)
+        wanted = np.linspace(backbone.x[0], backbone.x[-1], ALONG + 2)[1:-1]
+        along = np.unique(np.searchsorted(backbone.x, wanted - 1e-9))  # stations, so that nothing is interpolated
+        x, force = backbone.x[along], load.profiles.together("force_1", "force_2", "force_3")
+        same = np.array_equal(load.profiles.x, backbone.x)
+        force = force[along] if same else Resampling(load.profiles.x, x).linear(force)
+        vectors = world_from_section(backbone.orientation[along], force) * self._load_scale
+        self._log(stamp, entities.LOAD, backbone.position[along], vectors)
         ends = [0, -1]
         forces = world_from_section(backbone.orientation[ends], np.stack([load.nose, load.tail]))
         self._log(stamp, entities.LOAD_ENDS, backbone.position[ends], forces * self._end_scale)

@@ -10,6 +10,7 @@ from collections.abc import Callable
 from rclpy.callback_groups import CallbackGroup
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
+from rclpy.serialization import deserialize_message
 
 BATCH = 64  # messages of one topic before the next has its turn
 
@@ -42,14 +43,17 @@ class Inbox:
         self._subscriptions.append((made, show))
 
     def take(self) -> int:
-        """Show what has come, `BATCH` of a topic at most; returns how many."""
+        """Show what has come, `BATCH` of a topic at most; returns how many.
+
+        Messages are taken as bytes: otherwise a message would be made even where none has come.
+        """
         count = 0
         for subscription, show in self._subscriptions:
             with subscription.handle:  # else it could be destroyed meanwhile
                 for _ in range(BATCH):
-                    taken = subscription.handle.take_message(subscription.msg_type, False)
+                    taken = subscription.handle.take_message(subscription.msg_type, True)
                     if taken is None:
                         break
-                    show(taken[0])
+                    show(deserialize_message(taken[0], subscription.msg_type))
                     count += 1
         return count

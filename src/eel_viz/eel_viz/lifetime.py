@@ -12,7 +12,7 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
 ATTEND = 0.1  # s between two calls of `attend`
-PAUSE = 0.02  # s between two calls of `work` that found nothing
+PAUSE = 0.03  # s between two calls of `work` that found nothing
 
 
 def live(

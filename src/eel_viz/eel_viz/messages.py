@@ -192,7 +192,7 @@ def _stations(values) -> np.ndarray:
     x = _finite("x", np.asarray(values, dtype=float))
     if len(x) < 2:
         raise BadMessage("x", f"must have at least 2 stations, got {len(x)}")
-    if not np.all(np.diff(x) > 0.0):
+    if not (x[1:] > x[:-1]).all():
         raise BadMessage("x", "must increase from station to station")
     return x
 
@@ -205,7 +205,7 @@ def _sized(name: str, values, size: int) -> np.ndarray:
 
 
 def _finite(name: str, array: np.ndarray) -> np.ndarray:
-    if not np.all(np.isfinite(array)):
+    if not np.isfinite(array).all():
         raise BadMessage(name, "has values that are not finite")
     return array
 
@@ -215,6 +215,6 @@ def _vector(name: str, vector) -> np.ndarray:
 
 
 def _check_unit(name: str, quaternions: np.ndarray) -> None:
-    error = np.abs(np.sqrt(np.sum(np.square(quaternions), axis=-1)) - 1.0)
-    if not np.all(error <= UNIT_TOLERANCE):  # NaN too
+    error = np.abs(np.sqrt(np.square(quaternions).sum(axis=-1)) - 1.0)
+    if not (error <= UNIT_TOLERANCE).all():  # NaN too
         raise BadMessage(name, f"must have quaternions of unit norm, worst error {np.max(error):g}")

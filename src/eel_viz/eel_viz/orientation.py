@@ -3,18 +3,26 @@
 The section axes of the messages differ from them by half a turn about z: 1 = -x, 2 = -y, 3 = +z.
 """
 
+import math
+
 import numpy as np
 
 
 def world_from_body(orientation: np.ndarray) -> np.ndarray:
     """Rotation matrices of unit quaternions `orientation`, shape (..., 4); returns (..., 3, 3), columns = body axes."""
-    x, y, z, w = np.moveaxis(np.asarray(orientation, dtype=float), -1, 0)
-    rows = [
-        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-    ]
-    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+    q = np.asarray(orientation, dtype=float)
+    x, y, z, w = q[..., 0], q[..., 1], q[..., 2], q[..., 3]
+    matrix = np.empty((*q.shape[:-1], 3, 3))
+    matrix[..., 0, 0] = 1 - 2 * (y * y + z * z)
+    matrix[..., 0, 1] = 2 * (x * y - z * w)
+    matrix[..., 0, 2] = 2 * (x * z + y * w)
+    matrix[..., 1, 0] = 2 * (x * y + z * w)
+    matrix[..., 1, 1] = 1 - 2 * (x * x + z * z)
+    matrix[..., 1, 2] = 2 * (y * z - x * w)
+    matrix[..., 2, 0] = 2 * (x * z - y * w)
+    matrix[..., 2, 1] = 2 * (y * z + x * w)
+    matrix[..., 2, 2] = 1 - 2 * (x * x + y * y)
+    return matrix
 
 
 def world_from_section(orientation: np.ndarray, vectors: np.ndarray) -> np.ndarray:
@@ -25,8 +33,8 @@ def world_from_section(orientation: np.ndarray, vectors: np.ndarray) -> np.ndarr
 def attitude(orientation: np.ndarray) -> tuple[float, float, float]:
     """Heading, pitch, roll [rad] of one unit quaternion: yaw about z (0 = +x, positive to the left), pitch positive
     nose up, roll positive right side down (Z-Y-X angles, pitch with the sign turned)."""
-    matrix = world_from_body(orientation)
-    heading = np.arctan2(matrix[1, 0], matrix[0, 0])
-    pitch = np.arcsin(np.clip(matrix[2, 0], -1.0, 1.0))
-    roll = np.arctan2(matrix[2, 1], matrix[2, 2])
-    return float(heading), float(pitch), float(roll)
+    x, y, z, w = (float(value) for value in orientation)
+    heading = math.atan2(2 * (x * y + z * w), 1 - 2 * (y * y + z * z))
+    pitch = math.asin(max(-1.0, min(1.0, 2 * (x * z - y * w))))
+    roll = math.atan2(2 * (y * z + x * w), 1 - 2 * (x * x + y * y))
+    return heading, pitch, roll
