@@ -113,7 +113,7 @@ def test_the_table_has_both_runs(made):
     text = read(path, entities.COMPARE_TEXT)["text"][-1][0]
     assert "| | standard | draft |" in text
     assert "| law | made up | another |" in text
-    assert "heads apart: at most **5 mm**" in text
+    assert "heads apart by at most **5 mm**" in text
 
 
 def test_the_order_of_the_two_does_not_matter(made, tmp_path):

@@ -159,7 +159,7 @@ def test_the_summary_counts_path_speed_and_greatest_torque():
     for k in range(5):
         summary.move(k * 10**9, np.array([0.5 * k, 0.0, 0.0]))
         if k == 2:
-            assert "law **falling**, waiting\n" in summary.text()
+            assert "law **falling**, waiting  \n" in summary.text()
             assert "real-time factor 0" in summary.text()
     assert "waiting" not in summary.text()  # that was 3 s ago
     assert "real-time factor" not in summary.text()

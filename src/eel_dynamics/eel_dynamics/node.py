@@ -84,7 +84,7 @@ class DynamicsNode(Node):
         clock.look(values.clock)
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         self.create_timer(0.25, lambda: clock.look(self.parameters.values.clock), clock=steady)
-        self.create_timer(1.0, self.tell, clock=steady)
+        self.create_timer(0.1, lambda: self.status.due() and self.tell(), clock=steady)
 
     def tell(self, final: bool = False):
         """Publishes /diagnostics."""

@@ -1,4 +1,8 @@
-"""How the run goes, as the level, the line and the values of /diagnostics."""
+"""How the run goes, as the level, the line and the values of /diagnostics, and when there is something to tell."""
+
+import time
+
+PERIOD = 1.0  # s of wall time, and of simulation time, after which it is told again
 
 
 class Status:
@@ -7,6 +11,17 @@ class Status:
     def __init__(self, march, report, accuracy):
         self._march, self._report, self._accuracy = march, report, accuracy
         self._seen = (0.0, 0.0)  # s: simulation time, wall time marched
+        self._told = (-PERIOD, 0.0, None)  # s: wall time, simulation time, and the state that was told
+
+    def due(self) -> bool:
+        """Whether to tell: once a second of wall time and of simulation time, and when the state has changed."""
+        wall, simulated, state = self._told
+        march = self._march
+        return (
+            time.monotonic() - wall >= PERIOD
+            or abs(march.time - simulated) >= PERIOD
+            or (march.standing, self._report.state()) != state
+        )
 
     def collect(self, publishers_of_laws: int, final: bool = False) -> tuple[int, str, dict]:
         """Level, text, values; the real-time factor is that since the last collection, at the end that of the run."""
@@ -17,7 +32,8 @@ class Status:
             self._report.end("laws", "no more than one publisher of curvature_law again")
         before, self._seen = (0.0, 0.0) if final else self._seen, (march.time, march.marched_for)
         simulated, wall = self._seen[0] - before[0], self._seen[1] - before[1]
-        level, warnings = self._report.state()
+        level, warnings = state = self._report.state()
+        self._told = (time.monotonic(), march.time, (march.standing, state))
         values = {
             "law": march.law,
             "accuracy": self._accuracy,

@@ -21,14 +21,18 @@ _PAST = rrb.VisibleTimeRanges(
 )
 
 
-def arrangement(first: str = "overview", *, live: bool = False, compare: bool = False) -> rrb.Blueprint:
+def arrangement(
+    first: str = "overview", *, live: bool = False, compare: bool = False, frames: bool = False
+) -> rrb.Blueprint:
     """All arrangements, `first` in front; `live` follows the newest data, else the cursor stands at the start;
-    `compare`: there is another run to compare with."""
+    `compare`: there is another run to compare with; `frames`: the axes of head and tail are shown."""
     if first not in BLUEPRINTS:
         raise ValueError(f"blueprint must be one of {', '.join(BLUEPRINTS)}, got {first!r}")
-    tabs = {"overview": overview(), "torques": torques(), "motion": motion()}
+    tabs = {
+        name: make(frames=frames) for name, make in (("overview", overview), ("torques", torques), ("motion", motion))
+    }
     if compare or first == "compare":
-        tabs["compare"] = comparison()
+        tabs["compare"] = comparison(frames=frames)
     return rrb.Blueprint(
         rrb.Tabs(*tabs.values(), active_tab=list(tabs).index(first)),
         rrb.TopPanel(state="hidden"),
@@ -40,11 +44,11 @@ def arrangement(first: str = "overview", *, live: bool = False, compare: bool = 
     )
 
 
-def overview() -> rrb.Container:
+def overview(*, frames: bool = False) -> rrb.Container:
     """The swimmer, its profiles, its power, and whether the run can be trusted."""
     return rrb.Horizontal(
         rrb.Vertical(
-            following_view(),
+            rrb.Tabs(following_view(frames=frames), standing_view(frames=frames)),
             rrb.Horizontal(speed_view(), power_view()),
             row_shares=[2.3, 1.0],
         ),
@@ -53,17 +57,17 @@ def overview() -> rrb.Container:
             profile_view(entities.FORCE, "Internal force N(X)"),
             heat_map_view(),
             rrb.Horizontal(run_tabs(), residual_view(), column_shares=[1.1, 1.0]),
-            row_shares=[1.2, 1.2, 1.15, 1.0],
+            row_shares=[1.15, 1.15, 1.15, 1.15],
         ),
         column_shares=[1.15, 1.0],
         name="overview",
     )
 
 
-def torques() -> rrb.Container:
+def torques(*, frames: bool = False) -> rrb.Container:
     """What the actuators feel."""
     return rrb.Horizontal(
-        rrb.Vertical(following_view(), heat_map_view(), row_shares=[1.5, 1.0]),
+        rrb.Vertical(following_view(frames=frames), heat_map_view(), row_shares=[1.5, 1.0]),
         rrb.Vertical(
             profile_view(entities.TORQUE, "Internal torque C(X)"),
             profile_view(entities.FORCE, "Internal force N(X)"),
@@ -73,26 +77,29 @@ def torques() -> rrb.Container:
     )
 
 
-def motion() -> rrb.Container:
+def motion(*, frames: bool = False) -> rrb.Container:
     """Where the head goes, and how."""
     return rrb.Horizontal(
-        rrb.Vertical(standing_view(), speed_view(), row_shares=[2.0, 1.0]),
+        rrb.Vertical(
+            standing_view(frames=frames),
+            rrb.Horizontal(speed_view(), _series("Kinetic energy [J]", entities.KINETIC)),
+            row_shares=[2.1, 1.0],
+        ),
         rrb.Vertical(
             _series("Attitude of the head [deg]", entities.ATTITUDE),
             _series("Velocity of the head in base_link [m/s]", entities.LINEAR),
             _series("Angular velocity of the head in base_link [rad/s]", entities.ANGULAR),
-            _series("Kinetic energy [J]", entities.KINETIC),
         ),
         column_shares=[1.3, 1.0],
         name="motion",
     )
 
 
-def comparison() -> rrb.Container:
+def comparison(*, frames: bool = False) -> rrb.Container:
     """Two runs, and how they differ."""
     return rrb.Horizontal(
         rrb.Vertical(
-            following_view("Both swimmers, the other as hoops", both=True, arrows=False),
+            following_view("Both swimmers, the other as hoops", both=True, arrows=False, frames=frames),
             rrb.Horizontal(
                 _series("Distance between the heads [mm]", entities.DISTANCE, legend=False),
                 _series("Speed of both heads [m/s]", entities.SPEED, entities.OTHER_SPEED),
@@ -107,7 +114,7 @@ def comparison() -> rrb.Container:
                 _series("Greatest difference of the torques [N m]", entities.TORQUE_DIFFERENCE_MOST, legend=False),
                 column_shares=[1.4, 1.0],
             ),
-            row_shares=[1.0, 1.0, 1.2],
+            row_shares=[1.0, 1.0, 1.4],
         ),
         column_shares=[1.15, 1.0],
         name="compare",
@@ -115,7 +122,11 @@ def comparison() -> rrb.Container:
 
 
 def following_view(
-    name: str = "Swimmer, coloured by C3, with the fluid's force", *, both: bool = False, arrows: bool = True
+    name: str = "Swimmer, coloured by C3, with the fluid's force",
+    *,
+    both: bool = False,
+    arrows: bool = True,
+    frames: bool = False,
 ) -> rrb.Spatial3DView:
     """Three dimensions, the camera moving with the swimmer without turning."""
     return rrb.Spatial3DView(
@@ -125,20 +136,26 @@ def following_view(
         background=colours.WATER_BACKGROUND,
         line_grid=rrb.LineGrid3D(visible=False),
         eye_controls=rrb.EyeControls3D(position=camera.EYE, look_target=camera.TARGET, eye_up=(0, 0, 1)),
-        overrides=_hidden(entities.HEAD, entities.TAIL, *(() if arrows else (entities.LOAD, entities.LOAD_ENDS))),
+        overrides=_hidden(
+            *(() if frames else (entities.HEAD, entities.TAIL)),
+            *(() if arrows else (entities.LOAD, entities.LOAD_ENDS)),
+        ),
     )
 
 
-def standing_view() -> rrb.Spatial3DView:
+def standing_view(*, frames: bool = False) -> rrb.Spatial3DView:
     """Three dimensions, the camera standing still above the start."""
     return rrb.Spatial3DView(
-        name="Path in the world",
+        name="Path in the world, from a camera that stands still",
         origin=entities.WORLD,
         contents=[f"{entities.WORLD}/**", f"- {entities.LEGEND}/**", f"- {entities.OTHER}/**"],
         background=colours.WATER_BACKGROUND,
         line_grid=rrb.LineGrid3D(visible=False),
-        eye_controls=rrb.EyeControls3D(position=(-0.7, -2.9, 1.3), look_target=(1.1, -0.1, -0.7), eye_up=(0, 0, 1)),
-        overrides={entities.TRACK: [_PAST], **_hidden(entities.LOAD, entities.LOAD_ENDS, entities.TAIL)},
+        eye_controls=rrb.EyeControls3D(position=(-0.3, -2.9, 0.9), look_target=(1.55, -0.3, -0.85), eye_up=(0, 0, 1)),
+        overrides={
+            entities.TRACK: [_PAST],
+            **_hidden(entities.LOAD, entities.LOAD_ENDS, *(() if frames else (entities.HEAD, entities.TAIL))),
+        },
     )
 
 

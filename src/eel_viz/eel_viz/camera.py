@@ -4,7 +4,7 @@
 
 import numpy as np
 
-EYE = np.array((-0.46, -0.92, 0.55))
+EYE = np.array((-0.40, -0.80, 0.48))
 TARGET = np.array((0.03, 0.0, -0.05))
 
 

@@ -91,14 +91,13 @@ class Comparison:
     def text(self) -> str:
         """Markdown: both runs side by side, and how far they are apart."""
         columns = [side.summary.figures() for side in (self.this, self.other)]
-        lines = [f"| | {self.names[0]} | {self.names[1]} |", "|---|---|---|"]
-        for key in columns[0] | columns[1]:
-            lines.append(f"| {key} | " + " | ".join(column.get(key, "") for column in columns) + " |")
-        lines.append("")
-        lines.append(f"heads apart: at most **{1e3 * self._farthest:.3g} mm**")
+        lines = [f"heads apart by at most **{1e3 * self._farthest:.3g} mm**  "]
         if self._greatest:
             share = 100.0 * self._worst / self._greatest
-            lines.append(f"\ntorques apart: at most **{self._worst:.2g} N m**, {share:.2g} % of the greatest")
+            lines.append(f"torques by at most **{self._worst:.2g} N m**, {share:.2g} % of the greatest")
+        lines += ["", f"| | {self.names[0]} | {self.names[1]} |", "|---|---|---|"]
+        for key in columns[0] | columns[1]:
+            lines.append(f"| {key} | " + " | ".join(column.get(key, "") for column in columns) + " |")
         return "\n".join(lines)
 
 

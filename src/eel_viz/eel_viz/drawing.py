@@ -46,9 +46,13 @@ class Drawing:
     def arrange(self, name: str) -> None:
         """Bring the arrangement `name` to the front, one of those that the recording carries."""
         blueprint = self._client.get_blueprint(of="recording").blueprint
-        boxes = {path: part["ContainerBlueprint"] for path, part in blueprint.items() if "ContainerBlueprint" in part}
-        root = boxes.get(f"/container/{blueprint['/viewport']['ViewportBlueprint'].get('root_container')}", {})
-        tabs = {boxes.get(path, {}).get("display_name"): path for path in root.get("contents", [])}
+        boxes = {
+            path.strip("/"): part["ContainerBlueprint"]
+            for path, part in blueprint.items()
+            if "ContainerBlueprint" in part
+        }
+        root = boxes.get(f"container/{blueprint['/viewport']['ViewportBlueprint'].get('root_container')}", {})
+        tabs = {boxes.get(path.strip("/"), {}).get("display_name"): path for path in root.get("contents", [])}
         tabs.pop(None, None)
         if name not in tabs:
             raise ValueError(f"blueprint must be one of {', '.join(tabs) or 'none'} ({self._path.name}), got {name!r}")

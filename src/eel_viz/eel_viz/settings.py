@@ -33,6 +33,7 @@ class Settings:
     compare: str = setting(
         "", "namespace of another swimmer, laid over this one in the arrangement compare; empty: none"
     )
+    frames: bool = setting(False, "show the axes of head and tail, 0.12 m long: red forward, green left, blue up")
     rate: float = setting(
         30.0, "samples per second that a live viewer gets; a file gets all", unit="Hz", minimum=0.1, maximum=1000.0
     )
@@ -49,9 +50,9 @@ class Settings:
     )
     force_limit: float = setting(2.0, "force at the plot's edge", unit="N", minimum=1e-9)
     curvature_limit: float = setting(5.0, "curvature at the plot's edge", unit="rad/m", minimum=1e-9)
-    load_scale: float = setting(0.03, "length of the arrow of a load of 1 N/m", unit="m^2/N", minimum=0.0)
+    load_scale: float = setting(0.06, "length of the arrow of a load of 1 N/m", unit="m^2/N", minimum=0.0)
     end_force_scale: float = setting(
-        0.5, "length of the arrow of a force of 1 N at nose or tail", unit="m/N", minimum=0.0
+        0.8, "length of the arrow of a force of 1 N at nose or tail", unit="m/N", minimum=0.0
     )
     memory_limit: str = setting("1GiB", "memory that served data may take before the oldest are dropped")
     stop_with_publisher: bool = setting(

@@ -58,7 +58,9 @@ class Destination:
         return rr.ChunkBatcherConfig.DEFAULT()
 
     def _blueprint(self) -> rrb.Blueprint:
-        return arrangement(self.settings.blueprint, live=self._live, compare=bool(self.settings.compare))
+        return arrangement(
+            self.settings.blueprint, live=self._live, compare=bool(self.settings.compare), frames=self.settings.frames
+        )
 
     def _sink(self, run: int) -> rr.FileSink | rr.GrpcSink | None:
         raise NotImplementedError

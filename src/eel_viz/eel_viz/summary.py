@@ -67,10 +67,12 @@ class Summary:
         return 0 if self._last is None else self._last[0]
 
     def text(self) -> str:
-        """Markdown, one paragraph a line."""
+        """Markdown, one line of text a line."""
         law = "" if self.law is None else f"law **{self.law}**"
         fresh = self.stamp - self._state[0] <= FRESH
         lines = [", ".join(part for part in (law, self._state[1] if fresh else "") if part)]
+        told = [key for key in TOLD if self.values.get(key) and (fresh or key not in PRESENT)]
+        lines.append(", ".join(f"{TOLD[key]} {_short(self.values[key])}" for key in told))
         if self._last is not None and self._first is not None:
             seconds = (self._last[0] - self._first[0]) / 1e9
             mean = self._path / seconds if seconds > 0 else 0.0
@@ -78,11 +80,9 @@ class Summary:
         torque, x, stamp = self._peak
         if torque:
             lines.append(f"greatest C3 **{torque:+.3f} N m** at X {x:.2f} m, {stamp / 1e9:.2f} s")
-        told = [key for key in TOLD if self.values.get(key) and (fresh or key not in PRESENT)]
-        lines.append(", ".join(f"{TOLD[key]} {_short(self.values[key])}" for key in told))
         if self.body is not None:
             lines.append(f"body {self.body.length:.3g} m, {self.body.mass:.4g} kg")
-        return "\n\n".join(line for line in lines if line)
+        return "  \n".join(line for line in lines if line)
 
     def figures(self) -> dict[str, str]:
         """The same in short, by name, to stand beside those of another run."""
