@@ -101,7 +101,7 @@ def comparison(*, frames: bool = False) -> rrb.Container:
         rrb.Vertical(
             following_view("Both swimmers, the other as hoops", both=True, arrows=False, frames=frames),
             rrb.Horizontal(
-                _series("Distance between the heads [mm]", entities.DISTANCE, legend=False),
+                _series("Heads apart [mm]", entities.DISTANCE, legend=False),
                 _series("Speed of both heads [m/s]", entities.SPEED, entities.OTHER_SPEED),
             ),
             row_shares=[1.9, 1.0],
@@ -111,10 +111,10 @@ def comparison(*, frames: bool = False) -> rrb.Container:
             profile_view(entities.TORQUE_DIFFERENCE, "Difference of the torques (this - other)"),
             rrb.Horizontal(
                 rrb.TextDocumentView(name="Both runs", origin=entities.COMPARE_TEXT),
-                _series("Greatest difference of the torques [N m]", entities.TORQUE_DIFFERENCE_MOST, legend=False),
-                column_shares=[1.4, 1.0],
+                _series("Torques apart [N m]", entities.TORQUE_DIFFERENCE_MOST, legend=False),
+                column_shares=[1.7, 1.0],
             ),
-            row_shares=[1.0, 1.0, 1.4],
+            row_shares=[1.0, 1.0, 1.75],
         ),
         column_shares=[1.15, 1.0],
         name="compare",
@@ -122,7 +122,7 @@ def comparison(*, frames: bool = False) -> rrb.Container:
 
 
 def following_view(
-    name: str = "Swimmer, coloured by C3, with the fluid's force",
+    name: str = "Swimmer, coloured by C3, and the fluid's force",
     *,
     both: bool = False,
     arrows: bool = True,
@@ -146,7 +146,7 @@ def following_view(
 def standing_view(*, frames: bool = False) -> rrb.Spatial3DView:
     """Three dimensions, the camera standing still above the start."""
     return rrb.Spatial3DView(
-        name="Path in the world, from a camera that stands still",
+        name="Path, from a still camera",
         origin=entities.WORLD,
         contents=[f"{entities.WORLD}/**", f"- {entities.LEGEND}/**", f"- {entities.OTHER}/**"],
         background=colours.WATER_BACKGROUND,

@@ -38,10 +38,11 @@ class Comparison:
         self._both = ProfilePlot(
             outlet,
             entities.COMPARED_TORQUE,
-            names=tuple(f"C3 {name}" for name in names),
+            names=tuple(f"C3 {name}" for name in names[::-1]),  # the other below
             unit="N m",
             limit=limit,
-            palette=(colours.AXIS[2], colours.AMBER),
+            palette=(colours.AMBER, colours.AXIS[2]),
+            widths=(2.6, 1.2),
         )
         self._difference = ProfilePlot(
             outlet,
@@ -77,14 +78,15 @@ class Comparison:
             self.this.summary.strain(stamp, x, this[:, 2])
             self.other.summary.strain(stamp, x, other[:, 2])
             difference = this - other
-            self._both.include(x, np.stack([this[:, 2], other[:, 2]], axis=1))
+            both = np.stack([other[:, 2], this[:, 2]], axis=1)
+            self._both.include(x, both)
             self._difference.include(x, difference)
             most = float(np.abs(difference).max())
             self._worst = max(self._worst, most)
             self._greatest = max(self._greatest, float(np.abs(this).max()))
             self._outlet.scalars(stamp, entities.TORQUE_DIFFERENCE_MOST, [most])
             if self._due("compared torque", stamp, self._drawings):
-                self._both.draw(stamp, x, np.stack([this[:, 2], other[:, 2]], axis=1))
+                self._both.draw(stamp, x, both)
                 self._difference.draw(stamp, x, difference)
                 self._difference.draw_envelope(stamp)
 
@@ -96,7 +98,7 @@ class Comparison:
             share = 100.0 * self._worst / self._greatest
             lines.append(f"torques by at most **{self._worst:.2g} N m**, {share:.2g} % of the greatest")
         lines += ["", f"| | {self.names[0]} | {self.names[1]} |", "|---|---|---|"]
-        for key in columns[0] | columns[1]:
+        for key in columns[1] | columns[0]:
             lines.append(f"| {key} | " + " | ".join(column.get(key, "") for column in columns) + " |")
         return "\n".join(lines)
 

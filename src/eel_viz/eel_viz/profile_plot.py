@@ -20,7 +20,8 @@ BOUNDS_Y = (-0.79, 0.79)
 class ProfilePlot:
     """Draws up to three profiles into the entities below `root` of a recording.
 
-    `names` are the curves' (C1, C2, C3), `unit` that of the values, `limit` > 0 the value at the upper edge at first.
+    `names` are the curves' (C1, C2, C3), which lie over each other in this order and are `widths` [pixels] wide, `unit`
+    that of the values, `limit` > 0 the value at the upper edge at first.
     """
 
     def __init__(
@@ -32,10 +33,11 @@ class ProfilePlot:
         unit: str,
         limit: float,
         palette: tuple[tuple[int, int, int], ...] = colours.AXIS,
+        widths: tuple[float, ...] = (1.4,),
     ):
         self._outlet, self._root, self._names, self._unit = outlet, root, names, unit
         self.limit = limit
-        self._palette = palette
+        self._palette, self._widths = palette, widths
         self._ticks: tuple[float, float] | None = None
         self._x: np.ndarray | None = None
         self._low = self._high = np.empty(0)
@@ -83,7 +85,9 @@ class ProfilePlot:
         )
         log(
             f"{self._root}/{entities.CURVES}",
-            rr.LineStrips2D.from_fields(colors=palette, radii=rr.Radius.ui_points(1.4), draw_order=30.0),
+            rr.LineStrips2D.from_fields(
+                colors=palette, radii=[rr.Radius.ui_points(width) for width in self._widths], draw_order=30.0
+            ),
         )
         behind = [colours.dim(colour) for colour in palette]
         log(

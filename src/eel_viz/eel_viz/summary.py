@@ -15,6 +15,7 @@ TOLD = {  # keys of the diagnostics, and the words for them
     "closure_torque_relative": "closure",
     "energy_residual_worst": "worst residual [J]",
 }
+COMPARED = ("accuracy", "real_time_factor", "energy_residual_worst")  # beside another run
 PRESENT = ("warnings", "real_time_factor")  # those that may be otherwise a moment later
 
 
@@ -87,12 +88,13 @@ class Summary:
     def figures(self) -> dict[str, str]:
         """The same in short, by name, to stand beside those of another run."""
         told = {"law": self.law or ""}
-        told |= {TOLD[key].strip("*:"): _short(self.values[key]) for key in TOLD if self.values.get(key)}
+        told |= {TOLD[key]: _short(self.values[key]) for key in COMPARED if self.values.get(key)}
         if self._last is not None and self._first is not None:
             seconds = (self._last[0] - self._first[0]) / 1e9
             told["mean speed [m/s]"] = f"{self._path / seconds:.4f}" if seconds > 0 else "0"
             told["path [m]"] = f"{self._path:.3f}"
         told["greatest C3 [N m]"] = f"{self._peak[0]:+.4f}"
+        told["warnings"] = str(len(self.values["warnings"].split("; "))) if self.values.get("warnings") else "none"
         return told
 
 
