@@ -2,6 +2,8 @@
 
 import os
 import socket
+import subprocess
+import sys
 
 import made_up
 import numpy as np
@@ -16,6 +18,16 @@ from made_up_recording import body, sample
 from eel_viz import entities, runs
 
 SECOND = 10**9
+STAND_IN = """
+import sys
+import rerun as rr
+
+sink = rr.GrpcServerSink(bind_ip="127.0.0.1", port=int(sys.argv[1]), server_memory_limit="10MB")
+stream = rr.RecordingStream("stand_in")
+stream.set_sinks(sink)
+print("ready", flush=True)
+sys.stdin.read()
+"""
 
 
 class Ears:
@@ -152,6 +164,24 @@ def test_a_path_that_cannot_be_written(path, tmp_path, ears):
         Runs([file], "eel", print)
 
 
+@pytest.mark.fault(
+    "parameters", "a `recording` that cannot be written, live", "said once; it goes to the folder for temporary files"
+)
+@pytest.mark.parametrize("path", ["/proc/none/run.rrd", "{folder}"])
+def test_live_it_goes_elsewhere_then(path, tmp_path, ears, monkeypatch):
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "temporary"))
+    path = path.format(folder=tmp_path)
+    file = File(Settings(recording=path), ears.said.append, ears.warned.append, elsewhere=True)
+    made = Runs([file], "eel", ears.warned.append)
+    send(made, 0)
+    made.close()
+    assert len(ears.warned) == 1
+    assert f"recording {path!r} cannot be written: " in ears.warned[0]
+    (saved,) = (tmp_path / "temporary").iterdir()
+    assert ears.warned[0].endswith(f"it goes to {saved}")
+    assert len(read(saved, entities.SPEED).stamps) == 1
+
+
 def test_without_a_name_the_file_is_called_after_the_time(tmp_path, ears, monkeypatch):
     monkeypatch.chdir(tmp_path)
     Runs([File(Settings(), ears.said.append, ears.warned.append)], "eel", print).close()
@@ -202,6 +232,50 @@ def test_a_viewer_that_is_absent_is_said_once_and_found_later(ears, tmp_path, mo
     host.close()
     assert f"connected to the viewer at {settings.viewer}" in ears.said
     assert len(read(tmp_path / "run.rrd", entities.SPEED).stamps) == 4
+
+
+@pytest.mark.fault("subscribers", "a viewer that is closed and opened again", "said once; it gets the present again")
+def test_a_viewer_that_is_closed_and_opened_again(ears, tmp_path, monkeypatch):
+    from eel_viz.viewer import free_port, listening
+
+    port = free_port()
+    settings = Settings(viewer=f"rerun+http://127.0.0.1:{port}/proxy", recording=str(tmp_path / "run.rrd"))
+    say, warn = ears.said.append, ears.warned.append
+    monkeypatch.setattr(runs, "RETRY", 0.0)
+
+    def open_viewer():
+        return subprocess.Popen(
+            [sys.executable, "-c", STAND_IN, str(port)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+        )
+
+    def come():
+        viewer = open_viewer()
+        assert viewer.stdout.readline() == "ready\n"
+        return viewer
+
+    viewer = come()
+    made = Runs([File(settings, say, warn), Connected(settings, say, warn)], "eel", warn)
+    try:
+        send(made, 0)
+        made.attend()
+        viewer.kill()
+        viewer.wait()
+        assert not listening(port)
+        for k in range(1, 4):
+            send(made, k * SECOND)
+            made.attend()
+        viewer = come()
+        made.attend()
+        send(made, 4 * SECOND)
+        made.close()
+    finally:
+        viewer.kill()
+        viewer.wait()
+    assert [line for line in ears.warned if "viewer" in line] == [
+        f"the viewer at {settings.viewer} has gone: it is tried again while running"
+    ]
+    assert ears.said.count(f"connected to the viewer at {settings.viewer}") == 2
+    np.testing.assert_array_equal(read(tmp_path / "run.rrd", entities.SPEED).time, range(5))
 
 
 def test_a_viewer_s_address_that_is_none():

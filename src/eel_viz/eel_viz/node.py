@@ -46,7 +46,7 @@ class Visualiser(Node):
         self.settings = declare_settings(self)
         own = self.get_namespace().rstrip("/")
         runs = Runs(
-            destinations(self.settings, self._say, self._warn),
+            destinations(self.settings, self._say, self._warn, elsewhere=True),
             name=own.strip("/") or "eel",
             warn=self._warn,
             crowded=lambda topic: self.count_publishers(topic) > 1,

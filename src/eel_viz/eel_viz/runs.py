@@ -4,6 +4,7 @@ Topics reach a reset one by one, in any order; so each topic has its own place i
 once every topic that was in it has gone on. What is valid at all times (the body, the law) is given to each new one.
 """
 
+import threading
 import time
 from collections import deque
 from collections.abc import Callable
@@ -28,7 +29,15 @@ class Run:
         self.streams: list[tuple[Destination, RecordingStream]] = []
         self.latest = 0  # ns
 
+    def give_up(self, place: int, destination: Destination) -> None:
+        """Leave the stream of the destination at `place`, whose other end has gone: to end it can take seconds."""
+        self.loggers.pop(place, None)
+        for pair in [each for each in self.streams if each[0] is destination]:
+            self.streams.remove(pair)
+            threading.Thread(target=destination.end, args=(pair[1],), daemon=True).start()
+
     def close(self) -> None:
+        """Complete the recordings."""
         for loggers in self.loggers.values():
             loggers.send()
         for destination, stream in self.streams:
@@ -117,6 +126,10 @@ class Runs:
                 loggers.attend()
         if time.monotonic() - self._tried > RETRY:
             self._tried = time.monotonic()
+            for place, destination in enumerate(self._destinations):
+                if destination.lost():
+                    for run in self._runs.values():
+                        run.give_up(place, destination)
             self._open_missing(self._newest)
 
     def close(self) -> None:

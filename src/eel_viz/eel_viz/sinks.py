@@ -8,6 +8,7 @@ run. A stream straight to an absent viewer would block for ever in the end; so t
 import contextlib
 import datetime
 import pathlib
+import tempfile
 from collections.abc import Callable
 from urllib.parse import urlsplit
 
@@ -50,6 +51,10 @@ class Destination:
         """End a run's stream."""
         close_stream(stream)
 
+    def lost(self) -> bool:
+        """Whether what was open has gone, and its stream is to be given up."""
+        return False
+
     def close(self) -> None:
         """End what is not a run's: a server."""
 
@@ -67,14 +72,17 @@ class Destination:
 
 
 class File(Destination):
-    """A .rrd file; the second run and later ones get a number before the suffix."""
+    """A .rrd file; the second run and later ones get a number before the suffix.
 
-    def __init__(self, settings: Settings, say: Say, warn: Say) -> None:
+    `elsewhere`: where it cannot be written it goes to the folder for temporary files, so that no run is lost.
+    """
+
+    def __init__(self, settings: Settings, say: Say, warn: Say, *, elsewhere: bool = False) -> None:
         super().__init__(
             settings, Rates(numbers=0.0, drawings=settings.skin_rate, tick=FILE_TICK), say, warn, live=False
         )
         path = settings.recording or f"eel-{datetime.datetime.now():%Y%m%d-%H%M%S}.rrd"
-        self._first = pathlib.Path(path)
+        self._first, self._elsewhere = pathlib.Path(path), elsewhere
 
     def path(self, run: int) -> pathlib.Path:
         """The file of run number `run`."""
@@ -87,16 +95,30 @@ class File(Destination):
     def _sink(self, run: int) -> rr.FileSink:
         path = self.path(run)
         existed = path.exists()
-        try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            with path.open("ab"):  # a FileSink does not say why it cannot write
-                pass
-        except OSError as error:
-            raise ValueError(f"recording {str(path)!r} cannot be written: {error.strerror or error}") from error
+        problem = obstacle(path)
+        if problem:
+            refusal = f"recording {str(path)!r} cannot be written: {problem}"
+            path, existed = (
+                pathlib.Path(tempfile.gettempdir()) / f"eel-{datetime.datetime.now():%Y%m%d-%H%M%S-%f}.rrd",
+                False,
+            )
+            if not self._elsewhere or obstacle(path):
+                raise ValueError(refusal)
+            self.warn(f"{refusal}: it goes to {path}")
         if existed:
             self.warn(f"{path} is there already and is replaced")
         self.say(f"saving to {path}")
         return rr.FileSink(str(path))
+
+
+def obstacle(path: pathlib.Path) -> str:
+    """Why `path` cannot be written; empty if it can. A FileSink does not say it."""
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with path.open("ab"):
+            return ""
+    except OSError as error:
+        return error.strerror or str(error)
 
 
 class Served(Destination):
@@ -114,7 +136,7 @@ class Served(Destination):
         self.uri = server.uri
         self._host = rr.RecordingStream(APPLICATION, send_properties=False)
         self._host.set_sinks(server)
-        say(f"serving at {self.uri}")
+        say(f"serving at {self.uri}; to look at it, now or later: rerun {self.uri}")
 
     def _sink(self, run: int) -> rr.GrpcSink:
         return rr.GrpcSink(self.uri)
@@ -141,7 +163,7 @@ class Served(Destination):
 
 
 class Connected(Destination):
-    """A viewer that somebody else has started; while it is absent, nothing is sent."""
+    """A viewer that somebody else has started; while it is absent, or closed again, nothing is sent."""
 
     def __init__(self, settings: Settings, say: Say, warn: Say) -> None:
         super().__init__(
@@ -166,15 +188,24 @@ class Connected(Destination):
             self._missed = True
         return None
 
+    def lost(self) -> bool:
+        """Whether the viewer has been closed: a stream does not come back to one that is opened again."""
+        host, port = self._address
+        if self._missed or listening(port, host):
+            return False
+        self.warn(f"the viewer at {self.settings.viewer} has gone: it is tried again while running")
+        self._missed = True
+        return True
 
-def destinations(settings: Settings, say: Say, warn: Say) -> list[Destination]:
-    """What `settings.sink` asks for."""
+
+def destinations(settings: Settings, say: Say, warn: Say, *, elsewhere: bool = False) -> list[Destination]:
+    """What `settings.sink` asks for; `elsewhere`: see `File`."""
     names = set(settings.sink)
     if "auto" in names:
         names = (names - {"auto"}) | {"spawn" if display() else "save"}
     found: list[Destination] = []
     if "save" in names:
-        found.append(File(settings, say, warn))
+        found.append(File(settings, say, warn, elsewhere=elsewhere))
     if names & {"spawn", "serve"}:
         served = Served(settings, say, warn)
         found.append(served)
