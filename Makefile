@@ -33,4 +33,4 @@ build:   ## the virtual environment, the four packages, the compiled kernels (PY
 	@PYTHON="$(PYTHON)" tools/build.sh
 
 clean:   ## remove what build made; out/ stays
-	rm -rf .venv build install log
+	rm -rf .venv .venv-peers build install log

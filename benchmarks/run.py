@@ -13,6 +13,7 @@ from functools import partial
 
 import numpy as np
 from against_paper_scheme import paper_scheme
+from against_peers import peers
 from batch import batch
 from eel_dynamics.integrator import rate_of_state
 from growth import growth
@@ -121,20 +122,22 @@ FIGURES = {
     "batch": batch,
     "paper_scheme": paper_scheme,
 }
+OPTIONAL = {"peers": peers}  # on request: installs other people's simulators
 
 
 def main(names: list[str]) -> int:
     """Run the named figures, or all. Exit status 2 for an unknown name."""
-    unknown = [name for name in names if name not in FIGURES]
+    known = FIGURES | OPTIONAL
+    unknown = [name for name in names if name not in known]
     if unknown:
-        print(f"run.py: unknown figure {unknown[0]!r}, must be one of {', '.join(FIGURES)}", file=sys.stderr)
+        print(f"run.py: unknown figure {unknown[0]!r}, must be one of {', '.join(known)}", file=sys.stderr)
         return 2
     commit = subprocess.run(["git", "describe", "--always", "--dirty"], capture_output=True, text=True).stdout.strip()
     machine = f"{platform.processor() or platform.machine()}, Python {platform.python_version()}"
     print(f"{machine}, commit {commit or 'unknown'}, medians of {REPEATS}")
     for name in names or FIGURES:
-        print(f"{name}: {' '.join(FIGURES[name].__doc__.split())}")
-        for label, value, unit in FIGURES[name]():
+        print(f"{name}: {' '.join(known[name].__doc__.split())}")
+        for label, value, unit in known[name]():
             print(f"  {label:42s} {value:10.4g} {unit}" if value is not None else f"  {label}")
     return 0
 
