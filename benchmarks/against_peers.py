@@ -144,7 +144,7 @@ def _mujoco(python: Path, ours: Ours, duration: float = 10.0):
         yield (
             f"    {BATCH} in one call",
             result["batch_seconds"] / duration,
-            f"CPU s per s each, step {LINK_STEPS[0]:g} s",
+            f"CPU s per s each, step {LINK_STEPS[0]:g}",
         )
         yield "    joint angles off by", max(r["shape_error"] for r in results.values()), "rad at most"
         ends[links] = np.array(results[finest]["head"])
