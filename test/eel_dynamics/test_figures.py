@@ -194,6 +194,16 @@ def test_kept_figures_are_small_and_complete():
         assert (folder / name).stat().st_size < (300e3 if name.endswith("svg") else 120e3), name
 
 
+def test_kept_page_tells_of_these_runs(readings):
+    rows = (ROOT / "docs" / "figures" / "README.md").read_text().splitlines()
+    for reading in readings:
+        (row,) = (row for row in rows if row.startswith(f"| {reading.label} |"))
+        numbers = [float(number) for number in re.findall(r"[-+]?\d+\.\d+", row.removeprefix(f"| {reading.label} |"))]
+        expected = [*reading.run.position[-1], reading.apart, reading.mean_speed, reading.run.greatest_torque()[0]]
+        # of a finer run with more samples
+        assert numbers[:6] == pytest.approx(expected, abs=6e-3), "docs/figures is out of date: run figures"
+
+
 def test_files_are_written(readings, errors, tmp_path):
     paths = list(command.draw(command.drawings_of(readings, errors), tmp_path, ["png"]))
     assert [path.stem for path in paths] == list(command.SIZES)

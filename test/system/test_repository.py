@@ -77,3 +77,12 @@ def test_colcon_looks_only_at_the_packages():
 def test_lint(rule):
     done = subprocess.run(["ruff", *rule, "--no-cache", ROOT], cwd=ROOT, capture_output=True, text=True, timeout=60)
     assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_every_peer_of_the_benchmarks_is_pinned():
+    files = sorted((ROOT / "benchmarks" / "peers").glob("*.txt"))
+    assert [path.stem for path in files] == ["mujoco", "pyelastica"]
+    for path in files:
+        lines = path.read_text().splitlines()
+        assert any(line.startswith(f"{path.stem}==") for line in lines)
+        assert all(re.fullmatch(r"[A-Za-z0-9_.-]+==[0-9][^;\s]*", line) for line in lines)
