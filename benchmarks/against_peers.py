@@ -97,8 +97,8 @@ def _measured(python: Path, script: str, **task) -> dict:
         path = Path(folder) / "task.npz"
         np.savez(path, **task)
         command = [python, Path(__file__).parent / "peers" / script, path]
-        said = subprocess.run(command, check=True, capture_output=True, text=True, timeout=900).stdout
-    return json.loads(said.splitlines()[-1])
+        done = subprocess.run(command, check=True, cwd=folder, capture_output=True, text=True, timeout=900)
+    return json.loads(done.stdout.splitlines()[-1])
 
 
 def _lines(name, results: dict, ours: Ours, duration: float):
