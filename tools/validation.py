@@ -49,7 +49,7 @@ relative to the greatest magnitude of what is compared. Round-off differs from m
 
 ## What this shows, and what it does not
 These checks show that the equations of the model are solved right, and that they are the equations meant. They do not
-show that the model is the sea. It is inviscid slender-body theory with fitted drag; measured against other people's
+show that the model is the water. It is inviscid slender-body theory with fitted drag; measured against other people's
 numbers, no claim better than these is supported:
 
 | against | difference | source |
@@ -88,7 +88,8 @@ class Check:
     def allowed(self) -> str:
         if self.wanted is not None:
             return f"{self.wanted:g} ± {self.tolerance:.2g} {self.unit}".rstrip()
-        return f"{'exact' if self.tolerance == 0.0 else f'{self.tolerance:.0e}'} {self.unit}".rstrip()
+        allowed = "exact" if self.tolerance == 0.0 else f"{self.tolerance:.1e}".replace(".0e", "e")
+        return f"{allowed} {self.unit}".rstrip()
 
     @property
     def _digits(self) -> int:

@@ -33,8 +33,8 @@ BODIES = {"boyer": boyer_body(), "kern": kern_body()}
 # Agreement where every field is smooth between kinks: round-off of both sides, amplified by the stiff roll (a 1 m body
 # of 5 cm: moments of inertia 1 : 1000).
 EXACT = 1e-9
-# Cross-flow drag: V|V| has kinks inside the library's panels; the page on the model measured 8e-9 at 201 nodes and 1e-7
-# at 101 for one state. The printed c_f(Re) jumps by a factor 2.6 where Re = 8e4.
+# Cross-flow drag: V|V| has kinks inside the panels of both, 8e-9 at 201 nodes and 1e-7 at 101 for one state. The
+# printed c_f(Re) jumps by a factor 2.6 where Re = 8e4.
 KINKS = 1e-5
 SMOOTH_SCENES = [
     {"resistive": False},
@@ -67,41 +67,38 @@ def check(measured, kind, body, law, time, twist, q, settings, tolerance, splits
     world, at = rotation(q), lambda field: reference.space.evaluate(field, stations)
     lateral = np.abs(fields.force).max()
 
-    measured(f"head's angular acceleration, {kind}", distance(got.head_acceleration[:3], acceleration[:3]), tolerance)
-    measured(f"head's acceleration, {kind}", distance(got.head_acceleration[3:], acceleration[3:]), tolerance)
-    measured(f"internal torque along the body, {kind}", distance(got.torque, at(fields.torque)), tolerance)
-    measured(f"internal force along the body, {kind}", distance(got.force, at(fields.force)), tolerance)
+    parts = slice(0, 3), slice(3, 6)
+    apart = [distance(got.head_acceleration[part], acceleration[part]) for part in parts]
+    measured(f"head's acceleration, angular and linear, {kind}", apart, tolerance)
+    apart = distance(got.torque, at(fields.torque)), distance(got.force, at(fields.force))
+    measured(f"internal torque and force along the body, {kind}", apart, tolerance)
     turned = np.array([rotation(each) for each in got.section_orientation])
-    measured(
-        f"positions (by the length) and axes of the sections, {kind}",
-        [
-            distance(got.backbone, at(r) @ world.T, length),
-            distance(turned, world @ at(R.reshape(-1, 9)).reshape(-1, 3, 3), 1.0),
-            distance(got.center_of_mass, world @ center_of_mass(reference, r), length),
-        ],
-        tolerance,
-    )
+    shape_apart = [
+        distance(got.backbone, at(r) @ world.T, length),
+        distance(turned, world @ at(R.reshape(-1, 9)).reshape(-1, 3, 3), 1.0),
+        distance(got.center_of_mass, world @ center_of_mass(reference, r), length),
+    ]
     # at a kink d/dX(V1 p_f) has two values, at the nose c_f P is 0 times infinity
     inner = ~np.isin(stations, body.kinks)
     resistive = reference.resistive(at(reference.twists(shape[0], shape[1], relative)), stations)[1]
-    measured(
-        f"drag per length, forces on nose and tail, {kind}",
-        [
-            distance(got.tail_force, fields.tail_force, lateral),
-            distance(got.nose_force, fields.nose_force, lateral),
-            distance(got.resistive_force[inner], resistive[inner], lateral),
-        ],
-        tolerance,
-    )
-    reactive, wanted = got.fluid_force - got.resistive_force, at(fields.fluid_force - fields.resistive_force)
-    # the derivative d/dX of the reference's polynomials costs a digit or two
-    measured(f"reactive force per length, {kind}", distance(reactive[inner], wanted[inner], lateral), 10 * tolerance)
+    loads_apart = [
+        distance(got.tail_force, fields.tail_force, lateral),
+        distance(got.nose_force, fields.nose_force, lateral),
+        distance(got.resistive_force[inner], resistive[inner], lateral),
+    ]
     kinetic = np.array(reference.energies(shape[0], shape[1], relative))
-    got_kinetic = got.energy.kinetic_body, got.energy.kinetic_fluid
-    measured(f"kinetic energies of body and water, {kind}", distance(got_kinetic, kinetic), tolerance)
     powers = [fields.actuator_power, fields.wake_power, fields.nose_power, fields.drag_power]
     names = ["actuator_power", "wake_power", "nose_power", "drag_power"]
-    measured(f"the four powers, {kind}", distance([getattr(got.energy, name) for name in names], powers), tolerance)
+    energy_apart = [
+        distance((got.energy.kinetic_body, got.energy.kinetic_fluid), kinetic),
+        distance([getattr(got.energy, name) for name in names], powers),
+    ]
+    apart = [*shape_apart, *loads_apart, *energy_apart]
+    measured(f"shape in space, drag, loads on nose and tail, energies, powers, {kind}", apart, tolerance)
+    reactive, wanted = got.fluid_force - got.resistive_force, at(fields.fluid_force - fields.resistive_force)
+    # the derivative d/dX of the reference's polynomials costs a digit or two
+    apart = distance(reactive[inner], wanted[inner], lateral)
+    measured(f"reactive force per length, {kind}", apart, 10 * tolerance)
 
 
 def center_of_mass(reference, r):

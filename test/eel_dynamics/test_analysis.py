@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 from eel_dynamics.friction_power import drag_powers
 
-from eel_dynamics import Body, Scene, simulate
+from eel_dynamics import Body, Scene, Simulation, simulate
 from eel_gaits import Law, Ramp, Term, straight
+
+pytestmark = pytest.mark.identity("Read off a run")
 
 
 @pytest.fixture(scope="module")
@@ -37,22 +39,34 @@ def test_speed_power_and_efficiency(run):
     assert np.all(a.peak_torque >= a.rms_torque - 1e-12)
 
 
-def test_friction_power_is_what_the_load_along_the_body_says():
-    run = simulate(straight(), 4.0, sample_period=0.05, stations=401, load=True)
-    step = 1e-4  # s, of central differences of the backbone
-    near = simulate(straight(), 3.0 + step, sample_period=step, stations=401)
-    velocity = (near.backbone[-1] - near.backbone[-3]) / (2.0 * step)
-    tangent = np.gradient(near.backbone[-2], near.x, axis=0)
-    k = round(3.0 / 0.05)
-    density = run.resistive_force[k][:, 0] * np.sum(velocity * tangent, axis=1)
-    expected = np.sum(0.5 * (density[1:] + density[:-1]) * np.diff(run.x))
-    assert drag_powers(run)[k, 0] == pytest.approx(expected, rel=2e-3)  # differences and the trapezoidal rule
+def test_friction_power_is_what_the_load_along_the_body_says(measured):
+    """Resistive force per length times the velocity of the backbone (central differences), along its tangent."""
+    run = simulate(straight(), 4.0, sample_period=0.05)
+    swimmer, step = Simulation(stations=401), 1e-4  # s
+    swimmer.adopt(straight())
+    backbones = []
+    for time in (3.0 - step, 3.0, 3.0 + step):
+        swimmer.advance(time)
+        now = swimmer.observe(wrench=False)
+        backbones.append(now.backbone.copy())
+        if time == 3.0:
+            axial = now.resistive_force[:, 0].copy()
+    velocity, tangent = (backbones[2] - backbones[0]) / (2 * step), np.gradient(backbones[1], now.x, axis=0)
+    expected = np.trapezoid(axial * np.sum(velocity * tangent, axis=1), now.x)
+    powers = drag_powers(run)
+    apart = abs(powers[60, 0] / expected - 1)
+    measured("power of the axial friction against load and velocity along the body", apart, 2e-3)  # trapezoidal rule
+    apart = np.abs(powers.sum(axis=1) - run.energy.drag_power)
+    measured(
+        "its sum with cross flow and roll against the ledger's drag", apart / np.abs(run.energy.drag_power).max(), 1e-9
+    )
 
 
-def test_motors_add_up_like_one_over_n_squared(run):
+def test_motors_add_up_like_one_over_n_squared(measured, run):
     differences = [run.actuators(n).relative_difference for n in (8, 16, 32)]
     assert differences[2] < 0.02
-    assert all(3.0 < coarse / fine < 5.0 for coarse, fine in pairwise(differences))
+    orders = [np.log2(coarse / fine) for coarse, fine in pairwise(differences)]
+    measured("order in 1/n at which n joints' power meets the continuous body's", orders, 0.3, wanted=2.0)
     motors = run.actuators(10)
     assert motors.x[0] == pytest.approx(0.05) and motors.yaw.angle.shape == (401, 10)
     assert np.sum(motors.yaw.angle[-1]) == pytest.approx(

@@ -22,7 +22,7 @@ def test_mass_of_the_robot(measured):
 def test_volume_of_the_kern_body(measured):
     """Kern and Koumoutsakos 2006 print 0.0059326 L^3: half of the last digit."""
     body = Body.kern2006(2.0)
-    measured("volume of the Kern-Koumoutsakos body, by L^3", 1e3 * body.volume / 8.0, 5e-5, wanted=5.9326, unit="1e-3")
+    measured("volume of the Kern-Koumoutsakos body of 1 m", 1e3 * body.volume / 8.0, 5e-5, wanted=5.9326, unit="l")
 
 
 @pytest.mark.parametrize("ours, theirs", [(Body.boyer2010(), boyer_body()), (Body.kern2006(), kern_body())], ids=str)

@@ -1,4 +1,4 @@
-"""Closure of the internal wrench (model identity 2), its boundary conditions, and the acceleration as a derivative."""
+"""Closure of the internal wrench, its boundary conditions, and the acceleration as a derivative."""
 
 import numpy as np
 import pytest
@@ -59,6 +59,17 @@ def test_closure_at_every_sample_of_a_run(measured, swimmer, twist, settings):
     torque, force = (np.abs(field).max(axis=(1, 2)) for field in (run.torque, run.force))
     measured("torque left over at every sample of a run", run.closure_torque / torque, ROUND_OFF)
     measured("force left over at every sample of a run", run.closure_force / force, ROUND_OFF)
+
+
+def test_closure_at_every_instant_that_a_live_simulation_shows(measured):
+    """The way of the node: advance, observe. The falling gait with all physics on."""
+    simulation = Simulation(stations=31)
+    simulation.adopt(falling_law())
+    for time in np.linspace(0.1, 3.0, 30):
+        simulation.advance(time)
+        got = simulation.observe()
+        apart = got.closure_torque / np.abs(got.torque).max(), got.closure_force / np.abs(got.force).max()
+        measured("torque and force left over at every instant of a live simulation", apart, ROUND_OFF)
 
 
 STEPS = (0.005, 0.0025)  # s

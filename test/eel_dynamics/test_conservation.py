@@ -1,4 +1,4 @@
-"""No fluid (model identity 4): linear and angular momentum stay, energy is the actuators' work."""
+"""No fluid: linear and angular momentum stay, energy is the actuators' work."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Convergence (model identity 7): the order in time, spectral in space, and the presets' accuracy."""
+"""Convergence: the order in time, spectral in space, and the presets' accuracy."""
 
 import numpy as np
 import pytest
@@ -65,6 +65,8 @@ def test_chosen_steps_follow_the_tolerance(measured):
     exact, runs = run(1e-13), [run(tolerance) for tolerance in tolerances]
     for name, slope in zip(QUANTITIES, slopes(tolerances, errors_of(runs, exact)), strict=True):
         measured(f"power of the tolerance that the error goes with, chosen steps, {name}", slope, 0.2, wanted=1.0)
+    slope = slopes(tolerances, [abs(run.energy.residual[-1]) for run in runs])
+    measured("power of the tolerance that the energy ledger's residual goes with, chosen steps", slope, 0.2, wanted=1.0)
 
 
 def test_order_in_space(measured):

@@ -1,4 +1,4 @@
-"""Planar motion without drag is Lighthill's theory (model identity 3): eqs (1), (61), and the linear theory of 1960."""
+"""Planar motion without drag is Lighthill's theory: eqs (1), (61), and the linear theory of 1960."""
 
 import numpy as np
 import pytest

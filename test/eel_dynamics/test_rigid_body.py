@@ -1,4 +1,4 @@
-"""The straight rigid body (model identity 5): closed forms."""
+"""The straight rigid body: closed forms."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Similar bodies at equal Reynolds number swim alike (model identity 8)."""
+"""Similar bodies at equal Reynolds number swim alike."""
 
 import dataclasses
 from types import SimpleNamespace

@@ -1,4 +1,4 @@
-"""Symmetries (model identity 6): poses, mirrors, plane, rest, and a uniform current."""
+"""Symmetries: poses, mirrors, plane, rest, and a uniform current."""
 
 import dataclasses
 

@@ -2,7 +2,7 @@
 
 Joint j stands for the segment (j - 1) l/n to j l/n, and lies in its middle, X = (j - 1/2) l/n. Its angles are the
 integrals of K2 (pitch) and K3 (yaw) over the segment, its torques -C2, -C3 there (the motor turns the part ahead
-against the part behind; section 1 of the conventions: power per length -C . dK/dt).
+against the part behind: their power per length is -C . dK/dt, C of eq. 26 of Boyer, Porez and Leroyer 2010).
 """
 
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""The energy ledger: where the work of the actuators goes (section 6 of the model; eq. 60 times the head's twist).
+"""The energy ledger: where the work of the actuators goes (eq. 60 times the head's twist).
 
     d/dt (kinetic_body + kinetic_fluid) = actuator_power + wake_power + nose_power + drag_power
 

@@ -47,6 +47,14 @@ class Run:
     steps: int  # accepted steps in time
     evaluations: int  # of the head's dynamics, for the motion alone
 
+    def __post_init__(self):
+        falls = np.flatnonzero(np.diff(self.time) <= 0.0)
+        if len(falls):
+            before, after = self.time[falls[0]], self.time[falls[0] + 1]
+            raise ValueError(
+                f"run time must rise, got {after:g} s after {before:g} s: a reset? Make a run of the samples after it"
+            )
+
     @property
     def twist_rate(self) -> np.ndarray:
         """(T, 6) (Omegadot, Vdot): rate of the components of the twist, rad/s^2, m/s^2, head's axes."""

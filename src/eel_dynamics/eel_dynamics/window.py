@@ -54,16 +54,11 @@ class Window:
     """The last `periods` whole periods of `run` (None: as many as make up the later half of the run, at least one).
 
     run, periods; period [s]: after which the gait repeats; start, end [s]; wave: the strongest wave (yaw, else pitch).
-    `ValueError` where the run is too short, its samples too few, or its time does not rise (a reset in it).
+    `ValueError` where the run is too short or its samples too few.
     """
 
     def __init__(self, run, periods: int | None = None):
         time = np.asarray(run.time, dtype=float)
-        falls = np.flatnonzero(np.diff(time) <= 0.0)
-        if len(falls):
-            raise ValueError(
-                f"run time must rise: it goes back from {time[falls[0]]:g} to {time[falls[0] + 1]:g} s (a reset?)"
-            )
         self.run, self.period = run, common_period(run.law, run.x, time)
         self.wave = strongest(run.law, run.x, time)
         self.travelling_wave = strongest(run.law, run.x, time, axes=("yaw",), travelling=True)
