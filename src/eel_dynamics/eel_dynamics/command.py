@@ -10,6 +10,7 @@ import csv
 import sys
 import time
 from dataclasses import fields
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -113,7 +114,10 @@ def _parser() -> argparse.ArgumentParser:
         "--actuators", type=int, metavar="N", help="print the demand on a robot of N motors in pitch and N in yaw"
     )
     parser.add_argument(
-        "--out", metavar="FILE", help=".npz: every array of the run; .csv: head, energies, one line per sample"
+        "--out",
+        metavar="FILE",
+        help=".npz: every array of the run; .csv: head, energies, one line "
+        "per sample; .rrd: for Rerun's viewer, as the visualiser shows it (needs eel_viz)",
     )
     return parser
 
@@ -149,8 +153,10 @@ def _checked_out(out: str | None) -> Path | None:
     if out is None:
         return None
     path = Path(out)
-    if path.suffix not in (".npz", ".csv"):
-        raise ValueError(f"--out must end in .npz or .csv, got {out!r}")
+    if path.suffix not in (".npz", ".csv", ".rrd"):
+        raise ValueError(f"--out must end in .npz, .csv or .rrd, got {out!r}")
+    if path.suffix == ".rrd" and find_spec("eel_viz") is None:
+        raise ValueError("--out .rrd needs the package eel_viz, with rerun-sdk, which is not installed")
     if not path.parent.is_dir():
         raise ValueError(f"--out must lie in a folder that exists, got {out!r}")
     if path.exists():
@@ -159,6 +165,9 @@ def _checked_out(out: str | None) -> Path | None:
 
 
 def _write(run: Run, path: Path):
+    if path.suffix == ".rrd":
+        run.to_rerun(path)
+        return
     energy = {} if run.energy is None else vars(run.energy)
     if path.suffix == ".npz":
         arrays = {name: getattr(run, name) for name in ARRAYS if getattr(run, name) is not None}

@@ -102,24 +102,20 @@ def _plain(value, short: int | None):
 def main(arguments: list[str] | None = None) -> int:
     """Command line; status 0, 1 if no message came or it has not the field, 2 if it cannot begin."""
     words = sys.argv if arguments is None else [NAME, *arguments]
-    parser = argparse.ArgumentParser(prog=NAME, description="Print the messages of a topic as YAML.")
-    parser.add_argument("topic")
+    parser = argparse.ArgumentParser(
+        prog=NAME,
+        description="Print the messages of a topic as YAML, as ros2 topic echo does. It waits for a publisher, and "
+        "takes its type and quality of service.",
+        epilog="Exit status: 0; 1 if no message came or it has no such field, 2 if it cannot begin, with one line that "
+        "says why. ROS arguments follow --ros-args.",
+    )
+    parser.add_argument("topic", help="name, such as internal_wrench or /left/head_pose")
     parser.add_argument("--once", action="store_true", help="print one message and end")
     parser.add_argument("--field", metavar="F", help="print this part alone, such as pose.position.x")
     parser.add_argument("--timeout", type=float, metavar="SECONDS", help="give up, with status 1, if nothing comes")
     parser.add_argument("-f", "--full-length", action="store_true", help=f"print arrays beyond {SHORT} elements")
     options = parser.parse_args(remove_ros_args(args=words)[1:])
-    made: list[Echo] = []
-
-    def make() -> Echo:
-        made.append(Echo(options))
-        return made[0]
-
-    status = live(NAME, words, make, Echo.attend)
-    if made and made[0].failure:
-        sys.stderr.write(f"{NAME}: {made[0].failure}\n")
-        return 1
-    return status
+    return live(NAME, words, lambda: Echo(options), Echo.attend)
 
 
 if __name__ == "__main__":

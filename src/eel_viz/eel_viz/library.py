@@ -42,7 +42,8 @@ def to_rerun(
     names: Sequence[str],
     **settings,
 ) -> None:
-    """Show one run, or two that are compared, in `target`: a file to write, or a stream.
+    """Show one run, or two that are compared, in `target`: a file to write (one that is there is replaced), or a
+    stream.
 
     `settings` are those of the visualiser, such as blueprint or skin_rate. What cannot be shown is warned of.
     """
@@ -62,5 +63,5 @@ def to_rerun(
         destination = Given(target, Settings.from_values(settings), warn)
     else:
         chosen = Settings.from_values({**settings, "recording": os.fspath(target)})
-        destination = File(chosen, lambda text: None, warn)
+        destination = File(chosen, lambda text: None, lambda text: None)  # a file that is there is replaced
     show(runs, [destination], names=names, namespaces=[SPACE] * len(runs), warn=warn)

@@ -26,7 +26,8 @@ def live(
 
     With `work` the node fetches its messages itself, there, and says whether it found some; the executor then only has
     what is rare, such as questions about parameters.
-    Returns the exit status: 0, or 2 with one line on stderr if `make` refuses its settings.
+    Returns the exit status: 0; 1 with one line on stderr if the node says why it had to stop, in its `failure`; 2 with
+    one line if `make` refuses its settings.
     """
     signals: list[int] = []
     for number in (signal.SIGINT, signal.SIGTERM):
@@ -60,4 +61,7 @@ def live(
             node.close()
         node.destroy_node()
         rclpy.try_shutdown()
-    return 0
+    failure = getattr(node, "failure", "")
+    if failure:
+        sys.stderr.write(f"{name}: {failure}\n")
+    return int(bool(failure))

@@ -177,17 +177,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--duration", type=float, metavar="SECONDS", help="end after so much wall time")
     parser.add_argument("--stop-with-publisher", action="store_true", help="end when the swimmer has gone")
     options = parser.parse_args(remove_ros_args(args=words)[1:])
-    made: list[Recorder] = []
-
-    def make() -> Recorder:
-        made.append(Recorder(options))
-        return made[0]
-
-    status = live(NAME, words, make, Recorder.attend)
-    if made and made[0].failure:
-        sys.stderr.write(f"{NAME}: {made[0].failure}\n")
-        return 1
-    return status
+    return live(NAME, words, lambda: Recorder(options), Recorder.attend)
 
 
 if __name__ == "__main__":
