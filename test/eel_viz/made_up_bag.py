@@ -19,7 +19,7 @@ def write_bag(
     seconds: float = 1.0,
     rate: float = 100.0,
     *,
-    stations: int = 51,
+    stations: int = 21,
     namespaces: tuple[str, ...] = ("",),
     runs: int = 1,
     storage: StoragePlugin = StoragePlugin.MCAP,
@@ -49,7 +49,7 @@ def write_bag(
             writer.write(connections[topic], now, serialize_message(message))
 
         for space in namespaces:
-            add(f"{space}/body", OWN["body"], body_message(stations))
+            add(f"{space}/body", OWN["body"], body_message(made_up.STATIONS))
             add(f"{space}/curvature_law", OWN["curvature_law"], CurvatureLaw(name="made up"))
         swimmer = made_up.Swimmer(stations)
         for stamp in [round(k * 1e9 / rate) for _ in range(runs) for k in range(round(seconds * rate) + 1)]:

@@ -1,5 +1,6 @@
 """`replay`: a bag becomes the recording that the visualiser makes of the same messages, whatever the bag's form."""
 
+import shutil
 import sqlite3
 import subprocess
 import sys
@@ -32,7 +33,7 @@ def bag(tmp_path_factory):
 def logged(tmp_path_factory):
     """What the loggers make of the same numbers."""
     path = tmp_path_factory.mktemp("logged") / "logged.rrd"
-    record(path, 1.0, 100.0)
+    record(path, 1.0, 100.0, stations=21)
     return path
 
 
@@ -85,7 +86,7 @@ def test_a_reset_begins_a_second_file_and_settings_are_taken(tmp_path, capsys):
     for name in ("run.rrd", "run-2.rrd"):
         np.testing.assert_array_equal(read(tmp_path / name, entities.POSITION).stamps, STAMPS[:41])
         assert len(read(tmp_path / name, entities.SKIN)["vertex_positions"]) == 21  # 50 Hz
-    expected = [made_up.Swimmer().wrench(stamp * 1e-9)["torque_3"] for stamp in STAMPS[:41]]
+    expected = [made_up.Swimmer(21).wrench(stamp * 1e-9)["torque_3"] for stamp in STAMPS[:41]]
     np.testing.assert_array_equal(read(tmp_path / "run-2.rrd", entities.WRENCH_NUMBERS)["torque_3"], expected)
 
 
@@ -102,9 +103,15 @@ def test_one_of_several_swimmers_is_chosen(tmp_path, capsys, monkeypatch):
     np.testing.assert_array_equal(read(tmp_path / "one.rrd", entities.SPEED).stamps, STAMPS[:11])
 
 
+@pytest.fixture(scope="module")
+def long_bag(tmp_path_factory):
+    """More than a chunk of 1 MiB."""
+    return write_bag(tmp_path_factory.mktemp("long") / "bag", 1.5, stations=51)
+
+
 @pytest.mark.parametrize("cut", ["no metadata", "half a file", "no end"])
-def test_a_bag_that_was_not_finished_is_shown_as_far_as_it_goes(tmp_path, capsys, cut):
-    folder = write_bag(tmp_path / "bag", 1.5)  # more than a chunk of 1 MiB
+def test_a_bag_that_was_not_finished_is_shown_as_far_as_it_goes(tmp_path, capsys, long_bag, cut):
+    folder = shutil.copytree(long_bag, tmp_path / "bag")
     file = folder / "bag.mcap"
     if cut == "no metadata":
         (folder / "metadata.yaml").unlink()

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-NODES = ("gait_generator", "dynamics", "visualiser", "record", "eel_echo", "simulate")
+NODES = ("gait_generator", "dynamics", "visualiser", "record", "eel_echo", "replay", "render", "simulate")
 
 
 def shell(script: str, **environment: str) -> subprocess.CompletedProcess:

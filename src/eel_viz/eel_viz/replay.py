@@ -161,9 +161,8 @@ def parser() -> argparse.ArgumentParser:
             unit = f" [{about['unit']}]" if about["unit"] else ""
             bounds = "" if kind is str else f"; {limits(about)}"
             text = f"{about['description']}{unit} (default {item.default}{bounds})".replace("%", "%%")
-            made.add_argument(
-                "--" + item.name.replace("_", "-"), type=kind, default=item.default, help=text, metavar=kind.__name__
-            )
+            option, shown = "--" + item.name.replace("_", "-"), "TEXT" if kind is str else "X"
+            made.add_argument(option, type=kind, default=item.default, help=text, metavar=shown)
     return made
 
 
