@@ -96,10 +96,23 @@ def test_a_point_that_stops_is_told_and_the_others_stay(client):
 
     grid = {"scene.density": [10.0, 1000.0], "scene.reactive": [False]}
     long_steps = Accuracy(name="long steps", resolution=10.0, step=0.05)
-    data = sweep(grid, gait=law, numbers={"size": 1.0}, scheduler=client, duration=1.2, accuracy=long_steps)
+    address = client.scheduler.address
+    data = sweep(grid, gait=law, numbers={"size": 1.0}, scheduler=address, duration=1.2, accuracy=long_steps)
     assert data.stopped.values.ravel().tolist() == [True, False]
     assert "not finite" in str(data.error.values[0, 0]) and data.error.values[1, 0] == ""
     assert np.isnan(data.head_x.values[0, 0]) and np.isfinite(data.head_x.values[1, 0])
+
+
+def test_points_that_cannot_be_computed_are_told_and_the_rest_is_kept(client, tmp_path):
+    def measure(run):
+        if run.law.terms[0].period == 0.7:
+            raise ZeroDivisionError("no measure of that")
+        return {"way": run.path_length}
+
+    out = tmp_path / "ways.nc"
+    with pytest.raises(RuntimeError, match=r"(?s)1 of 3 points.*ZeroDivisionError.*ways.nc.parts"):
+        sweep({"period": [0.6, 0.7, 0.8]}, scheduler=client, chunk=1, measure=measure, out=out, **SHORT)
+    assert len(list((tmp_path / "ways.nc.parts").glob("part-*.json"))) == 2
 
 
 def test_command_with_a_cluster_of_its_own(tmp_path, capsys):
