@@ -9,7 +9,7 @@ from eel_dynamics.clock_right import ClockRight
 from eel_dynamics.feed import LawFeed
 from eel_dynamics.pacing import Pace
 from eel_dynamics.parameters import DynamicsParameters, checked, default_of, from_values
-from eel_dynamics.publishers import Patience
+from eel_dynamics.publishers import Patience, Publishers
 from eel_dynamics.report import ERROR, OK, WARN, Report
 
 from eel_dynamics import Scene
@@ -286,3 +286,35 @@ def test_bad_law_is_one_error_that_names_the_field():
     heard.hear_law(message("jump"), info(1))
     assert not march.laws
     assert log.lines == [("error", "law 'jump' refused: terms[0].period must be >= 0 s, got -1.0")]
+
+
+# topics
+
+
+@pytest.mark.fault(
+    "subscribers", "a subscriber of a costly topic that comes while a sample is made", "it gets the next sample"
+)
+def test_a_subscriber_that_comes_after_the_snapshot_was_taken():
+    """Nobody hears when it is asked what to compute; somebody does when it is published."""
+    heard, audience = [], {"internal_wrench": 0, "hydrodynamic_load": 0, "energy": 0}
+    sample = SimpleNamespace(
+        messages=dict.fromkeys(audience, ""),
+        clock="",
+        set_time=lambda nanoseconds: None,
+        fill=lambda name, snapshot: (name, snapshot.torque, snapshot.fluid_force),
+    )
+
+    def create(kind, topic, depth):
+        return SimpleNamespace(get_subscription_count=lambda: audience[topic], publish=heard.append)
+
+    publishers = Publishers(
+        sample, create=create, destroy=None, received=None, refusal=RuntimeError, values=DynamicsParameters,
+        stopped=lambda: False, report=Report(Log()),
+    )  # fmt: skip
+    assert publishers.wanted_parts() == {"wrench": False, "load": False}
+    audience.update(dict.fromkeys(audience, 1))
+    publishers.publish(SimpleNamespace(torque=None, fluid_force=None), 0)
+    assert [name for name, *_ in heard] == ["energy"]
+    assert publishers.wanted_parts() == {"wrench": True, "load": True}
+    publishers.publish(SimpleNamespace(torque=1, fluid_force=2), 0)
+    assert [name for name, *_ in heard[1:]] == ["internal_wrench", "hydrodynamic_load", "energy"]

@@ -4,10 +4,12 @@ import os
 import socket
 import subprocess
 import sys
+import time
 
 import made_up
 import numpy as np
 import pytest
+from eel_viz.flow import LOOK
 from eel_viz.messages import Status
 from eel_viz.reading import read
 from eel_viz.runs import Runs
@@ -303,3 +305,26 @@ def test_spawn_without_a_display_warns_and_serves(monkeypatch, ears):
     (chosen,) = destinations(Settings(sink=("spawn",)), ears.said.append, ears.warned.append)
     chosen.close()
     assert "there is no display: no viewer is opened" in ears.warned
+
+
+def test_a_torn_file_is_read_up_to_its_last_whole_message(file, ears, tmp_path):
+    from eel_viz.frames import cut_to_whole_messages, end_of_whole_messages
+
+    made = Runs([file], "eel", ears.warned.append)
+    send(made, 0)
+    made.attend()
+    time.sleep(LOOK)
+    made.attend()  # what there is goes to the file
+    send(made, SECOND)
+    made.close()
+    path, torn = tmp_path / "run.rrd", tmp_path / "torn.rrd"
+    complete = path.read_bytes()
+    assert end_of_whole_messages(path) == len(complete)
+    for missing in (20, 50, len(complete) // 3):
+        torn.write_bytes(complete[:-missing])
+        stamps = read(torn, entities.POSITION).stamps.tolist()
+        assert stamps in ([0], [0, SECOND]), missing
+        assert torn.stat().st_size == len(complete) - missing  # reading changes nothing
+    size = cut_to_whole_messages(torn)
+    assert size == torn.stat().st_size < len(complete) - missing
+    assert end_of_whole_messages(torn) == size

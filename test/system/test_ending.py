@@ -56,3 +56,21 @@ def test_unknown_gait_is_one_clear_error(start):
     assert node.wait(20.0) == 2
     said = [line for line in node.output().splitlines() if line.strip()]
     assert len(said) == 1 and "gait" in said[0] and "moonwalk" in said[0], node.output()
+
+
+@pytest.mark.fault(
+    "ending", "SIGINT or SIGTERM at any moment after the first log line", "exit within 1 s, status 0, no traceback"
+)
+@pytest.mark.parametrize("executable", ["dynamics", "visualiser"])
+def test_signal_at_any_moment(start, fresh_domain, tmp_path, monkeypatch, executable):
+    """Moments from the first line on; at each the first attempt that is quick enough counts."""
+    monkeypatch.chdir(tmp_path)
+    start("gait_generator")
+    for delay, sent in ((0.03, signal.SIGINT), (0.1, signal.SIGTERM), (0.3, signal.SIGINT)):
+        times = []
+        while min(times, default=LIMIT) >= LIMIT and len(times) < ATTEMPTS:
+            node = start(executable, *NODES[executable])
+            node.wait_for_output("[INFO]")
+            time.sleep(delay)  # the moment of the signal is what is tried here
+            times.append(time_to_end(node, sent))
+        assert min(times) < LIMIT, (delay, times)

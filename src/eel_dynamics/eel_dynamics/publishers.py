@@ -13,6 +13,7 @@ RETRY = 0.002  # s between two attempts: lets the other threads run
 SLICE = 0.2  # s: a wait at the end looks so often whether it is interrupted
 CALM = 1.0  # s without a change after which partial subscribers are taken to be complete
 HEAVY = {"internal_wrench": "wrench", "hydrodynamic_load": "load"}  # topic: what Simulation.observe computes for it
+MARK = {"internal_wrench": "torque", "hydrodynamic_load": "fluid_force"}  # and what of a snapshot tells that it did
 
 
 class Channel:
@@ -66,8 +67,13 @@ class Publishers:
         """One sample at simulation time `nanoseconds`, /clock first."""
         self.tick(nanoseconds)
         for name, channel in self._channels.items():
-            if self.wants(name):
+            if self.wants(name) and self._is_in(snapshot, name):
                 self._send(channel, self._sample.fill(name, snapshot))
+
+    @staticmethod
+    def _is_in(snapshot, name: str) -> bool:
+        """Whether the snapshot has what the topic tells; a subscriber may have come after it was taken."""
+        return name not in MARK or getattr(snapshot, MARK[name]) is not None
 
     def tick(self, nanoseconds: int):
         """/clock alone."""

@@ -6,6 +6,7 @@ from the backbone and its colour from the torque, whichever comes first. Rows ar
 `attend` now and then, and `send` at the end.
 """
 
+import reprlib
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,6 +31,8 @@ from eel_viz.track import Track
 ENVELOPE_PERIOD = 500_000_000  # ns
 HEAT_MAP_PERIOD = 160_000_000
 SUMMARY_PERIOD = 500_000_000
+LOG_NAMES = reprlib.Repr()
+LOG_NAMES.maxstring = 220  # characters of a law's name, which is not yet checked here
 LEVELS = ("INFO", "WARN", "ERROR", "WARN")
 
 
@@ -227,7 +230,7 @@ class Loggers:
         self.summary.law = name
         if self._comparison:
             self._comparison.this.law(stamp, name)
-        self._text(stamp, f"law {name!r} published", "INFO")
+        self._text(stamp, f"law {LOG_NAMES.repr(name)} published", "INFO")
 
     def diagnostics(self, stamp: int, statuses: list[Status]) -> None:
         """Each status whose level or words have changed, as text; the values go into the summary."""

@@ -14,6 +14,7 @@ from rclpy.node import Node
 
 from eel_msgs.msg import Backbone, BodyGeometry, Curvature, CurvatureLaw, EnergyLedger, HydrodynamicLoad, InternalWrench
 from eel_viz.declaration import declare_settings
+from eel_viz.flow import leave
 from eel_viz.inbox import Inbox
 from eel_viz.intake import Intake
 from eel_viz.lifetime import live
@@ -45,7 +46,7 @@ class Visualiser(Node):
         super().__init__(NAME)
         self.settings = declare_settings(self)
         own = self.get_namespace().rstrip("/")
-        runs = Runs(
+        self._runs = runs = Runs(
             destinations(self.settings, self._say, self._warn, elsewhere=True),
             name=own.strip("/") or "eel",
             warn=self._warn,
@@ -74,6 +75,11 @@ class Visualiser(Node):
     def close(self) -> None:
         """Complete the recordings, and say what came."""
         self._say(f"received: {self._intake.close()}")
+
+    @property
+    def failure(self) -> str:
+        """What could not be done; empty if all was."""
+        return "a recording ends before the run did" if self._runs.lost else ""
 
     def work(self) -> bool:
         """Show what has come; whether there was any."""
@@ -104,9 +110,10 @@ class Visualiser(Node):
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Run the node; the exit status is 0 after SIGINT or SIGTERM, 2 if a parameter is refused at start."""
+    """Run the node; the exit status is 0 after SIGINT or SIGTERM, 1 if a file could not be written to its end, 2 if a
+    parameter is refused at start."""
     given = sys.argv if arguments is None else [NAME, *arguments]
-    return live(NAME, DEFAULTS + given, Visualiser, Visualiser.attend, Visualiser.work)
+    return leave(live(NAME, DEFAULTS + given, Visualiser, Visualiser.attend, Visualiser.work))
 
 
 if __name__ == "__main__":

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from eel_viz.entities import TIMELINE
+from eel_viz.frames import HEAD, whole
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,7 +41,10 @@ def read(path: str | os.PathLike[str], entity: str, *, static: bool = False) -> 
 
     found: dict[str, list[tuple[int, object]]] = {}
     stamps: set[int] = set()
-    for chunk in RrdReader(str(path)).stream().filter(content=entity):
+    with whole(path) as readable:
+        empty = readable.stat().st_size <= HEAD
+        chunks = [] if empty else list(RrdReader(str(readable)).stream().filter(content=entity))
+    for chunk in chunks:
         if chunk.is_static != static or str(chunk.entity_path).strip("/") != entity.strip("/"):
             continue
         batch = chunk.to_record_batch()

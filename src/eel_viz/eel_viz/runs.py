@@ -9,8 +9,7 @@ import time
 from collections import deque
 from collections.abc import Callable
 
-from rerun import RecordingStream
-
+from eel_viz.flow import Flow
 from eel_viz.loggers import Loggers
 from eel_viz.messages import Body, Status
 from eel_viz.sinks import Destination, Say
@@ -26,23 +25,35 @@ class Run:
     def __init__(self, number: int) -> None:
         self.number = number
         self.loggers: dict[int, Loggers] = {}  # by the destination's place in the list
-        self.streams: list[tuple[Destination, RecordingStream]] = []
+        self.flows: dict[int, Flow] = {}
         self.latest = 0  # ns
 
-    def give_up(self, place: int, destination: Destination) -> None:
+    def give_up(self, place: int) -> None:
         """Leave the stream of the destination at `place`, whose other end has gone: to end it can take seconds."""
         self.loggers.pop(place, None)
-        for pair in [each for each in self.streams if each[0] is destination]:
-            self.streams.remove(pair)
-            threading.Thread(target=destination.end, args=(pair[1],), daemon=True).start()
+        flow = self.flows.pop(place, None)
+        if flow is not None:
+            threading.Thread(target=flow.close, daemon=True).start()
+
+    def attend(self) -> bool:
+        """Send what has waited, and see whether it arrives. A viewer that has gone is forgotten, and may come back.
+
+        Whether a file was lost.
+        """
+        for place, flow in list(self.flows.items()):
+            if flow.runs:
+                self.loggers[place].attend()
+            flow.attend()
+            if flow.gone:
+                self.give_up(place)
+        return any(flow.lost for flow in self.flows.values())
 
     def close(self) -> None:
         """Complete the recordings."""
-        for loggers in self.loggers.values():
-            loggers.send()
-        for destination, stream in self.streams:
-            destination.end(stream)
-        self.streams.clear()
+        for place, flow in self.flows.items():
+            if flow.runs:
+                self.loggers[place].send()
+            flow.close()
         self.loggers.clear()
 
 
@@ -68,6 +79,7 @@ class Runs:
         self._resets: deque[float] = deque(maxlen=RESETS)
         self._tried = time.monotonic()
         self._warned = False
+        self.lost = False  # a file that could not be written to its end
         self._runs: dict[int, Run] = {}
         self._begin(1)
 
@@ -93,7 +105,7 @@ class Runs:
             self._close_before(min(place for place, _ in self._place.values()))
         run = self._runs[number]
         run.latest = max(run.latest, stamp)
-        return list(run.loggers.values())
+        return [loggers for place, loggers in run.loggers.items() if run.flows[place].runs]
 
     def body(self, body: Body) -> None:
         """The body, for this run and those to come."""
@@ -120,22 +132,22 @@ class Runs:
             getattr(loggers.other, method)(*values)
 
     def attend(self) -> None:
-        """Now and then: send what has waited, and try the destinations that were not there."""
+        """Now and then: send what has waited, see whether all arrives, and try the destinations that were not there."""
         for run in self._runs.values():
-            for loggers in run.loggers.values():
-                loggers.attend()
+            self.lost |= run.attend()
         if time.monotonic() - self._tried > RETRY:
             self._tried = time.monotonic()
             for place, destination in enumerate(self._destinations):
                 if destination.lost():
                     for run in self._runs.values():
-                        run.give_up(place, destination)
+                        run.give_up(place)
             self._open_missing(self._newest)
 
     def close(self) -> None:
         """End all runs, and then the servers."""
         for run in self._runs.values():
             run.close()
+            self.lost |= any(flow.lost for flow in run.flows.values())
         self._runs.clear()
         for destination in self._destinations:
             destination.close()
@@ -157,7 +169,7 @@ class Runs:
             if stream is None:
                 continue
             loggers = Loggers(stream, destination.settings, destination.rates, self._name)
-            run.streams.append((destination, stream))
+            run.flows[place] = Flow(stream, destination, destination.file(run.number))
             run.loggers[place] = loggers
             if self._body is not None:
                 loggers.body(self._body)

@@ -9,6 +9,7 @@ import contextlib
 import datetime
 import pathlib
 import tempfile
+import threading
 from collections.abc import Callable
 from urllib.parse import urlsplit
 
@@ -16,6 +17,7 @@ import rerun as rr
 import rerun.blueprint as rrb
 
 from eel_viz.blueprint import arrangement
+from eel_viz.flow import abandon
 from eel_viz.loggers import Rates
 from eel_viz.settings import Settings
 from eel_viz.viewer import display, free_port, listening, open_window
@@ -23,24 +25,33 @@ from eel_viz.viewer import display, free_port, listening, open_window
 APPLICATION = "eel"
 CLOSING_LIMIT = 3.0  # s for what is still on its way
 LIVE_TICK = 0.1  # s: a viewer shall move smoothly
-FILE_TICK = 2.0  # s: a file need not be quick, and each batch of an entity costs it some 700 bytes
+FILE_TICK = 0.5  # s: a process that is killed loses no more; each batch of an entity costs its file some 700 bytes
+ANSWER_LIMIT = 1.0  # s, until a viewer that listens answers
 HOST = "127.0.0.1"
 
 Say = Callable[[str], None]
 
 
 class Destination:
-    """Makes the streams of runs. `rates`: how much of a run goes there; `say`, `warn`: one line to the user."""
+    """Makes the streams of runs. `rates`: how much of a run goes there; `say`, `warn`: one line to the user.
+    `live`: a viewer looks on."""
 
     def __init__(self, settings: Settings, rates: Rates, say: Say, warn: Say, *, live: bool) -> None:
         self.settings, self.rates, self.say, self.warn = settings, rates, say, warn
-        self._live = live
+        self.live = live
+
+    def file(self, run: int) -> pathlib.Path | None:
+        """The file that run number `run` is written to; None where it goes elsewhere."""
+        return None
 
     def open(self, run: int, name: str) -> rr.RecordingStream | None:
         """The stream of run number `run` (1, 2, ...), called `name`; None: not now."""
         sink = self._sink(run)
         if sink is None:
             return None
+        return self._connected(sink, name)
+
+    def _connected(self, sink: rr.FileSink | rr.GrpcSink, name: str) -> rr.RecordingStream | None:
         stream = rr.RecordingStream(APPLICATION, batcher_config=self._batches())
         stream.set_log_time_enabled(False)
         stream.set_sinks(sink, default_blueprint=self._blueprint())
@@ -64,7 +75,7 @@ class Destination:
 
     def _blueprint(self) -> rrb.Blueprint:
         return arrangement(
-            self.settings.blueprint, live=self._live, compare=bool(self.settings.compare), frames=self.settings.frames
+            self.settings.blueprint, live=self.live, compare=bool(self.settings.compare), frames=self.settings.frames
         )
 
     def _sink(self, run: int) -> rr.FileSink | rr.GrpcSink | None:
@@ -83,11 +94,16 @@ class File(Destination):
         )
         path = settings.recording or f"eel-{datetime.datetime.now():%Y%m%d-%H%M%S}.rrd"
         self._first, self._elsewhere = pathlib.Path(path), elsewhere
+        self._files: dict[int, pathlib.Path] = {}
 
     def path(self, run: int) -> pathlib.Path:
         """The file of run number `run`."""
         first = self._first
         return first if run == 1 else first.with_name(f"{first.stem}-{run}{first.suffix}")
+
+    def file(self, run: int) -> pathlib.Path | None:
+        """The file that run number `run` is written to."""
+        return self._files.get(run)
 
     def _batches(self) -> rr.ChunkBatcherConfig:
         return rr.ChunkBatcherConfig(flush_tick=FILE_TICK)
@@ -108,6 +124,7 @@ class File(Destination):
         if existed:
             self.warn(f"{path} is there already and is replaced")
         self.say(f"saving to {path}")
+        self._files[run] = path
         return rr.FileSink(str(path))
 
 
@@ -174,18 +191,16 @@ class Connected(Destination):
             raise ValueError(f"viewer must look like rerun+http://127.0.0.1:9876/proxy, got {settings.viewer!r}")
         self._address = (address.hostname, address.port)
         self._missed = False
+        self._attempts: list[threading.Thread] = []  # that have had no answer
 
     def _sink(self, run: int) -> rr.GrpcSink | None:
         host, port = self._address
+        self._attempts = [attempt for attempt in self._attempts if attempt.is_alive()]
+        if self._attempts:
+            return None
         if listening(port, host):
-            self.say(f"connected to the viewer at {self.settings.viewer}")
-            self._missed = False
             return rr.GrpcSink(self.settings.viewer)
-        if not self._missed:
-            self.warn(
-                f"no viewer listens at {self.settings.viewer}: start one with `rerun`, it is tried again while running"
-            )
-            self._missed = True
+        self._miss(f"no viewer listens at {self.settings.viewer}: start one with `rerun`")
         return None
 
     def lost(self) -> bool:
@@ -193,9 +208,30 @@ class Connected(Destination):
         host, port = self._address
         if self._missed or listening(port, host):
             return False
-        self.warn(f"the viewer at {self.settings.viewer} has gone: it is tried again while running")
-        self._missed = True
+        self._miss(f"the viewer at {self.settings.viewer} has gone")
         return True
+
+    def _connected(self, sink: rr.GrpcSink, name: str) -> rr.RecordingStream | None:
+        """In a thread, as it would wait for ever for a viewer that listens and does nothing else."""
+        made: list[rr.RecordingStream] = []
+        connect = super()._connected
+        attempt = threading.Thread(target=lambda: made.append(connect(sink, name)), daemon=True)
+        attempt.start()
+        attempt.join(ANSWER_LIMIT)
+        if not made:
+            abandon(attempt)
+            self._attempts.append(attempt)
+            self._miss(f"the viewer at {self.settings.viewer} does not answer")
+            return None
+        self.say(f"connected to the viewer at {self.settings.viewer}")
+        self._missed = False
+        return made[0]
+
+    def _miss(self, text: str) -> None:
+        """Say what is missing, once until it is found."""
+        if not self._missed:
+            self._missed = True
+            self.warn(f"{text}: it is tried again while running")
 
 
 def destinations(settings: Settings, say: Say, warn: Say, *, elsewhere: bool = False) -> list[Destination]:

@@ -3,6 +3,8 @@
 Everything comes from messages: the path from head_pose, the torque from internal_wrench, the rest from diagnostics.
 """
 
+import re
+
 import numpy as np
 
 from eel_viz.messages import Body
@@ -16,6 +18,7 @@ TOLD = {  # keys of the diagnostics, and the words for them
     "energy_residual_worst": "worst residual [J]",
 }
 COMPARED = ("accuracy", "real_time_factor", "energy_residual_worst")  # beside another run
+LONGEST_NAME, LONGEST_TEXT = 60, 400  # characters
 PRESENT = ("warnings", "real_time_factor")  # those that may be otherwise a moment later
 
 
@@ -69,9 +72,9 @@ class Summary:
 
     def text(self) -> str:
         """Markdown, one line of text a line."""
-        law = "" if self.law is None else f"law **{self.law}**"
+        law = "" if self.law is None else f"law **{plain(self.law)}**"
         fresh = self.stamp - self._state[0] <= FRESH
-        lines = [", ".join(part for part in (law, self._state[1] if fresh else "") if part)]
+        lines = [", ".join(part for part in (law, plain(self._state[1], LONGEST_TEXT) if fresh else "") if part)]
         told = [key for key in TOLD if self.values.get(key) and (fresh or key not in PRESENT)]
         lines.append(", ".join(f"{TOLD[key]} {_short(self.values[key])}" for key in told))
         if self._last is not None and self._first is not None:
@@ -87,7 +90,7 @@ class Summary:
 
     def figures(self) -> dict[str, str]:
         """The same in short, by name, to stand beside those of another run."""
-        told = {"law": self.law or ""}
+        told = {"law": plain(self.law or "")}
         told |= {TOLD[key]: _short(self.values[key]) for key in COMPARED if self.values.get(key)}
         if self._last is not None and self._first is not None:
             seconds = (self._last[0] - self._first[0]) / 1e9
@@ -98,9 +101,16 @@ class Summary:
         return told
 
 
+def plain(name: str, longest: int = LONGEST_NAME) -> str:
+    """A text from a message, in Markdown: shown as it is, in one line and not too long."""
+    text = "".join(letter if letter.isprintable() else " " for letter in name[:longest])
+    escaped = re.sub(r"([\\`*_{}\[\]<>#|~])", r"\\\1", text)
+    return escaped + ("..." if len(name) > longest else "")
+
+
 def _short(value: str) -> str:
     """Numbers to three digits; words as they are."""
     try:
         return f"{float(value):.3g}"
     except ValueError:
-        return value
+        return plain(value, LONGEST_TEXT)

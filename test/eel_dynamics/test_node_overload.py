@@ -1,0 +1,71 @@
+"""Far more than a machine can do: the run falls behind and says so, and leaves nothing out of the physics."""
+
+import sys
+
+import numpy as np
+import pytest
+from eel_gaits.messages import law_to_message
+from swim_client import LIMIT, SwimClient, nanoseconds
+
+from eel_dynamics import Simulation
+from eel_gaits import falling
+
+RATE, STATIONS, SUBSCRIBERS = 10_000, 1_000, 10
+CROWD = """
+import sys
+import rclpy
+from rclpy.executors import SingleThreadedExecutor
+from eel_msgs.msg import Backbone, Curvature, InternalWrench
+rclpy.init()
+executor = SingleThreadedExecutor()
+for number in range(int(sys.argv[1])):
+    node = rclpy.create_node(f"listener_{number}")
+    for topic, kind in (("backbone", Backbone), ("curvature", Curvature), ("internal_wrench", InternalWrench)):
+        node.create_subscription(kind, topic, lambda data: None, 10, raw=True)
+    executor.add_node(node)
+print("listening", flush=True)
+executor.spin()
+"""
+
+
+@pytest.mark.fault(
+    "load",
+    "10,000 Hz, 1,000 stations, 10 subscribers, all on one core",
+    "WARN with the delay and the real-time factor that is reached; every sample is computed, as the library does",
+)
+def test_overload_falls_behind_and_skips_no_physics(start, fresh_domain):
+    start("taskset", "-c", "0", sys.executable, "-c", CROWD, str(SUBSCRIBERS)).wait_for_output("listening", LIMIT)
+    swim = SwimClient(domain=fresh_domain, topics=("head_pose", "internal_wrench"))
+    swim.laws.publish(law_to_message(falling()))
+    node = start(
+        "taskset", "-c", "0", "dynamics", "--ros-args", "-p", f"rate:={RATE}", "-p", f"stations:={STATIONS}",
+        "-p", f"wait_for_subscribers:={SUBSCRIBERS}",
+    )  # fmt: skip
+    swim.until(lambda: swim.heard["head_pose"], "a first sample")
+    swim.until(lambda: swim.diagnosis()[0] == 1 and "late by" in swim.diagnosis()[1], "a warning of the delay")
+    before = len(swim.heard["/diagnostics"])
+    swim.until(lambda: len(swim.heard["/diagnostics"]) > before + 1, "two more diagnostics")
+    assert node.interrupt() == 0 and "Traceback" not in node.output(), node.output()
+    swim.spin(0.3)
+
+    _, _, values = swim.diagnosis()
+    assert 0.0 < float(values["real_time_factor"]) < 0.9 and float(values["late"]) > 0.0
+    assert int(values["samples_published"]) == round(float(values["time"]) * RATE) + 1
+    stamps = np.array([nanoseconds(message.header.stamp) for message in swim.heard["head_pose"]])
+    k = np.round(stamps * 1e-9 * RATE).astype(int)
+    assert np.array_equal(stamps, np.round(k * 1e9 / RATE)) and np.all(np.diff(k) > 0)
+
+    simulation = Simulation(stations=STATIONS)
+    simulation.adopt(falling())
+    heard = {nanoseconds(message.header.stamp): message for message in swim.heard["internal_wrench"]}
+    compared = 0
+    for index in range(0, len(k), max(1, len(k) // 20)):
+        simulation.advance(k[index] / RATE)
+        pose = swim.heard["head_pose"][index].pose.position
+        snapshot = simulation.observe()
+        assert np.allclose((-pose.x, -pose.y, pose.z), snapshot.position, rtol=0, atol=1e-12)
+        if stamps[index] in heard:
+            compared += 1
+            assert np.allclose(heard[stamps[index]].torque_3, snapshot.torque[:, 2], rtol=0, atol=1e-10)
+    assert compared > 0
+    swim.close()

@@ -1,0 +1,126 @@
+"""What is left of a recording when the disk is full, the process is killed, or a viewer stops reading."""
+
+import os
+import signal
+import sys
+import time
+
+import numpy as np
+import pytest
+from eel_viz.reading import read
+from eel_viz.viewer import free_port
+from rosbags.highlevel import AnyReader
+from soak import Clock
+
+from eel_viz import entities
+
+
+def visualise(start, *settings, limit_of_files=None):
+    """The visualiser, each of whose files may take `limit_of_files` [kB] at most."""
+    arguments = ["visualiser", "--ros-args", *[word for setting in settings for word in ("-p", setting)]]
+    if limit_of_files:
+        return start("bash", "-c", f'ulimit -f {limit_of_files}; exec "$@"', "-", *arguments)
+    return start(*arguments)
+
+
+def swim(start, *settings):
+    start("gait_generator")
+    return start("dynamics", "--ros-args", *[word for setting in settings for word in ("-p", setting)])
+
+
+@pytest.mark.fault(
+    "ending",
+    "the disk is full while the visualiser records",
+    "one warning with the reason; the file is cut to what is whole and opens; the run goes on; status 1 at the end",
+)
+def test_a_disk_that_is_full(start, fresh_domain, tmp_path):
+    """A limit on the size of files stands in for it: the operating system refuses to write in the same way."""
+    node = visualise(start, "sink:=[save]", f"recording:={tmp_path / 'run.rrd'}", limit_of_files=1500)
+    node.wait_for_output("saving to")
+    dynamics = swim(start, "real_time_factor:=0", "duration:=20", "wait_for_subscribers:=1")
+    node.wait_for_output("cannot be written any more: File too large; it ends here", 60.0)
+    assert dynamics.wait(60.0) == 0 and "stuck" not in dynamics.output(), dynamics.output()
+    assert node.interrupt() == 1 and "Traceback" not in node.output(), node.output()
+    assert node.output().count("cannot be written") == 1
+    stamps = read(tmp_path / "run.rrd", entities.POSITION).stamps
+    assert len(stamps) > 20 and np.array_equal(stamps, 10_000_000 * np.arange(len(stamps)))
+
+
+@pytest.mark.fault(
+    "ending",
+    "SIGKILL while the visualiser and `record` record",
+    "what was recorded up to the last second opens; the run goes on",
+)
+def test_what_is_killed_leaves_what_it_had(start, fresh_domain, tmp_path):
+    node = visualise(start, "sink:=[save]", f"recording:={tmp_path / 'run.rrd'}")
+    recorder = start("record", "-o", str(tmp_path / "bag"))
+    node.wait_for_output("saving to")
+    recorder.wait_for_output("recording to")
+    dynamics = swim(start, "real_time_factor:=1", "wait_for_subscribers:=2")
+    dynamics.wait_for_output("taken on", 90.0)
+    clock = Clock()
+    while clock.time < 3.0:
+        clock.hear(0.05)
+    for each in (node, recorder):
+        each.process.kill()
+        each.process.wait()
+    clock.hear(0.05)
+    clock.close()
+    with AnyReader([tmp_path / "bag"]) as bag:
+        wanted = [connection for connection in bag.connections if connection.topic == "/internal_wrench"]
+        *_, (connection, _, raw) = bag.messages(wanted)
+        stamp = bag.deserialize(raw, connection.msgtype).header.stamp
+    for newest in (stamp.sec + 1e-9 * stamp.nanosec, read(tmp_path / "run.rrd", entities.WRENCH_NUMBERS).time[-1]):
+        assert clock.time - newest < 1.0 + 2.0  # two seconds for a machine that is busy
+    assert dynamics.status is None
+
+
+STAND_IN = """
+import sys, time
+import rerun as rr
+host = rr.RecordingStream("viewer", send_properties=False)
+host.set_sinks(rr.GrpcServerSink(bind_ip="127.0.0.1", port=int(sys.argv[1]), server_memory_limit="16MiB"))
+print("listening", flush=True)
+time.sleep(1000)
+"""
+
+
+@pytest.mark.fault(
+    "subscribers",
+    "a viewer that has stopped reading",
+    "said after 2 s; it misses data, nobody waits, the file is complete, a signal ends the visualiser as ever; "
+    "the viewer gets data again once it reads",
+)
+@pytest.mark.fault("nodes", "a viewer that is killed and started again", "said; the visualiser finds the new one")
+def test_a_viewer_that_stops_reading_or_is_killed(start, fresh_domain, tmp_path):
+    """A server in the viewer's place, which takes what a viewer would, without drawing it."""
+    port = free_port()
+    stand_in = start(sys.executable, "-c", STAND_IN, str(port))
+    stand_in.wait_for_output("listening")
+    address = f"viewer:=rerun+http://127.0.0.1:{port}/proxy"
+    node = visualise(start, "sink:=[connect, save]", f"recording:={tmp_path / 'run.rrd'}", address, "rate:=1000")
+    brief = visualise(start, "sink:=[connect]", address, "rate:=1000")
+    for each in (node, brief):
+        each.wait_for_output("connected to the viewer")
+    os.kill(stand_in.process.pid, signal.SIGSTOP)
+    late = visualise(start, "sink:=[connect]", address)
+    late.wait_for_output("does not answer: it is tried again while running")
+    assert late.interrupt() == 0 and "Traceback" not in late.output(), late.output()
+    dynamics = swim(start, "real_time_factor:=0", "duration:=20", "wait_for_subscribers:=2")
+    for each in (node, brief):
+        each.wait_for_output("the viewer has not read for 2 s", 60.0)
+    assert brief.interrupt() == 0, brief.output()
+    assert dynamics.wait(60.0) == 0 and "stuck" not in dynamics.output(), dynamics.output()
+    os.kill(stand_in.process.pid, signal.SIGCONT)
+    node.wait_for_output("the viewer reads again")
+    stand_in.process.kill()
+    node.wait_for_output("has gone: it is tried again while running")
+    start(sys.executable, "-c", STAND_IN, str(port)).wait_for_output("listening")
+    deadline = time.monotonic() + 20.0
+    while node.output().count("connected to the viewer") < 2:
+        assert time.monotonic() < deadline, node.output()
+        time.sleep(0.05)
+    assert node.interrupt() == 0 and "Traceback" not in node.output() + brief.output(), node.output()
+    stamps = read(tmp_path / "run.rrd", entities.LOAD_NUMBERS).stamps
+    assert len(stamps) > 100  # what it had read by then
+    np.testing.assert_array_equal(stamps, 10_000_000 * np.arange(len(stamps)))

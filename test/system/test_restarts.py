@@ -1,0 +1,152 @@
+"""Nodes that are killed and come back while the others run, resets heard by all, and systems side by side."""
+
+import signal
+import time
+
+import numpy as np
+import pytest
+from eel_viz.reading import read
+from ros_domain import reserve_domain
+from swim_client import LIMIT, SwimClient, nanoseconds
+
+from eel_gaits import falling, straight
+from eel_viz import entities
+
+SLOWLY = ("-p", "real_time_factor:=2", "-p", "wait_for_subscribers:=1")
+
+
+def seconds(message) -> float:
+    return nanoseconds(message.header.stamp) / 1e9
+
+
+def visualise(start, recording):
+    node = start("visualiser", "--ros-args", "-p", "sink:=[save]", "-p", f"recording:={recording}")
+    node.wait_for_output("saving to", LIMIT)
+    return node
+
+
+def times(recording) -> np.ndarray:
+    """Of the samples that are in the file so far [s]."""
+    try:
+        return read(recording, entities.POSITION).time
+    except ValueError:
+        return np.zeros(0)
+
+
+@pytest.mark.fault(
+    "nodes",
+    "the gait generator killed (SIGKILL) and started again",
+    "the swim goes on with its law; the same law again is no change",
+)
+@pytest.mark.fault(
+    "nodes",
+    "the visualiser killed and started again in mid-run",
+    "the swim does not notice; the old file opens, the new one goes on from there, with body and law",
+)
+@pytest.mark.fault(
+    "time", "a reset while everyone subscribes", "all follow: samples from 0 again, a second recording, the same law"
+)
+@pytest.mark.fault(
+    "nodes",
+    "the dynamics node killed and started again, and a visualiser that comes later still",
+    "it finds the law on the network and swims from 0; a third recording; the late one has body, law and what follows",
+)
+@pytest.mark.timeout(240)
+def test_nodes_die_and_come_back(start, fresh_domain, tmp_path):
+    swim = SwimClient(domain=fresh_domain, topics=("curvature",))
+    heard = swim.heard["curvature"]
+
+    def on(more):
+        """Spins until the simulation is so much further [s]; its time then."""
+        target = (seconds(heard[-1]) if heard else 0.0) + more
+        swim.until_time(target, "curvature")
+        return target
+
+    def from_the_start():
+        count = len(heard)
+        swim.until(lambda: any(seconds(message) < 0.3 for message in heard[count:]), "samples from the start")
+        del heard[: next(k for k in range(count, len(heard)) if seconds(heard[k]) < 0.3)]
+
+    def recorded(name):
+        deadline = time.monotonic() + LIMIT
+        while not (tmp_path / name).exists() or not times(tmp_path / name).size:
+            assert time.monotonic() < deadline, f"nothing in {name}"
+            swim.spin(0.3)
+
+    gait = start("gait_generator")
+    first = visualise(start, tmp_path / "first.rrd")
+    dynamics = start("dynamics", "--ros-args", *SLOWLY)
+    on(2.0)
+    recorded("first.rrd")
+
+    gait.process.send_signal(signal.SIGKILL)
+    gait.wait(5.0)
+    on(1.0)
+    start("gait_generator").wait_for_output("published on", LIMIT)
+    on(1.0)
+    assert dynamics.output().count("taken on") == 1, dynamics.output()
+
+    first.process.send_signal(signal.SIGKILL)
+    first.wait(5.0)
+    assert times(tmp_path / "first.rrd").size
+    on(0.5)
+    second = visualise(start, tmp_path / "second.rrd")
+    recorded("second.rrd")
+    for message in heard[::20]:
+        assert np.allclose(message.yaw, falling().curvature(seconds(message), np.array(message.x))[0][:, 2], atol=1e-9)
+
+    assert swim.reset().success
+    from_the_start()
+    recorded("second-2.rrd")
+    on(1.0)
+    dynamics.process.send_signal(signal.SIGKILL)
+    dynamics.wait(5.0)
+    again = start("dynamics", "--ros-args", *SLOWLY[:-1], "wait_for_subscribers:=2")
+    from_the_start()
+    on(0.5)
+    late = visualise(start, tmp_path / "late.rrd")
+    recorded("late.rrd")
+    recorded("second-3.rrd")
+    for message in heard[::20]:
+        assert np.allclose(message.yaw, falling().curvature(seconds(message), np.array(message.x))[0][:, 2], atol=1e-9)
+    swim.close()
+    for node in (second, late, again):
+        assert node.interrupt() == 0 and "Traceback" not in node.output(), node.output()
+    assert second.output().count("a new recording begins") == 2, second.output()
+
+    runs = [times(tmp_path / name) for name in ("second.rrd", "second-2.rrd", "second-3.rrd", "late.rrd")]
+    assert runs[0][0] > 2.0 and runs[1][0] < 0.3 and runs[2][0] < 2.0 and runs[3][0] > 0.1
+    for name in ("second.rrd", "second-3.rrd", "late.rrd"):
+        assert read(tmp_path / name, entities.BODY_NUMBERS, static=True)["mass"].size == 1, name
+        assert ["law 'falling' published"] in [list(row) for row in read(tmp_path / name, entities.LOG)["text"]], name
+
+
+@pytest.mark.fault("neighbours", "two whole systems in two ROS domains, with the same names", "no cross-talk at all")
+def test_two_systems_in_two_domains(start, fresh_domain, monkeypatch):
+    other = reserve_domain()
+    ears, nodes = {}, {}
+    for name, number in (("falling", fresh_domain), ("straight", other.number)):
+        ears[name] = SwimClient(domain=number, topics=("curvature", "head_pose"), clock=True)
+        monkeypatch.setenv("ROS_DOMAIN_ID", str(number))
+        start("gait_generator", "--ros-args", "-p", f"gait:={name}")
+        nodes[name] = start(
+            "dynamics", "--ros-args", "-p", "duration:=3", "-p", "real_time_factor:=0", "-p", "wait_for_subscribers:=1"
+        )
+    for (name, ear), law in zip(ears.items(), (falling(), straight()), strict=True):
+        ear.until(lambda ear=ear: len(ear.heard["curvature"]) >= 301, f"301 samples of {name}")
+        assert nodes[name].wait(LIMIT) == 0, nodes[name].output()
+        ear.spin(0.2)
+        assert [nanoseconds(message.header.stamp) for message in ear.heard["head_pose"]] == [
+            k * 10_000_000 for k in range(301)
+        ]
+        for message in ear.heard["curvature"][::50]:
+            expected = law.curvature(seconds(message), np.array(message.x))[0]
+            assert np.allclose(message.yaw, expected[:, 2], atol=1e-9)
+            assert np.allclose(message.pitch, expected[:, 1], atol=1e-9)
+        ticks = [nanoseconds(message.clock) for message in ear.heard["/clock"]]
+        assert ticks == sorted(ticks)
+        assert {message.status[0].name for message in ear.heard["/diagnostics"]} == {"/dynamics"}
+        assert "already" not in nodes[name].output()  # of /clock
+        assert ear.node.count_publishers("curvature_law") == 2  # the gait generator's and this test's own
+        ear.close()
+    other.claim.close()

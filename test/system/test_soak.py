@@ -1,0 +1,66 @@
+"""Long runs as fast as they go, every topic heard: nothing is lost, and memory does not grow.
+
+`make soak` swims for an hour of simulation and leaves out/soak.csv and out/soak.png; a minute is in `make test`.
+"""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from soak import NODES, RATE, soak
+
+OUT = Path(__file__).parents[2] / "out"
+HOUR, MINUTE = 3600.0, 60.0  # s of simulation
+FILLED = 0.25  # of the hour, by which every history is as full as it gets
+GROWTH = 0.01  # of the median, what the memory may vary by afterwards
+MOST = 600.0  # MB of any node: histories of 5,000 samples on both sides, compiled loops, Rerun
+
+
+@pytest.mark.fault(
+    "load", "a minute of simulation as fast as it goes, every topic heard", "no sample lost, memory bounded"
+)
+@pytest.mark.timeout(400)
+def test_a_minute(start, fresh_domain):
+    result = soak(start, MINUTE, limit=300.0)
+    assert set(result.counts.values()) == {round(MINUTE * RATE) + 1}, result.counts
+    for node in NODES:
+        assert result.memory[node].max() < MOST, node
+    assert np.all(np.diff(result.time) >= 0.0) and result.time[-1] > 0.5 * MINUTE
+
+
+@pytest.mark.fault(
+    "load",
+    "an hour of simulation as fast as it goes, every topic heard (`make soak`)",
+    "no sample lost, memory constant to 1 % once the histories are full (out/soak.csv)",
+)
+@pytest.mark.soak
+@pytest.mark.timeout(3 * 3600)
+def test_an_hour(start, fresh_domain):
+    result = soak(start, HOUR, limit=3 * 3600.0)
+    result.write(OUT / "soak.csv")
+    draw(result, OUT / "soak.png")
+    assert set(result.counts.values()) == {round(HOUR * RATE) + 1}, result.counts
+    for node in NODES:
+        assert result.memory[node].max() < MOST, node
+        assert result.spread(node, after=FILLED * HOUR) < GROWTH, (node, result.spread(node, after=FILLED * HOUR))
+
+
+def draw(result, path: Path) -> None:
+    """The memory of each node over simulation time."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(9.0, 4.5), layout="constrained")
+    axes = figure.subplots()
+    for node in NODES:
+        spread = 100.0 * result.spread(node, after=FILLED * result.time[-1])
+        axes.plot(result.time / 60.0, result.memory[node], label=f"{node}: {spread:.1f} % in the last three quarters")
+    axes.set(
+        xlabel="simulation time [min]",
+        ylabel="memory [MB]",
+        title=f"{result.time[-1] / 60.0:.0f} min of simulation in {result.wall / 60.0:.0f} min, every topic heard",
+    )
+    axes.set_ylim(bottom=0.0)
+    axes.set_xlim(left=0.0)
+    axes.grid(alpha=0.3)
+    axes.legend()
+    figure.savefig(path, dpi=120)
