@@ -127,6 +127,19 @@ def test_a_bag_that_was_not_finished_is_shown_as_far_as_it_goes(tmp_path, capsys
     assert 30 < len(stamps) < 150 if cut == "half a file" else len(stamps) == 151
 
 
+def test_a_bag_that_is_torn_in_the_middle_is_shown_until_there(tmp_path, capsys):
+    folder = write_bag(tmp_path / "bag", 1.5, stations=51, compression=CompressionMode.STORAGE)
+    file = folder / "bag.mcap"
+    whole = file.read_bytes()
+    second = whole.find(b"\x28\xb5\x2f\xfd", whole.find(b"\x28\xb5\x2f\xfd") + 4)  # zstd's frames, one a chunk
+    file.write_bytes(whole[:second] + bytes(4) + whole[second + 4 :])
+    assert main([str(folder), "-o", str(tmp_path / "run.rrd")]) == 0
+    said = capsys.readouterr().err
+    assert "is damaged: " in said
+    assert said.endswith("shown as far as it goes\n")
+    assert 30 < len(read(tmp_path / "run.rrd", entities.POSITION).stamps) < 150
+
+
 def test_a_file_of_a_bag_will_do_and_sqlites_journal_is_heeded(tmp_path):
     folder = write_bag(tmp_path / "bag", 0.2, storage=StoragePlugin.SQLITE3)
     (folder / "metadata.yaml").unlink()
@@ -225,6 +238,10 @@ def test_two_bags_or_two_namespaces_are_laid_over_each_other(tmp_path, capsys, m
     at_other = distance["scalars"][::2, 0]  # where both have a sample
     np.testing.assert_allclose(at_other, 0.0, atol=1e-9)
     assert "| fine | coarse |" in read(tmp_path / "both.rrd", entities.COMPARE_TEXT)["text"][-1][0]
+    (tmp_path / "deep").mkdir()
+    (tmp_path / "coarse").rename(tmp_path / "deep" / "fine")
+    assert main(["fine", "-o", "same.rrd", "--compare", "deep/fine"]) == 0
+    assert "| fine | deep/fine |" in read(tmp_path / "same.rrd", entities.COMPARE_TEXT)["text"][-1][0]
     write_bag(tmp_path / "two", 0.1, namespaces=("/left", "/right"))
     assert main(["two", "--namespace", "/left", "--compare", "/right"]) == 0
     np.testing.assert_array_equal(read(tmp_path / "two.rrd", entities.DISTANCE).stamps, STAMPS[:11])

@@ -32,6 +32,10 @@ class Topic:
     publishers: int = 1
 
 
+class DamagedBag(ValueError):
+    """What cannot be read on from here."""
+
+
 class Bag:
     """A bag, open for reading; `topics` by name. `ValueError` in one line if nothing of it can be read.
 
@@ -42,13 +46,14 @@ class Bag:
         self._path = pathlib.Path(path)
         self._stack = contextlib.ExitStack()
         self._readers: list[Reader | Remains] = []
-        self._types: dict[str, object] = {}
         self._store = get_typestore(Stores.EMPTY)
         self.damage = ""
+        self.topics: dict[str, Topic] = {}
         if not self._path.exists():
             raise ValueError(f"bag {str(path)!r} does not exist")
         try:
             self._open()
+            self.topics = self._topics()
         except BaseException:
             self.close()
             raise
@@ -63,29 +68,13 @@ class Bag:
     def __exit__(self, *_) -> None:
         self.close()
 
-    @property
-    def topics(self) -> dict[str, Topic]:
-        """All topics, by name."""
-        found: dict[str, Topic] = {}
-        for reader in self._readers:
-            for connection in reader.connections:
-                known = found.get(connection.topic)
-                text = connection.msgdef.data or (known.definition if known else "")
-                found[connection.topic] = Topic(
-                    type=connection.msgtype,
-                    definition=text,
-                    idl=connection.msgdef.format == MessageDefinitionFormat.IDL,
-                    publishers=max(1, len(connection.ext.offered_qos_profiles)),
-                )
-        return found
-
     def messages(
         self, *topics: str, unreadable: Callable[[str, str], None] = lambda topic, why: None
     ) -> Iterator[tuple[str, int, object]]:
         """Topic, time of reception [ns] and message of all messages of `topics`, in the order of reception.
 
         `unreadable(topic, why)` is told of each message whose bytes do not fit its type. `ValueError` if a type is not
-        known, or if the bag is damaged.
+        known, `DamagedBag` where it is torn.
         """
         for name in topics:
             self._learn(self.topics[name])
@@ -98,7 +87,7 @@ class Bag:
                 except StopIteration:
                     break
                 except Exception as error:
-                    raise ValueError(f"bag {str(self._path)!r} is damaged: {_line(error)}") from error
+                    raise DamagedBag(f"bag {str(self._path)!r} is damaged: {_line(error)}") from error
                 try:
                     message = self._store.deserialize_cdr(raw, connection.msgtype)
                 except Exception as error:  # rosbags' own, struct.error, ValueError of numpy or of text
@@ -130,6 +119,20 @@ class Bag:
                 self.damage = f"{each.name}: {_line(error)}"
         if not any(reader.connections for reader in self._readers):
             raise ValueError(f"bag {str(self._path)!r} cannot be read: {self.damage}")
+
+    def _topics(self) -> dict[str, Topic]:
+        found: dict[str, Topic] = {}
+        for reader in self._readers:
+            for connection in reader.connections:
+                known = found.get(connection.topic)
+                text = connection.msgdef.data or (known.definition if known else "")
+                found[connection.topic] = Topic(
+                    type=connection.msgtype,
+                    definition=text,
+                    idl=connection.msgdef.format == MessageDefinitionFormat.IDL,
+                    publishers=max(1, len(connection.ext.offered_qos_profiles)),
+                )
+        return found
 
     def _learn(self, topic: Topic) -> None:
         if topic.type in self._store.fielddefs:

@@ -16,7 +16,7 @@ from dataclasses import fields
 from types import SimpleNamespace
 
 from eel_viz.abreast import show
-from eel_viz.bag import Bag
+from eel_viz.bag import Bag, DamagedBag
 from eel_viz.intake import SAMPLES
 from eel_viz.settings import Settings, limits
 from eel_viz.sinks import Say, destinations
@@ -57,14 +57,20 @@ class Source:
         first = next((message for _, _, message in self._bag.messages(body)), None) if body in self._topics else None
         if first is not None:
             yield "body", first
-        for k, (topic, _, message) in enumerate(self._bag.messages(*self._topics, unreadable=self._leave_out)):
-            name = self._topics[topic]
-            if name == "body" and first is not None:
-                first = None
-            elif name == "curvature_law":  # its arrays cannot be compared; each counts as a law of its own
-                yield name, SimpleNamespace(name=message.name, place=k)
-            else:
-                yield name, message
+        count = 0
+        try:
+            for topic, _, message in self._bag.messages(*self._topics, unreadable=self._leave_out):
+                name, count = self._topics[topic], count + 1
+                if name == "body" and first is not None:
+                    first = None
+                elif name == "curvature_law":  # its arrays cannot be compared; each counts as a law of its own
+                    yield name, SimpleNamespace(name=message.name, place=count)
+                else:
+                    yield name, message
+        except DamagedBag as error:
+            if not count:
+                raise
+            self._warn(f"{error}: shown as far as it goes")
 
     def _leave_out(self, topic: str, why: str) -> None:
         if topic not in self._told:
@@ -115,7 +121,7 @@ def replay(
         for where, space in zip(paths, spaces, strict=False):
             bag = stack.enter_context(Bag(where))
             sources.append(Source(bag, space, warn))
-            names.append(name_of(where) if other else sources[-1].namespace.strip("/") or "eel")
+            names.append(name_of(where, other, path) if other else sources[-1].namespace.strip("/") or "eel")
             if bag.damage:
                 warn(f"{where} is unfinished or damaged ({bag.damage}): shown as far as it goes")
         return show(
@@ -128,9 +134,11 @@ def replay(
         )
 
 
-def name_of(bag: str | os.PathLike[str]) -> str:
-    """What a bag is called: the name of its folder or file."""
-    return os.path.basename(os.path.abspath(bag)).removesuffix(".mcap").removesuffix(".db3")
+def name_of(bag: str | os.PathLike[str], *besides: str | os.PathLike[str]) -> str:
+    """What a bag is called: the name of its folder or file, or all of its path where that of another is the same."""
+    name = os.path.basename(os.path.abspath(bag)).removesuffix(".mcap").removesuffix(".db3")
+    same = [each for each in besides if os.fspath(each) != os.fspath(bag) and name_of(each) == name]
+    return os.fspath(bag).strip("/") if same else name
 
 
 def parser() -> argparse.ArgumentParser:
@@ -180,7 +188,7 @@ def main(arguments: list[str] | None = None) -> int:
         if chosen.spawn and not display():
             raise ValueError("--spawn needs a display, and there is none")
         values = {name: getattr(chosen, name) for name in OPTIONS}
-        values["compare"] = name_of(other) if other else chosen.compare
+        values["compare"] = name_of(other, chosen.bag) if other else chosen.compare
         sink = ("save", "connect") if chosen.connect else ("save",)
         settings = Settings.from_values({**values, "sink": sink, "recording": output})
         told = replay(chosen.bag, settings, other=other, namespace=chosen.namespace, say=print, warn=warn)
