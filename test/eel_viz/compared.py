@@ -33,10 +33,13 @@ def contents(path: Path, until: int = ALWAYS) -> dict[tuple[str, str], tuple[np.
     return found
 
 
-def differences(one: Path, other: Path, *, texts: bool = False, until: int = ALWAYS) -> list[str]:
+def differences(
+    one: Path, other: Path, *, texts: bool = False, until: int = ALWAYS, tolerance: float = 0.0
+) -> list[str]:
     """What is not the same in both, in words; the recordings' own properties apart, and `texts` only on demand.
 
-    `until`: what comes after it [ns] is not looked at.
+    `until`: what comes after it [ns] is not looked at. `tolerance`: of numbers, relative to the greatest of their kind;
+    with it one in a hundred of the colours, which are rounded to integers, may be the next one.
     """
     first, second = contents(one, until), contents(other, until)
     said = [f"{key} is in one alone" for key in sorted(first.keys() ^ second.keys())]
@@ -46,7 +49,24 @@ def differences(one: Path, other: Path, *, texts: bool = False, until: int = ALW
         (times, values), (other_times, other_values) = first[key], second[key]
         if not np.array_equal(times, other_times):
             said.append(f"{key}: {len(times)} and {len(other_times)} times")
-        elif not values.equals(other_values):
+        elif not values.equals(other_values) and not (tolerance and near(values, other_values, tolerance)):
             where = next(t for t, a, b in zip(times, values, other_values, strict=True) if not a.equals(b))
             said.append(f"{key}: values at {where} ns and maybe later")
     return said
+
+
+def near(values: pa.Array, other: pa.Array, tolerance: float) -> bool:
+    """Whether two arrays of numbers, of any nesting, are alike."""
+    one, two = flat(values), flat(other)
+    if one is None or one.shape != two.shape or one.dtype.kind not in "iuf":
+        return False
+    if one.dtype.kind != "f":
+        return bool(np.mean(one != two) < 0.01)
+    return bool(np.all(np.abs(one - two) <= tolerance * np.abs(one).max(initial=0.0)))
+
+
+def flat(values: pa.Array) -> np.ndarray | None:
+    """All numbers in lists of lists; None if they are no numbers."""
+    while pa.types.is_list(values.type) or pa.types.is_fixed_size_list(values.type):
+        values = values.flatten()
+    return values.to_numpy(zero_copy_only=False) if pa.types.is_primitive(values.type) else None

@@ -27,7 +27,7 @@ def library():
     from eel_dynamics import simulate
     from eel_gaits import falling
 
-    return simulate(falling(), duration=DURATION, sample_period=1.0 / RATE, stations=STATIONS)
+    return simulate(falling(), duration=DURATION, sample_period=1.0 / RATE, stations=STATIONS, load=True)
 
 
 def turned(vectors):
@@ -209,3 +209,11 @@ def test_the_bag_played_to_a_live_visualiser_is_shown_as_the_run_was(results, st
     assert player.wait(120.0) == 0, player.output()
     assert node.wait(60.0) == 0, node.output()
     assert differences(results.recording, tmp_path / "played.rrd", until=2 * 10**9) == []
+
+
+def test_the_library_s_run_is_shown_as_the_live_one(results, library, tmp_path):
+    """Every entity at every time, to round-off: 1e-14, but for the energy's residual, a small difference itself."""
+    from compared import differences
+
+    library.to_rerun(tmp_path / "library.rrd")
+    assert differences(results.recording, tmp_path / "library.rrd", tolerance=1e-8) == []

@@ -3,7 +3,8 @@
 rosbags' writer brings out the index, the end of the file and metadata.yaml when it closes; until then there is no bag.
 Here `save` does so whenever it is called: what has come since is written over the end of the file, and with it a new
 end, in one go. So a recorder that is killed leaves a bag with all that was saved, which opens everywhere; and if the
-disk is full, the end that was there before is put back.
+disk is full, the end that was there before is put back. (Killed within that one write, a moment in each second, the
+file lacks its end; `remains` reads it.)
 """
 
 import os
