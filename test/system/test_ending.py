@@ -1,5 +1,6 @@
 """Ctrl-C and SIGTERM end each node within a second, with status 0 and without a traceback."""
 
+import os
 import signal
 import time
 
@@ -63,14 +64,16 @@ def test_unknown_gait_is_one_clear_error(start):
 )
 @pytest.mark.parametrize("executable", ["dynamics", "visualiser"])
 def test_signal_at_any_moment(start, fresh_domain, tmp_path, monkeypatch, executable):
-    """Moments from the first line on; at each the first attempt that is quick enough counts."""
+    """Moments from the first line on; at each the first attempt that is quick enough counts. A machine that has to do
+    n times what it can ends a process n times later."""
+    limit = LIMIT * max(1.0, os.getloadavg()[0] / os.cpu_count())
     monkeypatch.chdir(tmp_path)
     start("gait_generator")
     for delay, sent in ((0.03, signal.SIGINT), (0.1, signal.SIGTERM), (0.3, signal.SIGINT)):
         times = []
-        while min(times, default=LIMIT) >= LIMIT and len(times) < ATTEMPTS:
+        while min(times, default=limit) >= limit and len(times) < ATTEMPTS:
             node = start(executable, *NODES[executable])
             node.wait_for_output("[INFO]")
             time.sleep(delay)  # the moment of the signal is what is tried here
             times.append(time_to_end(node, sent))
-        assert min(times) < LIMIT, (delay, times)
+        assert min(times) < limit, (delay, times)

@@ -1,7 +1,8 @@
 """Whether what is logged arrives: a disk may be full, a viewer may have stopped reading.
 
 Rerun tells neither: a file that could not be written once swallows all that follows, and logging to a viewer that does
-not read blocks for ever after some 300 MB, as ending that stream does. Both show when the stream is flushed.
+not read blocks for ever after some 300 MB, as ending that stream does. Both show when the stream is flushed: it fails,
+or it takes for ever where writing failed in that very moment.
 """
 
 import os
@@ -33,6 +34,7 @@ class Flow:
         self._looked = time.monotonic()
         self._since: float | None = None  # s: since when the viewer has not read
         self._told = False
+        self._grown = (0, self._looked)  # bytes, s: size of the file, and when it was first seen
         self.lost = False  # the file cannot be written any more
         self.gone = False  # the viewer has ended
 
@@ -50,12 +52,22 @@ class Flow:
             if self._told:
                 self._say("the viewer reads again")
             self._since, self._told = None, False
-        elif self._path is None:
+        elif self._path is not None:
+            self._watch_file(now)
+        else:
             self._since = now if self._since is None else self._since
             if now - self._since > PATIENCE and not self._told:
                 self._told = True
                 self._warn(f"the viewer has not read for {PATIENCE:g} s: it misses what comes until it does")
         self._looked = time.monotonic()
+
+    def _watch_file(self, now: float) -> None:
+        """It may be slow; if it does not grow either, nobody writes it any more."""
+        size = self._path.stat().st_size if self._path.exists() else 0
+        if size != self._grown[0]:
+            self._grown = (size, now)
+        elif not self.lost and now - self._grown[1] > PATIENCE:
+            self._lose()
 
     def close(self) -> None:
         """Bring out what is on its way and end the stream: a file is then complete."""
@@ -82,8 +94,9 @@ class Flow:
 
     def _lose(self) -> None:
         self.lost = True
+        abandon(self._stream)
         reason = why_not_written(self._path)
-        kept = cut_to_whole_messages(self._path)
+        kept = cut_to_whole_messages(self._path) if self._path.exists() else 0
         self._warn(
             f"recording {str(self._path)!r} cannot be written any more: {reason}; it ends here, and what there is "
             f"({kept / 1e6:.1f} MB) can be opened"
