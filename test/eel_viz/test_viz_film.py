@@ -61,6 +61,7 @@ def test_one_viewer_draws_many_pictures_and_each_is_right(can_draw, recording, t
             drawing.arrange("mine")
 
 
+@pytest.mark.fault("names", "`render` of a recording that was cut short", "repaired in a copy, drawn as far as it goes")
 def test_a_recording_that_was_cut_short_is_drawn(can_draw, tmp_path):
     record(tmp_path / "long.rrd", 3.0, 50.0)
     whole = (tmp_path / "long.rrd").read_bytes()
@@ -109,6 +110,11 @@ def test_the_times_of_a_film():
         times(TenSeconds, fps=1e6, start=None, end=None, speed=1.0)
 
 
+@pytest.mark.fault(
+    "names",
+    "`render` of what is no recording, to where nothing can be written, in a size that cannot be",
+    "one line, status 2",
+)
 def test_what_cannot_be_is_said_in_one_line(recording, tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("PATH", "/nothing")

@@ -4,6 +4,7 @@ import time
 
 import made_up
 import numpy as np
+import pytest
 from eel_viz.reading import read
 from fake_swimmer import LATCHED, TOPICS, body_message, messages
 
@@ -13,6 +14,7 @@ from eel_viz import entities
 BEGIN, STEP = 100 * 10**9, 2 * 10**7  # ns
 
 
+@pytest.mark.fault("nodes", "a visualiser that starts late", "body, law and the present are there at once")
 def test_who_comes_late_sees_the_present_at_once(start, network, tmp_path):
     for kind, topic, message in (
         (BodyGeometry, "body", body_message(21)),

@@ -116,6 +116,7 @@ def test_a_signal_closes_the_bag_well(start, network, tmp_path, sent):
     assert len(contents(tmp_path / "bag")["/head_pose"]) == 20
 
 
+@pytest.mark.fault("ending", "SIGKILL of `record`", "the bag opens everywhere, with all but the last second")
 def test_a_recorder_that_is_killed_leaves_a_bag_that_opens_with_all_but_the_last_second(start, network, tmp_path):
     recorder = start("record", "-o", str(tmp_path / "bag"))
     recorder.wait_for_output("recording to")
@@ -145,6 +146,9 @@ def test_a_recorder_that_is_killed_leaves_a_bag_that_opens_with_all_but_the_last
     assert len(received) > 20
 
 
+@pytest.mark.fault(
+    "ending", "no room for the bag of `record`", "one line that says how many messages it has, status 1; the bag opens"
+)
 def test_a_full_disk_is_said_in_one_line_and_what_was_written_opens(start, network, tmp_path):
     limited = f"ulimit -f 600; exec record -o {tmp_path / 'bag'}"  # KiB
     recorder = start("bash", "-c", limited)
