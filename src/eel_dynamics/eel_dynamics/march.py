@@ -13,6 +13,7 @@ from .accounts import Accounts
 from .pacing import Pace
 from .report import ERROR
 from .simulation import SimulationStopped
+from .watch import Watch
 
 TICK = 0.05  # s of wall time between two messages on /clock while the simulation stands
 MOST_AHEAD = 10_000  # instants of a controller that wait for their time
@@ -39,7 +40,7 @@ class March:
         self._silent_since = None  # s, steady clock: since when a controller's next samples are waited for
         self._account_due = True
         self.stopped = False
-        self.accounts = Accounts()
+        self.accounts, self._watch = Accounts(), Watch(simulation, report)
         self.time = 0.0  # s: simulation time of the last sample
         self.marched_for = 0.0  # s: wall time spent marching, so without standing
         self._marked = time.monotonic()
@@ -183,6 +184,7 @@ class March:
             parts = {part: wanted or due for part, wanted in publishers.wanted_parts().items()}
             snapshot = simulation.observe(**parts)
             self.accounts.add(snapshot)
+            self._watch.add(snapshot, look=due)
         except SimulationStopped as error:
             self._fail(error)
             return
@@ -258,6 +260,7 @@ class March:
         self._sample, self.time, self._origin = 0, 0.0, 0.0
         self.failed = False
         self.accounts = Accounts()
+        self._watch.restart()
         self.marched_for, self._marked = 0.0, time.monotonic()
         self._report.end("stopped")
         self._report.end("resting")

@@ -1,6 +1,7 @@
 """A whole run of a law: `simulate`, and what it returns."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from eel_gaits.law import Law
@@ -10,6 +11,7 @@ from .actuators import Actuators, actuators_of
 from .analysis import Analysis
 from .body import Body
 from .energy import EnergyLedger
+from .limits import warnings_of
 from .records import records
 from .scene import Scene
 from .simulation import Simulation, SimulationStopped
@@ -93,6 +95,11 @@ class Run:
     def summary(self, periods: int | None = None) -> str:
         """The run in lines, each number with its unit: as a whole, then over its last `periods` whole periods."""
         return describe(self, periods)
+
+    @cached_property
+    def warnings(self) -> tuple[str, ...]:
+        """What of the model's own limits the run went over, a line each (`limits.py`); empty: nothing."""
+        return warnings_of(self)
 
     def to_rerun(self, target, compare: "Run | None" = None, **settings) -> None:
         """Show the run in Rerun, as the visualiser shows a swimmer: `target` is a file to write (.rrd) or a

@@ -7,7 +7,7 @@ from .analysis import Analysis
 
 def describe(run, periods: int | None = None) -> str:
     """The run as a whole, then its figures over the last `periods` whole periods (None: the later half of the run)."""
-    return "\n".join([*_of_the_run(run), *_of_the_gait(run, periods), *_of_the_cost(run)])
+    return "\n".join([*_of_the_run(run), *_of_the_gait(run, periods), *_of_the_cost(run), *_of_the_limits(run)])
 
 
 def shown(value: float | None, digits: str = ".4g", unit: str = "") -> str:
@@ -95,3 +95,7 @@ def _of_the_torque(a: Analysis) -> list[str]:
 
 def _of_the_cost(run) -> list[str]:
     return [f"cost                {run.steps} steps, {run.evaluations} evaluations of the head's dynamics"]
+
+
+def _of_the_limits(run) -> list[str]:
+    return [f"beyond the model    {text}" for text in run.warnings]

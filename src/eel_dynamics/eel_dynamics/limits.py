@@ -1,0 +1,150 @@
+"""Where the model's own limits lie, found in a run and said once each: the numbers go on, but mean less there.
+
+| limit | why |
+|---|---|
+| a section's edge at the centre of curvature, abs(K3) b + abs(K2) a >= 1 | sections would cut through each other |
+| the body touches itself | the model knows no contact |
+| slenderness l/(2 max(a, b)) < 5 | the water moves in planes across a slender body (section 4.1 of the paper) |
+| U l/nu < 1000 | added mass and a thin boundary layer need inertia to rule |
+| the tail leads, V1(l) > 0, for a good part of the time | the wake then feeds energy in (the last term of eq. 60) |
+
+b is the half-width along axis 2, a the half-height along axis 3. A point y E2 + z E3 of a section moves along the body
+by t1 (1 + K2 z - K3 y) per length, which must stay positive out to the skin.
+"""
+
+import numpy as np
+
+LEAST_SLENDERNESS = 5.0
+LEAST_REYNOLDS = 1e3
+TAIL_LEADS = 0.25  # share of the time
+APART = 4.0  # half-axes along the body, beyond which two sections are not neighbours
+COINCIDENT = 1e-9  # of the body's length: centres of sections at one place
+AT_REST = 1e-9  # of the body's length, over the whole time: round-off
+AT_ONCE = 64  # instants whose pairs of sections are looked at together
+
+
+class Limits:
+    """The limits of `body` in `scene`, looked at from its stations x (M,) [m]."""
+
+    def __init__(self, body, scene, x):
+        self.body, self.scene, self.x = body, scene, np.asarray(x, dtype=float)
+        self._width, self._height = body.half_width(self.x), body.half_height(self.x)
+        along = np.linspace(0.0, body.length, 1025)
+        self._greatest = float(max(np.max(body.half_width(along)), np.max(body.half_height(along))))
+        self._half_spacing = 0.5 * float(np.max(np.diff(self.x), initial=0.0))
+        self._pairs = np.argwhere(self.x[None, :] - self.x[:, None] > APART * self._greatest).T
+
+    def of_body(self) -> str:
+        """The body is not slender; empty: it is."""
+        slenderness = self.body.length / (2.0 * self._greatest)
+        if self.scene.reactive and slenderness < LEAST_SLENDERNESS:
+            return (
+                f"slenderness l/(2 max(a, b)) is {slenderness:.3g}, below {LEAST_SLENDERNESS:g}: water would flow "
+                "around the ends, not across"
+            )
+        return ""
+
+    def of_bending(self, time, curvature) -> str:
+        """Sections cut through each other at one of the instants time (T,) [s] by curvature (T, M, 3) [rad/m]."""
+        reach = np.abs(curvature[..., 2]) * self._width + np.abs(curvature[..., 1]) * self._height
+        if not reach.size or np.max(reach) < 1.0:
+            return ""
+        sample = np.argmax(np.any(reach >= 1.0, axis=1))
+        station = np.argmax(reach[sample])
+        return (
+            f"curvature too strong for the body's width: |K3| b + |K2| a is {reach[sample, station]:.3g} >= 1 at "
+            f"X = {self.x[station]:.3g} m, t = {time[sample]:.4g} s"
+        )
+
+    def of_contact(self, time, curvature, backbone, section_orientation) -> str:
+        """The body overlaps itself at one of the instants time (T,) [s]; backbone (T, M, 3) [m], section_orientation
+        (T, M, 4).
+
+        Two sections overlap when the distance of their centres is less than both ellipses reach towards each other.
+        """
+        if not self._pairs.size:
+            return ""
+        # A line that turns by less than 2 pi/3 in all ends farther away than half of its length.
+        bend = np.linalg.norm(curvature, axis=2)
+        turned = 0.5 * (bend[:, 1:] + bend[:, :-1]) @ np.diff(self.x)
+        suspects = np.flatnonzero(turned >= 2.0 * np.pi / 3.0)
+        first, second = self._pairs
+        for begin in range(0, len(suspects), AT_ONCE):
+            samples = suspects[begin : begin + AT_ONCE]
+            apart = backbone[samples][:, second] - backbone[samples][:, first]
+            side, up = cross_axes(section_orientation[samples])
+            ahead = np.cross(side, up)[:, first]
+            between = np.sum(apart * ahead, axis=2)  # what a section between two stations makes up for
+            apart -= np.clip(between, -self._half_spacing, self._half_spacing)[..., None] * ahead
+            distance = np.linalg.norm(apart, axis=2)
+            towards = apart / np.maximum(distance, np.finfo(float).tiny)[..., None]
+            reach = sum(
+                np.hypot(
+                    self._width[pair] * np.sum(side[:, pair] * towards, axis=2),
+                    self._height[pair] * np.sum(up[:, pair] * towards, axis=2),
+                )
+                for pair in (first, second)
+            )
+            overlapping = (distance < reach) | (distance < COINCIDENT * self.body.length)
+            if np.any(overlapping):
+                sample = np.argmax(np.any(overlapping, axis=1))
+                pair = np.argmax((reach - distance)[sample])
+                return (
+                    f"the body touches itself: sections at X = {self.x[first[pair]]:.3g} m and "
+                    f"{self.x[second[pair]]:.3g} m overlap at t = {time[samples[sample]]:.4g} s"
+                )
+        return ""
+
+    def of_speed(self, speed: float) -> str:
+        """The Reynolds number of a mean speed [m/s] over the water is too low; 0: at rest, and no matter."""
+        if not speed or not self.scene.viscosity:
+            return ""
+        reynolds = speed * self.body.length / self.scene.viscosity
+        if reynolds >= LEAST_REYNOLDS:
+            return ""
+        return f"Reynolds number U l/nu is {reynolds:.3g}, below {LEAST_REYNOLDS:g}: viscosity rules, not inertia"
+
+    def of_tail(self, wake_power) -> str:
+        """The tail leads for a good part of the instants of wake_power (T,) [W], which has the sign of V1(l)."""
+        share = float(np.mean(np.asarray(wake_power) > 0.0)) if len(wake_power) else 0.0
+        if share < TAIL_LEADS:
+            return ""
+        return f"the tail leads, V1(l) > 0, for {share:.0%} of the time: the wake feeds energy in, as the theory has it"
+
+
+def warnings_of(run) -> tuple[str, ...]:
+    """What of the model's limits a `Run` went over, a line each; speed and tail over its later half, in whole periods
+    where the gait has them."""
+    limits = Limits(run.body, run.scene, run.x)
+    later, speed = _later_half(run)
+    found = [
+        limits.of_body(),
+        limits.of_bending(run.time, run.curvature),
+        limits.of_contact(run.time, run.curvature, run.backbone, run.section_orientation),
+        limits.of_speed(speed),
+        limits.of_tail(run.energy.wake_power[later]) if run.energy is not None else "",
+    ]
+    return tuple(text for text in found if text)
+
+
+def cross_axes(orientation) -> tuple[np.ndarray, np.ndarray]:
+    """Axes 2 and 3 of sections, (..., 3) each, in the world, from their orientation (..., 4) x y z w."""
+    x, y, z, w = np.moveaxis(np.asarray(orientation), -1, 0)
+    side = np.stack((2.0 * (x * y - z * w), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + x * w)), axis=-1)
+    up = np.stack((2.0 * (x * z + y * w), 2.0 * (y * z - x * w), 1.0 - 2.0 * (x * x + y * y)), axis=-1)
+    return side, up
+
+
+def _later_half(run) -> tuple[np.ndarray, float]:
+    """Which samples count (T,), and the mean speed [m/s] there: 0 where there is none to speak of."""
+    try:
+        analysis = run.analysis()
+    except ValueError:  # no period, or too few samples
+        later = run.time >= 0.5 * (run.time[0] + run.time[-1])
+        time, center = run.time[later], run.center_of_mass[later] - np.outer(run.time[later], run.scene.current)
+        swims = any(term.period for term in run.law.terms)
+        if swims or len(time) < 2:
+            return later, 0.0
+        way = float(np.linalg.norm(center[-1] - center[0]))
+        return later, way / (time[-1] - time[0]) if way > AT_REST * run.body.length else 0.0
+    return analysis.window.inside, analysis.mean_speed if analysis.moves else 0.0
