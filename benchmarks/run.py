@@ -18,6 +18,7 @@ from batch import batch
 from eel_dynamics.integrator import rate_of_state
 from growth import growth
 from numba import njit
+from visualiser import visualiser
 
 from eel_dynamics import Accuracy, Body, Scene, Simulation, simulate
 from eel_gaits import falling, straight
@@ -121,6 +122,7 @@ FIGURES = {
     "growth": growth,
     "batch": batch,
     "paper_scheme": paper_scheme,
+    "visualiser": visualiser,
 }
 OPTIONAL = {"peers": peers}  # on request: installs other people's simulators
 

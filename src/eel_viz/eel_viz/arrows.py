@@ -23,6 +23,7 @@ class Arrows:
 
     def __init__(self, outlet: Outlet, *, load_scale: float, end_scale: float) -> None:
         self._outlet, self._load_scale, self._end_scale = outlet, load_scale, end_scale
+        self._along: tuple[np.ndarray, np.ndarray] | None = None  # all stations, and which have an arrow
         self._backbones: OrderedDict[int, Backbone] = OrderedDict()
         self._loads: OrderedDict[int, Load] = OrderedDict()
         outlet.fixed(entities.LOAD, rr.Arrows3D.from_fields(colors=[colours.TEAL], radii=[0.0022]))
@@ -45,8 +46,7 @@ class Arrows:
             self._draw(stamp, backbone, load)
 
     def _draw(self, stamp: int, backbone: Backbone, load: Load) -> None:
-        wanted = np.linspace(backbone.x[0], backbone.x[-1], ALONG + 2)[1:-1]
-        along = np.unique(np.searchsorted(backbone.x, wanted - 1e-9))  # stations, so that nothing is interpolated
+        along = self._stations(backbone.x)
         x, force = backbone.x[along], load.profiles.together("force_1", "force_2", "force_3")
         same = np.array_equal(load.profiles.x, backbone.x)
         force = force[along] if same else Resampling(load.profiles.x, x).linear(force)
@@ -55,6 +55,13 @@ class Arrows:
         ends = [0, -1]
         forces = world_from_section(backbone.orientation[ends], np.stack([load.nose, load.tail]))
         self._log(stamp, entities.LOAD_ENDS, backbone.position[ends], forces * self._end_scale)
+
+    def _stations(self, x: np.ndarray) -> np.ndarray:
+        """Indices of the stations that have an arrow: evenly along the body, and nothing is interpolated."""
+        if self._along is None or not np.array_equal(self._along[0], x):
+            wanted = np.linspace(x[0], x[-1], ALONG + 2)[1:-1]
+            self._along = x, np.unique(np.searchsorted(x, wanted - 1e-9))
+        return self._along[1]
 
     def _log(self, stamp: int, path: str, origins: np.ndarray, vectors: np.ndarray) -> None:
         self._outlet.row(

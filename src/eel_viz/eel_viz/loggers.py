@@ -29,7 +29,7 @@ from eel_viz.summary import Summary
 from eel_viz.track import Track
 
 ENVELOPE_PERIOD = 500_000_000  # ns
-HEAT_MAP_PERIOD = 160_000_000
+HEAT_MAP_PERIOD = 200_000_000
 SUMMARY_PERIOD = 500_000_000
 LOG_NAMES = reprlib.Repr()
 LOG_NAMES.maxstring = 220  # characters of a law's name, which is not yet checked here

@@ -13,6 +13,7 @@ import rerun as rr
 from eel_viz.entities import TIMELINE
 
 ROWS = 256  # of one kind, which are sent without waiting
+UNDRAWN = 10  # ticks that arrays which nothing draws may wait
 
 
 class Outlet:
@@ -22,6 +23,7 @@ class Outlet:
         self._stream, self._tick = stream, tick
         self._rows: dict[tuple, tuple[list[int], list[tuple]]] = {}
         self._sent = time.monotonic()
+        self._ticks = 0
 
     def fixed(self, path: str, archetype: rr.AsComponents) -> None:
         """What is valid at all times."""
@@ -47,11 +49,14 @@ class Outlet:
     def attend(self) -> None:
         """Now and then: send what has waited long enough."""
         if time.monotonic() - self._sent > self._tick:
-            self.send()
+            self._sent = time.monotonic()
+            self._ticks += 1
+            for key in self._rows:
+                if not isinstance(key[1], str) or self._ticks % UNDRAWN == 0:
+                    self._send(key)
 
     def send(self) -> None:
         """Send all rows."""
-        self._sent = time.monotonic()
         for key in self._rows:
             self._send(key)
 
