@@ -1,7 +1,7 @@
 # The two commands are `make demo` and `make test`; each does all the set-up itself, inside this folder.
 SHELL := /bin/bash
 .DEFAULT_GOAL := help
-.PHONY: help demo test validation build bench lint soak robustness clean
+.PHONY: pictures help demo test validation build bench lint soak robustness clean
 RUN := tools/run.sh
 
 help:   ## this list
@@ -21,6 +21,9 @@ soak: build   ## the long tests (ARGS=... goes to pytest)
 
 bench: build   ## speed and accuracy figures (ARGS=NAME for one of them)
 	@$(RUN) python benchmarks/run.py $(ARGS)
+
+pictures: build   ## draw the pictures of the visualiser in docs/images
+	@$(RUN) python tools/pictures.py
 
 robustness: build   ## write the table of faults in docs/robustness.md from the tests
 	@$(RUN) python tools/fault_table.py

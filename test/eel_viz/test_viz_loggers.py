@@ -4,14 +4,33 @@ import made_up
 import numpy as np
 import pytest
 from eel_viz.blueprint import arrangement
-from eel_viz.colours import diverging
+from eel_viz.colours import diverging, diverging_index
 from eel_viz.orientation import attitude, world_from_section
 from eel_viz.reading import read
 from eel_viz.skin import Skin
+from eel_viz.track import LENGTH, PIECES, POINTS
 from made_up_recording import body
 
-from eel_viz import camera, entities
+from eel_viz import camera, entities, heat_map
 
+TIME_SERIES = (
+    entities.POSITION,
+    entities.ORIENTATION,
+    entities.ATTITUDE,
+    entities.DEPTH,
+    entities.LINEAR,
+    entities.ANGULAR,
+    entities.SPEED,
+    entities.POWER,
+    entities.KINETIC,
+    entities.RESIDUAL,
+)
+NUMBERS = (
+    entities.WRENCH_NUMBERS,
+    entities.CURVATURE_NUMBERS,
+    entities.LOAD_NUMBERS,
+    entities.ODOMETRY_NUMBERS,
+)
 SINGLE = 1e-6  # Rerun's geometry is single precision
 
 
@@ -55,6 +74,7 @@ def test_scalars_are_exact_and_complete(made):
         entities.KINETIC: given(samples, "energy", lambda energy: [energy["kinetic_body"], energy["kinetic_fluid"]]),
         entities.RESIDUAL: given(samples, "energy", lambda energy: [energy["residual"]]),
     }
+    assert set(expected) == set(TIME_SERIES)
     for entity, values in expected.items():
         assert_exact(path, entity, "scalars", samples, values)
 
@@ -141,6 +161,73 @@ def test_the_track_is_the_path_of_the_head_without_gaps(made):
     heads = np.array([samples[stamp]["head_pose"][0].position for stamp in stamps])
     np.testing.assert_allclose(track["strips"][:, 0, 0], heads[:-1], atol=SINGLE)
     np.testing.assert_allclose(track["strips"][:, 0, 1], heads[1:], atol=SINGLE)
+
+
+def test_the_trail_is_the_last_of_the_path_and_fades(made):
+    path, samples = made
+    trail = read(path, entities.TRAIL)
+    stamps = drawn_stamps(samples)
+    np.testing.assert_array_equal(trail.stamps, stamps)
+    heads = np.array([samples[stamp]["head_pose"][0].position for stamp in stamps])
+    for k, stamp in enumerate(stamps):
+        strips = np.array(trail["strips"][k])
+        np.testing.assert_allclose(strips[0, 0], heads[k], atol=SINGLE)
+        np.testing.assert_allclose(strips[1:, 0], strips[:-1, -1], atol=SINGLE)  # one after the other
+        ages = np.concatenate([np.linspace(0.0, LENGTH / PIECES, POINTS) + n * LENGTH / PIECES for n in range(PIECES)])
+        at = np.maximum(stamp / 1e9 - ages, 0.0)
+        expected = np.stack([np.interp(at, np.array(stamps) / 1e9, heads[:, axis]) for axis in range(3)], axis=1)
+        np.testing.assert_allclose(strips.reshape(-1, 3), expected, atol=SINGLE)
+    shades = np.array(read(path, entities.TRAIL, static=True)["colors"][0], dtype=np.uint32)
+    red = (shades >> 24) & 255
+    assert np.all(np.diff(red.astype(int)) < 0)
+
+
+@pytest.mark.parametrize(
+    ("topic", "names", "entity", "limit"),
+    [
+        ("internal_wrench", ("torque_1", "torque_2", "torque_3"), entities.TORQUE, 0.6),
+        ("internal_wrench", ("force_1", "force_2", "force_3"), entities.FORCE, 2.0),
+        ("curvature", ("pitch", "yaw"), entities.CURVATURE, 5.0),
+    ],
+)
+def test_curves_and_envelopes_are_those_of_the_messages(made, topic, names, entity, limit):
+    path, samples = made
+    values = np.array([samples[stamp][topic][0].together(*names) for stamp in samples])
+    assert np.abs(values).max() < limit  # so that the frame does not grow
+    order = {stamp: k for k, stamp in enumerate(samples)}
+    curves, envelope = read(path, f"{entity}/{entities.CURVES}"), read(path, f"{entity}/{entities.ENVELOPE}")
+    np.testing.assert_array_equal(curves.stamps, drawn_stamps(samples))
+    for stamp, strips in zip(curves.stamps.tolist(), curves["strips"], strict=True):
+        np.testing.assert_allclose(-2 * limit * np.array(strips)[:, :, 1].T, values[order[stamp]], atol=SINGLE * limit)
+    for stamp, strips in zip(envelope.stamps.tolist(), envelope["strips"], strict=True):
+        seen = values[: order[stamp] + 1]
+        extremes = np.concatenate([seen.min(axis=0), seen.max(axis=0)], axis=1)
+        np.testing.assert_allclose(-2 * limit * np.array(strips)[:, :, 1].T, extremes, atol=SINGLE * limit)
+
+
+def test_the_heat_map_is_c3_of_the_messages(made):
+    path, samples = made
+    maps = read(path, entities.HEAT_MAP_IMAGE)
+    for stamp, buffer in zip(maps.stamps.tolist(), maps["buffer"], strict=True):
+        image = np.array(buffer, dtype=np.uint8).reshape(heat_map.ROWS, heat_map.COLUMNS)
+        step = round(heat_map.STEP * 1e9)
+        wrench = samples[stamp // step * step]["internal_wrench"][0]
+        rows = np.interp(np.linspace(0.0, 1.0, heat_map.ROWS), wrench.x, wrench.values["torque_3"])
+        np.testing.assert_array_equal(image[:, -1], np.maximum(diverging_index(rows, 0.25), 1))
+
+
+def test_nothing_is_shown_that_no_test_compares_with_the_messages(made):
+    from rerun.chunk import RrdReader
+
+    path, _ = made
+    chunks = RrdReader(str(path)).stream()
+    changing = {str(chunk.entity_path) for chunk in chunks if not chunk.is_static}
+    plots = (entities.TORQUE, entities.FORCE, entities.CURVATURE)
+    compared = {*TIME_SERIES, *NUMBERS, entities.BACKBONE, entities.SKIN, entities.HEAD, entities.TAIL, entities.FOLLOW}
+    compared |= {entities.TRACK, entities.TRAIL, entities.LOAD, entities.LOAD_ENDS, entities.HEAT_MAP_IMAGE}
+    compared |= {f"{root}/{part}" for root in plots for part in (entities.CURVES, entities.ENVELOPE, entities.TICKS)}
+    compared |= {entities.GRID, entities.GRID_LABELS, entities.SHADOW, entities.RUN, entities.LOG}
+    assert changing - {path for path in changing if path.startswith("/__")} == compared
 
 
 def test_arrows_are_the_load_in_the_world(record_made_up):

@@ -283,3 +283,26 @@ def test_served_data_reaches_a_viewer_that_comes_later(start, network, tmp_path,
     assert node.interrupt() == 0, node.output()
     verify(tmp_path / "run.rrd")
     assert len(read(tmp_path / "run.rrd", entities.SPEED).stamps) == 20
+
+
+def test_another_swimmer_is_laid_over_the_first(start, network, tmp_path):
+    node = visualise(start, tmp_path / "run.rrd", "compare:=second", "blueprint:=compare")
+    mine, others = (
+        {topic: network.create_publisher(kind, f"{space}/{topic}", 100) for topic, kind in TOPICS.items()}
+        for space in ("", "/second")
+    )
+    heard([*mine.values(), *others.values()])
+    count = 20
+    for k in range(count):
+        for publishers, offset in ((mine, 0.0), (others, 0.25)):
+            swimmer = made_up.Swimmer(11, offset=(0.0, offset, 0.0))
+            for topic, message in messages(swimmer, k * 10**7).items():
+                publishers[topic].publish(message)
+    time.sleep(1.0)
+    assert node.interrupt() == 0, node.output()
+    distance = read(tmp_path / "run.rrd", entities.DISTANCE)
+    np.testing.assert_array_equal(distance.stamps, np.arange(count) * 10**7)
+    np.testing.assert_allclose(distance["scalars"], 250.0, rtol=1e-12)
+    difference = read(tmp_path / "run.rrd", entities.TORQUE_DIFFERENCE_MOST)
+    np.testing.assert_array_equal(difference["scalars"], np.zeros((count, 1)))
+    assert "went back" not in node.output()
