@@ -203,7 +203,10 @@ def test_dying_controller_brings_the_shape_to_rest_and_may_come_back(start, clie
     swim.pause(True)
 
     def drive():
-        swim.spin(0.2)
+        count = -1
+        while count != len(swim.heard["curvature"]):  # until all that came before the pause has been read
+            count = len(swim.heard["curvature"])
+            swim.spin(0.3)
         begin = seconds(swim.heard["curvature"][-1])
         times = begin + 0.05 * np.arange(1, 11)
         for t in times:
@@ -249,7 +252,7 @@ def test_irregular_samples_make_one_smooth_motion(start, client):
     swim.until(lambda: swim.samples.get_subscription_count() == 1, "the node's subscription")
     swim.until(lambda: swim.heard["curvature"], "a first sample")
     swim.pause(True)
-    swim.spin(0.2)
+    swim.spin(0.3)
     begin = math.ceil(50 * seconds(swim.heard["curvature"][-1]) + 1) / 50
     steps = [0.02 * k for k in range(51) if not 15 < k < 30] + [1.4, 1.8, 2.2]
     jump = 0.7
