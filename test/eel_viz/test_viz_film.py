@@ -1,7 +1,9 @@
 """`render` as a command: one picture, many, and a film, by one viewer; what cannot be is said in one line."""
 
+import io
 import stat
 
+import numpy as np
 import pytest
 from eel_viz.drawing import drawn
 from eel_viz.film import film
@@ -25,6 +27,11 @@ def fake_ffmpeg(tmp_path, monkeypatch):
     program.write_text('#!/bin/sh\nfor last; do :; done\necho "$@" > "$last"\n')
     program.chmod(program.stat().st_mode | stat.S_IXUSR)
     monkeypatch.setenv("PATH", f"{program.parent}:/usr/bin:/bin")
+
+
+def pixels(png: bytes) -> np.ndarray:
+    with Image.open(io.BytesIO(png)) as image:
+        return np.asarray(image.convert("RGB")).astype(int)
 
 
 def refusal(capsys, *arguments) -> str:
@@ -51,7 +58,9 @@ def test_one_viewer_draws_many_pictures_and_each_is_right(can_draw, recording, t
         assert image.size == (640, 361)
     with drawn(recording, size=(640, 361), blueprint="torques") as drawing:
         assert (drawing.start, drawing.end) == (0.0, 1.0)
-        assert drawing.png(0.8) == pictures[2]  # a viewer's first picture, taken when all has come to rest
+        first = drawing.png(0.8)  # taken when all has come to rest; between two viewers a pixel may be 1 of 255 apart
+        assert np.abs(pixels(first) - pixels(pictures[2])).max() <= 2
+        assert np.abs(pixels(first) - pixels(pictures[1])).max() > 50
         drawing.arrange("motion")
         assert drawing.png(0.8) != pictures[2]
         for wrong in (1.5, -0.1, float("nan")):
