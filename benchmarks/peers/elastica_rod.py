@@ -86,7 +86,8 @@ def main(path: str) -> int:
     """Measure the task in the file at `path`."""
     task = dict(np.load(path))
     steps, batch = int(task["steps"]), int(task["batch"])
-    swim(task, 20)  # compiles
+    for count in {1, batch}:
+        swim(task, 20, count)  # compiles
     results = [swim(task, steps) for _ in range(int(task["repeats"]))]
     part = steps // 5  # of a batch, a fifth of the way tells its cost
     together = swim(task, part, batch)[1] * steps / part / batch if batch > 1 else None
