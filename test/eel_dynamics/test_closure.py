@@ -76,7 +76,7 @@ STEPS = (0.005, 0.0025)  # s
 
 
 @few(6)
-@given(swimmers(), twists(), quaternions(), scenes())
+@given(swimmers(), twists(), quaternions(), scenes(nose=True))
 def test_acceleration_is_the_rate_of_the_marched_momentum(measured, swimmer, twist, q, settings):
     """The acceleration at output instants against the momentum that the march carries, which it was not made from.
 
