@@ -12,7 +12,7 @@ from eel_viz.outlet import Outlet
 
 HALF = 6  # m, from the middle of the grid to its edge
 CLEARANCE = 0.4  # m, between swimmer and floor at least
-LABEL_SIZE = (0.13, 0.085)  # half of a label with the swimmer's thickness, as tangents in the picture
+LABEL_SIZE = (0.15, 0.085)  # half of a label with the swimmer's thickness, as tangents in the picture
 LEGEND_AT = (0.5, -0.21, -0.2)  # m, from the camera: ahead, to the right, up
 LEGEND_SIZE = (0.16, 0.009)  # m
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from eel_viz.centre_line import Resampling
 
-RINGS = 28
+RINGS = 20
 SIDES = 12
 
 

@@ -10,8 +10,8 @@ import rerun as rr
 from eel_viz import colours, entities
 from eel_viz.outlet import Outlet
 
-LENGTH = 4.0  # s of the trail
-PIECES, POINTS = 12, 6  # of one brightness each, and points along one
+LENGTH = 3.0  # s of the trail
+PIECES, POINTS = 10, 6  # of one brightness each, and points along one
 
 
 class Track:
