@@ -99,7 +99,7 @@ def test_a_point_that_stops_is_told_and_the_others_stay(client):
     address = client.scheduler.address
     data = sweep(grid, gait=law, numbers={"size": 1.0}, scheduler=address, duration=1.2, accuracy=long_steps)
     assert data.stopped.values.ravel().tolist() == [True, False]
-    assert "not finite" in str(data.error.values[0, 0]) and data.error.values[1, 0] == ""
+    assert "energy from nowhere" in str(data.error.values[0, 0]) and data.error.values[1, 0] == ""
     assert np.isnan(data.head_x.values[0, 0]) and np.isfinite(data.head_x.values[1, 0])
 
 

@@ -11,7 +11,6 @@ from eel_gaits.law import Law
 
 from .body import Body
 from .drive import Tabulation
-from .integrator import MARCHED
 from .profiles import Profiles, station_fields_of
 from .quadrature import Grid
 from .scene import Scene
@@ -79,7 +78,4 @@ class Member(Simulation):
         """March through `times` (T,) [s] and fill `out` and `works` (T, 4) [J]. Returns how many instants were reached,
         and what stopped it."""
         self._started = True
-        done, status = self._swim(times, works, out, wrench=wrench, load=load)
-        if done:
-            self.time = float(times[done - 1])
-        return done, None if status == MARCHED else self._stopped(status)
+        return self._swim_through(times, works, out, wrench, load)

@@ -11,6 +11,7 @@ from .body import Body
 from .drive import Tabulation, combine, combine_moments, factors
 from .energy import EnergyLedger
 from .frames import matrix_of
+from .guard import failure_of
 from .integrator import (
     LOBATTO,
     LOBATTO_SERIES,
@@ -292,10 +293,27 @@ class Simulation:
         """March through `times` (T,) [s] under the law in force, observing each: the profiles, the works (T, 4) [J] of
         actuators, wake, nose and drag, how many instants were reached, and what stopped it, if anything did."""
         out, works = profiles_of(len(times), len(self.x), wrench, load), np.zeros((len(times), 4))
-        done, status = self._swim(times, works, out, wrench=wrench, load=load)
+        done, stopped = self._swim_through(times, works, out, wrench, load)
         if done:
-            self.time, self._works[0] = float(times[done - 1]), works[done - 1]
-        return out, works, done, None if status == MARCHED else self._stopped(status)
+            self._works[0] = works[done - 1]
+        return out, works, done, stopped
+
+    def _swim_through(self, times, works, out, wrench, load) -> tuple[int, SimulationStopped | None]:
+        """March through `times` (T,) [s] into `out` and `works` (T, 4) [J]: how many samples are good, and what stopped
+        it. One who goes on behind a bad sample must reset."""
+        done, status = self._swim(times, works, out, wrench=wrench, load=load)
+        watched = self.scene.ledger and self.accuracy.step is not None  # else the step's own error is watched
+        floor = self._control.momentum_floor**2 / self._mass if watched else np.inf
+        failure = failure_of(out, works, done, self.kinetic_at_start, floor)
+        if failure:
+            done, quantity, value = failure
+        if done:
+            self.time = float(times[done - 1])
+        if failure:
+            step = self.accuracy.step is not None
+            hint = "take a smaller step, or an accuracy in its place" if step else "take a gentler law, or start slower"
+            return done, SimulationStopped(self.time, quantity, value, hint)
+        return done, None if status == MARCHED else self._stopped(status)
 
     def _look(self, wrench: bool, load: bool):
         """Fill the one instant of `_out` with the present."""
@@ -359,7 +377,7 @@ class Simulation:
         self._breakpoints = self.shape.breakpoints()
         scale = min(self.shape.time_scale, self._motion_scale)
         longest = LONGEST_STEP * min(scale, 10.0)
-        mass = float(np.sum(self.swimmer.weight * self.swimmer.mass))
+        mass = self._mass = float(np.sum(self.swimmer.weight * self.swimmer.mass))
         self._control = Control(
             tolerance=self.accuracy.tolerance,
             step=longest if self.accuracy.step is None else float(self.accuracy.step),

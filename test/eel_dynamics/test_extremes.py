@@ -1,0 +1,137 @@
+"""Driven anywhere, a run finishes or says why it stopped: nothing that is not finite comes back, nothing hangs."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from draws import few, numbers
+from eel_dynamics.guard import failure_of
+from hypothesis import given
+from hypothesis import strategies as st
+
+from eel_dynamics import Accuracy, Scene, SimulationStopped, simulate, simulate_batch
+from eel_gaits import falling, helix, still, straight
+
+MOST_STEPS = 100_000  # of 2 s; the fastest spin, 100 turns a second, takes 1e4
+
+
+def fixed(step):
+    return Accuracy(name="fixed", resolution=26.0, step=step)
+
+
+def finite(batch):
+    arrays = batch.position, batch.orientation, batch.twist, batch.head_acceleration, batch.center_of_mass
+    return all(np.isfinite(array).all() for array in (*arrays, *(batch.energy[name] for name in batch.energy.keys())))  # noqa: SIM118
+
+
+def share_from_nowhere(batch, index):
+    """Greatest residual of the ledger, as a share of the energy that was there or passed."""
+    energy = batch.energy
+    works = energy.actuator_work, energy.wake_work, energy.nose_work, energy.drag_work
+    passed = (energy.kinetic_body + energy.kinetic_fluid + sum(np.abs(work) for work in works))[index]
+    return np.abs(energy.residual[index]).max() / passed.max() if passed.max() > 0.0 else 0.0
+
+
+def anywhere(count, seed):
+    """`count` swimmers, their numbers spread evenly in the logarithm over more than any swimmer has."""
+    rng = np.random.default_rng(seed)
+
+    def between(low, high):
+        return float(10.0 ** rng.uniform(np.log10(low), np.log10(high)))
+
+    def swimmer(index):
+        size = between(1e-12, 12.0)
+        law = (falling, straight)[index % 2](
+            period=between(0.02, 50.0),
+            wavelength=between(0.2, 100.0),
+            amplitude_0=size,
+            amplitude_1=size * rng.uniform(-1.0, 1.0),
+            amplitude_2=size * rng.uniform(-2.0, 2.0),
+            start_periods=between(0.01, 10.0),
+        )
+        scene = Scene(
+            density=between(1.0, 1e6),
+            viscosity=float(rng.choice([0.0, between(1e-9, 1.0)])),
+            friction=str(rng.choice(["printed", "laminar", "blended", "none"])),
+            added_mass=str(rng.choice(["corrected", "printed"])),
+        )
+        thrown = index % 3 == 0
+        twist = np.r_[rng.normal(size=3) * between(1e-3, 100.0), rng.normal(size=3) * between(1e-3, 50.0)]
+        return law, scene, twist * thrown
+
+    laws, scenes, twists = zip(*(swimmer(index) for index in range(count)), strict=True)
+    return {"laws": laws, "scenes": scenes, "twists": np.array(twists)}
+
+
+@pytest.mark.parametrize("count", [200, pytest.param(10_000, marks=pytest.mark.soak)])
+def test_a_swimmer_driven_anywhere_finishes_or_says_why_not(count):
+    batch = simulate_batch(duration=2.0, sample_period=0.25, accuracy=1e-2, **anywhere(count, seed=count))
+    assert finite(batch)
+    assert batch.steps.max() < MOST_STEPS
+    for error in batch.error:
+        if error is not None:
+            assert error.hint and error.quantity and error.time <= 2.0
+    # Motions too small for a step to be asked for have an error by the body's length, not by their own energy.
+    moved = np.linalg.norm(np.diff(batch.position, axis=1), axis=2).sum(axis=1) > 0.1
+    shares = [share_from_nowhere(batch, index) for index in np.flatnonzero(moved & ~batch.stopped)]
+    assert len(shares) > count // 10
+    assert max(shares) < 0.05  # at a target of 1e-2
+
+
+@few(40)
+@given(
+    st.sampled_from((falling, straight, helix)),
+    numbers(0.02, 50.0),
+    numbers(0.01, 8.0),
+    numbers(0.0, 1.0),
+    st.tuples(*[numbers(-300.0, 300.0)] * 3, *[numbers(-100.0, 100.0)] * 3),
+)
+def test_only_the_documented_exception(gait, period, step, viscosity, twist):
+    """Fixed steps of any length, thrown in at any speed."""
+    try:
+        run = simulate(
+            gait(period=period), 1.0, accuracy=fixed(step), scene=Scene(viscosity=viscosity), twist=twist, stations=5
+        )
+    except SimulationStopped as stopped:
+        run = stopped.run
+        assert stopped.hint and len(run.time) < 21
+        assert not len(run.time) or run.time[-1] == stopped.time
+    for array in (run.position, run.orientation, run.twist, run.torque, run.force, run.energy.residual):
+        assert np.isfinite(array).all()
+
+
+@pytest.mark.parametrize("step", [0.5, 0.75, 1.0])
+def test_a_fixed_step_that_is_too_long_is_told(step):
+    """The head would end metres to 1e25 m from where it swims to, with numbers that all look like numbers."""
+    with pytest.raises(SimulationStopped, match=r"energy from nowhere.*smaller step"):
+        simulate(straight(), 3.0, accuracy=fixed(step))
+    assert simulate(straight(), 3.0, accuracy=fixed(0.1)).position[-1, 0] == pytest.approx(-0.779, abs=1e-3)
+
+
+def test_what_is_not_finite_is_found_with_its_sample():
+    arrays = {"kinetic": np.ones((5, 2)), "position": np.zeros((5, 3))}
+    arrays["position"][3, 1] = np.nan
+    out, works = SimpleNamespace(_asdict=lambda: arrays, **arrays), np.zeros((5, 4))
+    sample, quantity, value = failure_of(out, works, 5, 2.0, np.inf)
+    assert (sample, quantity) == (3, "position is not finite") and np.isnan(value)
+    assert failure_of(out, works, 3, 2.0, 0.0) is None
+    sample, quantity, value = failure_of(out, works, 5, 0.5, 0.0)
+    assert (sample, value) == (0, pytest.approx(1.5 / 2.5)) and "energy from nowhere" in quantity
+
+
+@pytest.mark.parametrize("planar", [False, True])
+def test_from_rest_and_with_ramps_of_a_microsecond_no_step_collapses(planar):
+    law = straight(start_periods=0.01, period=1e-4 / 0.01)
+    run = simulate(law, 0.05, scene=Scene(planar=planar), sample_period=0.005, accuracy=1e-3)
+    assert run.steps < 2000 and np.isfinite(run.twist).all()
+    rest = simulate(still(), 10.0, scene=Scene(planar=planar), accuracy=1e-3)
+    assert not rest.position.any() and rest.steps < 200
+
+
+@pytest.mark.parametrize("density", [1.0, 1e6])
+def test_bodies_a_thousandth_and_a_thousand_times_as_dense_as_water(density):
+    """The added mass is implicit: the step of a body of 2 g is that of water's inertia."""
+    run = simulate(straight(), 3.0, scene=Scene(density=density), accuracy=1e-4)
+    fine = simulate(straight(), 3.0, scene=Scene(density=density), accuracy=1e-6)
+    assert run.steps < 400
+    assert np.abs(run.position - fine.position).max() < 1e-4 * max(1.0, run.path_length)
