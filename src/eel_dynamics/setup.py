@@ -22,6 +22,7 @@ setup(
             "simulate = eel_dynamics.command:main",
             "figures = eel_dynamics.figures.command:main",
             "sweep = eel_dynamics.sweep_command:main",
+            "stability = eel_dynamics.stability.command:main",
             "tradeoff = eel_dynamics.tradeoff.command:main",
         ]
     },

@@ -13,7 +13,7 @@ ROOT = Path(__file__).resolve().parents[2]
 PYTHON_PACKAGES = ("eel_gaits", "eel_dynamics", "eel_viz")
 EXECUTABLES = {
     "eel_gaits": {"gait_generator"},
-    "eel_dynamics": {"dynamics", "simulate", "figures", "sweep", "tradeoff"},
+    "eel_dynamics": {"dynamics", "simulate", "figures", "sweep", "stability", "tradeoff"},
     "eel_viz": {"visualiser", "record", "echo", "replay", "render"},
 }
 ROSDEP_KEY = {

@@ -1,0 +1,31 @@
+"""The maps as pictures: colour is the error by the target, a cross is a stop with a message."""
+
+import numpy as np
+
+from ..figures.style import BLACK
+from .maps import STOPPED, TARGET, Measured
+
+DECADES = 3.0  # of error above and below the target that the colours tell apart
+
+
+def draw(figure, measured: Measured):
+    """Fill an empty matplotlib figure with one map."""
+    axes, item = figure.subplots(), measured.map
+    size = np.log10(np.maximum(measured.error, 1e-300) / TARGET)
+    mesh = axes.pcolormesh(
+        _edges(item.x), _edges(item.y), size, cmap="PuOr_r", vmin=-DECADES, vmax=DECADES, edgecolors="none"
+    )
+    row, column = np.nonzero(measured.outcome == STOPPED)
+    if len(row):
+        axes.plot(item.x[column], item.y[row], "x", color=BLACK, markersize=5, label="stopped with a message")
+        figure.legend(loc="outside lower center", frameon=False)
+    axes.set(xscale="log", yscale="log", xlabel=item.x_label, ylabel=item.y_label)
+    axes.set_title(item.title, fontsize="medium")
+    bar = figure.colorbar(mesh, ax=axes, extend="both")
+    bar.set_label(f"error / target ({TARGET:g}), log10: accurate below 0")
+
+
+def _edges(values: np.ndarray) -> np.ndarray:
+    """Borders of the cells around `values`, which rise by equal factors."""
+    factor = np.sqrt(values[1] / values[0])
+    return np.append(values / factor, values[-1] * factor)
