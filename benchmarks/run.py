@@ -17,6 +17,7 @@ from against_peers import peers
 from batch import batch
 from eel_dynamics.integrator import rate_of_state
 from growth import growth
+from integrators import integrators
 from numba import njit
 from visualiser import visualiser
 
@@ -120,6 +121,7 @@ FIGURES = {
     "switches": switches,
     "start": start,
     "growth": growth,
+    "integrators": integrators,
     "batch": batch,
     "paper_scheme": paper_scheme,
     "visualiser": visualiser,

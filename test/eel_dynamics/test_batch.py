@@ -93,7 +93,8 @@ def test_a_swimmer_that_stops_keeps_its_samples_and_disturbs_no_other():
     with pytest.raises(SimulationStopped) as alone:
         simulate(falling(), 0.4, scene=HOPELESS, accuracy=LONG, sample_period=0.05, stations=5)
     stop = batch.error[1]
-    assert (stop.time, stop.quantity, stop.hint) == (alone.value.time, alone.value.quantity, alone.value.hint)
+    assert (stop.time, stop.quantity) == (alone.value.time, alone.value.quantity)
+    assert "is stable" in alone.value.hint  # a single run also looks for the step that would have been
     done = batch.samples[1]
     assert 0 < done == len(alone.value.run.time) < 9
     assert_same(batch[1], alone.value.run)

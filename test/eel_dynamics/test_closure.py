@@ -7,6 +7,7 @@ from draws import few, quaternions, scenes, swimmers, twists
 from hypothesis import given
 from hypothesis import strategies as st
 from library_state import (
+    DENSE,
     Accuracy,
     Reference,
     Scene,
@@ -134,7 +135,7 @@ def test_acceleration_is_the_derivative_of_the_marched_twist(measured, settings,
     changes sign somewhere along the body. Left out: the three samples about each corner of the law's ramps.
     """
     step = 0.005
-    run = simulate(falling_law(), duration=3.0, scene=Scene(**settings), accuracy="reference", sample_period=step)
+    run = simulate(falling_law(), duration=3.0, scene=Scene(**settings), accuracy=DENSE, sample_period=step)
     w = run.twist
     true = run.head_acceleration.copy()  # of the velocity as a vector; its components turn with the head
     true[:, 3:] -= np.cross(w[:, :3], w[:, 3:])

@@ -70,10 +70,11 @@ def test_chosen_steps_follow_the_tolerance(measured):
 
 
 def test_order_in_space(measured):
-    """Six, within 0.2: the Magnus series between nodes, which remains once the panels' polynomials have converged.
+    """Six, within 0.4: the Magnus series between nodes, which remains once the panels' polynomials have converged.
 
     The falling gait with three times its bend, so that this error stands above round-off; no drag, same steps in time.
-    100 to 180 points per length. Below, panels gain several digits with each point: see `test_spectral_in_space`.
+    100 to 180 points per length (the nose's panel has them by a rule of its own). Below, panels gain several digits
+    with each point: see `test_spectral_in_space`.
     """
     law, resolutions = falling(pitch_bend=1.5), np.arange(100.0, 190.0, 10.0)
 
@@ -85,24 +86,24 @@ def test_order_in_space(measured):
     nodes = [sum(panel.points for panel in panels_of(Body.boyer2010(), each)) for each in resolutions]
     errors = errors_of([run(each) for each in resolutions], run(500.0))
     for name, slope in zip(QUANTITIES, -slopes(nodes, errors), strict=True):
-        measured(f"order in space, rotations between nodes, {name}", slope, 0.2, wanted=6.0)
+        measured(f"order in space, rotations between nodes, {name}", slope, 0.4, wanted=6.0)
 
 
 def test_orders_with_cross_flow_drag(measured):
-    """V|V| has kinks inside panels and steps: its second derivative jumps where V2 or V3 changes sign.
+    """V|V| has kinks inside panels, where V2 or V3 changes sign: integrated up to them, they cost no order.
 
-    A quadrature loses all orders above 2 to 3 there, in space by where a node happens to lie. Falling gait, laminar
-    friction, over five halvings; the band is what such an order scatters by.
+    Falling gait, laminar friction, over five halvings in time; in space to where the steps in time show.
     """
     settings = {"friction": "laminar"}
     steps = 0.02 / 2.0 ** np.arange(5)
     errors = errors_of([fixed_step(step, settings) for step in steps], fixed_step(0.0003, settings))
     slope = slopes(steps, errors.max(axis=1))
-    measured("order in time with cross-flow drag, worst of pose, twist, wrench", slope, 0.8, wanted=2.5)
-    resolutions = 20.0 * 2.0 ** np.arange(5)
+    measured("order in time with cross-flow drag, worst of pose, twist, wrench", slope, 0.3, wanted=4.0)
+    resolutions = 10.0 * 2.0 ** np.arange(4)
     runs = [fixed_step(0.005, settings, resolution=each) for each in resolutions]
-    errors = errors_of(runs, fixed_step(0.005, settings, resolution=900.0)).max(axis=1)
-    measured("order in space with cross-flow drag, the same", -slopes(resolutions, errors), 0.8, wanted=2.5)
+    errors = errors_of(runs, fixed_step(0.005, settings, resolution=300.0)).max(axis=1)
+    measured("error in space with cross-flow drag, 80 points per length, the same", errors[-1], 1e-6)
+    assert np.all(errors[1:] < errors[:-1])
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -119,12 +120,12 @@ def test_spectral_in_space(measured, seed):
         measured(f"one evaluation without drag, {resolution:g} points per length", errors, bound)
 
 
-def test_kinks_of_drag_cap_the_order_in_space(measured):
-    """With V|V| the error falls like a power of the nodes: measured between the second and the third."""
+def test_spectral_in_space_with_drag(measured):
+    """One evaluation with V|V|, whose kinks are located."""
     rng = np.random.default_rng(1)
     law, twist, settings = random_law(rng, spline=False), random_twist(rng), {"friction": "laminar"}
     exact = snapshot(Body.boyer2010(), law, 0.7, twist, settings=settings, stations=STATIONS, accuracy=DENSE)
-    for resolution, bound in ((20.0, 1e-4), (80.0, 3e-6), (160.0, 1e-7)):
+    for resolution, bound in ((20.0, 1e-4), (80.0, 1e-8), (160.0, 1e-11)):
         accuracy = Accuracy(name="trial", resolution=resolution)
         got = snapshot(Body.boyer2010(), law, 0.7, twist, settings=settings, stations=STATIONS, accuracy=accuracy)
         error = distance(got.torque, exact.torque)

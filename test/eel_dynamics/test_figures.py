@@ -138,7 +138,7 @@ def test_measured_orders(errors):
     smooth, kinked = errors["in_space"][False], errors["in_space"][True]
     fine = slice(notes.FINE, None)
     assert smooth.order("motion", fine) < -5.5 and smooth.order("torque", fine) < -5.5  # the Magnus series has order 6
-    assert kinked.motion[-1] > 1e3 * smooth.motion[-1]  # what the kinks of V|V| cost
+    assert kinked.motion[-1] < 1e-11  # the kinks of V|V| are located
     steps = np.array([0.01, 0.02, 0.04])
     assert orders.Errors(steps, 7.0 * steps**3, steps**5).order("motion") == pytest.approx(3.0)
 

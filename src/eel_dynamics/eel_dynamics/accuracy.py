@@ -1,41 +1,58 @@
-"""How exact a run is: one word or one number, turned into nodes along the body and steps in time.
+"""How exact a run is: one word or one number, turned into nodes along the body, a method and steps in time.
 
 A target is a relative error: of the head's position at the end by the length of its path (or of the body, if longer),
-and of the torque field by its own maximum.
+and of the torque field by its own maximum. What delivers it was measured, and stands in `accuracy_table.csv`, which
+`calibration.calibrate` writes: apart for scenes with drag and without (free motion in space is sensitive: errors grow),
+and for runs with the internal wrench or the ledger and without.
 """
 
-from dataclasses import dataclass
+import csv
+from dataclasses import dataclass, replace
+from functools import cache
+from pathlib import Path
 
 import numpy as np
 
 PRESETS = {"draft": 1e-2, "standard": 1e-4, "fine": 1e-6, "reference": 1e-8}
 COARSEST, FINEST = 0.1, 1e-10
-# target: (points per body length, error per step), as measured over the library's gaits and bodies; between the rows by
-# interpolation of logarithms. The torque asks for the points: the drag V|V| has kinks inside panels.
-TABLE = {
-    1e-1: (8.0, 5e-4),
-    1e-2: (10.0, 5e-5),
-    1e-3: (16.0, 1e-5),
-    1e-4: (36.0, 1e-6),
-    1e-5: (70.0, 1e-7),
-    1e-6: (150.0, 1e-8),
-    1e-8: (220.0, 1e-10),
-    1e-10: (260.0, 1e-12),
-}
+TABLE_FILE = Path(__file__).with_name("accuracy_table.csv")
+FIELDS = ("drag", "torque", "target", "resolution", "tolerance", "method", "order")
+ORDERS = {"adams": (1, 2, 3, 4, 5, 6), "dormand_prince": (5,), "classical": (4,)}
+FINEST_TOLERANCE = 1e-13  # below, round-off
+BEST = {"resolution": 200.0, "tolerance": 1e-11}  # of the preset reference, where its target cannot be promised
+ANY = {"resolution": 30.0}  # until the scene is known
 WAVES_POWER = 0.85  # points grow with this power of the number of waves on the body
 
 
 @dataclass(frozen=True, kw_only=True)
 class Accuracy:
-    """Settings of a run. `resolution`: points per body length; `tolerance`: relative error per adaptive step; `step`
-    [s]: where given, steps of the classical Runge-Kutta method of this length instead."""
+    """Settings of a run. `resolution`: points per body length; `tolerance`: relative error per adaptive step; `method`
+    "dormand_prince" (order 5) or "adams" (`order` 1 to 6; 5 where none is given); `step` [s]: where given, steps of the
+    classical Runge-Kutta method (order 4) of this length instead. `target`: the relative error that the settings are
+    for, None where they were given one by one."""
 
     name: str
     resolution: float
     tolerance: float = 1e-6
     step: float | None = None
+    method: str = "dormand_prince"
+    order: int | None = None
+    target: float | None = None
 
     def __post_init__(self):
+        if self.step is not None:
+            object.__setattr__(self, "method", "classical")
+        if self.method not in ORDERS or (self.method == "classical" and self.step is None):
+            raise ValueError(
+                f"accuracy method must be adams, dormand_prince or (with a step) classical, got {self.method!r}"
+            )
+        orders = ORDERS[self.method]
+        if self.order is None:
+            object.__setattr__(self, "order", 5 if 5 in orders else orders[0])
+        if isinstance(self.order, bool) or self.order not in orders:
+            possible = f"{orders[0]} to {orders[-1]}" if len(orders) > 1 else f"{orders[0]}"
+            raise ValueError(f"accuracy order of the method {self.method} must be {possible}, got {self.order!r}")
+        object.__setattr__(self, "order", int(self.order))
         if not (np.isfinite(self.resolution) and 1.0 <= self.resolution <= 1000.0):
             raise ValueError(
                 f"accuracy resolution must lie in 1 to 1000 points per body length, got {self.resolution!r}"
@@ -49,36 +66,83 @@ class Accuracy:
         """Points per body length for a shape of `waves` waves on the body; one wave or less needs `resolution`."""
         return min(1000.0, self.resolution * max(1.0, waves) ** WAVES_POWER)
 
+    def in_scene(self, scene) -> "Accuracy":
+        """The settings that deliver the target in `scene`; the same where they were given one by one."""
+        if self.target is None:
+            return self
+        return _from_target(self.name, self.target, bool(scene.resistive), bool(scene.internal_wrench or scene.ledger))
+
+    def finer(self) -> "Accuracy":
+        """Settings that are at least some ten times as exact: what an estimate of the error compares with."""
+        if self.step is not None:
+            return replace(self, resolution=min(1000.0, 1.4 * self.resolution + 2.0), step=0.5 * self.step, target=None)
+        tolerance = max(self.tolerance / 30.0, min(self.tolerance, FINEST_TOLERANCE))
+        return replace(self, resolution=min(1000.0, 1.4 * self.resolution + 2.0), tolerance=tolerance, target=None)
+
     @staticmethod
     def of(value: "str | float | Accuracy") -> "Accuracy":
-        """The settings for a preset's name or a target relative error. `ValueError` says what is possible."""
+        """The settings for a preset's name, a target relative error, or a budget of time such as "fastest within 5 ms
+        per second" (`budget`). `ValueError` says what is possible."""
         if isinstance(value, Accuracy):
             return value
-        target = value
         if isinstance(value, str):
             name = value.strip()
             if name in PRESETS:
-                return _from_target(name, PRESETS[name])
-            try:
-                target = float(name)
-            except ValueError:
-                raise ValueError(
-                    f"accuracy must be one of {', '.join(PRESETS)} or a target relative error, got {value!r}"
-                ) from None
+                return Accuracy(name=name, target=PRESETS[name], **ANY)
+            if name.startswith("fastest"):
+                from .budget import Budget
+
+                return Budget.of(name)
         try:
-            target = float(target)
+            target = np.nan if isinstance(value, bool) else float(value)
         except (TypeError, ValueError):
+            target = np.nan
+        if np.isnan(target):
             raise ValueError(
-                f"accuracy must be one of {', '.join(PRESETS)} or a target relative error, got {value!r}"
-            ) from None
+                f"accuracy must be one of {', '.join(PRESETS)}, a target relative error, or a budget such as 'fastest "
+                f"within 5 ms per second', got {value!r}"
+            )
         if not FINEST <= target <= COARSEST:
-            raise ValueError(f"accuracy must be a target relative error from {FINEST:g} to {COARSEST:g}, got {value!r}")
-        return _from_target(f"{target:g}", target)
+            raise ValueError(
+                f"accuracy must be a target relative error from {FINEST:g} to {COARSEST:g} (double precision carries a "
+                f"run no further than that), got {value!r}"
+            )
+        return Accuracy(name=f"{target:g}", target=target, **ANY)
 
 
-def _from_target(name: str, target: float) -> Accuracy:
-    targets = np.log(sorted(TABLE))
-    rows = np.array([TABLE[key] for key in sorted(TABLE)])
-    resolution = np.exp(np.interp(np.log(target), targets, np.log(rows[:, 0])))
-    tolerance = np.exp(np.interp(np.log(target), targets, np.log(rows[:, 1])))
-    return Accuracy(name=name, resolution=float(resolution), tolerance=float(tolerance))
+@cache
+def table() -> dict[tuple[bool, bool], tuple[dict, ...]]:
+    """Rows of the table of targets, from the coarsest to the finest, for scenes (with drag, with torque)."""
+    with open(TABLE_FILE, newline="") as file:
+        rows = [
+            {"target": float(row["target"]), "drag": row["drag"] == "1", "torque": row["torque"] == "1"}
+            | {"resolution": float(row["resolution"]), "tolerance": float(row["tolerance"])}
+            | {"method": row["method"], "order": int(row["order"])}
+            for row in csv.DictReader(file)
+        ]
+    keys = {(row["drag"], row["torque"]) for row in rows}
+    return {
+        key: tuple(sorted((row for row in rows if (row["drag"], row["torque"]) == key), key=lambda row: -row["target"]))
+        for key in keys
+    }
+
+
+@cache
+def _from_target(name: str, target: float, drag: bool, torque: bool) -> Accuracy:
+    for row in table()[drag, torque]:
+        if row["target"] <= target * (1.0 + 1e-9):
+            return Accuracy(
+                name=name,
+                resolution=row["resolution"],
+                tolerance=row["tolerance"],
+                method=row["method"],
+                order=row["order"],
+                target=target,
+            )
+    if name == "reference":
+        return Accuracy(name=name, **BEST)
+    last = table()[drag, torque][-1]["target"]
+    raise ValueError(
+        f"accuracy {name} cannot be had {'with' if drag else 'without'} drag: the finest that was measured to be "
+        f"delivered is {last:g}"
+    )

@@ -22,7 +22,7 @@ from .arguments import checked_stations
 from .body import Body
 from .broadcast import swimmers_of
 from .energy import EnergyLedger
-from .member import Member, Tables
+from .member import Member
 from .profiles import Profiles, profiles_of
 from .run import Run, checked_times, run_of
 from .scene import Scene
@@ -137,14 +137,13 @@ def simulate_batch(
     out = _space(count, len(times), len(x[0]), any(wrench), load)
     works, samples, start = np.zeros((count, len(times), 4)), np.zeros(count, dtype=np.int64), np.zeros(count)
     steps, evaluations, errors = samples.copy(), samples.copy(), [None] * count
-    tables = Tables()
 
     def swim(index: int):
         try:
             with np.errstate(
                 over="ignore", invalid="ignore", divide="ignore"
             ):  # what is not finite stops the swimmer, and is told
-                member = Member(tables, stations=x[index], **members[index]._asdict())
+                member = Member(stations=x[index], **members[index]._asdict())
         except (SimulationStopped, ValueError) as error:
             errors[index] = _stopped_at_start(error)
             return

@@ -5,6 +5,7 @@ X runs from 0 at the nose to the length at the tail. The nose is pointed, a(0) =
 """
 
 import csv
+from functools import cache, lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -111,6 +112,7 @@ class Body:
         return f"Body({self.name!r}, length={self.length} m, density={self.density} kg/m^3)"
 
     @staticmethod
+    @cache
     def boyer2010() -> "Body":
         """The eel-like robot of section 7.2.1: 1 m long, 1.944 kg."""
 
@@ -134,6 +136,7 @@ class Body:
         )
 
     @staticmethod
+    @lru_cache(maxsize=64)
     def kern2006(length: float = 1.0) -> "Body":
         """The anguilliform swimmer of Kern and Koumoutsakos, J. Exp. Biol. 209 (2006): volume 0.0059326 length^3."""
         length = _positive("length", length, "m")

@@ -2,9 +2,10 @@
 
 import numpy as np
 
+from .drag import add_resistive_loads
 from .drive import combine, combine_moments, factors
 from .frames import matrix_of
-from .kernel import add_head_twist, configure, rub
+from .kernel import add_head_twist, configure
 from .simulation import Simulation
 
 
@@ -29,15 +30,13 @@ def drag_powers(run) -> np.ndarray:
         relative = run.twist[sample].copy()
         relative[3:] -= matrix_of(run.orientation[sample]).T @ run.scene.current
         add_head_twist(fields, relative)
-        rub(water, fields)
-        axes = fields.R.reshape(3, 3, -1)
-        velocity = np.einsum("akn,kn->an", axes, fields.v)
-        roll = np.sum(axes[0] * fields.omega, axis=0)
-        densities = (
-            fields.rubbing * velocity[0] ** 2,
-            water.drag2 * np.abs(velocity[1]) ** 3,
-            water.drag3 * np.abs(velocity[2]) ** 3,
-            water.drag_roll * np.abs(roll) ** 3,
+        add_resistive_loads(water, fields, relative, np.zeros(6))
+        v1, v2, v3, roll = fields.speed[:4]
+        _, side, height, turning = fields.share
+        powers[sample] = (
+            -(water.weight * fields.rubbing[0] + fields.share[0] * fields.rubbing[1]) @ v1**2,
+            -side @ (water.drag2 * v2**3),
+            -height @ (water.drag3 * v3**3),
+            -turning @ (water.drag_roll * roll**3),
         )
-        powers[sample] = [-float(water.weight @ density) for density in densities]
     return powers

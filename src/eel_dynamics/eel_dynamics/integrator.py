@@ -4,15 +4,17 @@ State y (17,), world axes: position of the head 0:3 [m]; orientation 3:7, quater
 and nose about the head 7:10 [kg m^2/s] and linear 10:13 [kg m/s]; work of actuators, wake, nose and drag since the
 start 13:17 [J]. The works are integrals along the way, from the acceleration form at the Lobatto points of each step.
 
-Two methods: the pair of Dormand and Prince of orders 5(4) with a step chosen by its error estimate (J. Comp. Appl.
-Math. 6 (1980); dense output of order 4 by Shampine, Math. Comp. 46 (1986)), and the classical Runge-Kutta method with a
-given step. Steps end at the breakpoints of the shape, where its derivatives jump.
+Three methods: steps of Adams and Bashforth of orders 1 to 6 (`adams`), and the pair of Dormand and Prince of orders
+5(4) (J. Comp. Appl. Math. 6 (1980); dense output of order 4 by Shampine, Math. Comp. 46 (1986)), both with a step
+chosen by the error estimate; and the classical Runge-Kutta method with a given step. Steps end at the breakpoints of
+the shape, where its derivatives jump. docs/integrators.md tells why these.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
+from .adams import HIGHEST, Past, adams_growth, extrapolate, past_of, remember
 from .compiled import compiled, inlined, spliced
 from .drive import combine, combine_moments, factors
 from .kernel import add_head_twist, configure, momentum_rates, twist_of_momentum
@@ -28,13 +30,16 @@ MARCHED, NOT_FINITE, STEP_TOO_SMALL, SINGULAR, TOO_MANY_STEPS = 0, 1, 2, 3, 4
 
 
 class Method(NamedTuple):
-    """A Runge-Kutta method whose last stage is the first of the next step. s stages."""
+    """A method whose last rate is the first of the next step: of s stages, or (`adams` > 0) Adams' of that order, whose
+    rows are the rate at the start, the mean rate and the rate at the end."""
 
     a: np.ndarray  # (s, s)
     c: np.ndarray  # (s,)
     error: np.ndarray  # (s,) weights of the error estimate, zero where there is none
     dense: np.ndarray  # (s, 4) y(theta) = y + h sum_i k_i sum_j dense[i, j] theta^(j+1)
     adaptive: bool
+    order: int  # of the error's size by the step's length
+    adams: int  # order, 0: a Runge-Kutta method
 
 
 class Control(NamedTuple):
@@ -58,6 +63,7 @@ class Step(NamedTuple):
     end: np.ndarray  # (13,) at its end
     k: np.ndarray  # (s, 13) rates at the stages
     trial: np.ndarray  # (13,)
+    defect: np.ndarray  # (13,) error estimate by the step's length
     work: np.ndarray  # (4,) at the start
     power: np.ndarray  # (4, 4) at the Lobatto points: [point, work]
     twist: np.ndarray  # (6,)
@@ -66,15 +72,19 @@ class Step(NamedTuple):
     scale: np.ndarray  # (2,) greatest angular and linear momentum so far
     count: np.ndarray  # (3,) int: steps, rejected steps, evaluations
     fresh: np.ndarray  # (1,) int: 1 where k[-1] and power[-1] do not hold the start of the next step
+    past: Past
 
 
-def step_of(stages: int) -> Step:
+def step_of(method: Method) -> Step:
+    """Work space for steps of `method`."""
+    stages = len(method.c)
     return Step(
         time=np.zeros(3),
         y=np.zeros(STATE),
         end=np.zeros(STATE),
         k=np.zeros((stages, STATE)),
         trial=np.zeros(STATE),
+        defect=np.zeros(STATE),
         work=np.zeros(WORKS),
         power=np.zeros((4, WORKS)),
         twist=np.zeros(6),
@@ -83,6 +93,7 @@ def step_of(stages: int) -> Step:
         scale=np.zeros(2),
         count=np.zeros(3, dtype=np.int64),
         fresh=np.ones(1, dtype=np.int64),
+        past=past_of(method.adams, STATE),
     )
 
 
@@ -91,11 +102,24 @@ def classical() -> Method:
     a = np.zeros((5, 5))
     a[1, 0], a[2, 1], a[3, 2] = 0.5, 0.5, 1.0
     a[4, :4] = 1 / 6, 1 / 3, 1 / 3, 1 / 6
-    # cubic Hermite: k1 (t - 2 t^2 + t^3) + k5 (t^3 - t^2) + (sum b k)(3 t^2 - 2 t^3)
-    dense = np.outer(a[4], [0.0, 3.0, -2.0, 0.0])
+    return Method(a, np.array([0.0, 0.5, 0.5, 1.0, 1.0]), np.zeros(5), _hermite(a[4]), False, 4, 0)
+
+
+def adams_bashforth(order: int) -> Method:
+    """Steps of Adams and Bashforth of an `order` from 1 to 6; between them as with the classical method."""
+    if not 1 <= order <= HIGHEST:
+        raise ValueError(f"order of the method adams must be 1 to {HIGHEST}, got {order!r}")
+    return Method(
+        np.zeros((3, 3)), np.array([0.0, 0.5, 1.0]), np.zeros(3), _hermite([0.0, 1.0, 0.0]), True, order + 1, order
+    )
+
+
+def _hermite(mean) -> np.ndarray:
+    """Dense output by the cubic that meets value and rate at both ends; `mean` (s,): the weights of the mean rate."""
+    dense = np.outer(mean, [0.0, 3.0, -2.0, 0.0])
     dense[0] += [1.0, -2.0, 1.0, 0.0]
-    dense[4] += [0.0, -1.0, 1.0, 0.0]
-    return Method(a, np.array([0.0, 0.5, 0.5, 1.0, 1.0]), np.zeros(5), dense, False)
+    dense[-1] += [0.0, -1.0, 1.0, 0.0]
+    return dense
 
 
 def dormand_prince() -> Method:
@@ -119,7 +143,7 @@ def dormand_prince() -> Method:
             [0, 40617522 / 29380423, -110615467 / 29380423, 69997945 / 29380423],
         ]
     )
-    return Method(a, np.array([0.0, 0.2, 0.3, 0.8, 8 / 9, 1.0, 1.0]), error, dense, True)
+    return Method(a, np.array([0.0, 0.2, 0.3, 0.8, 8 / 9, 1.0, 1.0]), error, dense, True, 5, 0)
 
 
 @inlined
@@ -247,28 +271,25 @@ def state_at(method, series, step, time, y, work):
 
 
 @spliced
-def error_of(method, step, first, last):
-    """Size of the error estimate of entries `first` to `last` of the state, per length of the step."""
+def error_of(defect, first, last):
+    """Size of entries `first` to `last` of the `defect` (13,)."""
     square = 0.0
     for k in range(first, last):
-        error = 0.0
-        for i in range(method.a.shape[0]):
-            error += method.error[i] * step.k[i, k]
-        square += error * error
+        square += defect[k] * defect[k]
     return np.sqrt(square)
 
 
 @spliced
-def error_by_tolerance(method, control, step, length):
+def error_by_tolerance(control, step, length):
     """The error estimate of the trial step by the tolerance: of position by the body's length, of orientation by one,
     of the momenta by their greatest size so far; the worst of the four. A good step has 1 or less."""
     trial = step.trial
     linear = max(step.scale[1], np.sqrt(trial[10] ** 2 + trial[11] ** 2 + trial[12] ** 2), control.momentum_floor)
     angular = max(step.scale[0], np.sqrt(trial[7] ** 2 + trial[8] ** 2 + trial[9] ** 2), linear * control.length)
-    worst = error_of(method, step, 0, 3) / control.length
-    worst = max(worst, error_of(method, step, 3, 7))
-    worst = max(worst, error_of(method, step, 7, 10) / angular)
-    worst = max(worst, error_of(method, step, 10, 13) / linear)
+    worst = error_of(step.defect, 0, 3) / control.length
+    worst = max(worst, error_of(step.defect, 3, 7))
+    worst = max(worst, error_of(step.defect, 7, 10) / angular)
+    worst = max(worst, error_of(step.defect, 10, 13) / linear)
     return worst * length / control.tolerance
 
 
@@ -276,26 +297,42 @@ def error_by_tolerance(method, control, step, length):
 def attempt(swimmer, drive, fields, current, method, control, step, start, length):
     """Try a step of `length` [s] from `step.end` at `start`, into `step.trial`. Returns a status and the error by
     tolerance."""
-    stages = method.a.shape[0]
-    for i in range(1, stages):
-        for k in range(STATE):
-            total = 0.0
-            for j in range(i):
-                total += method.a[i, j] * step.k[j, k]
-            step.trial[k] = step.end[k] + length * total
-        if i == stages - 1:
-            normalise(step.trial)
+    last = method.a.shape[0] - 1
+    if method.adams > 0:
+        terms, ahead = extrapolate(step.past, method.adams, length, step.end, step.trial)
+        normalise(step.trial)
         step.count[2] += 1
-        if not evaluate(
-            swimmer, drive, fields, current, control, start + method.c[i] * length, step.trial, step, step.k[i]
-        ):
+        if not evaluate(swimmer, drive, fields, current, control, start + length, step.trial, step, step.k[last]):
             return SINGULAR, np.inf
+        for k in range(STATE):
+            step.k[1, k] = (step.trial[k] - step.end[k]) / length
+            step.defect[k] = step.k[last, k]
+            for j in range(terms):
+                step.defect[k] -= step.past.starred[j, k]
+            step.defect[k] *= ahead
+    else:
+        for i in range(1, last + 1):
+            for k in range(STATE):
+                total = 0.0
+                for j in range(i):
+                    total += method.a[i, j] * step.k[j, k]
+                step.trial[k] = step.end[k] + length * total
+            if i == last:
+                normalise(step.trial)
+            step.count[2] += 1
+            time = start + method.c[i] * length
+            if not evaluate(swimmer, drive, fields, current, control, time, step.trial, step, step.k[i]):
+                return SINGULAR, np.inf
+        for k in range(STATE):
+            step.defect[k] = 0.0
+            for i in range(last + 1):
+                step.defect[k] += method.error[i] * step.k[i, k]
     total = 0.0
     for k in range(STATE):
-        total += abs(step.trial[k]) + abs(step.k[stages - 1, k])
+        total += abs(step.trial[k]) + abs(step.k[last, k])
     if not total < 1e300:  # NaN too
         return NOT_FINITE, np.inf
-    return MARCHED, error_by_tolerance(method, control, step, length) if method.adaptive else 0.0
+    return MARCHED, error_by_tolerance(control, step, length) if method.adaptive else 0.0
 
 
 @spliced
@@ -311,6 +348,9 @@ def begin(swimmer, drive, fields, balance, current, method, control, step, start
         ):
             return False
         step.fresh[0] = 0
+        step.past.known[0] = 0
+        for k in range(STATE):
+            step.past.differences[0, k] = step.k[last, k]
     for k in range(STATE):
         step.k[0, k] = step.k[last, k]
     return True
@@ -323,6 +363,8 @@ def fitted(method, control, step, start, target, tiny):
     if not method.adaptive:
         return left / np.ceil(left / control.step - 1e-9) if left < 1e100 else control.step
     length = min(control.step, step.time[2])
+    if method.adams > 0 and left < 8.0 * length:
+        return left / np.ceil(left / length - 1e-9)  # equal steps
     if length > left - tiny:
         return left
     return min(length, 0.5 * left) if length > 0.5 * left else length
@@ -363,15 +405,20 @@ def march(swimmer, drive, fields, balance, current, method, control, breakpoints
         proposed = step.time[2]
         length = fitted(method, control, step, start, target, tiny)
         status, error = attempt(swimmer, drive, fields, current, method, control, step, start, length)
-        while status != MARCHED or not error <= 1.0:
+        accepted = 4.0 if method.adams > 0 else 1.0  # Adams' next step is the shorter: cheaper than to repeat this one
+        while status != MARCHED or not error <= accepted:
             step.count[1] += 1
-            length *= 0.1 if status != MARCHED else max(0.2, 0.9 * error**-0.2)
+            length *= 0.1 if status != MARCHED else max(0.2, 0.9 * error ** (-1.0 / method.order))
             proposed = length
             if not method.adaptive or length < control.smallest:
                 step.fresh[0] = 1
                 return STEP_TOO_SMALL if status == MARCHED else status
             status, error = attempt(swimmer, drive, fields, current, method, control, step, start, length)
-        grown = length * (5.0 if error < 1e-4 else min(5.0, 0.9 * error**-0.2))
+        growth = 5.0 if error < 1e-4 else min(5.0, 0.9 * error ** (-1.0 / method.order))
+        if method.adams > 0:
+            growth = adams_growth(step.past, growth, method.adams)
+            remember(step.past, step.past.known[1], length, step.k[method.a.shape[0] - 1])
+        grown = length * growth
         step.time[2] = min(control.step, grown if length >= proposed else max(proposed, grown))
         if abs(start + length - target) <= tiny:
             length = target - start

@@ -13,9 +13,20 @@ from typing import NamedTuple
 import numpy as np
 
 from .compiled import inlined
+from .drag import ONE, ZERO, add_resistive_loads
 
-ZERO, ONE = np.uintp(0), np.uintp(1)  # indices that are unsigned need no test for Python's negative ones
-PRINTED, LAMINAR, BLENDED = 0, 1, 2  # laws of friction, as in the scene
+MOST_KINKS = 24  # of the drag, along the body at one instant; what is more is integrated without care
+
+
+class Kinks(NamedTuple):
+    """Where the drag is not smooth at the instant: steps of the loads along the body, in no order."""
+
+    number: np.ndarray  # (1,) how many there are
+    kind: np.ndarray  # (k,) which row of the speeds changes its sign
+    begin: np.ndarray  # (k,) first node of the panel
+    fraction: np.ndarray  # (k,) of the panel
+    step: np.ndarray  # (k,) of the factor of the load
+    row: np.ndarray  # (k, p) m, weights of the integral from the panel's start to the step
 
 
 class Fields(NamedTuple):
@@ -30,16 +41,19 @@ class Fields(NamedTuple):
     accel: np.ndarray  # (2, n) rad/m/s^2, Kddot
     omega: np.ndarray  # (3, n) rad/s, angular velocity of the sections
     v: np.ndarray  # (3, n) m/s, velocity of the sections
+    speed: np.ndarray  # (5, n) m/s, rad/s, V1, V2, V3, Omega1; Re/8e4 - 1
     part: np.ndarray  # (n,) part of the turbulent law in the friction
-    rubbing: np.ndarray  # (n,) kg/m/s, 1/2 rho_f k1 |V1|
+    rubbing: np.ndarray  # (2, n) kg/m/s, friction by V1: of the laminar law, and what the turbulent one adds
+    share: np.ndarray  # (4, n) m, weights of the loads with steps
     integrand: np.ndarray  # (6, n) scratch
     inertia: np.ndarray  # (6, 6) of body and water about the head
     wrench: np.ndarray  # (6,) scratch
     factor: np.ndarray  # (3, m) values and rates of the law's time factors
+    kinks: Kinks
 
 
-def fields_of(nodes: int, rows: int) -> Fields:
-    """Work space for `nodes` nodes and a law of `rows` rows."""
+def fields_of(nodes: int, rows: int, widest: int) -> Fields:
+    """Work space for `nodes` nodes in panels of up to `widest`, and a law of `rows` rows."""
     return Fields(
         turn=np.zeros((4, nodes)),
         q=np.zeros((4, nodes)),
@@ -50,12 +64,22 @@ def fields_of(nodes: int, rows: int) -> Fields:
         accel=np.zeros((2, nodes)),
         omega=np.zeros((3, nodes)),
         v=np.zeros((3, nodes)),
+        speed=np.zeros((5, nodes)),
         part=np.zeros(nodes),
-        rubbing=np.zeros(nodes),
+        rubbing=np.zeros((2, nodes)),
+        share=np.zeros((4, nodes)),
         integrand=np.zeros((6, nodes)),
         inertia=np.zeros((6, 6)),
         wrench=np.zeros(6),
         factor=np.zeros((3, rows)),
+        kinks=Kinks(
+            number=np.zeros(1, dtype=np.int64),
+            kind=np.zeros(MOST_KINKS, dtype=np.uintp),
+            begin=np.zeros(MOST_KINKS, dtype=np.uintp),
+            fraction=np.zeros(MOST_KINKS),
+            step=np.zeros(MOST_KINKS),
+            row=np.zeros((MOST_KINKS, widest)),
+        ),
     )
 
 
@@ -311,109 +335,6 @@ def add_head_twist(fields, twist):
 
 
 @inlined
-def turbulent_part(law, transition, speed):
-    """Part of the turbulent law in the friction of a section for the axial speed |V1| [m/s]; `transition` [m/s]: where
-    Re = |V1| X/nu is 8e4 (section 7.2.1)."""
-    if law == PRINTED:
-        return 1.0 if speed > transition else 0.0
-    if law != BLENDED or speed <= 0.5 * transition:
-        return 0.0
-    if speed >= 2.0 * transition:
-        return 1.0
-    part = np.log(2.0 * speed / transition) / np.log(4.0)  # f_r(ln Re; ln 4e4, ln 1.6e5), eq. (64)
-    return part - np.sin(2.0 * np.pi * part) / (2.0 * np.pi)
-
-
-@inlined
-def friction(laminar, turbulent, part, speed):
-    """1/2 rho_f k1 |V1| [kg/m/s] of a section for the axial speed |V1| [m/s], `part` of it by the turbulent law."""
-    force = (1.0 - part) * laminar * np.sqrt(speed)
-    if part > 0.0:
-        force += part * turbulent * speed**0.8
-    return force
-
-
-@inlined
-def share_friction(swimmer, fields):
-    """Part (n,) of the turbulent law in the friction of each node, from the true velocities.
-
-    The printed law jumps at one X, inside the stretch of the body that a node stands for (its weight, laid end to end).
-    The node on that stretch takes both laws in proportion, so that the load changes without a jump as the place moves.
-    """
-    R, v, part = fields.R, fields.v, fields.part
-    n = R.shape[1]
-    if swimmer.friction == PRINTED:
-        before = 0.0
-        end = 0.0
-        for i in range(n):
-            ratio = abs(R[0, i] * v[0, i] + R[1, i] * v[1, i] + R[2, i] * v[2, i]) / swimmer.transition[i]
-            part[i] = 1.0 if ratio > 1.0 else 0.0
-            if i > 0 and (ratio > 1.0) != (before > 1.0):
-                x = swimmer.x[i - 1] + (1.0 - before) / (ratio - before) * (swimmer.x[i] - swimmer.x[i - 1])
-                change = part[i] - (1.0 if before > 1.0 else 0.0)
-                if x < end:
-                    part[i - 1] += change * min(1.0, (end - x) / swimmer.weight[i - 1])
-                else:
-                    part[i] -= change * min(1.0, (x - end) / swimmer.weight[i])
-            before = ratio
-            end += swimmer.weight[i]
-    elif swimmer.friction == BLENDED:
-        for i in range(n):
-            part[i] = turbulent_part(
-                BLENDED, swimmer.transition[i], abs(R[0, i] * v[0, i] + R[1, i] * v[1, i] + R[2, i] * v[2, i])
-            )
-    else:
-        for i in range(n):
-            part[i] = 0.0
-
-
-@inlined
-def rub(swimmer, fields):
-    """Friction 1/2 rho_f k1 |V1| (n,) [kg/m/s] of the nodes, from the true velocities."""
-    R, v = fields.R, fields.v
-    share_friction(swimmer, fields)
-    for i in range(R.shape[1]):
-        speed = abs(R[0, i] * v[0, i] + R[1, i] * v[1, i] + R[2, i] * v[2, i])
-        fields.rubbing[i] = friction(swimmer.laminar[i], swimmer.turbulent[i], fields.part[i], speed)
-
-
-@inlined
-def add_resistive_loads(swimmer, fields, wrench):
-    """Add the drag along the body to `wrench` (6,), on the body (section 7.2.1). Returns its power [W]."""
-    R, r, omega, v = fields.R, fields.r, fields.omega, fields.v
-    tx = ty = tz = fx = fy = fz = power = 0.0
-    rub(swimmer, fields)
-    for i in range(R.shape[1]):
-        vx, vy, vz = v[0, i], v[1, i], v[2, i]
-        v1 = R[0, i] * vx + R[1, i] * vy + R[2, i] * vz
-        v2 = R[3, i] * vx + R[4, i] * vy + R[5, i] * vz
-        v3 = R[6, i] * vx + R[7, i] * vy + R[8, i] * vz
-        roll = R[0, i] * omega[0, i] + R[1, i] * omega[1, i] + R[2, i] * omega[2, i]
-        weight = swimmer.weight[i]
-        n1 = -weight * fields.rubbing[i] * v1
-        n2 = -weight * swimmer.drag2[i] * abs(v2) * v2
-        n3 = -weight * swimmer.drag3[i] * abs(v3) * v3
-        c1 = -weight * swimmer.drag_roll[i] * abs(roll) * roll
-        nx = R[0, i] * n1 + R[3, i] * n2 + R[6, i] * n3
-        ny = R[1, i] * n1 + R[4, i] * n2 + R[7, i] * n3
-        nz = R[2, i] * n1 + R[5, i] * n2 + R[8, i] * n3
-        fx += nx
-        fy += ny
-        fz += nz
-        tx += c1 * R[0, i] + r[1, i] * nz - r[2, i] * ny
-        ty += c1 * R[1, i] + r[2, i] * nx - r[0, i] * nz
-        tz += c1 * R[2, i] + r[0, i] * ny - r[1, i] * nx
-        power += n1 * v1 + n2 * v2 + n3 * v3 + c1 * roll
-    wrench[0] += tx
-    wrench[1] += ty
-    wrench[2] += tz
-    wrench[3] += fx
-    wrench[4] += fy
-    wrench[5] += fz
-    return power
-
-
-@inlined
 def add_wake(swimmer, fields, wrench):
     """Add the momentum that the tail takes in from the wake, w_tail of eq. (60), to `wrench` (6,).
 
@@ -485,7 +406,7 @@ def momentum_rates(swimmer, fields, momentum, twist, rates):
         rates[i] = 0.0
     add_wake(swimmer, fields, rates)
     if swimmer.resistive:
-        add_resistive_loads(swimmer, fields, rates)
+        add_resistive_loads(swimmer, fields, twist, rates)
     _, oy, oz, vx, vy, vz = twist[0], twist[1], twist[2], twist[3], twist[4], twist[5]
     nose = swimmer.nose_mass
     # n_nose less what is the derivative of m_o V1 E1 (its gyroscopic part), and the nose's drag

@@ -5,11 +5,13 @@ The same momentum form as in the kernel, for yaw alone: t1 = (cos, sin) of the t
 K3 and so a sum of tabulated rows, as its rate is. The fields' components out of the plane stay zero.
 """
 
+import math
+
 import numpy as np
 
 from .compiled import compiled, inlined
+from .drag import AXIAL, NOISE, ONE, PRINTED, RATIO, SIDE, ZERO, find_steps, rub
 from .drive import factors
-from .kernel import ONE, ZERO, rub
 
 PI_1, PI_2 = 1.5707963267341256, 6.077100506506192e-11  # pi/2 in two parts, the first with trailing zeros
 YAW = 1
@@ -150,12 +152,23 @@ def loads_plane(swimmer, fields, twist, rates):
     fx, fy = c * n1 - s * n2, s * n1 + c * n2
     tz = r[0, last] * fy - r[1, last] * fx
     if swimmer.resistive:
+        speed, share = fields.speed, fields.share
+        for i in range(n):
+            c, s = R[0, i], R[1, i]
+            speed[AXIAL, i] = c * v[0, i] + s * v[1, i]
+            speed[SIDE, i] = -s * v[0, i] + c * v[1, i]
         rub(swimmer, fields)
         for i in range(n):
-            c, s, weight = R[0, i], R[1, i], swimmer.weight[i]
-            v1, v2 = c * v[0, i] + s * v[1, i], -s * v[0, i] + c * v[1, i]
-            n1 = -weight * fields.rubbing[i] * v1
-            n2 = -weight * swimmer.drag2[i] * abs(v2) * v2
+            share[0, i] = swimmer.weight[i] * fields.part[i]
+            share[SIDE, i] = math.copysign(swimmer.weight[i], speed[SIDE, i])
+        fields.kinks.number[0] = 0
+        find_steps(swimmer, fields, SIDE, twist[2], NOISE * (abs(speed[AXIAL, last]) + abs(speed[SIDE, last])))
+        if swimmer.friction == PRINTED:
+            find_steps(swimmer, fields, RATIO, -1.0, 0.0)
+        for i in range(n):
+            c, s, v1, v2 = R[0, i], R[1, i], speed[AXIAL, i], speed[SIDE, i]
+            n1 = -(swimmer.weight[i] * fields.rubbing[0, i] + share[0, i] * fields.rubbing[1, i]) * v1
+            n2 = -share[SIDE, i] * swimmer.drag2[i] * v2 * v2
             nx, ny = c * n1 - s * n2, s * n1 + c * n2
             fx += nx
             fy += ny

@@ -8,8 +8,9 @@ from eel_gaits.law import Law
 from .accuracy import Accuracy
 from .arguments import checked_row
 from .body import Body
+from .drag import add_resistive_loads
 from .drive import combine, combine_moments, factors
-from .kernel import add_head_twist, add_wake, configure, rub
+from .kernel import add_head_twist, add_wake, configure
 from .scene import Scene
 from .simulation import Simulation
 from .wrench import add_head_acceleration, gather, section_densities, shape_accelerations
@@ -74,16 +75,12 @@ def hydrodynamic_wrench(
     balance.head[3:] = twist_rate[3:] + np.cross(twist[:3], twist[3:])
     add_head_acceleration(fields, balance)
     none = np.zeros_like(water.mass)
-    alone = water._replace(mass=none, inertia1=water.added_roll, inertia2=none, inertia3=none, resistive=False)
-    inertia, both, wake, nose = np.zeros(6), np.zeros(6), np.zeros(6), np.zeros(6)
+    alone = water._replace(mass=none, inertia1=water.added_roll, inertia2=none, inertia3=none)
+    inertia, resistive, wake, nose = np.zeros(6), np.zeros(6), np.zeros(6), np.zeros(6)
     section_densities(alone, fields, balance)
     gather(alone, balance.density, inertia)
     if water.resistive:
-        rub(water, fields)
-        section_densities(alone._replace(resistive=True), fields, balance)
-        gather(alone, balance.density, both)
-    else:
-        both[:] = inertia
+        add_resistive_loads(water, fields, relative, resistive)
     add_wake(water, fields, wake)
     nose[3] = -water.nose_mass * balance.head[3] - water.nose_drag * relative[3] * abs(relative[3])
-    return HydrodynamicWrench(inertia=-inertia, wake=wake, resistive=inertia - both, nose=nose)
+    return HydrodynamicWrench(inertia=-inertia, wake=wake, resistive=resistive, nose=nose)

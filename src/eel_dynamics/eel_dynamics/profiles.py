@@ -9,9 +9,10 @@ from typing import NamedTuple
 import numpy as np
 
 from .compiled import compiled, inlined
-from .drive import combine, combine_moments
+from .drag import ONE, ZERO, add_steps, friction, turbulent_part
+from .drive import combine, combine_moments, factors
 from .integrator import MARCHED, SINGULAR, march, powers_of_state, rotate, state_at
-from .kernel import ONE, ZERO, axes_of, friction, turbulent_part, turns
+from .kernel import add_head_twist, axes_of, configure, momentum_of_twist, turns
 from .wrench import kinetic_energies, section_wrench
 
 
@@ -120,6 +121,22 @@ def cross_fields(a, b, result):
 
 
 @compiled
+def set_in_motion(swimmer, drive, fields, time, twist, y):
+    """Give state `y` (13,) at `time` the momentum of the head's `twist` (6,) relative to the water. Returns the kinetic
+    energy [J] of body and water (without the nose's)."""
+    factors(drive, time, fields.factor)
+    combine_moments(drive.axis, drive.bend, fields.factor[0], fields.bend)
+    combine(drive.axis, drive.node, fields.factor[1], fields.rate)
+    configure(swimmer, fields)
+    momentum_of_twist(swimmer, fields, twist, y[7:])
+    rotate(y, False, y, 7)
+    rotate(y, False, y, 10)
+    add_head_twist(fields, twist)
+    body, water = kinetic_energies(swimmer, fields)
+    return body + water
+
+
+@compiled
 def place(stations, drive, fields, here, y, sample, out):
     """Backbone, orientation and curvature at the stations."""
     combine_moments(drive.axis, drive.station_bend, fields.factor[0], here.bend)
@@ -193,11 +210,13 @@ def accelerations(stations, fields, balance, here):
 
 
 @compiled
-def internal_wrench(stations, fields, balance, here, result, distributed, sample, out):
+def internal_wrench(swimmer, stations, fields, balance, here, result, distributed, sample, out):
     """Internal torque and force at the stations: the balance of the part behind each (eq. 50, 51)."""
     section = stations.section
     extend(section, balance.density[:3], balance.upto[:3], here.zero, here.upto[:3])
     extend(section, balance.density[3:], balance.upto[3:], here.zero, here.upto[3:])
+    if swimmer.resistive:
+        add_steps(swimmer, fields, section, False, here.upto)
     for i in range(here.R.shape[1]):
         for k in range(6):
             fields.wrench[k] = balance.tail[k] - balance.total[k] + here.upto[k, i]
@@ -263,7 +282,7 @@ def loads(stations, here, distributed, sample, out):
         r1 = r2 = r3 = 0.0
         if section.resistive:
             part = turbulent_part(section.friction, section.transition[i], abs(u[0]))
-            r1 = -friction(section.laminar[i], section.turbulent[i], part, abs(u[0])) * u[0]
+            r1 = -friction(section.laminar[i], section.turbulent[i], section.transition[i], part, abs(u[0])) * u[0]
             r2 = -section.drag2[i] * abs(u[1]) * u[1]
             r3 = -section.drag3[i] * abs(u[2]) * u[2]
         rows = out.resistive_force[sample, i], out.fluid_force[sample, i]
@@ -329,7 +348,7 @@ def observe(
     if want_wrench or want_load:
         velocities(stations, fields, here, twist)
     if want_wrench:
-        internal_wrench(stations, fields, balance, here, step.rates, distributed, sample, out)
+        internal_wrench(swimmer, stations, fields, balance, here, step.rates, distributed, sample, out)
     if want_load:
         accelerations(stations, fields, balance, here)
         loads(stations, here, distributed, sample, out)

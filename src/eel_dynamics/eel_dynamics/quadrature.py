@@ -45,7 +45,9 @@ class Grid:
 
     x (n,) [m]; weight (n,) [m]: integral over the body; previous (n,) [m]: X of the node before (0 for the first);
     first (n,): index of the first node of a node's panel; count (n,): points of that panel;
-    matrix (n, p_max) [m]: integral from the panel's start to node i is sum_j matrix[i, j] f[first[i] + j].
+    matrix (n, p_max) [m]: integral from the panel's start to node i is sum_j matrix[i, j] f[first[i] + j];
+    fraction (n,): the panel's variable; barycentric (n,): weights of the nodes in their panel's interpolation;
+    series (p_max, n) [m]: coefficients of Legendre polynomials, which times their integrals give those rows anywhere.
     """
 
     panels: tuple[Panel, ...]
@@ -55,12 +57,16 @@ class Grid:
     first: np.ndarray
     count: np.ndarray
     matrix: np.ndarray
+    fraction: np.ndarray
+    barycentric: np.ndarray
+    series: np.ndarray
 
     @staticmethod
     def of(panels: tuple[Panel, ...]) -> "Grid":
         total = sum(panel.points for panel in panels)
         widest = max(panel.points for panel in panels)
         x, weight, matrix = np.empty(total), np.empty(total), np.zeros((total, widest))
+        fractions, barycentric, series = np.empty(total), np.empty(total), np.zeros((widest, total))
         first, count = np.empty(total, dtype=np.uintp), np.empty(total, dtype=np.uintp)
         begin = 0
         for panel in panels:
@@ -71,13 +77,21 @@ class Grid:
             matrix[span, : panel.points] = collocation_matrix(panel.points) * scale
             weight[span] = matrix[begin + panel.points - 1, : panel.points]
             first[span], count[span] = begin, panel.points
+            fractions[span], barycentric[span] = fraction, barycentric_weights(panel.points)
+            series[: panel.points, span] = np.linalg.inv(_basis(panel.points)) * scale
             begin += panel.points
-        return Grid(panels, x, weight, np.concatenate(([0.0], x[:-1])), first, count, matrix)
+        previous = np.concatenate(([0.0], x[:-1]))
+        return Grid(panels, x, weight, previous, first, count, matrix, fractions, barycentric, series)
 
     def panel_at(self, x) -> np.ndarray:
         """Index of the panel that holds X = `x` (M,) [m]; a kink belongs to the panel that it ends."""
         ends = np.array([panel.end for panel in self.panels])
         return np.minimum(np.searchsorted(ends, x, side="left"), len(ends) - 1)
+
+    def fraction_at(self, x) -> np.ndarray:
+        """The variable of the panel that holds X = `x` (M,) [m]."""
+        home = self.panel_at(x)
+        return np.array([float(self.panels[k].fraction(here)) for k, here in zip(home, np.asarray(x), strict=True)])
 
     def rows_at(self, x, kind: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Rows that turn nodal values into values at X = `x` (M,) [m].
@@ -119,6 +133,15 @@ def radau_points(points: int) -> np.ndarray:
 def collocation_matrix(points: int) -> np.ndarray:
     """Integral from 0 to each Radau point of the polynomial through the Radau points: (points, points)."""
     return integration_matrix(points, radau_points(points))
+
+
+@cache
+def barycentric_weights(points: int) -> np.ndarray:
+    """Weights (points,) of the Radau points in the barycentric formula (Berrut and Trefethen, SIAM Review 46 (2004)),
+    to a common factor."""
+    at = radau_points(points)
+    distance = 4.0 * (at[:, None] - at[None, :]) + np.eye(points)  # in quarters: the products stay within range
+    return 1.0 / np.prod(distance, axis=1)
 
 
 def interpolation_matrix(points: int, at) -> np.ndarray:

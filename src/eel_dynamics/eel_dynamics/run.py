@@ -1,7 +1,9 @@
 """A whole run of a law: `simulate`, and what it returns."""
 
+import warnings
+from contextvars import ContextVar
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 from eel_gaits.law import Law
@@ -9,13 +11,18 @@ from eel_gaits.law import Law
 from .accuracy import Accuracy
 from .actuators import Actuators, actuators_of
 from .analysis import Analysis
+from .arguments import checked_instance
 from .body import Body
 from .energy import EnergyLedger
+from .errors import Errors, errors, refined, stable_step
 from .limits import warnings_of
 from .records import records
 from .scene import Scene
 from .simulation import Simulation, SimulationStopped
 from .summary import describe
+
+MOST_REFINEMENTS = 3  # of a run whose error is above its target
+_searching = ContextVar("searching", default=False)  # for a stable step
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,6 +122,16 @@ class Run:
             target, [records(run) for run in runs], [f"{run.law.name} {run.accuracy.name}" for run in runs], **settings
         )
 
+    @cached_property
+    def refined(self) -> "Run":
+        """The same run with finer settings, swum when it is first asked for."""
+        return refined(self)
+
+    @property
+    def error_estimate(self) -> Errors:
+        """Estimate of the run's errors (as the targets of accuracy have them), from the finer run."""
+        return errors(self, self.refined)
+
     @property
     def body_mass(self) -> float:
         """Mass of the body in this scene [kg]."""
@@ -134,15 +151,30 @@ def simulate(
     orientation=(0.0, 0.0, 0.0, 1.0),
     twist=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
     load: bool = False,
+    verify: bool | None = None,
 ) -> Run:
     """Swim `law` for `duration` [s] and sample every `sample_period` [s], from t = 0 on.
 
     stations: number of equidistant stations, or their X (M,) [m]. position [m], orientation (x y z w), twist ((Omega,
     V) in the head's axes): the head's initial state. load: the water's load along the body too. The steps in time do
-    not depend on the sampling. `ValueError` names what does not fit; `SimulationStopped` carries the samples so far as
-    `run`.
+    not depend on the sampling. verify: have the error estimated (`Run.error_estimate`); where it is above the target,
+    return a finer run, or warn; None: where the motion is sensitive, that is in space without drag. `ValueError` names
+    what does not fit; `SimulationStopped` carries the samples so far as `run`.
     """
     times = checked_times(duration, sample_period)
+    again = partial(
+        simulate,
+        law,
+        duration,
+        body=body,
+        scene=scene,
+        sample_period=sample_period,
+        stations=stations,
+        position=position,
+        orientation=orientation,
+        twist=twist,
+        load=load,
+    )
     swimmer = Simulation(
         body=body,
         scene=scene,
@@ -151,8 +183,8 @@ def simulate(
         position=position,
         orientation=orientation,
         twist=twist,
+        law=checked_instance("law", law, Law),
     )
-    swimmer.adopt(law)
     wrench = swimmer.scene.internal_wrench
     out, works, done, stopped = swimmer.record(times, wrench, bool(load))
     steps, _, evaluations = swimmer.evaluations
@@ -173,8 +205,43 @@ def simulate(
     )
     if stopped is not None:
         stopped.run = run
+        if stopped.diverged and swimmer.accuracy.step is not None and not _searching.get():
+            stopped = _with_stable_step(stopped, again, swimmer.accuracy)
         raise stopped
+    sensitive = swimmer.accuracy.target is not None and not (swimmer.scene.resistive or swimmer.scene.planar)
+    return _verified(run) if verify or (verify is None and sensitive and done > 1) else run
+
+
+def _verified(run: Run) -> Run:
+    """`run`, or a finer one where the estimate of its error is above its target; a warning where none is fine
+    enough."""
+    target = run.accuracy.target
+    if target is None:
+        raise ValueError(f"verify needs an accuracy that is a target, got {run.accuracy.name!r}")
+    for _ in range(MOST_REFINEMENTS):
+        if run.error_estimate.worst <= target:
+            return run
+        run = run.refined
+    if run.error_estimate.worst > target:
+        warnings.warn(
+            f"the error is estimated at {run.error_estimate.worst:.1e}, above the target {target:g}: the motion is too "
+            f"sensitive, or the target too fine",
+            stacklevel=3,
+        )
     return run
+
+
+def _with_stable_step(stopped: SimulationStopped, again, accuracy: Accuracy) -> SimulationStopped:
+    """The same, with the step that would have been stable in its hint."""
+    token = _searching.set(True)
+    try:
+        step = stable_step(lambda trial: again(accuracy=trial), accuracy)
+    finally:
+        _searching.reset(token)
+    hint = f"a step of {step:.3g} s is stable" if step else "no shorter step that was tried is stable"
+    told = SimulationStopped(stopped.time, stopped.quantity, stopped.value, f"{hint}; it was {accuracy.step:.3g} s")
+    told.run, told.diverged = stopped.run, True
+    return told
 
 
 def checked_times(duration, sample_period) -> np.ndarray:

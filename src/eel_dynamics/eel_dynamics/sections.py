@@ -18,6 +18,7 @@ from .quadrature import Grid, Panel
 from .scene import FRICTION, Scene
 
 WIDEST_PANEL = 24  # points; a longer panel is cut into equal parts
+CLOSEST = 1e-3  # lengths between a kink of the body and a knot of a law that still gets a panel
 TRANSITION = 8.0e4  # Reynolds number at which the printed friction law jumps from laminar to turbulent
 
 
@@ -40,20 +41,29 @@ class Swimmer(NamedTuple):
     drag3: np.ndarray  # kg/m^2, 1/2 rho_f k3
     drag_roll: np.ndarray  # kg, 1/2 rho_f k4
     laminar: np.ndarray  # friction force per length = -laminar |V1|^(1/2) V1
-    turbulent: np.ndarray  # friction force per length = -turbulent |V1|^(4/5) V1
+    turbulent: np.ndarray  # friction force per length = -turbulent (|V1|/transition)^(4/5) V1
     transition: np.ndarray  # m/s, |V1| at which Re = 8e4
     friction: int  # index into scene.FRICTION
     resistive: bool
     nose_mass: float  # kg, m_o
     nose_drag: float  # kg/m, 1/2 rho_f k_o
+    fraction: np.ndarray  # (n,) of the node's panel, in its own variable
+    barycentric: np.ndarray  # (n,) weights of the interpolation in a panel
+    series: np.ndarray  # (p, n) m, of the integrals from a panel's start to any place in it
 
 
-def panels_of(body: Body, resolution: float) -> tuple[Panel, ...]:
-    """Panels between the kinks of `body`, with about `resolution` points per length of the body, and three to spare
-    each."""
+def panels_of(body: Body, resolution: float, knots: tuple[float, ...] = (), wrench: bool = True) -> tuple[Panel, ...]:
+    """Panels between the kinks of `body` and the `knots` [m] of a law's splines, with about `resolution` points per
+    length of the body, and three to spare each; where the internal `wrench` is wanted more in the first, in which the
+    body and its loads go like roots of X (they weigh little there)."""
     panels, start = [], 0.0
-    for end in body.panel_ends:
-        points = (4 if start == 0.0 else 3) + nearest(resolution * (end - start) / body.length)
+    least = CLOSEST * body.length
+    kinks = np.array([0.0, *body.panel_ends])
+    inner = [knot for knot in knots if np.min(np.abs(kinks - knot)) > least and kinks[1] < knot < body.length]
+    for end in sorted({*body.panel_ends, *inner}):
+        points = 3 + nearest(resolution * (end - start) / body.length)
+        if start == 0.0:
+            points = 1 + (max(points, 3 + nearest(math.sqrt(resolution))) if wrench else points)
         parts = -(-points // WIDEST_PANEL) if start > 0.0 else 1
         edges = np.linspace(start, end, parts + 1)
         for left, right in pairwise(edges):
@@ -76,7 +86,18 @@ def added_masses(body: Body, scene: Scene, a_squared, b_squared):
 
 def swimmer_of(body: Body, scene: Scene, grid: Grid) -> Swimmer:
     """Tabulate `body` in `scene` at the nodes of `grid`."""
-    return _tabulate(body, scene, grid.x, grid.weight, grid.matrix, grid.first, grid.count)
+    return _tabulate(
+        body,
+        scene,
+        grid.x,
+        weight=grid.weight,
+        matrix=grid.matrix,
+        first=grid.first,
+        count=grid.count,
+        fraction=grid.fraction,
+        barycentric=grid.barycentric,
+        series=grid.series,
+    )
 
 
 class Stations(NamedTuple):
@@ -97,7 +118,18 @@ def stations_of(body: Body, scene: Scene, grid: Grid, x: np.ndarray) -> Stations
     slope2, slope3, _ = added_masses(body, scene, a_slope, b_slope)
     rho = scene.fluid_density if scene.reactive else 0.0
     return Stations(
-        section=_tabulate(body, scene, x, np.zeros(len(x)), rows, first, count),
+        section=_tabulate(
+            body,
+            scene,
+            x,
+            weight=np.zeros(len(x)),
+            matrix=rows,
+            first=first,
+            count=count,
+            fraction=grid.fraction_at(x),
+            barycentric=np.zeros(0),
+            series=np.zeros((0, 0)),
+        ),
         node=(np.searchsorted(grid.x, x, side="right") - 1).astype(np.int64),
         added2_slope=slope2,
         added3_slope=slope3,
@@ -105,7 +137,7 @@ def stations_of(body: Body, scene: Scene, grid: Grid, x: np.ndarray) -> Stations
     )
 
 
-def _tabulate(body: Body, scene: Scene, x, weight, matrix, first, count) -> Swimmer:
+def _tabulate(body: Body, scene: Scene, x, **grid) -> Swimmer:
     a, b = body.half_height(x), body.half_width(x)
     density = body.density if scene.density is None else scene.density
     area = np.pi * a * b
@@ -122,10 +154,6 @@ def _tabulate(body: Body, scene: Scene, x, weight, matrix, first, count) -> Swim
     rubbed = 0.0 if scene.friction == "none" else half_rho
     return Swimmer(
         x=np.ascontiguousarray(x, dtype=float),
-        weight=weight,
-        matrix=matrix,
-        first=first,
-        count=count,
         mass=density * area,
         added2=added2,
         added3=added3,
@@ -137,10 +165,11 @@ def _tabulate(body: Body, scene: Scene, x, weight, matrix, first, count) -> Swim
         drag3=half_rho * 2.0 * body.vertical_drag * b,
         drag_roll=half_rho * body.roll_drag * np.pi * (a**2 - b**2) ** 2,
         laminar=rubbed * perimeter * 0.664 * np.sqrt(scene.viscosity / behind),
-        turbulent=rubbed * perimeter * 0.059 * (scene.viscosity / behind) ** 0.2,
+        turbulent=rubbed * perimeter * 0.059 * (scene.viscosity / behind) * TRANSITION**0.8,
         transition=TRANSITION * scene.viscosity / behind,
         friction=FRICTION.index("laminar" if scene.friction == "none" or scene.viscosity == 0.0 else scene.friction),
         resistive=bool(scene.resistive),
         nose_mass=float(reactive_rho * nose_area * body.nose_added_mass * body.nose[2]),
         nose_drag=float(half_rho * nose_area * body.nose_drag),
+        **grid,
     )

@@ -5,7 +5,9 @@ acceleration) dies out as a quintic over a transition, added to the new one: the
 acceleration never jump. When a controller's samples run out, the shape comes to rest by the same means.
 """
 
+import math
 from bisect import insort
+from functools import lru_cache
 
 import numpy as np
 from eel_gaits.law import Law
@@ -13,6 +15,7 @@ from eel_gaits.spline import natural_spline
 
 from .drive import AXES, Drive, Tabulation, factors
 
+MOST_KNOTS = 8  # of laws whose panels are cut at them
 NONE = np.zeros(0, dtype=np.int64)
 
 
@@ -40,13 +43,14 @@ class Shape:
 
     def move(self, tabulation: Tabulation, values_at_nodes):
         """Go over to another tabulation. `values_at_nodes(rows)` takes fields at the old nodes (..., n) to the new
-        points.
-
-        Call it right before another source takes over: what remains of the present one are values at the old nodes.
+        points: what remains of samples and blends are values at the old nodes; a law is tabulated anew.
         """
         nodes = self.tabulation.nodes
         convert = lambda rows: tabulation.columns(values_at_nodes(rows[..., :nodes]))  # noqa: E731
-        self._source = self._source | {"rows": convert(self._source["rows"])}
+        if "law" in self._source:
+            self._source = _law_rows(self._source["law"], tabulation) | {"origin": self._source["origin"]}
+        else:
+            self._source = self._source | {"rows": convert(self._source["rows"])}
         if self._blend is not None:
             self._blend = (convert(self._blend[0]), *self._blend[1:])
         self.samples = [(time, convert(rows)) for time, rows in self.samples]
@@ -57,7 +61,9 @@ class Shape:
 
     def adopt(self, law: Law, *, origin: float, time: float, transition: float):
         """Follow `law` from `time` [s] on; `transition` 0: at once, without a blend."""
-        source = _law_rows(law, self.tabulation, origin)
+        source = _law_rows(law, self.tabulation)
+        if origin != source["origin"]:
+            source = source | {"origin": origin}
         self._take_over(source, time, transition)
         self.law, self.origin = law, origin
         self.samples, self.sampled, self.resting = [], False, False
@@ -139,6 +145,14 @@ class Shape:
         anyway."""
         return float(min(self.drive.period[self.drive.period > 0.0], default=np.inf))
 
+    def reach(self, weight: np.ndarray) -> float:
+        """Speed [m/s] that the shape gives to the body, of the order of: mean over the sections, of the weights (n,)
+        [m] of the nodes; 0 for a shape that stands still."""
+        source = self._source
+        if "reach" not in source:
+            source["reach"] = _reach(self.drive, weight) if "sine" in source else 0.0
+        return source["reach"]
+
     def end_blend(self, now: float):
         """Drop a blend that is over, so that it costs nothing."""
         if self._blend is not None and now >= self._blend[2]:
@@ -172,14 +186,10 @@ class Shape:
             difference, blend_start, blend_end = self._blend
             rows, axis = np.concatenate((rows, difference)), np.concatenate((axis, np.repeat((0, 1), 3)))
         self._rows = rows
-        node, bend, station, station_bend = self.tabulation.split(rows)
+        split = source.get("split") if self._blend is None else None
         self.drive = Drive(
             axis=np.asarray(axis, dtype=np.int64),
-            node=node,
-            angle=np.cumsum(bend[:, 0], axis=1),
-            bend=bend,
-            station=station,
-            station_bend=station_bend,
+            **(split or _split(self.tabulation, rows)),
             origin=float(source.get("origin", 0.0)),
             sine=source.get("sine", NONE),
             cosine=source.get("cosine", NONE),
@@ -196,16 +206,30 @@ class Shape:
         )
 
 
+def _split(tabulation: Tabulation, rows: np.ndarray) -> dict:
+    """The parts of tabulated `rows` (m, width), by their names in `Drive`."""
+    node, bend, station, station_bend = tabulation.split(rows)
+    angle = np.cumsum(bend[:, 0], axis=1)
+    return {"node": node, "angle": angle, "bend": bend, "station": station, "station_bend": station_bend}
+
+
 def waves_of_law(law: Law, length: float) -> float:
     """How many waves a law bends a body of `length` [m] into, at most; a spline counts an eighth of its intervals."""
     waves = [length * abs(term.wave_number) / (2.0 * np.pi) for term in law.terms]
     return max([*waves, *((len(term.knots) - 1) / 8.0 for term in law.terms)], default=0.0)
 
 
+def knots_of_law(law: Law) -> tuple[float, ...]:
+    """X [m] inside the splines of `law`, where their third derivative jumps; none where there are many."""
+    knots = sorted({knot for term in law.terms for knot in term.knots[1:-1]})
+    return tuple(knots) if len(knots) <= MOST_KNOTS else ()
+
+
 def _constant(value: np.ndarray) -> dict:
     """A shape that stands still: value (2, width)."""
     return {
         "rows": np.array(value),
+        "origin": 0.0,
         "axis": np.arange(2),
         "sine": np.arange(2),
         "cosine": np.full(2, -1),
@@ -215,13 +239,34 @@ def _constant(value: np.ndarray) -> dict:
     }
 
 
-def _law_rows(law: Law, tabulation: Tabulation, origin: float) -> dict:
+def _reach(drive: Drive, weight: np.ndarray) -> float:
+    """As `Shape.reach`: the mean square of what the terms move the sections by, about their mean place, times their
+    rates."""
+    if not len(drive.period):
+        return 0.0
+    counted = list(zip(drive.ramp_first, drive.ramp_count, strict=True))
+    spans = [drive.ramps[first : first + max(count, 0)] for first, count in counted]
+    height = np.array([np.abs(drive.ramps[k : k + n, 2]).max(initial=0.0) if n >= 0 else 1.0 for k, n in counted])
+    shortest = np.array([(span[:, 1] - span[:, 0]).min(initial=np.inf) for span in spans])
+    with np.errstate(divide="ignore"):
+        rate = np.where(drive.period > 0.0, 2.0 * np.pi / drive.period, 2.0 / shortest) * height
+    length = weight.sum()
+    square = 0.0
+    for rows in (drive.sine, np.where(drive.cosine >= 0, drive.cosine, drive.sine)):
+        offset = np.cumsum(drive.angle[rows] * weight, axis=1)
+        offset -= (offset @ weight)[:, None] / length
+        square += float(rate**2 @ (offset**2 @ weight)) / length
+    return math.sqrt(0.5 * square)
+
+
+@lru_cache(maxsize=256)
+def _law_rows(law: Law, tabulation: Tabulation) -> dict:
     """Rows and time factors of a law; terms of equal axis, period and envelope share their rows."""
     groups: dict = {}
     for term in law.terms:
         groups.setdefault((term.axis, term.period, term.envelope), []).append(term)
     if not groups:
-        return _constant(np.zeros((2, tabulation.width))) | {"origin": origin}
+        return _constant(np.zeros((2, tabulation.width)))
     rows, axis, sine, cosine, period, first, count, ramps = [], [], [], [], [], [], [], []
     for (name, duration, envelope), terms in groups.items():
         angle = [term.wave_number * tabulation.x + term.phase for term in terms]
@@ -236,10 +281,13 @@ def _law_rows(law: Law, tabulation: Tabulation, origin: float) -> dict:
         first.append(len(ramps))
         count.append(len(envelope) if envelope else -1)
         ramps += [(ramp.start, ramp.end, ramp.delta) for ramp in envelope]
+    table = tabulation.columns(np.array(rows))
     return {
-        "rows": tabulation.columns(np.array(rows)),
+        "law": law,
+        "rows": table,
+        "split": _split(tabulation, table),
+        "origin": 0.0,
         "axis": np.array(axis, dtype=np.int64),
-        "origin": origin,
         "sine": np.array(sine, dtype=np.int64),
         "cosine": np.array(cosine, dtype=np.int64),
         "period": np.array(period, dtype=float),

@@ -1,6 +1,9 @@
 """A swimmer in water, marched in time and observed: the algorithm of section 7.1 of Boyer, Porez and Leroyer (2010)."""
 
+import math
 from copy import copy
+from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 from eel_gaits.law import Law
@@ -8,7 +11,7 @@ from eel_gaits.law import Law
 from .accuracy import Accuracy
 from .arguments import check_planar, checked_instance, checked_quaternion, checked_row, checked_stations
 from .body import Body
-from .drive import Tabulation, combine, combine_moments, factors
+from .drive import Tabulation
 from .energy import EnergyLedger
 from .frames import matrix_of
 from .guard import failure_of
@@ -20,23 +23,27 @@ from .integrator import (
     SINGULAR,
     TOO_MANY_STEPS,
     Control,
+    Method,
+    adams_bashforth,
     classical,
     dormand_prince,
     settle,
     step_of,
 )
-from .kernel import configure, fields_of, momentum_of_twist
-from .profiles import Profiles, profiles_of, station_fields_of, swim
+from .kernel import fields_of
+from .profiles import Profiles, profiles_of, set_in_motion, station_fields_of, swim
 from .quadrature import Grid
 from .scene import Scene
-from .sections import panels_of, stations_of, swimmer_of
-from .shape import Shape, waves_of_law
+from .sections import Stations, Swimmer, panels_of, stations_of, swimmer_of
+from .shape import Shape, knots_of_law, waves_of_law
 from .snapshot import Snapshot
 from .wrench import balance_of
 
 LONGEST_STEP = 0.25  # of the shortest time over which the shape changes
 MOST_STEPS = 20_000.0  # per period of the law, or second; the most exact runs need a tenth of it
 SLOWEST = 1e-3  # body lengths per time scale, below which the head counts as at rest
+PART_OF_SPEED = 0.5  # of the speed that the shape gives the body: momenta below need not be exact to the last digit
+FIRST_STEP = 0.02  # of the longest
 
 
 class SimulationStopped(RuntimeError):
@@ -45,6 +52,34 @@ class SimulationStopped(RuntimeError):
     def __init__(self, time: float, quantity: str, value: float, hint: str):
         super().__init__(f"stopped at t = {time:.6g} s: {quantity} ({value:.3g}); {hint}")
         self.time, self.quantity, self.value, self.hint = time, quantity, value, hint
+        self.diverged = False  # the steps were too long
+
+
+def method_of(accuracy: Accuracy) -> Method:
+    """The method of integration of an `accuracy`."""
+    if accuracy.step is not None:
+        return classical()
+    return adams_bashforth(accuracy.order) if accuracy.method == "adams" else dormand_prince()
+
+
+class Table(NamedTuple):
+    """What a run has of its body, its scene and its stations; the same for every run of the same."""
+
+    grid: Grid
+    swimmer: Swimmer
+    stations: Stations
+    tabulation: Tabulation
+
+
+@lru_cache(maxsize=256)
+def tabulated(body: Body, scene: Scene, resolution: float, knots: tuple[float, ...], stations: bytes) -> Table:
+    """Tabulate `body` in `scene` on a grid of `resolution` points per body length, cut at the `knots` of a law, and at
+    the X of the `stations` (the bytes of their array)."""
+    x = np.frombuffer(stations).copy()  # that can be written to, as elsewhere: the loops are compiled for such
+    grid = Grid.of(panels_of(body, resolution, knots, scene.internal_wrench or scene.ledger))
+    here = stations_of(body, scene, grid, x)
+    base = np.where(here.node >= 0, grid.x[here.node], 0.0)
+    return Table(grid, swimmer_of(body, scene, grid), here, Tabulation(grid.x, grid.previous, x, base))
 
 
 class Simulation:
@@ -52,7 +87,8 @@ class Simulation:
 
     body, scene: what swims in what. accuracy: preset, target relative error, or `Accuracy`. stations: how many, or
     their X (M,) [m]. position [m], orientation (x y z w, world from head), twist ((Omega, V) [rad/s, m/s], head's
-    axes): the initial state, in the library's axes. default_transition [s]: of blends where a law gives none.
+    axes): the initial state, in the library's axes. default_transition [s]: of blends where a law gives none. law: the
+    first to adopt.
     `ValueError` names the argument that does not fit.
     """
 
@@ -66,16 +102,17 @@ class Simulation:
         orientation=(0.0, 0.0, 0.0, 1.0),
         twist=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
         default_transition: float = 1.0,
+        law: Law | None = None,
     ):
         self.body = Body.boyer2010() if body is None else checked_instance("body", body, Body)
         self.scene = Scene() if scene is None else checked_instance("scene", scene, Scene)
-        self.accuracy = Accuracy.of(accuracy)
+        self.accuracy = Accuracy.of(accuracy).in_scene(self.scene)
         self.x = checked_stations(stations, self.body.length)
         self._out = profiles_of(1, len(self.x))
         self._current = np.array(self.scene.current)
         self._distributed = self.scene.tail_pressure == "distributed"
-        self._method = dormand_prince() if self.accuracy.step is None else classical()
-        self.step = step_of(len(self._method.c))
+        self._method = method_of(self.accuracy)
+        self.step = step_of(self._method)
         self._start = (
             checked_row("position", position, 3),
             checked_quaternion("orientation", orientation),
@@ -85,21 +122,22 @@ class Simulation:
             check_planar(*self._start)
         if not (np.isfinite(default_transition) and default_transition > 0.0):
             raise ValueError(f"default_transition must be finite and > 0 s, got {default_transition!r}")
-        self._build(self.accuracy.points_per_length(1.0))
+        waves, knots = (1.0, ()) if law is None else self._needs(law)
+        self._build(self.accuracy.points_per_length(waves), knots)
         self.shape = Shape(self._tabulation, float(default_transition))
         self.ready = self._started = False
         self.time = 0.0
-        self._take_initial_state()
+        if law is None:
+            self._take_initial_state()
+        else:
+            self.adopt(law)
 
-    def _build(self, resolution: float):
-        """Tabulate body and scene on a grid of `resolution` points per body length."""
-        grid = Grid.of(panels_of(self.body, resolution))
-        self._grid, self._resolution = grid, resolution
-        self.swimmer = swimmer_of(self.body, self.scene, grid)
-        self._stations = stations_of(self.body, self.scene, grid, self.x)
-        base = np.where(self._stations.node >= 0, grid.x[self._stations.node], 0.0)
-        self._tabulation = Tabulation(grid.x, grid.previous, self.x, base)
-        self.balance = balance_of(len(grid.x))
+    def _build(self, resolution: float, knots: tuple[float, ...] = ()):
+        """Have body and scene tabulated on a grid of `resolution` points per body length, cut at `knots` [m]."""
+        table = tabulated(self.body, self.scene, resolution, knots, self.x.tobytes())
+        self._grid, self._resolution, self._knots = table.grid, resolution, knots
+        self.swimmer, self._stations, self._tabulation = table.swimmer, table.stations, table.tabulation
+        self.balance = balance_of(len(self._grid.x))
         self._here = station_fields_of(len(self.x))
 
     # -- what drives the body
@@ -139,7 +177,7 @@ class Simulation:
         if not (np.isfinite(blend) and blend > 0.0):
             raise ValueError(f"transition must be finite and > 0 s, got {transition!r}")
         first = not self._started
-        self._refine(waves_of_law(law, self.body.length))
+        self._refine(*self._needs(law))
         before = copy(self.shape)
         self.shape.adopt(law, origin=float(origin), time=self.time, transition=0.0 if first else float(blend))
         if first:
@@ -150,8 +188,14 @@ class Simulation:
                 self.shape = before
                 self._take_initial_state()
                 raise ValueError(f"law {law.name!r} cannot be begun: {stopped.quantity}") from None
+        else:
+            self._restart()
         self.ready = True
-        self._restart()
+
+    def _needs(self, law: Law) -> tuple[float, tuple[float, ...]]:
+        """Waves on the body, and knots [m] of the splines of `law`, that the grid has to carry."""
+        checked_instance("law", law, Law)
+        return waves_of_law(law, self.body.length), knots_of_law(law)
 
     def add_samples(self, time, x, pitch, pitch_rate, pitch_accel, yaw, yaw_rate, yaw_accel):
         """One instant of a controller: curvature [rad/m], its rate and acceleration at the points `x` [m], `time` [s]
@@ -180,14 +224,14 @@ class Simulation:
         self.shape.add(float(time), self.time, x, np.reshape(values, (2, 3, len(x))))
         self.ready = True
 
-    def _refine(self, waves: float):
-        """Have a grid that is fine enough for a shape of `waves` waves on the body; the head's motion goes on as it
-        is."""
-        resolution = self.accuracy.points_per_length(waves)
-        if resolution <= self._resolution * (1.0 + 1e-9):
+    def _refine(self, waves: float, knots: tuple[float, ...] = ()):
+        """Have a grid that is fine enough for a shape of `waves` waves on the body, cut at its `knots` [m]; the head's
+        motion goes on as it is."""
+        resolution = max(self._resolution, self.accuracy.points_per_length(waves))
+        if resolution <= self._resolution * (1.0 + 1e-9) and set(knots) <= set(self._knots):
             return
         old, twist = self._grid, self._twist()
-        self._build(resolution)
+        self._build(resolution, knots)
         rows, first, _ = old.rows_at(self._tabulation.x, "value")
 
         def values(fields):
@@ -235,9 +279,11 @@ class Simulation:
                 self.time, "inertia of body and water is not positive definite", np.nan, "check the body's section data"
             )
         if status == NOT_FINITE:
-            return SimulationStopped(
+            stopped = SimulationStopped(
                 self.time, "momentum is not finite", np.nan, "take a smaller accuracy step, or a slower law"
             )
+            stopped.diverged = True
+            return stopped
         if status == TOO_MANY_STEPS:
             density = self._control.most_steps
             return SimulationStopped(
@@ -373,17 +419,20 @@ class Simulation:
 
     def _use_drive(self):
         self.drive = self.shape.drive
-        self.fields = fields_of(len(self._grid.x), len(self.drive.axis))
+        self.fields = fields_of(len(self._grid.x), len(self.drive.axis), self._grid.matrix.shape[1])
         self._breakpoints = self.shape.breakpoints()
         scale = min(self.shape.time_scale, self._motion_scale)
         longest = LONGEST_STEP * min(scale, 10.0)
-        mass = self._mass = float(np.sum(self.swimmer.weight * self.swimmer.mass))
+        mass = self._mass = float(self.swimmer.weight @ self.swimmer.mass)
+        slowest = max(
+            SLOWEST * self.body.length / min(scale, 10.0), PART_OF_SPEED * self.shape.reach(self.swimmer.weight)
+        )
         self._control = Control(
             tolerance=self.accuracy.tolerance,
             step=longest if self.accuracy.step is None else float(self.accuracy.step),
             smallest=1e-11 * min(scale, 1.0),
             length=self.body.length,
-            momentum_floor=SLOWEST * mass * self.body.length / min(scale, 10.0),
+            momentum_floor=mass * slowest,
             most_steps=MOST_STEPS / min(scale, 1.0),
             ledger=bool(self.scene.ledger),
             planar=bool(self.scene.planar),
@@ -392,30 +441,31 @@ class Simulation:
     def _restart(self):
         """Let the next step begin at the present state, with what drives the body now."""
         self._use_drive()
+        self._begin_step()
+
+    def _begin_step(self):
         step = self.step
         step.end[:] = self.state
         step.work[:] = self._works[0]
         step.time[0], step.time[1] = self.time, 0.0
         if step.time[2] == 0.0:
-            step.time[2] = 0.1 * self._control.step
+            step.time[2] = FIRST_STEP * self._control.step
         step.fresh[0] = 1
 
     def _take_initial_state(self):
         position, orientation, twist = self._start
         self.state, self._works = np.zeros(13), np.zeros((1, 4))
         self.state[:3], self.state[3:7] = position, orientation
-        self._motion_scale = np.inf
-        self._use_drive()
-        relative = twist.copy()
-        relative[3:] -= matrix_of(orientation).T @ self._current
-        self._set_momentum(relative)
-        speed, spin = np.linalg.norm(relative[3:]), np.linalg.norm(relative[:3])
+        relative = twist - 0.0
+        if any(self.scene.current):
+            relative[3:] -= matrix_of(orientation).T @ self._current
+        speed, spin = math.hypot(*relative[3:]), math.hypot(*relative[:3])
         self._motion_scale = min(self.body.length / speed if speed else np.inf, 1.0 / spin if spin else np.inf)
+        self._use_drive()
+        self.kinetic_at_start = self._set_momentum(relative)
         self.step.time[:], self.step.count[:] = 0.0, 0
-        self.step.scale[:] = np.linalg.norm(self.state[7:10]), np.linalg.norm(self.state[10:13])
-        self._restart()
-        self._look(False, False)
-        self.kinetic_at_start = float(self._out.kinetic[0].sum())
+        self.step.scale[:] = math.hypot(*self.state[7:10]), math.hypot(*self.state[10:13])
+        self._begin_step()
         if not np.isfinite(self.kinetic_at_start):
             raise SimulationStopped(self.time, "kinetic energy", self.kinetic_at_start, "start slower")
 
@@ -426,13 +476,7 @@ class Simulation:
             raise self._stopped(SINGULAR)
         return twist
 
-    def _set_momentum(self, twist: np.ndarray):
-        """Give the present state the momentum of the head's `twist` (6,) relative to the water."""
-        drive, fields, momentum = self.drive, self.fields, np.zeros(6)
-        factors(drive, self.time, fields.factor)
-        combine_moments(drive.axis, drive.bend, fields.factor[0], fields.bend)
-        combine(drive.axis, drive.node, fields.factor[1], fields.rate)
-        configure(self.swimmer, fields)
-        momentum_of_twist(self.swimmer, fields, twist, momentum)
-        world = matrix_of(self.state[3:7])
-        self.state[7:10], self.state[10:13] = world @ momentum[:3], world @ momentum[3:]
+    def _set_momentum(self, twist: np.ndarray) -> float:
+        """Give the present state the momentum of the head's `twist` (6,) relative to the water. Returns its kinetic
+        energy [J]."""
+        return set_in_motion(self.swimmer, self.drive, self.fields, self.time, twist, self.state)

@@ -12,7 +12,8 @@ from typing import NamedTuple
 import numpy as np
 
 from .compiled import inlined
-from .kernel import add_wake, integrate, rub, solve
+from .drag import add_resistance, add_resistive_loads, add_steps
+from .kernel import add_wake, integrate, solve
 
 
 class Balance(NamedTuple):
@@ -24,7 +25,8 @@ class Balance(NamedTuple):
     upto: np.ndarray  # (6, n) its integral from the nose
     head: np.ndarray  # (6,) acceleration of the head
     tail: np.ndarray  # (6,) wrench from the wake, about the head
-    total: np.ndarray  # (6,) integral of `density` over the body
+    total: np.ndarray  # (6,) integral over the body of what the motion takes less the loads
+    drag: np.ndarray  # (6,) wrench of the drag along the body, about the head
     powers: np.ndarray  # (4,) W: actuators, wake, nose, drag
     nose: np.ndarray  # (1,) N, load on the nose along t1(0)
 
@@ -39,6 +41,7 @@ def balance_of(nodes: int) -> Balance:
         head=np.zeros(6),
         tail=np.zeros(6),
         total=np.zeros(6),
+        drag=np.zeros(6),
         powers=np.zeros(4),
         nose=np.zeros(1),
     )
@@ -86,11 +89,10 @@ def add_head_acceleration(fields, balance):
 
 @inlined
 def section_densities(swimmer, fields, balance):
-    """The section's balance f_N = M Vdot + Omega x M V - n, f_C = J Omegadot + Omega x J Omega + V x M V - c, moved to
-    the head, into `density` (6, n). Returns the drag's power [W]."""
+    """What the section's motion takes, f_N = M Vdot + Omega x M V, f_C = J Omegadot + Omega x J Omega + V x M V, moved
+    to the head, into `density` (6, n)."""
     R, r, omega, v, density = fields.R, fields.r, fields.omega, fields.v, balance.density
     alpha, acc = balance.alpha, balance.acc
-    power = 0.0
     for i in range(R.shape[1]):
         ax, ay, az, bx, by, bz, cx, cy, cz = (
             R[0, i],
@@ -124,23 +126,12 @@ def section_densities(swimmer, fields, balance):
         g1 = j1 * e1 + o2 * s3 - o3 * s2 + v2 * p3 - v3 * p2
         g2 = j2 * e2 + o3 * s1 - o1 * s3 + v3 * p1 - v1 * p3
         g3 = j3 * e3 + o1 * s2 - o2 * s1 + v1 * p2 - v2 * p1
-        if swimmer.resistive:
-            n1 = fields.rubbing[i] * v1
-            n2 = swimmer.drag2[i] * abs(v2) * v2
-            n3 = swimmer.drag3[i] * abs(v3) * v3
-            c1 = swimmer.drag_roll[i] * abs(o1) * o1
-            power -= swimmer.weight[i] * (n1 * v1 + n2 * v2 + n3 * v3 + c1 * o1)
-            f1 += n1
-            f2 += n2
-            f3 += n3
-            g1 += c1
         hx, hy, hz = ax * f1 + bx * f2 + cx * f3, ay * f1 + by * f2 + cy * f3, az * f1 + bz * f2 + cz * f3
         x, y, z = r[0, i], r[1, i], r[2, i]
         density[0, i] = ax * g1 + bx * g2 + cx * g3 + y * hz - z * hy
         density[1, i] = ay * g1 + by * g2 + cy * g3 + z * hx - x * hz
         density[2, i] = az * g1 + bz * g2 + cz * g3 + x * hy - y * hx
         density[3, i], density[4, i], density[5, i] = hx, hy, hz
-    return power
 
 
 @inlined
@@ -158,25 +149,30 @@ def accelerate(swimmer, fields, twist, balance):
     """Head's acceleration, accelerations and balance of the sections, in a configured body whose `fields` hold the true
     velocities and the Cholesky factor of the inertia I_o."""
     shape_accelerations(swimmer, fields, balance)
-    if swimmer.resistive:
-        rub(swimmer, fields)
     section_densities(swimmer, fields, balance)
     gather(swimmer, balance.density, balance.total)
+    balance.drag[:] = 0.0
+    balance.powers[3] = 0.0
+    if swimmer.resistive:
+        balance.powers[3] = add_resistive_loads(swimmer, fields, twist, balance.drag)
     for k in range(6):
         balance.tail[k] = 0.0
     v1, energy = add_wake(swimmer, fields, balance.tail)
     nose_drag = -swimmer.nose_drag * twist[3] * abs(twist[3])
     for k in range(6):
-        balance.head[k] = balance.tail[k] - balance.total[k]
+        balance.head[k] = balance.tail[k] + balance.drag[k] - balance.total[k]
     balance.head[3] += nose_drag
     solve(fields.inertia, balance.head)
     add_head_acceleration(fields, balance)
-    drag = section_densities(swimmer, fields, balance)
+    section_densities(swimmer, fields, balance)
     gather(swimmer, balance.density, balance.total)
+    for k in range(6):
+        balance.total[k] -= balance.drag[k]
+    if swimmer.resistive:
+        add_resistance(swimmer, fields, balance.density)
     balance.nose[0] = nose_drag - swimmer.nose_mass * balance.head[3]
     balance.powers[1] = v1 * energy
     balance.powers[2] = balance.nose[0] * twist[3]
-    balance.powers[3] = drag
 
 
 @inlined
@@ -205,6 +201,8 @@ def actuator_power(swimmer, fields, balance, section):
     `upto`."""
     integrate(swimmer, balance.density[:3], balance.upto[:3])
     integrate(swimmer, balance.density[3:], balance.upto[3:])
+    if swimmer.resistive:
+        add_steps(swimmer, fields, swimmer, True, balance.upto)
     power = 0.0
     for i in range(fields.R.shape[1]):
         for k in range(6):

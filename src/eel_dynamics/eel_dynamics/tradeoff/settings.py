@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 from ..accuracy import PRESETS, Accuracy
+from ..scene import Scene
 
 RESOLUTIONS = (6.0, 8.0, 10.0, 13.0, 17.0, 24.0, 36.0, 52.0, 72.0, 110.0, 160.0, 240.0)  # points per body length
 TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9)  # relative error per adaptive step
@@ -25,7 +26,7 @@ def settings(quick: bool = False) -> list[Accuracy]:
         for resolution in RESOLUTIONS[part]
         for step in STEPS[part]
     ]
-    return rows + [replace(Accuracy.of(name), name=name) for name in PRESETS]
+    return rows + [replace(Accuracy.of(name).in_scene(Scene()), name=name) for name in PRESETS]
 
 
 def method_of(accuracy: Accuracy) -> str:

@@ -1,0 +1,75 @@
+"""The best accuracy for a budget of time: "fastest within 5 ms per second", on this machine.
+
+A short swim of a gait is timed in the scene at hand at one target after the other, from the coarsest to the finest,
+until one takes longer than the budget; what was timed is kept for the process.
+"""
+
+import re
+import time
+from dataclasses import dataclass, replace
+from functools import cache
+
+from .accuracy import Accuracy, table
+from .scene import Scene
+
+UNITS = {"us": 1e-6, "ms": 1e-3, "s": 1.0}
+PATTERN = re.compile(r"fastest within\s+([0-9.eE+-]+)\s*(us|ms|s) per second")
+DURATION = 2.0  # s, of the swims that are timed
+REPEATS = 3
+
+
+@dataclass(frozen=True)
+class Budget:
+    """Wall time by simulated time, at most."""
+
+    name: str
+    seconds_per_second: float
+
+    @staticmethod
+    def of(text: str) -> "Budget":
+        """The budget that a text such as "fastest within 5 ms per second" gives. `ValueError` where it does not."""
+        found = PATTERN.fullmatch(text.strip())
+        try:
+            seconds = float(found.group(1)) * UNITS[found.group(2)] if found else 0.0
+        except ValueError:
+            seconds = 0.0
+        if not 0.0 < seconds < float("inf"):
+            raise ValueError(
+                f"accuracy must give its budget as in 'fastest within 5 ms per second' (us, ms or s; > 0), got {text!r}"
+            )
+        return Budget(text.strip(), seconds)
+
+    def in_scene(self, scene: Scene) -> Accuracy:
+        """The finest settings of the table that keep within the budget in `scene`. `ValueError` where none does."""
+        drag, torque = bool(scene.resistive), bool(scene.internal_wrench or scene.ledger)
+        best, fastest = None, None
+        for row in table()[drag, torque]:
+            seconds = seconds_per_second(scene, row["target"])
+            fastest = seconds if fastest is None else min(fastest, seconds)
+            if seconds > self.seconds_per_second:
+                break
+            best = row["target"]
+        if best is None:
+            raise ValueError(
+                f"accuracy {self.name!r} cannot be met on this machine in this scene: the coarsest run takes "
+                f"{1e3 * fastest:.3g} ms per second"
+            )
+        return replace(Accuracy.of(best).in_scene(scene), name=self.name)
+
+
+@cache
+def seconds_per_second(scene: Scene, target: float) -> float:
+    """Wall time [s] by second of the falling gait (straight in the plane) at a `target` in `scene`, samples every
+    0.05 s."""
+    from eel_gaits import falling, straight
+
+    from .run import simulate
+
+    law = straight() if scene.planar else falling()
+    best = float("inf")
+    for repeat in range(REPEATS + 1):  # the first call tabulates, and may compile
+        start = time.perf_counter()
+        simulate(law, DURATION, scene=scene, accuracy=target)
+        if repeat:
+            best = min(best, (time.perf_counter() - start) / DURATION)
+    return best
