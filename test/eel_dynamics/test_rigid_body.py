@@ -5,7 +5,7 @@ import pytest
 from draws import bodies, few, numbers
 from hypothesis import given
 from hypothesis import strategies as st
-from library_state import Reference, Scene, distance, library_body, prescribed, reference_scene, simulate
+from library_state import Accuracy, Reference, Scene, distance, library_body, prescribed, reference_scene, simulate
 from reference import boyer_body
 from scipy.special import ellipj
 
@@ -22,7 +22,7 @@ pytestmark = pytest.mark.identity("Rigid body")
 def test_coasting(measured, body, speed):
     """Without friction the nose alone brakes: V = V0 / (1 + rho k_o |V0| t / (2 (m + m_o))), either way.
 
-    Preset fine asks for 1e-8 per step.
+    Steps are asked for 1e-10.
     """
     swimmer = library_body(body)
     run = simulate(
@@ -32,7 +32,7 @@ def test_coasting(measured, body, speed):
         scene=Scene(friction="none"),
         twist=(0, 0, 0, speed, 0, 0),
         sample_period=1.0,
-        accuracy="fine",
+        accuracy=Accuracy(name="coasting", resolution=60.0, tolerance=1e-10),
     )
     added = 1000 * np.pi * 0.32 * np.prod(body.nose)
     drag, mass = np.pi * 0.036 * body.nose[0] * body.nose[1], swimmer.mass + added

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import pytest
 from draws import few, numbers, swimmers
 from hypothesis import given
-from library_state import Scene, distance, library_body, simulate
+from library_state import Accuracy, Scene, distance, library_body, simulate
 
 from eel_gaits import Law, Ramp
 
@@ -50,7 +50,7 @@ def test_similar_swimmers(measured, swimmer, size, duration, density):
     body, law = swimmer
     length = body.kinks[-1]
     scene = Scene(viscosity=1e-6 * size**2 / duration, fluid_density=1000 * density)
-    options = {"accuracy": "fine", "stations": 11}
+    options = {"accuracy": Accuracy(name="similar", resolution=60.0, tolerance=1e-8), "stations": 11}
     small = simulate(law, duration=1.0, body=library_body(body), sample_period=0.1, **options)
     big = simulate(
         scaled_law(law, size, duration),

@@ -205,7 +205,7 @@ def simulate(
     )
     if stopped is not None:
         stopped.run = run
-        if stopped.diverged and swimmer.accuracy.step is not None and not _searching.get():
+        if swimmer.accuracy.step is not None and not _searching.get():
             stopped = _with_stable_step(stopped, again, swimmer.accuracy)
         raise stopped
     sensitive = swimmer.accuracy.target is not None and not (swimmer.scene.resistive or swimmer.scene.planar)
