@@ -24,7 +24,7 @@ from eel_viz.viewer import display, free_port, listening, open_window
 
 APPLICATION = "eel"
 CLOSING_LIMIT = 3.0  # s for what is still on its way
-LIVE_TICK = 0.12  # s: a viewer shall move smoothly
+LIVE_TICK = 0.16  # s: a viewer shall move smoothly
 FILE_TICK = 0.6  # s: a process that is killed loses no more; each batch of an entity costs its file some 700 bytes
 ANSWER_LIMIT = 1.0  # s, until a viewer that listens answers
 HOST = "127.0.0.1"
