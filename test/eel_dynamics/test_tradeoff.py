@@ -7,7 +7,7 @@ import pytest
 from eel_dynamics.tradeoff import measuring, models, table
 from eel_dynamics.tradeoff.command import main
 from eel_dynamics.tradeoff.drawing import _apart
-from eel_dynamics.tradeoff.settings import settings
+from eel_dynamics.tradeoff.settings import REFERENCE, settings
 
 from eel_dynamics import Accuracy, Body, Scene, simulate
 from eel_gaits import falling, straight
@@ -64,13 +64,13 @@ def test_poorer_models_are_told_by_what_they_leave_out(trade, poorer):
     assert found["planar"].torque_error > 0.1  # the gait bends in pitch
     assert found["blended friction"].torque_error < 0.1 * found["no friction"].torque_error
     flat = straight()
-    reference = measuring.swim(flat, 1.0, BODY, Scene(), models.EXACT)
+    reference = measuring.swim(flat, 1.0, BODY, Scene(), REFERENCE)
     planar = next(
         model
         for model in models.compare(flat, reference, duration=1.0, body=BODY, scene=Scene())
         if model.name == "planar"
     )
-    assert max(planar.pose_error, planar.torque_error) < 1e-7  # a gait in the plane loses nothing
+    assert max(planar.pose_error, planar.torque_error) < 1e-9  # a gait in the plane loses nothing
 
 
 def test_tables_name_a_setting_that_is_exact_enough(trade, poorer):
@@ -108,7 +108,7 @@ def test_command_leaves_picture_page_table_and_recording(tmp_path, capsys):
         assert (tmp_path / name).stat().st_size > 3000, name
     assert "![" in (tmp_path / "page.md").read_text()
     lines = (tmp_path / "tradeoff_straight.csv").read_text().splitlines()
-    assert len(lines) == 1 + len(settings(quick=True))
+    assert len(lines) == 1 + len(settings(Scene(), quick=True))
     from rerun.chunk import RrdReader
 
     entities = {chunk.entity_path for chunk in RrdReader(str(tmp_path / "trade.rrd")).stream()}
@@ -127,3 +127,12 @@ def test_command_leaves_picture_page_table_and_recording(tmp_path, capsys):
 def test_bad_input_is_named(words, named, capsys):
     assert main(words.split()) == 2
     assert named in capsys.readouterr().err
+
+
+def test_calibrate_writes_the_table_of_the_presets(monkeypatch, capsys):
+    from eel_dynamics import accuracy, calibration
+
+    asked = []
+    monkeypatch.setattr(calibration, "calibrate", lambda path, say: asked.append(path))
+    assert main(["--calibrate"]) == 0
+    assert asked == [accuracy.TABLE_FILE] and str(accuracy.TABLE_FILE) in capsys.readouterr().out

@@ -3,6 +3,7 @@
 tradeoff falling
 tradeoff falling straight turning --page docs/tradeoff.md --pictures docs/images
 tradeoff straight --set period=0.7 --quick --rerun trade.rrd
+tradeoff --calibrate
 """
 
 import argparse
@@ -22,6 +23,8 @@ from .table import model_table, trade_table, write_csv
 def main(arguments: list[str] | None = None) -> int:
     """Exit status 0; 2 for bad input or a missing package, with one line."""
     options = _parser().parse_args(arguments)
+    if options.calibrate:
+        return _calibrate()
     try:
         found = _measure_all(options)
         for trade, poorer in found:
@@ -34,6 +37,20 @@ def main(arguments: list[str] | None = None) -> int:
     except (ValueError, OSError, ImportError) as error:
         print(f"tradeoff: {error}", file=sys.stderr)
         return 2
+    return 0
+
+
+def _calibrate() -> int:
+    """Measure anew which settings deliver which target, into the table that the presets are read from."""
+    from ..accuracy import TABLE_FILE
+    from ..calibration import calibrate
+
+    try:
+        calibrate(TABLE_FILE, say=lambda text: print(f"tradeoff: {text}", file=sys.stderr, flush=True))
+    except OSError as error:
+        print(f"tradeoff: {error}", file=sys.stderr)
+        return 2
+    print(f"written to {TABLE_FILE}")
     return 0
 
 
@@ -55,7 +72,7 @@ def _measure_all(options) -> list[tuple]:
     for law in laws:
         fixed = {"duration": options.duration, "body": body, "scene": Scene(), "say": say}
         say(f"gait {law.name}")
-        trade = measuring.measure(law, settings(options.quick), repeats=options.repeats, **fixed)
+        trade = measuring.measure(law, settings(fixed["scene"], options.quick), repeats=options.repeats, **fixed)
         found.append((trade, models.compare(law, trade.reference, **fixed)))
     return found
 
@@ -126,6 +143,12 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--csv", action="store_true", help="everything measured, as .csv beside the pictures")
     parser.add_argument("--page", metavar="FILE.md", help="write tables and picture as a page")
     parser.add_argument("--rerun", metavar="FILE.rrd", help="write the runs and the trade as a Rerun recording")
+    parser.add_argument(
+        "--calibrate",
+        action="store_true",
+        help="instead of all this: measure which settings deliver which target over gaits, bodies and scenes, and "
+        "write the table that the presets are read from (minutes)",
+    )
     return parser
 
 

@@ -6,12 +6,12 @@ Methods differ by colour (Okabe and Ito) and by mark, so that print without colo
 import numpy as np
 
 from ..accuracy import PRESETS
-from ..figures.style import BLACK, BLUE, GREY, ORANGE
+from ..figures.style import BLACK, BLUE, GREEN, GREY, ORANGE
 from .measuring import Trade, front
 from .models import Model
-from .settings import ADAPTIVE, CLASSICAL, method_of
+from .settings import METHODS
 
-LOOKS = {ADAPTIVE: (BLUE, "o", "order 5(4), adaptive steps"), CLASSICAL: (ORANGE, "^", "order 4, fixed steps")}
+LOOKS = {"adams": (BLUE, "o"), "dormand_prince": (GREEN, "s"), "classical": (ORANGE, "^")}
 SIZE = 11.0, 5.4  # inches
 FLOOR = 3.0  # times the reference's own error: below, differences mean nothing
 
@@ -34,9 +34,11 @@ def draw_trade(figure, trade: Trade, models: list[Model]):
 
 
 def _draw_panel(axes, trade: Trade, models: list[Model], quantity: str, floor: float):
+    from matplotlib.patheffects import withStroke
+
     error = lambda row: max(getattr(row, quantity), floor)  # noqa: E731
-    for method, (colour, mark, label) in LOOKS.items():
-        rows = [row for row in trade.rows if method_of(row.accuracy) == method]
+    for method, (colour, mark) in LOOKS.items():
+        rows = [row for row in trade.rows if row.accuracy.method == method]
         axes.plot(
             [row.times_real_time for row in rows],
             [error(row) for row in rows],
@@ -45,7 +47,7 @@ def _draw_panel(axes, trade: Trade, models: list[Model], quantity: str, floor: f
             markersize=4,
             alpha=0.45,
             markeredgewidth=0,
-            label=label,
+            label=METHODS[method],
         )
     best = front(trade.rows, error, lambda row: row.seconds)
     axes.plot(
@@ -56,7 +58,7 @@ def _draw_panel(axes, trade: Trade, models: list[Model], quantity: str, floor: f
         label="Pareto front",
     )
     for row in best:
-        axes.plot(row.times_real_time, error(row), LOOKS[method_of(row.accuracy)][1], color=BLACK, markersize=5)
+        axes.plot(row.times_real_time, error(row), LOOKS[row.accuracy.method][1], color=BLACK, markersize=5)
     presets = [row for row in trade.rows if row.accuracy.name in PRESETS]
     axes.plot(
         [row.times_real_time for row in presets],
@@ -75,21 +77,16 @@ def _draw_panel(axes, trade: Trade, models: list[Model], quantity: str, floor: f
             xytext=(-7, 3),
             textcoords="offset points",
             ha="right",
+            path_effects=[withStroke(linewidth=3, foreground="white")],
         )
     axes.set_xscale("log")
     axes.set_yscale("log")
     worst = max((getattr(model, quantity) for model in models if model.run is not None), default=1.0)
-    axes.set_ylim(0.5 * floor, max(3.0, 2.0 * worst))
-    axes.set_xlim(0.4 * min(row.times_real_time for row in trade.rows), None)
-    axes.axhspan(0.5 * floor, floor, color=GREY, alpha=0.25, linewidth=0)
-    axes.text(
-        0.02,
-        floor,
-        "as exact as the converged run itself",
-        transform=axes.get_yaxis_transform(),
-        va="bottom",
-        color=GREY,
-    )
+    axes.set_ylim(0.1 * floor, max(3.0, 2.0 * worst))
+    axes.set_xlim(0.2 * min(row.times_real_time for row in trade.rows), None)
+    axes.axhspan(0.1 * floor, floor, color=GREY, alpha=0.25, linewidth=0)
+    said = {"transform": axes.get_yaxis_transform(), "va": "center", "ha": "right"}
+    axes.text(0.98, 0.33 * floor, "as exact as the converged run itself", **said)
     axes.set_xlabel("times real time")
     axes.grid(alpha=0.3)
     _draw_models(axes, models, quantity, floor)

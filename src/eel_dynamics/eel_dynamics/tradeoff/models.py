@@ -8,14 +8,13 @@ from dataclasses import dataclass, replace
 
 from eel_gaits.law import Law
 
-from ..accuracy import Accuracy
 from ..body import Body
 from ..run import Run
 from ..scene import Scene
 from ..simulation import SimulationStopped
 from .measuring import errors_of, swim
+from .settings import REFERENCE
 
-EXACT = Accuracy(name="exact enough for a model", resolution=240.0, tolerance=1e-9)
 VARIANTS: dict[str, dict] = {
     "planar": {"planar": True},
     "reactive only (no drag)": {"resistive": False},
@@ -58,7 +57,7 @@ def compare(
         say(f"the model without: {name}")
         driven = flattened(law) if changed.planar else law
         try:
-            run = swim(driven, duration, body, changed, EXACT)
+            run = swim(driven, duration, body, changed, REFERENCE)
         except SimulationStopped as stopped:
             found.append(Model(name, float("nan"), float("nan"), None, str(stopped)))
             continue

@@ -1,10 +1,12 @@
 """docs/tradeoff.md: the tables, the picture, and how to read them."""
 
 import platform
-import subprocess
+from datetime import date
 from pathlib import Path
 
+from .. import compiled
 from .models import Model
+from .settings import CHECK, REFERENCE
 from .table import model_table, trade_table
 
 HEAD = """# What exactness costs, and what a scene requires
@@ -12,11 +14,12 @@ HEAD = """# What exactness costs, and what a scene requires
 Made by `tradeoff {gaits} --page {page}`{machine}.
 Times are of the processor, medians of {repeats} rounds in which all settings take turns, of the motion alone (no
 ledger, no wrench, one sample), set-up included; they carry over to another machine as ratios only. Errors are against a
-run of 700 points per body length and a tolerance of 1e-11 per step: of the head's position at the end by its path, and
-of the torque field (51 stations, 201 instants) by its greatest magnitude.
+run of {points:g} points per body length and a tolerance of {tolerance:g} per step: of the head's position at the end by
+its path, and of the torque field (51 stations, 201 instants) by its greatest magnitude.
 
-`P`, `T`: on the Pareto front of pose, of torque: no other setting is both cheaper and more exact. Orders: `5(4)` is
-Dormand and Prince's pair with steps chosen by the tolerance; `4` is the classical Runge-Kutta method with fixed steps.
+`P`, `T`: on the Pareto front of pose, of torque: no other setting is both cheaper and more exact. `adams` takes one
+evaluation a step, of variable length; `dormand-prince` is the pair of orders 5(4), six evaluations a step, of a length
+chosen by the tolerance; `classical` is the Runge-Kutta method of order 4 with fixed steps.
 
 How to read the second table of a gait: a poorer model, solved exactly, is off by that much, so a setting whose own
 error is a tenth of it is exact enough wherever that physics is in doubt. What makes no difference to a gait may be left
@@ -27,7 +30,14 @@ out of its scene.
 def write_page(path: Path, found: list[tuple], picture: str | None):
     """`found`: pairs of a trade and its models. `picture`: of the first gait, as the page refers to it."""
     gaits = " ".join(trade.law.name for trade, _ in found)
-    text = HEAD.format(gaits=gaits, page=path.name, machine=machine(), repeats=found[0][0].repeats)
+    text = HEAD.format(
+        gaits=gaits,
+        page=path.name,
+        machine=machine(),
+        repeats=found[0][0].repeats,
+        points=REFERENCE.resolution,
+        tolerance=REFERENCE.tolerance,
+    )
     if picture:
         text += f"\n![The trade of the {found[0][0].law.name} gait]({picture})\n"
     for trade, models in found:
@@ -41,9 +51,10 @@ def reference_line(trade) -> str:
     """How well the reference has converged."""
     pose, torque = trade.reference_error
     unstable = f" {len(trade.unstable)} settings diverged." if trade.unstable else ""
+    check = f"{CHECK.resolution:g} points and {CHECK.tolerance:g}"
     return (
-        f"The reference differs from one of 500 points and 1e-10 by {pose:.0e} in pose and {torque:.0e} in torque; "
-        f"smaller errors are not told apart.{unstable}"
+        f"The reference differs from a run of {check} by {pose:.0e} in pose and {torque:.0e} in torque; smaller errors "
+        f"are not told apart.{unstable}"
     )
 
 
@@ -55,13 +66,7 @@ def machine() -> str:
         processor = next(line.split(":")[1].strip() for line in lines if line.startswith("model name"))
     except (OSError, StopIteration):
         pass
-    commit = subprocess.run(
-        ["git", "-C", Path(__file__).resolve().parent, "rev-parse", "--short", "HEAD"],
-        capture_output=True,
-        text=True,
-        check=False,
-    ).stdout.strip()
-    return f" on one core ({processor})" + (f", at commit {commit}" if commit else "")
+    return f" on one core ({processor}), {date.today()}, with the compiled loops `{compiled.STAMP[:8]}`"
 
 
 __all__ = ["Model", "reference_line", "write_page"]

@@ -6,10 +6,10 @@ import numpy as np
 
 from ..accuracy import PRESETS
 from .models import Model
-from .settings import CLASSICAL, method_of
 from .table import marks_of, model_table, trade_table
 
-BLUE, ORANGE, GREY, BLACK = (0, 114, 178), (213, 94, 0), (136, 136, 136), (0, 0, 0)
+GREY, BLACK = (136, 136, 136), (0, 0, 0)
+COLOURS = {"adams": (0, 114, 178), "dormand_prince": (0, 158, 115), "classical": (213, 94, 0)}
 
 
 def stream(path: Path, found: list[tuple]):
@@ -27,7 +27,7 @@ def stream(path: Path, found: list[tuple]):
         marks = marks_of(trade)
         for row in trade.rows:
             if marks[id(row)] or row.accuracy.name in PRESETS:
-                colour = ORANGE if method_of(row.accuracy) == CLASSICAL else BLUE
+                colour = COLOURS[row.accuracy.method]
                 _log_run(rerun, recording, [name, "runs", row.accuracy.name], row.run, colour)
                 _log_error(rerun, recording, [name, "error", row.accuracy.name], row.run, trade.reference)
         for model in models:
@@ -40,10 +40,9 @@ def stream(path: Path, found: list[tuple]):
 
 def _log_points(rerun, recording, name: str, trade):
     """Decimal logarithms: of times real time to the right, of the greater error downwards."""
-    for method in {method_of(row.accuracy) for row in trade.rows}:
-        rows = [row for row in trade.rows if method_of(row.accuracy) == method]
+    for method, colour in COLOURS.items():
+        rows = [row for row in trade.rows if row.accuracy.method == method]
         places = [(np.log10(row.times_real_time), -np.log10(max(row.error, 1e-16))) for row in rows]
-        colour = ORANGE if method == CLASSICAL else BLUE
         points = rerun.Points2D(places, radii=0.02, colors=colour, labels=[row.accuracy.name for row in rows])
         recording.log([name, "trade", method], points, static=True)
 

@@ -6,11 +6,11 @@ from pathlib import Path
 from ..accuracy import PRESETS
 from .measuring import Measured, Trade, front
 from .models import Model
-from .settings import method_of
 
 HEAD = (
     "front",
     "setting",
+    "method",
     "order",
     "nodes",
     "mean step [s]",
@@ -49,7 +49,8 @@ def cells_of(row: Measured, mark: str) -> list[str]:
     return [
         mark or "-",
         row.accuracy.name,
-        method_of(row.accuracy),
+        row.accuracy.method.replace("_", "-"),
+        str(row.accuracy.order),
         str(row.nodes),
         f"{row.step:.2g}",
         f"{row.pose_error:.1e}",
@@ -106,7 +107,7 @@ def _laid_out(head, rows, markdown: bool) -> str:
     widths = [max(len(cell) for cell in column) for column in zip(head, *rows, strict=True)]
     return "\n".join(
         "  ".join(
-            cell.ljust(width) if place < 2 else cell.rjust(width)
+            cell.ljust(width) if place < 3 else cell.rjust(width)
             for place, (cell, width) in enumerate(zip(row, widths, strict=True))
         ).rstrip()
         for row in (head, *rows)
