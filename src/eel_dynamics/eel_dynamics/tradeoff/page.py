@@ -32,7 +32,7 @@ def write_page(path: Path, found: list[tuple], picture: str | None):
     gaits = " ".join(trade.law.name for trade, _ in found)
     text = HEAD.format(
         gaits=gaits,
-        page=path.name,
+        page=path,
         machine=machine(),
         repeats=found[0][0].repeats,
         points=REFERENCE.resolution,

@@ -35,8 +35,3 @@ def settings(scene: Scene, quick: bool = False) -> list[Accuracy]:
             rows.append(Accuracy(name=f"{nodes}, step {step:g} s", resolution=resolution, step=step))
     # The presets without their target, which would have them take other settings where the wrench is off, for timing.
     return rows + [replace(Accuracy.of(name).in_scene(scene), name=name, target=None) for name in PRESETS]
-
-
-def method_of(accuracy: Accuracy) -> str:
-    """The method in words, its order apart."""
-    return METHODS[accuracy.method]
