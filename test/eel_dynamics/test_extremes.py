@@ -9,10 +9,10 @@ from eel_dynamics.guard import failure_of
 from hypothesis import given
 from hypothesis import strategies as st
 
-from eel_dynamics import Accuracy, Scene, SimulationStopped, simulate, simulate_batch
-from eel_gaits import falling, helix, still, straight
+from eel_dynamics import Accuracy, Body, Scene, SimulationStopped, simulate, simulate_batch
+from eel_gaits import Law, Ramp, Term, falling, helix, still, straight
 
-MOST_STEPS = 100_000  # of 2 s; the fastest spin, 100 turns a second, takes 1e4
+MOST_STEPS = 1_000_000  # of 2 s; the worst found, a sudden start at 20 beats a second in thick water, takes 1.1e5
 
 
 def fixed(step):
@@ -63,7 +63,7 @@ def anywhere(count, seed):
     return {"laws": laws, "scenes": scenes, "twists": np.array(twists)}
 
 
-@pytest.mark.parametrize("count", [200, pytest.param(10_000, marks=pytest.mark.soak)])
+@pytest.mark.parametrize("count", [2_000, pytest.param(10_000, marks=pytest.mark.soak)])
 def test_a_swimmer_driven_anywhere_finishes_or_says_why_not(count):
     batch = simulate_batch(duration=2.0, sample_period=0.25, accuracy=1e-2, **anywhere(count, seed=count))
     assert finite(batch)
@@ -100,12 +100,18 @@ def test_only_the_documented_exception(gait, period, step, viscosity, twist):
         assert np.isfinite(array).all()
 
 
-@pytest.mark.parametrize("step", [0.5, 0.75, 1.0])
+@pytest.mark.parametrize("step", [0.75, 1.0])
 def test_a_fixed_step_that_is_too_long_is_told(step):
     """The head would end metres to 1e25 m from where it swims to, with numbers that all look like numbers."""
-    with pytest.raises(SimulationStopped, match=r"energy from nowhere.*smaller step"):
+    with pytest.raises(SimulationStopped, match=r"energy from nowhere.*a step of [\d.]+ s is stable"):
         simulate(straight(), 3.0, accuracy=fixed(step))
-    assert simulate(straight(), 3.0, accuracy=fixed(0.1)).position[-1, 0] == pytest.approx(-0.779, abs=1e-3)
+
+
+def test_a_fixed_step_that_is_stable_and_inexact_is_warned_of():
+    good, poor = (simulate(straight(), 3.0, accuracy=fixed(step)) for step in (0.1, 0.5))
+    assert good.position[-1, 0] == pytest.approx(-0.779, abs=1e-3) and good.warnings == ()
+    assert abs(poor.position[-1, 0] - good.position[-1, 0]) > 0.01
+    assert any("energy ledger" in text for text in poor.warnings)
 
 
 def test_what_is_not_finite_is_found_with_its_sample():
@@ -121,9 +127,11 @@ def test_what_is_not_finite_is_found_with_its_sample():
 
 @pytest.mark.parametrize("planar", [False, True])
 def test_from_rest_and_with_ramps_of_a_microsecond_no_step_collapses(planar):
-    law = straight(start_periods=0.01, period=1e-4 / 0.01)
+    sudden = Ramp(0.0, 1e-6, 1.0), Ramp(0.5e-6, 1.5e-6, -0.5), Ramp(0.01, 0.02, 0.5)  # the first two overlap
+    law = Law(Term(axis="yaw", amplitude=(1.0, 0.5, 2.0), wavelength=1.0, period=1.0, envelope=sudden))
     run = simulate(law, 0.05, scene=Scene(planar=planar), sample_period=0.005, accuracy=1e-3)
     assert run.steps < 2000 and np.isfinite(run.twist).all()
+    assert np.abs(run.energy.residual).max() < 1e-3 * np.abs(run.energy.actuator_work).max()
     rest = simulate(still(), 10.0, scene=Scene(planar=planar), accuracy=1e-3)
     assert not rest.position.any() and rest.steps < 200
 
@@ -133,5 +141,56 @@ def test_bodies_a_thousandth_and_a_thousand_times_as_dense_as_water(density):
     """The added mass is implicit: the step of a body of 2 g is that of water's inertia."""
     run = simulate(straight(), 3.0, scene=Scene(density=density), accuracy=1e-4)
     fine = simulate(straight(), 3.0, scene=Scene(density=density), accuracy=1e-6)
-    assert run.steps < 400
+    assert run.evaluations < 2000
     assert np.abs(run.position - fine.position).max() < 1e-4 * max(1.0, run.path_length)
+
+
+def pointed(half_width, half_height):
+    """A body of 1 m whose half-axes [m] are given at the middle, pointed at nose and tail."""
+    return Body(
+        length=1.0,
+        half_width=lambda x: 2.0 * half_width * np.sqrt(x * (1.0 - x)),
+        half_height=lambda x: 2.0 * half_height * np.sqrt(x * (1.0 - x)),
+    )
+
+
+def test_a_tail_of_zero_section_sheds_no_wake():
+    run = simulate(straight(), 2.0, body=pointed(0.03, 0.05))
+    assert np.isfinite(run.position).all() and not run.energy.wake_power.any()
+    assert np.abs(run.energy.residual[-1]) < 1e-4 * run.energy.actuator_work[-1]
+
+
+@pytest.mark.parametrize(("half_width", "half_height"), [(0.0, 0.05), (0.05, 0.0), (0.0, 0.0)])
+def test_a_body_without_inertia_is_refused(half_width, half_height):
+    """A needle or a sheet: its matrix of inertia is singular."""
+    with pytest.raises(ValueError, match=r"half_(width|height)"):
+        pointed(half_width, half_height)
+
+
+@pytest.mark.parametrize("thickness", [1e-3, 1e-5])
+def test_a_thin_needle_swims_or_says_why_not(thickness):
+    try:
+        run = simulate(falling(), 2.0, body=pointed(thickness, thickness), accuracy=1e-3)
+    except SimulationStopped as stopped:
+        assert stopped.hint
+        run = stopped.run
+    assert np.isfinite(run.position).all()
+
+
+def test_a_light_body_in_strong_drag_does_not_collapse_the_steps():
+    """Drag coefficients of some thousand on a body of 2 g: the stiff corner."""
+    robot = Body.boyer2010()
+    body = Body(
+        length=1.0,
+        half_width=robot.half_width,
+        half_height=robot.half_height,
+        kinks=robot.kinks,
+        nose=robot.nose,
+        density=1.0,
+        lateral_drag=1e3,
+        vertical_drag=1e3,
+        roll_drag=1e3,
+    )
+    run = simulate(falling(), 3.0, body=body, accuracy=1e-3)
+    assert run.evaluations < 100_000
+    assert np.abs(run.energy.residual).max() < 1e-2 * np.abs(run.energy.actuator_work).max()

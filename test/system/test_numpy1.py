@@ -67,7 +67,7 @@ def numpy1(tmp_path_factory):
         "-r",
         pins,
     ]
-    done = subprocess.run(install, capture_output=True, text=True, timeout=100)
+    done = subprocess.run(install, capture_output=True, text=True, timeout=300)
     if done.returncode:
         pytest.skip(f"numpy 1.26 could not be had (no network?): {done.stderr.strip().splitlines()[-1]}")
     (site / "first_environment.pth").write_text(os.fspath(Path(np.__file__).parents[1]) + "\n")
@@ -86,7 +86,7 @@ def build(numpy1) -> dict[str, str]:
          "--packages-select", "eel_msgs", "eel_gaits", "eel_dynamics", "--build-base", folder / "build",
          "--install-base", folder / "install",
          "--cmake-args", f"-DPython3_EXECUTABLE={python}"],
-        env=environment, cwd=folder, capture_output=True, text=True, timeout=100,
+        env=environment, cwd=folder, capture_output=True, text=True, timeout=300,
     )  # fmt: skip
     assert done.returncode == 0, done.stdout + done.stderr
     installed = [os.fspath(path) for path in (folder / "install").glob("*/lib/python3.*/site-packages")]
@@ -97,7 +97,8 @@ def build(numpy1) -> dict[str, str]:
     }
 
 
-@pytest.mark.timeout(300)
+@pytest.mark.soak
+@pytest.mark.timeout(900)
 def test_builds_swims_and_talks_with_numpy_1(numpy1):
     from eel_dynamics import simulate
     from eel_gaits import falling
@@ -122,7 +123,7 @@ def test_builds_swims_and_talks_with_numpy_1(numpy1):
         )
         assert talk.returncode == 0, talk.stderr
         said = json.loads(talk.stdout)
-        output, errors = swim.communicate(timeout=200)
+        output, errors = swim.communicate(timeout=600)
     finally:
         swim.kill()
     assert said["numpy"].startswith("1.26.")

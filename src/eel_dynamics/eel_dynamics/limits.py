@@ -7,6 +7,7 @@
 | slenderness l/(2 max(a, b)) < 5 | the water moves in planes across a slender body (section 4.1 of the paper) |
 | U l/nu < 1000 | added mass and a thin boundary layer need inertia to rule |
 | the tail leads, V1(l) > 0, for a good part of the time | the wake then feeds energy in (the last term of eq. 60) |
+| the energy ledger is open by more than 1 % of what passed | no limit of the model: the steps are too long |
 
 b is the half-width along axis 2, a the half-height along axis 3. A point y E2 + z E3 of a section moves along the body
 by t1 (1 + K2 z - K3 y) per length, which must stay positive out to the skin.
@@ -16,6 +17,8 @@ import numpy as np
 
 LEAST_SLENDERNESS = 5.0
 LEAST_REYNOLDS = 1e3
+OPEN = 0.01  # share of the energy; runs with a wanted accuracy stay far below
+MOVED = 0.01  # of the body's length: errors of smaller motions count by the length, not by their own energy
 TAIL_LEADS = 0.25  # share of the time
 APART = 4.0  # half-axes along the body, beyond which two sections are not neighbours
 COINCIDENT = 1e-9  # of the body's length: centres of sections at one place
@@ -111,6 +114,15 @@ class Limits:
             return ""
         return f"the tail leads, V1(l) > 0, for {share:.0%} of the time: the wake feeds energy in, as the theory has it"
 
+    def of_ledger(self, energy) -> str:
+        """The residual of an `EnergyLedger` of (T,) arrays is a good part of the energy that was there or passed."""
+        works = energy.actuator_work, energy.wake_work, energy.nose_work, energy.drag_work
+        passed = np.max(energy.kinetic_body + energy.kinetic_fluid + sum(np.abs(work) for work in works), initial=0.0)
+        residual = np.max(np.abs(energy.residual), initial=0.0)
+        if residual <= OPEN * passed:
+            return ""
+        return f"the energy ledger is open by {residual / passed:.2g} of what passed: the steps in time are too long"
+
 
 def warnings_of(run) -> tuple[str, ...]:
     """What of the model's limits a `Run` went over, a line each; speed and tail over its later half, in whole periods
@@ -123,6 +135,7 @@ def warnings_of(run) -> tuple[str, ...]:
         limits.of_contact(run.time, run.curvature, run.backbone, run.section_orientation),
         limits.of_speed(speed),
         limits.of_tail(run.energy.wake_power[later]) if run.energy is not None else "",
+        limits.of_ledger(run.energy) if run.energy is not None and run.path_length > MOVED * run.body.length else "",
     ]
     return tuple(text for text in found if text)
 
