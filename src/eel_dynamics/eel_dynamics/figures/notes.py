@@ -173,9 +173,9 @@ def _orders(errors) -> str:
         f"-{smooth[0]:.1f}, that of the torque -{smooth[1]:.1f} (the rotation's Magnus series has order 6); and in "
         f"time with the step to the power {time[False].order('motion'):.1f} and {time[False].order('torque'):.1f}, for "
         "a method of order 4. Cross-flow drag goes like V|V|, whose second derivative jumps where V changes sign. Such "
-        "a place lies inside a panel and moves with time, and would cap the order of any rule for smooth functions at 2 "
-        "to 3; so it is located in each evaluation, and the drag is integrated up to it. What is left falls along the "
-        f"body with the power -{kinked[0]:.1f} and -{kinked[1]:.1f}, to {space[True].motion[-1]:.0e} at "
+        "a place lies inside a panel and moves with time, and would cap the order of any rule for smooth functions at "
+        "2 to 3; so it is located in each evaluation, and the drag is integrated up to it. What is left falls along "
+        f"the body with the power -{kinked[0]:.1f} and -{kinked[1]:.1f}, to {space[True].motion[-1]:.0e} at "
         f"{space[True].against[-1]:g} points, and in time with {time[True].order('motion'):.1f} and "
         f"{time[True].order('torque'):.1f}."
     )

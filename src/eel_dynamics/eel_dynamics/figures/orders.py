@@ -2,7 +2,8 @@
 
 The drag across the body goes like V|V|, and that of its roll like Omega|Omega|: their second derivatives jump where V
 or Omega changes sign. Such a place lies inside a panel, and moves: it would cap the order that rules for smooth
-functions have, and is located therefore (`drag.py`). Laminar friction stays on, smooth for a swimmer that starts with some way on.
+functions have, and is located therefore (`drag.py`). Laminar friction stays on, smooth for a swimmer that starts with
+some way on.
 """
 
 from dataclasses import dataclass
