@@ -28,6 +28,7 @@ def scene(**changes):
     """The switches with their defaults; any object with these attributes does."""
     defaults = {
         "reactive": True,
+        "wake": True,
         "resistive": True,
         "friction": "printed",
         "nose": True,
@@ -148,8 +149,9 @@ class Reference:
 
     def tail_wrench(self, R, r, eta):
         """What the tail gives to the wake, right-hand side of eq. (60): wrench about the head; and T_f at the tail."""
-        energy = self.tail_added @ eta**2 / 2
-        section = eta[3] * self.tail_added * eta - energy * np.concatenate([np.zeros(3), E1])
+        shed = self.scene.wake * self.tail_added
+        energy = shed @ eta**2 / 2
+        section = eta[3] * shed * eta - energy * np.concatenate([np.zeros(3), E1])
         torque, force = R @ section[:3], R @ section[3:]
         return np.concatenate([torque + np.cross(r, force), force]), energy
 
@@ -220,13 +222,14 @@ class Reference:
         (R, _), eta = self.configuration(K), self.twists(K, K_rate, mu)
         to_axes, to_section = (lambda f: np.einsum("xij,xj->xi", R, f)), (lambda f: np.einsum("xji,xj->xi", R, f))
         resistive_torque, resistive_force = self.resistive(eta)
-        t1, V1, energy = R[:, :, 0], eta[:, 3:4], np.sum(self.inertia_fluid * eta**2, axis=1) / 2
+        wake = float(self.scene.wake)  # 0: no water is swept past the sections
+        t1, V1, energy = R[:, :, 0], wake * eta[:, 3:4], wake * np.sum(self.inertia_fluid * eta**2, axis=1) / 2
         nose = self.nose_force(mu, mu_rate)
         n_sum = -nose * E1 + integrate(rates[1] + rates[3] - to_axes(resistive_force))  # n + V1 p_f
         c_slope = rates[0] + rates[2] + np.cross(to_axes(eta[:, 3:]), p_f) - np.cross(t1, n_sum)
         c_sum = integrate(c_slope - to_axes(resistive_torque))  # c + V1 sigma_f
         force, torque = to_section(n_sum - V1 * p_f), to_section(c_sum - V1 * sigma_f)
-        tail_energy = self.tail_added @ self.at_tail(eta) ** 2 / 2
+        tail_energy = wake * self.tail_added @ self.at_tail(eta) ** 2 / 2
         tail_residual = np.concatenate([self.at_tail(torque), self.at_tail(force) + tail_energy * E1])
         flux = V1 * p_f
         if self.scene.tail_pressure == "distributed":
@@ -242,7 +245,7 @@ class Reference:
             nose_force=nose * E1,
             fluid_energy_density=energy,
             actuator_power=-self.space.weights @ np.sum(torque * K_rate, axis=1),
-            wake_power=self.at_tail(eta)[3] * (self.tail_added @ self.at_tail(eta) ** 2) / 2,
+            wake_power=wake * self.at_tail(eta)[3] * (self.tail_added @ self.at_tail(eta) ** 2) / 2,
             nose_power=nose * mu[3],
             drag_power=self.space.weights
             @ np.sum(resistive_torque * eta[:, :3] + resistive_force * eta[:, 3:], axis=1),

@@ -41,6 +41,7 @@ SMOOTH_SCENES = [
     {"resistive": False, "nose": False},
     {"resistive": False, "reactive": False},
     {"resistive": False, "added_mass": "printed"},
+    {"resistive": False, "wake": False},
     {"resistive": False, "tail_pressure": "distributed"},
     {"resistive": False, "current": (0.3, -0.2, 0.1)},
     {"resistive": False, "density": 1300.0, "fluid_density": 800.0},
@@ -49,6 +50,7 @@ DRAG_SCENES = [
     ({"friction": "laminar"}, KINKS),
     ({"friction": "blended", "perimeter": "printed"}, KINKS),
     ({"friction": "none", "current": (0.3, -0.2, 0.1)}, KINKS),
+    ({"friction": "laminar", "wake": False, "tail_pressure": "distributed"}, KINKS),
     ({"friction": "laminar", "viscosity": 1e-4, "reactive": False}, KINKS),
     ({"friction": "printed"}, 1e-4),
 ]

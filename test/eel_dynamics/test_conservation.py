@@ -1,4 +1,4 @@
-"""No fluid: linear and angular momentum stay, energy is the actuators' work."""
+"""No fluid, or water that sheds no wake: linear and angular momentum stay, energy is the actuators' work."""
 
 import numpy as np
 import pytest
@@ -58,3 +58,18 @@ def test_momentum_and_energy(measured, swimmer, twist):
     apart = np.abs(kinetic - kinetic[0] - ledger.actuator_work) / kinetic.max()
     measured("kinetic energy gained against the work of the actuators", apart, TOLERANCE)
     assert np.ptp(kinetic) > 1e-3 * kinetic.max()  # it is not trivially constant
+
+
+def test_without_a_wake_body_and_water_keep_their_momentum(measured):
+    """A perfect fluid without vorticity takes no momentum away; with the wake the same gait loses and gains it."""
+    law, changes = falling_law(), {}
+    for wake in (False, True):
+        scene = {"resistive": False, "nose": False, "wake": wake}
+        run = simulate(law, 1.5, scene=Scene(**scene), accuracy="reference", sample_period=0.1, twist=START, stations=2)
+        reference = Reference(boyer_body(), reference_scene(**scene), panels_per_span=1, nodes_per_panel=24)
+        along = momenta(reference, law, run)
+        changes[wake] = np.ptp(along, axis=0).max() / np.linalg.norm(along[0])
+        assert np.all(run.energy.wake_power == 0.0) != wake
+        assert np.abs(run.energy.residual).max() < 1e-6 * np.abs(run.energy.kinetic_fluid).max()
+    measured("momentum of body and water over 1.5 s, no wake, no drag", changes[False], TOLERANCE)
+    assert changes[True] > 0.1

@@ -15,6 +15,7 @@ SCENES = [
     {"friction": "blended", "current": (0.1, -0.2, 0.0)},
     {"resistive": False},
     {"reactive": False},
+    {"wake": False},
     {"nose": False, "density": 300.0},
 ]
 

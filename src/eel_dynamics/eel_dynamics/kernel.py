@@ -338,17 +338,18 @@ def add_head_twist(fields, twist):
 def add_wake(swimmer, fields, wrench):
     """Add the momentum that the tail takes in from the wake, w_tail of eq. (60), to `wrench` (6,).
 
-    Returns V1(l) [m/s], T_f(l) [J/m]: the wake's power into body and water is their product.
+    Returns V1(l) [m/s], T_f(l) [J/m]: the wake's power into body and water is their product. Both 0 in a scene without
+    wake.
     """
     R, r, omega, v = fields.R, fields.r, fields.omega, fields.v
     i = R.shape[1] - 1
     vx, vy, vz = v[0, i], v[1, i], v[2, i]
-    v1 = R[0, i] * vx + R[1, i] * vy + R[2, i] * vz
+    v1 = swimmer.wake * (R[0, i] * vx + R[1, i] * vy + R[2, i] * vz)
     v2 = R[3, i] * vx + R[4, i] * vy + R[5, i] * vz
     v3 = R[6, i] * vx + R[7, i] * vy + R[8, i] * vz
     roll = R[0, i] * omega[0, i] + R[1, i] * omega[1, i] + R[2, i] * omega[2, i]
     p2, p3, s1 = swimmer.added2[i] * v2, swimmer.added3[i] * v3, swimmer.added_roll[i] * roll
-    energy = 0.5 * (s1 * roll + p2 * v2 + p3 * v3)
+    energy = 0.5 * swimmer.wake * (s1 * roll + p2 * v2 + p3 * v3)
     nx = -energy * R[0, i] + v1 * (p2 * R[3, i] + p3 * R[6, i])
     ny = -energy * R[1, i] + v1 * (p2 * R[4, i] + p3 * R[7, i])
     nz = -energy * R[2, i] + v1 * (p2 * R[5, i] + p3 * R[8, i])

@@ -148,7 +148,7 @@ def loads_plane(swimmer, fields, twist, rates):
     c, s = R[0, last], R[1, last]
     v1, v2 = c * v[0, last] + s * v[1, last], -s * v[0, last] + c * v[1, last]
     p2 = swimmer.added2[last] * v2
-    n1, n2 = -0.5 * p2 * v2, v1 * p2
+    n1, n2 = -0.5 * swimmer.wake * p2 * v2, swimmer.wake * v1 * p2
     fx, fy = c * n1 - s * n2, s * n1 + c * n2
     tz = r[0, last] * fy - r[1, last] * fx
     if swimmer.resistive:

@@ -226,9 +226,9 @@ def internal_wrench(swimmer, stations, fields, balance, here, result, distribute
             here.omega,
             here.v,
             i,
-            section.added2[i],
-            section.added3[i],
-            section.added_roll[i],
+            section.wake * section.added2[i],
+            section.wake * section.added3[i],
+            section.wake * section.added_roll[i],
             fields.wrench,
             result,
         )
@@ -270,11 +270,12 @@ def loads(stations, here, distributed, sample, out):
         du1, du2, du3 = -(k2 * u[2] - k3 * u[1]), o[2] - k3 * u[0], -o[1] + k2 * u[0]
         do1 = -(k2 * o[2] - k3 * o[1])
         q2, q3 = n2 * u[1] + m2 * du2, n3 * u[2] + m3 * du3
-        # - (d/dt + Omega x) p + (d/dX + K x) V1 p
-        f1 = -(o[1] * p3 - o[2] * p2) + u[0] * (k2 * p3 - k3 * p2)
-        f2 = -(rate_p2 - o[0] * p3) + du1 * p2 + u[0] * q2
-        f3 = -(rate_p3 + o[0] * p2) + du1 * p3 + u[0] * q3
-        if distributed:
+        # - (d/dt + Omega x) p + (d/dX + K x) V1 p, the second only where water is swept past the sections
+        wake = section.wake
+        f1 = -(o[1] * p3 - o[2] * p2) + wake * u[0] * (k2 * p3 - k3 * p2)
+        f2 = -(rate_p2 - o[0] * p3) + wake * (du1 * p2 + u[0] * q2)
+        f3 = -(rate_p3 + o[0] * p2) + wake * (du1 * p3 + u[0] * q3)
+        if distributed and wake > 0.0:
             energy = 0.5 * (j1 * o[0] * o[0] + p2 * u[1] + p3 * u[2])
             f1 -= 0.5 * (i1 * o[0] * o[0] + n2 * u[1] * u[1] + n3 * u[2] * u[2]) + j1 * o[0] * do1 + p2 * du2 + p3 * du3
             f2 -= energy * k3
@@ -361,9 +362,9 @@ def observe(
             fields.omega,
             fields.v,
             tail,
-            swimmer.added2[tail],
-            swimmer.added3[tail],
-            swimmer.added_roll[tail],
+            swimmer.wake * swimmer.added2[tail],
+            swimmer.wake * swimmer.added3[tail],
+            swimmer.wake * swimmer.added_roll[tail],
             fields.wrench,
             step.rates,
         )

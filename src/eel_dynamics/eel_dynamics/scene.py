@@ -2,6 +2,12 @@
 
 The switches name the parts of the model of Boyer, Porez and Leroyer (2010): reactive (added mass, wake: eq. 36-37, 60),
 resistive (section 7.2.1), nose (section 7.2.1), and the readings of its printed formulae.
+
+Without `wake` each section keeps its own water: what sweeps past the body is left out of the strips' balance (50), the
+terms d/dX of V1 sigma_f and of V1 p_f - T_f t1, and so is what they come to at the tail, the flux of momentum and the
+pressure of eq. (51) and (60). That is a chain of bodies in a perfect fluid (Kirchhoff), which sheds nothing: the
+momentum of body and water changes by drag alone (and by the printed load of the nose), and the thrust of Lighthill's
+theory is gone. It tells how much of a motion the wake makes; it is no model of a fish.
 """
 
 from dataclasses import dataclass, field, fields
@@ -30,6 +36,9 @@ class Scene:
         False, "motion in the plane z = 0 only: one angle in place of a rotation; a pitch term is refused"
     )
     reactive: bool = _switch(True, "inertia of the water: added mass M_f, J_f, wake, nose's added mass m_o")
+    wake: bool = _switch(
+        True, "momentum that the water carries along the body and off at the tail; off: every section keeps its water"
+    )
     resistive: bool = _switch(True, "drag of the water: k_o, k1 (friction), k2, k3 (cross flow), k4 (roll)")
     friction: str = _choice("printed", FRICTION, "law of the axial friction c_f(Re)")
     nose: bool = _switch(True, "loads on the rounded nose: added mass m_o and drag k_o")

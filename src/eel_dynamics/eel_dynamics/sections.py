@@ -45,6 +45,7 @@ class Swimmer(NamedTuple):
     transition: np.ndarray  # m/s, |V1| at which Re = 8e4
     friction: int  # index into scene.FRICTION
     resistive: bool
+    wake: float  # 1; 0 where no water is swept past the sections
     nose_mass: float  # kg, m_o
     nose_drag: float  # kg/m, 1/2 rho_f k_o
     fraction: np.ndarray  # (n,) of the node's panel, in its own variable
@@ -169,6 +170,7 @@ def _tabulate(body: Body, scene: Scene, x, **grid) -> Swimmer:
         transition=TRANSITION * scene.viscosity / behind,
         friction=FRICTION.index("laminar" if scene.friction == "none" or scene.viscosity == 0.0 else scene.friction),
         resistive=bool(scene.resistive),
+        wake=float(scene.wake),
         nose_mass=float(reactive_rho * nose_area * body.nose_added_mass * body.nose[2]),
         nose_drag=float(half_rho * nose_area * body.nose_drag),
         **grid,

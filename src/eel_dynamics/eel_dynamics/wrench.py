@@ -178,7 +178,8 @@ def accelerate(swimmer, fields, twist, balance):
 @inlined
 def section_wrench(R, r, omega, v, i, added2, added3, added_roll, wrench, result):
     """Internal torque and force (6,) at section i, in its axes and about it, from the `wrench` (6,) about the head that
-    the part behind passes on: Ad*^-1 w - (V1 J_f1 Omega1 E1; V1 M_f V). Returns T_f [J/m]."""
+    the part behind passes on: Ad*^-1 w - (V1 J_f1 Omega1 E1; V1 M_f V). Returns T_f [J/m]. The added masses given are 0
+    where no water is swept past the sections."""
     x, y, z = r[0, i], r[1, i], r[2, i]
     nx, ny, nz = wrench[3], wrench[4], wrench[5]
     tx, ty, tz = wrench[0] - (y * nz - z * ny), wrench[1] - (z * nx - x * nz), wrench[2] - (x * ny - y * nx)
@@ -213,9 +214,9 @@ def actuator_power(swimmer, fields, balance, section):
             fields.omega,
             fields.v,
             i,
-            swimmer.added2[i],
-            swimmer.added3[i],
-            swimmer.added_roll[i],
+            swimmer.wake * swimmer.added2[i],
+            swimmer.wake * swimmer.added3[i],
+            swimmer.wake * swimmer.added_roll[i],
             fields.wrench,
             section,
         )

@@ -19,6 +19,7 @@ VARIANTS: dict[str, dict] = {
     "planar": {"planar": True},
     "reactive only (no drag)": {"resistive": False},
     "resistive only (no added mass, no wake)": {"reactive": False},
+    "no wake": {"wake": False},
     "no friction": {"friction": "none"},
     "laminar friction": {"friction": "laminar"},
     "blended friction": {"friction": "blended"},
