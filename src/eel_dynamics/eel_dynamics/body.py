@@ -5,7 +5,7 @@ X runs from 0 at the nose to the length at the tail. The nose is pointed, a(0) =
 """
 
 import csv
-from functools import cache, lru_cache
+from functools import cache, cached_property, lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +13,7 @@ import numpy as np
 from .profile import ArrayProfile, FunctionProfile
 
 PANEL_OF_NOSE = 0.05  # of the length, where a body names no kinks
+SHARP = 1e-3  # of the body's greatest half-axis: a half-axis at the tail that counts as none
 
 
 class Body:
@@ -93,6 +94,12 @@ class Body:
             self._half_height.slope(x),
             self._half_width.slope(x),
         )
+
+    @cached_property
+    def pointed_tail(self) -> bool:
+        """The tail ends in an edge or a point: a half-axis goes to nothing there, and the perimeter like its root."""
+        squares = np.array(self.squares(np.array([0.5 * self.length, self.length]))[:2])
+        return bool(np.min(squares[:, 1]) <= SHARP**2 * np.max(squares))
 
     @property
     def volume(self) -> float:

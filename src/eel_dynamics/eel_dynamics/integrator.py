@@ -26,6 +26,8 @@ WORKS = 4
 LOBATTO = np.array([0.0, 0.5 - np.sqrt(5.0) / 10.0, 0.5 + np.sqrt(5.0) / 10.0, 1.0])
 LOBATTO_SERIES = np.linalg.inv(np.vander(LOBATTO, increasing=True))  # coefficients of the cubic through values there
 
+PART_OF_SPAN = 0.25  # between two breakpoints, that a step may take
+
 MARCHED, NOT_FINITE, STEP_TOO_SMALL, SINGULAR, TOO_MANY_STEPS = 0, 1, 2, 3, 4
 
 
@@ -357,12 +359,13 @@ def begin(swimmer, drive, fields, balance, current, method, control, step, start
 
 
 @spliced
-def fitted(method, control, step, start, target, tiny):
-    """Length [s] of the next step: as proposed, or such that steps end on `target` without a sliver before it."""
+def fitted(method, control, step, start, before, target, tiny):
+    """Length [s] of the next step: as proposed, or such that steps end on `target` without a sliver before it; at most
+    a part of what lies between the breakpoint `before` and it, for the works are integrals of what goes on there."""
     left = target - start
     if not method.adaptive:
         return left / np.ceil(left / control.step - 1e-9) if left < 1e100 else control.step
-    length = min(control.step, step.time[2])
+    length = min(control.step, step.time[2], PART_OF_SPAN * (target - before))
     if method.adams > 0 and left < 8.0 * length:
         return left / np.ceil(left / length - 1e-9)  # equal steps
     if length > left - tiny:
@@ -395,15 +398,16 @@ def march(swimmer, drive, fields, balance, current, method, control, breakpoints
         left -= 1.0
         if left < 0.0:
             return TOO_MANY_STEPS
-        target = np.inf
+        before, target = -np.inf, np.inf
         for j in range(len(breakpoints)):
             if breakpoints[j] > start + tiny:
                 target = breakpoints[j]
                 break
+            before = breakpoints[j]
         if not begin(swimmer, drive, fields, balance, current, method, control, step, start):
             return SINGULAR
         proposed = step.time[2]
-        length = fitted(method, control, step, start, target, tiny)
+        length = fitted(method, control, step, start, before, target, tiny)
         status, error = attempt(swimmer, drive, fields, current, method, control, step, start, length)
         accepted = 4.0 if method.adams > 0 else 1.0  # Adams' next step is the shorter: cheaper than to repeat this one
         while status != MARCHED or not error <= accepted:

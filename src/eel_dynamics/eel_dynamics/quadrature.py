@@ -6,7 +6,8 @@ integral of the polynomial through the points (collocation; Hairer and Wanner, S
 II, section IV.5) is exact to degree 2p - 2 over a panel, and to degree p - 1 up to a point inside it.
 
 The half-axes grow like sqrt(X) at a rounded nose: the first panel is integrated in u with X = X_1 u^2, in which fields
-that hold sqrt(X) are smooth.
+that hold sqrt(X) are smooth. A tail that ends in an edge or a point has such roots too, in its perimeter or half-axes:
+there X = l - length (1 - u)^2.
 """
 
 from dataclasses import dataclass
@@ -18,24 +19,29 @@ from numpy.polynomial import legendre
 
 @dataclass(frozen=True, kw_only=True)
 class Panel:
-    """Part of the body between two kinks. `graded`: integrated in u, X = end u^2 (`start` is 0 then)."""
+    """Part of the body between two kinks. `graded` "start": integrated in u, X = start + length u^2; "end": X = end -
+    length (1 - u)^2; "": in X."""
 
     start: float
     end: float
     points: int
-    graded: bool = False
+    graded: str = ""
 
     def locate(self, fraction):
         """X [m] of the panel's variable in (0, 1), and dX by it."""
         fraction = np.asarray(fraction, dtype=float)
         length = self.end - self.start
-        if self.graded:
-            return length * fraction**2, 2.0 * length * fraction
+        if self.graded == "start":
+            return self.start + length * fraction**2, 2.0 * length * fraction
+        if self.graded == "end":
+            return self.end - length * (1.0 - fraction) ** 2, 2.0 * length * (1.0 - fraction)
         return self.start + length * fraction, np.full_like(fraction, length)
 
     def fraction(self, x):
         """The panel's variable at X = `x` [m]; the inverse of `locate`."""
         part = np.clip((np.asarray(x, dtype=float) - self.start) / (self.end - self.start), 0.0, 1.0)
+        if self.graded == "end":
+            return 1.0 - np.sqrt(1.0 - part)
         return np.sqrt(part) if self.graded else part
 
 

@@ -56,19 +56,21 @@ class Swimmer(NamedTuple):
 def panels_of(body: Body, resolution: float, knots: tuple[float, ...] = (), wrench: bool = True) -> tuple[Panel, ...]:
     """Panels between the kinks of `body` and the `knots` [m] of a law's splines, with about `resolution` points per
     length of the body, and three to spare each; where the internal `wrench` is wanted more in the first, in which the
-    body and its loads go like roots of X (they weigh little there)."""
+    body and its loads go like roots of X (they weigh little there), and in the last where they do so at the tail."""
     panels, start = [], 0.0
     least = CLOSEST * body.length
     kinks = np.array([0.0, *body.panel_ends])
     inner = [knot for knot in knots if np.min(np.abs(kinks - knot)) > least and kinks[1] < knot < body.length]
     for end in sorted({*body.panel_ends, *inner}):
         points = 3 + nearest(resolution * (end - start) / body.length)
-        if start == 0.0:
+        graded = "start" if start == 0.0 else "end" if end == body.length and body.pointed_tail else ""
+        if graded:
             points = 1 + (max(points, 3 + nearest(math.sqrt(resolution))) if wrench else points)
         parts = -(-points // WIDEST_PANEL) if start > 0.0 else 1
         edges = np.linspace(start, end, parts + 1)
         for left, right in pairwise(edges):
-            panels.append(Panel(start=float(left), end=float(right), points=-(-points // parts), graded=start == 0.0))
+            kind = graded if right == end else ""
+            panels.append(Panel(start=float(left), end=float(right), points=-(-points // parts), graded=kind))
         start = end
     return tuple(panels)
 
