@@ -163,8 +163,30 @@ def test_a_tail_of_zero_section_sheds_no_wake():
 @pytest.mark.parametrize(("half_width", "half_height"), [(0.0, 0.05), (0.05, 0.0), (0.0, 0.0)])
 def test_a_body_without_inertia_is_refused(half_width, half_height):
     """A needle or a sheet: its matrix of inertia is singular."""
-    with pytest.raises(ValueError, match=r"half_(width|height)"):
+    with pytest.raises(ValueError, match=r"half_(width|height).*singular, without inertia along axes 1 and [23]"):
         pointed(half_width, half_height)
+
+
+@pytest.mark.parametrize(
+    ("half_width", "half_height", "scene", "none"),
+    [
+        (1e-8, 1e-8, {}, "roll"),
+        (1e-15, 0.05, {"nose": False}, "pitch, surge, heave"),
+        (0.05, 1e-15, {"nose": False}, "yaw, surge, sway"),
+        (0.05, 0.05, {"nose": False, "density": 1e-12}, "roll, surge"),
+    ],
+)
+def test_a_singular_body_is_refused_with_the_direction_that_has_no_inertia(half_width, half_height, scene, none):
+    body = pointed(half_width, half_height)
+    with pytest.raises(ValueError, match=rf"no inertia in {none}: its matrix of inertia is singular"):
+        simulate(straight(), 1.0, body=body, scene=Scene(**scene))
+    batch = simulate_batch([straight()], 1.0, bodies=body, scenes=Scene(**scene))
+    assert "singular" in str(batch.error[0])
+
+
+def test_a_needle_without_inertia_in_roll_swims_in_the_plane():
+    run = simulate(straight(), 1.0, body=pointed(1e-8, 1e-8), scene=Scene(planar=True, resistive=False), accuracy=1e-3)
+    assert np.isfinite(run.position).all() and run.path_length > 0.01
 
 
 @pytest.mark.parametrize("thickness", [1e-3, 1e-5])

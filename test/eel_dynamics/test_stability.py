@@ -1,12 +1,16 @@
-"""The command `stability`: its maps hold what was swum, its page what was measured, and bad input is one line."""
+"""The command `stability`: its studies hold what was swum, its page what was measured, and bad input is one line."""
 
 import numpy as np
 import pytest
-from eel_dynamics.stability import command
+from eel_dynamics.inertia import condition_of, straight_inertia
+from eel_dynamics.stability import command, condition, drift, plane
 from eel_dynamics.stability.explicit import inertias, treat
 from eel_dynamics.stability.maps import INACCURATE, STOPPED, TARGET, maps_of, measure
+from eel_dynamics.stability.report import report
+from eel_dynamics.stability.studies import STUDIES, Study
 
-from eel_dynamics import Body
+from eel_dynamics import Body, Scene, Simulation
+from eel_gaits import falling
 
 
 def test_maps_keep_the_target_and_tell_what_stops():
@@ -16,10 +20,50 @@ def test_maps_keep_the_target_and_tell_what_stops():
     step = measured["step"]
     assert (step.outcome[:, 0] != STOPPED).all() and (step.error[:, 0] < TARGET).all()  # a hundredth of a period
     assert set(step.outcome[:, 1]) <= {STOPPED, INACCURATE} and STOPPED in step.outcome[:, 1]  # a whole period
-    text = command.report(list(measured.values()))
+    text = report(list(measured.values()))
     assert "energy from nowhere" in text
-    page = command.with_maps(f"a\n{command.BEGIN}\nold\n{command.END}\nb", text, list(measured.values()))
-    assert text in page and "old" not in page and page.endswith("\nb") and page.startswith("a\n")
+
+
+def test_a_page_keeps_what_is_not_the_studys():
+    study = Study("| new |", {"gait": ("a map", None)})
+    page = command.with_study(f"a\n{command.BEGIN.format('maps')}\nold\n{command.END.format('maps')}\nb", "maps", study)
+    assert "| new |" in page and "![a map](images/stability_gait.svg)" in page and "old" not in page
+    assert page.endswith("\nb") and page.startswith("a\n")
+    with pytest.raises(ValueError, match="the page must have the lines"):
+        command.with_study(page, "drift", study)
+    assert tuple(STUDIES) == command.STUDIES
+
+
+def test_a_long_run_gathers_nothing():
+    for name, (law, scene) in drift.swimmers().items():
+        found = drift.drift_of(name, law, scene, decades=2, compared=1)
+        assert (found.ledger < 1e-2).all() and (found.norm < 1e-14).all() and (found.phase < 1e-11).all(), name
+        assert (found.path[:2] < 1e-2).all() and np.isnan(found.path[2])
+        assert found.way[2] > 5.0 * found.way[1] and f"| {name} | 100 |" in drift.table([found])
+
+
+def test_a_push_out_of_the_plane_grows_by_the_model_not_by_its_numbers():
+    assert not plane.out_of_plane(np.arange(60)).any()  # exact zeros stay
+    rates = [plane.growth(accuracy=accuracy).rate for accuracy in (1e-2, 1e-4)]
+    rates.append(plane.growth(push=0.0, orientation=plane.TURNED).rate)
+    assert rates == pytest.approx([1.455] * 3, abs=0.03)  # as at 1e-6
+    assert np.argmax(np.abs(plane.growth().mode)) == 0  # roll
+    assert abs(plane.growth(reactive=False).rate) < 0.01
+    assert plane.growth(**plane.variants()["sections wider than high"]).rate < -0.1
+
+
+def test_the_condition_of_the_matrix_is_that_of_the_inertia_that_is_solved():
+    swimmer = Simulation(Body.boyer2010(), Scene(), 1e-4, law=falling())
+    at_rest = condition.inertia_at(swimmer, 0.0)  # the gait starts from the straight shape
+    assert at_rest == pytest.approx(straight_inertia(swimmer.swimmer, 1.0), rel=1e-9, abs=1e-12)
+    bent = condition.inertia_at(swimmer, 5.0)
+    assert np.linalg.eigvalsh(bent).min() > 0.0 and not np.allclose(bent, at_rest, rtol=1e-2)
+    assert condition_of(bent) == pytest.approx(np.linalg.cond(bent), rel=1e-6)
+    thin, thick = (condition.of_straight(condition.needle(size), 1.0) for size in (1e-4, 1e-2))
+    assert thin == pytest.approx(1e4 * thick, rel=0.1)  # inertia in roll goes like the mass by the square of the radius
+    maps = condition.maps_of(2)
+    assert all(np.isfinite(each.value).all() and each.value.min() >= 1.0 for each in maps)
+    assert "refused: body has no inertia in roll" in condition.table(maps)
 
 
 def test_an_explicit_added_mass_blows_up_where_water_outweighs_the_body():

@@ -113,4 +113,7 @@ def _check_shape(name: str, x: np.ndarray, values: np.ndarray, length: float):
     inside = (x > 0.0) & (x < length)
     if np.any(values[inside] == 0.0):
         worst = x[inside][np.argmin(values[inside])]
-        raise ValueError(f"body {name} must be > 0 m between nose and tail, got 0 at X = {worst:.6g} m")
+        raise ValueError(
+            f"body {name} must be > 0 m between nose and tail, got 0 at X = {worst:.6g} m: such a section is singular, "
+            f"without inertia along axes 1 and {3 if name == 'half_width' else 2}"
+        )

@@ -15,6 +15,7 @@ from .drive import Tabulation
 from .energy import EnergyLedger
 from .frames import matrix_of
 from .guard import failure_of
+from .inertia import check_inertia
 from .integrator import (
     LOBATTO,
     LOBATTO_SERIES,
@@ -79,7 +80,9 @@ def tabulated(body: Body, scene: Scene, resolution: float, knots: tuple[float, .
     grid = Grid.of(panels_of(body, resolution, knots, scene.internal_wrench or scene.ledger))
     here = stations_of(body, scene, grid, x)
     base = np.where(here.node >= 0, grid.x[here.node], 0.0)
-    return Table(grid, swimmer_of(body, scene, grid), here, Tabulation(grid.x, grid.previous, x, base))
+    swimmer = swimmer_of(body, scene, grid)
+    check_inertia(swimmer, body.length, scene.planar)
+    return Table(grid, swimmer, here, Tabulation(grid.x, grid.previous, x, base))
 
 
 class Simulation:

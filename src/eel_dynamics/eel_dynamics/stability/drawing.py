@@ -25,6 +25,17 @@ def draw(figure, measured: Measured):
     bar.set_label(f"error / target ({TARGET:g}), log10: accurate below 0")
 
 
+def draw_condition(figure, conditions):
+    """Fill an empty matplotlib figure with one map of conditions."""
+    axes = figure.subplots()
+    mesh = axes.pcolormesh(
+        _edges(conditions.x), _edges(conditions.y), np.log10(conditions.value), cmap="cividis", edgecolors="none"
+    )
+    axes.set(xscale="log", yscale="log", xlabel=conditions.x_label, ylabel=conditions.y_label)
+    axes.set_title(conditions.title, fontsize="medium")
+    figure.colorbar(mesh, ax=axes).set_label("condition, log10")
+
+
 def _edges(values: np.ndarray) -> np.ndarray:
     """Borders of the cells around `values`, which rise by equal factors."""
     factor = np.sqrt(values[1] / values[0])

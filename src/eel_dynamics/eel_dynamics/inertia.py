@@ -1,0 +1,59 @@
+"""Inertia of the straight body with its water, (6, 6), and the refusal of bodies for which it is singular.
+
+Rotations count by the body's length, so that all entries are masses [kg] and the condition has no unit. The straight
+shape has the least inertia in roll: a bent one turns its own arms. A condition above `MOST` leaves less than four
+digits of an acceleration in double precision, and counts as singular.
+"""
+
+import numpy as np
+
+MOST = 1e12
+PART = 0.25  # of a singular direction, from which a degree of freedom is named
+FREEDOMS = "roll", "pitch", "yaw", "surge", "sway", "heave"
+PLANE = 2, 3, 4
+
+
+def straight_inertia(swimmer, length: float) -> np.ndarray:
+    """(6, 6) [kg] about the head, rotation first, of a tabulated `swimmer` of `length` [m]."""
+    x, weight = swimmer.x / length, swimmer.weight
+    roll, pitch, yaw = (
+        float(weight @ each) / length**2 for each in (swimmer.inertia1, swimmer.inertia2, swimmer.inertia3)
+    )
+    along2, along3 = swimmer.mass + swimmer.added2, swimmer.mass + swimmer.added3
+    matrix = np.diag(
+        [
+            roll,
+            pitch + weight @ (along3 * x * x),
+            yaw + weight @ (along2 * x * x),
+            weight @ swimmer.mass + swimmer.nose_mass,
+            weight @ along2,
+            weight @ along3,
+        ]
+    )
+    matrix[2, 4] = matrix[4, 2] = weight @ (along2 * x)
+    matrix[1, 5] = matrix[5, 1] = -(weight @ (along3 * x))
+    return matrix
+
+
+def condition_of(matrix: np.ndarray) -> float:
+    """Greatest eigenvalue of a symmetric positive `matrix` by the least; infinite where it is singular."""
+    value = np.linalg.eigvalsh(matrix)
+    return float(value[-1] / value[0]) if value[0] > 0.0 else np.inf
+
+
+def check_inertia(swimmer, length: float, planar: bool):
+    """`ValueError` that names the degrees of freedom in which `swimmer` has no inertia."""
+    free = list(PLANE) if planar else list(range(6))
+    matrix = straight_inertia(swimmer, length)[np.ix_(free, free)]
+    if not np.isfinite(matrix).all():
+        raise ValueError("body is too large or too dense for numbers: its inertia is not finite")
+    value, direction = np.linalg.eigh(matrix)
+    none = value * MOST <= value[-1]
+    if not none.any():
+        return
+    part = np.sum(direction[:, none] ** 2, axis=1)
+    names = ", ".join(FREEDOMS[each] for each, share in zip(free, part, strict=True) if share > PART)
+    raise ValueError(
+        f"body has no inertia in {names}: its matrix of inertia is singular (condition {condition_of(matrix):.2g}, of "
+        f"{MOST:g} at most); make it thicker, denser, or give it a nose"
+    )

@@ -1,0 +1,37 @@
+"""The maps in numbers, and the explicit treatment of the added mass, as Markdown tables."""
+
+import numpy as np
+
+from .explicit import STEPS, treat
+from .maps import ACCURATE, INACCURATE, STOPPED, TARGET
+
+RATIOS = (1e-3, 1e-2, 1e-1, 0.5, 1.0, 10.0, 1e3)
+
+
+def report(maps) -> str:
+    """Counts and worst errors of the maps, then the explicit treatment of the added mass."""
+    lines = ["| map | accurate | inaccurate | stopped | worst error | most steps |", "|---|---|---|---|---|---|"]
+    for each in maps:
+        counts = " | ".join(str(np.sum(each.outcome == kind)) for kind in (ACCURATE, INACCURATE, STOPPED))
+        lines.append(f"| {each.map.title} | {counts} | {each.worst:.1e} | {each.steps.max()} |")
+    lines += ["", f"Accurate: the head within {TARGET:g} of its path (or of the body, if longer) of a finer run's."]
+    reasons = sorted({_reason(text) for each in maps for text in each.reason.ravel() if text})
+    lines += [f"Reasons of the stops: {'; '.join(reasons) or 'none'}.", ""]
+    lines += [
+        "The added mass is implicit in the 6 x 6 matrix. Treated explicitly, with the acceleration of the step before, "
+        "it is unstable",
+        f"wherever the growth per step exceeds 1, whatever the step; after {STEPS} steps:",
+        "",
+        "| density of the body, by water's | growth per step | explicit acceleration, by the right one | condition of "
+        "the 6 x 6 matrix |",
+        "|---|---|---|---|",
+    ]
+    for ratio in RATIOS:
+        treated = treat(ratio)
+        lines.append(f"| {ratio:g} | {treated.growth:.3g} | {treated.explicit:.3g} | {treated.condition:.3g} |")
+    return "\n".join(lines)
+
+
+def _reason(text: str) -> str:
+    """What failed, without time and value."""
+    return text.partition("s: ")[2].partition(" (")[0]
