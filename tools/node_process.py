@@ -9,6 +9,7 @@ import time
 from pathlib import Path
 
 PR_SET_PDEATHSIG = 1  # linux/prctl.h: the signal that the child gets when its parent has died
+MIDDLEWARE = "RTPS_TRANSPORT_SHM"  # Fast DDS: shared memory that is held by a process that does not answer
 
 
 class NodeProcess:
@@ -42,14 +43,15 @@ class NodeProcess:
         return self.process.poll()
 
     def output(self) -> str:
-        """All it has said so far."""
-        return self.log.read_text(errors="replace")
+        """All it has said so far; not what the middleware says when some process on the machine has been stopped."""
+        said = self.log.read_text(errors="replace").splitlines(keepends=True)
+        return "".join(line for line in said if MIDDLEWARE not in line)
 
     def wait(self, timeout: float) -> int:
         """Its exit status; `subprocess.TimeoutExpired` after `timeout` [s]."""
         return self.process.wait(timeout)
 
-    def wait_for_output(self, text: str, timeout: float = 20.0) -> None:
+    def wait_for_output(self, text: str, timeout: float = 90.0) -> None:
         """Until `text` stands in its output; AssertionError if it ends or `timeout` [s] passes without."""
         deadline = time.monotonic() + timeout
         while text not in self.output():
@@ -57,11 +59,35 @@ class NodeProcess:
             assert time.monotonic() < deadline, f"{self.name} did not say {text!r} in {timeout} s:\n{self.output()}"
             time.sleep(0.02)
 
-    def interrupt(self, sent: signal.Signals = signal.SIGINT, timeout: float = 5.0) -> int:
+    def interrupt(self, sent: signal.Signals = signal.SIGINT, timeout: float = 60.0) -> int:
         """Send a signal and return the exit status; `subprocess.TimeoutExpired` after `timeout` [s]."""
         if self.status is None:
             self.process.send_signal(sent)
         return self.process.wait(timeout)
+
+    def time_to_end(self, sent: signal.Signals = signal.SIGINT, timeout: float = 60.0) -> float:
+        """[s] from a signal to the end, less what its threads waited for a processor that others had: so long as it
+        would take on a machine of its own. AssertionError after `timeout` [s]."""
+        before = self._waited()
+        waited, began = dict(before), time.monotonic()
+        self.process.send_signal(sent)
+        ended = os.WEXITED | os.WNOWAIT | os.WNOHANG  # what is not yet fetched can still be asked
+        while os.waitid(os.P_PID, self.process.pid, ended) is None:
+            assert time.monotonic() - began < timeout, f"{self.name} has not ended {timeout} s after {sent.name}"
+            waited |= self._waited()
+            time.sleep(0.005)
+        took = time.monotonic() - began
+        waited |= self._waited()
+        self.process.wait()
+        return max(0.0, took - sum(delay - before.get(thread, 0.0) for thread, delay in waited.items()))
+
+    def _waited(self) -> dict[str, float]:
+        """By thread, how long [s] it has been ready to run and had no processor (Linux's `schedstat`)."""
+        found = {}
+        for path in Path(f"/proc/{self.process.pid}/task").glob("*/schedstat"):
+            with contextlib.suppress(OSError):  # it has just ended
+                found[path.parent.name] = int(path.read_text().split()[1]) * 1e-9
+        return found
 
     def end(self, *, descendants: bool = True) -> None:
         """Make sure that it is gone, asking first; `descendants`: so are the processes that it has started."""

@@ -9,6 +9,7 @@ from geometry_msgs.msg import PoseStamped, TwistStamped
 from nav_msgs.msg import Odometry
 from rcl_interfaces.srv import DescribeParameters, GetParameters, SetParameters
 from rclpy.context import Context
+from rclpy.duration import Duration
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.parameter import Parameter, parameter_value_to_python
@@ -122,6 +123,26 @@ class SwimClient:
 
     def pause(self, paused):
         return self.call(SetBool, "dynamics/pause", data=paused)
+
+    def stop_the_clock(self, topic):
+        """Pauses the run, and waits until the last sample before it has come; its time [s]."""
+        while not (answer := self.pause(True)).success:
+            assert "soon" in answer.message, answer.message
+        time_of = float(re.search(r"t = (\S+) s", answer.message)[1])  # of six digits
+        self.until(
+            lambda: self.heard[topic] and nanoseconds(self.heard[topic][-1].header.stamp) >= (time_of - 1e-5) * 1e9,
+            f"{topic} at {time_of} s",
+        )
+        return nanoseconds(self.heard[topic][-1].header.stamp) / 1e9
+
+    def deliver(self, messages):
+        """Publishes samples of a controller, and waits until the node has them and had the time to look at them."""
+        for message in messages:
+            self.samples.publish(message)
+        assert self.samples.wait_for_all_acked(Duration(seconds=LIMIT)), "the samples did not arrive"
+        self.get("rate")  # a question that it answers in between, and once more after them
+        self.spin(0.3)
+        self.get("rate")
 
     def set(self, **values):
         parameters = [Parameter(name, value=value).to_parameter_msg() for name, value in values.items()]

@@ -1,13 +1,12 @@
 """Control of a run over DDS: pause, reset, pace, parameters, what stops a simulation, and /clock meanwhile."""
 
-import math
 import time
 
 import numpy as np
 import pytest
 from eel_gaits.messages import law_to_message
 from rosgraph_msgs.msg import Clock
-from swim_client import is_finite, nanoseconds
+from swim_client import LIMIT, is_finite, nanoseconds
 
 from eel_gaits import Law, Term, falling
 
@@ -28,10 +27,9 @@ def test_clock_ticks_while_waiting_and_while_paused(start, client):
     assert {seconds(message) for message in swim.heard["/clock"]} == {0.0} and not swim.heard["head_pose"]
     swim.laws.publish(law_to_message(falling()))
     swim.until_time(0.3)
-    answer = swim.pause(True)
-    assert answer.success and answer.message.startswith("paused at t =")
-    swim.spin(0.2)
-    stands, ticks = seconds(swim.heard["head_pose"][-1]), len(swim.heard["/clock"])
+    stands = swim.stop_the_clock("head_pose")
+    swim.until(lambda: seconds(swim.heard["/clock"][-1]) == stands, "the clock's standing")
+    ticks = len(swim.heard["/clock"])
     swim.until(lambda: len(swim.heard["/clock"]) > ticks + 5, "clock while paused")
     assert seconds(swim.heard["head_pose"][-1]) == stands
     assert {seconds(message) for message in swim.heard["/clock"][ticks:]} == {stands}
@@ -55,50 +53,58 @@ def test_reset_begins_again_with_the_same_law(start, client):
     swim.until_time(2.0)
     answer = swim.reset()
     assert answer.success and answer.message == "reset at t = 0 s"
-    stamps = [seconds(message) for message in swim.heard["head_pose"]]
-    again = next((k for k in range(1, len(stamps)) if stamps[k] < stamps[k - 1]), len(stamps))
-    swim.until(
-        lambda: len(swim.heard["head_pose"]) > again and seconds(swim.heard["head_pose"][-1]) > 2.0, "the second run"
-    )
+
+    def begin_of_the_second():
+        """The place of its first sample, which may come after the answer; 0 before."""
+        stamps = [seconds(message) for message in swim.heard["head_pose"]]
+        return next((k for k in range(1, len(stamps)) if stamps[k] < stamps[k - 1]), 0)
+
+    swim.until(begin_of_the_second, "the second run")
+    swim.until(lambda: seconds(swim.heard["head_pose"][-1]) > 2.0, "as much of the second run")
+    again = begin_of_the_second()
     first = {seconds(m): m.pose for m in swim.heard["head_pose"][:again]}
     second = {seconds(m): m.pose for m in swim.heard["head_pose"][again:]}
-    assert min(second) == 0.0
+    assert min(second) < 0.5  # at real time a subscriber that is late misses samples
     common = [t for t in first if t in second]
-    assert max(common) > 1.5
+    assert len(common) > 20 and max(common) > 1.5
     for t in common:
         assert first[t] == second[t], t
 
 
 def test_pace_follows_the_real_time_factor(start, client):
+    """Over a second and a half, some time: a busy machine has its say in all others."""
     swim = client(topics=("head_pose",))
     swim.laws.publish(law_to_message(falling()))
     start("dynamics", "--ros-args", "-p", "real_time_factor:=2", "-p", "wait_for_subscribers:=1")
-    swim.until_time(2.0)
 
-    def factor(begin, end):
-        times = {
-            round(seconds(m), 3): at for m, at in zip(swim.heard["head_pose"], swim.arrivals["head_pose"], strict=True)
-        }
-        return (end - begin) / (times[end] - times[begin])
+    def keeps(factor):
+        messages, arrivals = swim.heard["head_pose"], swim.arrivals["head_pose"]
+        if not messages or arrivals[-1] - arrivals[0] < 1.5:
+            return False
+        first = np.searchsorted(arrivals, arrivals[-1] - 1.5)
+        simulated = seconds(messages[-1]) - seconds(messages[first])
+        return simulated / (arrivals[-1] - arrivals[first]) == pytest.approx(factor, rel=0.1)
 
-    assert factor(0.5, 2.0) == pytest.approx(2.0, rel=0.1)
+    swim.until(lambda: keeps(2.0), "pace of 2 s a second")
+    swim.until(lambda: 1.8 < float(swim.diagnosis()[2]["real_time_factor"]) < 2.2, "that factor in the diagnostics")
     (result,) = swim.set(real_time_factor=1)
     assert result.successful and swim.get("real_time_factor") == [1.0]
-    now = math.ceil(10 * seconds(swim.latest("head_pose"))) / 10
-    swim.until_time(now + 2.0)
-    assert factor(round(now + 0.1, 3), round(now + 1.6, 3)) == pytest.approx(1.0, rel=0.1)
-    swim.until(lambda: swim.diagnosis()[2]["real_time_factor"] < "1.1", "the factor in the diagnostics")
+    swim.until(lambda: keeps(1.0), "pace of 1 s a second")
+    swim.until(lambda: 0.9 < float(swim.diagnosis()[2]["real_time_factor"]) < 1.1, "that factor in the diagnostics")
 
 
 def test_jitter_of_the_samples(start, client):
-    """Samples come at their time, not in heaps: half of them within 20 ms even on a busy machine."""
+    """Samples come at their time, not in heaps: half of 200 within 20 ms, as soon as the machine has time for them."""
     swim = client(topics=("head_pose",))
     swim.laws.publish(law_to_message(falling()))
     start("dynamics", "--ros-args")
-    swim.until_time(2.0)
-    stamps = np.array([seconds(message) for message in swim.heard["head_pose"]])
-    delay = np.array(swim.arrivals["head_pose"]) - stamps
-    assert np.median(np.abs(delay - np.median(delay))) < 20e-3
+
+    def even():
+        stamps = np.array([seconds(message) for message in swim.heard["head_pose"][-200:]])
+        delay = np.array(swim.arrivals["head_pose"][-200:]) - stamps
+        return len(delay) == 200 and np.median(np.abs(delay - np.median(delay))) < 20e-3
+
+    swim.until(even, "even flow of samples")
 
 
 def test_parameters_at_run_time(start, client):
@@ -137,16 +143,18 @@ def test_law_that_cannot_be_swum_stops_once_and_reset_starts_again(start, client
     monster = Law(Term(amplitude=(1e6,), period=1.0), name="monster")  # wound up a hundred thousand times
     swim.laws.publish(law_to_message(monster))
     node = start("dynamics", "--ros-args")
-    node.wait_for_output("stopped at t =", 90.0)
-    ticks, samples = len(swim.heard["/clock"]), len(swim.heard["head_pose"])
+    node.wait_for_output("stopped at t =", LIMIT)
+    ticks = len(swim.heard["/clock"])
     swim.until(lambda: len(swim.heard["/clock"]) > ticks + 10, "clock after the stop")
-    assert len(swim.heard["head_pose"]) <= samples + 1
+    samples = len(swim.heard["head_pose"])
+    swim.until(lambda: len(swim.heard["/clock"]) > ticks + 20, "more of it")
+    assert len(swim.heard["head_pose"]) == samples
     swim.until(lambda: swim.diagnosis()[0] == 2, "error in the diagnostics")
     for topic in ("head_pose", "internal_wrench", "energy"):
         assert all(is_finite(message) for message in swim.heard[topic])
     assert node.output().count("[ERROR]") == 1 and "Traceback" not in node.output() and node.status is None
     swim.laws.publish(law_to_message(falling()))
-    swim.spin(0.2)
+    swim.until(lambda: "law 'falling' taken on" in node.output(), "the next law")
     assert swim.reset().success
     swim.until_time(0.5)
     swim.until(lambda: swim.diagnosis()[0] == 0, "good diagnostics")
@@ -157,7 +165,7 @@ def test_law_that_cannot_be_begun_is_refused(start, client):
     swim = client(topics=("head_pose",), clock=True)
     swim.laws.publish(law_to_message(Law(Term(amplitude=(1e200,), wavelength=1.0, period=1e-3), name="beyond")))
     node = start("dynamics", "--ros-args")
-    node.wait_for_output("law 'beyond' refused: law 'beyond' cannot be begun", 90.0)
+    node.wait_for_output("law 'beyond' refused: law 'beyond' cannot be begun", LIMIT)
     swim.laws.publish(law_to_message(falling()))
     swim.until_time(0.3)
     assert all(is_finite(message) for message in swim.heard["head_pose"])
@@ -177,6 +185,7 @@ def test_late_run_says_so_seldom(start, client):
     )
     began = time.monotonic()
     said = node.output().count("late by")
-    swim.spin(3.0)
-    assert 1 <= node.output().count("late by") - said <= time.monotonic() - began + 1.0
+    swim.spin(2.0)
+    swim.until(lambda: node.output().count("late by") > said + 1, "more of it in the log")
+    assert node.output().count("late by") - said <= time.monotonic() - began + 1.0
     assert swim.diagnosis()[0] == 1 and "late by" in swim.diagnosis()[1]

@@ -52,10 +52,10 @@ def test_a_subscriber_that_is_slow_for_a_while_loses_nothing(start, client):
     node = start("dynamics", *FLAT_OUT, "-p", "duration:=12", "-p", "rate:=1000", "-p", "subscriber_timeout:=60")
     node.wait_for_output("waiting for a subscriber", LIMIT)
     time.sleep(1.0)
-    swim.until(lambda: len(swim.heard["head_pose"]) >= 12001, "12001 samples")
+    swim.until(lambda: len(swim.heard["head_pose"]) >= 12001, "12001 samples", 2 * LIMIT)
     stamps = [nanoseconds(message.header.stamp) for message in swim.heard["head_pose"]]
     assert stamps == [k * 1_000_000 for k in range(12001)]
-    assert node.wait(20.0) == 0 and "stuck" not in node.output()
+    assert node.wait(LIMIT) == 0 and "stuck" not in node.output()
 
 
 @pytest.mark.fault(
@@ -73,22 +73,21 @@ def test_a_stuck_subscriber_delays_a_run_once_and_costs_the_others_nothing(start
         *FLAT_OUT[:-1],
         "wait_for_subscribers:=2",
         "-p",
-        "duration:=8",
+        "duration:=10",
         "-p",
         "rate:=1000",
         "-p",
-        "subscriber_timeout:=2",
+        "subscriber_timeout:=3",
     )
     node.wait_for_output("waiting for", LIMIT)
     swim.until(lambda: len(swim.heard["head_pose"]) > 100, "the first samples")
     os.kill(stuck.process.pid, signal.SIGSTOP)
     try:
-        began = time.monotonic()
-        swim.until(lambda: len(swim.heard["head_pose"]) >= 8001, "all samples of the other topic")
-        assert time.monotonic() - began < 30.0
-        assert "has been stuck for 2 s" in node.output() and node.output().count("has been stuck") == 1, node.output()
-        swim.until(lambda: len(swim.heard["backbone"]) >= 8001, "all samples of the same topic")
-        assert node.wait(20.0) == 0
+        # were it waited for again and again, the thousands of samples that it misses would take hours
+        swim.until(lambda: len(swim.heard["head_pose"]) >= 10001, "all samples of the other topic", 2 * LIMIT)
+        assert "has been stuck for 3 s" in node.output() and node.output().count("has been stuck") == 1, node.output()
+        swim.until(lambda: len(swim.heard["backbone"]) >= 10001, "all samples of the same topic")
+        assert node.wait(LIMIT) == 0
         assert any(swim.diagnosis(message)[0] == 1 for message in swim.heard["/diagnostics"])
     finally:
         os.kill(stuck.process.pid, signal.SIGCONT)
@@ -104,9 +103,7 @@ def test_at_real_time_nobody_is_waited_for(start, client):
     swim.until_time(0.5, "backbone")
     os.kill(stuck.process.pid, signal.SIGSTOP)
     try:
-        begin, began = seconds(swim.heard["backbone"][-1]), time.monotonic()
-        swim.until_time(begin + 4.0, "backbone")  # more than its history
-        assert time.monotonic() - began < 8.0
+        swim.until_time(seconds(swim.heard["backbone"][-1]) + 4.0, "backbone")  # more than its history
         assert "stuck" not in node.output() and "waiting for a subscriber" not in node.output()
     finally:
         os.kill(stuck.process.pid, signal.SIGCONT)
@@ -127,7 +124,7 @@ def test_first_sample_waits_for_the_subscribers_asked_for(start, client):
         each.until(
             lambda each=each: all(len(each.heard[topic]) >= 101 for topic in SAMPLES), "101 samples of each topic"
         )
-    assert node.wait(20.0) == 0
+    assert node.wait(LIMIT) == 0
 
 
 # controllers
@@ -149,7 +146,8 @@ def instant(t, amplitude=1.0, period=1.0):
 def test_controller_without_a_law_drives_flat_out(start, client):
     """A controller that answers each sample with an instant ahead: the simulation waits for it."""
     swim = client(topics=("curvature",))
-    node = start("dynamics", *FLAT_OUT, "-p", "rate:=50", "-p", "default_transition:=0.1")
+    patient = ("-p", "subscriber_timeout:=60")
+    node = start("dynamics", *FLAT_OUT, "-p", "rate:=50", "-p", "default_transition:=0.1", *patient)
     node.wait_for_output("waiting for a law", LIMIT)
     swim.until(lambda: swim.samples.get_subscription_count() == 1, "the node's subscription")
     for k in (1, 2, 3):
@@ -200,18 +198,11 @@ def test_dying_controller_brings_the_shape_to_rest_and_may_come_back(start, clie
     )
     swim.until(lambda: swim.samples.get_subscription_count() == 1, "the node's subscription")
     swim.until(lambda: swim.heard["curvature"], "a first sample")
-    swim.pause(True)
 
     def drive():
-        count = -1
-        while count != len(swim.heard["curvature"]):  # until all that came before the pause has been read
-            count = len(swim.heard["curvature"])
-            swim.spin(0.3)
-        begin = seconds(swim.heard["curvature"][-1])
-        times = begin + 0.05 * np.arange(1, 11)
-        for t in times:
-            swim.samples.publish(instant(t))
-        swim.spin(0.3)
+        """Half a second of samples, sent while the run stands; their end."""
+        times = swim.stop_the_clock("curvature") + 0.05 * np.arange(1, 11)
+        swim.deliver([instant(t) for t in times])
         return times[-1]
 
     end = drive()
@@ -221,14 +212,14 @@ def test_dying_controller_brings_the_shape_to_rest_and_may_come_back(start, clie
     after = [m for m in swim.heard["curvature"] if seconds(m) >= end]
     assert max(np.abs(m.yaw).max() for m in moved) > 0.5
     assert np.allclose(swim.heard["curvature"][-1].yaw_rate, 0.0, atol=1e-12)  # at rest
-    steps = np.abs(np.diff([m.yaw_rate for m in after], axis=0)).max()
+    steps = np.abs(np.diff([m.yaw_rate for m in after], axis=0))
+    steps = steps[np.diff([seconds(m) for m in after]) < 0.011].max()  # a listener that is late may miss a sample
     assert steps < 0.05 * max(np.abs(m.yaw_rate).max() for m in moved) + 2.0  # comes to rest without a jump
     assert node.output().count("have run out") == 1
-    swim.pause(True)
     end = drive()
     swim.pause(False)
     swim.until_time(end, "curvature")
-    node.wait_for_output("are back", 20.0)
+    node.wait_for_output("are back", LIMIT)
     swim.until_time(end + 1.0, "curvature")
     assert node.output().count("have run out") == 2
 
@@ -244,16 +235,17 @@ def test_dying_controller_brings_the_shape_to_rest_and_may_come_back(start, clie
     "samples", "samples that jump from one instant to the next", "met one after the other, fast but smoothly"
 )
 def test_irregular_samples_make_one_smooth_motion(start, client):
-    """Sent while the run is paused: shuffled, some twice, some missing for 0.3 s, at the end every 0.4 s alone (of a
-    motion of period 1 s), in the middle a jump of 1 rad/m within 20 ms."""
+    """Sent while the run stands before its first sample: shuffled, some twice, some missing for 0.3 s, at the end every
+    0.4 s alone (of a motion of period 1 s), in the middle a jump of 1 rad/m within 20 ms. Without a pace, so that no
+    sample of the motion is missed."""
     swim = client(topics=("curvature",))
-    swim.laws.publish(law_to_message(Law(name="still")))
-    node = start("dynamics", "--ros-args", "-p", "rate:=500", "-p", "default_transition:=0.1")
+    briefly = ("-p", "subscriber_timeout:=1")
+    node = start("dynamics", *FLAT_OUT, "-p", "rate:=500", "-p", "default_transition:=0.1", *briefly)
     swim.until(lambda: swim.samples.get_subscription_count() == 1, "the node's subscription")
-    swim.until(lambda: swim.heard["curvature"], "a first sample")
-    swim.pause(True)
-    swim.spin(0.3)
-    begin = math.ceil(50 * seconds(swim.heard["curvature"][-1]) + 1) / 50
+    assert swim.pause(True).success
+    swim.laws.publish(law_to_message(Law(name="still")))
+    node.wait_for_output("paused at t = 0 s", LIMIT)
+    begin = 0.2
     steps = [0.02 * k for k in range(51) if not 15 < k < 30] + [1.4, 1.8, 2.2]
     jump = 0.7
     sent = {begin + step: instant(begin + step) for step in steps}
@@ -261,13 +253,14 @@ def test_irregular_samples_make_one_smooth_motion(start, client):
         if time_of >= begin + jump - 1e-6:
             message.yaw = [value + 1.0 for value in message.yaw]
     order = np.random.default_rng(1).permutation(sorted(sent))
+    messages = []
     for count, time_of in enumerate(order):
-        swim.samples.publish(sent[time_of])
+        messages.append(sent[time_of])
         if count % 10 == 0:  # a second one, that wants something else
             other = instant(time_of)
             other.yaw = [9.0] * 11
-            swim.samples.publish(other)
-    swim.spin(0.3)
+            messages.append(other)
+    swim.deliver(messages)
     swim.pause(False)
     end = begin + steps[-1]
     swim.until_time(end + 0.3, "curvature")
@@ -306,7 +299,7 @@ def test_bad_samples_are_refused(start, client):
         before = node.output().count("[ERROR]")
         swim.spin(1.1)  # errors of one kind are said once a second
         swim.samples.publish(message)
-        swim.until(lambda before=before: node.output().count("[ERROR]") > before, f"error {words}", 20.0)
+        swim.until(lambda before=before: node.output().count("[ERROR]") > before, f"error {words}")
         line = [line for line in node.output().splitlines() if "[ERROR]" in line][-1]
         assert "samples" in line and all(word in line for word in words), line
     assert not np.any(swim.latest("curvature").yaw) and node.status is None
@@ -330,7 +323,8 @@ def test_second_publisher_of_clock_is_left_alone(start, client):
         lambda: swim.diagnosis()[0] == 1 and "/clock is published by /swim_client" in swim.diagnosis()[1], "warning"
     )
     swim.node.destroy_publisher(other)
-    swim.until(lambda: swim.node.count_publishers("/clock") == 1, "its return")
+    publishers = lambda: [info.node_name for info in swim.node.get_publishers_info_by_topic("/clock")]  # noqa: E731
+    swim.until(lambda: publishers() == ["dynamics"], "its return")
 
 
 @pytest.mark.fault("neighbours", "a second dynamics node on the network", "the first keeps /clock")
@@ -341,9 +335,13 @@ def test_of_two_nodes_the_first_keeps_the_clock(start, client):
     swim.spin(5.0)
     second = start("dynamics", "--ros-args", "-r", "__ns:=/second")
     second.wait_for_output("/clock is published by", LIMIT)
+
+    def publishers():
+        return {info.node_namespace for info in swim.node.get_publishers_info_by_topic("/clock")}
+
+    swim.until(lambda: publishers() == {"/first"}, "the second's leaving /clock to the first")
     swim.spin(5.0)
-    publishers = {info.node_namespace for info in swim.node.get_publishers_info_by_topic("/clock")}
-    assert publishers == {"/first"}
+    assert publishers() == {"/first"}
 
 
 def test_clock_can_be_off(start, client):

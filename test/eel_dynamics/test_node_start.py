@@ -3,6 +3,7 @@
 import signal
 import time
 
+import psutil
 import pytest
 from eel_gaits.messages import law_to_message
 from swim_client import LIMIT
@@ -106,18 +107,17 @@ def test_body_from_a_file_and_numbers_of_every_kind(start, client, tmp_path):
     assert swim.latest("body").length == 1.2
 
 
-ATTEMPTS = 3  # a busy machine may delay one of them; a node that is slow is slow in all
+ATTEMPTS = 3  # a machine that stands still may delay one of them; a node that is slow is slow in all
 
 
 def least_time_to_end(begin, sent) -> float:
     """Seconds from the signal to a good end of the node that `begin()` starts: the least of the attempts, as many as it
-    takes to be below one, up to three."""
+    takes to be below one, up to three. What the machine was busy with others does not count."""
     times = []
     while min(times, default=1.0) >= 1.0 and len(times) < ATTEMPTS:
         node = begin()
-        began = time.monotonic()
-        assert node.interrupt(sent) == 0, node.output()
-        times.append(time.monotonic() - began)
+        times.append(node.time_to_end(sent))
+        assert node.status == 0, node.output()
         assert "Traceback" not in node.output()
     return min(times)
 
@@ -159,14 +159,15 @@ def test_two_signals_are_as_good_as_one(start):
     node.wait_for_output("waiting for a law", LIMIT)
     node.process.send_signal(signal.SIGINT)
     node.process.send_signal(signal.SIGTERM)
-    assert node.wait(5.0) == 0 and "Traceback" not in node.output()
+    assert node.wait(LIMIT) == 0 and "Traceback" not in node.output()
 
 
-def test_first_publication_is_soon(start, client):
-    """With everything compiled: from the start of the process to the first tick of /clock."""
-    start("dynamics").wait_for_output("waiting for a law", LIMIT)  # compiled, if it was not
-    began = time.monotonic()
-    start("dynamics", "--ros-args", "-r", "__ns:=/second", "-p", "clock:=false").wait_for_output(
-        "waiting for a law", LIMIT
-    )
-    assert time.monotonic() - began < 4.0  # 1.5 s on a machine of one's own
+def test_first_publication_is_soon(start):
+    """With everything compiled: the processor's time that the process takes until it waits for a law. How long a user
+    waits is in the benchmark `start`."""
+    for _ in range(2):  # the first one compiles, if need be
+        node = start("dynamics")
+        node.wait_for_output("waiting for a law", LIMIT)
+        spent = psutil.Process(node.process.pid).cpu_times()
+        assert node.interrupt() == 0
+    assert spent.user + spent.system < 5.0  # 1.5 s on a machine of one's own

@@ -19,7 +19,7 @@ from rosgraph_msgs.msg import Clock
 
 from eel_msgs.msg import CurvatureLaw
 
-LIMIT = 20.0  # s; discovery alone was seen to take 2.75 s
+LIMIT = 90.0  # s; discovery alone was seen to take 2.75 s
 LATCHED = QoSProfile(depth=10, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 

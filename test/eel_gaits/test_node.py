@@ -187,7 +187,7 @@ def test_a_refused_set_says_why_and_changes_nothing(generator, client):
 )
 def test_a_bad_parameter_at_start_ends_it_with_one_line_and_status_2(start, argument, line):
     process = start("gait_generator", "--ros-args", "-p", argument)
-    assert process.wait(20.0) == 2
+    assert process.wait(90.0) == 2
     assert process.output().startswith(line)
     assert process.output().count("\n") == 1
 
@@ -196,10 +196,10 @@ def test_a_bad_params_file_ends_it_with_status_2(start, tmp_path):
     file = tmp_path / "parameters.yaml"
     file.write_text("gait_generator:\n  ros__parameters:\n    gait: turning\n    yaw_bend: 1e9\n")
     process = start("gait_generator", "--ros-args", "--params-file", str(file))
-    assert process.wait(20.0) == 2
+    assert process.wait(90.0) == 2
     assert process.output() == "gait_generator: yaw_bend must be <= 100000 rad/m, got 1000000000.0\n"
     process = start("gait_generator", "--ros-args", "--params-file", str(tmp_path / "missing.yaml"))
-    assert process.wait(20.0) == 2
+    assert process.wait(90.0) == 2
     assert "missing.yaml" in process.output() and "Traceback" not in process.output()
 
 
@@ -208,9 +208,8 @@ def test_a_bad_params_file_ends_it_with_status_2(start, tmp_path):
 def test_a_signal_ends_it_with_status_0_within_a_second(generator, sent, delay):
     process = generator()
     time.sleep(delay)  # the moment of the signal is what is tried here
-    began = time.monotonic()
-    assert process.interrupt(sent, timeout=10.0) == 0
-    assert time.monotonic() - began < 1.0
+    assert process.time_to_end(sent) < 1.0
+    assert process.status == 0
     assert "Traceback" not in process.output()
 
 
@@ -222,5 +221,5 @@ def test_a_second_signal_does_no_harm(generator, delay):
     time.sleep(delay)  # from the loop to the last moments of the interpreter
     process.process.send_signal(signal.SIGTERM)
     process.process.send_signal(signal.SIGINT)
-    assert process.wait(10.0) == 0
+    assert process.wait(60.0) == 0
     assert "Traceback" not in process.output()

@@ -69,6 +69,20 @@ def body_message(stations: int) -> BodyGeometry:
     )
 
 
+def arrived(*publishers) -> None:
+    """Waits until their subscribers have all that was published; a node that is then told to end takes it in first."""
+    for publisher in publishers:
+        assert publisher.wait_for_all_acked(rclpy.duration.Duration(seconds=90)), publisher.topic_name
+
+
+def found(*publishers) -> None:
+    """Waits until each has a subscriber."""
+    limit = time.monotonic() + 90
+    while min(publisher.get_subscription_count() for publisher in publishers) < 1:
+        assert time.monotonic() < limit, "nobody listens"
+        time.sleep(0.02)
+
+
 def diagnostics(nanoseconds: int) -> DiagnosticArray:
     status = DiagnosticStatus(level=b"\0", name="/dynamics", message="running", hardware_id="simulation")
     status.values = [KeyValue(key="law", value="falling"), KeyValue(key="real_time_factor", value="0")]
@@ -92,7 +106,7 @@ def main() -> None:
     swimmer = made_up.Swimmer(stations)
     count = round(duration * rate) + 1
     samples = [messages(swimmer, round(k * 1e9 / rate)) for k in range(count)]
-    limit = time.monotonic() + 30
+    limit = time.monotonic() + 90
     while min(publisher.get_subscription_count() for publisher in [*publishers.values(), status]) < wanted:
         assert time.monotonic() < limit, "no subscribers came"
         time.sleep(0.02)
@@ -110,7 +124,7 @@ def main() -> None:
                         assert time.monotonic() < start + 120, f"{topic} is stuck"
                         time.sleep(0.002)
     for publisher in publishers.values():
-        publisher.wait_for_all_acked(rclpy.duration.Duration(seconds=30))
+        publisher.wait_for_all_acked(rclpy.duration.Duration(seconds=90))
     print(f"published {count} samples {runs} times in {time.monotonic() - start:.2f} s", flush=True)
     rclpy.shutdown()
 

@@ -3,9 +3,10 @@
 from pathlib import Path
 
 import made_up
+from eel_viz.destination import close_stream
+from eel_viz.file import File
 from eel_viz.loggers import Loggers, Rates
 from eel_viz.settings import Settings
-from eel_viz.sinks import File, close_stream
 
 from eel_viz import messages
 

@@ -3,11 +3,12 @@
 import made_up
 import numpy as np
 import pytest
+from eel_viz.destination import close_stream
+from eel_viz.file import File
 from eel_viz.loggers import Loggers, Rates
 from eel_viz.pairs import Pairs
 from eel_viz.reading import read
 from eel_viz.settings import Settings
-from eel_viz.sinks import File, close_stream
 from made_up_recording import body, sample
 
 from eel_viz import entities

@@ -6,7 +6,7 @@ import made_up
 import numpy as np
 import pytest
 from eel_viz.reading import read
-from fake_swimmer import LATCHED, TOPICS, body_message, messages
+from fake_swimmer import LATCHED, TOPICS, arrived, body_message, messages
 
 from eel_msgs.msg import BodyGeometry, CurvatureLaw
 from eel_viz import entities
@@ -21,9 +21,9 @@ def test_who_comes_late_sees_the_present_at_once(start, network, tmp_path):
         (CurvatureLaw, "curvature_law", CurvatureLaw(name="of long ago")),
     ):
         network.create_publisher(kind, topic, LATCHED).publish(message)
-    publishers = {topic: network.create_publisher(kind, topic, 10) for topic, kind in TOPICS.items()}
+    publishers = {topic: network.create_publisher(kind, topic, 1000) for topic, kind in TOPICS.items()}
     swimmer, sent, arrival, node = made_up.Swimmer(21), 0, None, None
-    deadline = time.monotonic() + 40
+    deadline = time.monotonic() + 90
     while arrival is None or sent < arrival + 60:
         if sent == 20:
             node = start("visualiser", "--ros-args", "-p", "sink:=[save]", "-p", f"recording:={tmp_path / 'late.rrd'}")
@@ -34,7 +34,7 @@ def test_who_comes_late_sees_the_present_at_once(start, network, tmp_path):
         sent += 1
         time.sleep(0.02)
         assert time.monotonic() < deadline, node.output()
-    time.sleep(0.5)
+    arrived(*publishers.values())
     assert node.interrupt() == 0, node.output()
     stamps = read(tmp_path / "late.rrd", entities.BACKBONE).stamps
     assert BEGIN + 20 * STEP < stamps[0] <= BEGIN + (arrival + 10) * STEP  # not from the start, and soon

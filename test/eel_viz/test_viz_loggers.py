@@ -282,9 +282,10 @@ def test_the_floor_stays_below_and_its_labels_say_where(record_made_up):
 
 
 def test_stations_may_change_in_mid_run(record_made_up, tmp_path):
+    from eel_viz.destination import close_stream
+    from eel_viz.file import File
     from eel_viz.loggers import Loggers, Rates
     from eel_viz.settings import Settings
-    from eel_viz.sinks import File, close_stream
     from made_up_recording import sample
 
     settings = Settings(recording=str(tmp_path / "changing.rrd"))
@@ -303,9 +304,10 @@ def test_stations_may_change_in_mid_run(record_made_up, tmp_path):
 
 
 def test_the_order_of_topics_does_not_matter(tmp_path):
+    from eel_viz.destination import close_stream
+    from eel_viz.file import File
     from eel_viz.loggers import Loggers, Rates
     from eel_viz.settings import Settings
-    from eel_viz.sinks import File, close_stream
     from made_up_recording import sample
 
     paths = []
@@ -333,9 +335,10 @@ def test_the_order_of_topics_does_not_matter(tmp_path):
 
 
 def test_a_lower_rate_for_a_live_viewer(tmp_path):
+    from eel_viz.destination import close_stream
+    from eel_viz.file import File
     from eel_viz.loggers import Loggers, Rates
     from eel_viz.settings import Settings
-    from eel_viz.sinks import File, close_stream
     from made_up_recording import sample
 
     settings = Settings(recording=str(tmp_path / "live.rrd"))

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from eel_viz.reading import read
 from eel_viz.viewer import native_viewer
-from fake_swimmer import TOPICS, body_message, messages
+from fake_swimmer import TOPICS, arrived, body_message, found, messages
 
 from eel_viz import entities
 
@@ -39,13 +39,6 @@ def visualise(start, recording, *parameters, **remap):
     node = start("visualiser", "--ros-args", *arguments, *[word for rule in remap.values() for word in ("-r", rule)])
     node.wait_for_output("saving to")
     return node
-
-
-def heard(publishers, limit=20.0):
-    deadline = time.monotonic() + limit
-    while min(publisher.get_subscription_count() for publisher in publishers) < 1:
-        assert time.monotonic() < deadline, "the visualiser was not found"
-        time.sleep(0.02)
 
 
 def test_a_run_without_a_pace_is_complete_and_a_reset_begins_a_second_file(start, fresh_domain, tmp_path):
@@ -78,19 +71,22 @@ def test_a_run_without_a_pace_is_complete_and_a_reset_begins_a_second_file(start
 )
 @pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_in_mid_run_leaves_a_complete_file(start, network, tmp_path, sent):
-    publishers = {topic: network.create_publisher(kind, topic, 10) for topic, kind in TOPICS.items()}
+    publishers = {topic: network.create_publisher(kind, topic, 1000) for topic, kind in TOPICS.items()}
     node = visualise(start, tmp_path / "run.rrd")
-    heard(publishers.values())
+    found(*publishers.values())
     model = made_up.Swimmer(11)
-    for k in range(100):
+    for k in range(150):
         for topic, message in messages(model, k * 10**7).items():
             publishers[topic].publish(message)
-        time.sleep(0.005)
+        if k == 100:
+            arrived(*publishers.values())
     assert node.interrupt(sent) == 0, node.output()
     assert "Traceback" not in node.output()
     assert "received: " in node.output()
     verify(tmp_path / "run.rrd")
-    assert len(read(tmp_path / "run.rrd", entities.POSITION).stamps) > 50
+    stamps = read(tmp_path / "run.rrd", entities.POSITION).stamps
+    assert len(stamps) > 100
+    np.testing.assert_array_equal(stamps, np.arange(len(stamps)) * 10**7)
 
 
 @pytest.mark.fault(
@@ -107,7 +103,7 @@ def test_bad_messages_are_said_once_each_and_the_rest_goes_on(start, network, tm
     publishers = {topic: network.create_publisher(kind, topic, 100) for topic, kind in TOPICS.items()}
     body = network.create_publisher(BodyGeometry, "body", latched)
     node = visualise(start, tmp_path / "run.rrd")
-    heard([*publishers.values(), body])
+    found(*publishers.values(), body)
 
     def send(k, stations=11, spoil=lambda sample: None):
         sample = messages(made_up.Swimmer(stations), k * 10**8)
@@ -135,16 +131,16 @@ def test_bad_messages_are_said_once_each_and_the_rest_goes_on(start, network, tm
     for k, spoil in enumerate((nan_everywhere, sizes_that_do_not_fit, no_unit_quaternions), start=1):
         for _ in range(3):
             send(k, spoil=spoil)
-    bad = body_message(11)
+    bad, worse = body_message(11), body_message(11)
     bad.half_width[3] = -1.0
-    body.publish(bad)
-    body.publish(body_message(11))
-    node.wait_for_output("half_width has negative values")
-    time.sleep(0.5)  # topics are not in order among each other
+    worse.half_height[3] = -1.0
+    for each in (bad, body_message(11), worse):
+        body.publish(each)
+    node.wait_for_output("half_height has negative values")  # by then it has the good one
     send(4, stations=2)
     send(5, stations=101)
     send(6)
-    time.sleep(1.0)
+    arrived(*publishers.values())
     assert node.interrupt() == 0, node.output()
     output = node.output()
     for words in (
@@ -162,6 +158,7 @@ def test_bad_messages_are_said_once_each_and_the_rest_goes_on(start, network, tm
         "internal_wrench has 2 stations and had 11",
         "no body has come",
         "body: half_width has negative values, the least is -1 m",
+        "body: half_height has negative values, the least is -1 m",
     ):
         assert output.count(words) == 1, f"{words}\n{output}"
     assert "Traceback" not in output
@@ -192,7 +189,7 @@ def test_what_cannot_be_is_refused_in_one_line_with_status_2(start, tmp_path, mo
     monkeypatch.chdir(tmp_path)
     given = [setting] if setting.startswith("sink") else ["sink:=[save]", setting]
     node = start("visualiser", "--ros-args", *[word for one in given for word in ("-p", one)])
-    assert node.wait(30.0) == 2, node.output()
+    assert node.wait(90.0) == 2, node.output()
     said = [line for line in node.output().splitlines() if line.strip()]
     assert len(said) == 1, node.output()
     assert words in said[0]
@@ -203,10 +200,10 @@ def test_parameters_take_integers_and_describe_themselves(start, network, tmp_pa
 
     node = visualise(start, tmp_path / "run.rrd", "rate:=10", "torque_limit:=2", "stop_with_publisher:=false")
     client = AsyncParameterClient(network, "visualiser")
-    assert client.wait_for_services(timeout_sec=20.0)
+    assert client.wait_for_services(timeout_sec=90.0)
 
     def ask(future):
-        network.executor_of_test.spin_until_future_complete(future, timeout_sec=20.0)
+        network.executor_of_test.spin_until_future_complete(future, timeout_sec=90.0)
         return future.result()
 
     described = {one.name: one for one in ask(client.describe_parameters(["rate", "sink", "port"])).descriptors}
@@ -225,12 +222,12 @@ def test_a_namespace_keeps_swimmers_apart(start, network, tmp_path):
     node = visualise(start, tmp_path / "run.rrd", space="__ns:=/second")
     mine = network.create_publisher(TOPICS["head_pose"], "/second/head_pose", 100)
     other = network.create_publisher(TOPICS["head_pose"], "/head_pose", 100)
-    heard([mine])
+    found(mine)
     for k in range(5):
         message = messages(made_up.Swimmer(5), k * 10**8)["head_pose"]
-        mine.publish(message)
         other.publish(messages(made_up.Swimmer(5), (k + 50) * 10**8)["head_pose"])
-    time.sleep(1.0)
+        mine.publish(message)
+    arrived(mine)
     assert node.interrupt() == 0
     np.testing.assert_array_equal(read(tmp_path / "run.rrd", entities.POSITION).stamps, np.arange(5) * 10**8)
 
@@ -244,14 +241,16 @@ def test_a_law_that_is_heard_from_either_kind_of_publisher_is_shown_once(start, 
     early = network.create_publisher(CurvatureLaw, "curvature_law", latched)
     early.publish(CurvatureLaw(name="before the start"))
     node = visualise(start, tmp_path / "run.rrd")
-    heard([early])
     volatile = network.create_publisher(CurvatureLaw, "curvature_law", 10)
-    heard([volatile])
-    time.sleep(1.0)
-    early.publish(CurvatureLaw(name="latched"))
-    time.sleep(0.5)
-    volatile.publish(CurvatureLaw(name="volatile"))
-    time.sleep(1.0)
+    deadline = time.monotonic() + 90
+    while (early.get_subscription_count(), volatile.get_subscription_count()) != (2, 1):
+        assert time.monotonic() < deadline, "its two subscriptions were not found"
+        time.sleep(0.02)
+    for publisher, name in ((early, "latched"), (volatile, "volatile")):
+        arrived(early, volatile)
+        time.sleep(1.0)  # it looks every 30 ms; a law that both subscriptions have must not meet the next one half way
+        publisher.publish(CurvatureLaw(name=name))
+    arrived(volatile)
     assert node.interrupt() == 0
     texts = [row[0] for row in read(tmp_path / "run.rrd", entities.LOG)["text"]]
     assert texts == [f"law {name!r} published" for name in ("before the start", "latched", "volatile")]
@@ -265,13 +264,13 @@ def test_served_data_reaches_a_viewer_that_comes_later(start, network, tmp_path,
     node = start("visualiser", "--ros-args", *[word for setting in settings for word in ("-p", setting)])
     node.wait_for_output(f"http://127.0.0.1:{web}/")
     publisher = network.create_publisher(TOPICS["head_twist"], "head_twist", 100)
-    heard([publisher])
+    found(publisher)
     for k in range(20):
         publisher.publish(messages(made_up.Swimmer(5), k * 10**8)["head_twist"])
-    time.sleep(1.0)
+    arrived(publisher)
     with viewer((640, 360)) as client:
         client.open([f"rerun+http://127.0.0.1:{port}/proxy"])
-        deadline = time.monotonic() + 30
+        deadline = time.monotonic() + 90
         ends = []
         while time.monotonic() < deadline and 19 * 10**8 not in ends:
             time.sleep(0.3)
@@ -291,14 +290,14 @@ def test_another_swimmer_is_laid_over_the_first(start, network, tmp_path):
         {topic: network.create_publisher(kind, f"{space}/{topic}", 100) for topic, kind in TOPICS.items()}
         for space in ("", "/second")
     )
-    heard([*mine.values(), *others.values()])
+    found(*mine.values(), *others.values())
     count = 20
     for k in range(count):
         for publishers, offset in ((mine, 0.0), (others, 0.25)):
             swimmer = made_up.Swimmer(11, offset=(0.0, offset, 0.0))
             for topic, message in messages(swimmer, k * 10**7).items():
                 publishers[topic].publish(message)
-    time.sleep(1.0)
+    arrived(*mine.values(), *others.values())
     assert node.interrupt() == 0, node.output()
     distance = read(tmp_path / "run.rrd", entities.DISTANCE)
     np.testing.assert_array_equal(distance.stamps, np.arange(count) * 10**7)

@@ -37,7 +37,7 @@ def main() -> None:
         for connection in played:
             kind = message_class(connection.msgtype)
             publishers[connection.topic] = node.create_publisher(kind, connection.topic, quality(connection))
-        limit = time.monotonic() + 60
+        limit = time.monotonic() + 90
         while min(publisher.get_subscription_count() for publisher in publishers.values()) < 1:
             assert time.monotonic() < limit, "nobody listens"
             time.sleep(0.02)
@@ -54,7 +54,7 @@ def main() -> None:
             if connection.topic in UNIQUE:  # what the others need is there before them
                 publishers[connection.topic].wait_for_all_acked(rclpy.duration.Duration(seconds=10))
     for publisher in publishers.values():
-        publisher.wait_for_all_acked(rclpy.duration.Duration(seconds=30))
+        publisher.wait_for_all_acked(rclpy.duration.Duration(seconds=90))
     rclpy.shutdown()
 
 

@@ -63,7 +63,25 @@ def stamps(messages: list) -> np.ndarray:
 
 
 def swim(start, folder: Path, *, remap: tuple[str, ...] = ()) -> Results:
-    """Start recorder, visualiser, gait generator and dynamics; wait until all that ends by itself has ended well."""
+    """Start recorder, visualiser, gait generator and dynamics; wait until all that ends by itself has ended well.
+
+    Where that fails all are ended, so that it can be tried again beside nobody.
+    """
+    nodes = []
+
+    def begin(*words: str):
+        nodes.append(start(*words))
+        return nodes[-1]
+
+    try:
+        return _swim(begin, folder, remap)
+    except BaseException:
+        for node in reversed(nodes):
+            node.end()
+        raise
+
+
+def _swim(start, folder: Path, remap: tuple[str, ...]) -> Results:
     recording, bag = folder / "swim.rrd", folder / "bag"
     recorder = start("record", "--output", str(bag), "--stop-with-publisher", *remap)
     visualiser = start(
@@ -83,5 +101,5 @@ def swim(start, folder: Path, *, remap: tuple[str, ...] = ()) -> Results:
         "-p", "real_time_factor:=0", "-p", "wait_for_subscribers:=2", *remap,
     )  # fmt: skip
     for node in (dynamics, visualiser, recorder):
-        assert node.wait(60.0) == 0, node.output()
+        assert node.wait(90.0) == 0, node.output()
     return Results(bag, recording)

@@ -1,13 +1,12 @@
 """Ctrl-C and SIGTERM end each node within a second, with status 0 and without a traceback."""
 
-import os
 import signal
 import time
 
 import pytest
 
-LIMIT = 1.0  # s
-ATTEMPTS = 3  # a machine that is busy with something else may delay one of them; a node that is slow is slow in all
+LIMIT = 1.0  # s, less what the machine was busy with others (NodeProcess.time_to_end)
+ATTEMPTS = 3  # a machine that stands still may delay one of them; a node that is slow is slow in all
 NODES = {
     "gait_generator": ("--ros-args",),
     "dynamics": ("--ros-args",),
@@ -17,10 +16,10 @@ NODES = {
 
 def time_to_end(node, sent) -> float:
     """Seconds from the signal to the end, which must be a good one."""
-    began = time.monotonic()
-    assert node.interrupt(sent) == 0, node.output()
+    took = node.time_to_end(sent)
+    assert node.status == 0, node.output()
     assert "Traceback" not in node.output()
-    return time.monotonic() - began
+    return took
 
 
 @pytest.mark.fault(
@@ -54,7 +53,7 @@ def test_signal_ends_a_swim(start, fresh_domain, sent):
 
 def test_unknown_gait_is_one_clear_error(start):
     node = start("gait_generator", "--ros-args", "-p", "gait:=moonwalk")
-    assert node.wait(20.0) == 2
+    assert node.wait(90.0) == 2
     said = [line for line in node.output().splitlines() if line.strip()]
     assert len(said) == 1 and "gait" in said[0] and "moonwalk" in said[0], node.output()
 
@@ -64,16 +63,14 @@ def test_unknown_gait_is_one_clear_error(start):
 )
 @pytest.mark.parametrize("executable", ["dynamics", "visualiser"])
 def test_signal_at_any_moment(start, fresh_domain, tmp_path, monkeypatch, executable):
-    """Moments from the first line on; at each the first attempt that is quick enough counts. A machine that has to do
-    n times what it can ends a process n times later."""
-    limit = LIMIT * max(1.0, os.getloadavg()[0] / os.cpu_count())
+    """Moments from the first line on; at each the first attempt that is quick enough counts."""
     monkeypatch.chdir(tmp_path)
     start("gait_generator")
     for delay, sent in ((0.03, signal.SIGINT), (0.1, signal.SIGTERM), (0.3, signal.SIGINT)):
         times = []
-        while min(times, default=limit) >= limit and len(times) < ATTEMPTS:
+        while min(times, default=LIMIT) >= LIMIT and len(times) < ATTEMPTS:
             node = start(executable, *NODES[executable])
             node.wait_for_output("[INFO]")
             time.sleep(delay)  # the moment of the signal is what is tried here
             times.append(time_to_end(node, sent))
-        assert min(times) < limit, (delay, times)
+        assert min(times) < LIMIT, (delay, times)

@@ -20,7 +20,7 @@ for space in poses:
     node.create_subscription(PoseStamped, space + "/head_pose", poses[space].append, every)
 node.create_subscription(DiagnosticArray, "/diagnostics", statuses.append, every)
 print("ready", flush=True)
-deadline = time.monotonic() + 30
+deadline = time.monotonic() + 90
 while time.monotonic() < deadline:
     rclpy.spin_once(node, timeout_sec=0.1)
     names = {s.name for a in statuses for s in a.status}
@@ -40,7 +40,6 @@ rclpy.shutdown()
 @pytest.mark.fault(
     "neighbours", "two eels in two namespaces", "each hears and says its own; only /clock and /diagnostics are shared"
 )
-@pytest.mark.timeout(90)
 def test_two_eels(start, fresh_domain, tmp_path):
     listener = start(sys.executable, "-c", LISTEN)
     listener.wait_for_output("ready")
@@ -48,7 +47,7 @@ def test_two_eels(start, fresh_domain, tmp_path):
         remap = ("--ros-args", "-r", f"__ns:={space}")
         start("gait_generator", *remap, "-p", f"gait:={gait}")
         start("dynamics", *remap, "-p", "duration:=3.0", "-p", "real_time_factor:=0", "-p", "wait_for_subscribers:=1")
-    assert listener.wait(60.0) == 0, listener.output()
+    assert listener.wait(120.0) == 0, listener.output()
     heard = json.loads([line for line in listener.output().splitlines() if line.startswith("{")][-1])
     assert heard["count"] == {"/left": 301, "/right": 301}
     assert heard["end"]["/left"] != heard["end"]["/right"]
@@ -60,9 +59,9 @@ def test_a_name_of_its_own(start, fresh_domain):
     start("gait_generator", "--ros-args", "-r", "__node:=brain", "-r", "__ns:=/left").wait_for_output("left.brain")
     nodes = subprocess.run(
         [sys.executable, "-c", "import rclpy, time; rclpy.init(); n = rclpy.create_node('x')\n"
-         "end = time.monotonic() + 10\n"
+         "end = time.monotonic() + 60\n"
          "while ('brain', '/left') not in n.get_node_names_and_namespaces() and time.monotonic() < end: pass\n"
          "print(n.get_node_names_and_namespaces())"],
-        capture_output=True, text=True, timeout=30,
+        capture_output=True, text=True, timeout=90,
     )  # fmt: skip
     assert "('brain', '/left')" in nodes.stdout, nodes.stdout + nodes.stderr

@@ -1,7 +1,9 @@
 """What is left of a recording when the disk is full, the process is killed, or a viewer stops reading."""
 
+import math
 import os
 import signal
+import struct
 import sys
 import time
 
@@ -9,8 +11,9 @@ import numpy as np
 import pytest
 from eel_viz.reading import read
 from eel_viz.viewer import free_port
-from rosbags.highlevel import AnyReader
+from rosbags.highlevel import AnyReader, AnyReaderError
 from soak import Clock
+from swim_client import LIMIT
 
 from eel_viz import entities
 
@@ -38,8 +41,8 @@ def test_a_disk_that_is_full(start, fresh_domain, tmp_path):
     node = visualise(start, "sink:=[save]", f"recording:={tmp_path / 'run.rrd'}", limit_of_files=1500)
     node.wait_for_output("saving to")
     dynamics = swim(start, "real_time_factor:=0", "duration:=20", "wait_for_subscribers:=1")
-    node.wait_for_output("cannot be written any more: File too large; it ends here", 60.0)
-    assert dynamics.wait(60.0) == 0 and "stuck" not in dynamics.output(), dynamics.output()
+    node.wait_for_output("cannot be written any more: File too large; it ends here", LIMIT)
+    assert dynamics.wait(LIMIT) == 0 and "stuck" not in dynamics.output(), dynamics.output()
     assert node.interrupt() == 1 and "Traceback" not in node.output(), node.output()
     assert node.output().count("cannot be written") == 1
     stamps = read(tmp_path / "run.rrd", entities.POSITION).stamps
@@ -57,21 +60,37 @@ def test_what_is_killed_leaves_what_it_had(start, fresh_domain, tmp_path):
     node.wait_for_output("saving to")
     recorder.wait_for_output("recording to")
     dynamics = swim(start, "real_time_factor:=1", "wait_for_subscribers:=2")
-    dynamics.wait_for_output("taken on", 90.0)
+    dynamics.wait_for_output("taken on")
     clock = Clock()
-    while clock.time < 3.0:
-        clock.hear(0.05)
+
+    def newest_in_the_bag():
+        with AnyReader([tmp_path / "bag"]) as bag:
+            wanted = [connection for connection in bag.connections if connection.topic == "/internal_wrench"]
+            connection, _, raw = list(bag.messages(wanted))[-1]
+            stamp = bag.deserialize(raw, connection.msgtype).header.stamp
+        return stamp.sec + 1e-9 * stamp.nanosec
+
+    def newest_in_the_recording():
+        return read(tmp_path / "run.rrd", entities.POSITION).time[-1]
+
+    def age(newest):
+        try:
+            return clock.time - newest()
+        except (AnyReaderError, ValueError, KeyError, IndexError, OSError, struct.error):
+            return math.inf  # there is nothing yet, or it has changed while it was read
+
+    # what a reader finds while they record, at most so old; a machine that is busy may need some looks
+    for newest in (newest_in_the_bag, newest_in_the_recording):
+        deadline = time.monotonic() + LIMIT
+        while clock.time < 3.0 or age(newest) > 1.5:
+            assert time.monotonic() < deadline, (clock.time, age(newest))
+            clock.hear(0.05)
+    before = newest_in_the_bag(), newest_in_the_recording()
     for each in (node, recorder):
         each.process.kill()
         each.process.wait()
-    clock.hear(0.05)
     clock.close()
-    with AnyReader([tmp_path / "bag"]) as bag:
-        wanted = [connection for connection in bag.connections if connection.topic == "/internal_wrench"]
-        *_, (connection, _, raw) = bag.messages(wanted)
-        stamp = bag.deserialize(raw, connection.msgtype).header.stamp
-    for newest in (stamp.sec + 1e-9 * stamp.nanosec, read(tmp_path / "run.rrd", entities.WRENCH_NUMBERS).time[-1]):
-        assert clock.time - newest < 1.0 + 2.0  # two seconds for a machine that is busy
+    assert newest_in_the_bag() >= before[0] > 1.0 and newest_in_the_recording() >= before[1] > 1.0
     assert dynamics.status is None
 
 
@@ -108,15 +127,15 @@ def test_a_viewer_that_stops_reading_or_is_killed(start, fresh_domain, tmp_path)
     assert late.interrupt() == 0 and "Traceback" not in late.output(), late.output()
     dynamics = swim(start, "real_time_factor:=0", "duration:=20", "wait_for_subscribers:=2")
     for each in (node, brief):
-        each.wait_for_output("the viewer has not read for 2 s", 60.0)
+        each.wait_for_output("the viewer has not read for 2 s", LIMIT)
     assert brief.interrupt() == 0, brief.output()
-    assert dynamics.wait(60.0) == 0 and "stuck" not in dynamics.output(), dynamics.output()
+    assert dynamics.wait(LIMIT) == 0 and "stuck" not in dynamics.output(), dynamics.output()
     os.kill(stand_in.process.pid, signal.SIGCONT)
     node.wait_for_output("the viewer reads again")
     stand_in.process.kill()
     node.wait_for_output("has gone: it is tried again while running")
     start(sys.executable, "-c", STAND_IN, str(port)).wait_for_output("listening")
-    deadline = time.monotonic() + 20.0
+    deadline = time.monotonic() + LIMIT
     while node.output().count("connected to the viewer") < 2:
         assert time.monotonic() < deadline, node.output()
         time.sleep(0.05)

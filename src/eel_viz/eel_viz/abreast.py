@@ -2,10 +2,10 @@
 
 from collections.abc import Iterable, Iterator, Sequence
 
+from eel_viz.destination import Destination, Say
 from eel_viz.intake import SAMPLES, Intake
 from eel_viz.messages import stamp_of
 from eel_viz.runs import OtherRuns, Runs
-from eel_viz.sinks import Destination, Say
 
 Messages = Iterable[tuple[str, object]]  # topic, a name of `Intake.topics`, and message
 OFTEN = 100  # messages between two looks at what waits to be sent

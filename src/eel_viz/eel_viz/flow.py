@@ -24,8 +24,8 @@ _abandoned: list = []
 
 
 class Flow:
-    """One stream of a `destination` (sinks.Destination): to the file `path`, to a viewer if it is live, or to whatever
-    the caller wants, which is then the caller's to look after."""
+    """One stream of a `Destination`: to the file `path`, to a viewer if it is live, or to whatever the caller wants,
+    which is then the caller's to look after."""
 
     def __init__(self, stream: rr.RecordingStream, destination, path: pathlib.Path | None) -> None:
         self._stream, self._destination, self._path = stream, destination, path

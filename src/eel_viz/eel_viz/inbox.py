@@ -12,6 +12,8 @@ from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from rclpy.serialization import deserialize_message
 
+from eel_viz.succession import Succession
+
 BATCH = 64  # messages of one topic before the next has its turn
 
 
@@ -37,10 +39,15 @@ class Inbox:
         self._node, self._group = node, Untouched()
         self._subscriptions: list[tuple] = []
 
-    def listen(self, kind: type, topic: str, show: Callable, quality: QoSProfile) -> None:
-        """Messages of `kind` on `topic` go to `show`, from `take`."""
+    def listen(self, kind: type, topic: str, show: Callable[..., None], quality: QoSProfile) -> None:
+        """Messages of `kind` on `topic` go to `show(message, successor)`, from `take`; `successor`: whether it is the
+        first one of another publisher than before."""
         made = self._node.create_subscription(kind, topic, show, quality, callback_group=self._group)
-        self._subscriptions.append((made, show))
+        self._subscriptions.append((made, show, Succession(lambda: self._publishers(topic))))
+
+    def _publishers(self, topic: str) -> set[tuple]:
+        """Their identifiers."""
+        return {tuple(info.endpoint_gid) for info in self._node.get_publishers_info_by_topic(topic)}
 
     def take(self) -> int:
         """Show what has come, `BATCH` of a topic at most; returns how many.
@@ -48,12 +55,14 @@ class Inbox:
         Messages are taken as bytes: otherwise a message would be made even where none has come.
         """
         count = 0
-        for subscription, show in self._subscriptions:
+        for subscription, show, succession in self._subscriptions:
             with subscription.handle:  # else it could be destroyed meanwhile
                 for _ in range(BATCH):
                     taken = subscription.handle.take_message(subscription.msg_type, True)
                     if taken is None:
                         break
-                    show(deserialize_message(taken[0], subscription.msg_type))
+                    data, about = taken
+                    successor = succession.changes(about["publication_sequence_number"], about["source_timestamp"])
+                    show(deserialize_message(data, subscription.msg_type), successor)
                     count += 1
         return count

@@ -8,9 +8,9 @@ from collections import Counter
 from collections.abc import Callable
 
 from eel_viz import messages
+from eel_viz.destination import Say
 from eel_viz.messages import BadMessage, stamp_of
 from eel_viz.runs import Runs
-from eel_viz.sinks import Say
 
 COARSE = 4  # stations, below which a backbone says little about the shape
 BODY_LIMIT = 2.0  # s after the first backbone in which the body should have come
@@ -48,12 +48,12 @@ class Intake:
         """All that `take` knows."""
         return (*SAMPLES, *self._others)
 
-    def take(self, topic: str, message) -> None:
-        """One message of `topic`, a name in `topics`."""
+    def take(self, topic: str, message, *, successor: bool = False) -> None:
+        """One message of `topic`, a name in `topics`; `successor`: the first one of another publisher."""
         self.received[topic] += 1
         try:
             if topic in SAMPLES:
-                self._sample(topic, message)
+                self._sample(topic, message, successor)
             else:
                 self._others[topic](message)
         except BadMessage as problem:
@@ -72,14 +72,14 @@ class Intake:
         self._runs.close()
         return ", ".join(f"{topic} {count}" for topic, count in self.received.items()) or "nothing"
 
-    def _sample(self, topic: str, message) -> None:
+    def _sample(self, topic: str, message, successor: bool) -> None:
         try:
             stamp, values = stamp_of(message), SAMPLES[topic](message)
         except AttributeError as error:  # from a bag of long ago
             raise BadMessage("type", f"is another version's: {error}") from error
         if hasattr(message, "x"):
             self._watch_stations(topic, len(message.x))
-        for loggers in self._runs.at(topic, stamp):
+        for loggers in self._runs.at(topic, stamp, successor=successor):
             getattr(loggers, topic)(stamp, *values)
 
     def _watch_stations(self, topic: str, count: int) -> None:

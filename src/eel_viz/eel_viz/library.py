@@ -10,9 +10,10 @@ from collections.abc import Sequence
 import rerun as rr
 
 from eel_viz.abreast import Messages, show
+from eel_viz.destination import Destination, Say
+from eel_viz.file import File
 from eel_viz.loggers import Rates
 from eel_viz.settings import Settings
-from eel_viz.sinks import Destination, File, Say
 
 SPACE = ""  # what a library's run has in place of a namespace
 

@@ -13,6 +13,8 @@ from rclpy.signals import SignalHandlerOptions
 
 ATTEND = 0.1  # s between two calls of `attend`
 PAUSE = 0.03  # s between two calls of `work` that found nothing
+LAST_LOOK = 0.25  # s at most, at the end, for what has arrived and is not yet taken
+EMPTY = 0.005  # s that the executor waits for a message there; three times in vain, and there is none
 
 
 def live(
@@ -21,11 +23,13 @@ def live(
     make: Callable[[], Node],
     attend: Callable[[Node], bool],
     work: Callable[[Node], bool] | None = None,
+    *,
+    complete: bool = False,
 ) -> int:
     """Make the node, serve it until a signal comes or `attend(node)` says False, and call its `close()`, if it has one.
 
     With `work` the node fetches its messages itself, there, and says whether it found some; the executor then only has
-    what is rare, such as questions about parameters.
+    what is rare, such as questions about parameters. `complete`: what has arrived when the end comes is taken too.
     Returns the exit status: 0; 1 with one line on stderr if the node says why it had to stop, in its `failure`; 2 with
     one line if `make` refuses its settings.
     """
@@ -55,6 +59,8 @@ def live(
                 executor.spin_once(timeout_sec=ATTEND)
             elif not work(node):
                 time.sleep(PAUSE)
+        if complete and not getattr(node, "failure", ""):
+            take_the_rest(executor, node, work)
     finally:
         executor.shutdown()
         if hasattr(node, "close"):
@@ -65,3 +71,16 @@ def live(
     if failure:
         sys.stderr.write(f"{name}: {failure}\n")
     return int(bool(failure))
+
+
+def take_the_rest(executor: SingleThreadedExecutor, node: Node, work: Callable[[Node], bool] | None) -> None:
+    """What has arrived when the end comes belongs to the run: take it, in `LAST_LOOK` [s] at most."""
+    limit, in_vain = time.monotonic() + LAST_LOOK, 0
+    while in_vain < 3 and time.monotonic() < limit:
+        began = time.monotonic()
+        if work is not None:
+            found = work(node)
+        else:
+            executor.spin_once(timeout_sec=EMPTY)
+            found = time.monotonic() - began < EMPTY
+        in_vain = 0 if found else in_vain + 1

@@ -47,7 +47,7 @@ class Visualiser(Node):
         self.settings = declare_settings(self)
         own = self.get_namespace().rstrip("/")
         self._runs = runs = Runs(
-            destinations(self.settings, self._say, self._warn, elsewhere=True),
+            destinations(self.settings, self._say, self._warn, live=True),
             name=own.strip("/") or "eel",
             warn=self._warn,
             crowded=lambda topic: self.count_publishers(topic) > 1,
@@ -79,7 +79,7 @@ class Visualiser(Node):
     @property
     def failure(self) -> str:
         """What could not be done; empty if all was."""
-        return "a recording ends before the run did" if self._runs.lost else ""
+        return "a recording lacks a part of its run" if self._runs.lost else ""
 
     def work(self) -> bool:
         """Show what has come; whether there was any."""
@@ -95,10 +95,10 @@ class Visualiser(Node):
         self._hear("", intake, "diagnostics", DiagnosticArray)
 
     def _hear(self, space: str, intake: Intake, topic: str, kind: type, *, latched: bool = False) -> None:
-        def receive(message):
+        def receive(message, successor):
             self._last_message = time.monotonic()
             self._present |= topic == SWIMMER  # a law alone is no swimmer
-            intake.take(topic, message)
+            intake.take(topic, message, successor=successor)
 
         self._inbox.listen(kind, f"{space}/{topic}", receive, keep_all(latched=latched))
 
@@ -113,7 +113,7 @@ def main(arguments: list[str] | None = None) -> int:
     """Run the node; the exit status is 0 after SIGINT or SIGTERM, 1 if a file could not be written to its end, 2 if a
     parameter is refused at start."""
     given = sys.argv if arguments is None else [NAME, *arguments]
-    return leave(live(NAME, DEFAULTS + given, Visualiser, Visualiser.attend, Visualiser.work))
+    return leave(live(NAME, DEFAULTS + given, Visualiser, Visualiser.attend, Visualiser.work, complete=True))
 
 
 if __name__ == "__main__":

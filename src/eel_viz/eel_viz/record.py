@@ -177,7 +177,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--duration", type=float, metavar="SECONDS", help="end after so much wall time")
     parser.add_argument("--stop-with-publisher", action="store_true", help="end when the swimmer has gone")
     options = parser.parse_args(remove_ros_args(args=words)[1:])
-    return live(NAME, words, lambda: Recorder(options), Recorder.attend)
+    return live(NAME, words, lambda: Recorder(options), Recorder.attend, complete=True)
 
 
 if __name__ == "__main__":

@@ -9,10 +9,10 @@ import time
 from collections import deque
 from collections.abc import Callable
 
+from eel_viz.destination import Destination, Say
 from eel_viz.flow import Flow
 from eel_viz.loggers import Loggers
 from eel_viz.messages import Body, Status
-from eel_viz.sinks import Destination, Say
 
 RETRY = 2.0  # s of wall time between two attempts at an absent viewer
 WALL_TIME = 10**17  # ns: later stamps are no simulation time
@@ -79,7 +79,7 @@ class Runs:
         self._resets: deque[float] = deque(maxlen=RESETS)
         self._tried = time.monotonic()
         self._warned = False
-        self.lost = False  # a file that could not be written to its end
+        self.lost = False  # a file that lacks a part of its run
         self._runs: dict[int, Run] = {}
         self._begin(1)
 
@@ -88,20 +88,20 @@ class Runs:
         """Newest stamp of the newest run [ns]."""
         return self._newest.latest
 
-    def at(self, topic: str, stamp: int) -> list[Loggers]:
-        """The loggers that a message of `topic` with `stamp` [ns] goes to."""
+    def at(self, topic: str, stamp: int, *, successor: bool = False) -> list[Loggers]:
+        """The loggers that a message of `topic` with `stamp` [ns] goes to; `successor`: it is the first one of another
+        publisher."""
         number, last = self._place.get(topic, (self._newest.number, stamp))
-        if stamp < last:
+        goes_on = stamp >= last and not successor
+        if not goes_on:
             if self._disorder(topic):
                 return []
             number += 1
             if number not in self._runs:
-                self._warn(
-                    f"stamps of {topic} went back from {last / 1e9:g} s to {stamp / 1e9:g} s: a new recording begins"
-                )
+                self._warn(f"{_reason(topic, last, stamp)}: a new recording begins")
                 self._begin(number)
         self._place[topic] = (number, stamp)
-        if stamp < last:
+        if not goes_on:
             self._close_before(min(place for place, _ in self._place.values()))
         run = self._runs[number]
         run.latest = max(run.latest, stamp)
@@ -150,6 +150,7 @@ class Runs:
             self.lost |= any(flow.lost for flow in run.flows.values())
         self._runs.clear()
         for destination in self._destinations:
+            self.lost |= destination.incomplete
             destination.close()
 
     @property
@@ -201,15 +202,22 @@ class Runs:
         return False
 
 
+def _reason(topic: str, last: int, stamp: int) -> str:
+    """Why a message does not belong to the run of the one before, whose stamp was `last` [ns]."""
+    if stamp < last:
+        return f"stamps of {topic} went back from {last / 1e9:g} s to {stamp / 1e9:g} s"
+    return f"another node publishes {topic} from {stamp / 1e9:g} s on"
+
+
 class OtherRuns:
     """The same runs, for the messages of the swimmer in the namespace `space` that they are compared with."""
 
     def __init__(self, runs: Runs, space: str) -> None:
         self._runs, self._space = runs, space
 
-    def at(self, topic: str, stamp: int) -> list:
+    def at(self, topic: str, stamp: int, *, successor: bool = False) -> list:
         """As `Runs.at`."""
-        return [loggers.other for loggers in self._runs.at(f"{self._space}/{topic}", stamp)]
+        return [loggers.other for loggers in self._runs.at(f"{self._space}/{topic}", stamp, successor=successor)]
 
     def body(self, body: Body) -> None:
         """As `Runs.body`."""
