@@ -279,6 +279,10 @@ def test_served_data_reaches_a_viewer_that_comes_later(start, network, tmp_path,
                 timeline.end for one in recordings for timeline in one.timelines if timeline.name == entities.TIMELINE
             ]
         assert 19 * 10**8 in ends
+        titles = {"Internal torque C(X)", "Speed and depth of the head", "Log"}
+        while not titles <= {view.name for view in client.get_state().views}:
+            assert time.monotonic() < deadline, "our arrangement is not shown"
+            time.sleep(0.3)
     assert node.interrupt() == 0, node.output()
     verify(tmp_path / "run.rrd")
     assert len(read(tmp_path / "run.rrd", entities.SPEED).stamps) == 20

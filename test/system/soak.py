@@ -15,6 +15,7 @@ import numpy as np
 
 RATE = 100.0  # Hz
 LOOK = 0.5  # s of wall time between two looks at the memory
+WINDOWS = 6  # in which looks are taken together
 LISTENER = """
 import sys
 import rclpy
@@ -51,9 +52,12 @@ class Soak:
     wall: float  # s
 
     def spread(self, node: str, *, after: float) -> float:
-        """Greatest less least memory from simulation time `after` [s] on, as a share of its median."""
-        values = self.memory[node][self.time >= after]
-        return float(np.ptp(values) / np.median(values))
+        """Greatest less least memory from simulation time `after` [s] on, as a share of its median: of the medians of
+        windows, as single looks may meet a buffer that is about to be given back."""
+        late = self.time >= after
+        window = np.minimum(WINDOWS * (self.time[late] - after) / (self.time[-1] - after), WINDOWS - 1).astype(int)
+        medians = [np.median(self.memory[node][late][window == k]) for k in range(WINDOWS) if np.any(window == k)]
+        return float(np.ptp(medians) / np.median(medians))
 
     def write(self, path: Path) -> None:
         """As .csv, one row a look."""

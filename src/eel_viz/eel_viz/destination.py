@@ -24,6 +24,7 @@ class Destination:
     def __init__(self, settings: Settings, rates: Rates, say: Say, warn: Say, *, live: bool) -> None:
         self.settings, self.rates, self.say, self.warn = settings, rates, say, warn
         self.live = live
+        self._arranged = False  # the viewer has our arrangement; in later runs the user's changes of it stay
 
     def file(self, run: int) -> pathlib.Path | None:
         """The file that run number `run` is written to; None where it goes elsewhere."""
@@ -40,6 +41,9 @@ class Destination:
         stream = rr.RecordingStream(APPLICATION, batcher_config=self._batches())
         stream.set_log_time_enabled(False)
         stream.set_sinks(sink, default_blueprint=self._blueprint())
+        if self.live and not self._arranged:  # a default one that comes after the first data is not looked at
+            stream.send_blueprint(self._blueprint(), make_active=True, make_default=True)
+            self._arranged = True
         stream.send_recording_name(name)
         return stream
 

@@ -27,7 +27,7 @@ class Settings:
     )
     recording: str = setting("", "file to save, .rrd; empty: eel-DATE-TIME.rrd in the working folder")
     viewer: str = setting("rerun+http://127.0.0.1:9876/proxy", "address of the viewer to connect to")
-    port: int = setting(9876, "port of the served data (gRPC), on this machine alone", minimum=1024, maximum=65535)
+    port: int = setting(9877, "port of the served data (gRPC), on this machine alone", minimum=1024, maximum=65535)
     web_port: int = setting(9090, "port of the served web viewer", minimum=1024, maximum=65535)
     blueprint: str = setting("overview", "arrangement shown first: overview, torques, motion or compare")
     compare: str = setting(

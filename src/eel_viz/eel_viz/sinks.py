@@ -37,6 +37,7 @@ class Served(Destination):
         self.uri = server.uri
         self._host = rr.RecordingStream(APPLICATION, send_properties=False)
         self._host.set_sinks(server)
+        self._host.send_recording_name("(server)")  # a viewer lists it beside the runs
         say(f"serving at {self.uri}; to look at it, now or later: rerun {self.uri}")
 
     def _sink(self, run: int) -> rr.GrpcSink:
@@ -92,6 +93,7 @@ class Connected(Destination):
         host, port = self._address
         if self._missed or listening(port, host):
             return False
+        self._arranged = False
         self._miss(f"the viewer at {self.settings.viewer} has gone")
         return True
 

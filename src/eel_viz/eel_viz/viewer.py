@@ -10,6 +10,7 @@ import pathlib
 import socket
 import subprocess
 import tempfile
+import threading
 import time
 from collections.abc import Iterator
 from typing import IO
@@ -47,14 +48,15 @@ def viewer(size: tuple[int, int] = (1920, 1080)) -> Iterator:
 
 def open_window(what: str) -> None:
     """A viewer on this machine's display, showing `what` (a file or an address); it stays when this process ends."""
-    subprocess.Popen(
-        [native_viewer(), "--port", str(free_port()), "--hide-welcome-screen", what],
+    process = subprocess.Popen(
+        [native_viewer(), "--port", str(free_port()), "--bind", "127.0.0.1", "--hide-welcome-screen", what],
         env={**os.environ, "RERUN_APP_ONLY": "true"},
         start_new_session=True,
         stdin=subprocess.DEVNULL,
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
     )
+    threading.Thread(target=process.wait, daemon=True).start()  # closed, it leaves nothing behind
 
 
 def display() -> bool:
