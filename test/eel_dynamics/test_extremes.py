@@ -216,3 +216,31 @@ def test_a_light_body_in_strong_drag_does_not_collapse_the_steps():
     run = simulate(falling(), 3.0, body=body, accuracy=1e-3)
     assert run.evaluations < 100_000
     assert np.abs(run.energy.residual).max() < 1e-2 * np.abs(run.energy.actuator_work).max()
+
+
+def test_one_who_is_thrown_in_keeps_the_target_without_a_ledger_too():
+    """The errors of Adams' steps add up in a spin: the pair of Dormand and Prince takes over."""
+    spins = [(2.0, 15.0), (-100.0, 60.0), (-10.0, 600.0), (-100.0, 0.1)]  # m/s, rad/s
+    twists = np.array([[*np.full(3, spin / np.sqrt(3.0)), speed, 0.0, 0.0] for speed, spin in spins])
+    scene = Scene(ledger=False, internal_wrench=False)
+    swims = {"duration": 0.2, "sample_period": 0.0125, "scenes": scene, "twists": twists}
+    batch = simulate_batch(straight(), **swims, accuracy=1e-4)
+    fine = simulate_batch(straight(), **swims, accuracy=Accuracy(name="fine", resolution=60.0, tolerance=1e-10))
+    apart = np.linalg.norm(batch.position - fine.position, axis=2).max(axis=1)
+    path = np.linalg.norm(np.diff(fine.position, axis=1), axis=2).sum(axis=1)
+    assert (apart < 1e-4 * np.maximum(path, 1.0)).all()
+
+
+def test_a_body_that_is_rolled_up_keeps_the_target():
+    """Three turns of the backbone are as three waves: the model has left its limits, the numbers have not."""
+    law = straight(wavelength=50.0, amplitude_0=10.0, amplitude_1=5.0, amplitude_2=20.0)
+    run = simulate(law, 2.0, accuracy=1e-3, verify=False)
+    assert run.error_estimate.position < 1e-3
+    assert any("touches itself" in text for text in run.warnings)
+
+
+@pytest.mark.parametrize("accuracy", [fixed(0.4), Accuracy(name="loose", resolution=26.0, tolerance=1.0)])
+def test_settings_by_hand_that_are_too_coarse_are_told_by_warning_and_estimate(accuracy):
+    run = simulate(straight(), 4.0, accuracy=accuracy, sample_period=0.25)
+    assert any("energy ledger" in text for text in run.warnings)
+    assert run.error_estimate.position > 1e-3

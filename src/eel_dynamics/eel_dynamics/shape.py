@@ -15,6 +15,7 @@ from eel_gaits.spline import natural_spline
 
 from .drive import AXES, Drive, Tabulation, factors
 
+TURN_POINTS = 64  # along the body, for the angle that a law bends it by
 MOST_KNOTS = 8  # of laws whose panels are cut at them
 NONE = np.zeros(0, dtype=np.int64)
 
@@ -214,9 +215,13 @@ def _split(tabulation: Tabulation, rows: np.ndarray) -> dict:
 
 
 def waves_of_law(law: Law, length: float) -> float:
-    """How many waves a law bends a body of `length` [m] into, at most; a spline counts an eighth of its intervals."""
+    """How many waves a law bends a body of `length` [m] into, at most; a spline counts an eighth of its intervals, a
+    turn of the backbone one wave, as its direction goes once around."""
     waves = [length * abs(term.wave_number) / (2.0 * np.pi) for term in law.terms]
-    return max([*waves, *((len(term.knots) - 1) / 8.0 for term in law.terms)], default=0.0)
+    waves += [(len(term.knots) - 1) / 8.0 for term in law.terms]
+    x = length * (np.arange(TURN_POINTS) + 0.5) / TURN_POINTS
+    turns = [np.mean(np.abs(term.amplitude_at(x))) * length / (2.0 * np.pi) for term in law.terms]
+    return float(max([*waves, *turns], default=0.0))
 
 
 def knots_of_law(law: Law) -> tuple[float, ...]:

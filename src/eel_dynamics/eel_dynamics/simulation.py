@@ -45,6 +45,7 @@ MOST_STEPS = 20_000.0  # per period of the law, or second; the most exact runs n
 SLOWEST = 1e-3  # body lengths per time scale, below which the head counts as at rest
 PART_OF_SPEED = 0.5  # of the speed that the shape gives the body: momenta below need not be exact to the last digit
 FIRST_STEP = 0.02  # of the longest
+THROWN = 0.2  # periods, in which one who starts faster than a swimmer goes by its length, or turns by one
 
 
 class SimulationStopped(RuntimeError):
@@ -114,13 +115,15 @@ class Simulation:
         self._out = profiles_of(1, len(self.x))
         self._current = np.array(self.scene.current)
         self._distributed = self.scene.tail_pressure == "distributed"
-        self._method = method_of(self.accuracy)
-        self.step = step_of(self._method)
         self._start = (
             checked_row("position", position, 3),
             checked_quaternion("orientation", orientation),
             checked_row("twist", twist, 6),
         )
+        if self._is_thrown(law):
+            self.accuracy = self.accuracy.of_violence()
+        self._method = method_of(self.accuracy)
+        self.step = step_of(self._method)
         if self.scene.planar:
             check_planar(*self._start)
         if not (np.isfinite(default_transition) and default_transition > 0.0):
@@ -455,15 +458,30 @@ class Simulation:
             step.time[2] = FIRST_STEP * self._control.step
         step.fresh[0] = 1
 
-    def _take_initial_state(self):
-        position, orientation, twist = self._start
-        self.state, self._works = np.zeros(13), np.zeros((1, 4))
-        self.state[:3], self.state[3:7] = position, orientation
+    def _relative_start(self) -> np.ndarray:
+        """Initial twist (6,) of the head relative to the water."""
+        _, orientation, twist = self._start
         relative = twist - 0.0
         if any(self.scene.current):
             relative[3:] -= matrix_of(orientation).T @ self._current
-        speed, spin = math.hypot(*relative[3:]), math.hypot(*relative[:3])
-        self._motion_scale = min(self.body.length / speed if speed else np.inf, 1.0 / spin if spin else np.inf)
+        return relative
+
+    def _scale_of(self, twist: np.ndarray) -> float:
+        """Time [s] in which a `twist` (6,) takes the body by its length, or turns it by one."""
+        speed, spin = math.hypot(*twist[3:]), math.hypot(*twist[:3])
+        return min(self.body.length / speed if speed else np.inf, 1.0 / spin if spin else np.inf)
+
+    def _is_thrown(self, law: Law | None) -> bool:
+        """Whether it starts much faster than `law` swims."""
+        periods = [term.period for term in law.terms if term.period] if isinstance(law, Law) else []
+        return self._scale_of(self._relative_start()) < THROWN * min(periods, default=1.0)
+
+    def _take_initial_state(self):
+        position, orientation, _ = self._start
+        self.state, self._works = np.zeros(13), np.zeros((1, 4))
+        self.state[:3], self.state[3:7] = position, orientation
+        relative = self._relative_start()
+        self._motion_scale = self._scale_of(relative)
         self._use_drive()
         self.kinetic_at_start = self._set_momentum(relative)
         self.step.time[:], self.step.count[:] = 0.0, 0

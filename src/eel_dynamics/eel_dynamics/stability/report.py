@@ -10,11 +10,23 @@ RATIOS = (1e-3, 1e-2, 1e-1, 0.5, 1.0, 10.0, 1e3)
 
 def report(maps) -> str:
     """Counts and worst errors of the maps, then the explicit treatment of the added mass."""
-    lines = ["| map | accurate | inaccurate | stopped | worst error | most steps |", "|---|---|---|---|---|---|"]
+    lines = [
+        "| map | accurate | inaccurate | of them warned of | of them told by the estimate | by neither | stopped | "
+        "beyond a limit of the model, and warned of | worst error by target | most steps |",
+        "|---|---|---|---|---|---|---|---|---|---|",
+    ]
     for each in maps:
-        counts = " | ".join(str(np.sum(each.outcome == kind)) for kind in (ACCURATE, INACCURATE, STOPPED))
-        lines.append(f"| {each.map.title} | {counts} | {each.worst:.1e} | {each.steps.max()} |")
-    lines += ["", f"Accurate: the head within {TARGET:g} of its path (or of the body, if longer) of a finer run's."]
+        accurate, inaccurate, stopped = (each.outcome == kind for kind in (ACCURATE, INACCURATE, STOPPED))
+        estimated, warned = each.estimate > 1.0, inaccurate & (each.warned | each.limits)
+        neither = inaccurate & ~warned & ~estimated
+        counts = accurate, inaccurate, warned, estimated, neither, stopped, each.limits
+        told = " | ".join(str(np.sum(kind)) for kind in counts)
+        lines.append(f"| {each.map.title} | {told} | {each.worst:.2g} | {each.steps.max()} |")
+    lines += [
+        "",
+        f"Accurate: the head within {TARGET:g} (a preset: its target) of its path, or of the body if longer, of a "
+        "finer run's.",
+    ]
     reasons = sorted({_reason(text) for each in maps for text in each.reason.ravel() if text})
     lines += [f"Reasons of the stops: {'; '.join(reasons) or 'none'}.", ""]
     lines += [
