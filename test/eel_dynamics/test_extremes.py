@@ -1,5 +1,6 @@
 """Driven anywhere, a run finishes or says why it stopped: nothing that is not finite comes back, nothing hangs."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -12,7 +13,7 @@ from hypothesis import strategies as st
 from eel_dynamics import Accuracy, Body, Scene, SimulationStopped, simulate, simulate_batch
 from eel_gaits import Law, Ramp, Term, falling, helix, still, straight
 
-MOST_STEPS = 1_000_000  # of 2 s; the worst found, a sudden start at 20 beats a second in thick water, takes 1.1e5
+MOST_STEPS = 100_000  # of 2 s at 1e-2; the worst of 4,000 takes 1.3e4, and 3.4e4 by steps of Adams
 
 
 def fixed(step):
@@ -22,6 +23,10 @@ def fixed(step):
 def finite(batch):
     arrays = batch.position, batch.orientation, batch.twist, batch.head_acceleration, batch.center_of_mass
     return all(np.isfinite(array).all() for array in (*arrays, *(batch.energy[name] for name in batch.energy.keys())))  # noqa: SIM118
+
+
+def finite_motion(batch):
+    return all(np.isfinite(array).all() for array in (batch.position, batch.orientation, batch.twist))
 
 
 def share_from_nowhere(batch, index):
@@ -76,6 +81,32 @@ def test_a_swimmer_driven_anywhere_finishes_or_says_why_not(count):
     shares = [share_from_nowhere(batch, index) for index in np.flatnonzero(moved & ~batch.stopped)]
     assert len(shares) > count // 10
     assert max(shares) < 0.05  # at a target of 1e-2
+
+
+def test_steps_of_adams_that_stability_keeps_short_fall_in_order():
+    """The motion alone is marched by Adams' steps: at their full order a light body in thick water takes 1.1e5."""
+    cases = {name: each[420:530] for name, each in anywhere(600, seed=2_000).items()}
+    scenes = [replace(scene, ledger=False, internal_wrench=False) for scene in cases["scenes"]]
+    batch = simulate_batch(duration=2.0, sample_period=0.25, accuracy=1e-2, **(cases | {"scenes": scenes}))
+    assert batch.accuracies[0].in_scene(scenes[0]).method == "adams"
+    assert finite_motion(batch) and not batch.stopped.any()
+    assert batch.steps.max() < 50_000
+
+
+@pytest.mark.parametrize("ledger", [False, True])
+def test_steps_are_counted_over_the_run_however_often_it_is_sampled(ledger, monkeypatch):
+    """Of 40 steps and as many per period, a run that needs more is stopped at the same place by 3 as by 3,000
+    samples."""
+    monkeypatch.setattr("eel_dynamics.simulation.SPARE_STEPS", 40.0)
+    monkeypatch.setattr("eel_dynamics.simulation.MOST_STEPS", 20.0)
+    stopped = []
+    for period in (1.0, 0.1, 0.001):
+        with pytest.raises(SimulationStopped, match="more steps per second") as caught:
+            scene = Scene(ledger=ledger, internal_wrench=ledger)
+            simulate(falling(), 3.0, scene=scene, accuracy=1e-6, sample_period=period, stations=2)
+        stopped.append((caught.value.time, caught.value.run.steps))
+    assert stopped[2][0] < 3.0 and len({steps for _, steps in stopped}) == 1
+    assert stopped[2][0] - stopped[1][0] < 0.1 and stopped[2][0] - stopped[0][0] < 1.0
 
 
 @few(40)

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .adams import HIGHEST, Past, adams_growth, extrapolate, past_of, remember
+from .adams import HIGHEST, SHORT, Past, adams_growth, defect_of_order, extrapolate, past_of, remember
 from .compiled import compiled, inlined, spliced
 from .drive import combine, combine_moments, factors
 from .kernel import add_head_twist, configure, momentum_rates, twist_of_momentum
@@ -52,7 +52,8 @@ class Control(NamedTuple):
     smallest: float  # s
     length: float  # m, scale of positions
     momentum_floor: float  # kg m/s, below which momentum counts as none
-    most_steps: float  # per second of motion, and at least once
+    most_steps: float  # per second of motion
+    spare_steps: float  # beyond these, to be spent at any time
     ledger: bool
     planar: bool
 
@@ -73,6 +74,7 @@ class Step(NamedTuple):
     momentum: np.ndarray  # (6,)
     scale: np.ndarray  # (2,) greatest angular and linear momentum so far
     count: np.ndarray  # (3,) int: steps, rejected steps, evaluations
+    budget: np.ndarray  # (1,) steps that may still be tried before the next are earned by motion
     fresh: np.ndarray  # (1,) int: 1 where k[-1] and power[-1] do not hold the start of the next step
     past: Past
 
@@ -94,6 +96,7 @@ def step_of(method: Method) -> Step:
         momentum=np.zeros(6),
         scale=np.zeros(2),
         count=np.zeros(3, dtype=np.int64),
+        budget=np.zeros(1),
         fresh=np.ones(1, dtype=np.int64),
         past=past_of(method.adams, STATE),
     )
@@ -301,17 +304,14 @@ def attempt(swimmer, drive, fields, current, method, control, step, start, lengt
     tolerance."""
     last = method.a.shape[0] - 1
     if method.adams > 0:
-        terms, ahead = extrapolate(step.past, method.adams, length, step.end, step.trial)
+        terms = extrapolate(step.past, length, step.end, step.trial)
         normalise(step.trial)
         step.count[2] += 1
         if not evaluate(swimmer, drive, fields, current, control, start + length, step.trial, step, step.k[last]):
             return SINGULAR, np.inf
         for k in range(STATE):
             step.k[1, k] = (step.trial[k] - step.end[k]) / length
-            step.defect[k] = step.k[last, k]
-            for j in range(terms):
-                step.defect[k] -= step.past.starred[j, k]
-            step.defect[k] *= ahead
+        defect_of_order(step.past, terms, step.k[last], step.defect)
     else:
         for i in range(1, last + 1):
             for k in range(STATE):
@@ -351,6 +351,7 @@ def begin(swimmer, drive, fields, balance, current, method, control, step, start
             return False
         step.fresh[0] = 0
         step.past.known[0] = 0
+        step.past.order[0], step.past.order[1], step.past.order[2] = method.adams, 0, 0
         for k in range(STATE):
             step.past.differences[0, k] = step.k[last, k]
     for k in range(STATE):
@@ -374,7 +375,42 @@ def fitted(method, control, step, start, before, target, tiny):
 
 
 @spliced
-def accept(step, start, length, series):
+def growth_of(error, order):
+    """How many times longer the next step may be, for the `error` by the tolerance of one whose error goes with the
+    power `order` of its length."""
+    return 5.0 if error < 1e-4 else min(5.0, 0.9 * error ** (-1.0 / order))
+
+
+@spliced
+def adapt_order(method, control, step, length, growth):
+    """Choose the order of the next step of Adams; returns the `growth` that goes with it."""
+    past, rate = step.past, step.k[method.a.shape[0] - 1]
+    terms, settled = past.known[1], past.order[1] > past.order[0]
+    past.order[1] += 1
+    if length > SHORT * control.step:
+        past.order[2] = 0
+        if settled and past.order[0] < method.adams:
+            past.order[0], past.order[1] = past.order[0] + 1, 0
+        return growth
+    change = 0
+    if terms > 1:
+        defect_of_order(past, terms - 1, rate, step.defect)
+        other = growth_of(error_by_tolerance(control, step, length), terms)
+        if other > 1.1 * growth:
+            growth, change = other, -1
+    if change == 0 and settled and terms == past.order[0] < method.adams and past.order[2] == 1:
+        defect_of_order(past, terms + 1, rate, step.defect)
+        other = growth_of(error_by_tolerance(control, step, length), terms + 2)
+        if other > 1.3 * growth:
+            growth, change = other, 1
+    if change != 0:
+        past.order[0], past.order[1] = terms + change, 0
+    past.order[2] = 1 if past.order[1] > terms and past.order[0] < method.adams else 0
+    return growth
+
+
+@spliced
+def accept(control, step, start, length, series):
     """Make the trial step the step."""
     works_upto(step, 1.0, series, step.work)
     for k in range(STATE):
@@ -384,6 +420,7 @@ def accept(step, start, length, series):
         step.power[0, k] = step.power[3, k]
     step.time[0], step.time[1] = start, length
     step.count[0] += 1
+    step.budget[0] = min(control.spare_steps, step.budget[0] + control.most_steps * length) - 1.0
     step.scale[0] = max(step.scale[0], np.sqrt(step.end[7] ** 2 + step.end[8] ** 2 + step.end[9] ** 2))
     step.scale[1] = max(step.scale[1], np.sqrt(step.end[10] ** 2 + step.end[11] ** 2 + step.end[12] ** 2))
 
@@ -392,11 +429,9 @@ def accept(step, start, length, series):
 def march(swimmer, drive, fields, balance, current, method, control, breakpoints, lobatto, series, step, until):
     """March until the step holds the time `until` [s]. Returns MARCHED, or why it could not."""
     tiny = 1e-12 * max(1.0, abs(until))
-    left = control.most_steps * (1.0 + until - (step.time[0] + step.time[1]))
     while step.time[0] + step.time[1] < until - tiny:
         start = step.time[0] + step.time[1]
-        left -= 1.0
-        if left < 0.0:
+        if step.budget[0] < 0.0:
             return TOO_MANY_STEPS
         before, target = -np.inf, np.inf
         for j in range(len(breakpoints)):
@@ -412,21 +447,22 @@ def march(swimmer, drive, fields, balance, current, method, control, breakpoints
         accepted = 4.0 if method.adams > 0 else 1.0  # Adams' next step is the shorter: cheaper than to repeat this one
         while status != MARCHED or not error <= accepted:
             step.count[1] += 1
+            step.budget[0] -= 1.0
             length *= 0.1 if status != MARCHED else max(0.2, 0.9 * error ** (-1.0 / method.order))
             proposed = length
             if not method.adaptive or length < control.smallest:
                 step.fresh[0] = 1
                 return STEP_TOO_SMALL if status == MARCHED else status
             status, error = attempt(swimmer, drive, fields, current, method, control, step, start, length)
-        growth = 5.0 if error < 1e-4 else min(5.0, 0.9 * error ** (-1.0 / method.order))
+        growth = growth_of(error, method.order if method.adams == 0 else step.past.order[0] + 1)
         if method.adams > 0:
-            growth = adams_growth(step.past, growth, method.adams)
+            growth = adams_growth(step.past, adapt_order(method, control, step, length, growth))
             remember(step.past, step.past.known[1], length, step.k[method.a.shape[0] - 1])
         grown = length * growth
         step.time[2] = min(control.step, grown if length >= proposed else max(proposed, grown))
         if abs(start + length - target) <= tiny:
             length = target - start
-        accept(step, start, length, series)
+        accept(control, step, start, length, series)
         if control.ledger:
             for j in range(1, 4):
                 interpolate(method, step, lobatto[j], step.trial)

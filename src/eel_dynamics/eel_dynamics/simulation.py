@@ -41,7 +41,9 @@ from .snapshot import Snapshot
 from .wrench import balance_of
 
 LONGEST_STEP = 0.25  # of the shortest time over which the shape changes
+LONGEST_WITH_LEDGER = 0.1  # for the works are integrals of what goes on within a step
 MOST_STEPS = 20_000.0  # per period of the law, or second; the most exact runs need a tenth of it
+SPARE_STEPS = 200_000.0  # beyond these, at any time of a run
 SLOWEST = 1e-3  # body lengths per time scale, below which the head counts as at rest
 PART_OF_SPEED = 0.5  # of the speed that the shape gives the body: momenta below need not be exact to the last digit
 FIRST_STEP = 0.02  # of the longest
@@ -428,7 +430,7 @@ class Simulation:
         self.fields = fields_of(len(self._grid.x), len(self.drive.axis), self._grid.matrix.shape[1])
         self._breakpoints = self.shape.breakpoints()
         scale = min(self.shape.time_scale, self._motion_scale)
-        longest = LONGEST_STEP * min(scale, 10.0)
+        longest = (LONGEST_WITH_LEDGER if self.scene.ledger else LONGEST_STEP) * min(scale, 10.0)
         mass = self._mass = float(self.swimmer.weight @ self.swimmer.mass)
         slowest = max(
             SLOWEST * self.body.length / min(scale, 10.0), PART_OF_SPEED * self.shape.reach(self.swimmer.weight)
@@ -440,6 +442,7 @@ class Simulation:
             length=self.body.length,
             momentum_floor=mass * slowest,
             most_steps=MOST_STEPS / min(scale, 1.0),
+            spare_steps=SPARE_STEPS,
             ledger=bool(self.scene.ledger),
             planar=bool(self.scene.planar),
         )
@@ -484,7 +487,7 @@ class Simulation:
         self._motion_scale = self._scale_of(relative)
         self._use_drive()
         self.kinetic_at_start = self._set_momentum(relative)
-        self.step.time[:], self.step.count[:] = 0.0, 0
+        self.step.time[:], self.step.count[:], self.step.budget[:] = 0.0, 0, SPARE_STEPS
         self.step.scale[:] = math.hypot(*self.state[7:10]), math.hypot(*self.state[10:13])
         self._begin_step()
         if not np.isfinite(self.kinetic_at_start):
