@@ -19,7 +19,7 @@ import numpy as np
 from .compiled import spliced
 
 HIGHEST = 6  # beyond, the steps that are stable are shorter than those that are exact
-SHORT = 0.005  # of the longest step: below, the order may fall; the most exact runs that are offered do not get there
+SHORT = 0.0125  # of the longest step: below, the order may fall; the most exact runs that are offered do not get there
 
 
 class Past(NamedTuple):

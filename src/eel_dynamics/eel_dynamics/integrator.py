@@ -188,7 +188,7 @@ def settle(swimmer, drive, fields, time, y, momentum, twist):
     return twist_of_momentum(swimmer, fields, momentum, twist)
 
 
-@compiled
+@inlined
 def rate_of_state(swimmer, drive, fields, current, time, y, step, dy):
     """Rate `dy` (13,) of state `y` at `time` (eq. 27 in the momentum form). False where the inertia is singular."""
     if not settle(swimmer, drive, fields, time, y, step.momentum, step.twist):
@@ -303,28 +303,38 @@ def attempt(swimmer, drive, fields, current, method, control, step, start, lengt
     """Try a step of `length` [s] from `step.end` at `start`, into `step.trial`. Returns a status and the error by
     tolerance."""
     last = method.a.shape[0] - 1
-    if method.adams > 0:
-        terms = extrapolate(step.past, length, step.end, step.trial)
-        normalise(step.trial)
+    first = last if method.adams > 0 else 1
+    status, terms, stage = MARCHED, 0, 0 if step.fresh[0] == 1 else first
+    while status == MARCHED and stage <= last:
+        if stage == 0:
+            for k in range(STATE):
+                step.trial[k] = step.end[k]
+        elif method.adams > 0:
+            terms = extrapolate(step.past, length, step.end, step.trial)
+        else:
+            for k in range(STATE):
+                total = 0.0
+                for j in range(stage):
+                    total += method.a[stage, j] * step.k[j, k]
+                step.trial[k] = step.end[k] + length * total
+        if stage == last:
+            normalise(step.trial)
         step.count[2] += 1
-        if not evaluate(swimmer, drive, fields, current, control, start + length, step.trial, step, step.k[last]):
-            return SINGULAR, np.inf
+        time = start + method.c[stage] * length
+        if not evaluate(swimmer, drive, fields, current, control, time, step.trial, step, step.k[stage]):
+            status = SINGULAR
+        elif stage == 0:
+            begin_anew(method, step)
+            stage = first
+        else:
+            stage += 1
+    if status != MARCHED:
+        return status, np.inf
+    if method.adams > 0:
         for k in range(STATE):
             step.k[1, k] = (step.trial[k] - step.end[k]) / length
         defect_of_order(step.past, terms, step.k[last], step.defect)
     else:
-        for i in range(1, last + 1):
-            for k in range(STATE):
-                total = 0.0
-                for j in range(i):
-                    total += method.a[i, j] * step.k[j, k]
-                step.trial[k] = step.end[k] + length * total
-            if i == last:
-                normalise(step.trial)
-            step.count[2] += 1
-            time = start + method.c[i] * length
-            if not evaluate(swimmer, drive, fields, current, control, time, step.trial, step, step.k[i]):
-                return SINGULAR, np.inf
         for k in range(STATE):
             step.defect[k] = 0.0
             for i in range(last + 1):
@@ -338,25 +348,14 @@ def attempt(swimmer, drive, fields, current, method, control, step, start, lengt
 
 
 @spliced
-def begin(swimmer, drive, fields, balance, current, method, control, step, start):
-    """Have the first stage of the next step (and the powers there) ready: from the step before, or evaluated anew."""
-    last = method.a.shape[0] - 1
-    if step.fresh[0] == 1:
-        step.count[2] += 1
-        if not evaluate(swimmer, drive, fields, current, control, start, step.end, step, step.k[last]):
-            return False
-        if control.ledger and not powers_of_state(
-            swimmer, drive, fields, balance, start, step.end, step, step.power[3]
-        ):
-            return False
-        step.fresh[0] = 0
-        step.past.known[0] = 0
-        step.past.order[0], step.past.order[1], step.past.order[2] = method.adams, 0, 0
-        for k in range(STATE):
-            step.past.differences[0, k] = step.k[last, k]
+def begin_anew(method, step):
+    """Forget the steps before: the rate at the start of this one has been evaluated."""
+    past = step.past
+    step.fresh[0] = 0
+    past.known[0] = 0
+    past.order[0], past.order[1], past.order[2] = method.adams, 0, 0
     for k in range(STATE):
-        step.k[0, k] = step.k[last, k]
-    return True
+        past.differences[0, k] = step.k[0, k]
 
 
 @spliced
@@ -439,13 +438,17 @@ def march(swimmer, drive, fields, balance, current, method, control, breakpoints
                 target = breakpoints[j]
                 break
             before = breakpoints[j]
-        if not begin(swimmer, drive, fields, balance, current, method, control, step, start):
-            return SINGULAR
+        anew = step.fresh[0]
+        if anew == 0:  # the last rate of a step is the first of the next
+            for k in range(STATE):
+                step.k[0, k] = step.k[method.a.shape[0] - 1, k]
         proposed = step.time[2]
         length = fitted(method, control, step, start, before, target, tiny)
-        status, error = attempt(swimmer, drive, fields, current, method, control, step, start, length)
         accepted = 4.0 if method.adams > 0 else 1.0  # Adams' next step is the shorter: cheaper than to repeat this one
-        while status != MARCHED or not error <= accepted:
+        while True:
+            status, error = attempt(swimmer, drive, fields, current, method, control, step, start, length)
+            if status == MARCHED and error <= accepted:
+                break
             step.count[1] += 1
             step.budget[0] -= 1.0
             length *= 0.1 if status != MARCHED else max(0.2, 0.9 * error ** (-1.0 / method.order))
@@ -453,7 +456,6 @@ def march(swimmer, drive, fields, balance, current, method, control, breakpoints
             if not method.adaptive or length < control.smallest:
                 step.fresh[0] = 1
                 return STEP_TOO_SMALL if status == MARCHED else status
-            status, error = attempt(swimmer, drive, fields, current, method, control, step, start, length)
         growth = growth_of(error, method.order if method.adams == 0 else step.past.order[0] + 1)
         if method.adams > 0:
             growth = adams_growth(step.past, adapt_order(method, control, step, length, growth))
@@ -464,7 +466,7 @@ def march(swimmer, drive, fields, balance, current, method, control, breakpoints
             length = target - start
         accept(control, step, start, length, series)
         if control.ledger:
-            for j in range(1, 4):
+            for j in range(1 - anew, 4):
                 interpolate(method, step, lobatto[j], step.trial)
                 if not powers_of_state(
                     swimmer, drive, fields, balance, start + lobatto[j] * length, step.trial, step, step.power[j]

@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from .compiled import compiled, inlined
+from .compiled import inlined
 from .drag import AXIAL, NOISE, ONE, PRINTED, RATIO, SIDE, ZERO, find_steps, rub
 from .drive import factors
 
@@ -176,7 +176,7 @@ def loads_plane(swimmer, fields, twist, rates):
     rates[0], rates[1], rates[2] = tz, fx, fy
 
 
-@compiled
+@inlined
 def rate_of_state_plane(swimmer, drive, fields, current, time, y, step, dy):
     """As `rate_of_state` of the integrator, for a state in the plane: rate `dy` (13,) of state `y` at `time`."""
     momentum, twist, rates = step.momentum, step.twist, step.rates

@@ -40,8 +40,7 @@ from .shape import Shape, knots_of_law, waves_of_law
 from .snapshot import Snapshot
 from .wrench import balance_of
 
-LONGEST_STEP = 0.25  # of the shortest time over which the shape changes
-LONGEST_WITH_LEDGER = 0.1  # for the works are integrals of what goes on within a step
+LONGEST_STEP = 0.1  # of the shortest time over which the shape changes: works are integrals of what goes on within it
 MOST_STEPS = 20_000.0  # per period of the law, or second; the most exact runs need a tenth of it
 SPARE_STEPS = 200_000.0  # beyond these, at any time of a run
 SLOWEST = 1e-3  # body lengths per time scale, below which the head counts as at rest
@@ -430,7 +429,7 @@ class Simulation:
         self.fields = fields_of(len(self._grid.x), len(self.drive.axis), self._grid.matrix.shape[1])
         self._breakpoints = self.shape.breakpoints()
         scale = min(self.shape.time_scale, self._motion_scale)
-        longest = (LONGEST_WITH_LEDGER if self.scene.ledger else LONGEST_STEP) * min(scale, 10.0)
+        longest = LONGEST_STEP * min(scale, 10.0)
         mass = self._mass = float(self.swimmer.weight @ self.swimmer.mass)
         slowest = max(
             SLOWEST * self.body.length / min(scale, 10.0), PART_OF_SPEED * self.shape.reach(self.swimmer.weight)
