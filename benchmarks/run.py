@@ -16,8 +16,10 @@ from against_paper_scheme import paper_scheme
 from against_peers import peers
 from batch import batch
 from eel_dynamics.integrator import rate_of_state
+from eel_dynamics.planar import rate_of_state_plane
 from growth import growth
 from integrators import integrators
+from measuring import median_ratio, times_in_turn
 from numba import njit
 from visualiser import visualiser
 
@@ -32,6 +34,12 @@ BODY = Body.boyer2010()
 def _evaluate(count, swimmer, drive, fields, current, time, y, step, dy):
     for _ in range(count):
         rate_of_state(swimmer, drive, fields, current, time, y, step, dy)
+
+
+@njit
+def _evaluate_plane(count, swimmer, drive, fields, current, time, y, step, dy):
+    for _ in range(count):
+        rate_of_state_plane(swimmer, drive, fields, current, time, y, step, dy)
 
 
 def median_seconds(action, repeats: int = REPEATS) -> float:
@@ -55,8 +63,40 @@ def evaluation():
         nodes, count, dy = len(swimmer.swimmer.x), 2000, np.zeros(13)
         state, step = swimmer.observe(), swimmer.step
         arguments = swimmer.swimmer, swimmer.drive, swimmer.fields, np.zeros(3), state.time, swimmer.state, step, dy
-        seconds = median_seconds(lambda: _evaluate(count, *arguments)) / count  # noqa: B023
-        yield f"{nodes:4d} nodes", seconds * 1e6, "us per evaluation"
+        times = times_in_turn({"one": lambda: _evaluate(count, *arguments)})["one"]  # noqa: B023
+        yield f"{nodes:4d} nodes", statistics.median(times) / count * 1e6, "us per evaluation (CPU)"
+
+
+def plane():
+    """The planar kernel against that in space: one evaluation of the straight gait at equal nodes, and 10 s of motion
+    alone at equal targets."""
+    count, arguments, dy = 2000, {}, np.zeros(13)
+    for planar in (False, True):
+        lean = Scene(planar=planar, ledger=False, internal_wrench=False)
+        swimmer = Simulation(body=BODY, scene=lean, accuracy=Accuracy(name="bench", resolution=13.0))
+        swimmer.adopt(straight())
+        swimmer.advance(2.3)
+        arguments[planar] = (
+            *(swimmer.swimmer, swimmer.drive, swimmer.fields, np.zeros(3), 2.3),
+            *(swimmer.state, swimmer.step, dy),
+        )
+    times = times_in_turn(
+        {
+            "space": lambda: _evaluate(count, *arguments[False]),
+            "plane": lambda: _evaluate_plane(count, *arguments[True]),
+        }
+    )
+    yield "in space", statistics.median(times["space"]) / count * 1e6, "us per evaluation (CPU)"
+    yield "in the plane", statistics.median(times["plane"]) / count * 1e6, "us per evaluation (CPU)"
+    yield "ratio, one evaluation", median_ratio(times["space"], times["plane"]), "times cheaper"
+    for target in (1e-2, 1e-4, 1e-6):
+        scenes = {planar: Scene(planar=planar, ledger=False, internal_wrench=False) for planar in (False, True)}
+        swim = {
+            planar: partial(simulate, straight(), body=BODY, accuracy=target, scene=scene, sample_period=10.0)
+            for planar, scene in scenes.items()
+        }
+        times = times_in_turn(swim)
+        yield f"ratio, 10 s, target {target:g}", median_ratio(times[False], times[True]), "times cheaper"
 
 
 def falling_gait():
@@ -117,6 +157,7 @@ def start():
 
 FIGURES = {
     "evaluation": evaluation,
+    "plane": plane,
     "falling": falling_gait,
     "switches": switches,
     "start": start,
