@@ -270,7 +270,10 @@ def test_a_body_that_is_rolled_up_keeps_the_target():
     assert any("touches itself" in text for text in run.warnings)
 
 
-@pytest.mark.parametrize("accuracy", [fixed(0.4), Accuracy(name="loose", resolution=26.0, tolerance=1.0)])
+LOOSE = Accuracy(name="loose", resolution=26.0, tolerance=0.1, method="adams", order=2)
+
+
+@pytest.mark.parametrize("accuracy", [fixed(0.4), LOOSE])
 def test_settings_by_hand_that_are_too_coarse_are_told_by_warning_and_estimate(accuracy):
     run = simulate(straight(), 4.0, accuracy=accuracy, sample_period=0.25)
     assert any("energy ledger" in text for text in run.warnings)
