@@ -97,6 +97,7 @@ def test_a_volatile_publisher_is_heard_and_repeating_changes_nothing(start, clie
     said_until(nanoseconds(swim.latest("curvature").header.stamp) / 1e9 + 1.0)
     assert np.allclose(swim.latest("curvature").yaw, -1.0)  # repeating did not begin the blend anew
     assert node.output().count("taken on") == 2, node.output()
+    assert "incompatible" not in node.output()
 
 
 def test_latency_of_a_law(start, client):

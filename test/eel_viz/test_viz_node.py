@@ -182,6 +182,7 @@ def test_bad_messages_are_said_once_each_and_the_rest_goes_on(start, network, tm
         ("rate:=0.0", "rate"),
         ("rate:=often", "rate must be a number, got 'often'"),
         ("port:=1", "port"),
+        ("compare:=/", "compare must be another namespace than the swimmer's own, got '/'"),
         ("blueprint:=mine", "blueprint must be one of overview, torques, motion, compare, got 'mine'"),
     ],
 )
@@ -288,11 +289,18 @@ def test_served_data_reaches_a_viewer_that_comes_later(start, network, tmp_path,
     assert len(read(tmp_path / "run.rrd", entities.SPEED).stamps) == 20
 
 
-def test_another_swimmer_is_laid_over_the_first(start, network, tmp_path):
-    node = visualise(start, tmp_path / "run.rrd", "compare:=second", "blueprint:=compare")
+@pytest.mark.parametrize(("own", "compare"), [("", "second"), ("/second", "/")])
+def test_another_swimmer_is_laid_over_the_first(own, compare, start, network, tmp_path):
+    node = visualise(
+        start,
+        tmp_path / "run.rrd",
+        f"compare:={compare}",
+        "blueprint:=compare",
+        **({"space": f"__ns:={own}"} if own else {}),
+    )
     mine, others = (
         {topic: network.create_publisher(kind, f"{space}/{topic}", 100) for topic, kind in TOPICS.items()}
-        for space in ("", "/second")
+        for space in (own, "" if own else "/second")
     )
     found(*mine.values(), *others.values())
     count = 20

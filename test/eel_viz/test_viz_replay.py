@@ -253,6 +253,9 @@ def test_two_bags_or_two_namespaces_are_laid_over_each_other(tmp_path, capsys, m
     write_bag(tmp_path / "two", 0.1, namespaces=("/left", "/right"))
     assert main(["two", "--namespace", "/left", "--compare", "/right"]) == 0
     np.testing.assert_array_equal(read(tmp_path / "two.rrd", entities.DISTANCE).stamps, STAMPS[:11])
+    write_bag(tmp_path / "three", 0.1, namespaces=("/left", ""))
+    assert main(["three", "--namespace", "/left", "--compare", "/"]) == 0
+    np.testing.assert_array_equal(read(tmp_path / "three.rrd", entities.DISTANCE).stamps, STAMPS[:11])
     assert "no swimmer in namespace '/none'" in said_in_one_line(
         capsys, "two", "--namespace", "/left", "--compare", "/none"
     )

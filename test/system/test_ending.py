@@ -3,6 +3,7 @@
 import signal
 import time
 
+import psutil
 import pytest
 
 LIMIT = 1.0  # s, less what the machine was busy with others (NodeProcess.time_to_end)
@@ -74,3 +75,27 @@ def test_signal_at_any_moment(start, fresh_domain, tmp_path, monkeypatch, execut
             time.sleep(delay)  # the moment of the signal is what is tried here
             times.append(time_to_end(node, sent))
         assert min(times) < LIMIT, (delay, times)
+
+
+@pytest.mark.fault("ending", "a second SIGINT while a node ends", "status 0, no traceback")
+@pytest.mark.parametrize("executable", NODES)
+def test_a_second_signal_spoils_nothing(start, tmp_path, monkeypatch, executable):
+    monkeypatch.chdir(tmp_path)
+    for pause in (0.05, 0.2):
+        node = start(executable, *NODES[executable])
+        node.wait_for_output("[INFO]")
+        node.process.send_signal(signal.SIGINT)
+        time.sleep(pause)  # the moment of the second is what is tried here
+        assert node.interrupt() == 0, node.output()
+        assert "Traceback" not in node.output()
+
+
+@pytest.mark.fault("ending", "Ctrl-C in `simulate`, compiled loops at work", "it ends at once, without a traceback")
+def test_interrupted_simulate(start):
+    tool = start("simulate", "straight", "--duration", "2000", "--accuracy", "reference")
+    deadline = time.monotonic() + 90.0
+    while psutil.Process(tool.process.pid).cpu_times().user < 4.0:  # imports take half of that
+        assert tool.status is None and time.monotonic() < deadline, tool.output()
+        time.sleep(0.1)
+    assert tool.interrupt() == -signal.SIGINT
+    assert tool.output() == ""

@@ -18,6 +18,7 @@ from eel_gaits.registry import GAITS, gait
 
 from .accuracy import PRESETS
 from .body import NAMED, Body
+from .ending import leave_on_interrupt
 from .run import Run, simulate
 from .scene import Scene
 from .simulation import SimulationStopped
@@ -47,6 +48,8 @@ ARRAYS = [
 
 def main(arguments: list[str] | None = None) -> int:
     """Exit status 0; 2 for bad input, with one line; 3 for a run that stopped, with what it had until then."""
+    if arguments is None:
+        leave_on_interrupt()
     options = _parser().parse_args(arguments)
     try:
         out = _checked_out(options.out)

@@ -11,6 +11,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 from eel_gaits.messages import law_from_message
 from rclpy.clock import Clock, ClockType
 from rclpy.duration import Duration
+from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.exceptions import NameValidationException, ParameterException
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.impl.implementation_singleton import rclpy_implementation
@@ -76,6 +77,7 @@ class DynamicsNode(Node):
                 lambda data, info, number=number: feed.hear_law(data, info, number),
                 quality,
                 raw=True,
+                event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),  # what one lacks the other has
             )
         self.create_subscription(CurvatureSamples, "curvature_samples", feed.hear_samples, LOSSLESS)
         self.create_service(Trigger, "~/reset", self._reset)

@@ -42,6 +42,9 @@ def main(arguments: list[str] | None = None) -> int:
     except RuntimeError as error:
         print(f"sweep: {error}", file=sys.stderr)
         return 4
+    except KeyboardInterrupt:
+        print("sweep: interrupted; the same command goes on from here", file=sys.stderr)
+        return 130
     points = int(np.prod([len(values) for values in grid.values()]))
     print(f"points                      {points}, of which {int(data.stopped.sum())} stopped")
     for name, array in data.items():

@@ -67,6 +67,8 @@ def live(
             node.close()
         node.destroy_node()
         rclpy.try_shutdown()
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, signal.SIG_IGN)  # until the process is gone: one more would spoil its exit status
     failure = getattr(node, "failure", "")
     if failure:
         sys.stderr.write(f"{name}: {failure}\n")

@@ -93,7 +93,7 @@ class Loggers:
         if settings.compare:
             self._comparison = Comparison(
                 outlet,
-                names=(name, settings.compare.strip("/")),
+                names=(name, settings.compare.strip("/") or "eel"),
                 limit=settings.torque_limit,
                 due=self._due,
                 drawings=self._drawing_period,

@@ -46,6 +46,10 @@ class Visualiser(Node):
         super().__init__(NAME)
         self.settings = declare_settings(self)
         own = self.get_namespace().rstrip("/")
+        other = f"/{self.settings.compare.strip('/')}".rstrip("/")  # empty: the swimmer without a namespace
+        told = other or "/"
+        if self.settings.compare and other == own:
+            raise ValueError(f"compare must be another namespace than the swimmer's own, got {told!r}")
         self._runs = runs = Runs(
             destinations(self.settings, self._say, self._warn, live=True),
             name=own.strip("/") or "eel",
@@ -58,8 +62,7 @@ class Visualiser(Node):
         self._present = False
         self._listen(own, self._intake)
         if self.settings.compare:
-            other = "/" + self.settings.compare.strip("/")
-            intake = Intake(OtherRuns(runs, other), namespace=other, warn=lambda text: self._warn(f"{other}: {text}"))
+            intake = Intake(OtherRuns(runs, other), namespace=other, warn=lambda text: self._warn(f"{told}: {text}"))
             self._listen(other, intake)
 
     def attend(self) -> bool:

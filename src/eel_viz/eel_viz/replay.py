@@ -179,7 +179,7 @@ def main(arguments: list[str] | None = None) -> int:
     """Command line; status 0, 2 with one line on stderr if it cannot be done, 130 after Ctrl-C."""
     chosen = parser().parse_args(arguments)
     output = chosen.output or f"{name_of(chosen.bag)}.rrd"
-    other = chosen.compare if os.path.exists(chosen.compare) else None
+    other = chosen.compare if chosen.compare.strip("/") and os.path.exists(chosen.compare) else None
 
     def warn(text: str) -> None:
         sys.stderr.write(f"{NAME}: {text}\n")

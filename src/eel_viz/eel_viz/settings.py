@@ -31,7 +31,8 @@ class Settings:
     web_port: int = setting(9090, "port of the served web viewer", minimum=1024, maximum=65535)
     blueprint: str = setting("overview", "arrangement shown first: overview, torques, motion or compare")
     compare: str = setting(
-        "", "namespace of another swimmer, laid over this one in the arrangement compare; empty: none"
+        "",
+        "namespace of another swimmer (/: the one without), laid over this one in the arrangement compare; empty: none",
     )
     frames: bool = setting(False, "show the axes of head and tail, 0.12 m long: red forward, green left, blue up")
     rate: float = setting(

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from eel_gaits import straight
 
+from ..ending import leave_on_interrupt
 from ..run import simulate
 from . import corrections, kern_comparison, orders
 from .notes import page
@@ -31,6 +32,8 @@ FORMATS = ("svg", "png")
 
 def main(arguments: list[str] | None = None) -> int:
     """Exit status 0; 2 with one line where a folder cannot be written, matplotlib is missing or input is bad."""
+    if arguments is None:
+        leave_on_interrupt()
     options = _parser().parse_args(arguments)
     try:
         import matplotlib  # noqa: F401

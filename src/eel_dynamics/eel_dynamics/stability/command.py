@@ -9,12 +9,16 @@ import argparse
 import sys
 from pathlib import Path
 
+from ..ending import leave_on_interrupt
+
 BEGIN, END = "<!-- {}: written by `stability` -->", "<!-- end of {} -->"
 STUDIES = "maps", "condition", "drift", "plane"
 
 
 def main(arguments: list[str] | None = None) -> int:
     """Exit status 0; 2 with one line where a folder cannot be written, matplotlib is missing or input is bad."""
+    if arguments is None:
+        leave_on_interrupt()
     options = _parser().parse_args(arguments)
     try:
         import matplotlib

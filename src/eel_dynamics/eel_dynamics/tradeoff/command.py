@@ -13,6 +13,7 @@ from pathlib import Path
 from eel_gaits.registry import GAITS, gait
 
 from ..body import NAMED, Body
+from ..ending import leave_on_interrupt
 from ..scene import Scene
 from . import measuring, models
 from .page import reference_line, write_page
@@ -22,6 +23,8 @@ from .table import model_table, trade_table, write_csv
 
 def main(arguments: list[str] | None = None) -> int:
     """Exit status 0; 2 for bad input or a missing package, with one line."""
+    if arguments is None:
+        leave_on_interrupt()
     options = _parser().parse_args(arguments)
     if options.calibrate:
         return _calibrate()
