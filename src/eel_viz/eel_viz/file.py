@@ -59,7 +59,7 @@ class File(Destination):
             self.warn(f"{path} is there already and is replaced")
         self.say(f"saving to {path}")
         self._files[run] = path
-        return rr.FileSink(str(path))
+        return rr.FileSink(str(path), write_footer=self.settings.index)
 
     def _refuse(self, run: int, problem: str) -> None:
         """Raise, or say that nothing is saved: at once for each run, and then as a reminder."""

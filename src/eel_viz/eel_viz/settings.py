@@ -45,6 +45,11 @@ class Settings:
         minimum=0.1,
         maximum=1000.0,
     )
+    index: bool = setting(
+        True,
+        "end a file with an index of what it holds, kept in memory until then: 1 MB for each 4 MB of file; without it "
+        "memory stays as it is, and `rerun rrd optimize` adds the index",
+    )
     colour_limit: float = setting(0.25, "torque C3 from which on colours are deepest", unit="N m", minimum=1e-9)
     torque_limit: float = setting(
         0.6, "torque at the plot's edge; grows if need be, like those below", unit="N m", minimum=1e-9

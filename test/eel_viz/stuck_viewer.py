@@ -1,0 +1,61 @@
+"""Shows a made-up swimmer in a file and to a viewer that does not read, and tells the memory; a process of its own.
+
+Usage: stuck_viewer.py FILE SINK PORT MEGABYTES: SINK is connect (the viewer listens on PORT) or serve (on PORT; whoever
+comes is the viewer). Goes on for 6 s at least and until the file has so much; prints lines of JSON: seconds, MB of the
+file, MB of memory that this process has for itself, and what was said so far.
+"""
+
+import json
+import sys
+import time
+from pathlib import Path
+
+import made_up
+from eel_viz.flow import leave
+from eel_viz.runs import Runs
+from eel_viz.settings import Settings
+from eel_viz.sinks import destinations
+from made_up_recording import body, sample
+
+STEP = 10**7  # ns
+NOTICED = 6.0  # s, by when it has been said that the viewer does not read
+WAIT = 0.5  # s between two lines
+
+
+def anonymous_memory() -> float:
+    """[MB], without what is mapped from files."""
+    return float(Path("/proc/self/status").read_text().split("RssAnon:")[1].split()[0]) / 1e3
+
+
+def main() -> None:
+    path, sink, port, wanted = Path(sys.argv[1]), sys.argv[2], int(sys.argv[3]), float(sys.argv[4])
+    settings = Settings(
+        sink=("save", sink), recording=str(path), skin_rate=1000.0, rate=1000.0, memory_limit="16MiB", index=False,
+        port=port, viewer=f"rerun+http://127.0.0.1:{port}/proxy",
+    )  # fmt: skip
+    said: list[str] = []
+    made = Runs(destinations(settings, said.append, said.append, live=True), "eel", said.append)
+    made.body(body())
+    print("ready", flush=True)
+    sys.stdin.readline()  # until the viewer is stuck
+    samples = [sample(made_up.Swimmer(51), k * STEP) for k in range(100)]
+    began, told, now, k = time.monotonic(), 0.0, 0.0, 0
+    while now < NOTICED or path.stat().st_size / 1e6 < wanted:
+        stamp = k * STEP
+        for topic, arguments in samples[k % len(samples)].items():
+            for loggers in made.at(topic, stamp):
+                getattr(loggers, topic)(stamp, *arguments)
+        k += 1
+        if k % 10 == 0:
+            made.attend()
+        now = time.monotonic() - began
+        if now - told > WAIT:
+            told = now
+            print(json.dumps([now, path.stat().st_size / 1e6, anonymous_memory(), said]), flush=True)
+    print("done", flush=True)
+    made.close()
+    leave(0)
+
+
+if __name__ == "__main__":
+    main()
