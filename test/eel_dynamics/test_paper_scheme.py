@@ -27,7 +27,7 @@ def scheme():
 def test_paper_scheme_converges_to_the_library(scheme):
     law, body = falling(), Body.boyer2010()
     scene = Scene(friction="laminar", ledger=False)
-    run = simulate(law, DURATION, body=body, scene=scene, accuracy=1e-7, sample_period=STEP, stations=51)
+    run = simulate(law, DURATION, body=body, scene=scene, accuracy=1e-6, sample_period=STEP, stations=51)
     motion, torque = [], []
     for count in (50, 100, 200):
         shapes = scheme.curvatures(law, DURATION, STEP, count, body.length)
