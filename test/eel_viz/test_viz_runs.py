@@ -412,3 +412,21 @@ def test_a_torn_file_is_read_up_to_its_last_whole_message(file, ears, tmp_path):
     size = cut_to_whole_messages(torn)
     assert size == torn.stat().st_size < len(complete) - missing
     assert end_of_whole_messages(torn) == size
+
+
+def test_a_file_is_read_while_it_grows(file, ears, tmp_path):
+    from eel_viz.frames import end_of_whole_messages, whole
+    from rerun.chunk import RrdReader
+
+    made = Runs([file], "eel", ears.warned.append)
+    send(made, 0)
+    made.close()
+    complete, growing = (tmp_path / "run.rrd").read_bytes(), tmp_path / "growing.rrd"
+    growing.write_bytes(complete[:-50])
+    end = end_of_whole_messages(growing)
+    growing.write_bytes(complete[:end])
+    with whole(growing) as readable:
+        growing.write_bytes(complete[: end + 20])  # the next message, begun after the look at the file's end
+        assert list(RrdReader(str(readable)).stream())
+    with whole(tmp_path / "run.rrd") as readable:
+        assert readable == tmp_path / "run.rrd", "what was completed is not copied"

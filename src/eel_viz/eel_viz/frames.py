@@ -16,13 +16,19 @@ HEAD, FRAME = 12, struct.Struct("<QQ")  # bytes
 FOOTER, FOOTER_PLACE = b"RRF2FOOT", 12  # and how many bytes before the end it begins
 
 
+def is_complete(path: str | os.PathLike[str]) -> bool:
+    """Whether the file ends with a footer: nothing comes after it."""
+    with open(path, "rb") as file:
+        file.seek(max(0, os.path.getsize(path) - FOOTER_PLACE))
+        return file.read(len(FOOTER)) == FOOTER
+
+
 def end_of_whole_messages(path: str | os.PathLike[str]) -> int:
     """Where the last message that is there completely ends [bytes]."""
     size = os.path.getsize(path)
+    if is_complete(path):
+        return size
     with open(path, "rb") as file:
-        file.seek(max(0, size - FOOTER_PLACE))
-        if file.read(len(FOOTER)) == FOOTER:
-            return size
         end = min(HEAD, size)
         while end + FRAME.size <= size:
             file.seek(end)
@@ -43,14 +49,16 @@ def cut_to_whole_messages(path: str | os.PathLike[str]) -> int:
 
 @contextlib.contextmanager
 def whole(path: str | os.PathLike[str]) -> Iterator[pathlib.Path]:
-    """The file, or where its end is torn a copy without it, for as long as the context lasts."""
+    """The file if it was completed, else a copy of its whole messages, for as long as the context lasts.
+
+    What was not completed may still be growing: its last message, whole a moment ago, has one behind it that is not.
+    """
     path = pathlib.Path(path)
-    end = end_of_whole_messages(path)
-    if end == path.stat().st_size:
+    if is_complete(path):
         yield path
         return
     with tempfile.TemporaryDirectory() as folder:
         copy = pathlib.Path(folder) / path.name
         shutil.copy(path, copy)
-        os.truncate(copy, end)
+        cut_to_whole_messages(copy)
         yield copy
