@@ -21,6 +21,7 @@ from growth import growth
 from integrators import integrators
 from measuring import median_ratio, times_in_turn
 from numba import njit
+from ticks import ticks
 from visualiser import visualiser
 
 from eel_dynamics import Accuracy, Body, Scene, Simulation, simulate
@@ -161,6 +162,7 @@ FIGURES = {
     "falling": falling_gait,
     "switches": switches,
     "start": start,
+    "ticks": ticks,
     "growth": growth,
     "integrators": integrators,
     "batch": batch,

@@ -10,68 +10,86 @@ import numpy as np
 import pytest
 from eel_dynamics.accuracy import table
 from eel_dynamics.budget import Budget
-from eel_dynamics.calibration import Case, cases, random_law, swim
+from eel_dynamics.calibration import REFERENCE, Case, cases, random_law, swim
 from eel_dynamics.errors import errors
+from eel_dynamics.tradeoff.delivered import CLOSE, FAR, trials_of
 
-from eel_dynamics import Accuracy, Body, Scene, SimulationStopped, simulate
-from eel_gaits import falling, gait
+from eel_dynamics import Accuracy, Body, Scene, Simulation, SimulationStopped, simulate
+from eel_gaits import falling, gait, straight
 
-REFERENCE = Accuracy(name="test reference", resolution=150.0, tolerance=1e-13)
-FAR = 150.0  # below the target: four cases in five are within 30, laws that are easier than the hardest are not
-DRAGGED = {case.name: case for case in cases(drag=True)}
-FREE = {case.name: case for case in cases(drag=False)}
-UNSEEN = [
-    Case(name="unseen, drag", law=random_law(11, 1.0), body=Body.boyer2010(), scene=Scene(ledger=False), duration=3.0),
-    Case(
-        name="unseen, no drag",
-        law=random_law(12, 1.0),
-        body=Body.kern2006(),
-        scene=Scene(resistive=False, ledger=False),
-        duration=3.0,
-    ),
-]
+KNOWN = {case.name: case for drag in (True, False) for case in cases(drag)}
+TARGETS = (1e-2, 1e-4, 1e-6, 1e-8)
+FARTHEST = 150.0  # below the target, for a few; docs/tradeoff.md has the distribution over some 250 runs
+
+
+def unseen(seed: int, body: Body, scene: Scene, planar: bool = False) -> Case:
+    """A random law that the calibration has not met."""
+    law = random_law(seed, 1.0, planar=planar)
+    return Case(name=f"{law.name}, {body.name}", law=law, body=body, scene=scene, duration=3.0)
+
+
 CASES = [
-    *(DRAGGED[name] for name in ("falling, printed", "kern_fast, laminar", "rolling, laminar", "straight, planar")),
-    *(FREE[name] for name in ("falling, no drag", "helix, no drag")),
-    *UNSEEN,
+    *(KNOWN[name] for name in ("falling, printed", "kern_fast, laminar", "rolling, laminar", "straight, planar")),
+    *(KNOWN[name] for name in ("turning, no drag", "helix, no drag")),
+    unseen(31, Body.boyer2010(), Scene(ledger=False)),
+    unseen(32, Body.kern2006(), Scene(friction="blended", ledger=False)),
+    unseen(33, Body.kern2006(), Scene(friction="laminar", ledger=False), planar=True),
+    unseen(34, Body.boyer2010(), Scene(resistive=False, ledger=False)),
+    unseen(35, Body.kern2006(), Scene(resistive=False, ledger=False), planar=True),
 ]
 
 
 @pytest.fixture(scope="module")
-def references():
-    known = {}
-
-    def reference(case):
-        if case.name not in known:
-            known[case.name] = swim(case, REFERENCE)
-        return known[case.name]
-
-    return reference
+def trials():
+    return {case.name: trials_of(case, TARGETS) for case in CASES}
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
-def test_the_delivered_error_is_below_the_target_and_not_far_below(case, references):
-    rows = table()[case.scene.resistive, True]
-    targets = (1e-2, 1e-3, 1e-4, 1e-6) if case.scene.resistive else (1e-2, 1e-4, 1e-6, 1e-8)
-    for target in (each for each in targets if each >= rows[-1]["target"]):
-        run = swim(case, target)
-        found = errors(run, references(case)).worst
-        assert found <= target, target
-        coarsest = run.accuracy.tolerance == rows[0]["tolerance"]
-        assert coarsest or found >= target / FAR, target
+def test_the_delivered_error_is_below_the_target_and_not_far_below(case, trials):
+    assert len(trials[case.name]) >= 3
+    for trial in trials[case.name]:
+        assert trial.error.worst <= trial.target, trial.target
+        assert trial.waived or trial.below <= FARTHEST, trial.target
 
 
-@pytest.mark.parametrize("case", CASES[::3], ids=lambda case: case.name)
-def test_the_estimate_of_the_error_is_within_a_factor_ten(case, references):
-    for target in (1e-2, 1e-4, 1e-6):
-        run = swim(case, target)
-        truth, estimate = errors(run, references(case)), run.error_estimate
-        assert truth.position / 10.0 <= estimate.position <= 10.0 * truth.position
-        assert truth.torque / 10.0 <= estimate.torque <= 10.0 * truth.torque
+def test_few_are_farther_below_their_target_than_they_need_to_be(trials):
+    every = [trial for found in trials.values() for trial in found]
+    assert sum(trial.below > FAR and not trial.waived for trial in every) <= 0.1 * len(every)
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+def test_the_estimate_of_the_error_is_within_a_factor_ten(case, trials):
+    for trial in trials[case.name]:
+        assert trial.misjudged <= CLOSE, trial.target
+
+
+@pytest.mark.parametrize("target", [1e-2, 1e-4])
+@pytest.mark.parametrize("name", ["falling, laminar", "kern_fast, printed"])
+def test_fixed_steps_deliver_the_target_too(name, target):
+    case = KNOWN[name]
+    run = swim(case, f"{target:g}, fixed steps")
+    assert run.accuracy.method == "classical"
+    assert run.evaluations == pytest.approx(4 * run.steps, rel=0.02)
+    assert errors(run, swim(case, REFERENCE)).worst <= target
+
+
+def test_a_law_that_leaves_the_plane_gets_settings_for_it():
+    """A motion in a plane needs less; what follows it does not get less than it needs."""
+    flat, any_motion = straight(), falling()
+    swimmer, other = Simulation(accuracy=1e-5, law=flat), Simulation(accuracy=1e-5)
+    assert swimmer.accuracy.tolerance > other.accuracy.tolerance
+    swimmer.advance(0.5)
+    steps = swimmer.evaluations[0]
+    swimmer.adopt(any_motion)
+    assert swimmer.accuracy == other.accuracy and swimmer.evaluations[0] == steps
+    swimmer.advance(1.0)
+    assert swimmer.evaluations[0] > steps and np.all(np.isfinite(swimmer.state))
+    thrown = Simulation(accuracy=1e-5, law=flat, twist=(0.0, 0.1, 0.0, 0.0, 0.0, 0.0))
+    assert thrown.accuracy == other.accuracy
 
 
 def test_a_target_beyond_the_table_says_what_is_possible():
-    finest = table()[True, True][-1]["target"]
+    finest = table()[True, True, False][-1]["target"]
     with pytest.raises(ValueError, match="double precision"):
         Accuracy.of(1e-12)
     if finest > 1e-10:
@@ -92,7 +110,7 @@ def test_a_budget_buys_the_finest_target_that_keeps_within_it(monkeypatch):
     """The timings are given here, so that no machine decides: 1 ms at 1e-2, ten times that for each hundredth."""
     monkeypatch.setattr("eel_dynamics.budget.seconds_per_second", lambda scene, target: 1e-3 * (1e-2 / target) ** 0.5)
     bought = Budget.of("fastest within 5 ms per second").in_scene(Scene())
-    affordable = [row["target"] for row in table()[True, True] if 1e-3 * (1e-2 / row["target"]) ** 0.5 <= 5e-3]
+    affordable = [row["target"] for row in table()[True, True, False] if 1e-3 * (1e-2 / row["target"]) ** 0.5 <= 5e-3]
     assert bought.target == min(affordable)
     with pytest.raises(ValueError, match="cannot be met"):
         Budget.of("fastest within 1 us per second").in_scene(Scene())
@@ -100,7 +118,7 @@ def test_a_budget_buys_the_finest_target_that_keeps_within_it(monkeypatch):
 
 def test_a_budget_is_measured_on_this_machine():
     run = simulate(gait("straight"), 0.2, accuracy="fastest within 900 s per second", scene=Scene(planar=True))
-    assert run.accuracy.target == table()[True, True][-1]["target"]  # so much time affords the finest
+    assert run.accuracy.target == table()[True, True, True][-1]["target"]  # so much time affords the finest
 
 
 @pytest.mark.parametrize("text", ["fastest", "fastest within five ms", "fastest within -3 ms per second"])

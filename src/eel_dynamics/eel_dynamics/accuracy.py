@@ -3,7 +3,8 @@
 A target is a relative error: of the head's position at the end by the length of its path (or of the body, if longer),
 and of the torque field by its own maximum. What delivers it was measured, and stands in `accuracy_table.csv`, which
 `calibration.calibrate` writes: apart for scenes with drag and without (free motion in space is sensitive: errors grow),
-and for runs with the internal wrench or the ledger and without.
+for runs with the internal wrench or the ledger and without, and for motions that stay in a plane (smoother: they need
+fewer steps) and others.
 """
 
 import csv
@@ -16,7 +17,9 @@ import numpy as np
 PRESETS = {"draft": 1e-2, "standard": 1e-4, "fine": 1e-6, "reference": 1e-8}
 COARSEST, FINEST = 0.1, 1e-10
 TABLE_FILE = Path(__file__).with_name("accuracy_table.csv")
-FIELDS = ("drag", "torque", "target", "resolution", "tolerance", "method", "order")
+FIELDS = ("drag", "torque", "plane", "target", "resolution", "tolerance", "method", "order", "fixed")
+KEYS = FIELDS[:3]
+FIXED = "fixed steps"
 ORDERS = {"adams": (1, 2, 3, 4, 5, 6), "dormand_prince": (5,), "classical": (4,)}
 FINEST_TOLERANCE = 1e-13  # below, round-off
 LOOSEST_TOLERANCE = 1e-4  # of what an estimate compares with: above, the longest step rules, and nothing would change
@@ -29,8 +32,9 @@ WAVES_POWER = 0.85  # points grow with this power of the number of waves on the 
 class Accuracy:
     """Settings of a run. `resolution`: points per body length; `tolerance`: relative error per adaptive step; `method`
     "dormand_prince" (order 5) or "adams" (`order` 1 to 6; 5 where none is given); `step` [s]: where given, steps of the
-    classical Runge-Kutta method (order 4) of this length instead. `target`: the relative error that the settings are
-    for, None where they were given one by one."""
+    classical Runge-Kutta method (order 4) of this length instead; `fixed`: where given, that many of them by the
+    shortest period of the law (or second). `target`: the relative error that the settings are for, None where they were
+    given one by one."""
 
     name: str
     resolution: float
@@ -39,11 +43,12 @@ class Accuracy:
     method: str = "dormand_prince"
     order: int | None = None
     target: float | None = None
+    fixed: float | None = None
 
     def __post_init__(self):
-        if self.step is not None:
+        if self.step is not None or self.fixed is not None:
             object.__setattr__(self, "method", "classical")
-        if self.method not in ORDERS or (self.method == "classical" and self.step is None):
+        if self.method not in ORDERS or (self.method == "classical" and self.step is None and self.fixed is None):
             raise ValueError(
                 f"accuracy method must be adams, dormand_prince or (with a step) classical, got {self.method!r}"
             )
@@ -62,16 +67,22 @@ class Accuracy:
             raise ValueError(f"accuracy tolerance must be > 0, got {self.tolerance!r}")
         if self.step is not None and not (np.isfinite(self.step) and self.step > 0.0):
             raise ValueError(f"accuracy step must be > 0 s, got {self.step!r}")
+        unknown = self.fixed == 0.0 and self.target is not None  # until the scene is known
+        if self.fixed is not None and (self.step is not None or not (unknown or 0.0 < self.fixed < np.inf)):
+            raise ValueError(f"accuracy fixed must be > 0 steps by period, and no step given, got {self.fixed!r}")
 
     def points_per_length(self, waves: float) -> float:
         """Points per body length for a shape of `waves` waves on the body; one wave or less needs `resolution`."""
         return min(1000.0, self.resolution * max(1.0, waves) ** WAVES_POWER)
 
-    def in_scene(self, scene) -> "Accuracy":
-        """The settings that deliver the target in `scene`; the same where they were given one by one."""
+    def in_scene(self, scene, plane: bool = False) -> "Accuracy":
+        """The settings that deliver the target in `scene`, for a motion that stays in a `plane` or for any; the same
+        where they were given one by one."""
         if self.target is None:
             return self
-        return _from_target(self.name, self.target, bool(scene.resistive), bool(scene.internal_wrench or scene.ledger))
+        torque = bool(scene.internal_wrench or scene.ledger)
+        key = bool(scene.resistive), torque, bool(scene.planar or plane)
+        return _from_target(self.name, self.target, key, self.fixed is not None)
 
     def of_violence(self) -> "Accuracy":
         """The same target for one who is thrown in: the table was measured with gaits that start from rest, and the
@@ -82,16 +93,19 @@ class Accuracy:
 
     def finer(self) -> "Accuracy":
         """Settings that are at least some ten times as exact: what an estimate of the error compares with."""
+        resolution = min(1000.0, 1.4 * self.resolution + 2.0)
         if self.step is not None:
-            return replace(self, resolution=min(1000.0, 1.4 * self.resolution + 2.0), step=0.5 * self.step, target=None)
+            return replace(self, resolution=resolution, step=0.5 * self.step, target=None)
+        if self.fixed is not None:
+            return replace(self, resolution=resolution, fixed=2.0 * self.fixed, target=None)
         tolerance = max(self.tolerance / 30.0, min(self.tolerance, FINEST_TOLERANCE))
         tolerance = min(tolerance, LOOSEST_TOLERANCE)
-        return replace(self, resolution=min(1000.0, 1.4 * self.resolution + 2.0), tolerance=tolerance, target=None)
+        return replace(self, resolution=resolution, tolerance=tolerance, target=None)
 
     @staticmethod
     def of(value: "str | float | Accuracy") -> "Accuracy":
-        """The settings for a preset's name, a target relative error, or a budget of time such as "fastest within 5 ms
-        per second" (`budget`). `ValueError` says what is possible."""
+        """The settings for a preset's name, a target relative error, either with ", fixed steps" behind it, or a budget
+        of time such as "fastest within 5 ms per second" (`budget`). `ValueError` says what is possible."""
         if isinstance(value, Accuracy):
             return value
         if isinstance(value, str):
@@ -102,6 +116,9 @@ class Accuracy:
                 from .budget import Budget
 
                 return Budget.of(name)
+            if name.endswith(FIXED):
+                wanted = Accuracy.of(name.removesuffix(FIXED).rstrip(" ,"))
+                return replace(wanted, name=name, method="classical", order=4, fixed=0.0)
         try:
             target = np.nan if isinstance(value, bool) else float(value)
         except (TypeError, ValueError):
@@ -109,7 +126,7 @@ class Accuracy:
         if np.isnan(target):
             raise ValueError(
                 f"accuracy must be one of {', '.join(PRESETS)}, a target relative error, or a budget such as 'fastest "
-                f"within 5 ms per second', got {value!r}"
+                f"within 5 ms per second' (a name or number may have ', {FIXED}' behind it), got {value!r}"
             )
         if not FINEST <= target <= COARSEST:
             raise ValueError(
@@ -120,38 +137,34 @@ class Accuracy:
 
 
 @cache
-def table() -> dict[tuple[bool, bool], tuple[dict, ...]]:
-    """Rows of the table of targets, from the coarsest to the finest, for scenes (with drag, with torque)."""
+def table() -> dict[tuple[bool, bool, bool], tuple[dict, ...]]:
+    """Rows of the table of targets, from the coarsest to the finest, for scenes (with drag, with torque, in a plane).
+    `fixed`: steps of the classical method by period, None where no number of them delivers the target."""
     with open(TABLE_FILE, newline="") as file:
         rows = [
-            {"target": float(row["target"]), "drag": row["drag"] == "1", "torque": row["torque"] == "1"}
+            {"target": float(row["target"])}
+            | {name: row[name] == "1" for name in KEYS}
             | {"resolution": float(row["resolution"]), "tolerance": float(row["tolerance"])}
             | {"method": row["method"], "order": int(row["order"])}
+            | {"fixed": float(row["fixed"]) if row["fixed"] else None}
             for row in csv.DictReader(file)
         ]
-    keys = {(row["drag"], row["torque"]) for row in rows}
-    return {
-        key: tuple(sorted((row for row in rows if (row["drag"], row["torque"]) == key), key=lambda row: -row["target"]))
-        for key in keys
-    }
+    found = {}
+    for row in sorted(rows, key=lambda row: -row["target"]):
+        found.setdefault(tuple(row[name] for name in KEYS), []).append(row)
+    return {key: tuple(rows) for key, rows in found.items()}
 
 
 @cache
-def _from_target(name: str, target: float, drag: bool, torque: bool) -> Accuracy:
-    for row in table()[drag, torque]:
+def _from_target(name: str, target: float, key: tuple[bool, bool, bool], fixed: bool) -> Accuracy:
+    rows = [row for row in table()[key] if not fixed or row["fixed"] is not None]
+    for row in rows:
         if row["target"] <= target * (1.0 + 1e-9):
-            return Accuracy(
-                name=name,
-                resolution=row["resolution"],
-                tolerance=row["tolerance"],
-                method=row["method"],
-                order=row["order"],
-                target=target,
-            )
+            given = {"fixed": row["fixed"]} if fixed else {name: row[name] for name in ("tolerance", "method", "order")}
+            return Accuracy(name=name, resolution=row["resolution"], target=target, **given)
     if name == "reference":
         return Accuracy(name=name, **BEST)
-    last = table()[drag, torque][-1]["target"]
+    drag = "with drag" if key[0] else "without drag"
     raise ValueError(
-        f"accuracy {name} cannot be had {'with' if drag else 'without'} drag: the finest that was measured to be "
-        f"delivered is {last:g}"
+        f"accuracy {name} cannot be had {drag}: the finest that was measured to be delivered is {rows[-1]['target']:g}"
     )

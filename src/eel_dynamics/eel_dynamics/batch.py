@@ -137,6 +137,7 @@ def simulate_batch(
     out = _space(count, len(times), len(x[0]), any(wrench), load)
     works, samples, start = np.zeros((count, len(times), 4)), np.zeros(count, dtype=np.int64), np.zeros(count)
     steps, evaluations, errors = samples.copy(), samples.copy(), [None] * count
+    settings = [each.accuracy for each in members]
 
     def swim(index: int):
         try:
@@ -147,7 +148,7 @@ def simulate_batch(
         except (SimulationStopped, ValueError) as error:
             errors[index] = _stopped_at_start(error)
             return
-        start[index] = member.kinetic_at_start
+        start[index], settings[index] = member.kinetic_at_start, member.accuracy
         samples[index], errors[index] = member.swim_into(
             times, _of_one(out, index, wrench[index]), works[index], wrench=wrench[index], load=load
         )
@@ -157,10 +158,11 @@ def simulate_batch(
     for index in np.flatnonzero(samples < len(times)):
         for array in (*_of_one(out, index), works[index]):
             array[samples[index] :] = 0.0
-    return _batch_of(members, times, samples, errors, steps, evaluations, x, out, works, start, wrench, load, stations)
+    counts = steps, evaluations
+    return _batch_of(members, settings, times, samples, errors, counts, x, out, works, start, wrench, load, stations)
 
 
-def _batch_of(members, times, samples, errors, steps, evaluations, x, out, works, start, wrench, load, stations):
+def _batch_of(members, settings, times, samples, errors, counts, x, out, works, start, wrench, load, stations):
     along = {name: getattr(out, name) if stations is not None else None for name in ALONG}
     if not all(wrench):
         along |= {"torque": None, "force": None}
@@ -171,12 +173,12 @@ def _batch_of(members, times, samples, errors, steps, evaluations, x, out, works
         laws=tuple(each.law for each in members),
         bodies=tuple(each.body for each in members),
         scenes=tuple(each.scene for each in members),
-        accuracies=tuple(each.accuracy for each in members),
+        accuracies=tuple(settings),
         time=times,
         samples=samples,
         error=tuple(errors),
-        steps=steps,
-        evaluations=evaluations,
+        steps=counts[0],
+        evaluations=counts[1],
         position=out.position,
         orientation=out.orientation,
         twist=out.twist,

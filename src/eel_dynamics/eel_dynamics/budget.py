@@ -39,11 +39,12 @@ class Budget:
             )
         return Budget(text.strip(), seconds)
 
-    def in_scene(self, scene: Scene) -> Accuracy:
-        """The finest settings of the table that keep within the budget in `scene`. `ValueError` where none does."""
-        drag, torque = bool(scene.resistive), bool(scene.internal_wrench or scene.ledger)
+    def in_scene(self, scene: Scene, plane: bool = False) -> Accuracy:
+        """The finest settings of the table that keep within the budget in `scene`, for a motion that stays in a `plane`
+        or for any. `ValueError` where none does."""
+        key = bool(scene.resistive), bool(scene.internal_wrench or scene.ledger), bool(scene.planar)
         best, fastest = None, None
-        for row in table()[drag, torque]:
+        for row in table()[key]:
             seconds = seconds_per_second(scene, row["target"])
             fastest = seconds if fastest is None else min(fastest, seconds)
             if seconds > self.seconds_per_second:
@@ -54,7 +55,7 @@ class Budget:
                 f"accuracy {self.name!r} cannot be met on this machine in this scene: the coarsest run takes "
                 f"{1e3 * fastest:.3g} ms per second"
             )
-        return replace(Accuracy.of(best).in_scene(scene), name=self.name)
+        return replace(Accuracy.of(best).in_scene(scene, plane), name=self.name)
 
 
 @cache

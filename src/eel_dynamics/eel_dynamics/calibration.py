@@ -3,33 +3,48 @@
 Every case is swum once with far more points and far smaller steps than any setting has; the error of a setting is the
 greater of the head's position at the end and of the torque (`errors`). Points along the body and steps in time are
 varied apart, since their errors add. For each target the table gets the cheapest settings whose worst error over all
-cases stays below it.
+cases stays below it, also when all cases swim with them as they are: apart for cases that stay in a plane and others.
+What is cheap is counted in evaluations of the
+head's dynamics; for runs with torque those of the ledger count too, a number per step that is measured here.
 """
 
 import csv
-from dataclasses import dataclass
+import os
+import statistics
+import time
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 from eel_gaits.law import Law, Ramp, Term
 
-from eel_gaits import gait
+from eel_gaits import falling, gait
 
 from .accuracy import FIELDS, FINEST, TABLE_FILE, Accuracy
 from .body import Body
 from .errors import errors
 from .run import Run, simulate
 from .scene import Scene
+from .simulation import Simulation, SimulationStopped
 
-TARGETS = (1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10)
-RESOLUTIONS = (4.0, 6.0, 8.0, 10.0, 13.0, 17.0, 22.0, 30.0, 40.0, 55.0, 75.0, 100.0, 140.0, 200.0)
-TOLERANCES = tuple(10.0 ** (-0.5 * k) for k in range(5, 27))
-METHODS = (("adams", 3), ("adams", 4), ("adams", 5), ("dormand_prince", 5))
+TARGETS = (1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 3e-8, 1e-8, 1e-9, 1e-10)
+RESOLUTIONS = (
+    *(4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.5, 13.0, 15.0, 17.0, 19.0, 22.0, 26.0, 30.0, 35.0, 40.0, 47.0, 55.0),
+    *(65.0, 75.0, 100.0, 140.0, 200.0),
+)
+TOLERANCES = tuple(10.0 ** (-k / 3.0) for k in range(6, 40))
+METHODS = (("adams", 4), ("adams", 5), ("adams", 6), ("dormand_prince", 5))
+FIXED_STEPS = tuple(float(round(8.0 * 10.0 ** (0.1 * k))) for k in range(21))  # by period, of the classical method
 ADAMS_LEAST = 1e-9  # tolerance below which Adams' steps are never the cheaper ones
 REFERENCE = Accuracy(name="reference of the calibration", resolution=300.0, tolerance=1e-13)
 DENSE, EXACT = 140.0, 1e-12  # resolution and tolerance of what is not varied
 SHARE = 0.7  # of the target for the worst case: laws and scenes that are not among the cases may be worse
-PART_OF_SPACE = 0.3  # of that, for the points along the body
+PART_OF_SPACE = 0.25  # of that, for the points along the body
+MOST_FINER = 4  # settings that are tried in place of one which misses its target as a whole
+CHECKED = 0.85  # of the target, for the worst case with both
+TURNS = 15  # in which runs with the ledger and without are timed
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,6 +56,11 @@ class Case:
     body: Body
     scene: Scene
     duration: float = 4.0
+
+    @property
+    def plane(self) -> bool:
+        """The motion stays in a plane."""
+        return all(term.axis == "yaw" for term in self.law.terms)
 
 
 def random_law(seed: int, length: float, planar: bool = False) -> Law:
@@ -62,15 +82,17 @@ def random_law(seed: int, length: float, planar: bool = False) -> Law:
         )
         bend = Ramp(rng.uniform(0.5, 1.5), rng.uniform(2.0, 3.0), 1.0)
         terms.append(Term(axis=axis, amplitude=(0.7 * size,), phase=np.pi / 2.0, envelope=(bend,)))
-    return Law(*terms, name=f"random {seed}")
+    return Law(*terms, name=f"random {seed}{' in the plane' if planar else ''}")
 
 
-def cases(drag: bool = True, seeds=range(3)) -> list[Case]:
+def cases(drag: bool = True, seeds=range(6)) -> list[Case]:
     """The library's gaits and random laws, on both bodies, in the scenes that differ most; with or without drag."""
     boyer, kern = Body.boyer2010(), Body.kern2006()
     names = ("falling", "straight", "turning", "rolling", "helix", "kern_fast", "backward")
     swimming = [(name, gait(name), boyer if "kern" not in name else kern) for name in names]
-    swimming += [(f"random {seed}", random_law(seed, 1.0), (boyer, kern)[seed % 2]) for seed in seeds]
+    for seed in seeds:  # every third in the plane
+        law = random_law(seed, 1.0, planar=seed % 3 == 2)
+        swimming.append((law.name, law, (boyer, kern)[seed % 2]))
     scenes = {"laminar": Scene(friction="laminar", ledger=False), "printed": Scene(ledger=False)}
     if not drag:
         scenes = {"no drag": Scene(resistive=False, ledger=False)}
@@ -103,22 +125,20 @@ def swim(case: Case, accuracy) -> Run:
     )
 
 
-def calibrate(path: Path | str | None = None, say=lambda text: None) -> list[dict]:
+def calibrate(path: Path | str | None = None, say: Callable = lambda text: None) -> list[dict]:
     """Measure the table of targets anew and write it to `path` (by default the library's own). Returns its rows."""
-    rows = []
+    rows, ledger = [], ledger_of_a_step()
+    say(f"the ledger of a step costs {ledger:.2f} evaluations")
     for drag in (True, False):
-        found = [_measure(case, say) for case in cases(drag)]
-        space = np.array([each[0] for each in found])  # (cases, resolutions, 2)
-        time = np.array([each[1] for each in found])  # (cases, methods, tolerances, 3): errors, evaluations
+        group = cases(drag)
+        with ThreadPoolExecutor(os.cpu_count()) as pool:  # the loops run outside Python's lock
+            found = list(pool.map(lambda case: _measure(case, say), group))
         for torque in (True, False):
-            worst_space = np.max(space if torque else space[..., :1], axis=(0, 2))
-            worst_time = np.max(time[..., :2] if torque else time[..., :1], axis=(0, 3))
-            evaluations = np.mean(time[..., 2], axis=0)
-            for target in TARGETS:
-                row = _cheapest(target, worst_space, worst_time, evaluations)
-                if row is not None:
-                    rows.append({"drag": int(drag), "torque": int(torque), "target": target} | row)
-                    say(f"drag {drag}, torque {torque}: {rows[-1]}")
+            for plane in (True, False):
+                chosen = [measured for measured in found if measured.case.plane == plane]
+                for row in _rows(chosen, torque, ledger if torque else 0.0):
+                    rows.append({"drag": int(drag), "torque": int(torque), "plane": int(plane)} | row)
+                    say(f"{rows[-1]}")
     with open(TABLE_FILE if path is None else path, "w", newline="") as file:
         writer = csv.DictWriter(file, FIELDS)
         writer.writeheader()
@@ -126,52 +146,128 @@ def calibrate(path: Path | str | None = None, say=lambda text: None) -> list[dic
     return rows
 
 
-def _measure(case: Case, say):
-    reference = swim(case, REFERENCE)
-    space = [
-        _pair(swim(case, Accuracy(name="calibration", resolution=resolution, tolerance=EXACT)), reference)
-        for resolution in RESOLUTIONS
+def ledger_of_a_step(turns: int = TURNS) -> float:
+    """What the energy ledger costs per step, in evaluations of the head's dynamics: from the CPU times of the same swim
+    with it and without."""
+    accuracy = Accuracy(name="timed", resolution=22.0, tolerance=1e-6)
+    swimmers = [
+        Simulation(scene=Scene(ledger=ledger), accuracy=accuracy, stations=2, law=falling()) for ledger in (False, True)
     ]
-    time = [[_of_tolerance(case, reference, *method, tolerance) for tolerance in TOLERANCES] for method in METHODS]
+    costs = []
+    for turn in range(turns + 1):
+        seconds = []
+        for swimmer in swimmers:
+            swimmer.reset()
+            start = time.thread_time()
+            swimmer.advance(10.0)
+            seconds.append(time.thread_time() - start)
+        steps, _, evaluations = swimmers[0].evaluations
+        if turn:
+            costs.append((seconds[1] - seconds[0]) / steps / (seconds[0] / evaluations))
+    return statistics.median(costs)
+
+
+@dataclass(frozen=True)
+class Errors:
+    """Of one case: errors of position and torque, and for the steps in time what they cost."""
+
+    case: Case
+    reference: Run
+    space: np.ndarray  # (resolutions, 2)
+    alone: np.ndarray  # (resolutions, 1): of position, on the coarser grids of runs without torque
+    time: np.ndarray  # (methods, tolerances, 4): errors, evaluations, steps
+    fixed: np.ndarray  # (numbers of fixed steps, 4)
+
+
+def _measure(case: Case, say) -> Errors:
+    reference = swim(case, REFERENCE)
+    setting = Accuracy(name="calibration", resolution=DENSE, tolerance=EXACT)
+    space = [_of(case, reference, replace(setting, resolution=resolution))[:2] for resolution in RESOLUTIONS]
+    lean = _without_torque(case)
+    alone = [_of(lean, reference, replace(setting, resolution=resolution))[:1] for resolution in RESOLUTIONS]
+    time = [
+        [
+            _of(case, reference, replace(setting, tolerance=tolerance, method=method, order=order))
+            if method != "adams" or tolerance >= ADAMS_LEAST
+            else (np.inf,) * 4
+            for tolerance in TOLERANCES
+        ]
+        for method, order in METHODS
+    ]
+    fixed = [
+        _of(case, reference, Accuracy(name="calibration", resolution=DENSE, fixed=number)) for number in FIXED_STEPS
+    ]
     say(f"{case.name}: measured")
-    return space, time
+    return Errors(case, reference, np.array(space), np.array(alone), np.array(time), np.array(fixed))
 
 
-def _pair(run: Run, reference: Run) -> tuple[float, float]:
+def _of(case: Case, reference: Run, accuracy: Accuracy) -> tuple[float, float, float, float]:
+    try:
+        run = swim(case, accuracy)
+    except SimulationStopped:
+        return (np.inf,) * 4
     found = errors(run, reference)
-    return found.position, found.torque
+    return found.position, found.torque, run.evaluations, run.steps
 
 
-def _of_tolerance(case: Case, reference: Run, method: str, order: int, tolerance: float):
-    if method == "adams" and tolerance < ADAMS_LEAST:
-        return np.inf, np.inf, np.inf
-    accuracy = Accuracy(name="calibration", resolution=DENSE, tolerance=tolerance, method=method, order=order)
-    run = swim(case, accuracy)
-    return *_pair(run, reference), run.evaluations
+def _without_torque(case: Case) -> Case:
+    return replace(case, scene=replace(case.scene, internal_wrench=False))
 
 
-def _cheapest(target: float, space, time, evaluations) -> dict | None:
-    """The cheapest settings with a worst error below the target; None where none of those measured has it."""
-    allowed = SHARE * target
-    enough = np.flatnonzero(_from_here_on(space) <= PART_OF_SPACE * allowed)
-    choices = []
-    for (method, order), worst, cost in zip(METHODS, time, evaluations, strict=True):
-        good = np.flatnonzero(_from_here_on(worst) <= (1.0 - PART_OF_SPACE) * allowed)
-        if len(good):
-            choices.append((cost[good[0]], method, order, TOLERANCES[good[0]]))
-    if not len(enough) or not choices or target < FINEST:
-        return None
-    _, method, order, tolerance = min(choices)
-    return {
-        "resolution": RESOLUTIONS[enough[0]],
-        "tolerance": float(f"{tolerance:.2e}"),
-        "method": method,
-        "order": order,
-    }
+def _rows(found: list[Errors], torque: bool, ledger: float):
+    """The rows of a table; `ledger`: evaluations that a step costs besides its own."""
+    kinds = slice(0, 2 if torque else 1)
+    space = np.max([each.space if torque else each.alone for each in found], axis=(0, 2))
+    time = np.max([each.time[..., kinds] for each in found], axis=(0, 3))
+    fixed = np.max([each.fixed[:, kinds] for each in found], axis=(0, 2))
+    cost = np.mean([each.time[..., 2] + ledger * each.time[..., 3] for each in found], axis=0)
+    for target in TARGETS:
+        for_space, for_time = PART_OF_SPACE * SHARE * target, (1.0 - PART_OF_SPACE) * SHARE * target
+        points = _first(space, for_space)
+        choices = [
+            (costs[good], method, order, TOLERANCES[good])
+            for (method, order), worst, costs in zip(METHODS, time, cost, strict=True)
+            if (good := _first(worst, for_time)) is not None
+        ]
+        if points is None or not choices or target < FINEST:
+            continue
+        _, method, order, tolerance = min(choices)
+        number = _first(fixed, for_time)
+        setting = Accuracy(
+            name="calibration",
+            resolution=RESOLUTIONS[points],
+            tolerance=float(f"{tolerance:.2e}"),
+            method=method,
+            order=order,
+        )
+        setting = _checked(found, torque, target, setting)
+        if setting is not None:
+            row = {name: getattr(setting, name) for name in ("resolution", "tolerance", "method", "order")}
+            yield {"target": target} | row | {"fixed": "" if number is None else FIXED_STEPS[number]}
 
 
-def _from_here_on(errors) -> np.ndarray:
-    """The worst of this and all finer settings that were measured: a lucky one does not count."""
+def _checked(found: list[Errors], torque: bool, target: float, setting: Accuracy) -> Accuracy | None:
+    """`setting`, or the nearest finer one with which all cases stay below the target; None where none does."""
+    for _ in range(MOST_FINER):
+        worst = 0.0
+        for each in found:
+            case = each.case if torque else _without_torque(each.case)
+            worst = max(worst, *_of(case, each.reference, setting)[: 2 if torque else 1])
+        if worst <= CHECKED * target:
+            return setting
+        finer = [resolution for resolution in RESOLUTIONS if resolution > setting.resolution]
+        setting = replace(
+            setting,
+            resolution=finer[0] if finer else setting.resolution,
+            tolerance=float(f"{setting.tolerance * 10.0 ** (-1.0 / 3.0):.2e}"),
+        )
+    return None
+
+
+def _first(errors, allowed: float) -> int | None:
+    """The first setting from which on the errors, from the coarsest to the finest, stay below what is `allowed`: a
+    lucky one does not count. None where the finest are above it. Those not measured are inf, at the end."""
     finite = np.where(np.isfinite(errors), errors, 0.0)
-    worst = np.maximum.accumulate(finite[::-1])[::-1]
-    return np.where(np.isfinite(errors), worst, np.inf)
+    worst = np.where(np.isfinite(errors), np.maximum.accumulate(finite[::-1])[::-1], np.inf)
+    good = np.flatnonzero(worst <= allowed)
+    return int(good[0]) if len(good) else None

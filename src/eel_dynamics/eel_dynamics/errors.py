@@ -6,9 +6,14 @@ so that the difference is the error to some ten per cent. It costs about twice t
 """
 
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
+from .accuracy import FINEST_TOLERANCE
+
+MORE_STEPS = 1.4  # of a finer run, at least: coarse tolerances may leave the steps at their longest
+MOST_FINER = 3  # tries for these
 HALVINGS = 8  # of a step that was too long, until the search for a stable one is given up
 
 
@@ -37,16 +42,16 @@ def errors(run, reference) -> Errors:
 
 
 def refined(run):
-    """The same run with finer settings."""
+    """The same run with finer settings, and with shorter steps."""
     from .run import simulate
 
     period = float(run.time[1] - run.time[0]) if len(run.time) > 1 else 1.0
-    return simulate(
+    again = partial(
+        simulate,
         run.law,
         float(run.time[-1]),
         body=run.body,
         scene=run.scene,
-        accuracy=run.accuracy.finer(),
         sample_period=period,
         stations=run.x,
         position=run.position[0],
@@ -55,6 +60,14 @@ def refined(run):
         load=run.fluid_force is not None,
         verify=False,
     )
+    accuracy = run.accuracy.finer()
+    finer = again(accuracy=accuracy)
+    for _ in range(MOST_FINER):
+        if finer.steps >= MORE_STEPS * run.steps or accuracy.tolerance <= FINEST_TOLERANCE:
+            break
+        accuracy = replace(accuracy, tolerance=accuracy.finer().tolerance)
+        finer = again(accuracy=accuracy)
+    return finer
 
 
 def stable_step(swim, accuracy) -> float | None:

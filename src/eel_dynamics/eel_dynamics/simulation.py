@@ -62,9 +62,18 @@ class SimulationStopped(RuntimeError):
 
 def method_of(accuracy: Accuracy) -> Method:
     """The method of integration of an `accuracy`."""
-    if accuracy.step is not None:
+    if accuracy.method == "classical":
         return classical()
     return adams_bashforth(accuracy.order) if accuracy.method == "adams" else dormand_prince()
+
+
+def in_plane(law: Law | None, orientation, twist, current) -> bool:
+    """Whether a swim stays in the plane of the head's axes 1 and 2: the law bends in yaw alone, and the head, of the
+    given `orientation` and `twist`, does not move out of it over the water of a `current`."""
+    if law is None or any(term.axis == "pitch" for term in law.terms):
+        return False
+    rising = twist[5] - matrix_of(orientation)[:, 2] @ current
+    return not (twist[0] or twist[1] or rising)
 
 
 class Table(NamedTuple):
@@ -113,7 +122,7 @@ class Simulation:
     ):
         self.body = Body.boyer2010() if body is None else checked_instance("body", body, Body)
         self.scene = Scene() if scene is None else checked_instance("scene", scene, Scene)
-        self.accuracy = Accuracy.of(accuracy).in_scene(self.scene)
+        self._wanted = Accuracy.of(accuracy)
         self.x = checked_stations(stations, self.body.length)
         self._out = profiles_of(1, len(self.x))
         self._current = np.array(self.scene.current)
@@ -129,6 +138,7 @@ class Simulation:
         self.step = step_of(self._method)
         if self.scene.planar:
             check_planar(*self._start)
+        self._use_accuracy(in_plane(law, *self._start[1:], self._current))
         if not (np.isfinite(default_transition) and default_transition > 0.0):
             raise ValueError(f"default_transition must be finite and > 0 s, got {default_transition!r}")
         waves, knots = (1.0, ()) if law is None else self._needs(law)
@@ -186,6 +196,8 @@ class Simulation:
         if not (np.isfinite(blend) and blend > 0.0):
             raise ValueError(f"transition must be finite and > 0 s, got {transition!r}")
         first = not self._started
+        if any(term.axis == "pitch" for term in law.terms):
+            self._use_accuracy(False)
         self._refine(*self._needs(law))
         before = copy(self.shape)
         self.shape.adopt(law, origin=float(origin), time=self.time, transition=0.0 if first else float(blend))
@@ -200,6 +212,16 @@ class Simulation:
         else:
             self._restart()
         self.ready = True
+
+    def _use_accuracy(self, plane: bool):
+        """Take the settings for a motion that stays in a `plane`, or for any; the march so far counts on."""
+        accuracy, before = self._wanted.in_scene(self.scene, plane), getattr(self, "step", None)
+        if before is not None and accuracy == self.accuracy:
+            return
+        self.accuracy, self._method = accuracy, method_of(accuracy)
+        self.step = step_of(self._method)
+        for name in ("time", "count", "scale", "budget") if before is not None else ():
+            getattr(self.step, name)[:] = getattr(before, name)
 
     def _needs(self, law: Law) -> tuple[float, tuple[float, ...]]:
         """Waves on the body, and knots [m] of the splines of `law`, that the grid has to carry."""
@@ -229,6 +251,7 @@ class Simulation:
             raise ValueError(
                 f"curvature samples time must lie ahead of the simulation ({self.time:.6f} s), got {time} s"
             )
+        self._use_accuracy(False)
         self._refine((len(x) - 1) / 8.0)
         self.shape.add(float(time), self.time, x, np.reshape(values, (2, 3, len(x))))
         self.ready = True
@@ -357,7 +380,7 @@ class Simulation:
         """March through `times` (T,) [s] into `out` and `works` (T, 4) [J]: how many samples are good, and what stopped
         it. One who goes on behind a bad sample must reset."""
         done, status = self._swim(times, works, out, wrench=wrench, load=load)
-        watched = self.scene.ledger and self.accuracy.step is not None  # else the step's own error is watched
+        watched = self.scene.ledger and self.accuracy.method == "classical"  # else the step's own error is watched
         floor = self._control.momentum_floor**2 / self._mass if watched else np.inf
         failure = failure_of(out, works, done, self.kinetic_at_start, floor)
         if failure:
@@ -432,13 +455,14 @@ class Simulation:
         self._breakpoints = self.shape.breakpoints()
         scale = min(self.shape.time_scale, self._motion_scale)
         longest = LONGEST_STEP * min(scale, 10.0)
+        fixed = self.accuracy.step or (self.accuracy.fixed and min(scale, 1.0) / self.accuracy.fixed)
         mass = self._mass = float(self.swimmer.weight @ self.swimmer.mass)
         slowest = max(
             SLOWEST * self.body.length / min(scale, 10.0), PART_OF_SPEED * self.shape.reach(self.swimmer.weight)
         )
         self._control = Control(
             tolerance=self.accuracy.tolerance,
-            step=longest if self.accuracy.step is None else float(self.accuracy.step),
+            step=fixed or longest,
             smallest=1e-11 * min(scale, 1.0),
             length=self.body.length,
             momentum_floor=mass * slowest,

@@ -3,6 +3,7 @@
 tradeoff falling
 tradeoff falling straight turning --page docs/tradeoff.md --pictures docs/images
 tradeoff straight --set period=0.7 --quick --rerun trade.rrd
+tradeoff --delivered
 tradeoff --calibrate
 """
 
@@ -16,6 +17,7 @@ from ..body import NAMED, Body
 from ..ending import leave_on_interrupt
 from ..scene import Scene
 from . import measuring, models
+from .delivered import deliver, delivered_table, exceeding, farthest
 from .page import reference_line, write_page
 from .settings import settings
 from .table import model_table, trade_table, write_csv
@@ -28,6 +30,12 @@ def main(arguments: list[str] | None = None) -> int:
     options = _parser().parse_args(arguments)
     if options.calibrate:
         return _calibrate()
+    if options.delivered:
+        trials = deliver(say=_say)
+        print(delivered_table(trials))
+        print(f"farther below the target than 30: {'; '.join(farthest(trials)) or 'none'}")
+        print(f"above the target: {'; '.join(exceeding(trials)) or 'none'}")
+        return 0
     try:
         found = _measure_all(options)
         for trade, poorer in found:
@@ -49,12 +57,16 @@ def _calibrate() -> int:
     from ..calibration import calibrate
 
     try:
-        calibrate(TABLE_FILE, say=lambda text: print(f"tradeoff: {text}", file=sys.stderr, flush=True))
+        calibrate(TABLE_FILE, say=_say)
     except OSError as error:
         print(f"tradeoff: {error}", file=sys.stderr)
         return 2
     print(f"written to {TABLE_FILE}")
     return 0
+
+
+def _say(text: str):
+    print(f"tradeoff: {text}", file=sys.stderr, flush=True)
 
 
 def _measure_all(options) -> list[tuple]:
@@ -70,12 +82,13 @@ def _measure_all(options) -> list[tuple]:
     ):
         if folder and not Path(folder).is_dir():
             raise ValueError(f"{folder} must be a folder that exists")
-    say = lambda text: print(f"tradeoff: {text}", file=sys.stderr, flush=True)  # noqa: E731
     found = []
     for law in laws:
-        fixed = {"duration": options.duration, "body": body, "scene": Scene(), "say": say}
-        say(f"gait {law.name}")
-        trade = measuring.measure(law, settings(fixed["scene"], options.quick), repeats=options.repeats, **fixed)
+        fixed = {"duration": options.duration, "body": body, "scene": Scene(), "say": _say}
+        _say(f"gait {law.name}")
+        plane = all(term.axis == "yaw" for term in law.terms)
+        rows = settings(fixed["scene"], options.quick, plane)
+        trade = measuring.measure(law, rows, repeats=options.repeats, **fixed)
         found.append((trade, models.compare(law, trade.reference, **fixed)))
     return found
 
@@ -93,7 +106,8 @@ def _write_all(options, found):
         page = Path(options.page)
         picture = (folder / f"tradeoff_{found[0][0].law.name}.png").resolve()
         beside = picture.is_relative_to(page.resolve().parent)
-        write_page(page, found, str(picture.relative_to(page.resolve().parent)) if beside else None)
+        trials = None if options.quick else deliver(say=_say)
+        write_page(page, found, str(picture.relative_to(page.resolve().parent)) if beside else None, trials)
         yield page
     if options.rerun:
         from .stream import stream
@@ -146,6 +160,12 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--csv", action="store_true", help="everything measured, as .csv beside the pictures")
     parser.add_argument("--page", metavar="FILE.md", help="write tables and picture as a page")
     parser.add_argument("--rerun", metavar="FILE.rrd", help="write the runs and the trade as a Rerun recording")
+    parser.add_argument(
+        "--delivered",
+        action="store_true",
+        help="instead: measure what the targets deliver over gaits, bodies and scenes, and how well runs judge their "
+        "own error (a minute or two); a page has it too, unless it is quick",
+    )
     parser.add_argument(
         "--calibrate",
         action="store_true",

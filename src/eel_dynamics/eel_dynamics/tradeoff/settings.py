@@ -18,9 +18,9 @@ METHODS = {  # name in `Accuracy`: in words
 }
 
 
-def settings(scene: Scene, quick: bool = False) -> list[Accuracy]:
-    """Every combination of points and steps, and the presets as they are in `scene`; `quick`: every third of both, for
-    a look."""
+def settings(scene: Scene, quick: bool = False, plane: bool = False) -> list[Accuracy]:
+    """Every combination of points and steps, and the presets as they are in `scene`, for a motion that stays in a
+    `plane` or for any; `quick`: every third of both, for a look."""
     part = slice(None, None, 3) if quick else slice(None)
     rows = []
     for resolution in RESOLUTIONS[part]:
@@ -34,4 +34,4 @@ def settings(scene: Scene, quick: bool = False) -> list[Accuracy]:
         for step in STEPS[part]:
             rows.append(Accuracy(name=f"{nodes}, step {step:g} s", resolution=resolution, step=step))
     # The presets without their target, which would have them take other settings where the wrench is off, for timing.
-    return rows + [replace(Accuracy.of(name).in_scene(scene), name=name, target=None) for name in PRESETS]
+    return rows + [replace(Accuracy.of(name).in_scene(scene, plane), name=name, target=None) for name in PRESETS]

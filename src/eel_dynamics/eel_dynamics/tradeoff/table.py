@@ -67,7 +67,7 @@ def trade_table(trade: Trade, *, everything: bool = False, markdown: bool = Fals
     marks = marks_of(trade)
     rows = [row for row in trade.rows if everything or marks[id(row)] or row.accuracy.name in PRESETS]
     rows.sort(key=seconds)
-    return _laid_out(HEAD, [cells_of(row, marks[id(row)]) for row in rows], markdown)
+    return laid_out(HEAD, [cells_of(row, marks[id(row)]) for row in rows], markdown)
 
 
 def model_table(models: list[Model], trade: Trade, *, markdown: bool = False) -> str:
@@ -80,7 +80,7 @@ def model_table(models: list[Model], trade: Trade, *, markdown: bool = False) ->
             continue
         setting, speed = exact_enough(model, trade)
         rows.append([model.name, f"{model.pose_error:.1e}", f"{model.torque_error:.1e}", setting, speed])
-    return _laid_out(head, rows, markdown)
+    return laid_out(head, rows, markdown)
 
 
 def exact_enough(model: Model, trade: Trade) -> tuple[str, str]:
@@ -100,7 +100,8 @@ def write_csv(trade: Trade, path: Path):
         writer.writerows(cells_of(row, marks[id(row)]) for row in sorted(trade.rows, key=seconds))
 
 
-def _laid_out(head, rows, markdown: bool) -> str:
+def laid_out(head, rows, markdown: bool) -> str:
+    """A table as text, or of Markdown."""
     if markdown:
         lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
         return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows])

@@ -1,0 +1,132 @@
+"""What the targets deliver: the error of runs by their target, and what they estimate it to be by what it is.
+
+Over the gaits of the library and random laws that the calibration has not seen, on both bodies, in the scenes of the
+calibration. Errors as in `errors`, against a run with far more points and far smaller steps.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..accuracy import table
+from ..calibration import REFERENCE, Case, cases, swim
+from ..errors import Errors, errors
+from .table import laid_out
+
+TARGETS = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9)
+UNSEEN = range(100, 108)  # seeds of laws; the calibration has the first few
+FAR = 30.0  # below the target: time was wasted
+CLOSE = 10.0  # of the truth, for an estimate
+LEAST = 1e-11  # of an error, that a reference can tell
+HEAD = (
+    *(
+        "scene",
+        "motion",
+        "error of",
+        "trials",
+        "above the target",
+        "within 30 below it",
+        "coarsest setting meets it",
+        "farther",
+    ),
+    *("target by error, median", "greatest", "estimates within 10 of the truth", "worst"),
+)
+
+
+@dataclass(frozen=True)
+class Trial:
+    """One run at a target. `coarse`: the error of the coarsest settings that the table has for such runs."""
+
+    case: Case
+    target: float
+    error: Errors
+    estimate: Errors
+    coarse: float
+
+    @property
+    def below(self) -> float:
+        """How many times the error is below the target."""
+        return self.target / max(self.error.worst, LEAST)
+
+    @property
+    def waived(self) -> bool:
+        """The coarsest settings meet the target already: nothing could be saved."""
+        return self.coarse <= self.target
+
+    @property
+    def far(self) -> bool:
+        """The error is farther below the target than it needs to be."""
+        return self.below > FAR and not self.waived
+
+    @property
+    def misjudged(self) -> float:
+        """By what factor the estimate is off, of position or of torque, the worse."""
+        pairs = (self.estimate.position, self.error.position), (self.estimate.torque, self.error.torque)
+        ratios = [max(estimate, LEAST) / max(error, LEAST) for estimate, error in pairs if error is not None]
+        return max(max(ratio, 1.0 / ratio) for ratio in ratios)
+
+
+def trials_of(case: Case, targets=TARGETS, reference=None) -> list[Trial]:
+    """The runs of a case at those of the `targets` that the table has, against a `reference` run."""
+    rows = table()[case.scene.resistive, case.scene.internal_wrench, case.plane]
+    reference = reference or swim(case, REFERENCE)
+    coarse = errors(swim(case, rows[0]["target"]), reference).worst
+    found = []
+    for target in (each for each in targets if each >= rows[-1]["target"]):
+        run = swim(case, target)
+        found.append(Trial(case, target, errors(run, reference), run.error_estimate, coarse))
+    return found
+
+
+def deliver(seeds=UNSEEN, targets=TARGETS, say: Callable = lambda text: None) -> list[Trial]:
+    """The trials of all cases, with drag and without."""
+    found = []
+    for drag in (True, False):
+        for case in cases(drag, seeds):
+            say(f"what the targets deliver: {case.name}")
+            reference = swim(case, REFERENCE)
+            lean = replace(case, scene=replace(case.scene, internal_wrench=False))
+            found += trials_of(case, targets, reference) + trials_of(lean, targets, reference)
+    return found
+
+
+def delivered_table(trials: list[Trial], *, markdown: bool = False) -> str:
+    """The distribution, a row for each kind of scene and motion, and one for all."""
+    groups = {}
+    for trial in trials:
+        scene = "with drag" if trial.case.scene.resistive else "without drag"
+        motion = "in a plane" if trial.case.plane else "in space"
+        quantity = "position and torque" if trial.case.scene.internal_wrench else "position, motion alone"
+        groups.setdefault((scene, motion, quantity), []).append(trial)
+    groups = {key: groups[key] for key in sorted(groups)} | {("all", "all", "all"): trials}
+    return laid_out(HEAD, [_row(*key, part) for key, part in groups.items()], markdown)
+
+
+def _row(scene: str, motion: str, quantity: str, trials: list[Trial]) -> list[str]:
+    below = np.array([trial.below for trial in trials])
+    counted = np.array([trial.below for trial in trials if not trial.waived])
+    misjudged = np.array([trial.misjudged for trial in trials])
+    within = sum(1.0 <= trial.below <= FAR for trial in trials)
+    waived = sum(trial.waived and trial.below > FAR for trial in trials)
+    return [
+        *(scene, motion, quantity, str(len(trials)), str(int(np.sum(below < 1.0))), str(within), str(waived)),
+        *(str(sum(trial.far for trial in trials)), f"{np.median(below):.0f}", f"{np.max(counted, initial=0.0):.0f}"),
+        *(f"{np.sum(misjudged <= CLOSE)}", f"{np.max(misjudged):.1f}"),
+    ]
+
+
+def farthest(trials: list[Trial]) -> list[str]:
+    """The trials that are farther below their target than they need to be, the farthest first, in words."""
+    far = sorted((trial for trial in trials if trial.far), key=lambda trial: -trial.below)
+    return [f"{_said(trial)}: {trial.below:.0f}" for trial in far]
+
+
+def exceeding(trials: list[Trial]) -> list[str]:
+    """The trials that miss their target, in words."""
+    missed = (trial for trial in trials if trial.below < 1.0)
+    return [f"{_said(trial)}: {trial.error.worst:.1e}" for trial in missed]
+
+
+def _said(trial: Trial) -> str:
+    return f"{trial.case.name}{'' if trial.case.scene.internal_wrench else ', motion alone,'} at {trial.target:g}"
