@@ -31,13 +31,13 @@ out of its scene.
 DELIVERED = """
 ## What the targets deliver
 
-Each target of 1e-2 to 1e-9 that the table of accuracy has, on {cases} cases: the gaits of the library and random laws that
-the calibration has not seen, both bodies, laminar and printed friction and no drag. Error: the greater of the head's
-position and the torque. The table's settings are those of the worst case of the calibration, for motions in a plane and
-others apart, so an easy gait gets more than it asked for: a swim that starts gently, or for a short way, is more exact
-at the same tolerance per step than one that falls through ramps for 10 s. A pilot run would tell, and would cost what it
-could save: a fifth-order method gains a factor of two for an error thirty times larger. The estimate of a run's own error
-is the difference from a finer run (`run.error_estimate`).
+Each target of 1e-2 to 1e-9 that the table of accuracy has, on {cases} cases: the gaits of the library and random laws
+that the calibration has not seen, both bodies, laminar and printed friction and no drag. Error: the greater of the
+head's position and the torque, or of the position where no torque was asked for. The settings of the table are those of
+its worst case, for motions in a plane and others apart, so an easy gait gets more than it asked for: a swim that starts
+gently, or for a short way, is more exact at the same tolerance per step than one that falls through ramps for 10 s. A
+pilot run would tell, and cost what it could save: steps of a fifth-order method for an error thirty times larger are
+twice as long. The estimate of a run's own error is the difference from a finer run (`run.error_estimate`).
 
 """
 
