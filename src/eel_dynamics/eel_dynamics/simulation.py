@@ -40,7 +40,11 @@ from .shape import Shape, knots_of_law, waves_of_law
 from .snapshot import Snapshot
 from .wrench import balance_of
 
+<<<<<<< HEAD
 LONGEST_STEP = 0.1  # of the shortest time over which the shape changes: works are integrals of what goes on within it
+=======
+LONGEST_STEP = 0.25  # of the shortest time over which the shape changes
+>>>>>>> 9fa2b2d (The table of targets measured anew; steps with a ledger as long as those without, for the ledger leaves the motion as it is; docs)
 MOST_STEPS = 20_000.0  # per period of the law, or second; the most exact runs need a tenth of it
 SPARE_STEPS = 200_000.0  # beyond these, at any time of a run, with up to
 SPARE_POINTS = 30.0  # points along the body; with more so many fewer, for a step costs as much more,
@@ -132,13 +136,10 @@ class Simulation:
             checked_quaternion("orientation", orientation),
             checked_row("twist", twist, 6),
         )
-        if self._is_thrown(law):
-            self.accuracy = self.accuracy.of_violence()
-        self._method = method_of(self.accuracy)
-        self.step = step_of(self._method)
         if self.scene.planar:
             check_planar(*self._start)
-        self._use_accuracy(in_plane(law, *self._start[1:], self._current))
+        self._thrown = self._is_thrown(law)
+        self._use_accuracy(in_plane(law, *self._start[1:], self._current) and not self._thrown)
         if not (np.isfinite(default_transition) and default_transition > 0.0):
             raise ValueError(f"default_transition must be finite and > 0 s, got {default_transition!r}")
         waves, knots = (1.0, ()) if law is None else self._needs(law)
@@ -216,6 +217,8 @@ class Simulation:
     def _use_accuracy(self, plane: bool):
         """Take the settings for a motion that stays in a `plane`, or for any; the march so far counts on."""
         accuracy, before = self._wanted.in_scene(self.scene, plane), getattr(self, "step", None)
+        if self._thrown:
+            accuracy = accuracy.of_violence()
         if before is not None and accuracy == self.accuracy:
             return
         self.accuracy, self._method = accuracy, method_of(accuracy)
