@@ -40,11 +40,7 @@ from .shape import Shape, knots_of_law, waves_of_law
 from .snapshot import Snapshot
 from .wrench import balance_of
 
-<<<<<<< HEAD
 LONGEST_STEP = 0.1  # of the shortest time over which the shape changes: works are integrals of what goes on within it
-=======
-LONGEST_STEP = 0.25  # of the shortest time over which the shape changes
->>>>>>> 9fa2b2d (The table of targets measured anew; steps with a ledger as long as those without, for the ledger leaves the motion as it is; docs)
 MOST_STEPS = 20_000.0  # per period of the law, or second; the most exact runs need a tenth of it
 SPARE_STEPS = 200_000.0  # beyond these, at any time of a run, with up to
 SPARE_POINTS = 30.0  # points along the body; with more so many fewer, for a step costs as much more,
