@@ -19,7 +19,7 @@ from eel_gaits import falling, gait, straight
 
 KNOWN = {case.name: case for drag in (True, False) for case in cases(drag)}
 TARGETS = (1e-2, 1e-4, 1e-6, 1e-8)
-FARTHEST = 150.0  # below the target, for a few; docs/tradeoff.md has the distribution over some 250 runs
+FARTHEST = 300.0  # below the target, for a few: laws differ so much; docs/tradeoff.md has the distribution
 
 
 def unseen(seed: int, body: Body, scene: Scene, planar: bool = False) -> Case:
