@@ -114,13 +114,14 @@ class Window:
 
     @cached_property
     def tail(self):
-        """Spline of the tail over the water, (3,) m. `ValueError` where the last station is not the tail."""
+        """Spline of the tail's way over the water, (3,) m from where it began. `ValueError` where the last station is not the tail."""
         length = self.run.body.length
         if abs(self.run.x[-1] - length) > 1e-9 * length:
             raise ValueError(
                 f"run must have a station at the tail, X = {length:g} m, got the last at {self.run.x[-1]:g} m"
             )
-        return self.spline(self.run.backbone[:, -1] - self._drift)
+        way = self.run.backbone[:, -1] - self._drift
+        return self.spline(way - way[0])
 
     @property
     def _drift(self) -> np.ndarray:
