@@ -114,7 +114,9 @@ class Window:
 
     @cached_property
     def tail(self):
-        """Spline of the tail's way over the water, (3,) m from where it began. `ValueError` where the last station is not the tail."""
+        """Spline of the tail's way over the water, (3,) m from where it began.
+
+        `ValueError` where the last station is not the tail."""
         length = self.run.body.length
         if abs(self.run.x[-1] - length) > 1e-9 * length:
             raise ValueError(
