@@ -1,174 +1,17 @@
 """Driven anywhere, a run finishes or says why it stopped: nothing that is not finite comes back, nothing hangs."""
 
-from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from draws import few, numbers
-from eel_dynamics.guard import OPEN, failure_of
-from eel_dynamics.stability.maps import spindle
+from eel_dynamics.guard import failure_of
 from hypothesis import given
 from hypothesis import strategies as st
+from random_scenes import fixed, pointed
 
 from eel_dynamics import Accuracy, Body, Scene, SimulationStopped, simulate, simulate_batch
 from eel_gaits import Law, Ramp, Term, falling, helix, still, straight
-
-MOST_STEPS = 200_000  # of 1 s; the worst of 4,000 takes 2e4
-
-
-def fixed(step):
-    return Accuracy(name="fixed", resolution=26.0, step=step)
-
-
-def finite(batch):
-    arrays = batch.position, batch.orientation, batch.twist, batch.head_acceleration, batch.center_of_mass
-    return all(np.isfinite(array).all() for array in (*arrays, *(batch.energy[name] for name in batch.energy.keys())))  # noqa: SIM118
-
-
-def finite_motion(batch):
-    return all(np.isfinite(array).all() for array in (batch.position, batch.orientation, batch.twist))
-
-
-def share_from_nowhere(batch, index):
-    """Greatest residual of the ledger, as a share of the energy that was there or passed."""
-    energy = batch.energy
-    works = energy.actuator_work, energy.wake_work, energy.nose_work, energy.drag_work
-    passed = (energy.kinetic_body + energy.kinetic_fluid + sum(np.abs(work) for work in works))[index]
-    return np.abs(energy.residual[index]).max() / passed.max() if passed.max() > 0.0 else 0.0
-
-
-def shapes(count, rng):
-    """`count` bodies of 1 cm to 100 m: the paper's robot, spindles of slenderness 5 to 500, blunt ones and pointed."""
-
-    def body():
-        length = 10.0 ** rng.uniform(-2.0, 2.0)
-        most = 500.0 if rng.random() < 0.1 else 50.0  # needles are stiff, and take most of the time
-        slenderness = 10.0 ** rng.uniform(np.log10(5.0), np.log10(most))
-        if rng.random() < 0.5:
-            return spindle(length, slenderness)
-        half = 0.5 * length / slenderness
-        return pointed(half * rng.uniform(0.2, 1.0), half, length)
-
-    return [Body.boyer2010(), *(body() for _ in range(count - 1))]
-
-
-def sudden(rng, start):
-    """Ramps that begin a swim: one, two that overlap, or some of a microsecond."""
-    kind = rng.integers(3)
-    if kind == 0:
-        return (Ramp(0.0, start, 1.0),)
-    if kind == 1:
-        return Ramp(0.0, start, 1.0), Ramp(0.3 * start, 2.0 * start, -0.5)
-    return Ramp(0.0, start, 0.5), Ramp(0.5, 0.5 + 1e-6, 0.5), Ramp(0.5 + 5e-7, 0.5 + 2e-6, -0.3)
-
-
-def anywhere(count, seed):
-    """`count` swimmers, their numbers spread evenly in the logarithm over more than any swimmer has."""
-    rng = np.random.default_rng(seed)
-    bodies = shapes(count // 50, rng)
-
-    def between(low, high):
-        return float(10.0 ** rng.uniform(np.log10(low), np.log10(high)))
-
-    def wave(axis, length, period):
-        size = between(1e-12, 12.0)
-        return Term(
-            axis=axis,
-            amplitude=(
-                size / length,
-                size * rng.uniform(-1.0, 1.0) / length**2,
-                size * rng.uniform(-2.0, 2.0) / length**3,
-            ),
-            wavelength=length * between(0.2, 100.0) * rng.choice((-1.0, 1.0)),
-            period=period,
-            phase=rng.uniform(0.0, 6.0),
-            envelope=sudden(rng, period * between(0.01, 10.0)),
-        )
-
-    def settings(period):
-        kind = rng.random()
-        if kind < 0.1:
-            return fixed(period * between(3e-3, 1.0))
-        return 1e-2 if kind < 0.9 else "draft" if kind < 0.96 else "standard" if kind < 0.99 else "fine"
-
-    def swimmer(index):
-        body, period, planar = bodies[index % len(bodies)], between(0.02, 50.0), index % 4 == 3
-        axes = ("yaw",) if planar or index % 2 else ("yaw", "pitch")
-        scene = Scene(
-            planar=planar,
-            density=between(1.0, 1e6),
-            viscosity=float(rng.choice([0.0, between(1e-9, 1.0)])),
-            friction=str(rng.choice(["printed", "laminar", "blended", "none"])),
-            added_mass=str(rng.choice(["corrected", "printed"])),
-        )
-        thrown = index % 3 == 0
-        twist = np.r_[rng.normal(size=3) * between(1e-3, 100.0), rng.normal(size=3) * between(1e-3, 50.0)] * thrown
-        law = Law(*(wave(axis, body.length, period) for axis in axes))
-        return law, body, scene, settings(period), twist * (0, 0, 1, 1, 1, 0) if planar else twist
-
-    names = "laws", "bodies", "scenes", "accuracy", "twists"
-    drawn = dict(zip(names, zip(*(swimmer(index) for index in range(count)), strict=True), strict=True))
-    return {**drawn, "twists": np.array(drawn["twists"])}
-
-
-@pytest.mark.parametrize("count", [3_000, pytest.param(10_000, marks=pytest.mark.soak)])
-def test_a_swimmer_driven_anywhere_finishes_or_says_why_not(count):
-    batch = simulate_batch(duration=1.0, sample_period=0.125, **anywhere(count, seed=count))
-    assert finite(batch)
-    assert batch.steps.max() < MOST_STEPS
-    for error in batch.error:
-        if error is not None:
-            assert error.hint and error.quantity and error.time <= 1.0
-    aimed = np.array([accuracy.step is None for accuracy in batch.accuracies])
-    # Motions too small for a step to be asked for have an error by the body's length, not by their own energy.
-    lengths = np.array([body.length for body in batch.bodies])
-    moved = np.linalg.norm(np.diff(batch.position, axis=1), axis=2).sum(axis=1) > 0.1 * lengths
-    for chosen, most, least in ((aimed, 0.05, count // 10), (~aimed, OPEN, count // 200)):
-        shares = [share_from_nowhere(batch, index) for index in np.flatnonzero(chosen & moved & ~batch.stopped)]
-        assert len(shares) > least
-        assert max(shares) < most
-
-
-def robots_anywhere(count, seed):
-    """`count` of the paper's robots, their numbers spread evenly in the logarithm over more than any swimmer has."""
-    rng = np.random.default_rng(seed)
-
-    def between(low, high):
-        return float(10.0 ** rng.uniform(np.log10(low), np.log10(high)))
-
-    def swimmer(index):
-        size = between(1e-12, 12.0)
-        law = (falling, straight)[index % 2](
-            period=between(0.02, 50.0),
-            wavelength=between(0.2, 100.0),
-            amplitude_0=size,
-            amplitude_1=size * rng.uniform(-1.0, 1.0),
-            amplitude_2=size * rng.uniform(-2.0, 2.0),
-            start_periods=between(0.01, 10.0),
-        )
-        scene = Scene(
-            density=between(1.0, 1e6),
-            viscosity=float(rng.choice([0.0, between(1e-9, 1.0)])),
-            friction=str(rng.choice(["printed", "laminar", "blended", "none"])),
-            added_mass=str(rng.choice(["corrected", "printed"])),
-        )
-        thrown = index % 3 == 0
-        twist = np.r_[rng.normal(size=3) * between(1e-3, 100.0), rng.normal(size=3) * between(1e-3, 50.0)]
-        return law, scene, twist * thrown
-
-    laws, scenes, twists = zip(*(swimmer(index) for index in range(count)), strict=True)
-    return {"laws": laws, "scenes": scenes, "twists": np.array(twists)}
-
-
-def test_steps_of_adams_that_stability_keeps_short_fall_in_order():
-    """The motion alone is marched by Adams' steps: at their full order a light body in thick water takes 1.1e5."""
-    cases = {name: each[420:530] for name, each in robots_anywhere(600, seed=2_000).items()}
-    scenes = [replace(scene, ledger=False, internal_wrench=False) for scene in cases["scenes"]]
-    batch = simulate_batch(duration=2.0, sample_period=0.25, accuracy=1e-2, **(cases | {"scenes": scenes}))
-    assert batch.accuracies[0].in_scene(scenes[0]).method == "adams"
-    assert finite_motion(batch) and not batch.stopped.any()
-    assert batch.steps.max() < 50_000
 
 
 @pytest.mark.parametrize("ledger", [False, True])
@@ -232,7 +75,7 @@ def test_what_is_not_finite_is_found_with_its_sample():
     assert (sample, quantity) == (3, "position is not finite") and np.isnan(value)
     assert failure_of(out, works, 3, 2.0, 0.0) is None
     sample, quantity, value = failure_of(out, works, 5, 0.5, 0.0)
-    assert (sample, value) == (0, pytest.approx(1.5 / 2.5)) and "energy from nowhere" in quantity
+    assert (sample, value) == (0, pytest.approx(1.5 / 2.0)) and "energy from nowhere" in quantity
 
 
 @pytest.mark.parametrize("planar", [False, True])
@@ -253,15 +96,6 @@ def test_bodies_a_thousandth_and_a_thousand_times_as_dense_as_water(density):
     fine = simulate(straight(), 3.0, scene=Scene(density=density), accuracy=1e-6)
     assert run.evaluations < 2000
     assert np.abs(run.position - fine.position).max() < 1e-4 * max(1.0, run.path_length)
-
-
-def pointed(half_width, half_height, length=1.0):
-    """A body of `length` [m] whose half-axes [m] are given at the middle, pointed at nose and tail."""
-
-    def along(x):
-        return 2.0 * np.sqrt(np.maximum(x / length * (1.0 - x / length), 0.0))
-
-    return Body(length=length, half_width=lambda x: half_width * along(x), half_height=lambda x: half_height * along(x))
 
 
 def test_a_tail_of_zero_section_sheds_no_wake():

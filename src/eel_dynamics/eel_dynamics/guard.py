@@ -35,7 +35,8 @@ def _not_finite(name: str, array: np.ndarray):
 
 def _open(kinetic: np.ndarray, works: np.ndarray, start: float, floor: float):
     residual = np.abs(kinetic.sum(axis=1) - start - works.sum(axis=1))
-    passed = np.maximum.accumulate(kinetic.sum(axis=1) + np.abs(works).sum(axis=1)) + start + floor
+    there = np.maximum(kinetic.sum(axis=1) + np.abs(works).sum(axis=1), start)
+    passed = np.maximum.accumulate(there) + floor
     bad = residual > OPEN * passed
     if not bad.any():
         return None

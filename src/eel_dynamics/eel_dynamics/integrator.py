@@ -26,8 +26,6 @@ WORKS = 4
 LOBATTO = np.array([0.0, 0.5 - np.sqrt(5.0) / 10.0, 0.5 + np.sqrt(5.0) / 10.0, 1.0])
 LOBATTO_SERIES = np.linalg.inv(np.vander(LOBATTO, increasing=True))  # coefficients of the cubic through values there
 
-PART_OF_SPAN = 0.25  # between two breakpoints, that a step may take
-
 MARCHED, NOT_FINITE, STEP_TOO_SMALL, SINGULAR, TOO_MANY_STEPS = 0, 1, 2, 3, 4
 
 
@@ -52,6 +50,7 @@ class Control(NamedTuple):
     smallest: float  # s
     length: float  # m, scale of positions
     momentum_floor: float  # kg m/s, below which momentum counts as none
+    part_of_span: float  # between two breakpoints, that a step may take
     most_steps: float  # per second of motion
     spare_steps: float  # beyond these, to be spent at any time
     ledger: bool
@@ -365,7 +364,7 @@ def fitted(method, control, step, start, before, target, tiny):
     left = target - start
     if not method.adaptive:
         return left / np.ceil(left / control.step - 1e-9) if left < 1e100 else control.step
-    length = min(control.step, step.time[2], PART_OF_SPAN * (target - before))
+    length = min(control.step, step.time[2], control.part_of_span * (target - before))
     if method.adams > 0 and left < 8.0 * length:
         return left / np.ceil(left / length - 1e-9)  # equal steps
     if length > left - tiny:

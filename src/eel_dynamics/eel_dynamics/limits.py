@@ -7,7 +7,7 @@
 | slenderness l/(2 max(a, b)) < 5 | the water moves in planes across a slender body (section 4.1 of the paper) |
 | U l/nu < 1000 | added mass and a thin boundary layer need inertia to rule |
 | the tail leads, V1(l) > 0, for a good part of the time | the wake then feeds energy in (the last term of eq. 60) |
-| the energy ledger is open by more than 1 % of what passed | no limit of the model: the steps are too long |
+| the energy ledger is open by more than 1 % of what passed | no limit of the model: steps or points are too few |
 | by more than 0.1 %, where settings were given, not a target | nothing was promised: `Run.error_estimate` tells |
 
 b is the half-width along axis 2, a the half-height along axis 3. A point y E2 + z E3 of a section moves along the body
@@ -118,13 +118,16 @@ class Limits:
 
     def of_ledger(self, energy, most: float = OPEN) -> str:
         """The residual of an `EnergyLedger` of (T,) arrays is more than the part `most` of the energy that was there or
-        passed."""
+        passed, by its samples: what came and went between two of them, as in a sudden ramp, is not in it."""
         works = energy.actuator_work, energy.wake_work, energy.nose_work, energy.drag_work
         passed = np.max(energy.kinetic_body + energy.kinetic_fluid + sum(np.abs(work) for work in works), initial=0.0)
         residual = np.max(np.abs(energy.residual), initial=0.0)
         if residual <= most * passed:
             return ""
-        return f"the energy ledger is open by {residual / passed:.2g} of what passed: the steps in time are too long"
+        return (
+            f"the energy ledger is open by {residual / passed:.2g} of what passed: works are no more exact, as steps "
+            "in time or points along the body are too few"
+        )
 
 
 def warnings_of(run) -> tuple[str, ...]:

@@ -47,6 +47,8 @@ SPARE_POINTS = 30.0  # points along the body; with more so many fewer, for a ste
 LEAST_SPARE = 6_000.0  # but not less than these
 SLOWEST = 1e-3  # body lengths per time scale, below which the head counts as at rest
 PART_OF_SPEED = 0.5  # of the speed that the shape gives the body: momenta below need not be exact to the last digit
+PART_OF_SPAN = 0.25  # between two breakpoints of the shape, that a step may take
+PART_OF_RAMP = 0.125  # the same for the ledger: of what a sudden ramp puts in, most comes back, and little may be left
 FIRST_STEP = 0.02  # of the longest
 THROWN = 0.2  # periods, in which one who starts faster than a swimmer goes by its length, or turns by one
 
@@ -465,6 +467,7 @@ class Simulation:
             smallest=1e-11 * min(scale, 1.0),
             length=self.body.length,
             momentum_floor=mass * slowest,
+            part_of_span=PART_OF_RAMP if self.scene.ledger and self.drive.segment < 0 else PART_OF_SPAN,
             most_steps=MOST_STEPS / min(scale, 1.0),
             spare_steps=max(LEAST_SPARE, SPARE_STEPS * min(1.0, SPARE_POINTS / len(self._grid.x))),
             ledger=bool(self.scene.ledger),
