@@ -15,6 +15,7 @@ import numpy as np
 from against_paper_scheme import paper_scheme
 from against_peers import peers
 from batch import batch
+from eel_dynamics.calibration import REFERENCE
 from eel_dynamics.integrator import rate_of_state
 from eel_dynamics.planar import rate_of_state_plane
 from growth import growth
@@ -104,7 +105,7 @@ def falling_gait():
     """10 s of the falling gait: times real time, and the error of the head's position by its path (against a finer
     run)."""
     lean = Scene(ledger=False, internal_wrench=False)
-    finest = simulate(falling(), body=BODY, accuracy=1e-9, scene=lean)
+    finest = simulate(falling(), body=BODY, accuracy=REFERENCE, scene=lean)
     for name, scene, period in (("motion alone", lean, 10.0), ("ledger, wrench, 201 samples", Scene(), 0.05)):
         for accuracy in (1e-2, 1e-3, 1e-4, 1e-6):
             swim = partial(simulate, falling(), body=BODY, accuracy=accuracy, scene=scene, sample_period=period)
