@@ -1,5 +1,6 @@
 """Runs and where they go: files, ports, viewers that are absent, and stamps that go back."""
 
+import datetime
 import os
 import socket
 import subprocess
@@ -272,6 +273,19 @@ def test_without_a_name_the_file_is_called_after_the_time(tmp_path, ears, monkey
     (made,) = os.listdir(tmp_path)
     assert made.startswith("eel-20")
     assert made.endswith(".rrd")
+    assert not ears.warned  # the file's place was taken by itself
+
+
+def test_two_that_begin_in_the_same_second_write_two_files(tmp_path, ears, monkeypatch):
+    class Clock(datetime.datetime):
+        @classmethod
+        def now(cls):
+            return cls(2026, 1, 2, 3, 4, 5)
+
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("eel_viz.file.datetime.datetime", Clock)
+    files = [File(Settings(), ears.said.append, ears.warned.append).path(1) for _ in range(2)]
+    assert [str(path) for path in files] == ["eel-20260102-030405.rrd", f"eel-20260102-030405-{os.getpid()}.rrd"]
 
 
 @pytest.fixture

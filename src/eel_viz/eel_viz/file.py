@@ -1,6 +1,7 @@
 """Runs as .rrd files, where the user said; nowhere else."""
 
 import datetime
+import os
 import pathlib
 import time
 
@@ -25,8 +26,8 @@ class File(Destination):
         super().__init__(
             settings, Rates(numbers=0.0, drawings=settings.skin_rate, tick=FILE_TICK), say, warn, live=False
         )
-        path = settings.recording or f"eel-{datetime.datetime.now():%Y%m%d-%H%M%S}.rrd"
-        self._first, self._patient_from = pathlib.Path(path), patient_from
+        self._first = pathlib.Path(settings.recording) if settings.recording else new_file()
+        self._patient_from = patient_from
         self._files: dict[int, pathlib.Path] = {}
         self._incomplete = False
         self._reminded = (0, 0.0)  # number of the run, and when [s] it was said that it is not saved
@@ -50,7 +51,7 @@ class File(Destination):
 
     def _sink(self, run: int) -> rr.FileSink | None:
         path = self.path(run)
-        existed = path.exists()
+        existed = path.exists() and path.stat().st_size > 0
         problem = obstacle(path)
         if problem:
             self._refuse(run, f"recording {str(path)!r} cannot be written: {problem}")
@@ -70,6 +71,19 @@ class File(Destination):
         if run != last or time.monotonic() - when > REMINDER:
             self._reminded = run, time.monotonic()
             self.warn(f"{problem}: nothing of this run is saved; it is tried again while running")
+
+
+def new_file() -> pathlib.Path:
+    """A file in the present folder, named after the time; made at once, so that no other process takes the same one."""
+    name = f"eel-{datetime.datetime.now():%Y%m%d-%H%M%S}"
+    path = pathlib.Path(f"{name}.rrd")
+    try:
+        path.open("xb").close()
+    except FileExistsError:
+        return pathlib.Path(f"{name}-{os.getpid()}.rrd")
+    except OSError:
+        pass  # said where it is opened
+    return path
 
 
 def obstacle(path: pathlib.Path) -> str:
