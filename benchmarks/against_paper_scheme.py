@@ -4,6 +4,7 @@ import statistics
 from functools import partial
 
 import numpy as np
+from eel_dynamics.calibration import REFERENCE
 from measuring import median_ratio, times_in_turn
 from paper_scheme import cells_of, curvatures, swim
 
@@ -27,7 +28,7 @@ def paper_scheme():
         scene = Scene(friction="laminar", ledger=False, internal_wrench=internal)
         ours = partial(simulate, law, DURATION, body=body, scene=scene)
         period = STEP if internal else DURATION
-        finest = ours(accuracy=1e-9, sample_period=period, stations=COMMON + 1)
+        finest = ours(accuracy=REFERENCE, sample_period=period, stations=COMMON + 1)
         runs = {target: ours(accuracy=target, sample_period=period, stations=COMMON + 1) for target in TARGETS}
         errors = {target: _errors(run.position[-1], run.torque, finest) for target, run in runs.items()}
         yield "with the internal torque at each step" if internal else "motion alone", None, ""
