@@ -102,11 +102,11 @@ def plane():
 
 
 def falling_gait():
-    """10 s of the falling gait: times real time, and the error of the head's position by its path (against a finer
-    run)."""
-    lean = Scene(ledger=False, internal_wrench=False)
+    """10 s of the falling gait, laminar friction: times real time, and the error of the head's position by its path
+    (against a finer run)."""
+    lean = Scene(friction="laminar", ledger=False, internal_wrench=False)
     finest = simulate(falling(), body=BODY, accuracy=REFERENCE, scene=lean)
-    for name, scene, period in (("motion alone", lean, 10.0), ("ledger, wrench, 201 samples", Scene(), 0.05)):
+    for name, scene, period in (("motion alone", lean, 10.0), ("ledger, wrench, 201 samples", Scene(friction="laminar"), 0.05)):
         for accuracy in (1e-2, 1e-3, 1e-4, 1e-6):
             swim = partial(simulate, falling(), body=BODY, accuracy=accuracy, scene=scene, sample_period=period)
             run = swim()
