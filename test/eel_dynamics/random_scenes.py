@@ -74,6 +74,8 @@ def anywhere(count, seed):
         kind = rng.random()
         if kind < 0.1:
             return fixed(period * between(3e-3, 1.0))
+        if kind < 0.15:
+            return "draft, fixed steps"
         return 1e-2 if kind < 0.9 else "draft" if kind < 0.96 else "standard" if kind < 0.99 else "fine"
 
     def swimmer(index):

@@ -60,6 +60,12 @@ def test_a_fixed_step_that_is_too_long_is_told(step):
         simulate(straight(), 3.0, accuracy=fixed(step))
 
 
+def test_fixed_steps_of_a_target_that_do_not_do_are_told():
+    """The number of them was measured with gaits from rest: it does not hold one who is thrown in, and spins."""
+    with pytest.raises(SimulationStopped, match=r"energy from nowhere.*take the accuracy without fixed steps"):
+        simulate(straight(), 1.0, accuracy="draft, fixed steps", twist=(0.0, 0.0, 20.0, 0.0, 20.0, 0.0))
+
+
 def test_a_fixed_step_that_is_stable_and_inexact_is_warned_of():
     good, poor = (simulate(straight(), 3.0, accuracy=fixed(step)) for step in (0.1, 0.5))
     assert good.position[-1, 0] == pytest.approx(-0.779, abs=1e-3) and good.warnings == ()

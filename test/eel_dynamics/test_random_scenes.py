@@ -64,7 +64,7 @@ def test_a_swimmer_driven_anywhere_finishes_or_says_why_not(scenes, count, durat
     counted = moved & ~batch.stopped
     assert counted.sum() > count // 15
     share = np.where(counted, share_from_nowhere(batch.energy), 0.0)
-    aimed = np.array([accuracy.step is None for accuracy in batch.accuracies])
+    aimed = np.array([accuracy.method != "classical" for accuracy in batch.accuracies])
     for index in np.flatnonzero(share > np.where(aimed, AIMED, OPEN)):
         assert any("energy ledger" in text for text in batch[index].warnings)
         if aimed[index]:

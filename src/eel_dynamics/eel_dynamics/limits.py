@@ -125,8 +125,8 @@ class Limits:
         if residual <= most * passed:
             return ""
         return (
-            f"the energy ledger is open by {residual / passed:.2g} of what passed: works are no more exact, as steps "
-            "in time or points along the body are too few"
+            f"the energy ledger is open by {residual / passed:.2g} of what passed, the works are no more exact: steps "
+            "or points along the body are too few"
         )
 
 

@@ -312,9 +312,7 @@ class Simulation:
                 self.time, "inertia of body and water is not positive definite", np.nan, "check the body's section data"
             )
         if status == NOT_FINITE:
-            stopped = SimulationStopped(
-                self.time, "momentum is not finite", np.nan, "take a smaller accuracy step, or a slower law"
-            )
+            stopped = SimulationStopped(self.time, "momentum is not finite", np.nan, self._remedy())
             stopped.diverged = True
             return stopped
         if status == TOO_MANY_STEPS:
@@ -389,10 +387,16 @@ class Simulation:
         if done:
             self.time = float(times[done - 1])
         if failure:
-            step = self.accuracy.step is not None
-            hint = "take a smaller step, or an accuracy in its place" if step else "take a gentler law, or start slower"
-            return done, SimulationStopped(self.time, quantity, value, hint)
+            return done, SimulationStopped(self.time, quantity, value, self._remedy())
         return done, None if status == MARCHED else self._stopped(status)
+
+    def _remedy(self) -> str:
+        """What to change where numbers have grown beyond reason."""
+        if self.accuracy.step is not None:
+            return "take a smaller step, or an accuracy in its place"
+        if self.accuracy.fixed is not None:
+            return "take the accuracy without fixed steps, or a gentler law"
+        return "take a gentler law, or start slower"
 
     def _look(self, wrench: bool, load: bool):
         """Fill the one instant of `_out` with the present."""
