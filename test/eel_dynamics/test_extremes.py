@@ -181,6 +181,20 @@ def test_one_who_is_thrown_in_keeps_the_target_without_a_ledger_too():
     assert (apart < 1e-4 * np.maximum(path, 1.0)).all()
 
 
+@pytest.mark.parametrize(
+    ("length", "viscosity", "twist"),
+    [(0.01, 0.012, (0.0, 0.0, 0.0, 0.01, -0.014, 0.0)), (0.1, 1.0, (0, 0, 16.0, 0.1, 0, 0))],
+)
+def test_light_bodies_that_the_water_stops_in_the_plane_keep_the_target(length, viscosity, twist):
+    """At tolerances of 2e-3, which leave a gait its longest steps, their ledgers are open by the whole energy."""
+    scene, body = Scene(planar=True, density=6.0, viscosity=viscosity), pointed(0.04 * length, 0.06 * length, length)
+    swims = {"duration": 1.0, "body": body, "scene": scene, "twist": twist, "stations": 2, "sample_period": 0.0625}
+    run, fine = (simulate(still(), accuracy=accuracy, **swims) for accuracy in (1e-2, 1e-6))
+    apart = np.linalg.norm(run.position - fine.position, axis=1).max()
+    assert apart < 2e-3 * max(length, fine.path_length)
+    assert np.abs(run.energy.residual).max() < 0.02 * fine.energy.kinetic_fluid[0]
+
+
 def test_a_body_that_is_rolled_up_keeps_the_target():
     """Three turns of the backbone are as three waves: the model has left its limits, the numbers have not."""
     law = straight(wavelength=50.0, amplitude_0=10.0, amplitude_1=5.0, amplitude_2=20.0)

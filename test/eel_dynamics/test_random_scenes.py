@@ -10,7 +10,7 @@ from random_scenes import anywhere, robots_anywhere
 from eel_dynamics import Scene, Simulation, simulate, simulate_batch
 from eel_gaits import Law, Ramp, Term
 
-MOST_STEPS = 100_000  # of half a second or one; the worst of 10,000 takes 5e4
+MOST_STEPS = 100_000  # of half a second or one, where steps are chosen; the worst of 10,000 takes 5e4
 AIMED = 0.05  # of the energy, that the ledger of a run of target 1e-2 may be open by
 
 
@@ -54,7 +54,8 @@ def test_a_swimmer_driven_anywhere_finishes_or_says_why_not(scenes, count, durat
     cases = {"accuracy": 1e-2, **scenes(count, seed=count)}
     batch = simulate_batch(duration=duration, sample_period=duration / 8, **cases)
     assert finite(batch)
-    assert batch.steps.max() < MOST_STEPS
+    aimed = np.array([accuracy.method != "classical" for accuracy in batch.accuracies])
+    assert batch.steps[aimed].max() < MOST_STEPS
     for error in batch.error:
         if error is not None:
             assert error.hint and error.quantity and error.time <= duration
@@ -64,7 +65,6 @@ def test_a_swimmer_driven_anywhere_finishes_or_says_why_not(scenes, count, durat
     counted = moved & ~batch.stopped
     assert counted.sum() > count // 15
     share = np.where(counted, share_from_nowhere(batch.energy), 0.0)
-    aimed = np.array([accuracy.method != "classical" for accuracy in batch.accuracies])
     for index in np.flatnonzero(share > np.where(aimed, AIMED, OPEN)):
         assert any("energy ledger" in text for text in batch[index].warnings)
         if aimed[index]:
