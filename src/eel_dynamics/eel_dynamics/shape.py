@@ -15,6 +15,7 @@ from eel_gaits.spline import natural_spline
 
 from .drive import AXES, Drive, Tabulation, factors
 
+PART_OF_PEAK = 0.75  # of the turns where all terms bend the body most
 TURN_POINTS = 64  # along the body, for the angle that a law bends it by
 MOST_KNOTS = 8  # of laws whose panels are cut at them
 NONE = np.zeros(0, dtype=np.int64)
@@ -215,13 +216,20 @@ def _split(tabulation: Tabulation, rows: np.ndarray) -> dict:
 
 
 def waves_of_law(law: Law, length: float) -> float:
-    """How many waves a law bends a body of `length` [m] into, at most; a spline counts an eighth of its intervals, a
-    turn of the backbone one wave, as its direction goes once around."""
+    """How many waves a law bends a body of `length` [m] into, at most; a spline counts an eighth of its intervals.
+
+    A turn of the backbone is a wave too, as its direction goes once around: turns are counted by the term that turns it
+    most, and by three quarters of what all do together where the body is bent most.
+    """
     waves = [length * abs(term.wave_number) / (2.0 * np.pi) for term in law.terms]
     waves += [(len(term.knots) - 1) / 8.0 for term in law.terms]
     x = length * (np.arange(TURN_POINTS) + 0.5) / TURN_POINTS
-    turns = [np.mean(np.abs(term.amplitude_at(x))) * length / (2.0 * np.pi) for term in law.terms]
-    return float(max([*waves, *turns], default=0.0))
+    bends = [np.abs(term.amplitude_at(x)) for term in law.terms]
+    together = np.zeros((2, TURN_POINTS))
+    for term, bend in zip(law.terms, bends, strict=True):
+        together[int(term.axis == "yaw")] += bend
+    turns = [*(np.mean(bend) for bend in bends), PART_OF_PEAK * np.max(np.hypot(*together))]
+    return float(max(*waves, *(length / (2.0 * np.pi) * turn for turn in turns), 0.0))
 
 
 def knots_of_law(law: Law) -> tuple[float, ...]:
