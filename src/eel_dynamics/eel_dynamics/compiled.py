@@ -10,6 +10,8 @@ from pathlib import Path
 
 from numba import njit
 
+from .putting_off import put_off
+
 # No reference counting (`_nrt`): the loops allocate nothing, and counting the arrays of a call costs more than the
 # call. No "nnan", "ninf" of fast-math: a state that is not finite must be seen.
 OPTIONS = {
@@ -51,4 +53,11 @@ def spliced(function):
 
 def _kept(dispatcher):
     dispatcher._cache._cache_file._source_stamp = STAMP
+    compile_it = dispatcher.compile
+
+    def compile_whole(signature):
+        with put_off():
+            return compile_it(signature)
+
+    dispatcher.compile = compile_whole
     return dispatcher

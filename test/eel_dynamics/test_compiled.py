@@ -1,0 +1,45 @@
+"""What a signal does that comes while loops are compiled."""
+
+import signal
+
+import pytest
+from eel_dynamics.compiled import compiled
+
+
+class Heard(Exception):
+    pass
+
+
+def hear(number, frame):
+    raise Heard
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGALRM])
+def test_a_signal_is_heard_once_the_function_is_compiled(monkeypatch, number):
+    """What its handler raises within LLVM's call back would be lost, and the code with it."""
+
+    @compiled
+    def double(x):
+        return 2.0 * x
+
+    double._cache.flush()
+    engine = double.targetctx.codegen()._engine._ee
+    hand_over = engine._object_cache_notify
+
+    def interrupted(module, code):
+        signal.raise_signal(number)
+        hand_over(module, code)
+
+    before = signal.signal(number, hear)
+    try:
+        monkeypatch.setattr(engine, "_object_cache_notify", interrupted)
+        with pytest.raises(Heard):
+            double(3.0)
+        monkeypatch.undo()
+        assert signal.getsignal(number) is hear
+        assert double(3.0) == 6.0 and len(double.overloads) == 1
+        assert double._cache.load_overload(double.signatures[0], double.targetctx) is not None
+        with pytest.raises(Heard):
+            signal.raise_signal(number)
+    finally:
+        signal.signal(number, before)
