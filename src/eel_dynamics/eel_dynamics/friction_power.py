@@ -1,5 +1,7 @@
 """Power of the axial friction, k1 of section 7.2.1, apart from the rest of the drag."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from .drag import add_resistive_loads
@@ -13,10 +15,11 @@ def drag_powers(run) -> np.ndarray:
     """Powers (T, 4) [W] of the drag along the body at each sample of `run`: of the forces along axes 1 (friction), 2
     and 3 (cross flow) of the sections, and of the torque about axis 1; all into the body, so none is positive.
 
-    Evaluated anew at the nodes of a simulation as fine as the run's, from the law and the head's motion: their sum is
+    Evaluated anew at the nodes of a simulation with the settings of the run, from the law and the head's motion: their sum is
     the ledger's `drag_power`.
     """
-    swimmer = Simulation(body=run.body, scene=run.scene, accuracy=run.accuracy, stations=2)
+    settings = replace(run.accuracy, target=None)  # as they are, whatever motion they were chosen for
+    swimmer = Simulation(body=run.body, scene=run.scene, accuracy=settings, stations=2)
     swimmer.adopt(run.law)
     drive, fields, water = swimmer.drive, swimmer.fields, swimmer.swimmer
     powers = np.zeros((len(run.time), 4))
