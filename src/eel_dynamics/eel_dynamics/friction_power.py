@@ -15,7 +15,8 @@ def drag_powers(run) -> np.ndarray:
     """Powers (T, 4) [W] of the drag along the body at each sample of `run`: of the forces along axes 1 (friction), 2
     and 3 (cross flow) of the sections, and of the torque about axis 1; all into the body, so none is positive.
 
-    Evaluated anew at the nodes of a simulation with the settings of the run, from the law and the head's motion: their sum is
+    Evaluated anew at the nodes of a simulation with the settings of the run, from the law and the head's motion: their
+    sum is
     the ledger's `drag_power`.
     """
     settings = replace(run.accuracy, target=None)  # as they are, whatever motion they were chosen for
