@@ -16,8 +16,7 @@ def drag_powers(run) -> np.ndarray:
     and 3 (cross flow) of the sections, and of the torque about axis 1; all into the body, so none is positive.
 
     Evaluated anew at the nodes of a simulation with the settings of the run, from the law and the head's motion: their
-    sum is
-    the ledger's `drag_power`.
+    sum is the ledger's `drag_power`.
     """
     settings = replace(run.accuracy, target=None)  # as they are, whatever motion they were chosen for
     swimmer = Simulation(body=run.body, scene=run.scene, accuracy=settings, stations=2)
