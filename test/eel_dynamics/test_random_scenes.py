@@ -49,6 +49,7 @@ SCENES = [
 ]
 
 
+@pytest.mark.timeout(900)
 @pytest.mark.parametrize(("scenes", "count", "duration"), SCENES)
 def test_a_swimmer_driven_anywhere_finishes_or_says_why_not(scenes, count, duration):
     cases = {"accuracy": 1e-2, **scenes(count, seed=count)}
