@@ -26,8 +26,9 @@ class March:
     waits for a reset; one with a duration and without a pace, which nobody attends, returns, and has `failed`.
     """
 
-    def __init__(self, simulation, parameters, publishers, report):
+    def __init__(self, simulation, parameters, publishers, report, greet=lambda: None):
         self._simulation, self._parameters, self._publishers, self._report = simulation, parameters, publishers, report
+        self._greet = greet  # those who were waited for, before the first sample
         self._pace = Pace(1.0 / parameters.rate, parameters.real_time_factor)
         self._wake = threading.Condition()
         self._orders = deque()
@@ -136,6 +137,7 @@ class March:
             self._audience_complete = self._publishers.audience_complete(wanted, time.monotonic())
             if not self._audience_complete:
                 return f"waiting for {wanted} subscriber{'s' if wanted > 1 else ''}"
+            self._greet()
         return f"paused at t = {self.time:g} s" if self._paused else ""
 
     def _stand(self, obstacle: str):

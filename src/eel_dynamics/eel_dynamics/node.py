@@ -62,7 +62,7 @@ class DynamicsNode(Node):
             stopped=lambda: self.march.stopped,
             report=report,
         )
-        self.march = March(simulation, values, self.outlets, report)
+        self.march = March(simulation, values, self.outlets, report, greet=self._introduce)
         self.status = Status(self.march, report, values.accuracy)
         self._diagnostics = self.create_publisher(DiagnosticArray, "/diagnostics", 10)
         self._body = self.create_publisher(BodyGeometry, "body", LATCHED)
@@ -99,6 +99,10 @@ class DynamicsNode(Node):
         received = self.outlets.wait_until_received([self._diagnostics, self._body], seconds, interrupted)
         if not received and not interrupted():
             self.get_logger().warning(f"some subscriber has not received everything within {seconds:g} s")
+
+    def _introduce(self):
+        """Waits until all who have come know the body, which they need for what follows."""
+        self._body.wait_for_all_acked(Duration(seconds=PROMPT))
 
     def _reset(self, request, response):
         return self._answer(response, self.march.reset(), "reset")

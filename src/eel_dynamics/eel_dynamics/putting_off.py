@@ -9,10 +9,11 @@ import signal
 import threading
 from contextlib import contextmanager
 
-from llvmlite.binding.executionengine import ExecutionEngine
+from numba.core.codegen import ll
 
 RAISING = signal.SIGINT, signal.SIGTERM, signal.SIGALRM
-CALLBACKS = {ExecutionEngine._raw_object_cache_notify.__code__, ExecutionEngine._raw_object_cache_getbuffer.__code__}
+ENGINE = ll.executionengine.ExecutionEngine
+CALLBACKS = {ENGINE._raw_object_cache_notify.__code__, ENGINE._raw_object_cache_getbuffer.__code__}
 
 _waiting: list[int] = []  # signals that have come in a callback
 _before: dict = {}  # handlers by signal, while any function is compiled
