@@ -80,9 +80,7 @@ class Accuracy:
         where they were given one by one."""
         if self.target is None:
             return self
-        torque = bool(scene.internal_wrench or scene.ledger)
-        key = bool(scene.resistive), torque, bool(scene.planar or plane)
-        return _from_target(self.name, self.target, key, self.fixed is not None)
+        return _from_target(self.name, self.target, key_of(scene, plane), self.fixed is not None)
 
     def of_violence(self) -> "Accuracy":
         """The same target for one who is thrown in: the table was measured with gaits that start from rest, and the
@@ -134,6 +132,11 @@ class Accuracy:
                 f"run no further than that), got {value!r}"
             )
         return Accuracy(name=f"{target:g}", target=target, **ANY)
+
+
+def key_of(scene, plane: bool = False) -> tuple[bool, bool, bool]:
+    """The rows of the `table` for `scene`, and for a motion that stays in a `plane` or for any."""
+    return bool(scene.resistive), bool(scene.internal_wrench or scene.ledger), bool(scene.planar or plane)
 
 
 @cache

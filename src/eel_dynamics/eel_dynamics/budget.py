@@ -9,7 +9,7 @@ import time
 from dataclasses import dataclass, replace
 from functools import cache
 
-from .accuracy import Accuracy, table
+from .accuracy import Accuracy, key_of, table
 from .scene import Scene
 
 UNITS = {"us": 1e-6, "ms": 1e-3, "s": 1.0}
@@ -42,9 +42,8 @@ class Budget:
     def in_scene(self, scene: Scene, plane: bool = False) -> Accuracy:
         """The finest settings of the table that keep within the budget in `scene`, for a motion that stays in a `plane`
         or for any. `ValueError` where none does."""
-        key = bool(scene.resistive), bool(scene.internal_wrench or scene.ledger), bool(scene.planar)
         best, fastest = None, None
-        for row in table()[key]:
+        for row in table()[key_of(scene)]:
             seconds = seconds_per_second(scene, row["target"])
             fastest = seconds if fastest is None else min(fastest, seconds)
             if seconds > self.seconds_per_second:

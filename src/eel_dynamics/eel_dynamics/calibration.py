@@ -4,8 +4,8 @@ Every case is swum once with far more points and far smaller steps than any sett
 greater of the head's position at the end and of the torque (`errors`). Points along the body and steps in time are
 varied apart, since their errors add. For each target the table gets the cheapest settings whose worst error over all
 cases stays below it, also when all cases swim with them as they are: apart for cases that stay in a plane and others.
-What is cheap is counted in evaluations of the
-head's dynamics; for runs with torque those of the ledger count too, a number per step that is measured here.
+What is cheap is counted in evaluations of the head's dynamics; for runs with torque those of the ledger count too, a
+number per step that is measured here.
 """
 
 import csv

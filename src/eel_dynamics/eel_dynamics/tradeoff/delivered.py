@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..accuracy import table
+from ..accuracy import key_of, table
 from ..calibration import REFERENCE, Case, cases, swim
 from ..errors import Errors, errors
 from .table import laid_out
@@ -69,7 +69,7 @@ class Trial:
 
 def trials_of(case: Case, targets=TARGETS, reference=None) -> list[Trial]:
     """The runs of a case at those of the `targets` that the table has, against a `reference` run."""
-    rows = table()[case.scene.resistive, case.scene.internal_wrench, case.plane]
+    rows = table()[key_of(case.scene, case.plane)]
     reference = reference or swim(case, REFERENCE)
     coarse = errors(swim(case, rows[0]["target"]), reference).worst
     found = []
