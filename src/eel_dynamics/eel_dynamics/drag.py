@@ -17,6 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .compiled import compiled, inlined
+from .lanes import WIDTH, below, bits, put, root, root_guess, signed, size, spread, take, total, where
 
 ZERO, ONE = np.uintp(0), np.uintp(1)  # indices that are unsigned need no test for Python's negative ones
 PRINTED, LAMINAR, BLENDED = 0, 1, 2  # laws of friction, as in the scene
@@ -30,6 +31,7 @@ class Panels(NamedTuple):
     """What the search for kinks needs of the constants of a run (`Swimmer`), under the same names."""
 
     weight: np.ndarray
+    first: np.ndarray
     count: np.ndarray
     fraction: np.ndarray
     barycentric: np.ndarray
@@ -37,14 +39,14 @@ class Panels(NamedTuple):
 
 
 @inlined
-def fifth_root(x):
-    """x^(1/5) to round-off for x from 1e-8 to 1e8, without branches: a rational start, two steps of Halley."""
-    t = np.sqrt(np.sqrt(np.sqrt(np.sqrt(x))))
-    y = t * t * t * (0.4 + 0.6 * t) / (0.6 + 0.4 * t)
+def inverse_fifth_root(x):
+    """x^(-1/5) of eight positive numbers to round-off: from a guess within 4 per cent by two steps of order 4, the
+    binomial series of (1 - e)^(-1/5) with e = 1 - x y^5."""
+    y = root_guess(x)
     for _ in range(2):
         square = y * y
-        fifth = square * square * y
-        y *= (4.0 * fifth + 6.0 * x) / (6.0 * fifth + 4.0 * x)
+        e = 1.0 - x * (square * square * y)
+        y += y * e * (0.2 + e * (0.12 + e * 0.088))
     return y
 
 
@@ -72,15 +74,17 @@ def friction(laminar, turbulent, transition, part, speed):
 
 
 @inlined
-def section_speeds(fields):
+def section_speeds(swimmer, fields):
     """V1, V2, V3 and Omega1 of the nodes, from the true velocities."""
     R, omega, v, speed = fields.R, fields.omega, fields.v, fields.speed
-    for i in range(R.shape[1]):
-        x, y, z = v[0, i], v[1, i], v[2, i]
-        speed[AXIAL, i] = R[0, i] * x + R[1, i] * y + R[2, i] * z
-        speed[SIDE, i] = R[3, i] * x + R[4, i] * y + R[5, i] * z
-        speed[HEIGHT, i] = R[6, i] * x + R[7, i] * y + R[8, i] * z
-        speed[ROLL, i] = R[0, i] * omega[0, i] + R[1, i] * omega[1, i] + R[2, i] * omega[2, i]
+    for k in range(swimmer.blocks):
+        i = WIDTH * k
+        x, y, z = take(v, 0, i), take(v, 1, i), take(v, 2, i)
+        ax, ay, az = take(R, 0, i), take(R, 1, i), take(R, 2, i)
+        put(speed, AXIAL, i, ax * x + ay * y + az * z)
+        put(speed, SIDE, i, take(R, 3, i) * x + take(R, 4, i) * y + take(R, 5, i) * z)
+        put(speed, HEIGHT, i, take(R, 6, i) * x + take(R, 7, i) * y + take(R, 8, i) * z)
+        put(speed, ROLL, i, ax * take(omega, 0, i) + ay * take(omega, 1, i) + az * take(omega, 2, i))
 
 
 @inlined
@@ -88,49 +92,54 @@ def rub(swimmer, fields):
     """Friction of the nodes by the laminar law and what the turbulent one adds, `rubbing` (2, n) [kg/m/s]: per length
     and V1; and the part of the turbulent law, `part` (n,)."""
     speed, rubbing, part = fields.speed, fields.rubbing, fields.part
-    n = speed.shape[1]
-    if swimmer.friction == LAMINAR:
-        for i in range(n):
-            rubbing[0, i] = swimmer.laminar[i] * np.sqrt(abs(speed[AXIAL, i]))
-            rubbing[1, i] = 0.0
-            part[i] = 0.0
-        return
-    for i in range(n):
-        ratio = abs(speed[AXIAL, i]) / swimmer.transition[i]
-        rubbing[0, i] = swimmer.laminar[i] * np.sqrt(abs(speed[AXIAL, i]))
-        rubbing[1, i] = swimmer.turbulent[i] * ratio / fifth_root(ratio + 1e-30) - rubbing[0, i]
-        speed[RATIO, i] = ratio - 1.0
-        part[i] = 1.0 if ratio > 1.0 else 0.0
+    none, whole = spread(0.0), spread(1.0)
+    for k in range(swimmer.blocks):
+        i = WIDTH * k
+        axial = size(take(speed, AXIAL, i))
+        laminar = take(swimmer.laminar, i) * root(axial)
+        put(rubbing, 0, i, laminar)
+        if swimmer.friction == LAMINAR:
+            put(rubbing, 1, i, none)
+            put(part, i, none)
+        else:
+            ratio = axial * take(swimmer.reynolds, i)
+            turbulent = take(swimmer.turbulent, i) * ratio * inverse_fifth_root(ratio + 1e-30)
+            put(rubbing, 1, i, turbulent - laminar)
+            put(speed, RATIO, i, ratio - 1.0)
+            put(part, i, where(ratio > 1.0, whole, none))
     if swimmer.friction == BLENDED:
-        for i in range(n):
+        for i in range(len(swimmer.x)):
             part[i] = turbulent_part(BLENDED, swimmer.transition[i], abs(speed[AXIAL, i]))
 
 
 @inlined
-def value_at(swimmer, values, begin, count, t):
+def value_at(swimmer, values, kind, begin, count, t):
     """At the fraction `t` of a panel, the polynomial through its nodes' `values`, by the barycentric formula."""
-    above = below = 0.0
-    for k in range(count):
-        part = swimmer.barycentric[begin + k] / (t - swimmer.fraction[begin + k])
-        above += part * values[begin + k]
-        below += part
-    return above / below
+    above = below_ = spread(0.0)
+    for k in range(0, count, WIDTH):
+        node = begin + np.uintp(k)
+        inside = below(np.int64(count) - k)
+        weight = where(inside, take(swimmer.barycentric, node), spread(0.0))
+        part = weight / (t - where(inside, take(swimmer.fraction, node), spread(2.0)))
+        above += part * where(inside, take(values, kind, node), spread(0.0))
+        below_ += part
+    return total(above) / total(below_)
 
 
 @inlined
-def zero_between(swimmer, values, begin, count, i, before, exact):
+def zero_between(swimmer, values, kind, begin, count, i, before, exact):
     """Fraction of the panel at which the polynomial through `values` is zero, between node i and the one before it
     (value `before`). An error e moves the load of V|V| by e^3, so this need not be `exact`."""
     a = swimmer.fraction[i - ONE] if i > begin else 0.0
     b = swimmer.fraction[i]
-    f, g = before, values[i]
+    f, g = before, values[kind, i]
     enough = (1e-12 if exact else 1e-4) * (abs(f) + abs(g))
     t = b
     for _ in range(8):
         t = (a * g - b * f) / (g - f)
         if t <= a or t >= b:
             break
-        value = value_at(swimmer, values, begin, count, t)
+        value = value_at(swimmer, values, kind, begin, count, t)
         if not abs(value) > enough:
             break
         if (value > 0.0) == (g > 0.0):
@@ -143,59 +152,70 @@ def zero_between(swimmer, values, begin, count, i, before, exact):
 
 
 @inlined
-def integrals_upto(swimmer, begin, count, t, row):
-    """Weights `row` (count,) [m] of the panel's nodes for the integral from its start to its fraction `t`."""
-    for k in range(count):
-        row[k] = t * swimmer.series[ZERO, begin + k]
-    z = 2.0 * t - 1.0
-    low, middle = 1.0, z  # Legendre polynomials
-    for m in range(count - ONE):
-        high = UPPER[m] * z * middle - LOWER[m] * low
-        integral = INTEGRAL[m] * (high - low)
-        for k in range(count):
-            row[k] += integral * swimmer.series[m + ONE, begin + k]
-        low, middle = middle, high
+def integrals_upto(swimmer, begin, count, t, row, at):
+    """Weights `row[at]` (count,) [m] of the panel's nodes for the integral from its start to its fraction `t`."""
+    for k in range(0, count, WIDTH):
+        node = begin + np.uintp(k)
+        weights = t * take(swimmer.series, ZERO, node)
+        z = 2.0 * t - 1.0
+        low, middle = 1.0, z  # Legendre polynomials
+        for m in range(count - ONE):
+            high = UPPER[m] * z * middle - LOWER[m] * low
+            weights += INTEGRAL[m] * (high - low) * take(swimmer.series, m + ONE, node)
+            low, middle = middle, high
+        put(row, at, k, weights)
 
 
 @compiled
-def note_steps(swimmer, kinks, kind, values, start, noise, share):
-    """Find where `values` (n,), the row `kind` of the speeds, change their sign along the body (`start`: at the nose),
-    note the steps of the load there, and have its weights `share` (n,) integrate it."""
-    before = start
-    begin, count = ZERO, swimmer.count[0]
-    for i in range(np.uintp(len(values))):
-        if i >= begin + count:
-            begin += count
-            count = swimmer.count[i]
-        value = values[i]
-        if (value >= 0.0) != (before >= 0.0) and abs(value - before) > noise:
-            j = kinks.number[0]
-            if j < len(kinks.kind):
-                kinks.number[0] = j + 1
-                exact = kind == RATIO
-                t = zero_between(swimmer, values, begin, count, i, before, exact)
-                step = (1.0 if exact else 2.0) * (1.0 if value >= 0.0 else -1.0)
-                row = kinks.row[j]
-                integrals_upto(swimmer, begin, count, t, row)
-                kinks.kind[j], kinks.begin[j], kinks.fraction[j], kinks.step[j] = kind, begin, t, step
-                for k in range(count):
-                    share[begin + k] -= step * row[k]
-                    if begin + k < i:
-                        share[begin + k] += step * swimmer.weight[begin + k]
-        before = value
+def note_steps(swimmer, kinks, kind, values, changes, first, start, noise, share, shared):
+    """Note the steps of the load where row `kind` of the `values` changes its sign along the body: before those of the
+    eight nodes from `first` on that `changes` has a bit for (`start`: the value at the nose). Have the load's weights,
+    the row `shared` of `share`, integrate them; what changes by less than `noise` is round-off."""
+    exact = kind == RATIO
+    while changes != 0:
+        i = first
+        while changes & 1 == 0:
+            changes >>= 1
+            i += ONE
+        changes >>= 1
+        first = i + ONE
+        value, before = values[kind, i], values[kind, i - ONE] if i > ZERO else start
+        j = kinks.number[0]
+        if abs(value - before) > noise and j < len(kinks.kind):
+            kinks.number[0] = j + 1
+            begin, count = swimmer.first[i], swimmer.count[i]
+            t = zero_between(swimmer, values, kind, begin, count, i, before, exact)
+            step = (1.0 if exact else 2.0) * (1.0 if value >= 0.0 else -1.0)
+            integrals_upto(swimmer, begin, count, t, kinks.row, j)
+            kinks.kind[j], kinks.begin[j], kinks.fraction[j], kinks.step[j] = kind, begin, t, step
+            for k in range(0, count, WIDTH):
+                node = begin + np.uintp(k)
+                ahead = where(below(np.int64(i) - np.int64(node)), take(swimmer.weight, node), spread(0.0))
+                inside = where(below(np.int64(count) - k), take(kinks.row, j, k), spread(0.0))
+                put(share, shared, node, take(share, shared, node) + step * (ahead - inside))
 
 
 @inlined
 def find_steps(swimmer, fields, kind, start, noise):
     """Note the steps of the load that goes with row `kind` of `speed`; those below `noise` are round-off."""
-    values = fields.speed[kind]
-    sign = start >= 0.0
-    for i in range(len(values)):
-        if (values[i] >= 0.0) != sign:
-            panels = Panels(swimmer.weight, swimmer.count, swimmer.fraction, swimmer.barycentric, swimmer.series)
-            share = fields.share[ZERO if kind == RATIO else kind]
-            note_steps(panels, fields.kinks, kind, values, start, noise, share)
-            return
+    speed, sign = fields.speed, np.int64(start < 0.0)
+    nodes = len(swimmer.x)
+    for k in range(swimmer.blocks):
+        negative = bits(take(speed, kind, WIDTH * k) < 0.0)
+        changes = (negative ^ (negative << 1 | sign)) & 255
+        if nodes - WIDTH * k < WIDTH:
+            changes &= (1 << nodes - WIDTH * k) - 1
+        sign = negative >> 7
+        if changes != 0:
+            panels = Panels(
+                *(swimmer.weight, swimmer.first, swimmer.count),
+                *(swimmer.fraction, swimmer.barycentric, swimmer.series),
+            )
+            shared = ZERO if kind == RATIO else kind
+            note_steps(
+                *(panels, fields.kinks, kind, speed, changes, np.uintp(WIDTH * k)),
+                *(start, noise, fields.share, shared),
+            )
 
 
 @inlined
@@ -203,15 +223,15 @@ def share_loads(swimmer, fields, twist):
     """Weights `share` (4, n) [m] that integrate the loads: of the turbulent law's excess over the laminar one, and with
     the sign of their speed, of cross flow and roll. `twist` (6,): of the head."""
     speed, share, part = fields.speed, fields.share, fields.part
-    n = speed.shape[1]
-    for i in range(n):
-        weight = swimmer.weight[i]
-        share[0, i] = weight * part[i]
-        share[SIDE, i] = math.copysign(weight, speed[SIDE, i])
-        share[HEIGHT, i] = math.copysign(weight, speed[HEIGHT, i])
-        share[ROLL, i] = math.copysign(weight, speed[ROLL, i])
+    for k in range(swimmer.blocks):
+        i = WIDTH * k
+        weight = take(swimmer.weight, i)
+        put(share, 0, i, weight * take(part, i))
+        put(share, SIDE, i, signed(weight, take(speed, SIDE, i)))
+        put(share, HEIGHT, i, signed(weight, take(speed, HEIGHT, i)))
+        put(share, ROLL, i, signed(weight, take(speed, ROLL, i)))
     fields.kinks.number[0] = 0
-    tail = n - 1
+    tail = len(swimmer.x) - 1
     spin = abs(fields.omega[0, tail]) + abs(fields.omega[1, tail]) + abs(fields.omega[2, tail])
     noise = NOISE * (abs(speed[AXIAL, tail]) + abs(speed[SIDE, tail]) + abs(speed[HEIGHT, tail]))
     find_steps(swimmer, fields, SIDE, twist[4], noise)
@@ -225,110 +245,145 @@ def share_loads(swimmer, fields, twist):
 def add_resistive_loads(swimmer, fields, twist, wrench):
     """Add the drag along the body to `wrench` (6,), on the body (section 7.2.1), from the true velocities; `twist` (6,)
     is the head's. Returns its power [W]."""
-    section_speeds(fields)
+    section_speeds(swimmer, fields)
     rub(swimmer, fields)
     share_loads(swimmer, fields, twist)
     R, r, speed, share = fields.R, fields.r, fields.speed, fields.share
-    tx = ty = tz = fx = fy = fz = power = 0.0
-    for i in range(R.shape[1]):
-        v1, v2, v3, roll = speed[AXIAL, i], speed[SIDE, i], speed[HEIGHT, i], speed[ROLL, i]
-        n1 = -(swimmer.weight[i] * fields.rubbing[0, i] + share[0, i] * fields.rubbing[1, i]) * v1
-        n2 = -share[SIDE, i] * swimmer.drag2[i] * v2 * v2
-        n3 = -share[HEIGHT, i] * swimmer.drag3[i] * v3 * v3
-        c1 = -share[ROLL, i] * swimmer.drag_roll[i] * roll * roll
-        nx = R[0, i] * n1 + R[3, i] * n2 + R[6, i] * n3
-        ny = R[1, i] * n1 + R[4, i] * n2 + R[7, i] * n3
-        nz = R[2, i] * n1 + R[5, i] * n2 + R[8, i] * n3
+    tx = ty = tz = fx = fy = fz = power = spread(0.0)
+    for k in range(swimmer.blocks):
+        i = WIDTH * k
+        v1, v2, v3, roll = take(speed, AXIAL, i), take(speed, SIDE, i), take(speed, HEIGHT, i), take(speed, ROLL, i)
+        rubbing = take(swimmer.weight, i) * take(fields.rubbing, 0, i) + take(share, 0, i) * take(fields.rubbing, 1, i)
+        n1 = -rubbing * v1
+        n2 = -take(share, SIDE, i) * take(swimmer.drag2, i) * v2 * v2
+        n3 = -take(share, HEIGHT, i) * take(swimmer.drag3, i) * v3 * v3
+        c1 = -take(share, ROLL, i) * take(swimmer.drag_roll, i) * roll * roll
+        ax, ay, az = take(R, 0, i), take(R, 1, i), take(R, 2, i)
+        nx = ax * n1 + take(R, 3, i) * n2 + take(R, 6, i) * n3
+        ny = ay * n1 + take(R, 4, i) * n2 + take(R, 7, i) * n3
+        nz = az * n1 + take(R, 5, i) * n2 + take(R, 8, i) * n3
+        x, y, z = take(r, 0, i), take(r, 1, i), take(r, 2, i)
         fx += nx
         fy += ny
         fz += nz
-        tx += c1 * R[0, i] + r[1, i] * nz - r[2, i] * ny
-        ty += c1 * R[1, i] + r[2, i] * nx - r[0, i] * nz
-        tz += c1 * R[2, i] + r[0, i] * ny - r[1, i] * nx
+        tx += c1 * ax + (y * nz - z * ny)
+        ty += c1 * ay + (z * nx - x * nz)
+        tz += c1 * az + (x * ny - y * nx)
         power += n1 * v1 + n2 * v2 + n3 * v3 + c1 * roll
-    wrench[0] += tx
-    wrench[1] += ty
-    wrench[2] += tz
-    wrench[3] += fx
-    wrench[4] += fy
-    wrench[5] += fz
-    return power
+    wrench[0] += total(tx)
+    wrench[1] += total(ty)
+    wrench[2] += total(tz)
+    wrench[3] += total(fx)
+    wrench[4] += total(fy)
+    wrench[5] += total(fz)
+    return total(power)
 
 
 @inlined
-def wrench_density(fields, i, c1, n1, n2, n3, density):
-    """Add the drag of section i, the torque c1 and forces n1, n2, n3 in its axes, to `density` (6,) about the head."""
-    R, r = fields.R, fields.r
-    nx = R[0, i] * n1 + R[3, i] * n2 + R[6, i] * n3
-    ny = R[1, i] * n1 + R[4, i] * n2 + R[7, i] * n3
-    nz = R[2, i] * n1 + R[5, i] * n2 + R[8, i] * n3
-    x, y, z = r[0, i], r[1, i], r[2, i]
-    density[0] += c1 * R[0, i] + y * nz - z * ny
-    density[1] += c1 * R[1, i] + z * nx - x * nz
-    density[2] += c1 * R[2, i] + x * ny - y * nx
-    density[3] += nx
-    density[4] += ny
-    density[5] += nz
-
-
-@compiled
 def add_resistance(swimmer, fields, density):
     """Add the resistance (the drag's opposite) at the nodes, per length about the head, to `density` (6, n)."""
-    speed, rubbing = fields.speed, fields.rubbing
-    for i in range(density.shape[1]):
-        v1, v2, v3, roll = speed[AXIAL, i], speed[SIDE, i], speed[HEIGHT, i], speed[ROLL, i]
-        wrench_density(
-            fields,
-            i,
-            swimmer.drag_roll[i] * abs(roll) * roll,
-            (rubbing[0, i] + fields.part[i] * rubbing[1, i]) * v1,
-            swimmer.drag2[i] * abs(v2) * v2,
-            swimmer.drag3[i] * abs(v3) * v3,
-            density[:, i],
-        )
+    R, r, speed, rubbing = fields.R, fields.r, fields.speed, fields.rubbing
+    for k in range(swimmer.blocks):
+        i = WIDTH * k
+        v1, v2, v3, roll = take(speed, AXIAL, i), take(speed, SIDE, i), take(speed, HEIGHT, i), take(speed, ROLL, i)
+        n1 = (take(rubbing, 0, i) + take(fields.part, i) * take(rubbing, 1, i)) * v1
+        n2 = take(swimmer.drag2, i) * size(v2) * v2
+        n3 = take(swimmer.drag3, i) * size(v3) * v3
+        c1 = take(swimmer.drag_roll, i) * size(roll) * roll
+        ax, ay, az = take(R, 0, i), take(R, 1, i), take(R, 2, i)
+        nx = ax * n1 + take(R, 3, i) * n2 + take(R, 6, i) * n3
+        ny = ay * n1 + take(R, 4, i) * n2 + take(R, 7, i) * n3
+        nz = az * n1 + take(R, 5, i) * n2 + take(R, 8, i) * n3
+        x, y, z = take(r, 0, i), take(r, 1, i), take(r, 2, i)
+        put(density, 0, i, take(density, 0, i) + c1 * ax + (y * nz - z * ny))
+        put(density, 1, i, take(density, 1, i) + c1 * ay + (z * nx - x * nz))
+        put(density, 2, i, take(density, 2, i) + c1 * az + (x * ny - y * nx))
+        put(density, 3, i, take(density, 3, i) + nx)
+        put(density, 4, i, take(density, 4, i) + ny)
+        put(density, 5, i, take(density, 5, i) + nz)
 
 
 @compiled
-def add_steps(swimmer, fields, section, nodal, result):
-    """Put right the integrals `result` (6, M) up to the points of `section` of the resistance at the nodes: what the
-    steps of the loads change, in its panel and (where `nodal`: stations go on from nodes put right) behind it."""
-    kinks, speed, scratch = fields.kinks, fields.speed, fields.integrand
+def weigh_steps(kinks, count, drag2, drag3, drag_roll, rubbing, speed, R, r):
+    """What the steps of the loads are of: the `density` of each at the nodes of its panel, and its integral from the
+    panel's start to the step, the `whole`."""
     for j in range(kinks.number[0]):
-        begin, kind, step, row, at = kinks.begin[j], kinks.kind[j], kinks.step[j], kinks.row[j], kinks.fraction[j]
-        count = swimmer.count[begin]
-        whole = fields.wrench
-        whole[:] = 0.0
-        for k in range(count):
+        begin, kind, step = kinks.begin[j], kinks.kind[j], kinks.step[j]
+        whole = kinks.whole
+        for c in range(6):
+            whole[j, c] = 0.0
+        first, load = ZERO, rubbing[1]  # of the axis that the load goes along
+        if kind == SIDE or kind == ROLL:
+            load = drag2 if kind == SIDE else drag_roll
+        if kind == HEIGHT:
+            load = drag3
+        if kind == SIDE or kind == HEIGHT:
+            first = np.uintp(3) * kind
+        for k in range(count[begin]):
             node = begin + k
-            v1, v2, v3, roll = speed[AXIAL, node], speed[SIDE, node], speed[HEIGHT, node], speed[ROLL, node]
-            scratch[:, node] = 0.0
-            wrench_density(
-                fields,
-                node,
-                swimmer.drag_roll[node] * roll * roll if kind == ROLL else 0.0,
-                fields.rubbing[1, node] * v1 if kind == RATIO else 0.0,
-                swimmer.drag2[node] * v2 * v2 if kind == SIDE else 0.0,
-                swimmer.drag3[node] * v3 * v3 if kind == HEIGHT else 0.0,
-                scratch[:, node],
-            )
-            change = step * ((swimmer.weight[node] if swimmer.fraction[node] < at else 0.0) - row[k])
+            speed_of_it = speed[AXIAL if kind == RATIO else kind, node]
+            force = step * load[node] * speed_of_it * (1.0 if kind == RATIO else speed_of_it)
+            x, y, z = force * R[first, node], force * R[first + ONE, node], force * R[first + np.uintp(2), node]
+            density = kinks.density[j, k]
+            if kind == ROLL:
+                density[0], density[1], density[2] = x, y, z
+                density[3] = density[4] = density[5] = 0.0
+            else:
+                density[0] = r[1, node] * z - r[2, node] * y
+                density[1] = r[2, node] * x - r[0, node] * z
+                density[2] = r[0, node] * y - r[1, node] * x
+                density[3], density[4], density[5] = x, y, z
             for c in range(6):
-                whole[c] += change * scratch[c, node]
-        for i in range(result.shape[1]):
-            if section.first[i] > begin:
-                if not nodal:
-                    continue
-                for c in range(6):
-                    result[c, i] += whole[c]
-            elif section.first[i] == begin:
-                behind = section.fraction[i] >= at
-                for k in range(count):
-                    node = begin + k
-                    ahead = swimmer.fraction[node] < at
-                    change = 0.0
-                    if behind:
-                        change = (section.matrix[i, k] if ahead else 0.0) - row[k]
-                    elif not ahead:
-                        change = -section.matrix[i, k]
-                    for c in range(6):
-                        result[c, i] += step * change * scratch[c, node]
+                whole[j, c] += kinks.row[j, k] * density[c]
+
+
+@compiled
+def integrate_balance(upto, kinks, count, fraction, density, known, result):
+    """Integrals (6, n) of the `density` (6, n) from the nose to the points of `upto`, with the steps of its loads;
+    `known` (6, n): those to the nodes, the `result` itself where these are the points."""
+    for block in range(len(upto.source)):
+        node, begin, i = upto.source[block], upto.start[block], WIDTH * block
+        a = b = c = d = e = f = spread(0.0)
+        for j in range(upto.sources[block]):
+            column, here = take(upto.columns, begin + j, 0), node + j
+            a += density[0, here] * column
+            b += density[1, here] * column
+            c += density[2, here] * column
+            d += density[3, here] * column
+            e += density[4, here] * column
+            f += density[5, here] * column
+        if node > ZERO:
+            before = node - ONE
+            a, b, c = a + known[0, before], b + known[1, before], c + known[2, before]
+            d, e, f = d + known[3, before], e + known[4, before], f + known[5, before]
+        for j in range(kinks.number[0]):
+            first = kinks.begin[j]
+            if first < node or first >= node + upto.sources[block]:
+                continue
+            at, of_it, whole = kinks.fraction[j], kinks.density, kinks.whole
+            behind = take(upto.place, i) >= first + at
+            for k in range(count[first]):
+                column = take(upto.columns, begin + (first - node) + k, 0)
+                if fraction[first + k] < at:
+                    column = where(behind, column, spread(0.0))
+                else:
+                    column = where(behind, spread(0.0), -column)
+                a += of_it[j, k, 0] * column
+                b += of_it[j, k, 1] * column
+                c += of_it[j, k, 2] * column
+                d += of_it[j, k, 3] * column
+                e += of_it[j, k, 4] * column
+                f += of_it[j, k, 5] * column
+            passed = where(behind, spread(1.0), spread(0.0))
+            a -= whole[j, 0] * passed
+            b -= whole[j, 1] * passed
+            c -= whole[j, 2] * passed
+            d -= whole[j, 3] * passed
+            e -= whole[j, 4] * passed
+            f -= whole[j, 5] * passed
+        put(result, 0, i, a)
+        put(result, 1, i, b)
+        put(result, 2, i, c)
+        put(result, 3, i, d)
+        put(result, 4, i, e)
+        put(result, 5, i, f)

@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .compiled import inlined
+from .lanes import WIDTH, aligned, put, spread, take
 
 AXES = {"pitch": 0, "yaw": 1}
 MOMENT_POINTS = 10  # Gauss points per interval for the Magnus moments
@@ -81,11 +82,12 @@ class Tabulation:
         )
 
     def split(self, rows: np.ndarray):
-        """node (m, n), bend (m, 3, n), station (m, s), station_bend (m, 3, s) of tabulated `rows` (m, width)."""
+        """node (m, n), bend (m, 3, n), station (m, s), station_bend (m, 3, s) of tabulated `rows` (m, width), each with
+        zeros behind (`lanes`)."""
         n, s, m = self.nodes, self.stations, len(rows)
         cuts = np.split(rows, [n, 4 * n, 4 * n + s], axis=1)
         shapes = (m, n), (m, 3, n), (m, s), (m, 3, s)
-        return tuple(np.ascontiguousarray(part.reshape(shape)) for part, shape in zip(cuts, shapes, strict=True))
+        return tuple(aligned(part.reshape(shape)) for part, shape in zip(cuts, shapes, strict=True))
 
 
 @inlined
@@ -159,23 +161,39 @@ def factors(drive, time, factor):
 
 
 @inlined
-def combine(axis, rows, factor, result):
+def combine(axis, rows, factor, blocks, result):
     """Sum over rows of factor (m,) times rows (m, n), apart for pitch and yaw, into `result` (2, n)."""
-    result[:] = 0.0
-    for m in range(len(axis)):
-        c, k = factor[m], axis[m]
-        if c != 0.0:
-            for i in range(rows.shape[1]):
-                result[k, i] += c * rows[m, i]
+    for k in range(blocks):
+        i = WIDTH * k
+        pitch = yaw = spread(0.0)
+        for m in range(len(axis)):
+            if axis[m] == 0:
+                pitch += factor[m] * take(rows, m, i)
+            else:
+                yaw += factor[m] * take(rows, m, i)
+        put(result, 0, i, pitch)
+        put(result, 1, i, yaw)
 
 
 @inlined
-def combine_moments(axis, rows, factor, result):
+def combine_moments(axis, rows, factor, blocks, result):
     """Sum over rows of factor (m,) times rows (m, 3, n), apart for pitch and yaw, into `result` (3, 2, n)."""
-    result[:] = 0.0
-    for m in range(len(axis)):
-        c, k = factor[m], axis[m]
-        if c != 0.0:
-            for j in range(3):
-                for i in range(rows.shape[2]):
-                    result[j, k, i] += c * rows[m, j, i]
+    for k in range(blocks):
+        i = WIDTH * k
+        p0 = p1 = p2 = y0 = y1 = y2 = spread(0.0)
+        for m in range(len(axis)):
+            c = factor[m]
+            if axis[m] == 0:
+                p0 += c * take(rows, m, 0, i)
+                p1 += c * take(rows, m, 1, i)
+                p2 += c * take(rows, m, 2, i)
+            else:
+                y0 += c * take(rows, m, 0, i)
+                y1 += c * take(rows, m, 1, i)
+                y2 += c * take(rows, m, 2, i)
+        put(result, 0, 0, i, p0)
+        put(result, 1, 0, i, p1)
+        put(result, 2, 0, i, p2)
+        put(result, 0, 1, i, y0)
+        put(result, 1, 1, i, y1)
+        put(result, 2, 1, i, y2)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from .drag import add_resistive_loads
-from .drive import combine, combine_moments, factors
+from .drive import factors
 from .frames import matrix_of
 from .kernel import add_head_twist, configure
 from .simulation import Simulation
@@ -27,12 +27,10 @@ def drag_powers(run) -> np.ndarray:
         return powers
     for sample, time in enumerate(run.time):
         factors(drive, float(time), fields.factor)
-        combine_moments(drive.axis, drive.bend, fields.factor[0], fields.bend)
-        combine(drive.axis, drive.node, fields.factor[1], fields.rate)
-        configure(water, fields)
+        configure(water, drive, fields)
         relative = run.twist[sample].copy()
         relative[3:] -= matrix_of(run.orientation[sample]).T @ run.scene.current
-        add_head_twist(fields, relative)
+        add_head_twist(water, fields, relative)
         add_resistive_loads(water, fields, relative, np.zeros(6))
         v1, v2, v3, roll = fields.speed[:4]
         _, side, height, turning = fields.share

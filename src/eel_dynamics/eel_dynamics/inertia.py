@@ -7,6 +7,8 @@ digits of an acceleration in double precision, and counts as singular.
 
 import numpy as np
 
+from .lanes import aligned
+
 MOST = 1e12
 PART = 0.25  # of a singular direction, from which a degree of freedom is named
 FREEDOMS = "roll", "pitch", "yaw", "surge", "sway", "heave"
@@ -15,7 +17,7 @@ PLANE = 2, 3, 4
 
 def straight_inertia(swimmer, length: float) -> np.ndarray:
     """(6, 6) [kg] about the head, rotation first, of a tabulated `swimmer` of `length` [m]."""
-    x, weight = swimmer.x / length, swimmer.weight
+    x, weight = aligned(swimmer.x / length), swimmer.weight
     roll, pitch, yaw = (
         float(weight @ each) / length**2 for each in (swimmer.inertia1, swimmer.inertia2, swimmer.inertia3)
     )

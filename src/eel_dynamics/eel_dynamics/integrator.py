@@ -16,7 +16,7 @@ import numpy as np
 
 from .adams import HIGHEST, SHORT, Past, adams_growth, defect_of_order, extrapolate, past_of, remember
 from .compiled import compiled, inlined, spliced
-from .drive import combine, combine_moments, factors
+from .drive import combine, factors
 from .kernel import add_head_twist, configure, momentum_rates, twist_of_momentum
 from .planar import rate_of_state_plane
 from .wrench import accelerate, actuator_power
@@ -177,9 +177,7 @@ def settle(swimmer, drive, fields, time, y, momentum, twist):
     """Configure the body at `time` and find the head's `twist` from the momentum of state `y`. False where it has
     none."""
     factors(drive, time, fields.factor)
-    combine_moments(drive.axis, drive.bend, fields.factor[0], fields.bend)
-    combine(drive.axis, drive.node, fields.factor[1], fields.rate)
-    configure(swimmer, fields)
+    configure(swimmer, drive, fields)
     for k in range(6):
         momentum[k] = y[7 + k]
     rotate(y, True, momentum, 0)
@@ -216,10 +214,10 @@ def powers_of_state(swimmer, drive, fields, balance, time, y, step, power):
     """Powers (4,) [W] of actuators, wake, nose and drag in state `y` at `time`, by the acceleration form."""
     if not settle(swimmer, drive, fields, time, y, step.momentum, step.twist):
         return False
-    combine(drive.axis, drive.node, fields.factor[2], fields.accel)
-    add_head_twist(fields, step.twist)
+    combine(drive.axis, drive.node, fields.factor[2], swimmer.blocks, fields.accel)
+    add_head_twist(swimmer, fields, step.twist)
     accelerate(swimmer, fields, step.twist, balance)
-    actuator_power(swimmer, fields, balance, step.rates)
+    actuator_power(swimmer, fields, balance)
     for k in range(4):
         power[k] = balance.powers[k]
     return True

@@ -12,10 +12,29 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .compiled import inlined
+from .compiled import compiled, inlined
 from .drag import ONE, ZERO, add_resistive_loads
+from .drive import combine, combine_moments
+from .lanes import (
+    WIDTH,
+    aligned_zeros,
+    any_of,
+    last,
+    moved1,
+    moved2,
+    moved4,
+    padded,
+    put,
+    spread,
+    take,
+    total,
+)
 
 MOST_KINKS = 24  # of the drag, along the body at one instant; what is more is integrated without care
+SERIES = 0.25  # square of half an angle, up to which sine and cosine are taken from their series
+# of sin(a)/a and cos(a) by a^2, from the highest power down
+SINE = (1 / 6227020800, -1 / 39916800, 1 / 362880, -1 / 5040, 1 / 120, -1 / 6, 1.0)
+COSINE = (1 / 87178291200, -1 / 479001600, 1 / 3628800, -1 / 40320, 1 / 720, -1 / 24, 0.5)
 
 
 class Kinks(NamedTuple):
@@ -27,10 +46,12 @@ class Kinks(NamedTuple):
     fraction: np.ndarray  # (k,) of the panel
     step: np.ndarray  # (k,) of the factor of the load
     row: np.ndarray  # (k, p) m, weights of the integral from the panel's start to the step
+    density: np.ndarray  # (k, p, 6) what the step is of, per length about the head
+    whole: np.ndarray  # (k, 6) its integral from the panel's start to the step
 
 
 class Fields(NamedTuple):
-    """Work space of one evaluation, reused; n nodes."""
+    """Work space of one evaluation, reused; n nodes and those that fill it up (`lanes.padded`)."""
 
     turn: np.ndarray  # (4, n) rotation from the node before, quaternion x y z w
     q: np.ndarray  # (4, n) orientations of the sections, quaternion x y z w
@@ -46,7 +67,7 @@ class Fields(NamedTuple):
     rubbing: np.ndarray  # (2, n) kg/m/s, friction by V1: of the laminar law, and what the turbulent one adds
     share: np.ndarray  # (4, n) m, weights of the loads with steps
     integrand: np.ndarray  # (6, n) scratch
-    inertia: np.ndarray  # (6, 6) of body and water about the head
+    inertia: np.ndarray  # (6, 6) of body and water about the head, or its factors L and 1/D of L D L^T
     wrench: np.ndarray  # (6,) scratch
     factor: np.ndarray  # (3, m) values and rates of the law's time factors
     kinks: Kinks
@@ -54,21 +75,18 @@ class Fields(NamedTuple):
 
 def fields_of(nodes: int, rows: int, widest: int) -> Fields:
     """Work space for `nodes` nodes in panels of up to `widest`, and a law of `rows` rows."""
+    n = padded(nodes)
+    along = aligned_zeros(60, n)
+    sizes = {"turn": 4, "q": 4, "R": 9, "r": 3, "bend": (3, 2), "rate": 2, "accel": 2, "omega": 3, "v": 3, "speed": 5}
+    sizes |= {"part": (), "rubbing": 2, "share": 4, "integrand": 6}
+    spaces, begin = {}, 0
+    for name, size in sizes.items():
+        shape = size if isinstance(size, tuple) else (size,)
+        rows_of_it = int(np.prod(shape, dtype=int))
+        spaces[name] = along[begin : begin + rows_of_it].reshape(*shape, n)
+        begin += rows_of_it
     return Fields(
-        turn=np.zeros((4, nodes)),
-        q=np.zeros((4, nodes)),
-        R=np.zeros((9, nodes)),
-        r=np.zeros((3, nodes)),
-        bend=np.zeros((3, 2, nodes)),
-        rate=np.zeros((2, nodes)),
-        accel=np.zeros((2, nodes)),
-        omega=np.zeros((3, nodes)),
-        v=np.zeros((3, nodes)),
-        speed=np.zeros((5, nodes)),
-        part=np.zeros(nodes),
-        rubbing=np.zeros((2, nodes)),
-        share=np.zeros((4, nodes)),
-        integrand=np.zeros((6, nodes)),
+        **spaces,
         inertia=np.zeros((6, 6)),
         wrench=np.zeros(6),
         factor=np.zeros((3, rows)),
@@ -78,22 +96,25 @@ def fields_of(nodes: int, rows: int, widest: int) -> Fields:
             begin=np.zeros(MOST_KINKS, dtype=np.uintp),
             fraction=np.zeros(MOST_KINKS),
             step=np.zeros(MOST_KINKS),
-            row=np.zeros((MOST_KINKS, widest)),
+            row=np.zeros((MOST_KINKS, padded(widest))),
+            density=np.zeros((MOST_KINKS, widest, 6)),
+            whole=np.zeros((MOST_KINKS, 6)),
         ),
     )
 
 
 @inlined
-def turns(bend, turn):
+def turns(bend, blocks, turn):
     """Rotations over intervals, as quaternions (4, n), by the sixth-order Magnus series of R' = R hat(K).
 
     bend (3, 2, n) holds B0, alpha2, alpha3 of K = (0, K2, K3) on each interval of length h, from its first three
     Legendre moments (Blanes, Casas and Ros, BIT 40 (2000)); exact where K keeps its direction.
     """
-    for i in range(bend.shape[2]):
-        b2, b3 = bend[0, 0, i], bend[0, 1, i]
-        l2, l3 = bend[1, 0, i], bend[1, 1, i]
-        q2, q3 = bend[2, 0, i], bend[2, 1, i]
+    for k in range(blocks):
+        i = WIDTH * k
+        b2, b3 = take(bend, 0, 0, i), take(bend, 0, 1, i)
+        l2, l3 = take(bend, 1, 0, i), take(bend, 1, 1, i)
+        q2, q3 = take(bend, 2, 0, i), take(bend, 2, 1, i)
         a2, a3 = b2 - q2 / 12.0, b3 - q3 / 12.0
         c1 = a2 * l3 - a3 * l2
         u2, u3 = 20.0 * a2 + q2, 20.0 * a3 + q3
@@ -104,234 +125,345 @@ def turns(bend, turn):
         e2 = b2 - (u3 * w1 - c1 * w3) / 240.0
         e3 = b3 - (c1 * w2 - u2 * w1) / 240.0
         z = 0.25 * (e1 * e1 + e2 * e2 + e3 * e3)  # half angle squared
-        if z < 0.25:
-            s = 0.5 * (
-                1.0
-                - z
-                / 6.0
-                * (1.0 - z / 20.0 * (1.0 - z / 42.0 * (1.0 - z / 72.0 * (1.0 - z / 110.0 * (1.0 - z / 156.0)))))
-            )
-            c = 1.0 - z / 2.0 * (
-                1.0
-                - z
-                / 12.0
-                * (1.0 - z / 30.0 * (1.0 - z / 56.0 * (1.0 - z / 90.0 * (1.0 - z / 132.0 * (1.0 - z / 182.0)))))
-            )
-        else:
-            half = np.sqrt(z)
-            s = 0.5 * np.sin(half) / half
-            c = np.cos(half)
-        turn[0, i], turn[1, i], turn[2, i], turn[3, i] = s * e1, s * e2, s * e3, c
+        s = SINE[0] * z + SINE[1]
+        c = COSINE[0] * z + COSINE[1]
+        s, c = s * z + SINE[2], c * z + COSINE[2]
+        s, c = s * z + SINE[3], c * z + COSINE[3]
+        s, c = s * z + SINE[4], c * z + COSINE[4]
+        s, c = s * z + SINE[5], c * z + COSINE[5]
+        s, c = 0.5 * (s * z + 1.0), 1.0 - z * (c * z + 0.5)
+        put(turn, 0, i, s * e1)
+        put(turn, 1, i, s * e2)
+        put(turn, 2, i, s * e3)
+        put(turn, 3, i, c)
+        if any_of(z > SERIES):
+            put(turn, 0, i, e1)
+            put(turn, 1, i, e2)
+            put(turn, 2, i, e3)
+            turn_far(turn, i)
+
+
+@compiled
+def turn_far(turn, begin):
+    """Eight rotations from `begin` on, of vectors (rows 0 to 2 of `turn`) as quaternions, however large."""
+    for i in range(begin, begin + WIDTH):
+        x, y, z = turn[0, i], turn[1, i], turn[2, i]
+        angle = np.sqrt(x * x + y * y + z * z)
+        s = np.sin(0.5 * angle) / angle if angle > 1e-8 else 0.5
+        turn[0, i], turn[1, i], turn[2, i], turn[3, i] = s * x, s * y, s * z, np.cos(0.5 * angle)
 
 
 @inlined
-def axes_of(x, y, z, w, R, i):
-    """Columns t1, t2, t3 of the rotation of the unit quaternion (x, y, z, w), into R[:, i]."""
-    R[0, i], R[1, i], R[2, i] = 1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)
-    R[3, i], R[4, i], R[5, i] = 2.0 * (x * y - w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + w * x)
-    R[6, i], R[7, i], R[8, i] = 2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)
+def product(x, y, z, w, a, b, c, d):
+    """Of two quaternions, (x, y, z, w) times (a, b, c, d)."""
+    return (
+        (w * a + x * d) + (y * c - z * b),
+        (w * b - x * c) + (y * d + z * a),
+        (w * c + x * b) + (z * d - y * a),
+        (w * d - x * a) - (y * b + z * c),
+    )
 
 
 @inlined
-def orient(turn, q, R):
-    """Section axes, q (4, n) and R (9, n), from head to tail by the product of the rotations between nodes (eq. 25)."""
-    x, y, z, w = 0.0, 0.0, 0.0, 1.0
-    for i in range(turn.shape[1]):
-        a, b, c, d = turn[0, i], turn[1, i], turn[2, i], turn[3, i]
-        x, y, z, w = (
-            w * a + x * d + y * c - z * b,
-            w * b - x * c + y * d + z * a,
-            w * c + x * b - y * a + z * d,
-            w * d - x * a - y * b - z * c,
-        )
-        q[0, i], q[1, i], q[2, i], q[3, i] = x, y, z, w
-        axes_of(x, y, z, w, R, i)
+def put_axes(R, i, x, y, z, w):
+    """Store the columns t1, t2, t3 of the rotations of eight unit quaternions (x, y, z, w)."""
+    xx, yy, zz, xy, xz, yz = x * x, y * y, z * z, x * y, x * z, y * z
+    wx, wy, wz = w * x, w * y, w * z
+    put(R, 0, i, 1.0 - 2.0 * (yy + zz))
+    put(R, 1, i, 2.0 * (xy + wz))
+    put(R, 2, i, 2.0 * (xz - wy))
+    put(R, 3, i, 2.0 * (xy - wz))
+    put(R, 4, i, 1.0 - 2.0 * (xx + zz))
+    put(R, 5, i, 2.0 * (yz + wx))
+    put(R, 6, i, 2.0 * (xz + wy))
+    put(R, 7, i, 2.0 * (yz - wx))
+    put(R, 8, i, 1.0 - 2.0 * (xx + yy))
 
 
 @inlined
-def integrate(swimmer, integrand, result):
-    """Integral (3, n) from the nose to each node of the `integrand` (3, n), by panels."""
-    matrix, first, count = swimmer.matrix, swimmer.first, swimmer.count
-    for i in range(matrix.shape[0]):
-        begin = first[i]
-        x = y = z = 0.0
-        if begin > ZERO:
-            x, y, z = result[0, begin - ONE], result[1, begin - ONE], result[2, begin - ONE]
-        for j in range(count[i]):
-            weight, node = matrix[i, j], begin + j
-            x += weight * integrand[0, node]
-            y += weight * integrand[1, node]
-            z += weight * integrand[2, node]
-        result[0, i], result[1, i], result[2, i] = x, y, z
+def orient(turn, blocks, q, R):
+    """Section axes, q (4, n) and R (9, n), from head to tail by the product of the rotations between nodes (eq. 25):
+    those of 2, 4, 8 successive nodes at once, then that of all before."""
+    x0 = y0 = z0 = spread(0.0)
+    w0 = spread(1.0)
+    for k in range(blocks):
+        i = WIDTH * k
+        x, y, z, w = take(turn, 0, i), take(turn, 1, i), take(turn, 2, i), take(turn, 3, i)
+        x, y, z, w = product(moved1(x, 0.0), moved1(y, 0.0), moved1(z, 0.0), moved1(w, 1.0), x, y, z, w)
+        x, y, z, w = product(moved2(x, 0.0), moved2(y, 0.0), moved2(z, 0.0), moved2(w, 1.0), x, y, z, w)
+        x, y, z, w = product(moved4(x, 0.0), moved4(y, 0.0), moved4(z, 0.0), moved4(w, 1.0), x, y, z, w)
+        x, y, z, w = product(x0, y0, z0, w0, x, y, z, w)
+        x0, y0, z0, w0 = spread(last(x)), spread(last(y)), spread(last(z)), spread(last(w))
+        put(q, 0, i, x)
+        put(q, 1, i, y)
+        put(q, 2, i, z)
+        put(q, 3, i, w)
+        put_axes(R, i, x, y, z, w)
+
+
+@inlined
+def integrate(upto, integrand, row, known, head, result):
+    """Integral (3, n) from the nose to the points of `upto`, of three rows of the `integrand` from `row` on.
+
+    known (3, n): the integral to the nodes, the `result` itself where these are the points; `head` (x, y, z): the value
+    at the nose.
+    """
+    for k in range(len(upto.source)):
+        node = upto.source[k]
+        begin = upto.start[k]
+        a = b = c = spread(0.0)
+        for j in range(upto.sources[k]):
+            column = take(upto.columns, begin + j, 0)
+            a += integrand[row, node + j] * column
+            b += integrand[row + 1, node + j] * column
+            c += integrand[row + 2, node + j] * column
+        x, y, z = head
+        if node > ZERO:
+            x, y, z = known[0, node - ONE], known[1, node - ONE], known[2, node - ONE]
+        put_three(result, 0, WIDTH * k, a + x, b + y, c + z)
+
+
+@inlined
+def integrate_along(swimmer, integrand, row, result):
+    """Integral (3, n) from the nose to each node of three rows of the `integrand`, from `row` on."""
+    integrate(swimmer.upto, integrand, row, result, (0.0, 0.0, 0.0), result)
+
+
+@inlined
+def cross(ax, ay, az, bx, by, bz):
+    """a x b."""
+    return ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
+
+
+@inlined
+def dot(ax, ay, az, bx, by, bz):
+    """a . b."""
+    return ax * bx + ay * by + az * bz
+
+
+@inlined
+def two(rows, i):
+    """The first two rows of an array at the nodes from i on."""
+    return take(rows, 0, i), take(rows, 1, i)
+
+
+@inlined
+def three(rows, first, i):
+    """Eight vectors: three rows of an array from `first` on, at the nodes from `i` on."""
+    return take(rows, first, i), take(rows, first + 1, i), take(rows, first + 2, i)
+
+
+@inlined
+def put_three(rows, first, i, x, y, z):
+    """Store eight vectors."""
+    put(rows, first, i, x)
+    put(rows, first + 1, i, y)
+    put(rows, first + 2, i, z)
 
 
 @inlined
 def shape_velocities(swimmer, fields):
     """Positions and the velocities due to the change of shape alone: r' = t1, omega' = R Kdot, v' = omega x t1."""
     R, rate, f, omega = fields.R, fields.rate, fields.integrand, fields.omega
-    integrate(swimmer, R[:3], fields.r)
-    for i in range(R.shape[1]):
-        k2, k3 = rate[0, i], rate[1, i]
-        f[0, i] = R[3, i] * k2 + R[6, i] * k3
-        f[1, i] = R[4, i] * k2 + R[7, i] * k3
-        f[2, i] = R[5, i] * k2 + R[8, i] * k3
-    integrate(swimmer, f[:3], omega)
-    for i in range(R.shape[1]):
-        f[0, i] = omega[1, i] * R[2, i] - omega[2, i] * R[1, i]
-        f[1, i] = omega[2, i] * R[0, i] - omega[0, i] * R[2, i]
-        f[2, i] = omega[0, i] * R[1, i] - omega[1, i] * R[0, i]
-    integrate(swimmer, f[:3], fields.v)
+    integrate_along(swimmer, R, 0, fields.r)
+    for k in range(swimmer.blocks):
+        i = WIDTH * k
+        k2, k3 = take(rate, 0, i), take(rate, 1, i)
+        put(f, 0, i, take(R, 3, i) * k2 + take(R, 6, i) * k3)
+        put(f, 1, i, take(R, 4, i) * k2 + take(R, 7, i) * k3)
+        put(f, 2, i, take(R, 5, i) * k2 + take(R, 8, i) * k3)
+    integrate_along(swimmer, f, 0, omega)
+    for k in range(swimmer.blocks):
+        i = WIDTH * k
+        ox, oy, oz = three(omega, 0, i)
+        tx, ty, tz = three(R, 0, i)
+        x, y, z = cross(ox, oy, oz, tx, ty, tz)
+        put_three(f, 0, i, x, y, z)
+    integrate_along(swimmer, f, 0, fields.v)
 
 
 @inlined
 def gather_inertia(swimmer, fields):
-    """Inertia (6, 6) of body and water about the head, I_o of section 6, the nose's m_o included; lower triangle."""
+    """Inertia (6, 6) of body and water about the head, I_o of section 6, the nose's m_o included; lower triangle.
+
+    With b, c = t2, t3: M = m + m2 b b^T + m3 c c^T along the body, and about the head
+    r x M x r^T = m (r.r - r r^T) + m2 (r x b)(r x b)^T + m3 (r x c)(r x c)^T.
+    """
     R, r = fields.R, fields.r
-    vxx = vxy = vxz = vyy = vyz = vzz = 0.0
-    cxx = cxy = cxz = cyx = cyy = cyz = czx = czy = czz = 0.0
-    wxx = wxy = wxz = wyy = wyz = wzz = 0.0
-    for i in range(R.shape[1]):
-        weight = swimmer.weight[i]
-        m, m2, m3 = weight * swimmer.mass[i], weight * swimmer.added2[i], weight * swimmer.added3[i]
-        bx, by, bz = R[3, i], R[4, i], R[5, i]
-        cx, cy, cz = R[6, i], R[7, i], R[8, i]
-        x, y, z = r[0, i], r[1, i], r[2, i]
-        xx = m + m2 * bx * bx + m3 * cx * cx
-        xy = m2 * bx * by + m3 * cx * cy
-        xz = m2 * bx * bz + m3 * cx * cz
-        yy = m + m2 * by * by + m3 * cy * cy
-        yz = m2 * by * bz + m3 * cy * cz
-        zz = m + m2 * bz * bz + m3 * cz * cz
-        vxx += xx
-        vxy += xy
-        vxz += xz
-        vyy += yy
-        vyz += yz
-        vzz += zz
-        # r x M
-        dxx, dxy, dxz = y * xz - z * xy, y * yz - z * yy, y * zz - z * yz
-        dyx, dyy, dyz = z * xx - x * xz, z * xy - x * yz, z * xz - x * zz
-        dzx, dzy, dzz = x * xy - y * xx, x * yy - y * xy, x * yz - y * xz
-        cxx += dxx
-        cxy += dxy
-        cxz += dxz
-        cyx += dyx
-        cyy += dyy
-        cyz += dyz
-        czx += dzx
-        czy += dzy
-        czz += dzz
-        j, j2, j3 = (
-            weight * swimmer.inertia1[i],
-            weight * (swimmer.inertia2[i] - swimmer.inertia1[i]),
-            weight * (swimmer.inertia3[i] - swimmer.inertia1[i]),
+    vxx = vxy = vxz = vyy = vyz = vzz = spread(0.0)
+    cxx = cxy = cxz = cyx = cyy = cyz = czx = czy = czz = spread(0.0)
+    wxx = wxy = wxz = wyy = wyz = wzz = spread(0.0)
+    for k in range(swimmer.blocks):
+        i = WIDTH * k
+        weight = take(swimmer.weight, i)
+        m, m2, m3 = (
+            weight * take(swimmer.mass, i),
+            weight * take(swimmer.added2, i),
+            weight * take(swimmer.added3, i),
         )
-        # J - (r x M) x r
-        wxx += j + j2 * bx * bx + j3 * cx * cx + dxz * y - dxy * z
-        wxy += j2 * bx * by + j3 * cx * cy + dyz * y - dyy * z
-        wxz += j2 * bx * bz + j3 * cx * cz + dzz * y - dzy * z
-        wyy += j + j2 * by * by + j3 * cy * cy + dyx * z - dyz * x
-        wyz += j2 * by * bz + j3 * cy * cz + dzx * z - dzz * x
-        wzz += j + j2 * bz * bz + j3 * cz * cz + dzy * x - dzx * y
+        bx, by, bz = three(R, 3, i)
+        cx, cy, cz = three(R, 6, i)
+        x, y, z = three(r, 0, i)
+        ux, uy, uz = cross(x, y, z, bx, by, bz)
+        wx, wy, wz = cross(x, y, z, cx, cy, cz)
+        px, py, pz = m2 * bx, m2 * by, m2 * bz
+        qx, qy, qz = m3 * cx, m3 * cy, m3 * cz
+        vxx += m + px * bx + qx * cx
+        vxy += px * by + qx * cy
+        vxz += px * bz + qx * cz
+        vyy += m + py * by + qy * cy
+        vyz += py * bz + qy * cz
+        vzz += m + pz * bz + qz * cz
+        mx, my, mz = m * x, m * y, m * z
+        cxx += ux * px + wx * qx
+        cxy += ux * py + wx * qy - mz
+        cxz += ux * pz + wx * qz + my
+        cyx += uy * px + wy * qx + mz
+        cyy += uy * py + wy * qy
+        cyz += uy * pz + wy * qz - mx
+        czx += uz * px + wz * qx - my
+        czy += uz * py + wz * qy + mx
+        czz += uz * pz + wz * qz
+        j = weight * take(swimmer.inertia1, i)
+        j2, j3 = weight * take(swimmer.inertia2, i) - j, weight * take(swimmer.inertia3, i) - j
+        px, py, pz = m2 * ux, m2 * uy, m2 * uz
+        qx, qy, qz = m3 * wx, m3 * wy, m3 * wz
+        fx, fy, fz = j2 * bx, j2 * by, j2 * bz
+        gx, gy, gz = j3 * cx, j3 * cy, j3 * cz
+        wxx += j + fx * bx + gx * cx + px * ux + qx * wx + (my * y + mz * z)
+        wxy += fx * by + gx * cy + px * uy + qx * wy - mx * y
+        wxz += fx * bz + gx * cz + px * uz + qx * wz - mx * z
+        wyy += j + fy * by + gy * cy + py * uy + qy * wy + (mx * x + mz * z)
+        wyz += fy * bz + gy * cz + py * uz + qy * wz - my * z
+        wzz += j + fz * bz + gz * cz + pz * uz + qz * wz + (mx * x + my * y)
     inertia = fields.inertia
-    inertia[0, 0], inertia[1, 0], inertia[1, 1], inertia[2, 0], inertia[2, 1], inertia[2, 2] = (
-        wxx,
-        wxy,
-        wyy,
-        wxz,
-        wyz,
-        wzz,
-    )
-    inertia[3, 0], inertia[4, 0], inertia[5, 0] = cxx, cxy, cxz
-    inertia[3, 1], inertia[4, 1], inertia[5, 1] = cyx, cyy, cyz
-    inertia[3, 2], inertia[4, 2], inertia[5, 2] = czx, czy, czz
-    inertia[3, 3], inertia[4, 3], inertia[4, 4], inertia[5, 3], inertia[5, 4], inertia[5, 5] = (
-        vxx + swimmer.nose_mass,
-        vxy,
-        vyy,
-        vxz,
-        vyz,
-        vzz,
-    )
+    inertia[0, 0], inertia[1, 0], inertia[2, 0] = total(wxx), total(wxy), total(wxz)
+    inertia[1, 1], inertia[2, 1], inertia[2, 2] = total(wyy), total(wyz), total(wzz)
+    # below: the momentum P by Omega, (r x M)^T
+    inertia[3, 0], inertia[4, 0], inertia[5, 0] = total(cxx), total(cxy), total(cxz)
+    inertia[3, 1], inertia[4, 1], inertia[5, 1] = total(cyx), total(cyy), total(cyz)
+    inertia[3, 2], inertia[4, 2], inertia[5, 2] = total(czx), total(czy), total(czz)
+    inertia[3, 3], inertia[4, 3], inertia[5, 3] = total(vxx) + swimmer.nose_mass, total(vxy), total(vxz)
+    inertia[4, 4], inertia[5, 4], inertia[5, 5] = total(vyy), total(vyz), total(vzz)
 
 
 @inlined
 def gather_momentum(swimmer, fields, momentum):
     """Momentum (6,) of body and water about the head due to `omega`, `v` (the nose's m_o not in it)."""
     R, r, omega, v = fields.R, fields.r, fields.omega, fields.v
-    lx = ly = lz = px = py = pz = 0.0
-    for i in range(R.shape[1]):
-        weight = swimmer.weight[i]
-        m, m2, m3 = weight * swimmer.mass[i], weight * swimmer.added2[i], weight * swimmer.added3[i]
-        vx, vy, vz = v[0, i], v[1, i], v[2, i]
-        p2 = m2 * (R[3, i] * vx + R[4, i] * vy + R[5, i] * vz)
-        p3 = m3 * (R[6, i] * vx + R[7, i] * vy + R[8, i] * vz)
-        qx = m * vx + p2 * R[3, i] + p3 * R[6, i]
-        qy = m * vy + p2 * R[4, i] + p3 * R[7, i]
-        qz = m * vz + p2 * R[5, i] + p3 * R[8, i]
+    lx = ly = lz = px = py = pz = spread(0.0)
+    for k in range(swimmer.blocks):
+        i = WIDTH * k
+        weight = take(swimmer.weight, i)
+        m = weight * take(swimmer.mass, i)
+        bx, by, bz = three(R, 3, i)
+        cx, cy, cz = three(R, 6, i)
+        vx, vy, vz = three(v, 0, i)
+        p2 = weight * take(swimmer.added2, i) * dot(bx, by, bz, vx, vy, vz)
+        p3 = weight * take(swimmer.added3, i) * dot(cx, cy, cz, vx, vy, vz)
+        qx = m * vx + p2 * bx + p3 * cx
+        qy = m * vy + p2 * by + p3 * cy
+        qz = m * vz + p2 * bz + p3 * cz
         px += qx
         py += qy
         pz += qz
-        j = weight * swimmer.inertia1[i]
-        j2, j3 = weight * swimmer.inertia2[i] - j, weight * swimmer.inertia3[i] - j
-        ox, oy, oz = omega[0, i], omega[1, i], omega[2, i]
-        s2 = j2 * (R[3, i] * ox + R[4, i] * oy + R[5, i] * oz)
-        s3 = j3 * (R[6, i] * ox + R[7, i] * oy + R[8, i] * oz)
-        lx += j * ox + s2 * R[3, i] + s3 * R[6, i] + r[1, i] * qz - r[2, i] * qy
-        ly += j * oy + s2 * R[4, i] + s3 * R[7, i] + r[2, i] * qx - r[0, i] * qz
-        lz += j * oz + s2 * R[5, i] + s3 * R[8, i] + r[0, i] * qy - r[1, i] * qx
-    momentum[0], momentum[1], momentum[2], momentum[3], momentum[4], momentum[5] = lx, ly, lz, px, py, pz
+        j = weight * take(swimmer.inertia1, i)
+        ox, oy, oz = three(omega, 0, i)
+        s2 = (weight * take(swimmer.inertia2, i) - j) * dot(bx, by, bz, ox, oy, oz)
+        s3 = (weight * take(swimmer.inertia3, i) - j) * dot(cx, cy, cz, ox, oy, oz)
+        x, y, z = three(r, 0, i)
+        tx, ty, tz = cross(x, y, z, qx, qy, qz)
+        lx += j * ox + s2 * bx + s3 * cx + tx
+        ly += j * oy + s2 * by + s3 * cy + ty
+        lz += j * oz + s2 * bz + s3 * cz + tz
+    momentum[0], momentum[1], momentum[2] = total(lx), total(ly), total(lz)
+    momentum[3], momentum[4], momentum[5] = total(px), total(py), total(pz)
 
 
 @inlined
-def factorise(matrix):
-    """Cholesky factor of a symmetric positive definite matrix, in place, from and to its lower triangle. False if it is
-    not."""
-    n = matrix.shape[0]
-    for j in range(n):
-        total = matrix[j, j]
-        for k in range(j):
-            total -= matrix[j, k] * matrix[j, k]
-        if not total > 0.0:
-            return False
-        root = np.sqrt(total)
-        matrix[j, j] = root
-        for i in range(j + 1, n):
-            total = matrix[i, j]
-            for k in range(j):
-                total -= matrix[i, k] * matrix[j, k]
-            matrix[i, j] = total / root
-    return True
+def factorise(a):
+    """Factors L and 1/D of a symmetric positive definite matrix (6, 6) = L D L^T, in place: L below the diagonal, 1/D
+    on it. From its lower triangle; False if it is not positive definite."""
+    good = a[0, 0] > 0.0
+    d = 1.0 / a[0, 0]
+    a[0, 0] = d
+    b1, b2, b3, b4, b5 = a[1, 0], a[2, 0], a[3, 0], a[4, 0], a[5, 0]
+    l1, l2, l3, l4, l5 = b1 * d, b2 * d, b3 * d, b4 * d, b5 * d
+    a[1, 0], a[2, 0], a[3, 0], a[4, 0], a[5, 0] = l1, l2, l3, l4, l5
+    a11 = a[1, 1] - b1 * l1
+    a21, a22 = a[2, 1] - b2 * l1, a[2, 2] - b2 * l2
+    a31, a32, a33 = a[3, 1] - b3 * l1, a[3, 2] - b3 * l2, a[3, 3] - b3 * l3
+    a41, a42, a43, a44 = a[4, 1] - b4 * l1, a[4, 2] - b4 * l2, a[4, 3] - b4 * l3, a[4, 4] - b4 * l4
+    a51, a52, a53, a54 = a[5, 1] - b5 * l1, a[5, 2] - b5 * l2, a[5, 3] - b5 * l3, a[5, 4] - b5 * l4
+    a55 = a[5, 5] - b5 * l5
+    good &= a11 > 0.0
+    d = 1.0 / a11
+    l2, l3, l4, l5 = a21 * d, a31 * d, a41 * d, a51 * d
+    a[1, 1], a[2, 1], a[3, 1], a[4, 1], a[5, 1] = d, l2, l3, l4, l5
+    a22 -= a21 * l2
+    a32, a33 = a32 - a31 * l2, a33 - a31 * l3
+    a42, a43, a44 = a42 - a41 * l2, a43 - a41 * l3, a44 - a41 * l4
+    a52, a53, a54, a55 = a52 - a51 * l2, a53 - a51 * l3, a54 - a51 * l4, a55 - a51 * l5
+    good &= a22 > 0.0
+    d = 1.0 / a22
+    l3, l4, l5 = a32 * d, a42 * d, a52 * d
+    a[2, 2], a[3, 2], a[4, 2], a[5, 2] = d, l3, l4, l5
+    a33 -= a32 * l3
+    a43, a44 = a43 - a42 * l3, a44 - a42 * l4
+    a53, a54, a55 = a53 - a52 * l3, a54 - a52 * l4, a55 - a52 * l5
+    good &= a33 > 0.0
+    d = 1.0 / a33
+    l4, l5 = a43 * d, a53 * d
+    a[3, 3], a[4, 3], a[5, 3] = d, l4, l5
+    a44 -= a43 * l4
+    a54, a55 = a54 - a53 * l4, a55 - a53 * l5
+    good &= a44 > 0.0
+    d = 1.0 / a44
+    l5 = a54 * d
+    a[4, 4], a[5, 4] = d, l5
+    a55 -= a54 * l5
+    good &= a55 > 0.0
+    a[5, 5] = 1.0 / a55
+    return good
 
 
 @inlined
-def solve(factor, vector):
-    """Solve with the Cholesky `factor`, in place."""
-    n = factor.shape[0]
-    for i in range(n):
-        total = vector[i]
-        for k in range(i):
-            total -= factor[i, k] * vector[k]
-        vector[i] = total / factor[i, i]
-    for i in range(n - 1, -1, -1):
-        total = vector[i]
-        for k in range(i + 1, n):
-            total -= factor[k, i] * vector[k]
-        vector[i] = total / factor[i, i]
+def solve(a, b):
+    """Solve with the factors `a` (6, 6) of `factorise` for the right side `b` (6,), in place."""
+    b0 = b[0]
+    b1 = b[1] - a[1, 0] * b0
+    b2 = b[2] - a[2, 0] * b0 - a[2, 1] * b1
+    b3 = b[3] - a[3, 0] * b0 - a[3, 1] * b1 - a[3, 2] * b2
+    b4 = b[4] - a[4, 0] * b0 - a[4, 1] * b1 - a[4, 2] * b2 - a[4, 3] * b3
+    b5 = b[5] - a[5, 0] * b0 - a[5, 1] * b1 - a[5, 2] * b2 - a[5, 3] * b3 - a[5, 4] * b4
+    b5 = b5 * a[5, 5]
+    b4 = b4 * a[4, 4] - a[5, 4] * b5
+    b3 = b3 * a[3, 3] - a[5, 3] * b5 - a[4, 3] * b4
+    b2 = b2 * a[2, 2] - a[5, 2] * b5 - a[4, 2] * b4 - a[3, 2] * b3
+    b1 = b1 * a[1, 1] - a[5, 1] * b5 - a[4, 1] * b4 - a[3, 1] * b3 - a[2, 1] * b2
+    b0 = b0 * a[0, 0] - a[5, 0] * b5 - a[4, 0] * b4 - a[3, 0] * b3 - a[2, 0] * b2 - a[1, 0] * b1
+    b[0], b[1], b[2], b[3], b[4], b[5] = b0, b1, b2, b3, b4, b5
 
 
 @inlined
-def add_head_twist(fields, twist):
+def add_head_motion(swimmer, r, motion, turning, moving):
+    """Add the head's `motion` (6,), angular first, to the fields `turning` and `moving` (3, n) of a body that moves
+    with it: + a, + b + a x r."""
+    for k in range(swimmer.blocks):
+        i = WIDTH * k
+        x, y, z = three(r, 0, i)
+        ax, ay, az = three(turning, 0, i)
+        put_three(turning, 0, i, ax + motion[0], ay + motion[1], az + motion[2])
+        bx, by, bz = three(moving, 0, i)
+        put(moving, 0, i, bx + (motion[3] + motion[1] * z - motion[2] * y))
+        put(moving, 1, i, by + (motion[4] + motion[2] * x - motion[0] * z))
+        put(moving, 2, i, bz + (motion[5] + motion[0] * y - motion[1] * x))
+
+
+@inlined
+def add_head_twist(swimmer, fields, twist):
     """Add the motion of the head, `twist` (6,), to the velocities due to the change of shape: the true ones."""
-    r, omega, v = fields.r, fields.omega, fields.v
-    for i in range(r.shape[1]):
-        x, y, z = r[0, i], r[1, i], r[2, i]
-        omega[0, i] += twist[0]
-        omega[1, i] += twist[1]
-        omega[2, i] += twist[2]
-        v[0, i] += twist[3] + twist[1] * z - twist[2] * y
-        v[1, i] += twist[4] + twist[2] * x - twist[0] * z
-        v[2, i] += twist[5] + twist[0] * y - twist[1] * x
+    add_head_motion(swimmer, fields.r, twist, fields.omega, fields.v)
 
 
 @inlined
@@ -342,7 +474,7 @@ def add_wake(swimmer, fields, wrench):
     wake.
     """
     R, r, omega, v = fields.R, fields.r, fields.omega, fields.v
-    i = R.shape[1] - 1
+    i = len(swimmer.x) - 1
     vx, vy, vz = v[0, i], v[1, i], v[2, i]
     v1 = swimmer.wake * (R[0, i] * vx + R[1, i] * vy + R[2, i] * vz)
     v2 = R[3, i] * vx + R[4, i] * vy + R[5, i] * vz
@@ -363,10 +495,13 @@ def add_wake(swimmer, fields, wrench):
 
 
 @inlined
-def configure(swimmer, fields):
-    """Configuration and shape velocities of the body from `bend` and `rate` (the first loop of section 7.1)."""
-    turns(fields.bend, fields.turn)
-    orient(fields.turn, fields.q, fields.R)
+def configure(swimmer, drive, fields):
+    """Configuration and shape velocities of the body at the instant of the time factors (the first loop of section
+    7.1)."""
+    combine_moments(drive.axis, drive.bend, fields.factor[0], swimmer.blocks, fields.bend)
+    combine(drive.axis, drive.node, fields.factor[1], swimmer.blocks, fields.rate)
+    turns(fields.bend, swimmer.blocks, fields.turn)
+    orient(fields.turn, swimmer.blocks, fields.q, fields.R)
     shape_velocities(swimmer, fields)
 
 
@@ -386,7 +521,7 @@ def twist_of_momentum(swimmer, fields, momentum, twist):
     """The head's `twist` (6,) in a configured body of the given `momentum` (6,): I_o^-1 times what the shape's change
     leaves.
 
-    False where the inertia is not positive definite. Leaves the Cholesky factor of I_o in `fields.inertia`.
+    False where the inertia is not positive definite. Leaves the factors of I_o in `fields.inertia`.
     """
     gather_momentum(swimmer, fields, twist)
     gather_inertia(swimmer, fields)
@@ -402,7 +537,7 @@ def twist_of_momentum(swimmer, fields, momentum, twist):
 def momentum_rates(swimmer, fields, momentum, twist, rates):
     """Rates (6,) of momentum about the moving head, of world vectors, in the head's present axes; adds the head's twist
     to the velocities in `fields`."""
-    add_head_twist(fields, twist)
+    add_head_twist(swimmer, fields, twist)
     for i in range(6):
         rates[i] = 0.0
     add_wake(swimmer, fields, rates)

@@ -5,89 +5,76 @@ The same momentum form as in the kernel, for yaw alone: t1 = (cos, sin) of the t
 K3 and so a sum of tabulated rows, as its rate is. The fields' components out of the plane stay zero.
 """
 
-import math
-
 import numpy as np
 
 from .compiled import inlined
 from .drag import AXIAL, NOISE, ONE, PRINTED, RATIO, SIDE, ZERO, find_steps, rub
 from .drive import factors
+from .lanes import WIDTH, floor, put, signed, spread, take, total
 
 PI_1, PI_2 = 1.5707963267341256, 6.077100506506192e-11  # pi/2 in two parts, the first with trailing zeros
 YAW = 1
+# of (sin(x)/x - 1)/x^2 and (cos(x) - 1)/x^2 by x^2, from the highest power down
+SINE = (-1 / 1307674368000, 1 / 6227020800, -1 / 39916800, 1 / 362880, -1 / 5040, 1 / 120, -1 / 6)
+COSINE = (1 / 20922789888000, -1 / 87178291200, 1 / 479001600, -1 / 3628800, 1 / 40320, -1 / 720, 1 / 24, -0.5)
 
 
 @inlined
-def cosine_and_sine(angle, cosine, sine):
-    """Of each `angle` (n,) [rad], to round-off for angles below 1e5; without branches, so that it runs on vectors."""
-    for i in range(len(angle)):
-        quarter = np.floor(angle[i] * (2.0 / np.pi) + 0.5)
-        x = (angle[i] - quarter * PI_1) - quarter * PI_2
-        z = x * x
-        s = x * (
-            1.0
-            - z
-            / 6.0
-            * (
-                1.0
-                - z
-                / 20.0
-                * (1.0 - z / 42.0 * (1.0 - z / 72.0 * (1.0 - z / 110.0 * (1.0 - z / 156.0 * (1.0 - z / 210.0)))))
-            )
-        )
-        c = 1.0 - z / 2.0 * (
-            1.0
-            - z
-            / 12.0
-            * (
-                1.0
-                - z
-                / 30.0
-                * (1.0 - z / 56.0 * (1.0 - z / 90.0 * (1.0 - z / 132.0 * (1.0 - z / 182.0 * (1.0 - z / 240.0)))))
-            )
-        )
-        half = quarter - 2.0 * np.floor(0.5 * quarter)  # 1: a quarter turn to go
-        sign = 1.0 - 2.0 * (np.floor(0.5 * quarter) - 2.0 * np.floor(0.25 * quarter))  # -1: half a turn to go
-        cosine[i] = sign * (c - half * (c + s))
-        sine[i] = sign * (s + half * (c - s))
+def cosine_and_sine(angle):
+    """Of eight angles [rad], to round-off below 1e5; without branches."""
+    quarter = floor(angle * (2.0 / np.pi) + 0.5)
+    x = (angle - quarter * PI_1) - quarter * PI_2
+    z = x * x
+    s = SINE[0] * z + SINE[1]
+    c = (COSINE[0] * z + COSINE[1]) * z + COSINE[2]
+    s, c = s * z + SINE[2], c * z + COSINE[3]
+    s, c = s * z + SINE[3], c * z + COSINE[4]
+    s, c = s * z + SINE[4], c * z + COSINE[5]
+    s, c = s * z + SINE[5], c * z + COSINE[6]
+    s, c = s * z + SINE[6], c * z + COSINE[7]
+    s, c = x + x * z * s, 1.0 + z * c
+    half = quarter - 2.0 * floor(0.5 * quarter)  # 1: a quarter turn to go
+    sign = 1.0 - 2.0 * (floor(0.5 * quarter) - 2.0 * floor(0.25 * quarter))  # -1: half a turn to go
+    return sign * (c - half * (c + s)), sign * (s + half * (c - s))
 
 
 @inlined
-def integrate_plane(swimmer, integrand, result):
+def integrate_plane(upto, integrand, result):
     """Integral of rows 0 and 1 of the `integrand` from the nose to each node."""
-    matrix, first, count = swimmer.matrix, swimmer.first, swimmer.count
-    for i in range(matrix.shape[0]):
-        begin = first[i]
-        x = y = 0.0
-        if begin > ZERO:
-            x, y = result[0, begin - ONE], result[1, begin - ONE]
-        for j in range(count[i]):
-            weight, node = matrix[i, j], begin + j
-            x += weight * integrand[0, node]
-            y += weight * integrand[1, node]
-        result[0, i], result[1, i] = x, y
+    for k in range(len(upto.source)):
+        node = upto.source[k]
+        begin = upto.start[k]
+        a = b = spread(0.0)
+        for j in range(upto.sources[k]):
+            column = take(upto.columns, begin + j, 0)
+            a += integrand[0, node + j] * column
+            b += integrand[1, node + j] * column
+        if node > ZERO:
+            a, b = a + result[0, node - ONE], b + result[1, node - ONE]
+        put(result, 0, WIDTH * k, a)
+        put(result, 1, WIDTH * k, b)
 
 
 @inlined
 def configure_plane(swimmer, drive, fields):
     """Configuration and shape velocities: t1, t2 into `R`, positions, the sections' turning rate, velocities."""
     R, r, omega, v, f = fields.R, fields.r, fields.omega, fields.v, fields.integrand
-    n = R.shape[1]
-    for i in range(n):
-        f[2, i] = 0.0
-        omega[2, i] = 0.0
-    for m in range(len(drive.axis)):
-        if drive.axis[m] == YAW:
-            value, rate = fields.factor[0, m], fields.factor[1, m]
-            for i in range(n):
-                f[2, i] += value * drive.angle[m, i]
-                omega[2, i] += rate * drive.angle[m, i]
-    cosine_and_sine(f[2], R[0], R[1])
-    integrate_plane(swimmer, R, r)
-    for i in range(n):
-        f[0, i] = -omega[2, i] * R[1, i]
-        f[1, i] = omega[2, i] * R[0, i]
-    integrate_plane(swimmer, f, v)
+    for k in range(swimmer.blocks):
+        i = WIDTH * k
+        angle = turning = spread(0.0)
+        for m in range(len(drive.axis)):
+            if drive.axis[m] == YAW:
+                row = take(drive.angle, m, i)
+                angle += fields.factor[0, m] * row
+                turning += fields.factor[1, m] * row
+        c, s = cosine_and_sine(angle)
+        put(R, 0, i, c)
+        put(R, 1, i, s)
+        put(omega, 2, i, turning)
+        put(f, 0, i, -turning * s)
+        put(f, 1, i, turning * c)
+    integrate_plane(swimmer.upto, R, r)
+    integrate_plane(swimmer.upto, f, v)
 
 
 @inlined
@@ -95,25 +82,29 @@ def solve_plane(swimmer, fields, momentum, twist):
     """Twist (Omega3, V1, V2) of the head from the momentum (L3, P1, P2) of a configured body. False without positive
     inertia."""
     R, r, omega, v = fields.R, fields.r, fields.omega, fields.v
-    xx = xy = yy = cx = cy = w = lz = px = py = 0.0
-    for i in range(R.shape[1]):
-        weight = swimmer.weight[i]
-        m, m2, j = weight * swimmer.mass[i], weight * swimmer.added2[i], weight * swimmer.inertia3[i]
-        c, s, x, y = R[0, i], R[1, i], r[0, i], r[1, i]
+    sxx = sxy = syy = scx = scy = sw = slz = spx = spy = spread(0.0)
+    for k in range(swimmer.blocks):
+        i = WIDTH * k
+        weight = take(swimmer.weight, i)
+        m, m2 = weight * take(swimmer.mass, i), weight * take(swimmer.added2, i)
+        c, s, x, y = take(R, 0, i), take(R, 1, i), take(r, 0, i), take(r, 1, i)
         ixx, ixy, iyy = m + m2 * s * s, -m2 * s * c, m + m2 * c * c
         dx, dy = x * ixy - y * ixx, x * iyy - y * ixy
-        xx += ixx
-        xy += ixy
-        yy += iyy
-        cx += dx
-        cy += dy
-        w += j + x * dy - y * dx
-        px += ixx * v[0, i] + ixy * v[1, i]
-        py += ixy * v[0, i] + iyy * v[1, i]
-        lz += j * omega[2, i] + dx * v[0, i] + dy * v[1, i]
+        sxx += ixx
+        sxy += ixy
+        syy += iyy
+        scx += dx
+        scy += dy
+        j = weight * take(swimmer.inertia3, i)
+        sw += j + x * dy - y * dx
+        vx, vy = take(v, 0, i), take(v, 1, i)
+        spx += ixx * vx + ixy * vy
+        spy += ixy * vx + iyy * vy
+        slz += j * take(omega, 2, i) + dx * vx + dy * vy
+    xx, xy, yy, cx, cy, w = total(sxx), total(sxy), total(syy), total(scx), total(scy), total(sw)
     xx += swimmer.nose_mass
     # eliminate V1, then V2
-    a, b, e = momentum[0] - lz, momentum[1] - px, momentum[2] - py
+    a, b, e = momentum[0] - total(slz), momentum[1] - total(spx), momentum[2] - total(spy)
     if not xx > 0.0:
         return False
     p, q = xy / xx, cx / xx
@@ -138,41 +129,51 @@ def solve_plane(swimmer, fields, momentum, twist):
 @inlined
 def loads_plane(swimmer, fields, twist, rates):
     """Wrench (T3, F1, F2) of wake and drag along the body about the head; adds the head's `twist` to the velocities."""
-    R, r, omega, v = fields.R, fields.r, fields.omega, fields.v
-    n = R.shape[1]
-    for i in range(n):
-        omega[2, i] += twist[0]
-        v[0, i] += twist[1] - twist[0] * r[1, i]
-        v[1, i] += twist[2] + twist[0] * r[0, i]
-    last = n - 1
-    c, s = R[0, last], R[1, last]
-    v1, v2 = c * v[0, last] + s * v[1, last], -s * v[0, last] + c * v[1, last]
-    p2 = swimmer.added2[last] * v2
+    R, r, omega, v, speed = fields.R, fields.r, fields.omega, fields.v, fields.speed
+    for k in range(swimmer.blocks):
+        i = WIDTH * k
+        put(omega, 2, i, take(omega, 2, i) + twist[0])
+        vx = take(v, 0, i) + (twist[1] - twist[0] * take(r, 1, i))
+        vy = take(v, 1, i) + (twist[2] + twist[0] * take(r, 0, i))
+        put(v, 0, i, vx)
+        put(v, 1, i, vy)
+        c, s = take(R, 0, i), take(R, 1, i)
+        put(speed, AXIAL, i, c * vx + s * vy)
+        put(speed, SIDE, i, c * vy - s * vx)
+    tail = len(swimmer.x) - 1
+    c, s = R[0, tail], R[1, tail]
+    v1, v2 = speed[AXIAL, tail], speed[SIDE, tail]
+    p2 = swimmer.added2[tail] * v2
     n1, n2 = -0.5 * swimmer.wake * p2 * v2, swimmer.wake * v1 * p2
     fx, fy = c * n1 - s * n2, s * n1 + c * n2
-    tz = r[0, last] * fy - r[1, last] * fx
+    tz = r[0, tail] * fy - r[1, tail] * fx
     if swimmer.resistive:
-        speed, share = fields.speed, fields.share
-        for i in range(n):
-            c, s = R[0, i], R[1, i]
-            speed[AXIAL, i] = c * v[0, i] + s * v[1, i]
-            speed[SIDE, i] = -s * v[0, i] + c * v[1, i]
+        share = fields.share
         rub(swimmer, fields)
-        for i in range(n):
-            share[0, i] = swimmer.weight[i] * fields.part[i]
-            share[SIDE, i] = math.copysign(swimmer.weight[i], speed[SIDE, i])
+        for k in range(swimmer.blocks):
+            i = WIDTH * k
+            weight = take(swimmer.weight, i)
+            put(share, 0, i, weight * take(fields.part, i))
+            put(share, SIDE, i, signed(weight, take(speed, SIDE, i)))
         fields.kinks.number[0] = 0
-        find_steps(swimmer, fields, SIDE, twist[2], NOISE * (abs(speed[AXIAL, last]) + abs(speed[SIDE, last])))
+        find_steps(swimmer, fields, SIDE, twist[2], NOISE * (abs(v1) + abs(v2)))
         if swimmer.friction == PRINTED:
             find_steps(swimmer, fields, RATIO, -1.0, 0.0)
-        for i in range(n):
-            c, s, v1, v2 = R[0, i], R[1, i], speed[AXIAL, i], speed[SIDE, i]
-            n1 = -(swimmer.weight[i] * fields.rubbing[0, i] + share[0, i] * fields.rubbing[1, i]) * v1
-            n2 = -share[SIDE, i] * swimmer.drag2[i] * v2 * v2
+        sx = sy = sz = spread(0.0)
+        for k in range(swimmer.blocks):
+            i = WIDTH * k
+            c, s = take(R, 0, i), take(R, 1, i)
+            v1, v2 = take(speed, AXIAL, i), take(speed, SIDE, i)
+            rubbing = take(swimmer.weight, i) * take(fields.rubbing, 0, i)
+            n1 = -(rubbing + take(share, 0, i) * take(fields.rubbing, 1, i)) * v1
+            n2 = -take(share, SIDE, i) * take(swimmer.drag2, i) * v2 * v2
             nx, ny = c * n1 - s * n2, s * n1 + c * n2
-            fx += nx
-            fy += ny
-            tz += r[0, i] * ny - r[1, i] * nx
+            sx += nx
+            sy += ny
+            sz += take(r, 0, i) * ny - take(r, 1, i) * nx
+        fx += total(sx)
+        fy += total(sy)
+        tz += total(sz)
     rates[0], rates[1], rates[2] = tz, fx, fy
 
 

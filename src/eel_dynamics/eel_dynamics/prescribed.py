@@ -9,7 +9,7 @@ from .accuracy import Accuracy
 from .arguments import checked_row
 from .body import Body
 from .drag import add_resistive_loads
-from .drive import combine, combine_moments, factors
+from .drive import combine, factors
 from .kernel import add_head_twist, add_wake, configure
 from .scene import Scene
 from .simulation import Simulation
@@ -63,17 +63,15 @@ def hydrodynamic_wrench(
     swimmer.adopt(law)
     drive, fields, balance, water = swimmer.drive, swimmer.fields, swimmer.balance, swimmer.swimmer
     factors(drive, float(time), fields.factor)
-    combine_moments(drive.axis, drive.bend, fields.factor[0], fields.bend)
-    combine(drive.axis, drive.node, fields.factor[1], fields.rate)
-    combine(drive.axis, drive.node, fields.factor[2], fields.accel)
-    configure(water, fields)
+    combine(drive.axis, drive.node, fields.factor[2], water.blocks, fields.accel)
+    configure(water, drive, fields)
     relative = twist.copy()
     relative[3:] -= swimmer.scene.current
-    add_head_twist(fields, relative)
+    add_head_twist(water, fields, relative)
     shape_accelerations(water, fields, balance)
     balance.head[:3] = twist_rate[:3]
     balance.head[3:] = twist_rate[3:] + np.cross(twist[:3], twist[3:])
-    add_head_acceleration(fields, balance)
+    add_head_acceleration(water, fields, balance)
     none = np.zeros_like(water.mass)
     alone = water._replace(mass=none, inertia1=water.added_roll, inertia2=none, inertia3=none)
     inertia, resistive, wake, nose = np.zeros(6), np.zeros(6), np.zeros(6), np.zeros(6)

@@ -9,11 +9,25 @@ from typing import NamedTuple
 import numpy as np
 
 from .compiled import compiled, inlined
-from .drag import ONE, ZERO, add_steps, friction, turbulent_part
+from .drag import BLENDED, LAMINAR, integrate_balance, inverse_fifth_root, turbulent_part
 from .drive import combine, combine_moments, factors
 from .integrator import MARCHED, SINGULAR, march, powers_of_state, rotate, state_at
-from .kernel import add_head_twist, axes_of, configure, momentum_of_twist, turns
-from .wrench import kinetic_energies, section_wrench
+from .kernel import (
+    add_head_twist,
+    add_wake,
+    configure,
+    cross,
+    integrate,
+    momentum_of_twist,
+    product,
+    put_axes,
+    put_three,
+    three,
+    turns,
+    two,
+)
+from .lanes import WIDTH, aligned_zeros, padded, put, root, size, spread, take, where
+from .wrench import kinetic_energies
 
 
 class Profiles(NamedTuple):
@@ -76,6 +90,7 @@ class StationFields(NamedTuple):
     """Work space of the fields at M stations, as in the kernel's `Fields` and the `Balance`."""
 
     bend: np.ndarray
+    base: np.ndarray  # (4, M) orientation of the node before
     turn: np.ndarray
     R: np.ndarray
     r: np.ndarray
@@ -86,38 +101,30 @@ class StationFields(NamedTuple):
     upto: np.ndarray
     curvature: np.ndarray
     rate: np.ndarray
-    zero: np.ndarray
+    part: np.ndarray  # (1, M) of the turbulent law in the friction
+    shown: np.ndarray  # (6, M) what goes into the sample
 
 
 def station_fields_of(stations: int) -> StationFields:
-    sizes = ((3, 2), (4,), (9,), (3,), (3,), (3,), (3,), (3,), (6,), (2,), (2,))
-    return StationFields(*(np.zeros((*size, stations)) for size in sizes), np.zeros(6))
+    sizes = ((3, 2), (4,), (4,), (9,), (3,), (3,), (3,), (3,), (3,), (6,), (2,), (2,), (1,), (6,))
+    return StationFields(*(aligned_zeros(*size, padded(stations)) for size in sizes))
 
 
 @inlined
-def extend(section, integrand, at_nodes, at_head, result):
-    """Field (3, M) at the stations from its derivative `integrand` and its values at the nodes (3, n), `at_head` at the
-    nose."""
-    for i in range(result.shape[1]):
-        begin = section.first[i]
-        x, y, z = at_head[0], at_head[1], at_head[2]
-        if begin > ZERO:
-            x, y, z = at_nodes[0, begin - ONE], at_nodes[1, begin - ONE], at_nodes[2, begin - ONE]
-        for j in range(section.count[i]):
-            weight, node = section.matrix[i, j], begin + j
-            x += weight * integrand[0, node]
-            y += weight * integrand[1, node]
-            z += weight * integrand[2, node]
-        result[0, i], result[1, i], result[2, i] = x, y, z
+def show(rows, first, result):
+    """Put three `rows` from `first` on into the `result` (M, 3)."""
+    for i in range(result.shape[0]):
+        result[i, 0], result[i, 1], result[i, 2] = rows[first, i], rows[first + 1, i], rows[first + 2, i]
 
 
 @inlined
-def cross_fields(a, b, result):
-    """a x b of fields (3, n) into `result`."""
-    for i in range(result.shape[1]):
-        result[0, i] = a[1, i] * b[2, i] - a[2, i] * b[1, i]
-        result[1, i] = a[2, i] * b[0, i] - a[0, i] * b[2, i]
-        result[2, i] = a[0, i] * b[1, i] - a[1, i] * b[0, i]
+def in_section(R, i, x, y, z):
+    """Components of eight vectors in the axes of the sections from i on."""
+    return (
+        take(R, 0, i) * x + take(R, 1, i) * y + take(R, 2, i) * z,
+        take(R, 3, i) * x + take(R, 4, i) * y + take(R, 5, i) * z,
+        take(R, 6, i) * x + take(R, 7, i) * y + take(R, 8, i) * z,
+    )
 
 
 @compiled
@@ -125,13 +132,11 @@ def set_in_motion(swimmer, drive, fields, time, twist, y):
     """Give state `y` (13,) at `time` the momentum of the head's `twist` (6,) relative to the water. Returns the kinetic
     energy [J] of body and water (without the nose's)."""
     factors(drive, time, fields.factor)
-    combine_moments(drive.axis, drive.bend, fields.factor[0], fields.bend)
-    combine(drive.axis, drive.node, fields.factor[1], fields.rate)
-    configure(swimmer, fields)
+    configure(swimmer, drive, fields)
     momentum_of_twist(swimmer, fields, twist, y[7:])
     rotate(y, False, y, 7)
     rotate(y, False, y, 10)
-    add_head_twist(fields, twist)
+    add_head_twist(swimmer, fields, twist)
     body, water = kinetic_energies(swimmer, fields)
     return body + water
 
@@ -139,104 +144,121 @@ def set_in_motion(swimmer, drive, fields, time, twist, y):
 @compiled
 def place(stations, drive, fields, here, y, sample, out):
     """Backbone, orientation and curvature at the stations."""
-    combine_moments(drive.axis, drive.station_bend, fields.factor[0], here.bend)
-    combine(drive.axis, drive.station, fields.factor[0], here.curvature)
-    combine(drive.axis, drive.station, fields.factor[1], here.rate)
-    turns(here.bend, here.turn)
-    a, b, c, d = y[3], y[4], y[5], y[6]
-    for i in range(here.R.shape[1]):
-        x, v, z, w = 0.0, 0.0, 0.0, 1.0
+    section, count = stations.section, len(stations.node)
+    combine_moments(drive.axis, drive.station_bend, fields.factor[0], section.blocks, here.bend)
+    combine(drive.axis, drive.station, fields.factor[0], section.blocks, here.curvature)
+    combine(drive.axis, drive.station, fields.factor[1], section.blocks, here.rate)
+    turns(here.bend, section.blocks, here.turn)
+    integrate(section.upto, fields.R, 0, fields.r, (0.0, 0.0, 0.0), here.r)
+    for i in range(count):
         node = stations.node[i]
-        if node >= 0:
-            x, v, z, w = fields.q[0, node], fields.q[1, node], fields.q[2, node], fields.q[3, node]
-        e, f, g, h = here.turn[0, i], here.turn[1, i], here.turn[2, i], here.turn[3, i]
-        x, v, z, w = (
-            w * e + x * h + v * g - z * f,
-            w * f - x * g + v * h + z * e,
-            w * g + x * f - v * e + z * h,
-            w * h - x * e - v * f - z * g,
+        for k in range(4):
+            here.base[k, i] = fields.q[k, node] if node >= 0 else (1.0 if k == 3 else 0.0)
+    # the head's axes in the world
+    size = 1.0 / (y[3] * y[3] + y[4] * y[4] + y[5] * y[5] + y[6] * y[6])
+    a, b, c, d = y[3], y[4], y[5], y[6]
+    t1 = 1.0 - 2.0 * size * (b * b + c * c), 2.0 * size * (a * b + d * c), 2.0 * size * (a * c - d * b)
+    t2 = 2.0 * size * (a * b - d * c), 1.0 - 2.0 * size * (a * a + c * c), 2.0 * size * (b * c + d * a)
+    t3 = 2.0 * size * (a * c + d * b), 2.0 * size * (b * c - d * a), 1.0 - 2.0 * size * (a * a + b * b)
+    a0, b0, c0, d0 = spread(a), spread(b), spread(c), spread(d)
+    for block in range(section.blocks):
+        i = WIDTH * block
+        q = product(
+            *(take(here.base, 0, i), take(here.base, 1, i), take(here.base, 2, i), take(here.base, 3, i)),
+            *(take(here.turn, 0, i), take(here.turn, 1, i), take(here.turn, 2, i), take(here.turn, 3, i)),
         )
-        axes_of(x, v, z, w, here.R, i)
-        q = out.section_orientation[sample, i]
-        q[0], q[1], q[2], q[3] = (
-            d * x + a * w + b * z - c * v,
-            d * v - a * z + b * w + c * x,
-            d * z + a * v - b * x + c * w,
-            d * w - a * x - b * v - c * z,
-        )
+        put_axes(here.R, i, q[0], q[1], q[2], q[3])
+        q = product(a0, b0, c0, d0, q[0], q[1], q[2], q[3])
+        put(here.turn, 0, i, q[0])
+        put(here.turn, 1, i, q[1])
+        put(here.turn, 2, i, q[2])
+        put(here.turn, 3, i, q[3])
+        x, v, z = three(here.r, 0, i)
+        put(here.shown, 0, i, y[0] + (t1[0] * x + t2[0] * v + t3[0] * z))
+        put(here.shown, 1, i, y[1] + (t1[1] * x + t2[1] * v + t3[1] * z))
+        put(here.shown, 2, i, y[2] + (t1[2] * x + t2[2] * v + t3[2] * z))
+    show(here.shown, 0, out.backbone[sample])
+    for i in range(count):
+        for k in range(4):
+            out.section_orientation[sample, i, k] = here.turn[k, i]
         for k in range(2):
             out.curvature[sample, i, 1 + k] = here.curvature[k, i]
             out.curvature_rate[sample, i, 1 + k] = here.rate[k, i]
-    extend(stations.section, fields.R[:3], fields.r, here.zero, here.r)
-    for i in range(here.r.shape[1]):
-        for k in range(3):
-            out.backbone[sample, i, k] = here.r[k, i]
-        rotate(y, False, out.backbone[sample, i], 0)
-        for k in range(3):
-            out.backbone[sample, i, k] += y[k]
 
 
 @compiled
-def velocities(stations, fields, here, twist):
+def velocities(swimmer, stations, fields, here, twist):
     """True velocities at the stations, relative to the water."""
     R, f = fields.R, fields.integrand
-    for i in range(R.shape[1]):
-        k2, k3 = fields.rate[0, i], fields.rate[1, i]
-        for k in range(3):
-            f[k, i] = R[3 + k, i] * k2 + R[6 + k, i] * k3
-    extend(stations.section, f[:3], fields.omega, twist[:3], here.omega)
-    cross_fields(fields.omega, R[:3], f[:3])
-    extend(stations.section, f[:3], fields.v, twist[3:], here.v)
+    for block in range(swimmer.blocks):
+        i = WIDTH * block
+        k2, k3 = take(fields.rate, 0, i), take(fields.rate, 1, i)
+        bx, by, bz = three(R, 3, i)
+        cx, cy, cz = three(R, 6, i)
+        put_three(f, 0, i, bx * k2 + cx * k3, by * k2 + cy * k3, bz * k2 + cz * k3)
+        ox, oy, oz = three(fields.omega, 0, i)
+        tx, ty, tz = three(R, 0, i)
+        x, y, z = cross(ox, oy, oz, tx, ty, tz)
+        put_three(f, 3, i, x, y, z)
+    upto = stations.section.upto
+    integrate(upto, f, 0, fields.omega, (twist[0], twist[1], twist[2]), here.omega)
+    integrate(upto, f, 3, fields.v, (twist[3], twist[4], twist[5]), here.v)
 
 
 @compiled
-def accelerations(stations, fields, balance, here):
+def accelerations(swimmer, stations, fields, balance, here):
     """True accelerations at the stations."""
-    R, f, omega = fields.R, fields.integrand, fields.omega
-    for i in range(R.shape[1]):
-        k2, k3, l2, l3 = fields.rate[0, i], fields.rate[1, i], fields.accel[0, i], fields.accel[1, i]
-        kx, ky, kz = R[3, i] * k2 + R[6, i] * k3, R[4, i] * k2 + R[7, i] * k3, R[5, i] * k2 + R[8, i] * k3
-        f[0, i] = R[3, i] * l2 + R[6, i] * l3 + omega[1, i] * kz - omega[2, i] * ky
-        f[1, i] = R[4, i] * l2 + R[7, i] * l3 + omega[2, i] * kx - omega[0, i] * kz
-        f[2, i] = R[5, i] * l2 + R[8, i] * l3 + omega[0, i] * ky - omega[1, i] * kx
-    extend(stations.section, f[:3], balance.alpha, balance.head[:3], here.alpha)
-    cross_fields(omega, R[:3], f[:3])
-    cross_fields(omega, f[:3], f[3:])
-    cross_fields(balance.alpha, R[:3], f[:3])
-    for k in range(3):
-        for i in range(R.shape[1]):
-            f[k, i] += f[3 + k, i]
-    extend(stations.section, f[:3], balance.acc, balance.head[3:], here.acc)
+    R, f, head = fields.R, fields.integrand, balance.head
+    for block in range(swimmer.blocks):
+        i = WIDTH * block
+        k2, k3, l2, l3 = *two(fields.rate, i), *two(fields.accel, i)
+        bx, by, bz = three(R, 3, i)
+        cx, cy, cz = three(R, 6, i)
+        ox, oy, oz = three(fields.omega, 0, i)
+        x, y, z = cross(ox, oy, oz, bx * k2 + cx * k3, by * k2 + cy * k3, bz * k2 + cz * k3)
+        put_three(f, 0, i, bx * l2 + cx * l3 + x, by * l2 + cy * l3 + y, bz * l2 + cz * l3 + z)
+        tx, ty, tz = three(R, 0, i)
+        x, y, z = cross(ox, oy, oz, tx, ty, tz)
+        x, y, z = cross(ox, oy, oz, x, y, z)
+        ax, ay, az = three(balance.alpha, 0, i)
+        ux, uy, uz = cross(ax, ay, az, tx, ty, tz)
+        put_three(f, 3, i, x + ux, y + uy, z + uz)
+    upto = stations.section.upto
+    integrate(upto, f, 0, balance.alpha, (head[0], head[1], head[2]), here.alpha)
+    integrate(upto, f, 3, balance.acc, (head[3], head[4], head[5]), here.acc)
 
 
 @compiled
-def internal_wrench(swimmer, stations, fields, balance, here, result, distributed, sample, out):
-    """Internal torque and force at the stations: the balance of the part behind each (eq. 50, 51)."""
-    section = stations.section
-    extend(section, balance.density[:3], balance.upto[:3], here.zero, here.upto[:3])
-    extend(section, balance.density[3:], balance.upto[3:], here.zero, here.upto[3:])
-    if swimmer.resistive:
-        add_steps(swimmer, fields, section, False, here.upto)
-    for i in range(here.R.shape[1]):
-        for k in range(6):
-            fields.wrench[k] = balance.tail[k] - balance.total[k] + here.upto[k, i]
-        energy = section_wrench(
-            here.R,
-            here.r,
-            here.omega,
-            here.v,
-            i,
-            section.wake * section.added2[i],
-            section.wake * section.added3[i],
-            section.wake * section.added_roll[i],
-            fields.wrench,
-            result,
-        )
-        for k in range(3):
-            out.torque[sample, i, k] = result[k]
-            out.force[sample, i, k] = result[3 + k]
+def internal_wrench(swimmer, stations, fields, balance, here, distributed, sample, out):
+    """Internal torque and force at the stations: the balance of the part behind each (eq. 50, 51), in its axes and
+    about it, Ad*^-1 w - (V1 J_f1 Omega1 E1; V1 M_f V)."""
+    section, shown = stations.section, here.shown
+    integrate_balance(
+        *(section.upto, fields.kinks, swimmer.count, swimmer.fraction),
+        *(balance.density, balance.upto, here.upto),
+    )
+    behind = fields.wrench
+    for k in range(6):
+        behind[k] = balance.tail[k] - balance.total[k]
+    for block in range(section.blocks):
+        i = WIDTH * block
+        tx, ty, tz = three(here.upto, 0, i)
+        nx, ny, nz = three(here.upto, 3, i)
+        nx, ny, nz = nx + behind[3], ny + behind[4], nz + behind[5]
+        x, y, z = three(here.r, 0, i)
+        x, y, z = cross(x, y, z, nx, ny, nz)
+        c1, c2, c3 = in_section(here.R, i, tx + behind[0] - x, ty + behind[1] - y, tz + behind[2] - z)
+        n1, n2, n3 = in_section(here.R, i, nx, ny, nz)
+        v1, v2, v3 = in_section(here.R, i, *three(here.v, 0, i))
+        roll, _, _ = in_section(here.R, i, *three(here.omega, 0, i))
+        s1 = section.wake * take(section.added_roll, i) * roll
+        p2, p3 = section.wake * take(section.added2, i) * v2, section.wake * take(section.added3, i) * v3
         if distributed:
-            out.force[sample, i, 0] += energy
+            n1 += 0.5 * (s1 * roll + p2 * v2 + p3 * v3)
+        put_three(shown, 0, i, c1 - v1 * s1, c2, c3)
+        put_three(shown, 3, i, n1, n2 - v1 * p2, n3 - v1 * p3)
+    show(shown, 0, out.torque[sample])
+    show(shown, 3, out.force[sample])
 
 
 @compiled
@@ -244,51 +266,53 @@ def loads(stations, here, distributed, sample, out):
     """The water's force on the body per length at the stations: the reactive part, the rate at which a strip's water
     gives up momentum (eq. 50), and the resistive part; and the force -T_f t1 at the tail (eq. 51)."""
     section, R = stations.section, here.R
-    for i in range(R.shape[1]):
-        u = (
-            R[0, i] * here.v[0, i] + R[1, i] * here.v[1, i] + R[2, i] * here.v[2, i],
-            R[3, i] * here.v[0, i] + R[4, i] * here.v[1, i] + R[5, i] * here.v[2, i],
-            R[6, i] * here.v[0, i] + R[7, i] * here.v[1, i] + R[8, i] * here.v[2, i],
-        )
-        o = (
-            R[0, i] * here.omega[0, i] + R[1, i] * here.omega[1, i] + R[2, i] * here.omega[2, i],
-            R[3, i] * here.omega[0, i] + R[4, i] * here.omega[1, i] + R[5, i] * here.omega[2, i],
-            R[6, i] * here.omega[0, i] + R[7, i] * here.omega[1, i] + R[8, i] * here.omega[2, i],
-        )
-        d = (
-            R[0, i] * here.acc[0, i] + R[1, i] * here.acc[1, i] + R[2, i] * here.acc[2, i],
-            R[3, i] * here.acc[0, i] + R[4, i] * here.acc[1, i] + R[5, i] * here.acc[2, i],
-            R[6, i] * here.acc[0, i] + R[7, i] * here.acc[1, i] + R[8, i] * here.acc[2, i],
-        )
-        k2, k3 = here.curvature[0, i], here.curvature[1, i]
-        m2, m3, j1 = section.added2[i], section.added3[i], section.added_roll[i]
-        n2, n3, i1 = stations.added2_slope[i], stations.added3_slope[i], stations.added_roll_slope[i]
-        p2, p3 = m2 * u[1], m3 * u[2]
-        rate_p2 = m2 * (d[1] - (o[2] * u[0] - o[0] * u[2]))
-        rate_p3 = m3 * (d[2] - (o[0] * u[1] - o[1] * u[0]))
+    none, whole, wake = spread(0.0), spread(1.0), section.wake
+    for block in range(section.blocks):
+        i = WIDTH * block
+        u1, u2, u3 = in_section(R, i, *three(here.v, 0, i))
+        o1, o2, o3 = in_section(R, i, *three(here.omega, 0, i))
+        _, d2, d3 = in_section(R, i, *three(here.acc, 0, i))
+        k2, k3 = two(here.curvature, i)
+        m2, m3, j1 = take(section.added2, i), take(section.added3, i), take(section.added_roll, i)
+        n2, n3 = take(stations.added2_slope, i), take(stations.added3_slope, i)
+        p2, p3 = m2 * u2, m3 * u3
+        rate_p2 = m2 * (d2 - (o3 * u1 - o1 * u3))
+        rate_p3 = m3 * (d3 - (o1 * u2 - o2 * u1))
         # derivatives by X: V' = Omega x E1 - K x V, Omega' = Kdot - K x Omega
-        du1, du2, du3 = -(k2 * u[2] - k3 * u[1]), o[2] - k3 * u[0], -o[1] + k2 * u[0]
-        do1 = -(k2 * o[2] - k3 * o[1])
-        q2, q3 = n2 * u[1] + m2 * du2, n3 * u[2] + m3 * du3
+        du1, du2, du3 = k3 * u2 - k2 * u3, o3 - k3 * u1, k2 * u1 - o2
+        do1 = k3 * o2 - k2 * o3
+        q2, q3 = n2 * u2 + m2 * du2, n3 * u3 + m3 * du3
         # - (d/dt + Omega x) p + (d/dX + K x) V1 p, the second only where water is swept past the sections
-        wake = section.wake
-        f1 = -(o[1] * p3 - o[2] * p2) + wake * u[0] * (k2 * p3 - k3 * p2)
-        f2 = -(rate_p2 - o[0] * p3) + wake * (du1 * p2 + u[0] * q2)
-        f3 = -(rate_p3 + o[0] * p2) + wake * (du1 * p3 + u[0] * q3)
+        f1 = (o3 * p2 - o2 * p3) + wake * u1 * (k2 * p3 - k3 * p2)
+        f2 = (o1 * p3 - rate_p2) + wake * (du1 * p2 + u1 * q2)
+        f3 = wake * (du1 * p3 + u1 * q3) - (rate_p3 + o1 * p2)
         if distributed and wake > 0.0:
-            energy = 0.5 * (j1 * o[0] * o[0] + p2 * u[1] + p3 * u[2])
-            f1 -= 0.5 * (i1 * o[0] * o[0] + n2 * u[1] * u[1] + n3 * u[2] * u[2]) + j1 * o[0] * do1 + p2 * du2 + p3 * du3
+            energy = 0.5 * (j1 * o1 * o1 + p2 * u2 + p3 * u3)
+            slope = take(stations.added_roll_slope, i)
+            f1 -= 0.5 * (slope * o1 * o1 + n2 * u2 * u2 + n3 * u3 * u3) + j1 * o1 * do1 + p2 * du2 + p3 * du3
             f2 -= energy * k3
             f3 += energy * k2
-        r1 = r2 = r3 = 0.0
+        r1 = r2 = r3 = none
         if section.resistive:
-            part = turbulent_part(section.friction, section.transition[i], abs(u[0]))
-            r1 = -friction(section.laminar[i], section.turbulent[i], section.transition[i], part, abs(u[0])) * u[0]
-            r2 = -section.drag2[i] * abs(u[1]) * u[1]
-            r3 = -section.drag3[i] * abs(u[2]) * u[2]
-        rows = out.resistive_force[sample, i], out.fluid_force[sample, i]
-        rows[0][0], rows[0][1], rows[0][2] = r1, r2, r3
-        rows[1][0], rows[1][1], rows[1][2] = f1 + r1, f2 + r2, f3 + r3
+            speed = size(u1)
+            rubbing = take(section.laminar, i) * root(speed)
+            if section.friction != LAMINAR:
+                ratio = speed * take(section.reynolds, i)
+                turbulent = take(section.turbulent, i) * ratio * inverse_fifth_root(ratio + 1e-30)
+                part = where(ratio > 1.0, whole, none)
+                if section.friction == BLENDED:
+                    put(here.part, 0, i, speed)
+                    for k in range(i, min(i + WIDTH, len(section.x))):
+                        here.part[0, k] = turbulent_part(BLENDED, section.transition[k], here.part[0, k])
+                    part = take(here.part, 0, i)
+                rubbing += part * (turbulent - rubbing)
+            r1 = -rubbing * u1
+            r2 = -take(section.drag2, i) * size(u2) * u2
+            r3 = -take(section.drag3, i) * size(u3) * u3
+        put_three(here.shown, 0, i, r1, r2, r3)
+        put_three(here.shown, 3, i, f1 + r1, f2 + r2, f3 + r3)
+    show(here.shown, 0, out.resistive_force[sample])
+    show(here.shown, 3, out.fluid_force[sample])
 
 
 @compiled
@@ -326,7 +350,7 @@ def observe(
     for k in range(6):
         out.head_acceleration[sample, k] = balance.head[k]
     mass = 0.0
-    for i in range(fields.r.shape[1]):
+    for i in range(len(swimmer.x)):
         part = swimmer.weight[i] * swimmer.mass[i]
         mass += part
         for k in range(3):
@@ -347,27 +371,13 @@ def observe(
     out.closure[sample, 1] = np.sqrt(left)
     place(stations, drive, fields, here, y, sample, out)
     if want_wrench or want_load:
-        velocities(stations, fields, here, twist)
+        velocities(swimmer, stations, fields, here, twist)
     if want_wrench:
-        internal_wrench(swimmer, stations, fields, balance, here, step.rates, distributed, sample, out)
+        internal_wrench(swimmer, stations, fields, balance, here, distributed, sample, out)
     if want_load:
-        accelerations(stations, fields, balance, here)
+        accelerations(swimmer, stations, fields, balance, here)
         loads(stations, here, distributed, sample, out)
-        tail = fields.R.shape[1] - 1
-        for k in range(6):
-            fields.wrench[k] = 0.0
-        energy = section_wrench(
-            fields.R,
-            fields.r,
-            fields.omega,
-            fields.v,
-            tail,
-            swimmer.wake * swimmer.added2[tail],
-            swimmer.wake * swimmer.added3[tail],
-            swimmer.wake * swimmer.added_roll[tail],
-            fields.wrench,
-            step.rates,
-        )
+        _, energy = add_wake(swimmer, fields, step.rates)
         out.tail_force[sample, 0] = 0.0 if distributed else -energy
         out.nose_force[sample, 0] = balance.nose[0]
     return True

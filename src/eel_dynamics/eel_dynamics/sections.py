@@ -14,7 +14,8 @@ from typing import NamedTuple
 import numpy as np
 
 from .body import Body
-from .quadrature import Grid, Panel
+from .lanes import WIDTH, aligned
+from .quadrature import Blocks, Grid, Panel
 from .scene import FRICTION, Scene
 
 WIDEST_PANEL = 24  # points; a longer panel is cut into equal parts
@@ -23,11 +24,13 @@ TRANSITION = 8.0e4  # Reynolds number at which the printed friction law jumps fr
 
 
 class Swimmer(NamedTuple):
-    """Constants of a run at the n nodes (arrays (n,) unless said) and at the nose. All float64; SI units."""
+    """Constants of a run at the n nodes and at the nose, SI units. Arrays (n,) unless said; those of float64 are longer
+    and 0 behind the last node (`lanes`), but for x."""
 
     x: np.ndarray  # m
+    blocks: int  # of eight nodes
+    upto: Blocks  # of the integral from the nose to each node
     weight: np.ndarray  # m, of the integral over the body
-    matrix: np.ndarray  # (n, p) m, of the integral from a panel's start to a node
     first: np.ndarray  # (n,) unsigned, first node of the node's panel
     count: np.ndarray  # (n,) unsigned, nodes of the panel
     mass: np.ndarray  # kg/m, of the body
@@ -43,6 +46,7 @@ class Swimmer(NamedTuple):
     laminar: np.ndarray  # friction force per length = -laminar |V1|^(1/2) V1
     turbulent: np.ndarray  # friction force per length = -turbulent (|V1|/transition)^(4/5) V1
     transition: np.ndarray  # m/s, |V1| at which Re = 8e4
+    reynolds: np.ndarray  # s/m, 1/transition
     friction: int  # index into scene.FRICTION
     resistive: bool
     wake: float  # 1; 0 where no water is swept past the sections
@@ -93,19 +97,18 @@ def swimmer_of(body: Body, scene: Scene, grid: Grid) -> Swimmer:
         body,
         scene,
         grid.x,
-        weight=grid.weight,
-        matrix=grid.matrix,
+        upto=grid.blocks(),
+        weight=aligned(grid.weight),
         first=grid.first,
         count=grid.count,
-        fraction=grid.fraction,
-        barycentric=grid.barycentric,
-        series=grid.series,
+        fraction=aligned(grid.fraction),
+        barycentric=aligned(grid.barycentric),
+        series=aligned(grid.series),
     )
 
 
 class Stations(NamedTuple):
-    """Section data where profiles are given, M stations; `matrix` integrates from the start of a station's panel to
-    it."""
+    """Section data where profiles are given, M stations; as `Swimmer`, from whose nodes they go on."""
 
     section: Swimmer  # (M,) each
     node: np.ndarray  # (M,) int, the last node at or before the station, -1: none
@@ -116,27 +119,27 @@ class Stations(NamedTuple):
 
 def stations_of(body: Body, scene: Scene, grid: Grid, x: np.ndarray) -> Stations:
     """Tabulate `body` in `scene` at the stations `x` (M,) [m]."""
-    rows, first, count = grid.rows_at(x, "integral")
     a_squared, b_squared, a_slope, b_slope = body.squares(x)
     slope2, slope3, _ = added_masses(body, scene, a_slope, b_slope)
     rho = scene.fluid_density if scene.reactive else 0.0
+    none, no_index = np.zeros(0), np.zeros(0, dtype=np.uintp)
     return Stations(
         section=_tabulate(
             body,
             scene,
             x,
-            weight=np.zeros(len(x)),
-            matrix=rows,
-            first=first,
-            count=count,
-            fraction=grid.fraction_at(x),
-            barycentric=np.zeros(0),
+            upto=grid.blocks(x),
+            weight=none,
+            first=no_index,
+            count=no_index,
+            fraction=none,
+            barycentric=none,
             series=np.zeros((0, 0)),
         ),
         node=(np.searchsorted(grid.x, x, side="right") - 1).astype(np.int64),
-        added2_slope=slope2,
-        added3_slope=slope3,
-        added_roll_slope=rho * np.pi / 4.0 * (a_squared - b_squared) * (a_slope - b_slope),
+        added2_slope=aligned(slope2),
+        added3_slope=aligned(slope3),
+        added_roll_slope=aligned(rho * np.pi / 4.0 * (a_squared - b_squared) * (a_slope - b_slope)),
     )
 
 
@@ -155,21 +158,26 @@ def _tabulate(body: Body, scene: Scene, x, **grid) -> Swimmer:
     nose_area = np.pi * body.nose[0] * body.nose[1] if scene.nose else 0.0
     reactive_rho = scene.fluid_density if scene.reactive else 0.0
     rubbed = 0.0 if scene.friction == "none" else half_rho
+    transition = TRANSITION * scene.viscosity / behind
+    with np.errstate(divide="ignore"):
+        reynolds = np.where(transition > 0.0, 1.0 / transition, 0.0)
     return Swimmer(
         x=np.ascontiguousarray(x, dtype=float),
-        mass=density * area,
-        added2=added2,
-        added3=added3,
-        inertia1=inertia2 + inertia3 + added_roll,
-        inertia2=inertia2,
-        inertia3=inertia3,
-        added_roll=added_roll,
-        drag2=half_rho * 2.0 * body.lateral_drag * a,
-        drag3=half_rho * 2.0 * body.vertical_drag * b,
-        drag_roll=half_rho * body.roll_drag * np.pi * (a**2 - b**2) ** 2,
-        laminar=rubbed * perimeter * 0.664 * np.sqrt(scene.viscosity / behind),
-        turbulent=rubbed * perimeter * 0.059 * (scene.viscosity / behind) * TRANSITION**0.8,
-        transition=TRANSITION * scene.viscosity / behind,
+        blocks=-(-len(x) // WIDTH),
+        mass=aligned(density * area),
+        added2=aligned(added2),
+        added3=aligned(added3),
+        inertia1=aligned(inertia2 + inertia3 + added_roll),
+        inertia2=aligned(inertia2),
+        inertia3=aligned(inertia3),
+        added_roll=aligned(added_roll),
+        drag2=aligned(half_rho * 2.0 * body.lateral_drag * a),
+        drag3=aligned(half_rho * 2.0 * body.vertical_drag * b),
+        drag_roll=aligned(half_rho * body.roll_drag * np.pi * (a**2 - b**2) ** 2),
+        laminar=aligned(rubbed * perimeter * 0.664 * np.sqrt(scene.viscosity / behind)),
+        turbulent=aligned(rubbed * perimeter * 0.059 * (scene.viscosity / behind) * TRANSITION**0.8),
+        transition=aligned(transition),
+        reynolds=aligned(reynolds),
         friction=FRICTION.index("laminar" if scene.friction == "none" or scene.viscosity == 0.0 else scene.friction),
         resistive=bool(scene.resistive),
         wake=float(scene.wake),

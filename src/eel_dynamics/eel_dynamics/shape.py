@@ -14,6 +14,7 @@ from eel_gaits.law import Law
 from eel_gaits.spline import natural_spline
 
 from .drive import AXES, Drive, Tabulation, factors
+from .lanes import aligned
 
 PART_OF_PEAK = 0.75  # of the turns where all terms bend the body most
 TURN_POINTS = 64  # along the body, for the angle that a law bends it by
@@ -211,7 +212,7 @@ class Shape:
 def _split(tabulation: Tabulation, rows: np.ndarray) -> dict:
     """The parts of tabulated `rows` (m, width), by their names in `Drive`."""
     node, bend, station, station_bend = tabulation.split(rows)
-    angle = np.cumsum(bend[:, 0], axis=1)
+    angle = aligned(np.cumsum(bend[:, 0], axis=1), bend.shape[-1])
     return {"node": node, "angle": angle, "bend": bend, "station": station, "station_bend": station_bend}
 
 
