@@ -115,39 +115,56 @@ def rub(swimmer, fields):
 @inlined
 def value_at(swimmer, values, kind, begin, count, t):
     """At the fraction `t` of a panel, the polynomial through its nodes' `values`, by the barycentric formula."""
-    above = below_ = spread(0.0)
+    none, far = spread(0.0), spread(2.0)
+    above = under = none
     for k in range(0, count, WIDTH):
-        node = begin + np.uintp(k)
-        inside = below(np.int64(count) - k)
-        weight = where(inside, take(swimmer.barycentric, node), spread(0.0))
-        part = weight / (t - where(inside, take(swimmer.fraction, node), spread(2.0)))
-        above += part * where(inside, take(values, kind, node), spread(0.0))
-        below_ += part
-    return total(above) / total(below_)
+        node, inside = begin + np.uintp(k), below(count - k)
+        part = where(inside, take(swimmer.barycentric, node), none)
+        part = part / (t - where(inside, take(swimmer.fraction, node), far))
+        above += part * where(inside, take(values, kind, node), none)
+        under += part
+    return total(above) / total(under)
 
 
 @inlined
 def zero_between(swimmer, values, kind, begin, count, i, before, exact):
-    """Fraction of the panel at which the polynomial through `values` is zero, between node i and the one before it
-    (value `before`). An error e moves the load of V|V| by e^3, so this need not be `exact`."""
+    """Fraction of the panel at which `values` are zero, between node i and the one before it (value `before`).
+
+    That of the quadratic through these and the next node of the panel, by Newton's method from that of the line: an
+    error e moves the load of V|V| by e^3. Where it has to be `exact`, that of the polynomial through all nodes.
+    """
     a = swimmer.fraction[i - ONE] if i > begin else 0.0
     b = swimmer.fraction[i]
-    f, g = before, values[kind, i]
-    enough = (1e-12 if exact else 1e-4) * (abs(f) + abs(g))
-    t = b
-    for _ in range(8):
-        t = (a * g - b * f) / (g - f)
-        if t <= a or t >= b:
-            break
-        value = value_at(swimmer, values, kind, begin, count, t)
-        if not abs(value) > enough:
-            break
-        if (value > 0.0) == (g > 0.0):
-            b, g = t, value
-            f *= 0.6
-        else:
-            a, f = t, value
-            g *= 0.6
+    third = i + ONE if i + ONE < begin + np.uintp(count) else i - np.uintp(2)
+    f, g, h, c = before, values[kind, i], values[kind, third], swimmer.fraction[third]
+    slope = (g - f) / (b - a)
+    bend = ((h - g) / (c - b) - slope) / (c - a)
+    start = t = a - f / slope
+    rise = slope
+    for _ in range(2):
+        rise = slope + bend * (2.0 * t - a - b)
+        t -= (f + (t - a) * (slope + bend * (t - b))) / rise
+    if not (a < t < b):  # the quadratic turns back: near a double zero
+        t, rise = start, slope
+    if exact:
+        enough = 1e-12 * (abs(f) + abs(g))
+        at, was = t, 0.0
+        for turn in range(8):
+            value = value_at(swimmer, values, kind, begin, count, t)
+            if not abs(value) > enough:
+                break
+            if turn > 0:
+                rise = (value - was) / (t - at)
+            if (value > 0.0) == (g > 0.0):
+                b, g = t, value
+            else:
+                a, f = t, value
+            at, was = t, value
+            t -= value / rise
+            if not (a < t < b):
+                t = (a * g - b * f) / (g - f)
+            if not (a < t < b):
+                break
     return t
 
 
@@ -159,7 +176,7 @@ def integrals_upto(swimmer, begin, count, t, row, at):
         weights = t * take(swimmer.series, ZERO, node)
         z = 2.0 * t - 1.0
         low, middle = 1.0, z  # Legendre polynomials
-        for m in range(count - ONE):
+        for m in range(np.uintp(count) - ONE):
             high = UPPER[m] * z * middle - LOWER[m] * low
             weights += INTEGRAL[m] * (high - low) * take(swimmer.series, m + ONE, node)
             low, middle = middle, high
@@ -179,11 +196,13 @@ def note_steps(swimmer, kinks, kind, values, changes, first, start, noise, share
             i += ONE
         changes >>= 1
         first = i + ONE
-        value, before = values[kind, i], values[kind, i - ONE] if i > ZERO else start
+        value, before = values[kind, i], start
+        if i > ZERO:
+            before = values[kind, i - ONE]
         j = kinks.number[0]
         if abs(value - before) > noise and j < len(kinks.kind):
             kinks.number[0] = j + 1
-            begin, count = swimmer.first[i], swimmer.count[i]
+            begin, count = swimmer.first[i], np.int64(swimmer.count[i])
             t = zero_between(swimmer, values, kind, begin, count, i, before, exact)
             step = (1.0 if exact else 2.0) * (1.0 if value >= 0.0 else -1.0)
             integrals_upto(swimmer, begin, count, t, kinks.row, j)
@@ -191,7 +210,7 @@ def note_steps(swimmer, kinks, kind, values, changes, first, start, noise, share
             for k in range(0, count, WIDTH):
                 node = begin + np.uintp(k)
                 ahead = where(below(np.int64(i) - np.int64(node)), take(swimmer.weight, node), spread(0.0))
-                inside = where(below(np.int64(count) - k), take(kinks.row, j, k), spread(0.0))
+                inside = where(below(count - k), take(kinks.row, j, k), spread(0.0))
                 put(share, shared, node, take(share, shared, node) + step * (ahead - inside))
 
 

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .adams import HIGHEST, SHORT, Past, adams_growth, defect_of_order, extrapolate, past_of, remember
-from .compiled import compiled, inlined, spliced
+from .compiled import inlined, spliced
 from .drive import combine, factors
 from .kernel import add_head_twist, configure, momentum_rates, twist_of_momentum
 from .planar import rate_of_state_plane
@@ -209,7 +209,7 @@ def rate_of_state(swimmer, drive, fields, current, time, y, step, dy):
     return True
 
 
-@compiled
+@inlined
 def powers_of_state(swimmer, drive, fields, balance, time, y, step, power):
     """Powers (4,) [W] of actuators, wake, nose and drag in state `y` at `time`, by the acceleration form."""
     if not settle(swimmer, drive, fields, time, y, step.momentum, step.twist):
