@@ -17,74 +17,80 @@ from typing import NamedTuple
 import numpy as np
 
 from .compiled import spliced
+from .lanes import WIDTH, aligned, aligned_zeros, first, following, put, spread, take
 
+SPACE = 2 * WIDTH  # that a state takes
+FRACTIONS = aligned(1.0 / np.arange(1.0, WIDTH + 1.0), WIDTH)
 HIGHEST = 6  # beyond, the steps that are stable are shorter than those that are exact
 SHORT = 0.0125  # of the longest step: below, the order may fall; the most exact runs that are offered do not get there
 
 
 class Past(NamedTuple):
-    """What Adams' steps know of the steps before."""
+    """What Adams' steps know of the steps before; states have 13 numbers and zeros up to 16."""
 
-    differences: np.ndarray  # (k + 1, 13) phi_j at the end of the last step
-    starred: np.ndarray  # (k + 1, 13) phi*_j of the step under way
+    differences: np.ndarray  # (k + 1, 16) phi_j at the end of the last step
+    starred: np.ndarray  # (k + 2, 16) phi*_j of the step under way
     lengths: np.ndarray  # (k + 1,) s, of the last steps, the latest first
     known: np.ndarray  # (2,) int, how many of them there are; terms of the step under way
     order: np.ndarray  # (3,) int, in force; steps since it changed; 1 where it may change: steps are short
-    weight: np.ndarray  # (k + 2, k + 3) g_j in the first column
+    weight: np.ndarray  # (8,) g_j
 
 
-def past_of(order: int, size: int) -> Past:
-    """For steps of up to `order` of a state of `size` numbers."""
+def past_of(order: int) -> Past:
+    """For steps of up to `order`."""
     order = max(order, 1)
     return Past(
-        differences=np.zeros((order + 1, size)),
-        starred=np.zeros((order + 1, size)),
+        differences=aligned_zeros(order + 1, SPACE),
+        starred=aligned_zeros(order + 2, SPACE),
         lengths=np.ones(order + 1),
         known=np.zeros(2, dtype=np.int64),
         order=np.zeros(3, dtype=np.int64),
-        weight=np.zeros((order + 2, order + 3)),
+        weight=aligned_zeros(WIDTH),
     )
 
 
 @spliced
 def extrapolate(past, length, y, trial):
-    """The step: `trial` (13,) from `y` (13,), and the phi*. Returns the number of terms."""
-    weight = past.weight
+    """The step: `trial` (16,) from `y` (16,), and the phi*. Returns the number of terms."""
     terms = min(past.order[0], past.known[0] + 1)
     top = terms + past.order[2]  # the last g, for the error
-    beta, new, old = 1.0, length, 0.0  # new, old: s, from the end and from the start of the step to rates before
-    for q in range(top + 1):
-        weight[0, q] = 1.0 / (q + 1.0)
+    row = take(FRACTIONS, 0)
+    past.weight[0] = 1.0
+    new = length  # s, from the end of the step to rates before
     for j in range(1, top + 1):
-        for q in range(top + 1 - j):
-            weight[j, q] = weight[j - 1, q] - weight[j - 1, q + 1] * length / new
+        row -= following(row) * (length / new)
+        past.weight[j] = first(row)
         new += past.lengths[j - 1]
-    new = length
+    low = high = spread(0.0)
+    beta, new, old = 1.0, length, 0.0  # old: s, from the start of the step to rates before
     for j in range(top):
         if j > 0:
             old += past.lengths[j - 1]
             beta *= new / old
             new += past.lengths[j - 1]
-        for k in range(len(y)):
-            past.starred[j, k] = beta * past.differences[j, k]
-    for k in range(len(y)):
-        total = 0.0
-        for j in range(terms):
-            total += weight[j, 0] * past.starred[j, k]
-        trial[k] = y[k] + length * total
+        a, b = beta * take(past.differences, j, 0), beta * take(past.differences, j, WIDTH)
+        put(past.starred, j, 0, a)
+        put(past.starred, j, WIDTH, b)
+        if j < terms:
+            low += past.weight[j] * a
+            high += past.weight[j] * b
+    put(trial, 0, take(y, 0) + length * low)
+    put(trial, WIDTH, take(y, WIDTH) + length * high)
     past.known[1] = terms
     return terms
 
 
 @spliced
-def remember(past, terms, length, rate):
-    """Take on a step of `length` [s] and so many `terms`, with the `rate` (13,) at its end."""
-    for k in range(len(rate)):
-        value = rate[k]
-        past.differences[0, k] = value
-        for j in range(terms):
-            value -= past.starred[j, k]
-            past.differences[j + 1, k] = value
+def remember(past, terms, length, rate, row):
+    """Take on a step of `length` [s] and so many `terms`, with the `rate[row]` (16,) at its end."""
+    low, high = take(rate, row, 0), take(rate, row, WIDTH)
+    put(past.differences, 0, 0, low)
+    put(past.differences, 0, WIDTH, high)
+    for j in range(terms):
+        low -= take(past.starred, j, 0)
+        high -= take(past.starred, j, WIDTH)
+        put(past.differences, j + 1, 0, low)
+        put(past.differences, j + 1, WIDTH, high)
     for j in range(len(past.lengths) - 1, 0, -1):
         past.lengths[j] = past.lengths[j - 1]
     past.lengths[0] = length
@@ -92,14 +98,15 @@ def remember(past, terms, length, rate):
 
 
 @spliced
-def defect_of_order(past, terms, rate, defect):
-    """Error estimate `defect` (13,) by the step's length of a step of so many `terms`, with the `rate` (13,) at its
-    end."""
-    for k in range(len(rate)):
-        value = rate[k]
-        for j in range(terms):
-            value -= past.starred[j, k]
-        defect[k] = past.weight[terms, 0] * value
+def defect_of_order(past, terms, rate, row, defect):
+    """Error estimate `defect` (16,) by the step's length of a step of so many `terms`, with the `rate[row]` (16,) at
+    its end."""
+    low, high = take(rate, row, 0), take(rate, row, WIDTH)
+    for j in range(terms):
+        low -= take(past.starred, j, 0)
+        high -= take(past.starred, j, WIDTH)
+    put(defect, 0, past.weight[terms] * low)
+    put(defect, WIDTH, past.weight[terms] * high)
 
 
 @spliced

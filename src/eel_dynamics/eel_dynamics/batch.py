@@ -156,7 +156,7 @@ def simulate_batch(
 
     _for_each(swim, count, threads, progress)
     for index in np.flatnonzero(samples < len(times)):
-        for array in (*_of_one(out, index), works[index]):
+        for array in (*_of_one(out, index)[:-1], works[index]):
             array[samples[index] :] = 0.0
     counts = steps, evaluations
     return _batch_of(members, settings, times, samples, errors, counts, x, out, works, start, wrench, load, stations)
@@ -227,15 +227,14 @@ def _stopped_at_start(error: Exception) -> SimulationStopped:
 
 def _space(count: int, samples: int, stations: int, wrench: bool, load: bool) -> Profiles:
     """Profiles with a first axis for the swimmers. `ValueError` where they would not fit into memory."""
-    one = profiles_of(1, stations, wrench, load)
-    needed = 8.0 * count * samples * sum(array.size for array in one)
+    needed = 8.0 * count * samples * profiles_of(1, stations, wrench, load).whole.size
     there = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") * MOST_MEMORY
     if needed > there:
         raise ValueError(
             f"stations must be fewer (or samples, or swimmers): {count} swimmers of {samples} samples at {stations} "
             f"stations take {needed / 1e9:.3g} GB, of {there / 1e9:.3g} GB"
         )
-    return Profiles(*(np.zeros((count, samples if len(array) else 0, *array.shape[1:])) for array in one))
+    return profiles_of(samples, stations, wrench, load, (count,))
 
 
 def _of_one(out: Profiles, index: int, wrench: bool = True) -> Profiles:

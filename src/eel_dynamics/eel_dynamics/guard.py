@@ -15,9 +15,12 @@ def failure_of(out, works: np.ndarray, done: int, start: float, floor: float) ->
     """The first of the `done` samples of `out` (a `Profiles`) and `works` (T, 4) [J] that cannot be handed out: its
     index, the quantity and its value. start: kinetic energy at the start [J]; floor: energy that counts as none [J],
     infinite: the ledger is not looked at. None: all are good."""
-    arrays = {**out._asdict(), "works": works}
     with np.errstate(over="ignore", invalid="ignore"):
-        failures = [_not_finite(name, array[:done]) for name, array in arrays.items()]
+        failures = []
+        if not np.isfinite(np.add.reduce(out.whole) + np.add.reduce(works, axis=None)):
+            arrays = {**out._asdict(), "works": works}
+            del arrays["whole"]
+            failures = [_not_finite(name, array[:done]) for name, array in arrays.items()]
         failures += [_open(out.kinetic[:done], works[:done], start, floor)] if done else []
     return min((each for each in failures if each), default=None, key=lambda each: each[0])
 

@@ -10,14 +10,16 @@ chosen by the error estimate; and the classical Runge-Kutta method with a given 
 the shape, where its derivatives jump. docs/integrators.md tells why these.
 """
 
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
 
-from .adams import HIGHEST, SHORT, Past, adams_growth, defect_of_order, extrapolate, past_of, remember
+from .adams import HIGHEST, SHORT, SPACE, Past, adams_growth, defect_of_order, extrapolate, past_of, remember
 from .compiled import inlined, spliced
 from .drive import combine, factors
 from .kernel import add_head_twist, configure, momentum_rates, twist_of_momentum
+from .lanes import WIDTH, aligned_zeros, put, size, spread, take, total
 from .planar import rate_of_state_plane
 from .wrench import accelerate, actuator_power
 
@@ -58,20 +60,20 @@ class Control(NamedTuple):
 
 
 class Step(NamedTuple):
-    """The step that the state is in, and the work space; n nodes, s stages."""
+    """The step that the state is in, and the work space; s stages. States have 13 numbers and zeros up to 16."""
 
     time: np.ndarray  # (3,) start s, length s, proposed next length s
-    y: np.ndarray  # (13,) at its start
-    end: np.ndarray  # (13,) at its end
-    k: np.ndarray  # (s, 13) rates at the stages
-    trial: np.ndarray  # (13,)
-    defect: np.ndarray  # (13,) error estimate by the step's length
+    y: np.ndarray  # (16,) at its start
+    end: np.ndarray  # (16,) at its end
+    k: np.ndarray  # (s, 16) rates at the stages
+    trial: np.ndarray  # (16,)
+    defect: np.ndarray  # (16,) error estimate by the step's length
     work: np.ndarray  # (4,) at the start
     power: np.ndarray  # (4, 4) at the Lobatto points: [point, work]
     twist: np.ndarray  # (6,)
     rates: np.ndarray  # (6,)
     momentum: np.ndarray  # (6,)
-    scale: np.ndarray  # (2,) greatest angular and linear momentum so far
+    scale: np.ndarray  # (2,) squares of the greatest angular and linear momentum so far
     count: np.ndarray  # (3,) int: steps, rejected steps, evaluations
     budget: np.ndarray  # (1,) steps that may still be tried before the next are earned by motion
     fresh: np.ndarray  # (1,) int: 1 where k[-1] and power[-1] do not hold the start of the next step
@@ -83,11 +85,11 @@ def step_of(method: Method) -> Step:
     stages = len(method.c)
     return Step(
         time=np.zeros(3),
-        y=np.zeros(STATE),
-        end=np.zeros(STATE),
-        k=np.zeros((stages, STATE)),
-        trial=np.zeros(STATE),
-        defect=np.zeros(STATE),
+        y=aligned_zeros(SPACE),
+        end=aligned_zeros(SPACE),
+        k=aligned_zeros(stages, SPACE),
+        trial=aligned_zeros(SPACE),
+        defect=aligned_zeros(SPACE),
         work=np.zeros(WORKS),
         power=np.zeros((4, WORKS)),
         twist=np.zeros(6),
@@ -97,10 +99,11 @@ def step_of(method: Method) -> Step:
         count=np.zeros(3, dtype=np.int64),
         budget=np.zeros(1),
         fresh=np.ones(1, dtype=np.int64),
-        past=past_of(method.adams, STATE),
+        past=past_of(method.adams),
     )
 
 
+@cache
 def classical() -> Method:
     """The classical Runge-Kutta method of order 4; between steps the cubic that meets value and rate at both ends."""
     a = np.zeros((5, 5))
@@ -109,6 +112,7 @@ def classical() -> Method:
     return Method(a, np.array([0.0, 0.5, 0.5, 1.0, 1.0]), np.zeros(5), _hermite(a[4]), False, 4, 0)
 
 
+@cache
 def adams_bashforth(order: int) -> Method:
     """Steps of Adams and Bashforth of an `order` from 1 to 6; between them as with the classical method."""
     if not 1 <= order <= HIGHEST:
@@ -126,6 +130,7 @@ def _hermite(mean) -> np.ndarray:
     return dense
 
 
+@cache
 def dormand_prince() -> Method:
     """The pair of orders 5(4)."""
     a = np.zeros((7, 7))
@@ -159,41 +164,56 @@ def normalise(y):
 
 
 @inlined
-def rotate(y, inverse, vector, at):
-    """Rotate `vector[at:at+3]` in place by the orientation of state `y` (world from head), or by its inverse."""
+def head_axes(y):
+    """Columns t1, t2, t3 of the rotation of state `y`, world from head, one after the other."""
     x, v, z, w = y[3], y[4], y[5], y[6]
-    size = 1.0 / (x * x + v * v + z * z + w * w)
-    if inverse:
-        x, v, z = -x, -v, -z
-    a, b, c = vector[at], vector[at + 1], vector[at + 2]
-    ta, tb, tc = 2.0 * size * (v * c - z * b), 2.0 * size * (z * a - x * c), 2.0 * size * (x * b - v * a)
-    vector[at] = a + w * ta + v * tc - z * tb
-    vector[at + 1] = b + w * tb + z * ta - x * tc
-    vector[at + 2] = c + w * tc + x * tb - v * ta
+    two = 2.0 / (x * x + v * v + z * z + w * w)
+    xx, vv, zz, xv, xz, vz = two * x * x, two * v * v, two * z * z, two * x * v, two * x * z, two * v * z
+    wx, wv, wz = two * w * x, two * w * v, two * w * z
+    return 1.0 - vv - zz, xv + wz, xz - wv, xv - wz, 1.0 - xx - zz, vz + wx, xz + wv, vz - wx, 1.0 - xx - vv
 
 
 @inlined
-def settle(swimmer, drive, fields, time, y, momentum, twist):
-    """Configure the body at `time` and find the head's `twist` from the momentum of state `y`. False where it has
-    none."""
+def to_world(t, vector, at):
+    """Turn `vector[at : at + 3]` in place from the head's axes, `t` of `head_axes`, to the world's."""
+    a, b, c = vector[at], vector[at + 1], vector[at + 2]
+    vector[at] = t[0] * a + t[3] * b + t[6] * c
+    vector[at + 1] = t[1] * a + t[4] * b + t[7] * c
+    vector[at + 2] = t[2] * a + t[5] * b + t[8] * c
+
+
+@inlined
+def to_head(t, vector, at):
+    """The inverse of `to_world`."""
+    a, b, c = vector[at], vector[at + 1], vector[at + 2]
+    vector[at] = t[0] * a + t[1] * b + t[2] * c
+    vector[at + 1] = t[3] * a + t[4] * b + t[5] * c
+    vector[at + 2] = t[6] * a + t[7] * b + t[8] * c
+
+
+@inlined
+def settle(swimmer, drive, fields, time, y, axes, momentum, twist):
+    """Configure the body at `time` and find the head's `twist` from the momentum of state `y`, whose axes are `axes`.
+    False where it has none."""
     factors(drive, time, fields.factor)
     configure(swimmer, drive, fields)
     for k in range(6):
         momentum[k] = y[7 + k]
-    rotate(y, True, momentum, 0)
-    rotate(y, True, momentum, 3)
+    to_head(axes, momentum, 0)
+    to_head(axes, momentum, 3)
     return twist_of_momentum(swimmer, fields, momentum, twist)
 
 
 @inlined
 def rate_of_state(swimmer, drive, fields, current, time, y, step, dy):
     """Rate `dy` (13,) of state `y` at `time` (eq. 27 in the momentum form). False where the inertia is singular."""
-    if not settle(swimmer, drive, fields, time, y, step.momentum, step.twist):
+    axes = head_axes(y)
+    if not settle(swimmer, drive, fields, time, y, axes, step.momentum, step.twist):
         return False
     momentum_rates(swimmer, fields, step.momentum, step.twist, step.rates)
     twist, rates = step.twist, step.rates
     dy[0], dy[1], dy[2] = twist[3], twist[4], twist[5]
-    rotate(y, False, dy, 0)
+    to_world(axes, dy, 0)
     for k in range(3):
         dy[k] += current[k]
     x, v, z, w = y[3], y[4], y[5], y[6]
@@ -204,15 +224,15 @@ def rate_of_state(swimmer, drive, fields, current, time, y, step, dy):
     dy[6] = -x * ox - v * oy - z * oz
     for k in range(6):
         dy[7 + k] = rates[k]
-    rotate(y, False, dy, 7)
-    rotate(y, False, dy, 10)
+    to_world(axes, dy, 7)
+    to_world(axes, dy, 10)
     return True
 
 
 @inlined
 def powers_of_state(swimmer, drive, fields, balance, time, y, step, power):
     """Powers (4,) [W] of actuators, wake, nose and drag in state `y` at `time`, by the acceleration form."""
-    if not settle(swimmer, drive, fields, time, y, step.momentum, step.twist):
+    if not settle(swimmer, drive, fields, time, y, head_axes(y), step.momentum, step.twist):
         return False
     combine(drive.axis, drive.node, fields.factor[2], swimmer.blocks, fields.accel)
     add_head_twist(swimmer, fields, step.twist)
@@ -225,14 +245,15 @@ def powers_of_state(swimmer, drive, fields, balance, time, y, step, power):
 
 @spliced
 def interpolate(method, step, theta, y):
-    """State `y` (13,) at the fraction `theta` of the step."""
-    for k in range(STATE):
-        y[k] = step.y[k]
+    """State `y` (16,) at the fraction `theta` of the step."""
+    low = high = spread(0.0)
     for i in range(method.a.shape[0]):
         d = method.dense
-        weight = step.time[1] * theta * (d[i, 0] + theta * (d[i, 1] + theta * (d[i, 2] + theta * d[i, 3])))
-        for k in range(STATE):
-            y[k] += weight * step.k[i, k]
+        weight = theta * (d[i, 0] + theta * (d[i, 1] + theta * (d[i, 2] + theta * d[i, 3])))
+        low += weight * take(step.k, i, 0)
+        high += weight * take(step.k, i, WIDTH)
+    put(y, 0, take(step.y, 0) + step.time[1] * low)
+    put(y, WIDTH, take(step.y, WIDTH) + step.time[1] * high)
     normalise(y)
 
 
@@ -245,8 +266,9 @@ def works_upto(step, theta, series, work):
     power = theta
     for j in range(4):
         for i in range(4):
+            weight = step.time[1] * power / (j + 1.0) * series[j, i]
             for k in range(WORKS):
-                work[k] += step.time[1] * power / (j + 1.0) * series[j, i] * step.power[i, k]
+                work[k] += weight * step.power[i, k]
         power *= theta
 
 
@@ -259,40 +281,42 @@ def evaluate(swimmer, drive, fields, current, control, time, y, step, dy):
 
 
 @spliced
-def state_at(method, series, step, time, y, work):
+def state_at(method, control, series, step, time, y, work):
     """State `y` (13,) and works (4,) at `time` [s] within the step."""
-    length = step.time[1]
+    length, theta = step.time[1], 1.0
     if abs(step.time[0] + length - time) <= 1e-12 * max(1.0, abs(time)):
         for k in range(STATE):
             y[k] = step.end[k]
-        works_upto(step, 1.0, series, work)
     else:
         theta = min(1.0, max(0.0, (time - step.time[0]) / length))
-        interpolate(method, step, theta, y)
+        interpolate(method, step, theta, step.trial)
+        for k in range(STATE):
+            y[k] = step.trial[k]
+    if control.ledger:
         works_upto(step, theta, series, work)
 
 
 @spliced
-def error_of(defect, first, last):
-    """Size of entries `first` to `last` of the `defect` (13,)."""
+def square_of(values, first, last):
+    """Sum of the squares of the entries `first` to `last`."""
     square = 0.0
     for k in range(first, last):
-        square += defect[k] * defect[k]
-    return np.sqrt(square)
+        square += values[k] * values[k]
+    return square
 
 
 @spliced
 def error_by_tolerance(control, step, length):
     """The error estimate of the trial step by the tolerance: of position by the body's length, of orientation by one,
     of the momenta by their greatest size so far; the worst of the four. A good step has 1 or less."""
-    trial = step.trial
-    linear = max(step.scale[1], np.sqrt(trial[10] ** 2 + trial[11] ** 2 + trial[12] ** 2), control.momentum_floor)
-    angular = max(step.scale[0], np.sqrt(trial[7] ** 2 + trial[8] ** 2 + trial[9] ** 2), linear * control.length)
-    worst = error_of(step.defect, 0, 3) / control.length
-    worst = max(worst, error_of(step.defect, 3, 7))
-    worst = max(worst, error_of(step.defect, 7, 10) / angular)
-    worst = max(worst, error_of(step.defect, 10, 13) / linear)
-    return worst * length / control.tolerance
+    body = control.length * control.length
+    linear = max(step.scale[1], square_of(step.trial, 10, 13), control.momentum_floor * control.momentum_floor)
+    angular = max(step.scale[0], square_of(step.trial, 7, 10), linear * body)
+    worst = max(
+        max(square_of(step.defect, 0, 3) / body, square_of(step.defect, 3, 7)),
+        max(square_of(step.defect, 7, 10) / angular, square_of(step.defect, 10, 13) / linear),
+    )
+    return np.sqrt(worst) * length / control.tolerance
 
 
 @spliced
@@ -303,17 +327,15 @@ def attempt(swimmer, drive, fields, current, method, control, step, start, lengt
     first = last if method.adams > 0 else 1
     status, terms, stage = MARCHED, 0, 0 if step.fresh[0] == 1 else first
     while status == MARCHED and stage <= last:
-        if stage == 0:
-            for k in range(STATE):
-                step.trial[k] = step.end[k]
-        elif method.adams > 0:
+        low, high = take(step.end, 0), take(step.end, WIDTH)
+        if stage > 0 and method.adams > 0:
             terms = extrapolate(step.past, length, step.end, step.trial)
         else:
-            for k in range(STATE):
-                total = 0.0
-                for j in range(stage):
-                    total += method.a[stage, j] * step.k[j, k]
-                step.trial[k] = step.end[k] + length * total
+            for j in range(stage):
+                low += length * method.a[stage, j] * take(step.k, j, 0)
+                high += length * method.a[stage, j] * take(step.k, j, WIDTH)
+            put(step.trial, 0, low)
+            put(step.trial, WIDTH, high)
         if stage == last:
             normalise(step.trial)
         step.count[2] += 1
@@ -328,18 +350,19 @@ def attempt(swimmer, drive, fields, current, method, control, step, start, lengt
     if status != MARCHED:
         return status, np.inf
     if method.adams > 0:
-        for k in range(STATE):
-            step.k[1, k] = (step.trial[k] - step.end[k]) / length
-        defect_of_order(step.past, terms, step.k[last], step.defect)
+        put(step.k, 1, 0, (take(step.trial, 0) - take(step.end, 0)) / length)
+        put(step.k, 1, WIDTH, (take(step.trial, WIDTH) - take(step.end, WIDTH)) / length)
+        defect_of_order(step.past, terms, step.k, last, step.defect)
     else:
-        for k in range(STATE):
-            step.defect[k] = 0.0
-            for i in range(last + 1):
-                step.defect[k] += method.error[i] * step.k[i, k]
-    total = 0.0
-    for k in range(STATE):
-        total += abs(step.trial[k]) + abs(step.k[last, k])
-    if not total < 1e300:  # NaN too
+        low = high = spread(0.0)
+        for i in range(last + 1):
+            low += method.error[i] * take(step.k, i, 0)
+            high += method.error[i] * take(step.k, i, WIDTH)
+        put(step.defect, 0, low)
+        put(step.defect, WIDTH, high)
+    low = size(take(step.trial, 0)) + size(take(step.k, last, 0))
+    high = size(take(step.trial, WIDTH)) + size(take(step.k, last, WIDTH))
+    if not total(low + high) < 1e300:  # NaN too
         return NOT_FINITE, np.inf
     return MARCHED, error_by_tolerance(control, step, length) if method.adaptive else 0.0
 
@@ -351,8 +374,8 @@ def begin_anew(method, step):
     step.fresh[0] = 0
     past.known[0] = 0
     past.order[0], past.order[1], past.order[2] = method.adams, 0, 0
-    for k in range(STATE):
-        past.differences[0, k] = step.k[0, k]
+    put(past.differences, 0, 0, take(step.k, 0, 0))
+    put(past.differences, 0, WIDTH, take(step.k, 0, WIDTH))
 
 
 @spliced
@@ -380,7 +403,7 @@ def growth_of(error, order):
 @spliced
 def adapt_order(method, control, step, length, growth):
     """Choose the order of the next step of Adams; returns the `growth` that goes with it."""
-    past, rate = step.past, step.k[method.a.shape[0] - 1]
+    past, last = step.past, method.a.shape[0] - 1
     terms, settled = past.known[1], past.order[1] > past.order[0]
     past.order[1] += 1
     if length > SHORT * control.step:
@@ -390,12 +413,12 @@ def adapt_order(method, control, step, length, growth):
         return growth
     change = 0
     if terms > 1:
-        defect_of_order(past, terms - 1, rate, step.defect)
+        defect_of_order(past, terms - 1, step.k, last, step.defect)
         other = growth_of(error_by_tolerance(control, step, length), terms)
         if other > 1.1 * growth:
             growth, change = other, -1
     if change == 0 and settled and terms == past.order[0] < method.adams and past.order[2] == 1:
-        defect_of_order(past, terms + 1, rate, step.defect)
+        defect_of_order(past, terms + 1, step.k, last, step.defect)
         other = growth_of(error_by_tolerance(control, step, length), terms + 2)
         if other > 1.3 * growth:
             growth, change = other, 1
@@ -408,17 +431,18 @@ def adapt_order(method, control, step, length, growth):
 @spliced
 def accept(control, step, start, length, series):
     """Make the trial step the step."""
-    works_upto(step, 1.0, series, step.work)
-    for k in range(STATE):
-        step.y[k] = step.end[k]
-        step.end[k] = step.trial[k]
-    for k in range(WORKS):
-        step.power[0, k] = step.power[3, k]
+    if control.ledger:
+        works_upto(step, 1.0, series, step.work)
+        for k in range(WORKS):
+            step.power[0, k] = step.power[3, k]
+    for k in range(0, SPACE, WIDTH):
+        put(step.y, k, take(step.end, k))
+        put(step.end, k, take(step.trial, k))
     step.time[0], step.time[1] = start, length
     step.count[0] += 1
     step.budget[0] = min(control.spare_steps, step.budget[0] + control.most_steps * length) - 1.0
-    step.scale[0] = max(step.scale[0], np.sqrt(step.end[7] ** 2 + step.end[8] ** 2 + step.end[9] ** 2))
-    step.scale[1] = max(step.scale[1], np.sqrt(step.end[10] ** 2 + step.end[11] ** 2 + step.end[12] ** 2))
+    step.scale[0] = max(step.scale[0], square_of(step.end, 7, 10))
+    step.scale[1] = max(step.scale[1], square_of(step.end, 10, 13))
 
 
 @spliced
@@ -437,8 +461,8 @@ def march(swimmer, drive, fields, balance, current, method, control, breakpoints
             before = breakpoints[j]
         anew = step.fresh[0]
         if anew == 0:  # the last rate of a step is the first of the next
-            for k in range(STATE):
-                step.k[0, k] = step.k[method.a.shape[0] - 1, k]
+            for k in range(0, SPACE, WIDTH):
+                put(step.k, 0, k, take(step.k, method.a.shape[0] - 1, k))
         proposed = step.time[2]
         length = fitted(method, control, step, start, before, target, tiny)
         accepted = 4.0 if method.adams > 0 else 1.0  # Adams' next step is the shorter: cheaper than to repeat this one
@@ -456,7 +480,7 @@ def march(swimmer, drive, fields, balance, current, method, control, breakpoints
         growth = growth_of(error, method.order if method.adams == 0 else step.past.order[0] + 1)
         if method.adams > 0:
             growth = adams_growth(step.past, adapt_order(method, control, step, length, growth))
-            remember(step.past, step.past.known[1], length, step.k[method.a.shape[0] - 1])
+            remember(step.past, step.past.known[1], length, step.k, method.a.shape[0] - 1)
         grown = length * growth
         step.time[2] = min(control.step, grown if length >= proposed else max(proposed, grown))
         if abs(start + length - target) <= tiny:

@@ -17,7 +17,6 @@ from .drag import ONE, ZERO, add_resistive_loads
 from .drive import combine, combine_moments
 from .lanes import (
     WIDTH,
-    aligned_zeros,
     any_of,
     last,
     moved1,
@@ -28,6 +27,7 @@ from .lanes import (
     spread,
     take,
     total,
+    work_space,
 )
 
 MOST_KINKS = 24  # of the drag, along the body at one instant; what is more is integrated without care
@@ -73,20 +73,13 @@ class Fields(NamedTuple):
     kinks: Kinks
 
 
+ALONG = ((4,), (4,), (9,), (3,), (3, 2), (2,), (2,), (3,), (3,), (5,), (), (2,), (4,), (6,))  # of `Fields`, by node
+
+
 def fields_of(nodes: int, rows: int, widest: int) -> Fields:
     """Work space for `nodes` nodes in panels of up to `widest`, and a law of `rows` rows."""
-    n = padded(nodes)
-    along = aligned_zeros(60, n)
-    sizes = {"turn": 4, "q": 4, "R": 9, "r": 3, "bend": (3, 2), "rate": 2, "accel": 2, "omega": 3, "v": 3, "speed": 5}
-    sizes |= {"part": (), "rubbing": 2, "share": 4, "integrand": 6}
-    spaces, begin = {}, 0
-    for name, size in sizes.items():
-        shape = size if isinstance(size, tuple) else (size,)
-        rows_of_it = int(np.prod(shape, dtype=int))
-        spaces[name] = along[begin : begin + rows_of_it].reshape(*shape, n)
-        begin += rows_of_it
     return Fields(
-        **spaces,
+        *work_space(ALONG, nodes),
         inertia=np.zeros((6, 6)),
         wrench=np.zeros(6),
         factor=np.zeros((3, rows)),

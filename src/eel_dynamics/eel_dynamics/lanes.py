@@ -9,6 +9,7 @@ the widest instructions of the processor: one of 512 bits, two of 256, four of 1
 `padded` says, with zero weights behind the last node, so that no loop has a remainder.
 """
 
+import math
 import operator
 
 import numpy as np
@@ -57,9 +58,9 @@ def padded(nodes: int) -> int:
 
 def aligned_zeros(*shape: int) -> np.ndarray:
     """Zeros that begin where eight numbers are loaded at once."""
-    count = int(np.prod(shape))
+    count = math.prod(shape)
     space = np.zeros(count + ALIGNMENT // 8)
-    start = -space.ctypes.data % ALIGNMENT // 8
+    start = -space.__array_interface__["data"][0] % ALIGNMENT // 8
     return space[start : start + count].reshape(shape)
 
 
@@ -69,6 +70,16 @@ def aligned(values, length: int | None = None) -> np.ndarray:
     result = aligned_zeros(*values.shape[:-1], length or padded(values.shape[-1]))
     result[..., : values.shape[-1]] = values
     return result
+
+
+def work_space(sizes: tuple[tuple[int, ...], ...], nodes: int):
+    """Zeros (*size, n) for each of the `sizes`, of `nodes` nodes and those that fill them up, in one piece."""
+    length, counts = padded(nodes), [math.prod(size) for size in sizes]
+    rows, begin = aligned_zeros(sum(counts), length), 0
+    for size, count in zip(sizes, counts, strict=True):
+        part = rows[begin : begin + count]
+        yield part if len(size) == 1 else part.reshape(*size, length)
+        begin += count
 
 
 # -- arithmetic
@@ -186,6 +197,27 @@ def last(typingctx, value):
         return builder.extract_element(args[0], ir.Constant(ir.IntType(32), WIDTH - 1))
 
     return types.float64(LANES), lowering
+
+
+@intrinsic
+def first(typingctx, value):
+    """The number in the first lane."""
+
+    def lowering(context, builder, sig, args):
+        return builder.extract_element(args[0], ir.Constant(ir.IntType(32), 0))
+
+    return types.float64(LANES), lowering
+
+
+@intrinsic
+def following(typingctx, value):
+    """In each lane the number of the next one; in the last its own."""
+
+    def lowering(context, builder, sig, args):
+        order = ir.Constant(ir.VectorType(ir.IntType(32), WIDTH), [*range(1, WIDTH), WIDTH - 1])
+        return builder.shuffle_vector(args[0], ir.Constant(_VECTOR, ir.Undefined), order)
+
+    return LANES(LANES), lowering
 
 
 @intrinsic

@@ -4,6 +4,7 @@ The fields go on from the nodes to the stations by the same integrals that made 
 run.
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -11,7 +12,7 @@ import numpy as np
 from .compiled import compiled, inlined
 from .drag import BLENDED, LAMINAR, integrate_balance, inverse_fifth_root, turbulent_part
 from .drive import combine, combine_moments, factors
-from .integrator import MARCHED, SINGULAR, march, powers_of_state, rotate, state_at
+from .integrator import MARCHED, SINGULAR, head_axes, march, powers_of_state, state_at, to_head, to_world
 from .kernel import (
     add_head_twist,
     add_wake,
@@ -26,7 +27,7 @@ from .kernel import (
     turns,
     two,
 )
-from .lanes import WIDTH, aligned_zeros, padded, put, root, size, spread, take, where
+from .lanes import WIDTH, put, root, size, spread, take, where, work_space
 from .wrench import kinetic_energies
 
 
@@ -51,39 +52,32 @@ class Profiles(NamedTuple):
     resistive_force: np.ndarray  # (T, M, 3) N/m, its resistive part
     tail_force: np.ndarray  # (T, 3) N, section axes at the tail
     nose_force: np.ndarray  # (T, 3) N, section axes at the nose
+    whole: np.ndarray  # (.,) all of these, one behind the other
 
 
-def profiles_of(samples: int, stations: int, wrench: bool = True, load: bool = True) -> Profiles:
-    """Space for `samples` instants at `stations` stations; the profiles that are not asked for have no instants."""
-    sizes = {
-        "orientation": (4,),
-        "twist": (6,),
-        "head_acceleration": (6,),
-        "kinetic": (2,),
-        "powers": (4,),
-        "closure": (2,),
-    }
-    along = {
-        "backbone": 3,
-        "section_orientation": 4,
-        "curvature": 3,
-        "curvature_rate": 3,
-        "torque": 3,
-        "force": 3,
-        "fluid_force": 3,
-        "resistive_force": 3,
-    }
-    asked = {"torque": wrench, "force": wrench, "fluid_force": load, "resistive_force": load}
-    return Profiles(
-        *(
-            np.zeros(
-                (samples if asked.get(name, True) else 0, stations, along[name])
-                if name in along
-                else (samples, *sizes.get(name, (3,)))
-            )
-            for name in Profiles._fields
-        )
-    )
+ASKED = {"torque": 0, "force": 0, "fluid_force": 1, "resistive_force": 1}  # by wrench, by load
+SIZES = {"orientation": 4, "twist": 6, "head_acceleration": 6, "kinetic": 2, "powers": 4, "closure": 2}
+ALONG = ("backbone", "section_orientation", "curvature", "curvature_rate", *ASKED)
+
+
+def profiles_of(
+    samples: int, stations: int, wrench: bool = True, load: bool = True, swimmers: tuple[int, ...] = ()
+) -> Profiles:
+    """Space for `samples` instants at `stations` stations; the profiles that are not asked for have no instants.
+    swimmers: (B,) for so many of them, a first axis."""
+    asked, shapes = (wrench, load), []
+    for name in Profiles._fields[:-1]:
+        if name in ALONG:
+            count = samples if name not in ASKED or asked[ASKED[name]] else 0
+            shapes.append((count, stations, 4 if name == "section_orientation" else 3))
+        else:
+            shapes.append((samples, SIZES.get(name, 3)))
+    sizes = [math.prod(shape) for shape in shapes]
+    whole, begin, arrays = np.zeros((*swimmers, sum(sizes))), 0, []
+    for shape, size in zip(shapes, sizes, strict=True):
+        arrays.append(whole[..., begin : begin + size].reshape(*swimmers, *shape))
+        begin += size
+    return Profiles(*arrays, whole)
 
 
 class StationFields(NamedTuple):
@@ -107,7 +101,7 @@ class StationFields(NamedTuple):
 
 def station_fields_of(stations: int) -> StationFields:
     sizes = ((3, 2), (4,), (4,), (9,), (3,), (3,), (3,), (3,), (3,), (6,), (2,), (2,), (1,), (6,))
-    return StationFields(*(aligned_zeros(*size, padded(stations)) for size in sizes))
+    return StationFields(*work_space(sizes, stations))
 
 
 @inlined
@@ -134,8 +128,9 @@ def set_in_motion(swimmer, drive, fields, time, twist, y):
     factors(drive, time, fields.factor)
     configure(swimmer, drive, fields)
     momentum_of_twist(swimmer, fields, twist, y[7:])
-    rotate(y, False, y, 7)
-    rotate(y, False, y, 10)
+    axes = head_axes(y)
+    to_world(axes, y, 7)
+    to_world(axes, y, 10)
     add_head_twist(swimmer, fields, twist)
     body, water = kinetic_energies(swimmer, fields)
     return body + water
@@ -154,13 +149,8 @@ def place(stations, drive, fields, here, y, sample, out):
         node = stations.node[i]
         for k in range(4):
             here.base[k, i] = fields.q[k, node] if node >= 0 else (1.0 if k == 3 else 0.0)
-    # the head's axes in the world
-    size = 1.0 / (y[3] * y[3] + y[4] * y[4] + y[5] * y[5] + y[6] * y[6])
-    a, b, c, d = y[3], y[4], y[5], y[6]
-    t1 = 1.0 - 2.0 * size * (b * b + c * c), 2.0 * size * (a * b + d * c), 2.0 * size * (a * c - d * b)
-    t2 = 2.0 * size * (a * b - d * c), 1.0 - 2.0 * size * (a * a + c * c), 2.0 * size * (b * c + d * a)
-    t3 = 2.0 * size * (a * c + d * b), 2.0 * size * (b * c - d * a), 1.0 - 2.0 * size * (a * a + b * b)
-    a0, b0, c0, d0 = spread(a), spread(b), spread(c), spread(d)
+    t = head_axes(y)
+    a0, b0, c0, d0 = spread(y[3]), spread(y[4]), spread(y[5]), spread(y[6])
     for block in range(section.blocks):
         i = WIDTH * block
         q = product(
@@ -174,9 +164,9 @@ def place(stations, drive, fields, here, y, sample, out):
         put(here.turn, 2, i, q[2])
         put(here.turn, 3, i, q[3])
         x, v, z = three(here.r, 0, i)
-        put(here.shown, 0, i, y[0] + (t1[0] * x + t2[0] * v + t3[0] * z))
-        put(here.shown, 1, i, y[1] + (t1[1] * x + t2[1] * v + t3[1] * z))
-        put(here.shown, 2, i, y[2] + (t1[2] * x + t2[2] * v + t3[2] * z))
+        put(here.shown, 0, i, y[0] + (t[0] * x + t[3] * v + t[6] * z))
+        put(here.shown, 1, i, y[1] + (t[1] * x + t[4] * v + t[7] * z))
+        put(here.shown, 2, i, y[2] + (t[2] * x + t[5] * v + t[8] * z))
     show(here.shown, 0, out.backbone[sample])
     for i in range(count):
         for k in range(4):
@@ -344,7 +334,8 @@ def observe(
         out.center_of_mass[sample, k] = 0.0
     for k in range(4):
         out.orientation[sample, k] = y[3 + k]
-    rotate(y, True, out.twist[sample], 3)
+    axes = head_axes(y)
+    to_head(axes, out.twist[sample], 3)
     for k in range(3):
         out.twist[sample, 3 + k] += twist[3 + k]
     for k in range(6):
@@ -357,7 +348,7 @@ def observe(
             out.center_of_mass[sample, k] += part * fields.r[k, i]
     for k in range(3):
         out.center_of_mass[sample, k] /= mass
-    rotate(y, False, out.center_of_mass[sample], 0)
+    to_world(axes, out.center_of_mass[sample], 0)
     for k in range(3):
         out.center_of_mass[sample, k] += y[k]
     out.kinetic[sample, 0], out.kinetic[sample, 1] = kinetic_energies(swimmer, fields)
@@ -418,7 +409,7 @@ def swim(
         )
         if status != MARCHED:
             return sample, status
-        state_at(method, series, step, times[sample], y, works[sample])
+        state_at(method, control, series, step, times[sample], y, works[sample])
         if look and not observe(
             swimmer,
             stations,

@@ -42,7 +42,7 @@ class Shape:
         self._spline: tuple[np.ndarray, np.ndarray] | None = None
         self._source: dict = {}
         self.drive: Drive = None
-        self._follow(_constant(np.zeros((2, tabulation.width))))
+        self._follow(_straight(tabulation))
 
     def move(self, tabulation: Tabulation, values_at_nodes):
         """Go over to another tabulation. `values_at_nodes(rows)` takes fields at the old nodes (..., n) to the new
@@ -137,10 +137,10 @@ class Shape:
     def breakpoints(self) -> np.ndarray:
         """Times [s] at which a derivative of the shape jumps, ascending."""
         drive = self.drive
-        times = list((drive.ramps[:, :2] + drive.origin).ravel())
-        times += [drive.blend_end] if drive.blend >= 0 else []
-        times += [drive.segment_start, drive.segment_end] if drive.segment >= 0 else []
-        return np.unique(np.array(times, dtype=float))
+        times = {drive.origin + time for ramp in drive.ramps[:, :2].tolist() for time in ramp}
+        times |= {drive.blend_end} if drive.blend >= 0 else set()
+        times |= {drive.segment_start, drive.segment_end} if drive.segment >= 0 else set()
+        return np.array(sorted(times), dtype=float)
 
     @property
     def time_scale(self) -> float:
@@ -216,6 +216,7 @@ def _split(tabulation: Tabulation, rows: np.ndarray) -> dict:
     return {"node": node, "angle": angle, "bend": bend, "station": station, "station_bend": station_bend}
 
 
+@lru_cache(maxsize=4096)
 def waves_of_law(law: Law, length: float) -> float:
     """How many waves a law bends a body of `length` [m] into, at most; a spline counts an eighth of its intervals.
 
@@ -237,6 +238,13 @@ def knots_of_law(law: Law) -> tuple[float, ...]:
     """X [m] inside the splines of `law`, where their third derivative jumps; none where there are many."""
     knots = sorted({knot for term in law.terms for knot in term.knots[1:-1]})
     return tuple(knots) if len(knots) <= MOST_KNOTS else ()
+
+
+@lru_cache(maxsize=256)
+def _straight(tabulation: Tabulation) -> dict:
+    """The straight shape at rest."""
+    source = _constant(np.zeros((2, tabulation.width)))
+    return source | {"split": _split(tabulation, source["rows"])}
 
 
 def _constant(value: np.ndarray) -> dict:
@@ -280,7 +288,7 @@ def _law_rows(law: Law, tabulation: Tabulation) -> dict:
     for term in law.terms:
         groups.setdefault((term.axis, term.period, term.envelope), []).append(term)
     if not groups:
-        return _constant(np.zeros((2, tabulation.width)))
+        return _straight(tabulation)
     rows, axis, sine, cosine, period, first, count, ramps = [], [], [], [], [], [], [], []
     for (name, duration, envelope), terms in groups.items():
         angle = [term.wave_number * tabulation.x + term.phase for term in terms]

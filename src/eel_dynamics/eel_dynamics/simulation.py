@@ -2,7 +2,7 @@
 
 import math
 from copy import copy
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -28,6 +28,7 @@ from .integrator import (
     adams_bashforth,
     classical,
     dormand_prince,
+    head_axes,
     settle,
     step_of,
 )
@@ -126,7 +127,6 @@ class Simulation:
         self.scene = Scene() if scene is None else checked_instance("scene", scene, Scene)
         self._wanted = Accuracy.of(accuracy)
         self.x = checked_stations(stations, self.body.length)
-        self._out = profiles_of(1, len(self.x))
         self._current = np.array(self.scene.current)
         self._distributed = self.scene.tail_pressure == "distributed"
         self._start = (
@@ -157,6 +157,11 @@ class Simulation:
         self.swimmer, self._stations, self._tabulation = table.swimmer, table.stations, table.tabulation
         self.balance = balance_of(len(self._grid.x))
         self._here = station_fields_of(len(self.x))
+
+    @cached_property
+    def _out(self) -> Profiles:
+        """Space for one instant."""
+        return profiles_of(1, len(self.x))
 
     # -- what drives the body
 
@@ -485,7 +490,7 @@ class Simulation:
 
     def _begin_step(self):
         step = self.step
-        step.end[:] = self.state
+        step.end[: len(self.state)] = self.state
         step.work[:] = self._works[0]
         step.time[0], step.time[1] = self.time, 0.0
         if step.time[2] == 0.0:
@@ -519,7 +524,7 @@ class Simulation:
         self._use_drive()
         self.kinetic_at_start = self._set_momentum(relative)
         self.step.time[:], self.step.count[:], self.step.budget[:] = 0.0, 0, self._control.spare_steps
-        self.step.scale[:] = math.hypot(*self.state[7:10]), math.hypot(*self.state[10:13])
+        self.step.scale[:] = math.hypot(*self.state[7:10]) ** 2, math.hypot(*self.state[10:13]) ** 2
         self._begin_step()
         if not np.isfinite(self.kinetic_at_start):
             raise SimulationStopped(self.time, "kinetic energy", self.kinetic_at_start, "start slower")
@@ -527,7 +532,8 @@ class Simulation:
     def _twist(self) -> np.ndarray:
         """Twist (6,) of the head relative to the water, in its axes, of the present state."""
         twist = np.zeros(6)
-        if not settle(self.swimmer, self.drive, self.fields, self.time, self.state, np.zeros(6), twist):
+        axes = head_axes(self.state)
+        if not settle(self.swimmer, self.drive, self.fields, self.time, self.state, axes, np.zeros(6), twist):
             raise self._stopped(SINGULAR)
         return twist
 

@@ -14,7 +14,7 @@ import numpy as np
 from .compiled import inlined
 from .drag import add_resistance, add_resistive_loads, integrate_balance, weigh_steps
 from .kernel import add_head_motion, add_wake, cross, dot, integrate_along, put_three, solve, three
-from .lanes import WIDTH, aligned_zeros, padded, put, spread, take, total
+from .lanes import WIDTH, put, spread, take, total, work_space
 
 
 class Balance(NamedTuple):
@@ -34,12 +34,8 @@ class Balance(NamedTuple):
 
 def balance_of(nodes: int) -> Balance:
     """Work space for `nodes` nodes and those that fill it up."""
-    n = padded(nodes)
     return Balance(
-        alpha=aligned_zeros(3, n),
-        acc=aligned_zeros(3, n),
-        density=aligned_zeros(6, n),
-        upto=aligned_zeros(6, n),
+        *work_space(((3,), (3,), (6,), (6,)), nodes),
         head=np.zeros(6),
         tail=np.zeros(6),
         total=np.zeros(6),
