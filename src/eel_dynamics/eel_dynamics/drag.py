@@ -11,9 +11,6 @@ and the integrals to X_j come from the polynomial through the panel's nodes, as 
 kept as weights of the nodes (`share`), and as a list of steps for the integrals up to a station.
 """
 
-import math
-from typing import NamedTuple
-
 import numpy as np
 
 from .compiled import compiled, inlined
@@ -25,17 +22,6 @@ AXIAL, SIDE, HEIGHT, ROLL, RATIO = (np.uintp(k) for k in range(5))  # V1, V2, V3
 DEGREE = np.arange(1.0, 100.0)  # of Legendre polynomials: P_(n+1) = UPPER z P_n - LOWER P_(n-1)
 UPPER, LOWER, INTEGRAL = (2.0 * DEGREE + 1.0) / (DEGREE + 1.0), DEGREE / (DEGREE + 1.0), 0.5 / (2.0 * DEGREE + 1.0)
 NOISE = 1e-7  # a sign that changes within this part of the tail's speed moves loads by its square: round-off
-
-
-class Panels(NamedTuple):
-    """What the search for kinks needs of the constants of a run (`Swimmer`), under the same names."""
-
-    weight: np.ndarray
-    first: np.ndarray
-    count: np.ndarray
-    fraction: np.ndarray
-    barycentric: np.ndarray
-    series: np.ndarray
 
 
 @inlined
@@ -113,17 +99,24 @@ def rub(swimmer, fields):
 
 
 @inlined
-def value_at(swimmer, values, kind, begin, count, t):
-    """At the fraction `t` of a panel, the polynomial through its nodes' `values`, by the barycentric formula."""
+def value_and_slope(swimmer, values, kind, begin, count, t):
+    """At the fraction `t` of a panel, the polynomial through its nodes' `values` and its derivative, by the barycentric
+    formula (Berrut and Trefethen, SIAM Review 46 (2004), eqs 4.2 and 9.4)."""
     none, far = spread(0.0), spread(2.0)
     above = under = none
     for k in range(0, count, WIDTH):
         node, inside = begin + np.uintp(k), below(count - k)
-        part = where(inside, take(swimmer.barycentric, node), none)
-        part = part / (t - where(inside, take(swimmer.fraction, node), far))
+        part = where(inside, take(swimmer.barycentric, node), none) / (t - where(inside, take(swimmer.fraction, node), far))
         above += part * where(inside, take(values, kind, node), none)
         under += part
-    return total(above) / total(under)
+    value, whole = total(above) / total(under), total(under)
+    rise = none
+    for k in range(0, count, WIDTH):
+        node, inside = begin + np.uintp(k), below(count - k)
+        apart = t - where(inside, take(swimmer.fraction, node), far)
+        part = where(inside, take(swimmer.barycentric, node), none) / apart
+        rise += part * (value - where(inside, take(values, kind, node), none)) / apart
+    return value, total(rise) / whole
 
 
 @inlined
@@ -147,20 +140,17 @@ def zero_between(swimmer, values, kind, begin, count, i, before, exact):
     if not (a < t < b):  # the quadratic turns back: near a double zero
         t, rise = start, slope
     if exact:
-        enough = 1e-12 * (abs(f) + abs(g))
-        at, was = t, 0.0
-        for turn in range(8):
-            value = value_at(swimmer, values, kind, begin, count, t)
-            if not abs(value) > enough:
-                break
-            if turn > 0:
-                rise = (value - was) / (t - at)
+        for _ in range(8):
+            value, rise = value_and_slope(swimmer, values, kind, begin, count, t)
             if (value > 0.0) == (g > 0.0):
                 b, g = t, value
             else:
                 a, f = t, value
-            at, was = t, value
-            t -= value / rise
+            step = value / rise
+            near = abs(step) < 1e-6  # the next step would be its square
+            t -= step
+            if near:
+                break
             if not (a < t < b):
                 t = (a * g - b * f) / (g - f)
             if not (a < t < b):
@@ -183,58 +173,62 @@ def integrals_upto(swimmer, begin, count, t, row, at):
         put(row, at, k, weights)
 
 
-@compiled
-def note_steps(swimmer, kinks, kind, values, changes, first, start, noise, share, shared):
-    """Note the steps of the load where row `kind` of the `values` changes its sign along the body: before those of the
-    eight nodes from `first` on that `changes` has a bit for (`start`: the value at the nose). Have the load's weights,
-    the row `shared` of `share`, integrate them; what changes by less than `noise` is round-off."""
-    exact = kind == RATIO
-    while changes != 0:
-        i = first
-        while changes & 1 == 0:
-            changes >>= 1
-            i += ONE
-        changes >>= 1
-        first = i + ONE
-        value, before = values[kind, i], start
-        if i > ZERO:
-            before = values[kind, i - ONE]
-        j = kinks.number[0]
-        if abs(value - before) > noise and j < len(kinks.kind):
-            kinks.number[0] = j + 1
-            begin, count = swimmer.first[i], np.int64(swimmer.count[i])
-            t = zero_between(swimmer, values, kind, begin, count, i, before, exact)
-            step = (1.0 if exact else 2.0) * (1.0 if value >= 0.0 else -1.0)
-            integrals_upto(swimmer, begin, count, t, kinks.row, j)
-            kinks.kind[j], kinks.begin[j], kinks.fraction[j], kinks.step[j] = kind, begin, t, step
-            for k in range(0, count, WIDTH):
-                node = begin + np.uintp(k)
-                ahead = where(below(np.int64(i) - np.int64(node)), take(swimmer.weight, node), spread(0.0))
-                inside = where(below(count - k), take(kinks.row, j, k), spread(0.0))
-                put(share, shared, node, take(share, shared, node) + step * (ahead - inside))
+@inlined
+def note_step(swimmer, fields, kind, shared, i, start, noise):
+    """Note the step of the load where row `kind` of the speeds changes its sign before node `i` (`start`: the value at
+    the nose). Have the load's weights, the row `shared`, integrate it; a change below `noise` is round-off."""
+    kinks, speed, share, exact = fields.kinks, fields.speed, fields.share, kind == RATIO
+    value, before = speed[kind, i], start
+    if i > ZERO:
+        before = speed[kind, i - ONE]
+    j = kinks.number[0]
+    if abs(value - before) > noise and j < len(kinks.kind):
+        kinks.number[0] = j + 1
+        begin, count = swimmer.first[i], np.int64(swimmer.count[i])
+        t = zero_between(swimmer, speed, kind, begin, count, i, before, exact)
+        step = (1.0 if exact else 2.0) * (1.0 if value >= 0.0 else -1.0)
+        integrals_upto(swimmer, begin, count, t, kinks.row, j)
+        kinks.kind[j], kinks.begin[j], kinks.fraction[j], kinks.step[j] = kind, begin, t, step
+        for k in range(0, count, WIDTH):
+            node = begin + np.uintp(k)
+            ahead = where(below(np.int64(i) - np.int64(node)), take(swimmer.weight, node), spread(0.0))
+            inside = where(below(count - k), take(kinks.row, j, k), spread(0.0))
+            put(share, shared, node, take(share, shared, node) + step * (ahead - inside))
 
 
 @inlined
-def find_steps(swimmer, fields, kind, start, noise):
-    """Note the steps of the load that goes with row `kind` of `speed`; those below `noise` are round-off."""
-    speed, sign = fields.speed, np.int64(start < 0.0)
-    nodes = len(swimmer.x)
-    for k in range(swimmer.blocks):
-        negative = bits(take(speed, kind, WIDTH * k) < 0.0)
-        changes = (negative ^ (negative << 1 | sign)) & 255
-        if nodes - WIDTH * k < WIDTH:
-            changes &= (1 << nodes - WIDTH * k) - 1
-        sign = negative >> 7
-        if changes != 0:
-            panels = Panels(
-                *(swimmer.weight, swimmer.first, swimmer.count),
-                *(swimmer.fraction, swimmer.barycentric, swimmer.series),
-            )
-            shared = ZERO if kind == RATIO else kind
-            note_steps(
-                *(panels, fields.kinks, kind, speed, changes, np.uintp(WIDTH * k)),
-                *(start, noise, fields.share, shared),
-            )
+def find_steps(swimmer, fields, at_nose, noise, noise_of_roll, planar):
+    """Note the steps of the loads: where V2, V3 or Omega1 (V2 alone where `planar`) or Re/8e4 - 1 changes its sign
+    along the body, from its value `at_nose`. What is below its `noise` counts as not negative: it is round-off."""
+    nodes, kinds = len(swimmer.x), ROLL + ONE
+    if swimmer.friction == PRINTED:
+        kinds = RATIO + ONE
+    fields.kinks.number[0] = 0
+    for kind in range(SIDE, kinds):
+        if planar and (kind == HEIGHT or kind == ROLL):
+            continue
+        start, least, shared = at_nose[0], noise, kind
+        if kind == HEIGHT:
+            start = at_nose[1]
+        elif kind == ROLL:
+            start, least = at_nose[2], noise_of_roll
+        elif kind == RATIO:
+            start, least, shared = -1.0, 0.0, ZERO
+        sign = np.int64(start < -least)
+        for k in range(swimmer.blocks):
+            negative = bits(take(fields.speed, kind, WIDTH * k) < -least)
+            changes = (negative ^ (negative << 1 | sign)) & 255
+            sign = negative >> 7
+            if nodes - WIDTH * k < WIDTH:
+                changes &= (1 << nodes - WIDTH * k) - 1
+            i = np.uintp(WIDTH * k)
+            while changes != 0:
+                while changes & 1 == 0:
+                    changes >>= 1
+                    i += ONE
+                note_step(swimmer, fields, kind, shared, i, start, least)
+                changes >>= 1
+                i += ONE
 
 
 @inlined
@@ -249,15 +243,10 @@ def share_loads(swimmer, fields, twist):
         put(share, SIDE, i, signed(weight, take(speed, SIDE, i)))
         put(share, HEIGHT, i, signed(weight, take(speed, HEIGHT, i)))
         put(share, ROLL, i, signed(weight, take(speed, ROLL, i)))
-    fields.kinks.number[0] = 0
     tail = len(swimmer.x) - 1
     spin = abs(fields.omega[0, tail]) + abs(fields.omega[1, tail]) + abs(fields.omega[2, tail])
     noise = NOISE * (abs(speed[AXIAL, tail]) + abs(speed[SIDE, tail]) + abs(speed[HEIGHT, tail]))
-    find_steps(swimmer, fields, SIDE, twist[4], noise)
-    find_steps(swimmer, fields, HEIGHT, twist[5], noise)
-    find_steps(swimmer, fields, ROLL, twist[0], NOISE * spin)
-    if swimmer.friction == PRINTED:
-        find_steps(swimmer, fields, RATIO, -1.0, 0.0)
+    find_steps(swimmer, fields, (twist[4], twist[5], twist[0]), noise, NOISE * spin, False)
 
 
 @inlined
@@ -377,7 +366,7 @@ def integrate_balance(upto, kinks, count, fraction, density, known, result):
             d, e, f = d + known[3, before], e + known[4, before], f + known[5, before]
         for j in range(kinks.number[0]):
             first = kinks.begin[j]
-            if first < node or first >= node + upto.sources[block]:
+            if first < node or first + count[first] > node + upto.sources[block]:
                 continue
             at, of_it, whole = kinks.fraction[j], kinks.density, kinks.whole
             behind = take(upto.place, i) >= first + at

@@ -15,10 +15,14 @@ from typing import NamedTuple
 import numpy as np
 
 from .compiled import inlined
-from .lanes import WIDTH, aligned, put, spread, take
+from .lanes import WIDTH, aligned, floor, put, spread, take
 
 AXES = {"pitch": 0, "yaw": 1}
 MOMENT_POINTS = 10  # Gauss points per interval for the Magnus moments
+PI_1, PI_2 = 1.5707963267341256, 6.077100506506192e-11  # pi/2 in two parts, the first with trailing zeros
+# of (sin(x)/x - 1)/x^2 and (cos(x) - 1)/x^2 by x^2, from the highest power down
+SINE = (-1 / 1307674368000, 1 / 6227020800, -1 / 39916800, 1 / 362880, -1 / 5040, 1 / 120, -1 / 6)
+COSINE = (1 / 20922789888000, -1 / 87178291200, 1 / 479001600, -1 / 3628800, 1 / 40320, -1 / 720, 1 / 24, -0.5)
 
 
 class Drive(NamedTuple):
@@ -91,6 +95,25 @@ class Tabulation:
 
 
 @inlined
+def cosine_and_sine(angle):
+    """Of an angle [rad], or of eight, to round-off below 1e5; without branches."""
+    quarter = floor(angle * (2.0 / np.pi) + 0.5)
+    x = (angle - quarter * PI_1) - quarter * PI_2
+    z = x * x
+    s = SINE[0] * z + SINE[1]
+    c = (COSINE[0] * z + COSINE[1]) * z + COSINE[2]
+    s, c = s * z + SINE[2], c * z + COSINE[3]
+    s, c = s * z + SINE[3], c * z + COSINE[4]
+    s, c = s * z + SINE[4], c * z + COSINE[5]
+    s, c = s * z + SINE[5], c * z + COSINE[6]
+    s, c = s * z + SINE[6], c * z + COSINE[7]
+    s, c = x + x * z * s, 1.0 + z * c
+    half = quarter - 2.0 * floor(0.5 * quarter)  # 1: a quarter turn to go
+    sign = 1.0 - 2.0 * (floor(0.5 * quarter) - 2.0 * floor(0.25 * quarter))  # -1: half a turn to go
+    return sign * (c - half * (c + s)), sign * (s + half * (c - s))
+
+
+@inlined
 def quintic(s, length, sign, factor, row):
     """Factors (3, m) [value, rate, acceleration] of the value, rate and acceleration at one end of an interval of
     `length`, at the fraction `s` from that end; the polynomials vanish with two derivatives at the other end. `sign`
@@ -126,9 +149,10 @@ def factors(drive, time, factor):
                     length = end - start
                     part = (own - start) / length
                     angle = 2.0 * np.pi * part
-                    e += delta * (part - np.sin(angle) / (2.0 * np.pi))
-                    e1 += delta * (1.0 - np.cos(angle)) / length
-                    e2 += delta * 2.0 * np.pi * np.sin(angle) / (length * length)
+                    c, s = cosine_and_sine(angle)
+                    e += delta * (part - s / (2.0 * np.pi))
+                    e1 += delta * (1.0 - c) / length
+                    e2 += delta * 2.0 * np.pi * s / (length * length)
         row = drive.sine[k]
         if drive.period[k] == 0.0:
             factor[0, row], factor[1, row], factor[2, row] = e, e1, e2
@@ -136,7 +160,7 @@ def factors(drive, time, factor):
             turns = own / drive.period[k]
             angle = 2.0 * np.pi * (turns - np.floor(turns))
             w = 2.0 * np.pi / drive.period[k]
-            c, s = np.cos(angle), np.sin(angle)
+            c, s = cosine_and_sine(angle)
             factor[0, row] = e * c
             factor[1, row] = e1 * c - e * w * s
             factor[2, row] = (e2 - e * w * w) * c - 2.0 * e1 * w * s

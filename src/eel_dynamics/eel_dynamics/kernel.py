@@ -204,22 +204,50 @@ def integrate(upto, integrand, row, known, head, result):
     for k in range(len(upto.source)):
         node = upto.source[k]
         begin = upto.start[k]
-        a = b = c = spread(0.0)
-        for j in range(upto.sources[k]):
-            column = take(upto.columns, begin + j, 0)
-            a += integrand[row, node + j] * column
-            b += integrand[row + 1, node + j] * column
-            c += integrand[row + 2, node + j] * column
+        a = b = c = d = e = f = spread(0.0)
+        for j in range(upto.sources[k] >> ONE):  # two by two: each sum waits for its last term
+            here = node + (j << ONE)
+            column = take(upto.columns, begin + (j << ONE), 0)
+            a += integrand[row, here] * column
+            b += integrand[row + 1, here] * column
+            c += integrand[row + 2, here] * column
+            column = take(upto.columns, begin + (j << ONE) + ONE, 0)
+            d += integrand[row, here + ONE] * column
+            e += integrand[row + 1, here + ONE] * column
+            f += integrand[row + 2, here + ONE] * column
         x, y, z = head
         if node > ZERO:
             x, y, z = known[0, node - ONE], known[1, node - ONE], known[2, node - ONE]
-        put_three(result, 0, WIDTH * k, a + x, b + y, c + z)
+        put_three(result, 0, WIDTH * k, a + d + x, b + e + y, c + f + z)
 
 
 @inlined
 def integrate_along(swimmer, integrand, row, result):
     """Integral (3, n) from the nose to each node of three rows of the `integrand`, from `row` on."""
     integrate(swimmer.upto, integrand, row, result, (0.0, 0.0, 0.0), result)
+
+
+@inlined
+def integrate_both(upto, f, result_f, g, result_g):
+    """Integrals (3, n) from the nose to each node of the first three rows of `f` and of `g`, at once."""
+    for k in range(len(upto.source)):
+        node = upto.source[k]
+        begin = upto.start[k]
+        a = b = c = d = e = h = spread(0.0)
+        for j in range(upto.sources[k]):
+            column = take(upto.columns, begin + j, 0)
+            a += f[0, node + j] * column
+            b += f[1, node + j] * column
+            c += f[2, node + j] * column
+            d += g[0, node + j] * column
+            e += g[1, node + j] * column
+            h += g[2, node + j] * column
+        if node > ZERO:
+            last = node - ONE
+            a, b, c = a + result_f[0, last], b + result_f[1, last], c + result_f[2, last]
+            d, e, h = d + result_g[0, last], e + result_g[1, last], h + result_g[2, last]
+        put_three(result_f, 0, WIDTH * k, a, b, c)
+        put_three(result_g, 0, WIDTH * k, d, e, h)
 
 
 @inlined
@@ -258,14 +286,13 @@ def put_three(rows, first, i, x, y, z):
 def shape_velocities(swimmer, fields):
     """Positions and the velocities due to the change of shape alone: r' = t1, omega' = R Kdot, v' = omega x t1."""
     R, rate, f, omega = fields.R, fields.rate, fields.integrand, fields.omega
-    integrate_along(swimmer, R, 0, fields.r)
     for k in range(swimmer.blocks):
         i = WIDTH * k
         k2, k3 = take(rate, 0, i), take(rate, 1, i)
         put(f, 0, i, take(R, 3, i) * k2 + take(R, 6, i) * k3)
         put(f, 1, i, take(R, 4, i) * k2 + take(R, 7, i) * k3)
         put(f, 2, i, take(R, 5, i) * k2 + take(R, 8, i) * k3)
-    integrate_along(swimmer, f, 0, omega)
+    integrate_both(swimmer.upto, R, fields.r, f, omega)
     for k in range(swimmer.blocks):
         i = WIDTH * k
         ox, oy, oz = three(omega, 0, i)

@@ -265,13 +265,15 @@ moved1, moved2, moved4 = _moved_by(1), _moved_by(2), _moved_by(4)
 def _function(name: str):
     @intrinsic
     def function(typingctx, value):
-        """Of each lane."""
+        """Of each lane, or of a number."""
+        kind = LANES if value == LANES else types.float64
 
         def lowering(context, builder, sig, args):
-            kind = ir.FunctionType(_VECTOR, [_VECTOR])
-            return builder.call(cgutils.get_or_insert_function(builder.module, kind, f"llvm.{name}.v8f64"), args)
+            form, ending = (_VECTOR, "v8f64") if sig.args[0] == LANES else (_REAL, "f64")
+            kind = ir.FunctionType(form, [form])
+            return builder.call(cgutils.get_or_insert_function(builder.module, kind, f"llvm.{name}.{ending}"), args)
 
-        return LANES(LANES), lowering
+        return kind(kind), lowering
 
     return function
 

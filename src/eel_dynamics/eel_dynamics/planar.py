@@ -8,51 +8,33 @@ K3 and so a sum of tabulated rows, as its rate is. The fields' components out of
 import numpy as np
 
 from .compiled import inlined
-from .drag import AXIAL, NOISE, ONE, PRINTED, RATIO, SIDE, ZERO, find_steps, rub
-from .drive import factors
-from .lanes import WIDTH, floor, put, signed, spread, take, total
+from .drag import AXIAL, NOISE, ONE, SIDE, ZERO, find_steps, rub
+from .drive import cosine_and_sine, factors
+from .lanes import WIDTH, put, signed, spread, take, total
 
-PI_1, PI_2 = 1.5707963267341256, 6.077100506506192e-11  # pi/2 in two parts, the first with trailing zeros
 YAW = 1
-# of (sin(x)/x - 1)/x^2 and (cos(x) - 1)/x^2 by x^2, from the highest power down
-SINE = (-1 / 1307674368000, 1 / 6227020800, -1 / 39916800, 1 / 362880, -1 / 5040, 1 / 120, -1 / 6)
-COSINE = (1 / 20922789888000, -1 / 87178291200, 1 / 479001600, -1 / 3628800, 1 / 40320, -1 / 720, 1 / 24, -0.5)
 
 
 @inlined
-def cosine_and_sine(angle):
-    """Of eight angles [rad], to round-off below 1e5; without branches."""
-    quarter = floor(angle * (2.0 / np.pi) + 0.5)
-    x = (angle - quarter * PI_1) - quarter * PI_2
-    z = x * x
-    s = SINE[0] * z + SINE[1]
-    c = (COSINE[0] * z + COSINE[1]) * z + COSINE[2]
-    s, c = s * z + SINE[2], c * z + COSINE[3]
-    s, c = s * z + SINE[3], c * z + COSINE[4]
-    s, c = s * z + SINE[4], c * z + COSINE[5]
-    s, c = s * z + SINE[5], c * z + COSINE[6]
-    s, c = s * z + SINE[6], c * z + COSINE[7]
-    s, c = x + x * z * s, 1.0 + z * c
-    half = quarter - 2.0 * floor(0.5 * quarter)  # 1: a quarter turn to go
-    sign = 1.0 - 2.0 * (floor(0.5 * quarter) - 2.0 * floor(0.25 * quarter))  # -1: half a turn to go
-    return sign * (c - half * (c + s)), sign * (s + half * (c - s))
-
-
-@inlined
-def integrate_plane(upto, integrand, result):
-    """Integral of rows 0 and 1 of the `integrand` from the nose to each node."""
+def integrate_plane(upto, f, result_f, g, result_g):
+    """Integrals of rows 0 and 1 of `f` and of `g` from the nose to each node, at once."""
     for k in range(len(upto.source)):
         node = upto.source[k]
         begin = upto.start[k]
-        a = b = spread(0.0)
+        a = b = c = d = spread(0.0)
         for j in range(upto.sources[k]):
             column = take(upto.columns, begin + j, 0)
-            a += integrand[0, node + j] * column
-            b += integrand[1, node + j] * column
+            a += f[0, node + j] * column
+            b += f[1, node + j] * column
+            c += g[0, node + j] * column
+            d += g[1, node + j] * column
         if node > ZERO:
-            a, b = a + result[0, node - ONE], b + result[1, node - ONE]
-        put(result, 0, WIDTH * k, a)
-        put(result, 1, WIDTH * k, b)
+            last = node - ONE
+            a, b, c, d = a + result_f[0, last], b + result_f[1, last], c + result_g[0, last], d + result_g[1, last]
+        put(result_f, 0, WIDTH * k, a)
+        put(result_f, 1, WIDTH * k, b)
+        put(result_g, 0, WIDTH * k, c)
+        put(result_g, 1, WIDTH * k, d)
 
 
 @inlined
@@ -73,8 +55,7 @@ def configure_plane(swimmer, drive, fields):
         put(omega, 2, i, turning)
         put(f, 0, i, -turning * s)
         put(f, 1, i, turning * c)
-    integrate_plane(swimmer.upto, R, r)
-    integrate_plane(swimmer.upto, f, v)
+    integrate_plane(swimmer.upto, R, r, f, v)
 
 
 @inlined
@@ -156,9 +137,7 @@ def loads_plane(swimmer, fields, twist, rates):
             put(share, 0, i, weight * take(fields.part, i))
             put(share, SIDE, i, signed(weight, take(speed, SIDE, i)))
         fields.kinks.number[0] = 0
-        find_steps(swimmer, fields, SIDE, twist[2], NOISE * (abs(v1) + abs(v2)))
-        if swimmer.friction == PRINTED:
-            find_steps(swimmer, fields, RATIO, -1.0, 0.0)
+        find_steps(swimmer, fields, (twist[2], 0.0, 0.0), NOISE * (abs(v1) + abs(v2)), 0.0, True)
         sx = sy = sz = spread(0.0)
         for k in range(swimmer.blocks):
             i = WIDTH * k

@@ -50,8 +50,8 @@ class Panel:
 
 class Blocks(NamedTuple):
     """The integral of f from the nose to eight points at once: that to the node before `source`, and the sum over the
-    `sources` nodes from there on of f times their row of `columns` (., 8) [m], from `start` on. The last block goes on
-    with its last point.
+    `sources` nodes (an even number, the last with zeros) from there on of f times their row of `columns` (., 8) [m],
+    from `start` on. The last block goes on with its last point.
 
     place: of each point, the index of the first node of its panel and the panel's variable added: it rises along the
     body.
@@ -119,7 +119,7 @@ class Grid:
         for block in range(0, len(rows), WIDTH):
             here = range(block, min(block + WIDTH, len(rows)))
             begin, end = first[block], first[here[-1]] + count[here[-1]]
-            part = np.zeros((end - begin, WIDTH))
+            part = np.zeros((end - begin + (end - begin) % 2, WIDTH))
             for lane in range(WIDTH):
                 i = min(block + lane, here[-1])
                 part[: first[i] - begin, lane] = self.weight[begin : first[i]]
