@@ -72,11 +72,11 @@ def test_chosen_steps_follow_the_tolerance(measured):
 def test_order_in_space(measured):
     """Six, within 0.2: the Magnus series between nodes, which remains once the panels' polynomials have converged.
 
-    The falling gait with three times its bend, so that this error stands above round-off; no drag, same steps in time.
-    100 to 180 points per length, counted where they follow the resolution: the nose's panel has them by a rule of its
+    The falling gait with six times its bend, so that this error stands above round-off; no drag, same steps in time. 90
+    to 160 points per length, counted where they follow the resolution: the nose's panel has them by a rule of its
     own. Below, panels gain several digits with each point: see `test_spectral_in_space`.
     """
-    law, resolutions = falling(pitch_bend=1.5), np.arange(100.0, 190.0, 10.0)
+    law, resolutions = falling(pitch_bend=3.0), np.arange(90.0, 165.0, 10.0)
 
     def run(resolution):
         accuracy = Accuracy(name="space", resolution=resolution, step=0.005)

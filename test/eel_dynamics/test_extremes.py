@@ -76,7 +76,8 @@ def test_a_fixed_step_that_is_stable_and_inexact_is_warned_of():
 def test_what_is_not_finite_is_found_with_its_sample():
     arrays = {"kinetic": np.ones((5, 2)), "position": np.zeros((5, 3))}
     arrays["position"][3, 1] = np.nan
-    out, works = SimpleNamespace(_asdict=lambda: arrays, **arrays), np.zeros((5, 4))
+    whole = np.concatenate([array.ravel() for array in arrays.values()])
+    out, works = SimpleNamespace(_asdict=lambda: arrays | {"whole": whole}, whole=whole, **arrays), np.zeros((5, 4))
     sample, quantity, value = failure_of(out, works, 5, 2.0, np.inf)
     assert (sample, quantity) == (3, "position is not finite") and np.isnan(value)
     assert failure_of(out, works, 3, 2.0, 0.0) is None

@@ -13,7 +13,7 @@ kept as weights of the nodes (`share`), and as a list of steps for the integrals
 
 import numpy as np
 
-from .compiled import compiled, inlined
+from .compiled import inlined
 from .lanes import WIDTH, below, bits, put, root, root_guess, signed, size, spread, take, total, where
 
 ZERO, ONE = np.uintp(0), np.uintp(1)  # indices that are unsigned need no test for Python's negative ones
@@ -311,7 +311,7 @@ def add_resistance(swimmer, fields, density):
         put(density, 5, i, take(density, 5, i) + nz)
 
 
-@compiled
+@inlined
 def weigh_steps(kinks, count, drag2, drag3, drag_roll, rubbing, speed, R, r):
     """What the steps of the loads are of: the `density` of each at the nodes of its panel, and its integral from the
     panel's start to the step, the `whole`."""
@@ -345,7 +345,7 @@ def weigh_steps(kinks, count, drag2, drag3, drag_roll, rubbing, speed, R, r):
                 whole[j, c] += kinks.row[j, k] * density[c]
 
 
-@compiled
+@inlined
 def integrate_balance(upto, kinks, count, fraction, density, known, result):
     """Integrals (6, n) of the `density` (6, n) from the nose to the points of `upto`, with the steps of its loads;
     `known` (6, n): those to the nodes, the `result` itself where these are the points."""

@@ -524,7 +524,8 @@ class Simulation:
         self._use_drive()
         self.kinetic_at_start = self._set_momentum(relative)
         self.step.time[:], self.step.count[:], self.step.budget[:] = 0.0, 0, self._control.spare_steps
-        self.step.scale[:] = math.hypot(*self.state[7:10]) ** 2, math.hypot(*self.state[10:13]) ** 2
+        angular, linear = self.state[7:10], self.state[10:13]
+        self.step.scale[:] = angular @ angular, linear @ linear
         self._begin_step()
         if not np.isfinite(self.kinetic_at_start):
             raise SimulationStopped(self.time, "kinetic energy", self.kinetic_at_start, "start slower")
