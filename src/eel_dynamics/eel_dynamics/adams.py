@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .compiled import spliced
-from .lanes import WIDTH, aligned, aligned_zeros, first, following, put, spread, take
+from .lanes import WIDTH, aligned, first, following, put, spread, take
 
 SPACE = 2 * WIDTH  # that a state takes
 FRACTIONS = aligned(1.0 / np.arange(1.0, WIDTH + 1.0), WIDTH)
@@ -30,23 +30,10 @@ class Past(NamedTuple):
 
     differences: np.ndarray  # (k + 1, 16) phi_j at the end of the last step
     starred: np.ndarray  # (k + 2, 16) phi*_j of the step under way
-    lengths: np.ndarray  # (k + 1,) s, of the last steps, the latest first
+    lengths: np.ndarray  # (k + 1,) s, of the last steps, the latest first; 1 before they are known
     known: np.ndarray  # (2,) int, how many of them there are; terms of the step under way
     order: np.ndarray  # (3,) int, in force; steps since it changed; 1 where it may change: steps are short
     weight: np.ndarray  # (8,) g_j
-
-
-def past_of(order: int) -> Past:
-    """For steps of up to `order`."""
-    order = max(order, 1)
-    return Past(
-        differences=aligned_zeros(order + 1, SPACE),
-        starred=aligned_zeros(order + 2, SPACE),
-        lengths=np.ones(order + 1),
-        known=np.zeros(2, dtype=np.int64),
-        order=np.zeros(3, dtype=np.int64),
-        weight=aligned_zeros(WIDTH),
-    )
 
 
 @spliced

@@ -1,5 +1,8 @@
 """Checks at the entry: `ValueError` names the argument that does not fit, and what it got."""
 
+import math
+from functools import lru_cache
+
 import numpy as np
 
 
@@ -17,7 +20,7 @@ def checked_row(name: str, values, size: int | None) -> np.ndarray:
         raise ValueError(f"{name} must be numbers, got {values!r}") from None
     if array.ndim != 1 or (size is not None and len(array) != size):
         raise ValueError(f"{name} must be {'a row of' if size is None else size} numbers, got {array.size}")
-    if not np.all(np.isfinite(array)):
+    if not np.isfinite(array).all():
         index = np.flatnonzero(~np.isfinite(array))[0]
         raise ValueError(f"{name} must be finite, got {array[index]} at index {index}")
     return array
@@ -25,17 +28,23 @@ def checked_row(name: str, values, size: int | None) -> np.ndarray:
 
 def checked_quaternion(name: str, quaternion) -> np.ndarray:
     array = checked_row(name, quaternion, 4)
-    size = np.linalg.norm(array)
+    size = math.hypot(*array.tolist())
     if abs(size - 1.0) > 1e-6:
         raise ValueError(f"{name} must be a unit quaternion (x, y, z, w), got norm {size:.6g}")
     return array / size
+
+
+@lru_cache(maxsize=64)
+def equidistant(length: float, count: int) -> np.ndarray:
+    """X [m] of so many stations from the nose to the tail."""
+    return np.linspace(0.0, length, count)
 
 
 def checked_stations(stations, length: float) -> np.ndarray:
     if isinstance(stations, (int, np.integer)) and not isinstance(stations, bool):
         if not 2 <= stations <= 100_000:
             raise ValueError(f"stations must be 2 or more, or their X in m, got {stations!r}")
-        return np.linspace(0.0, length, int(stations))
+        return equidistant(length, int(stations)).copy()
     x = checked_row("stations", stations, None)
     if len(x) < 1 or np.any(np.diff(x) <= 0.0) or x[0] < 0.0 or x[-1] > length * (1 + 1e-12):
         raise ValueError(f"stations must rise within 0 to {length} m, got {stations!r}")

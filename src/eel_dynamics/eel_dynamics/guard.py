@@ -21,7 +21,7 @@ def failure_of(out, works: np.ndarray, done: int, start: float, floor: float) ->
             arrays = {**out._asdict(), "works": works}
             del arrays["whole"]
             failures = [_not_finite(name, array[:done]) for name, array in arrays.items()]
-        failures += [_open(out.kinetic[:done], works[:done], start, floor)] if done else []
+        failures += [_open(out.kinetic[:done], works[:done], start, floor)] if done and np.isfinite(floor) else []
     return min((each for each in failures if each), default=None, key=lambda each: each[0])
 
 

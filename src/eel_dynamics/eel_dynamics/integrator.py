@@ -15,11 +15,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .adams import HIGHEST, SHORT, SPACE, Past, adams_growth, defect_of_order, extrapolate, past_of, remember
+from .adams import HIGHEST, SHORT, SPACE, Past, adams_growth, defect_of_order, extrapolate, remember
 from .compiled import inlined, spliced
 from .drive import combine, factors
 from .kernel import add_head_twist, configure, momentum_rates, twist_of_momentum
-from .lanes import WIDTH, aligned_zeros, put, size, spread, take, total
+from .lanes import WIDTH, put, size, spread, take, total, work_space
 from .planar import rate_of_state_plane
 from .wrench import accelerate, actuator_power
 
@@ -82,14 +82,17 @@ class Step(NamedTuple):
 
 def step_of(method: Method) -> Step:
     """Work space for steps of `method`."""
-    stages = len(method.c)
+    stages, past = len(method.c), max(method.adams, 1)
+    y, end, trial, defect, k, differences, starred = work_space(
+        ((), (), (), (), (stages,), (past + 1,), (past + 2,)), STATE - WIDTH + 1
+    )
     return Step(
         time=np.zeros(3),
-        y=aligned_zeros(SPACE),
-        end=aligned_zeros(SPACE),
-        k=aligned_zeros(stages, SPACE),
-        trial=aligned_zeros(SPACE),
-        defect=aligned_zeros(SPACE),
+        y=y,
+        end=end,
+        k=k,
+        trial=trial,
+        defect=defect,
         work=np.zeros(WORKS),
         power=np.zeros((4, WORKS)),
         twist=np.zeros(6),
@@ -99,7 +102,14 @@ def step_of(method: Method) -> Step:
         count=np.zeros(3, dtype=np.int64),
         budget=np.zeros(1),
         fresh=np.ones(1, dtype=np.int64),
-        past=past_of(method.adams),
+        past=Past(
+            differences=differences,
+            starred=starred,
+            lengths=np.ones(past + 1),
+            known=np.zeros(2, dtype=np.int64),
+            order=np.zeros(3, dtype=np.int64),
+            weight=np.zeros(WIDTH),
+        ),
     )
 
 

@@ -507,7 +507,8 @@ class Simulation:
 
     def _scale_of(self, twist: np.ndarray) -> float:
         """Time [s] in which a `twist` (6,) takes the body by its length, or turns it by one."""
-        speed, spin = math.hypot(*twist[3:]), math.hypot(*twist[:3])
+        a, b, c, u, v, w = twist.tolist()
+        speed, spin = math.hypot(u, v, w), math.hypot(a, b, c)
         return min(self.body.length / speed if speed else np.inf, 1.0 / spin if spin else np.inf)
 
     def _is_thrown(self, law: Law | None) -> bool:
