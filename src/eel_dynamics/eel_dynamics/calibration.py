@@ -22,7 +22,7 @@ from eel_gaits.law import Law, Ramp, Term
 
 from eel_gaits import falling, gait
 
-from .accuracy import FIELDS, FINEST, TABLE_FILE, Accuracy
+from .accuracy import FIELDS, FINEST, LOOSEST_TOLERANCE, TABLE_FILE, Accuracy
 from .body import Body
 from .errors import errors
 from .run import Run, simulate
@@ -188,7 +188,7 @@ def _measure(case: Case, say) -> Errors:
     time = [
         [
             _of(case, reference, replace(setting, tolerance=tolerance, method=method, order=order))
-            if method != "adams" or tolerance >= ADAMS_LEAST
+            if (tolerance >= ADAMS_LEAST if method == "adams" else tolerance <= LOOSEST_TOLERANCE)
             else (np.inf,) * 4
             for tolerance in TOLERANCES
         ]
@@ -266,7 +266,7 @@ def _checked(found: list[Errors], torque: bool, target: float, setting: Accuracy
 
 def _first(errors, allowed: float) -> int | None:
     """The first setting from which on the errors, from the coarsest to the finest, stay below what is `allowed`: a
-    lucky one does not count. None where the finest are above it. Those not measured are inf, at the end."""
+    lucky one does not count. None where the finest are above it. Those not measured are inf, at one end."""
     finite = np.where(np.isfinite(errors), errors, 0.0)
     worst = np.where(np.isfinite(errors), np.maximum.accumulate(finite[::-1])[::-1], np.inf)
     good = np.flatnonzero(worst <= allowed)
