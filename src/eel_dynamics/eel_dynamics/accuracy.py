@@ -22,7 +22,8 @@ KEYS = FIELDS[:3]
 FIXED = "fixed steps"
 ORDERS = {"adams": (1, 2, 3, 4, 5, 6), "dormand_prince": (5,), "classical": (4,)}
 FINEST_TOLERANCE = 1e-13  # below, round-off
-LOOSEST_TOLERANCE = 1e-4  # of the pair, and of what an estimate compares with: above, a gait's longest step rules
+LOOSEST_TOLERANCE = 1e-4  # of the pair, and of what an estimate compares with: above, a gait's longest step rules,
+# and a light body that the water stops has steps by it alone
 BEST = {"resolution": 200.0, "tolerance": 1e-11}  # of the preset reference, where its target cannot be promised
 ANY = {"resolution": 30.0}  # until the scene is known
 WAVES_POWER = 0.85  # points grow with this power of the number of waves on the body
@@ -164,8 +165,6 @@ def _from_target(name: str, target: float, key: tuple[bool, bool, bool], fixed: 
     for row in rows:
         if row["target"] <= target * (1.0 + 1e-9):
             given = {"fixed": row["fixed"]} if fixed else {name: row[name] for name in ("tolerance", "method", "order")}
-            if given.get("method") == "dormand_prince":  # a light body that the water stops has steps by it alone
-                given["tolerance"] = min(row["tolerance"], LOOSEST_TOLERANCE)
             return Accuracy(name=name, resolution=row["resolution"], target=target, **given)
     if name == "reference":
         return Accuracy(name=name, **BEST)

@@ -123,37 +123,37 @@ def value_and_slope(swimmer, values, kind, begin, count, t):
 def zero_between(swimmer, values, kind, begin, count, i, before, exact):
     """Fraction of the panel at which `values` are zero, between node i and the one before it (value `before`).
 
-    That of the quadratic through these and the next node of the panel, by Newton's method from that of the line: an
-    error e moves the load of V|V| by e^3. Where it has to be `exact`, that of the polynomial through all nodes.
+    That of the quadratic through these and the next node of the panel: an error e moves the load of V|V| by e^3. Where
+    it has to be `exact`, that of the polynomial through all nodes, by Newton's method from there.
     """
-    a = swimmer.fraction[i - ONE] if i > begin else 0.0
-    b = swimmer.fraction[i]
-    third = i + ONE if i + ONE < begin + np.uintp(count) else i - np.uintp(2)
-    f, g, h, c = before, values[kind, i], values[kind, third], swimmer.fraction[third]
-    slope = (g - f) / (b - a)
-    bend = ((h - g) / (c - b) - slope) / (c - a)
-    start = t = a - f / slope
-    rise = slope
-    for _ in range(2):
-        rise = slope + bend * (2.0 * t - a - b)
-        t -= (f + (t - a) * (slope + bend * (t - b))) / rise
-    if not (a < t < b):  # the quadratic turns back: near a double zero
-        t, rise = start, slope
+    start, end, f, g = 0.0, swimmer.fraction[i], before, values[kind, i]
+    if i > begin:
+        start = swimmer.fraction[i - ONE]
+    slope = (g - f) * swimmer.apart[i]
+    if i + ONE < begin + np.uintp(count):
+        bend = ((values[kind, i + ONE] - g) * swimmer.apart[i + ONE] - slope) * swimmer.span[i]
+    else:
+        bend = (slope - (f - values[kind, i - np.uintp(2)]) * swimmer.apart[i - ONE]) * swimmer.span[i - ONE]
+    # f + b s + bend s^2 with s from the start on, in the form that does not cancel, where it goes as f and g do
+    b = slope - bend * (end - start)
+    steep = np.sqrt(max(b * b - 4.0 * bend * f, 0.0))
+    t = start - 2.0 * f / (b + (steep if g > f else -steep))
+    if not (start < t < end):
+        t = min(max(start - f / slope, start), end)
     if exact:
         for _ in range(8):
+            if not (start < t < end):
+                t = (start * g - end * f) / (g - f)
+            if not (start < t < end):
+                break
             value, rise = value_and_slope(swimmer, values, kind, begin, count, t)
             if (value > 0.0) == (g > 0.0):
-                b, g = t, value
+                end, g = t, value
             else:
-                a, f = t, value
+                start, f = t, value
             step = value / rise
-            near = abs(step) < 1e-6  # the next step would be its square
             t -= step
-            if near:
-                break
-            if not (a < t < b):
-                t = (a * g - b * f) / (g - f)
-            if not (a < t < b):
+            if abs(step) < 1e-6:  # the next step would be its square
                 break
     return t
 
@@ -395,3 +395,13 @@ def integrate_balance(upto, kinks, count, fraction, density, known, result):
         put(result, 3, i, d)
         put(result, 4, i, e)
         put(result, 5, i, f)
+
+
+@inlined
+def integrate_steps(swimmer, fields, upto, density, known, result):
+    """Integrals (6, n) of the `density` of the balance, and of the steps of its loads, as in `integrate_balance`."""
+    weigh_steps(
+        *(fields.kinks, swimmer.count, swimmer.drag2, swimmer.drag3, swimmer.drag_roll),
+        *(fields.rubbing, fields.speed, fields.R, fields.r),
+    )
+    integrate_balance(upto, fields.kinks, swimmer.count, swimmer.fraction, density, known, result)

@@ -18,9 +18,9 @@ import numpy as np
 from .adams import HIGHEST, SHORT, SPACE, Past, adams_growth, defect_of_order, extrapolate, remember
 from .compiled import inlined, spliced
 from .drive import combine, factors
-from .kernel import add_head_twist, configure, momentum_rates, twist_of_momentum
+from .kernel import add_head_twist, configure, find_loads, momentum_rates, twist_of_momentum
 from .lanes import WIDTH, put, size, spread, take, total, work_space
-from .planar import rate_of_state_plane
+from .planar import move_plane, powers_plane, rate_of_state_plane
 from .wrench import accelerate, actuator_power
 
 STATE = 13
@@ -240,16 +240,48 @@ def rate_of_state(swimmer, drive, fields, current, time, y, step, dy):
 
 
 @inlined
-def powers_of_state(swimmer, drive, fields, balance, time, y, step, power):
-    """Powers (4,) [W] of actuators, wake, nose and drag in state `y` at `time`, by the acceleration form."""
-    if not settle(swimmer, drive, fields, time, y, head_axes(y), step.momentum, step.twist):
-        return False
+def powers_here(swimmer, drive, fields, balance, step, power):
+    """Powers (4,) [W] of actuators, wake, nose and drag, by the acceleration form, in the state of which `fields` and
+    `step.twist` hold velocities and loads."""
     combine(drive.axis, drive.node, fields.factor[2], swimmer.blocks, fields.accel)
-    add_head_twist(swimmer, fields, step.twist)
     accelerate(swimmer, fields, step.twist, balance)
     actuator_power(swimmer, fields, balance)
-    for k in range(4):
+    for k in range(WORKS):
         power[k] = balance.powers[k]
+
+
+@inlined
+def move(swimmer, drive, fields, time, y, step):
+    """Velocities and loads in state `y` at `time`, into `fields` and `step.twist`. False where the inertia is
+    singular."""
+    if not settle(swimmer, drive, fields, time, y, head_axes(y), step.momentum, step.twist):
+        return False
+    add_head_twist(swimmer, fields, step.twist)
+    find_loads(swimmer, fields, step.twist)
+    return True
+
+
+@inlined
+def powers_of_state(swimmer, drive, fields, balance, time, y, step, power):
+    """`powers_here` of state `y` at `time`. False where the inertia is singular."""
+    if not move(swimmer, drive, fields, time, y, step):
+        return False
+    powers_here(swimmer, drive, fields, balance, step, power)
+    return True
+
+
+@spliced
+def powers_in_step(swimmer, drive, fields, balance, control, time, y, there, step, power):
+    """Powers (4,) [W] in state `y` at `time`, by the scene's kernel; `there`: the state was the last to be evaluated.
+    False where the inertia is singular."""
+    if control.planar:
+        if not there and not move_plane(swimmer, drive, fields, time, y, step.momentum, step.twist):
+            return False
+        powers_plane(swimmer, drive, fields, balance, step.twist, power)
+    else:
+        if not there and not move(swimmer, drive, fields, time, y, step):
+            return False
+        powers_here(swimmer, drive, fields, balance, step, power)
     return True
 
 
@@ -497,10 +529,13 @@ def march(swimmer, drive, fields, balance, current, method, control, breakpoints
             length = target - start
         accept(control, step, start, length, series)
         if control.ledger:
-            for j in range(1 - anew, 4):
-                interpolate(method, step, lobatto[j], step.trial)
-                if not powers_of_state(
-                    swimmer, drive, fields, balance, start + lobatto[j] * length, step.trial, step, step.power[j]
+            for j in range(3, -anew, -1):  # the step's end first, which was evaluated last
+                there = j == 3
+                if not there:
+                    interpolate(method, step, lobatto[j], step.trial)
+                time = start + lobatto[j] * length
+                if not powers_in_step(
+                    swimmer, drive, fields, balance, control, time, step.trial, there, step, step.power[j]
                 ):
                     return SINGULAR
     return MARCHED

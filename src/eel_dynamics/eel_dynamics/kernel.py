@@ -69,6 +69,9 @@ class Fields(NamedTuple):
     integrand: np.ndarray  # (6, n) scratch
     inertia: np.ndarray  # (6, 6) of body and water about the head, or its factors L and 1/D of L D L^T
     wrench: np.ndarray  # (6,) scratch
+    tail: np.ndarray  # (6,) wrench from the wake, on the body about the head
+    drag: np.ndarray  # (6,) wrench of the drag along the body
+    losses: np.ndarray  # (3,) drag's power W; V1 m/s and T_f J/m at the tail, whose product is the wake's
     factor: np.ndarray  # (3, m) values and rates of the law's time factors
     kinks: Kinks
 
@@ -82,6 +85,9 @@ def fields_of(nodes: int, rows: int, widest: int) -> Fields:
         *work_space(ALONG, nodes),
         inertia=np.zeros((6, 6)),
         wrench=np.zeros(6),
+        tail=np.zeros(6),
+        drag=np.zeros(6),
+        losses=np.zeros(3),
         factor=np.zeros((3, rows)),
         kinks=Kinks(
             number=np.zeros(1, dtype=np.int64),
@@ -487,13 +493,10 @@ def add_head_twist(swimmer, fields, twist):
 
 
 @inlined
-def add_wake(swimmer, fields, wrench):
-    """Add the momentum that the tail takes in from the wake, w_tail of eq. (60), to `wrench` (6,).
-
-    Returns V1(l) [m/s], T_f(l) [J/m]: the wake's power into body and water is their product. Both 0 in a scene without
-    wake.
-    """
-    R, r, omega, v = fields.R, fields.r, fields.omega, fields.v
+def find_loads(swimmer, fields, twist):
+    """Loads on the body from the true velocities: of the wake, w_tail of eq. (60), into `tail`, and of the drag along
+    the body into `drag`; what they take and give into `losses`. `twist` (6,) is the head's."""
+    R, r, omega, v, tail, drag = fields.R, fields.r, fields.omega, fields.v, fields.tail, fields.drag
     i = len(swimmer.x) - 1
     vx, vy, vz = v[0, i], v[1, i], v[2, i]
     v1 = swimmer.wake * (R[0, i] * vx + R[1, i] * vy + R[2, i] * vz)
@@ -502,16 +505,20 @@ def add_wake(swimmer, fields, wrench):
     roll = R[0, i] * omega[0, i] + R[1, i] * omega[1, i] + R[2, i] * omega[2, i]
     p2, p3, s1 = swimmer.added2[i] * v2, swimmer.added3[i] * v3, swimmer.added_roll[i] * roll
     energy = 0.5 * swimmer.wake * (s1 * roll + p2 * v2 + p3 * v3)
-    nx = -energy * R[0, i] + v1 * (p2 * R[3, i] + p3 * R[6, i])
-    ny = -energy * R[1, i] + v1 * (p2 * R[4, i] + p3 * R[7, i])
-    nz = -energy * R[2, i] + v1 * (p2 * R[5, i] + p3 * R[8, i])
-    wrench[0] += v1 * s1 * R[0, i] + r[1, i] * nz - r[2, i] * ny
-    wrench[1] += v1 * s1 * R[1, i] + r[2, i] * nx - r[0, i] * nz
-    wrench[2] += v1 * s1 * R[2, i] + r[0, i] * ny - r[1, i] * nx
-    wrench[3] += nx
-    wrench[4] += ny
-    wrench[5] += nz
-    return v1, energy
+    nx = v1 * (p2 * R[3, i] + p3 * R[6, i]) - energy * R[0, i]
+    ny = v1 * (p2 * R[4, i] + p3 * R[7, i]) - energy * R[1, i]
+    nz = v1 * (p2 * R[5, i] + p3 * R[8, i]) - energy * R[2, i]
+    tail[0] = v1 * s1 * R[0, i] + r[1, i] * nz - r[2, i] * ny
+    tail[1] = v1 * s1 * R[1, i] + r[2, i] * nx - r[0, i] * nz
+    tail[2] = v1 * s1 * R[2, i] + r[0, i] * ny - r[1, i] * nx
+    tail[3], tail[4], tail[5] = nx, ny, nz
+    fields.losses[0], fields.losses[1], fields.losses[2] = 0.0, v1, energy
+    for k in range(6):
+        drag[k] = 0.0
+    if swimmer.resistive:
+        fields.losses[0] = add_resistive_loads(swimmer, fields, twist, drag)
+    else:
+        fields.kinks.number[0] = 0
 
 
 @inlined
@@ -558,11 +565,9 @@ def momentum_rates(swimmer, fields, momentum, twist, rates):
     """Rates (6,) of momentum about the moving head, of world vectors, in the head's present axes; adds the head's twist
     to the velocities in `fields`."""
     add_head_twist(swimmer, fields, twist)
+    find_loads(swimmer, fields, twist)
     for i in range(6):
-        rates[i] = 0.0
-    add_wake(swimmer, fields, rates)
-    if swimmer.resistive:
-        add_resistive_loads(swimmer, fields, twist, rates)
+        rates[i] = fields.tail[i] + fields.drag[i]
     _, oy, oz, vx, vy, vz = twist[0], twist[1], twist[2], twist[3], twist[4], twist[5]
     nose = swimmer.nose_mass
     # n_nose less what is the derivative of m_o V1 E1 (its gyroscopic part), and the nose's drag

@@ -8,9 +8,10 @@ K3 and so a sum of tabulated rows, as its rate is. The fields' components out of
 import numpy as np
 
 from .compiled import inlined
-from .drag import AXIAL, NOISE, ONE, SIDE, ZERO, find_steps, rub
+from .drag import AXIAL, NOISE, ONE, SIDE, ZERO, find_steps, integrate_steps, rub
 from .drive import cosine_and_sine, factors
-from .lanes import WIDTH, put, signed, spread, take, total
+from .kernel import integrate_along
+from .lanes import WIDTH, put, signed, size, spread, take, total
 
 YAW = 1
 
@@ -59,9 +60,9 @@ def configure_plane(swimmer, drive, fields):
 
 
 @inlined
-def solve_plane(swimmer, fields, momentum, twist):
+def twist_plane(swimmer, fields, momentum, twist):
     """Twist (Omega3, V1, V2) of the head from the momentum (L3, P1, P2) of a configured body. False without positive
-    inertia."""
+    inertia. Leaves the inertia's factors in `fields.inertia`."""
     R, r, omega, v = fields.R, fields.r, fields.omega, fields.v
     sxx = sxy = syy = scx = scy = sw = slz = spx = spy = spread(0.0)
     for k in range(swimmer.blocks):
@@ -82,34 +83,37 @@ def solve_plane(swimmer, fields, momentum, twist):
         spx += ixx * vx + ixy * vy
         spy += ixy * vx + iyy * vy
         slz += j * take(omega, 2, i) + dx * vx + dy * vy
-    xx, xy, yy, cx, cy, w = total(sxx), total(sxy), total(syy), total(scx), total(scy), total(sw)
-    xx += swimmer.nose_mass
-    # eliminate V1, then V2
-    a, b, e = momentum[0] - total(slz), momentum[1] - total(spx), momentum[2] - total(spy)
-    if not xx > 0.0:
-        return False
-    p, q = xy / xx, cx / xx
+    xx, xy, yy, cx, cy, w = total(sxx) + swimmer.nose_mass, total(sxy), total(syy), total(scx), total(scy), total(sw)
+    # L D L^T with V1 eliminated first, then V2
+    by_xx = 1.0 / xx
+    p, q = xy * by_xx, cx * by_xx
     yy -= p * xy
     cy -= p * cx
-    w -= q * cx
-    e -= p * b
-    a -= q * b
-    if not yy > 0.0:
-        return False
-    p = cy / yy
-    w -= p * cy
-    a -= p * e
-    if not w > 0.0:
-        return False
-    twist[0] = a / w
-    twist[2] = (e - cy * twist[0]) / yy
-    twist[1] = (b - xy * twist[2] - cx * twist[0]) / xx
-    return True
+    by_yy = 1.0 / yy
+    t = cy * by_yy
+    w -= q * cx + t * cy
+    f = fields.inertia
+    f[0, 0], f[1, 1], f[2, 2] = by_xx, by_yy, 1.0 / w
+    f[1, 0], f[2, 0], f[2, 1] = p, q, t
+    twist[0], twist[1], twist[2] = momentum[0] - total(slz), momentum[1] - total(spx), momentum[2] - total(spy)
+    solve_plane(f, twist)
+    return xx > 0.0 and yy > 0.0 and w > 0.0
 
 
 @inlined
-def loads_plane(swimmer, fields, twist, rates):
-    """Wrench (T3, F1, F2) of wake and drag along the body about the head; adds the head's `twist` to the velocities."""
+def solve_plane(f, b):
+    """Solve with the factors of `twist_plane` for the right side `b` (angular, along axes 1 and 2), in place."""
+    b1 = b[1]
+    b2 = b[2] - f[1, 0] * b1
+    b0 = (b[0] - f[2, 0] * b1 - f[2, 1] * b2) * f[2, 2]
+    b2 = b2 * f[1, 1] - f[2, 1] * b0
+    b[0], b[1], b[2] = b0, b1 * f[0, 0] - f[1, 0] * b2 - f[2, 0] * b0, b2
+
+
+@inlined
+def loads_plane(swimmer, fields, twist):
+    """Loads (T3, F1, F2) of wake and drag along the body about the head, into `tail[2:5]` and `drag[2:5]`, with
+    `losses`; adds the head's `twist` to the velocities."""
     R, r, omega, v, speed = fields.R, fields.r, fields.omega, fields.v, fields.speed
     for k in range(swimmer.blocks):
         i = WIDTH * k
@@ -124,10 +128,13 @@ def loads_plane(swimmer, fields, twist, rates):
     tail = len(swimmer.x) - 1
     c, s = R[0, tail], R[1, tail]
     v1, v2 = speed[AXIAL, tail], speed[SIDE, tail]
-    p2 = swimmer.added2[tail] * v2
-    n1, n2 = -0.5 * swimmer.wake * p2 * v2, swimmer.wake * v1 * p2
+    p2 = swimmer.wake * swimmer.added2[tail] * v2
+    n1, n2 = -0.5 * p2 * v2, v1 * p2
     fx, fy = c * n1 - s * n2, s * n1 + c * n2
-    tz = r[0, tail] * fy - r[1, tail] * fx
+    fields.tail[2], fields.tail[3], fields.tail[4] = r[0, tail] * fy - r[1, tail] * fx, fx, fy
+    fields.losses[0], fields.losses[1], fields.losses[2] = 0.0, v1, -n1
+    fields.drag[2] = fields.drag[3] = fields.drag[4] = 0.0
+    fields.kinks.number[0] = 0
     if swimmer.resistive:
         share = fields.share
         rub(swimmer, fields)
@@ -136,46 +143,146 @@ def loads_plane(swimmer, fields, twist, rates):
             weight = take(swimmer.weight, i)
             put(share, 0, i, weight * take(fields.part, i))
             put(share, SIDE, i, signed(weight, take(speed, SIDE, i)))
-        fields.kinks.number[0] = 0
         find_steps(swimmer, fields, (twist[2], 0.0, 0.0), NOISE * (abs(v1) + abs(v2)), 0.0, True)
-        sx = sy = sz = spread(0.0)
+        sx = sy = sz = power = spread(0.0)
         for k in range(swimmer.blocks):
             i = WIDTH * k
             c, s = take(R, 0, i), take(R, 1, i)
-            v1, v2 = take(speed, AXIAL, i), take(speed, SIDE, i)
+            u1, u2 = take(speed, AXIAL, i), take(speed, SIDE, i)
             rubbing = take(swimmer.weight, i) * take(fields.rubbing, 0, i)
-            n1 = -(rubbing + take(share, 0, i) * take(fields.rubbing, 1, i)) * v1
-            n2 = -take(share, SIDE, i) * take(swimmer.drag2, i) * v2 * v2
-            nx, ny = c * n1 - s * n2, s * n1 + c * n2
+            f1 = -(rubbing + take(share, 0, i) * take(fields.rubbing, 1, i)) * u1
+            f2 = -take(share, SIDE, i) * take(swimmer.drag2, i) * u2 * u2
+            nx, ny = c * f1 - s * f2, s * f1 + c * f2
             sx += nx
             sy += ny
             sz += take(r, 0, i) * ny - take(r, 1, i) * nx
-        fx += total(sx)
-        fy += total(sy)
-        tz += total(sz)
-    rates[0], rates[1], rates[2] = tz, fx, fy
+            power += f1 * u1 + f2 * u2
+        fields.drag[2], fields.drag[3], fields.drag[4] = total(sz), total(sx), total(sy)
+        fields.losses[0] = total(power)
+
+
+@inlined
+def heading(y):
+    """Cosine and sine of the head's turn about axis 3 in state `y`."""
+    square = y[5] * y[5] + y[6] * y[6]
+    return (y[6] * y[6] - y[5] * y[5]) / square, 2.0 * y[5] * y[6] / square
+
+
+@inlined
+def move_plane(swimmer, drive, fields, time, y, momentum, twist):
+    """Velocities and loads in state `y` at `time`, into `fields` and `twist` (Omega3, V1, V2); its `momentum` (L3, P1,
+    P2) in the head's axes. False where the inertia is singular."""
+    cosine, sine = heading(y)
+    momentum[0] = y[9]
+    momentum[1], momentum[2] = cosine * y[10] + sine * y[11], -sine * y[10] + cosine * y[11]
+    factors(drive, time, fields.factor)
+    configure_plane(swimmer, drive, fields)
+    if not twist_plane(swimmer, fields, momentum, twist):
+        return False
+    loads_plane(swimmer, fields, twist)
+    return True
 
 
 @inlined
 def rate_of_state_plane(swimmer, drive, fields, current, time, y, step, dy):
     """As `rate_of_state` of the integrator, for a state in the plane: rate `dy` (13,) of state `y` at `time`."""
-    momentum, twist, rates = step.momentum, step.twist, step.rates
-    size = y[5] * y[5] + y[6] * y[6]
-    cosine, sine = (y[6] * y[6] - y[5] * y[5]) / size, 2.0 * y[5] * y[6] / size
-    momentum[0] = y[9]
-    momentum[1], momentum[2] = cosine * y[10] + sine * y[11], -sine * y[10] + cosine * y[11]
-    factors(drive, time, fields.factor)
-    configure_plane(swimmer, drive, fields)
-    if not solve_plane(swimmer, fields, momentum, twist):
+    momentum, twist = step.momentum, step.twist
+    if not move_plane(swimmer, drive, fields, time, y, momentum, twist):
         return False
-    loads_plane(swimmer, fields, twist, rates)
+    cosine, sine = heading(y)
     turn, vx, vy, nose = twist[0], twist[1], twist[2], swimmer.nose_mass
-    fx = rates[1] + nose * turn * vy - swimmer.nose_drag * vx * abs(vx)
-    fy = rates[2] + nose * vx * turn
+    tail, drag = fields.tail, fields.drag
+    fx = tail[3] + drag[3] + nose * turn * vy - swimmer.nose_drag * vx * abs(vx)
+    fy = tail[4] + drag[4] + nose * vx * turn
     for k in range(13):
         dy[k] = 0.0
     dy[0], dy[1], dy[2] = cosine * vx - sine * vy + current[0], sine * vx + cosine * vy + current[1], current[2]
     dy[5], dy[6] = 0.5 * y[6] * turn, -0.5 * y[5] * turn
-    dy[9] = rates[0] - vx * momentum[2] + vy * (momentum[1] - nose * vx)
+    dy[9] = tail[2] + drag[2] - vx * momentum[2] + vy * (momentum[1] - nose * vx)
     dy[10], dy[11] = cosine * fx - sine * fy, sine * fx + cosine * fy
     return True
+
+
+@inlined
+def densities_plane(swimmer, fields, balance, result):
+    """What the motion of the sections takes, (T3, F1, F2) per length about the head, into rows 2 to 4 of `density`;
+    their integrals over the body into `result[0:3]`."""
+    R, r, speed, density = fields.R, fields.r, fields.speed, balance.density
+    st = sx = sy = spread(0.0)
+    for k in range(swimmer.blocks):
+        i = WIDTH * k
+        c, s, x, y = take(R, 0, i), take(R, 1, i), take(r, 0, i), take(r, 1, i)
+        ax, ay, turn = take(balance.acc, 0, i), take(balance.acc, 1, i), take(fields.omega, 2, i)
+        u1, u2 = take(speed, AXIAL, i), take(speed, SIDE, i)
+        m, added = take(swimmer.mass, i), take(swimmer.added2, i)
+        f1 = m * (c * ax + s * ay) - added * turn * u2
+        f2 = m * (c * ay - s * ax) + added * (c * ay - s * ax - turn * u1)
+        hx, hy = c * f1 - s * f2, s * f1 + c * f2
+        torque = take(swimmer.inertia3, i) * take(balance.alpha, 2, i) + added * u1 * u2 + x * hy - y * hx
+        put(density, 2, i, torque)
+        put(density, 3, i, hx)
+        put(density, 4, i, hy)
+        weight = take(swimmer.weight, i)
+        st += weight * torque
+        sx += weight * hx
+        sy += weight * hy
+    result[0], result[1], result[2] = total(st), total(sx), total(sy)
+
+
+@inlined
+def powers_plane(swimmer, drive, fields, balance, twist, power):
+    """Powers (4,) [W] of actuators, wake, nose and drag, as `powers_here` of the integrator, after `move_plane`."""
+    R, r, omega, speed, f = fields.R, fields.r, fields.omega, fields.speed, fields.integrand
+    alpha, acc, head, whole, density = balance.alpha, balance.acc, balance.head, balance.total, balance.density
+    for k in range(swimmer.blocks):
+        i = WIDTH * k
+        gain = rate = spread(0.0)
+        for m in range(len(drive.axis)):
+            if drive.axis[m] == YAW:
+                gain += fields.factor[2, m] * take(drive.angle, m, i)
+                rate += fields.factor[1, m] * take(drive.node, m, i)
+        put(alpha, 2, i, gain)
+        put(fields.rate, 1, i, rate)
+        c, s, turn = take(R, 0, i), take(R, 1, i), take(omega, 2, i)
+        put(f, 0, i, -gain * s - turn * turn * c)
+        put(f, 1, i, gain * c - turn * turn * s)
+        put(R, 3, i, -s)
+        put(R, 4, i, c)
+    integrate_along(swimmer, f, 0, acc)
+    densities_plane(swimmer, fields, balance, whole)
+    nose_drag = -swimmer.nose_drag * twist[1] * abs(twist[1])
+    for k in range(3):
+        head[k] = fields.tail[2 + k] + fields.drag[2 + k] - whole[k]
+    head[1] += nose_drag
+    solve_plane(fields.inertia, head)
+    for k in range(swimmer.blocks):
+        i = WIDTH * k
+        put(alpha, 2, i, take(alpha, 2, i) + head[0])
+        put(acc, 0, i, take(acc, 0, i) + (head[1] - head[0] * take(r, 1, i)))
+        put(acc, 1, i, take(acc, 1, i) + (head[2] + head[0] * take(r, 0, i)))
+    densities_plane(swimmer, fields, balance, whole)
+    for k in range(swimmer.blocks if swimmer.resistive else 0):
+        i = WIDTH * k
+        c, s, u1, u2 = take(R, 0, i), take(R, 1, i), take(speed, AXIAL, i), take(speed, SIDE, i)
+        n1 = (take(fields.rubbing, 0, i) + take(fields.part, i) * take(fields.rubbing, 1, i)) * u1
+        n2 = take(swimmer.drag2, i) * size(u2) * u2
+        nx, ny = c * n1 - s * n2, s * n1 + c * n2
+        put(density, 2, i, take(density, 2, i) + (take(r, 0, i) * ny - take(r, 1, i) * nx))
+        put(density, 3, i, take(density, 3, i) + nx)
+        put(density, 4, i, take(density, 4, i) + ny)
+    integrate_steps(swimmer, fields, swimmer.upto, density, balance.upto, balance.upto)
+    bt, bx, by = (
+        fields.tail[2] + fields.drag[2] - whole[0],
+        fields.tail[3] + fields.drag[3] - whole[1],
+        fields.tail[4] + fields.drag[4] - whole[2],
+    )
+    done = spread(0.0)
+    for k in range(swimmer.blocks):
+        i = WIDTH * k
+        nx, ny = take(balance.upto, 3, i) + bx, take(balance.upto, 4, i) + by
+        torque = take(balance.upto, 2, i) + bt - (take(r, 0, i) * ny - take(r, 1, i) * nx)
+        done -= take(swimmer.weight, i) * torque * take(fields.rate, 1, i)
+    power[0] = total(done)
+    power[1] = fields.losses[1] * fields.losses[2]
+    power[2] = (nose_drag - swimmer.nose_mass * head[1]) * twist[1]
+    power[3] = fields.losses[0]

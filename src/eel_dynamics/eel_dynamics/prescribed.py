@@ -8,9 +8,8 @@ from eel_gaits.law import Law
 from .accuracy import Accuracy
 from .arguments import checked_row
 from .body import Body
-from .drag import add_resistive_loads
 from .drive import combine, factors
-from .kernel import add_head_twist, add_wake, configure
+from .kernel import add_head_twist, configure, find_loads
 from .scene import Scene
 from .simulation import Simulation
 from .wrench import add_head_acceleration, gather, section_densities, shape_accelerations
@@ -74,11 +73,9 @@ def hydrodynamic_wrench(
     add_head_acceleration(water, fields, balance)
     none = np.zeros_like(water.mass)
     alone = water._replace(mass=none, inertia1=water.added_roll, inertia2=none, inertia3=none)
-    inertia, resistive, wake, nose = np.zeros(6), np.zeros(6), np.zeros(6), np.zeros(6)
+    inertia, nose = np.zeros(6), np.zeros(6)
     section_densities(alone, fields, balance)
     gather(alone, balance.density, inertia)
-    if water.resistive:
-        add_resistive_loads(water, fields, relative, resistive)
-    add_wake(water, fields, wake)
+    find_loads(water, fields, relative)
     nose[3] = -water.nose_mass * balance.head[3] - water.nose_drag * relative[3] * abs(relative[3])
-    return HydrodynamicWrench(inertia=-inertia, wake=wake, resistive=resistive, nose=nose)
+    return HydrodynamicWrench(inertia=-inertia, wake=fields.tail, resistive=fields.drag, nose=nose)

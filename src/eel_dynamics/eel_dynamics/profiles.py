@@ -15,7 +15,6 @@ from .drive import combine, combine_moments, factors
 from .integrator import MARCHED, SINGULAR, head_axes, march, powers_of_state, state_at, to_head, to_world
 from .kernel import (
     add_head_twist,
-    add_wake,
     configure,
     cross,
     integrate,
@@ -136,7 +135,7 @@ def set_in_motion(swimmer, drive, fields, time, twist, y):
     return body + water
 
 
-@compiled
+@inlined
 def place(stations, drive, fields, here, y, sample, out):
     """Backbone, orientation and curvature at the stations."""
     section, count = stations.section, len(stations.node)
@@ -176,7 +175,7 @@ def place(stations, drive, fields, here, y, sample, out):
             out.curvature_rate[sample, i, 1 + k] = here.rate[k, i]
 
 
-@compiled
+@inlined
 def velocities(swimmer, stations, fields, here, twist):
     """True velocities at the stations, relative to the water."""
     R, f = fields.R, fields.integrand
@@ -195,7 +194,7 @@ def velocities(swimmer, stations, fields, here, twist):
     integrate(upto, f, 3, fields.v, (twist[3], twist[4], twist[5]), here.v)
 
 
-@compiled
+@inlined
 def accelerations(swimmer, stations, fields, balance, here):
     """True accelerations at the stations."""
     R, f, head = fields.R, fields.integrand, balance.head
@@ -218,7 +217,7 @@ def accelerations(swimmer, stations, fields, balance, here):
     integrate(upto, f, 3, balance.acc, (head[3], head[4], head[5]), here.acc)
 
 
-@compiled
+@inlined
 def internal_wrench(swimmer, stations, fields, balance, here, distributed, sample, out):
     """Internal torque and force at the stations: the balance of the part behind each (eq. 50, 51), in its axes and
     about it, Ad*^-1 w - (V1 J_f1 Omega1 E1; V1 M_f V)."""
@@ -229,7 +228,7 @@ def internal_wrench(swimmer, stations, fields, balance, here, distributed, sampl
     )
     behind = fields.wrench
     for k in range(6):
-        behind[k] = balance.tail[k] - balance.total[k]
+        behind[k] = fields.tail[k] - balance.total[k]
     for block in range(section.blocks):
         i = WIDTH * block
         tx, ty, tz = three(here.upto, 0, i)
@@ -251,7 +250,7 @@ def internal_wrench(swimmer, stations, fields, balance, here, distributed, sampl
     show(shown, 3, out.force[sample])
 
 
-@compiled
+@inlined
 def loads(stations, here, distributed, sample, out):
     """The water's force on the body per length at the stations: the reactive part, the rate at which a strip's water
     gives up momentum (eq. 50), and the resistive part; and the force -T_f t1 at the tail (eq. 51)."""
@@ -305,7 +304,7 @@ def loads(stations, here, distributed, sample, out):
     show(here.shown, 3, out.fluid_force[sample])
 
 
-@compiled
+@inlined
 def observe(
     swimmer,
     stations,
@@ -354,11 +353,11 @@ def observe(
     out.kinetic[sample, 0], out.kinetic[sample, 1] = kinetic_energies(swimmer, fields)
     left = 0.0
     for k in range(3):
-        left += (balance.tail[k] - balance.total[k]) ** 2
+        left += (fields.tail[k] - balance.total[k]) ** 2
     out.closure[sample, 0] = np.sqrt(left)
-    left = (balance.tail[3] - balance.total[3] + balance.nose[0]) ** 2
+    left = (fields.tail[3] - balance.total[3] + balance.nose[0]) ** 2
     for k in range(4, 6):
-        left += (balance.tail[k] - balance.total[k]) ** 2
+        left += (fields.tail[k] - balance.total[k]) ** 2
     out.closure[sample, 1] = np.sqrt(left)
     place(stations, drive, fields, here, y, sample, out)
     if want_wrench or want_load:
@@ -368,8 +367,7 @@ def observe(
     if want_load:
         accelerations(swimmer, stations, fields, balance, here)
         loads(stations, here, distributed, sample, out)
-        _, energy = add_wake(swimmer, fields, step.rates)
-        out.tail_force[sample, 0] = 0.0 if distributed else -energy
+        out.tail_force[sample, 0] = 0.0 if distributed else -fields.losses[2]
         out.nose_force[sample, 0] = balance.nose[0]
     return True
 

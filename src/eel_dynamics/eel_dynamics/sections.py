@@ -54,6 +54,8 @@ class Swimmer(NamedTuple):
     nose_mass: float  # kg, m_o
     nose_drag: float  # kg/m, 1/2 rho_f k_o
     fraction: np.ndarray  # (n,) of the node's panel, in its own variable
+    apart: np.ndarray  # (n,) one by the difference of the fraction to the node before, in the panel; to its start
+    span: np.ndarray  # (n,) one by that between the nodes before and behind; those of a panel's last node are not used
     barycentric: np.ndarray  # (n,) weights of the interpolation in a panel
     series: np.ndarray  # (p, n) m, of the integrals from a panel's start to any place in it
 
@@ -105,6 +107,9 @@ def added_masses(body: Body, scene: Scene, a_squared, b_squared):
 
 def swimmer_of(body: Body, scene: Scene, grid: Grid) -> Swimmer:
     """Tabulate `body` in `scene` at the nodes of `grid`."""
+    before = np.where(np.arange(len(grid.x)) > grid.first, np.roll(grid.fraction, 1), 0.0)
+    behind = np.where(grid.fraction < 1.0, np.roll(grid.fraction, -1), 2.0)
+    apart, span = 1.0 / (grid.fraction - before), 1.0 / (behind - before)
     return _tabulate(
         body,
         scene,
@@ -114,6 +119,8 @@ def swimmer_of(body: Body, scene: Scene, grid: Grid) -> Swimmer:
         first=grid.first,
         count=grid.count,
         fraction=aligned(grid.fraction),
+        apart=aligned(apart),
+        span=aligned(span),
         barycentric=aligned(grid.barycentric),
         series=aligned(grid.series),
     )
@@ -145,6 +152,8 @@ def stations_of(body: Body, scene: Scene, grid: Grid, x: np.ndarray) -> Stations
             first=no_index,
             count=no_index,
             fraction=none,
+            apart=none,
+            span=none,
             barycentric=none,
             series=np.zeros((0, 0)),
         ),

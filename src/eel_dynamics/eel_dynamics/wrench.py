@@ -12,8 +12,8 @@ from typing import NamedTuple
 import numpy as np
 
 from .compiled import inlined
-from .drag import add_resistance, add_resistive_loads, integrate_balance, weigh_steps
-from .kernel import add_head_motion, add_wake, cross, dot, integrate_along, put_three, solve, three
+from .drag import add_resistance, integrate_steps
+from .kernel import add_head_motion, cross, dot, integrate_along, put_three, solve, three
 from .lanes import WIDTH, put, spread, take, total, work_space
 
 
@@ -25,9 +25,7 @@ class Balance(NamedTuple):
     density: np.ndarray  # (6, n) wrench per length that the motion takes less the loads, about the head
     upto: np.ndarray  # (6, n) its integral from the nose
     head: np.ndarray  # (6,) acceleration of the head
-    tail: np.ndarray  # (6,) wrench from the wake, about the head
     total: np.ndarray  # (6,) integral over the body of what the motion takes less the loads
-    drag: np.ndarray  # (6,) wrench of the drag along the body, about the head
     powers: np.ndarray  # (4,) W: actuators, wake, nose, drag
     nose: np.ndarray  # (1,) N, load on the nose along t1(0)
 
@@ -37,9 +35,7 @@ def balance_of(nodes: int) -> Balance:
     return Balance(
         *work_space(((3,), (3,), (6,), (6,)), nodes),
         head=np.zeros(6),
-        tail=np.zeros(6),
         total=np.zeros(6),
-        drag=np.zeros(6),
         powers=np.zeros(4),
         nose=np.zeros(1),
     )
@@ -136,52 +132,37 @@ def gather(swimmer, density, result):
 @inlined
 def accelerate(swimmer, fields, twist, balance):
     """Head's acceleration, accelerations and balance of the sections, in a configured body whose `fields` hold the true
-    velocities and the factors of the inertia I_o."""
+    velocities, the loads that go with them and the factors of the inertia I_o."""
     shape_accelerations(swimmer, fields, balance)
     section_densities(swimmer, fields, balance)
     gather(swimmer, balance.density, balance.total)
-    balance.drag[:] = 0.0
-    balance.powers[3] = 0.0
-    if swimmer.resistive:
-        balance.powers[3] = add_resistive_loads(swimmer, fields, twist, balance.drag)
-    for k in range(6):
-        balance.tail[k] = 0.0
-    v1, energy = add_wake(swimmer, fields, balance.tail)
     nose_drag = -swimmer.nose_drag * twist[3] * abs(twist[3])
     for k in range(6):
-        balance.head[k] = balance.tail[k] + balance.drag[k] - balance.total[k]
+        balance.head[k] = fields.tail[k] + fields.drag[k] - balance.total[k]
     balance.head[3] += nose_drag
     solve(fields.inertia, balance.head)
     add_head_acceleration(swimmer, fields, balance)
     section_densities(swimmer, fields, balance)
     gather(swimmer, balance.density, balance.total)
     for k in range(6):
-        balance.total[k] -= balance.drag[k]
+        balance.total[k] -= fields.drag[k]
     if swimmer.resistive:
         add_resistance(swimmer, fields, balance.density)
-    else:
-        fields.kinks.number[0] = 0
     balance.nose[0] = nose_drag - swimmer.nose_mass * balance.head[3]
-    balance.powers[1] = v1 * energy
+    balance.powers[1] = fields.losses[1] * fields.losses[2]
     balance.powers[2] = balance.nose[0] * twist[3]
+    balance.powers[3] = fields.losses[0]
 
 
 @inlined
 def actuator_power(swimmer, fields, balance):
     """- integral of C . Kdot [W] over the body, from an accelerated body; leaves the integrals of the balance in
     `upto`."""
-    weigh_steps(
-        *(fields.kinks, swimmer.count, swimmer.drag2, swimmer.drag3, swimmer.drag_roll),
-        *(fields.rubbing, fields.speed, fields.R, fields.r),
-    )
-    integrate_balance(
-        *(swimmer.upto, fields.kinks, swimmer.count, swimmer.fraction),
-        *(balance.density, balance.upto, balance.upto),
-    )
+    integrate_steps(swimmer, fields, swimmer.upto, balance.density, balance.upto, balance.upto)
     R, r, omega, v, upto = fields.R, fields.r, fields.omega, fields.v, balance.upto
     behind = fields.wrench  # the balance of the whole body, of which the part before each section is taken
     for k in range(6):
-        behind[k] = balance.tail[k] - balance.total[k]
+        behind[k] = fields.tail[k] - balance.total[k]
     power = spread(0.0)
     for k in range(swimmer.blocks):
         i = WIDTH * k
