@@ -26,6 +26,7 @@ LOOSEST_TOLERANCE = 1e-4  # of the pair, and of what an estimate compares with: 
 # and a light body that the water stops has steps by it alone
 BEST = {"resolution": 200.0, "tolerance": 1e-11}  # of the preset reference, where its target cannot be promised
 ANY = {"resolution": 30.0}  # until the scene is known
+FURTHER_POINTS = 9.0  # per length, with which a grid is finer for certain: the last eight nodes are always filled
 WAVES_POWER = 0.85  # points grow with this power of the number of waves on the body
 
 
@@ -92,7 +93,7 @@ class Accuracy:
 
     def finer(self) -> "Accuracy":
         """Settings that are at least some ten times as exact: what an estimate of the error compares with."""
-        resolution = min(1000.0, 1.4 * self.resolution + 2.0)
+        resolution = min(1000.0, max(1.4 * self.resolution + 2.0, self.resolution + FURTHER_POINTS))
         if self.step is not None:
             return replace(self, resolution=resolution, step=0.5 * self.step, target=None)
         if self.fixed is not None:
