@@ -69,13 +69,14 @@ def test_chosen_steps_follow_the_tolerance(measured):
     measured("power of the tolerance that the energy ledger's residual goes with, chosen steps", slope, 0.2, wanted=1.0)
 
 
-def test_order_in_space(measured):
+def test_order_in_space(measured, monkeypatch):
     """Six, within 0.2: the Magnus series between nodes, which remains once the panels' polynomials have converged.
 
     The falling gait with six times its bend, so that this error stands above round-off; no drag, same steps in time. 90
     to 160 points per length, counted where they follow the resolution: the nose's panel has them by a rule of its
     own. Below, panels gain several digits with each point: see `test_spectral_in_space`.
     """
+    monkeypatch.setattr("eel_dynamics.sections.FILLED", 1)  # no nodes beyond those of the resolution
     law, resolutions = falling(pitch_bend=3.0), np.arange(90.0, 165.0, 10.0)
 
     def run(resolution):

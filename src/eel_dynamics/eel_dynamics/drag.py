@@ -124,7 +124,7 @@ def zero_between(swimmer, values, kind, begin, count, i, before, exact):
     """Fraction of the panel at which `values` are zero, between node i and the one before it (value `before`).
 
     That of the quadratic through these and the next node of the panel: an error e moves the load of V|V| by e^3. Where
-    it has to be `exact`, that of the polynomial through all nodes, by Newton's method from there.
+    it has to be `exact`, that of the polynomial through all nodes, by Newton's method from there, or by halves.
     """
     start, end, f, g = 0.0, swimmer.fraction[i], before, values[kind, i]
     if i > begin:
@@ -141,19 +141,17 @@ def zero_between(swimmer, values, kind, begin, count, i, before, exact):
     if not (start < t < end):
         t = min(max(start - f / slope, start), end)
     if exact:
-        for _ in range(8):
-            if not (start < t < end):
-                t = (start * g - end * f) / (g - f)
-            if not (start < t < end):
-                break
+        step = end - start
+        for _ in range(40):
             value, rise = value_and_slope(swimmer, values, kind, begin, count, t)
             if (value > 0.0) == (g > 0.0):
-                end, g = t, value
+                end = t
             else:
-                start, f = t, value
-            step = value / rise
-            t -= step
-            if abs(step) < 1e-6:  # the next step would be its square
+                start = t
+            before, step, t = step, -value / rise, t - value / rise
+            if not (start < t < end) or abs(step) > 0.5 * abs(before):
+                t, step = 0.5 * (start + end), 0.5 * (end - start)
+            if abs(step) < 1e-7:  # the next step of Newton's would be its square
                 break
     return t
 
@@ -199,7 +197,8 @@ def note_step(swimmer, fields, kind, shared, i, start, noise):
 @inlined
 def find_steps(swimmer, fields, at_nose, noise, noise_of_roll, planar):
     """Note the steps of the loads: where V2, V3 or Omega1 (V2 alone where `planar`) or Re/8e4 - 1 changes its sign
-    along the body, from its value `at_nose`. What is below its `noise` counts as not negative: it is round-off."""
+    along the body, from its value `at_nose`. What is below its `noise` is round-off, and has the sign of what is before
+    it."""
     nodes, kinds = len(swimmer.x), ROLL + ONE
     if swimmer.friction == PRINTED:
         kinds = RATIO + ONE
@@ -214,9 +213,13 @@ def find_steps(swimmer, fields, at_nose, noise, noise_of_roll, planar):
             start, least = at_nose[2], noise_of_roll
         elif kind == RATIO:
             start, least, shared = -1.0, 0.0, ZERO
-        sign = np.int64(start < -least)
+        sign, signed_yet = np.int64(start < -least), abs(start) > least
         for k in range(swimmer.blocks):
-            negative = bits(take(fields.speed, kind, WIDTH * k) < -least)
+            values = take(fields.speed, kind, WIDTH * k)
+            negative = bits(values < -least)
+            known = negative | bits(values > least)
+            if not signed_yet or known != 255:
+                negative, sign, signed_yet = signs_carried(negative, known, sign, signed_yet)
             changes = (negative ^ (negative << 1 | sign)) & 255
             sign = negative >> 7
             if nodes - WIDTH * k < WIDTH:
@@ -229,6 +232,23 @@ def find_steps(swimmer, fields, at_nose, noise, noise_of_roll, planar):
                 note_step(swimmer, fields, kind, shared, i, start, least)
                 changes >>= 1
                 i += ONE
+
+
+@inlined
+def signs_carried(negative, known, sign, signed_yet):
+    """Of eight values by their bits: `negative` with the sign before for those that are not `known`; before the first
+    that is, its own. Returns them, the sign before the eight that goes with them, and whether there was one at all."""
+    if not signed_yet:
+        if known == 0:
+            return np.int64(0), np.int64(0), False
+        lowest = known & -known
+        sign = np.int64(negative & lowest != 0)
+    carried, result = sign, np.int64(0)
+    for lane in range(WIDTH):
+        if known >> lane & 1:
+            carried = negative >> lane & 1
+        result |= carried << lane
+    return result, sign, True
 
 
 @inlined

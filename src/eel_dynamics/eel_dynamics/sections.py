@@ -19,6 +19,7 @@ from .lanes import WIDTH, aligned
 from .quadrature import Blocks, Grid, Panel
 from .scene import FRICTION, Scene
 
+FILLED = WIDTH  # nodes, of whose multiples there are always as many
 WIDEST_PANEL = 24  # points; a longer panel is cut into equal parts
 CLOSEST = 1e-3  # lengths between a kink of the body and a knot of a law that still gets a panel
 TRANSITION = 8.0e4  # Reynolds number at which the printed friction law jumps from laminar to turbulent
@@ -82,8 +83,8 @@ def panels_of(body: Body, resolution: float, knots: tuple[float, ...] = (), wren
             kind = graded if right == end else ""
             panels.append(Panel(start=left, end=right, points=-(-points // parts), graded=kind))
         start = end
-    for _ in range(-sum(panel.points for panel in panels) % WIDTH):
-        index = min(range(len(panels)), key=lambda k: _next_resolution(panels[k], body.length))
+    for _ in range(-sum(panel.points for panel in panels) % FILLED):
+        index = min(range(len(panels)), key=lambda k: (round(_next_resolution(panels[k], body.length), 6), k))
         panels[index] = replace(panels[index], points=panels[index].points + 1)
     return tuple(panels)
 

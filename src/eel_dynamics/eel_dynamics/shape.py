@@ -53,7 +53,7 @@ class Shape:
         if "law" in self._source:
             self._source = _law_rows(self._source["law"], tabulation) | {"origin": self._source["origin"]}
         else:
-            self._source = self._source | {"rows": convert(self._source["rows"])}
+            self._source = self._source | {"rows": convert(self._source["rows"]), "split": None}
         if self._blend is not None:
             self._blend = (convert(self._blend[0]), *self._blend[1:])
         self.samples = [(time, convert(rows)) for time, rows in self.samples]
