@@ -151,7 +151,7 @@ def zero_between(swimmer, values, kind, begin, count, i, before, exact):
             before, step, t = step, -value / rise, t - value / rise
             if not (start < t < end) or abs(step) > 0.5 * abs(before):
                 t, step = 0.5 * (start + end), 0.5 * (end - start)
-            if abs(step) < 1e-7:  # the next step of Newton's would be its square
+            if abs(step) < 1e-10:  # the next step of Newton's would be its square
                 break
     return t
 
