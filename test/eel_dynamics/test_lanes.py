@@ -17,6 +17,7 @@ from eel_dynamics.lanes import (
     floor,
     following,
     last,
+    lowest,
     moved1,
     moved2,
     moved4,
@@ -93,6 +94,14 @@ def test_functions_and_choices_are_those_of_the_numbers():
     np.testing.assert_array_equal(out, expected)
     assert masks == [sum(1 << k for k in np.flatnonzero(mask)) for mask in (A < B, A >= 0.0, A <= -1.5)]
     assert not above and within
+
+
+def test_lowest_bit():
+    @njit
+    def of(value):
+        return lowest(value)
+
+    assert [of(value) for value in (1, 6, 128, 200, 1 << 40)] == [0, 1, 7, 3, 40]
 
 
 def test_arrays_are_taken_from_any_of_their_numbers():

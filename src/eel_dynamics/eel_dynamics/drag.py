@@ -14,7 +14,7 @@ kept as weights of the nodes (`share`), and as a list of steps for the integrals
 import numpy as np
 
 from .compiled import inlined
-from .lanes import WIDTH, below, bits, put, root, root_guess, signed, size, spread, take, total, where
+from .lanes import WIDTH, below, bits, lowest, put, root, root_guess, signed, size, spread, take, total, where
 
 ZERO, ONE = np.uintp(0), np.uintp(1)  # indices that are unsigned need no test for Python's negative ones
 PRINTED, LAMINAR, BLENDED = 0, 1, 2  # laws of friction, as in the scene
@@ -106,7 +106,9 @@ def value_and_slope(swimmer, values, kind, begin, count, t):
     above = under = none
     for k in range(0, count, WIDTH):
         node, inside = begin + np.uintp(k), below(count - k)
-        part = where(inside, take(swimmer.barycentric, node), none) / (t - where(inside, take(swimmer.fraction, node), far))
+        part = where(inside, take(swimmer.barycentric, node), none) / (
+            t - where(inside, take(swimmer.fraction, node), far)
+        )
         above += part * where(inside, take(values, kind, node), none)
         under += part
     value, whole = total(above) / total(under), total(under)
@@ -204,12 +206,14 @@ def find_steps(swimmer, fields, at_nose, noise, noise_of_roll, planar):
         kinds = RATIO + ONE
     fields.kinks.number[0] = 0
     for kind in range(SIDE, kinds):
-        if planar and (kind == HEIGHT or kind == ROLL):
-            continue
         start, least, shared = at_nose[0], noise, kind
         if kind == HEIGHT:
+            if planar:
+                continue
             start = at_nose[1]
         elif kind == ROLL:
+            if planar:
+                continue
             start, least = at_nose[2], noise_of_roll
         elif kind == RATIO:
             start, least, shared = -1.0, 0.0, ZERO
@@ -224,14 +228,9 @@ def find_steps(swimmer, fields, at_nose, noise, noise_of_roll, planar):
             sign = negative >> 7
             if nodes - WIDTH * k < WIDTH:
                 changes &= (1 << nodes - WIDTH * k) - 1
-            i = np.uintp(WIDTH * k)
             while changes != 0:
-                while changes & 1 == 0:
-                    changes >>= 1
-                    i += ONE
-                note_step(swimmer, fields, kind, shared, i, start, least)
-                changes >>= 1
-                i += ONE
+                note_step(swimmer, fields, kind, shared, np.uintp(WIDTH * k + lowest(changes)), start, least)
+                changes &= changes - 1
 
 
 @inlined
@@ -341,12 +340,12 @@ def weigh_steps(kinks, count, drag2, drag3, drag_roll, rubbing, speed, R, r):
         for c in range(6):
             whole[j, c] = 0.0
         first, load = ZERO, rubbing[1]  # of the axis that the load goes along
-        if kind == SIDE or kind == ROLL:
-            load = drag2 if kind == SIDE else drag_roll
-        if kind == HEIGHT:
-            load = drag3
-        if kind == SIDE or kind == HEIGHT:
-            first = np.uintp(3) * kind
+        if kind == SIDE:
+            first, load = np.uintp(3), drag2
+        elif kind == HEIGHT:
+            first, load = np.uintp(6), drag3
+        elif kind == ROLL:
+            load = drag_roll
         for k in range(count[begin]):
             node = begin + k
             speed_of_it = speed[AXIAL if kind == RATIO else kind, node]

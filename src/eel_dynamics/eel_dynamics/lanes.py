@@ -13,9 +13,9 @@ import math
 import operator
 
 import numpy as np
-from llvmlite import ir
 from numba import types
 from numba.core import cgutils
+from numba.core.cgutils import ir
 from numba.core.typing.templates import AbstractTemplate, infer_global, signature
 from numba.extending import intrinsic, lower_builtin, models, register_model
 
@@ -310,6 +310,16 @@ def bits(typingctx, mask):
         return builder.zext(builder.bitcast(args[0], ir.IntType(WIDTH)), _INDEX)
 
     return types.int64(MASK), lowering
+
+
+@intrinsic
+def lowest(typingctx, value):
+    """Number of the lowest bit of a whole number that is not 0."""
+
+    def lowering(context, builder, sig, args):
+        return builder.cttz(args[0], ir.Constant(_BIT, 1))
+
+    return types.int64(types.int64), lowering
 
 
 @intrinsic

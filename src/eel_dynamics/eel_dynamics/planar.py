@@ -5,8 +5,6 @@ The same momentum form as in the kernel, for yaw alone: t1 = (cos, sin) of the t
 K3 and so a sum of tabulated rows, as its rate is. The fields' components out of the plane stay zero.
 """
 
-import numpy as np
-
 from .compiled import inlined
 from .drag import AXIAL, NOISE, ONE, SIDE, ZERO, find_steps, integrate_steps, rub
 from .drive import cosine_and_sine, factors

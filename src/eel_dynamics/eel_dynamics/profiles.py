@@ -71,11 +71,11 @@ def profiles_of(
             shapes.append((count, stations, 4 if name == "section_orientation" else 3))
         else:
             shapes.append((samples, SIZES.get(name, 3)))
-    sizes = [math.prod(shape) for shape in shapes]
-    whole, begin, arrays = np.zeros((*swimmers, sum(sizes))), 0, []
-    for shape, size in zip(shapes, sizes, strict=True):
-        arrays.append(whole[..., begin : begin + size].reshape(*swimmers, *shape))
-        begin += size
+    counts = [math.prod(shape) for shape in shapes]
+    whole, begin, arrays = np.zeros((*swimmers, sum(counts))), 0, []
+    for shape, count in zip(shapes, counts, strict=True):
+        arrays.append(whole[..., begin : begin + count].reshape(*swimmers, *shape))
+        begin += count
     return Profiles(*arrays, whole)
 
 

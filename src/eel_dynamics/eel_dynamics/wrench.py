@@ -159,7 +159,7 @@ def actuator_power(swimmer, fields, balance):
     """- integral of C . Kdot [W] over the body, from an accelerated body; leaves the integrals of the balance in
     `upto`."""
     integrate_steps(swimmer, fields, swimmer.upto, balance.density, balance.upto, balance.upto)
-    R, r, omega, v, upto = fields.R, fields.r, fields.omega, fields.v, balance.upto
+    R, r, upto = fields.R, fields.r, balance.upto
     behind = fields.wrench  # the balance of the whole body, of which the part before each section is taken
     for k in range(6):
         behind[k] = fields.tail[k] - balance.total[k]
