@@ -16,7 +16,11 @@ import numpy as np
 from .compiled import inlined
 from .lanes import WIDTH, below, bits, lowest, put, root, root_guess, signed, size, spread, take, total, where
 
-ZERO, ONE = np.uintp(0), np.uintp(1)  # indices that are unsigned need no test for Python's negative ones
+ZERO, ONE, TWO = (np.uintp(k) for k in range(3))  # indices that are unsigned need no test for Python's negative ones
+    np.uintp(0),
+    np.uintp(1),
+    np.uintp(2),
+)  # indices that are unsigned need no test for Python's negative ones
 PRINTED, LAMINAR, BLENDED = 0, 1, 2  # laws of friction, as in the scene
 AXIAL, SIDE, HEIGHT, ROLL, RATIO = (np.uintp(k) for k in range(5))  # V1, V2, V3, Omega1, Re/8e4 - 1
 DEGREE = np.arange(1.0, 100.0)  # of Legendre polynomials: P_(n+1) = UPPER z P_n - LOWER P_(n-1)
@@ -335,33 +339,50 @@ def weigh_steps(kinks, count, drag2, drag3, drag_roll, rubbing, speed, R, r):
     """What the steps of the loads are of: the `density` of each at the nodes of its panel, and its integral from the
     panel's start to the step, the `whole`."""
     for j in range(kinks.number[0]):
-        begin, kind, step = kinks.begin[j], kinks.kind[j], kinks.step[j]
-        whole = kinks.whole
-        for c in range(6):
-            whole[j, c] = 0.0
-        first, load = ZERO, rubbing[1]  # of the axis that the load goes along
+        begin, kind, step, density, whole = kinks.begin[j], kinks.kind[j], kinks.step[j], kinks.density, kinks.whole
+        axis, row = ZERO, kind  # of the force or torque; of the speed that it goes with
         if kind == SIDE:
-            first, load = np.uintp(3), drag2
+            axis = np.uintp(3)
         elif kind == HEIGHT:
-            first, load = np.uintp(6), drag3
-        elif kind == ROLL:
-            load = drag_roll
-        for k in range(count[begin]):
-            node = begin + k
-            speed_of_it = speed[AXIAL if kind == RATIO else kind, node]
-            force = step * load[node] * speed_of_it * (1.0 if kind == RATIO else speed_of_it)
-            x, y, z = force * R[first, node], force * R[first + ONE, node], force * R[first + np.uintp(2), node]
-            density = kinks.density[j, k]
-            if kind == ROLL:
-                density[0], density[1], density[2] = x, y, z
-                density[3] = density[4] = density[5] = 0.0
+            axis = np.uintp(6)
+        elif kind == RATIO:
+            row = AXIAL
+        nodes, none = np.int64(count[begin]), spread(0.0)
+        a = b = c = d = e = f = none
+        for k in range(0, nodes, WIDTH):
+            node = begin + np.uintp(k)
+            along = take(speed, row, node)
+            if kind == SIDE:
+                force = take(drag2, node) * along * along
+            elif kind == HEIGHT:
+                force = take(drag3, node) * along * along
+            elif kind == ROLL:
+                force = take(drag_roll, node) * along * along
             else:
-                density[0] = r[1, node] * z - r[2, node] * y
-                density[1] = r[2, node] * x - r[0, node] * z
-                density[2] = r[0, node] * y - r[1, node] * x
-                density[3], density[4], density[5] = x, y, z
-            for c in range(6):
-                whole[j, c] += kinks.row[j, k] * density[c]
+                force = take(rubbing, 1, node) * along
+            force = step * force
+            x, y, z = force * take(R, axis, node), force * take(R, axis + ONE, node), force * take(R, axis + TWO, node)
+            tx, ty, tz = x, y, z
+            if kind == ROLL:
+                x = y = z = none
+            else:
+                rx, ry, rz = take(r, 0, node), take(r, 1, node), take(r, 2, node)
+                tx, ty, tz = ry * z - rz * y, rz * x - rx * z, rx * y - ry * x
+            put(density, j, 0, k, tx)
+            put(density, j, 1, k, ty)
+            put(density, j, 2, k, tz)
+            put(density, j, 3, k, x)
+            put(density, j, 4, k, y)
+            put(density, j, 5, k, z)
+            weight = where(below(nodes - k), take(kinks.row, j, k), none)
+            a += weight * tx
+            b += weight * ty
+            c += weight * tz
+            d += weight * x
+            e += weight * y
+            f += weight * z
+        whole[j, 0], whole[j, 1], whole[j, 2] = total(a), total(b), total(c)
+        whole[j, 3], whole[j, 4], whole[j, 5] = total(d), total(e), total(f)
 
 
 @inlined
@@ -395,12 +416,12 @@ def integrate_balance(upto, kinks, count, fraction, density, known, result):
                     column = where(behind, column, spread(0.0))
                 else:
                     column = where(behind, spread(0.0), -column)
-                a += of_it[j, k, 0] * column
-                b += of_it[j, k, 1] * column
-                c += of_it[j, k, 2] * column
-                d += of_it[j, k, 3] * column
-                e += of_it[j, k, 4] * column
-                f += of_it[j, k, 5] * column
+                a += of_it[j, 0, k] * column
+                b += of_it[j, 1, k] * column
+                c += of_it[j, 2, k] * column
+                d += of_it[j, 3, k] * column
+                e += of_it[j, 4, k] * column
+                f += of_it[j, 5, k] * column
             passed = where(behind, spread(1.0), spread(0.0))
             a -= whole[j, 0] * passed
             b -= whole[j, 1] * passed

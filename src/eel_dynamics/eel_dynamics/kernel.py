@@ -46,7 +46,7 @@ class Kinks(NamedTuple):
     fraction: np.ndarray  # (k,) of the panel
     step: np.ndarray  # (k,) of the factor of the load
     row: np.ndarray  # (k, p) m, weights of the integral from the panel's start to the step
-    density: np.ndarray  # (k, p, 6) what the step is of, per length about the head
+    density: np.ndarray  # (k, 6, p) what the step is of, per length about the head
     whole: np.ndarray  # (k, 6) its integral from the panel's start to the step
 
 
@@ -96,7 +96,7 @@ def fields_of(nodes: int, rows: int, widest: int) -> Fields:
             fraction=np.zeros(MOST_KINKS),
             step=np.zeros(MOST_KINKS),
             row=np.zeros((MOST_KINKS, padded(widest))),
-            density=np.zeros((MOST_KINKS, widest, 6)),
+            density=np.zeros((MOST_KINKS, 6, padded(widest))),
             whole=np.zeros((MOST_KINKS, 6)),
         ),
     )
