@@ -17,10 +17,6 @@ from .compiled import inlined
 from .lanes import WIDTH, below, bits, lowest, put, root, root_guess, signed, size, spread, take, total, where
 
 ZERO, ONE, TWO = (np.uintp(k) for k in range(3))  # indices that are unsigned need no test for Python's negative ones
-    np.uintp(0),
-    np.uintp(1),
-    np.uintp(2),
-)  # indices that are unsigned need no test for Python's negative ones
 PRINTED, LAMINAR, BLENDED = 0, 1, 2  # laws of friction, as in the scene
 AXIAL, SIDE, HEIGHT, ROLL, RATIO = (np.uintp(k) for k in range(5))  # V1, V2, V3, Omega1, Re/8e4 - 1
 DEGREE = np.arange(1.0, 100.0)  # of Legendre polynomials: P_(n+1) = UPPER z P_n - LOWER P_(n-1)
