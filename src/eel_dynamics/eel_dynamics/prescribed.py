@@ -78,4 +78,4 @@ def hydrodynamic_wrench(
     gather(alone, balance.density, inertia)
     find_loads(water, fields, relative)
     nose[3] = -water.nose_mass * balance.head[3] - water.nose_drag * relative[3] * abs(relative[3])
-    return HydrodynamicWrench(inertia=-inertia, wake=fields.tail, resistive=fields.drag, nose=nose)
+    return HydrodynamicWrench(inertia=-inertia, wake=fields.tail.copy(), resistive=fields.drag.copy(), nose=nose)
