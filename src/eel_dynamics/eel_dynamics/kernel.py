@@ -289,6 +289,16 @@ def put_three(rows, first, i, x, y, z):
 
 
 @inlined
+def in_section(R, i, x, y, z):
+    """Components of eight vectors in the axes of the sections from i on."""
+    return (
+        take(R, 0, i) * x + take(R, 1, i) * y + take(R, 2, i) * z,
+        take(R, 3, i) * x + take(R, 4, i) * y + take(R, 5, i) * z,
+        take(R, 6, i) * x + take(R, 7, i) * y + take(R, 8, i) * z,
+    )
+
+
+@inlined
 def shape_velocities(swimmer, fields):
     """Positions and the velocities due to the change of shape alone: r' = t1, omega' = R Kdot, v' = omega x t1."""
     R, rate, f, omega = fields.R, fields.rate, fields.integrand, fields.omega

@@ -17,6 +17,7 @@ from .kernel import (
     add_head_twist,
     configure,
     cross,
+    in_section,
     integrate,
     momentum_of_twist,
     product,
@@ -108,16 +109,6 @@ def show(rows, first, result):
     """Put three `rows` from `first` on into the `result` (M, 3)."""
     for i in range(result.shape[0]):
         result[i, 0], result[i, 1], result[i, 2] = rows[first, i], rows[first + 1, i], rows[first + 2, i]
-
-
-@inlined
-def in_section(R, i, x, y, z):
-    """Components of eight vectors in the axes of the sections from i on."""
-    return (
-        take(R, 0, i) * x + take(R, 1, i) * y + take(R, 2, i) * z,
-        take(R, 3, i) * x + take(R, 4, i) * y + take(R, 5, i) * z,
-        take(R, 6, i) * x + take(R, 7, i) * y + take(R, 8, i) * z,
-    )
 
 
 @compiled

@@ -13,7 +13,7 @@ import numpy as np
 
 from .compiled import inlined
 from .drag import add_resistance, integrate_steps
-from .kernel import add_head_motion, cross, dot, integrate_along, put_three, solve, three
+from .kernel import add_head_motion, cross, dot, in_section, integrate_along, put_three, solve, three
 from .lanes import WIDTH, put, spread, take, total, work_space
 
 
@@ -79,19 +79,11 @@ def section_densities(swimmer, fields, balance):
     R, r, omega, v, density = fields.R, fields.r, fields.omega, fields.v, balance.density
     for k in range(swimmer.blocks):
         i = WIDTH * k
-        ax, ay, az = three(R, 0, i)
-        bx, by, bz = three(R, 3, i)
-        cx, cy, cz = three(R, 6, i)
-        ux, uy, uz = three(v, 0, i)
-        v1, v2, v3 = dot(ax, ay, az, ux, uy, uz), dot(bx, by, bz, ux, uy, uz), dot(cx, cy, cz, ux, uy, uz)
-        ux, uy, uz = three(omega, 0, i)
-        o1, o2, o3 = dot(ax, ay, az, ux, uy, uz), dot(bx, by, bz, ux, uy, uz), dot(cx, cy, cz, ux, uy, uz)
-        ux, uy, uz = three(balance.acc, 0, i)
-        d1 = dot(ax, ay, az, ux, uy, uz) - (o2 * v3 - o3 * v2)
-        d2 = dot(bx, by, bz, ux, uy, uz) - (o3 * v1 - o1 * v3)
-        d3 = dot(cx, cy, cz, ux, uy, uz) - (o1 * v2 - o2 * v1)
-        ux, uy, uz = three(balance.alpha, 0, i)
-        e1, e2, e3 = dot(ax, ay, az, ux, uy, uz), dot(bx, by, bz, ux, uy, uz), dot(cx, cy, cz, ux, uy, uz)
+        v1, v2, v3 = in_section(R, i, *three(v, 0, i))
+        o1, o2, o3 = in_section(R, i, *three(omega, 0, i))
+        d1, d2, d3 = in_section(R, i, *three(balance.acc, 0, i))
+        e1, e2, e3 = in_section(R, i, *three(balance.alpha, 0, i))
+        d1, d2, d3 = d1 - (o2 * v3 - o3 * v2), d2 - (o3 * v1 - o1 * v3), d3 - (o1 * v2 - o2 * v1)
         m1 = take(swimmer.mass, i)
         m2, m3 = m1 + take(swimmer.added2, i), m1 + take(swimmer.added3, i)
         j1, j2, j3 = take(swimmer.inertia1, i), take(swimmer.inertia2, i), take(swimmer.inertia3, i)
@@ -103,6 +95,9 @@ def section_densities(swimmer, fields, balance):
         g1 = j1 * e1 + (o2 * s3 - o3 * s2) + (v2 * p3 - v3 * p2)
         g2 = j2 * e2 + (o3 * s1 - o1 * s3) + (v3 * p1 - v1 * p3)
         g3 = j3 * e3 + (o1 * s2 - o2 * s1) + (v1 * p2 - v2 * p1)
+        ax, ay, az = three(R, 0, i)
+        bx, by, bz = three(R, 3, i)
+        cx, cy, cz = three(R, 6, i)
         hx, hy, hz = ax * f1 + bx * f2 + cx * f3, ay * f1 + by * f2 + cy * f3, az * f1 + bz * f2 + cz * f3
         x, y, z = three(r, 0, i)
         ux, uy, uz = cross(x, y, z, hx, hy, hz)
@@ -188,13 +183,8 @@ def kinetic_energies(swimmer, fields):
     body = water = spread(0.0)
     for k in range(swimmer.blocks):
         i = WIDTH * k
-        ax, ay, az = three(R, 0, i)
-        bx, by, bz = three(R, 3, i)
-        cx, cy, cz = three(R, 6, i)
-        ux, uy, uz = three(v, 0, i)
-        v1, v2, v3 = dot(ax, ay, az, ux, uy, uz), dot(bx, by, bz, ux, uy, uz), dot(cx, cy, cz, ux, uy, uz)
-        ux, uy, uz = three(omega, 0, i)
-        o1, o2, o3 = dot(ax, ay, az, ux, uy, uz), dot(bx, by, bz, ux, uy, uz), dot(cx, cy, cz, ux, uy, uz)
+        v1, v2, v3 = in_section(R, i, *three(v, 0, i))
+        o1, o2, o3 = in_section(R, i, *three(omega, 0, i))
         roll = take(swimmer.added_roll, i)
         fluid = take(swimmer.added2, i) * v2 * v2 + take(swimmer.added3, i) * v3 * v3 + roll * o1 * o1
         solid = take(swimmer.mass, i) * (v1 * v1 + v2 * v2 + v3 * v3)
