@@ -120,6 +120,25 @@ def falling_gait():
             )
 
 
+def wrench():
+    """One sample at 51 stations, preset standard: motion and powers, the internal wrench besides, the water's load
+    besides; and an evaluation of the head's dynamics on the same nodes."""
+    swimmer, count, dy = Simulation(body=BODY, law=falling()), 2000, np.zeros(13)
+    swimmer.advance(2.3)
+    arguments = swimmer.swimmer, swimmer.drive, swimmer.fields, np.zeros(3), 2.3, swimmer.state, swimmer.step, dy
+    instants = np.full(count, 2.3)
+    asked = {"motion, powers": (False, False), "and the internal wrench": (True, False), "and the load": (True, True)}
+    cases = {name: partial(swimmer.record, instants, *wanted) for name, wanted in asked.items()}
+    times = times_in_turn({"an evaluation": lambda: _evaluate(count, *arguments)} | cases)
+    for name, values in times.items():
+        yield name, statistics.median(values) / count * 1e6, "us (CPU)"
+    for name in cases:
+        yield f"{name}, by evaluations", median_ratio(times[name], times["an evaluation"]), "evaluations"
+    before, after = times["motion, powers"], times["and the internal wrench"]
+    alone = [b - a for a, b in zip(before, after, strict=True)]
+    yield "what the wrench adds", median_ratio(alone, times["an evaluation"]), "evaluations"
+
+
 def switches():
     """What a switch of the scene costs: time of 10 s of a straight gait by that with everything on, at equal
     accuracy."""
@@ -162,6 +181,7 @@ FIGURES = {
     "evaluation": evaluation,
     "plane": plane,
     "falling": falling_gait,
+    "wrench": wrench,
     "switches": switches,
     "start": start,
     "ticks": ticks,
