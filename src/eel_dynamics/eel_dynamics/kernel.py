@@ -13,8 +13,9 @@ from typing import NamedTuple
 import numpy as np
 
 from .compiled import compiled, inlined
-from .drag import ONE, ZERO, add_resistive_loads
+from .drag import add_resistive_loads
 from .drive import combine, combine_moments
+from .kinks import ONE, ZERO
 from .lanes import (
     WIDTH,
     any_of,

@@ -6,9 +6,10 @@ K3 and so a sum of tabulated rows, as its rate is. The fields' components out of
 """
 
 from .compiled import inlined
-from .drag import AXIAL, NOISE, ONE, SIDE, ZERO, find_steps, integrate_steps, rub
+from .drag import NOISE, rub
 from .drive import cosine_and_sine, factors
 from .kernel import integrate_along
+from .kinks import AXIAL, ONE, SIDE, ZERO, find_steps, integrate_steps
 from .lanes import WIDTH, put, signed, size, spread, take, total
 
 YAW = 1

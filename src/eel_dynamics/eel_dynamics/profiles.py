@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .compiled import compiled, inlined
-from .drag import BLENDED, LAMINAR, integrate_balance, inverse_fifth_root, turbulent_part
+from .drag import inverse_fifth_root, turbulent_part
 from .drive import combine, combine_moments, factors
 from .integrator import MARCHED, SINGULAR, head_axes, march, powers_of_state, state_at, to_head, to_world
 from .kernel import (
@@ -27,6 +27,7 @@ from .kernel import (
     turns,
     two,
 )
+from .kinks import BLENDED, LAMINAR, integrate_balance
 from .lanes import WIDTH, put, root, size, spread, take, where, work_space
 from .wrench import kinetic_energies
 

@@ -12,8 +12,9 @@ from typing import NamedTuple
 import numpy as np
 
 from .compiled import inlined
-from .drag import add_resistance, integrate_steps
+from .drag import add_resistance
 from .kernel import add_head_motion, cross, dot, in_section, integrate_along, put_three, solve, three
+from .kinks import integrate_steps
 from .lanes import WIDTH, put, spread, take, total, work_space
 
 
