@@ -10,6 +10,7 @@ import numpy as np
 from .compiled import inlined
 from .kinks import AXIAL, BLENDED, HEIGHT, LAMINAR, PRINTED, RATIO, ROLL, SIDE, find_steps
 from .lanes import WIDTH, put, root, root_guess, signed, size, spread, take, total, where
+from .vectors import cross, from_section, in_section, put_three, three
 
 NOISE = 1e-7  # a sign that changes within this part of the tail's speed moves loads by its square: round-off
 
@@ -46,12 +47,22 @@ def section_speeds(swimmer, fields):
     R, omega, v, speed = fields.R, fields.omega, fields.v, fields.speed
     for k in range(swimmer.blocks):
         i = WIDTH * k
-        x, y, z = take(v, 0, i), take(v, 1, i), take(v, 2, i)
-        ax, ay, az = take(R, 0, i), take(R, 1, i), take(R, 2, i)
-        put(speed, AXIAL, i, ax * x + ay * y + az * z)
-        put(speed, SIDE, i, take(R, 3, i) * x + take(R, 4, i) * y + take(R, 5, i) * z)
-        put(speed, HEIGHT, i, take(R, 6, i) * x + take(R, 7, i) * y + take(R, 8, i) * z)
-        put(speed, ROLL, i, ax * take(omega, 0, i) + ay * take(omega, 1, i) + az * take(omega, 2, i))
+        v1, v2, v3 = in_section(R, i, *three(v, 0, i))
+        roll, _, _ = in_section(R, i, *three(omega, 0, i))
+        put(speed, AXIAL, i, v1)
+        put(speed, SIDE, i, v2)
+        put(speed, HEIGHT, i, v3)
+        put(speed, ROLL, i, roll)
+
+
+@inlined
+def about_head(R, r, i, c1, n1, n2, n3):
+    """Wrenches about the head of eight sections from i on, each with a torque about axis 1 and a force in its axes."""
+    x, y, z = three(r, 0, i)
+    ax, ay, az = three(R, 0, i)
+    nx, ny, nz = from_section(R, i, n1, n2, n3)
+    tx, ty, tz = cross(x, y, z, nx, ny, nz)
+    return c1 * ax + tx, c1 * ay + ty, c1 * az + tz, nx, ny, nz
 
 
 @inlined
@@ -114,17 +125,13 @@ def add_resistive_loads(swimmer, fields, twist, wrench):
         n2 = -take(share, SIDE, i) * take(swimmer.drag2, i) * v2 * v2
         n3 = -take(share, HEIGHT, i) * take(swimmer.drag3, i) * v3 * v3
         c1 = -take(share, ROLL, i) * take(swimmer.drag_roll, i) * roll * roll
-        ax, ay, az = take(R, 0, i), take(R, 1, i), take(R, 2, i)
-        nx = ax * n1 + take(R, 3, i) * n2 + take(R, 6, i) * n3
-        ny = ay * n1 + take(R, 4, i) * n2 + take(R, 7, i) * n3
-        nz = az * n1 + take(R, 5, i) * n2 + take(R, 8, i) * n3
-        x, y, z = take(r, 0, i), take(r, 1, i), take(r, 2, i)
+        ux, uy, uz, nx, ny, nz = about_head(R, r, i, c1, n1, n2, n3)
+        tx += ux
+        ty += uy
+        tz += uz
         fx += nx
         fy += ny
         fz += nz
-        tx += c1 * ax + (y * nz - z * ny)
-        ty += c1 * ay + (z * nx - x * nz)
-        tz += c1 * az + (x * ny - y * nx)
         power += n1 * v1 + n2 * v2 + n3 * v3 + c1 * roll
     wrench[0] += total(tx)
     wrench[1] += total(ty)
@@ -146,14 +153,8 @@ def add_resistance(swimmer, fields, density):
         n2 = take(swimmer.drag2, i) * size(v2) * v2
         n3 = take(swimmer.drag3, i) * size(v3) * v3
         c1 = take(swimmer.drag_roll, i) * size(roll) * roll
-        ax, ay, az = take(R, 0, i), take(R, 1, i), take(R, 2, i)
-        nx = ax * n1 + take(R, 3, i) * n2 + take(R, 6, i) * n3
-        ny = ay * n1 + take(R, 4, i) * n2 + take(R, 7, i) * n3
-        nz = az * n1 + take(R, 5, i) * n2 + take(R, 8, i) * n3
-        x, y, z = take(r, 0, i), take(r, 1, i), take(r, 2, i)
-        put(density, 0, i, take(density, 0, i) + c1 * ax + (y * nz - z * ny))
-        put(density, 1, i, take(density, 1, i) + c1 * ay + (z * nx - x * nz))
-        put(density, 2, i, take(density, 2, i) + c1 * az + (x * ny - y * nx))
-        put(density, 3, i, take(density, 3, i) + nx)
-        put(density, 4, i, take(density, 4, i) + ny)
-        put(density, 5, i, take(density, 5, i) + nz)
+        ux, uy, uz, nx, ny, nz = about_head(R, r, i, c1, n1, n2, n3)
+        tx, ty, tz = three(density, 0, i)
+        fx, fy, fz = three(density, 3, i)
+        put_three(density, 0, i, tx + ux, ty + uy, tz + uz)
+        put_three(density, 3, i, fx + nx, fy + ny, fz + nz)

@@ -95,11 +95,8 @@ class Tabulation:
 
 
 @inlined
-def cosine_and_sine(angle):
-    """Of an angle [rad], or of eight, to round-off below 1e5; without branches."""
-    quarter = floor(angle * (2.0 / np.pi) + 0.5)
-    x = (angle - quarter * PI_1) - quarter * PI_2
-    z = x * x
+def series_of(z):
+    """sin(x)/x and cos(x) of z = x^2 up to 0.62, x up to a quarter of pi, to round-off."""
     s = SINE[0] * z + SINE[1]
     c = (COSINE[0] * z + COSINE[1]) * z + COSINE[2]
     s, c = s * z + SINE[2], c * z + COSINE[3]
@@ -107,7 +104,16 @@ def cosine_and_sine(angle):
     s, c = s * z + SINE[4], c * z + COSINE[5]
     s, c = s * z + SINE[5], c * z + COSINE[6]
     s, c = s * z + SINE[6], c * z + COSINE[7]
-    s, c = x + x * z * s, 1.0 + z * c
+    return 1.0 + z * s, 1.0 + z * c
+
+
+@inlined
+def cosine_and_sine(angle):
+    """Of an angle [rad], or of eight, to round-off below 1e5; without branches."""
+    quarter = floor(angle * (2.0 / np.pi) + 0.5)
+    x = (angle - quarter * PI_1) - quarter * PI_2
+    s, c = series_of(x * x)
+    s *= x
     half = quarter - 2.0 * floor(0.5 * quarter)  # 1: a quarter turn to go
     sign = 1.0 - 2.0 * (floor(0.5 * quarter) - 2.0 * floor(0.25 * quarter))  # -1: half a turn to go
     return sign * (c - half * (c + s)), sign * (s + half * (c - s))

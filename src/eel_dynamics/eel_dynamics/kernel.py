@@ -14,7 +14,7 @@ import numpy as np
 
 from .compiled import compiled, inlined
 from .drag import add_resistive_loads
-from .drive import combine, combine_moments
+from .drive import combine, combine_moments, series_of
 from .kinks import ONE, ZERO
 from .lanes import (
     WIDTH,
@@ -30,12 +30,10 @@ from .lanes import (
     total,
     work_space,
 )
+from .vectors import bent, cross, dot, put_three, three
 
 MOST_KINKS = 24  # of the drag, along the body at one instant; what is more is integrated without care
 SERIES = 0.25  # square of half an angle, up to which sine and cosine are taken from their series
-# of sin(a)/a and cos(a) by a^2, from the highest power down
-SINE = (1 / 6227020800, -1 / 39916800, 1 / 362880, -1 / 5040, 1 / 120, -1 / 6, 1.0)
-COSINE = (1 / 87178291200, -1 / 479001600, 1 / 3628800, -1 / 40320, 1 / 720, -1 / 24, 0.5)
 
 
 class Kinks(NamedTuple):
@@ -125,13 +123,8 @@ def turns(bend, blocks, turn):
         e2 = b2 - (u3 * w1 - c1 * w3) * (1.0 / 240.0)
         e3 = b3 - (c1 * w2 - u2 * w1) * (1.0 / 240.0)
         z = 0.25 * (e1 * e1 + e2 * e2 + e3 * e3)  # half angle squared
-        s = SINE[0] * z + SINE[1]
-        c = COSINE[0] * z + COSINE[1]
-        s, c = s * z + SINE[2], c * z + COSINE[2]
-        s, c = s * z + SINE[3], c * z + COSINE[3]
-        s, c = s * z + SINE[4], c * z + COSINE[4]
-        s, c = s * z + SINE[5], c * z + COSINE[5]
-        s, c = 0.5 * (s * z + 1.0), 1.0 - z * (c * z + 0.5)
+        s, c = series_of(z)
+        s *= 0.5
         put(turn, 0, i, s * e1)
         put(turn, 1, i, s * e2)
         put(turn, 2, i, s * e3)
@@ -258,57 +251,13 @@ def integrate_both(upto, f, result_f, g, result_g):
 
 
 @inlined
-def cross(ax, ay, az, bx, by, bz):
-    """a x b."""
-    return ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
-
-
-@inlined
-def dot(ax, ay, az, bx, by, bz):
-    """a . b."""
-    return ax * bx + ay * by + az * bz
-
-
-@inlined
-def two(rows, i):
-    """The first two rows of an array at the nodes from i on."""
-    return take(rows, 0, i), take(rows, 1, i)
-
-
-@inlined
-def three(rows, first, i):
-    """Eight vectors: three rows of an array from `first` on, at the nodes from `i` on."""
-    return take(rows, first, i), take(rows, first + 1, i), take(rows, first + 2, i)
-
-
-@inlined
-def put_three(rows, first, i, x, y, z):
-    """Store eight vectors."""
-    put(rows, first, i, x)
-    put(rows, first + 1, i, y)
-    put(rows, first + 2, i, z)
-
-
-@inlined
-def in_section(R, i, x, y, z):
-    """Components of eight vectors in the axes of the sections from i on."""
-    return (
-        take(R, 0, i) * x + take(R, 1, i) * y + take(R, 2, i) * z,
-        take(R, 3, i) * x + take(R, 4, i) * y + take(R, 5, i) * z,
-        take(R, 6, i) * x + take(R, 7, i) * y + take(R, 8, i) * z,
-    )
-
-
-@inlined
 def shape_velocities(swimmer, fields):
     """Positions and the velocities due to the change of shape alone: r' = t1, omega' = R Kdot, v' = omega x t1."""
     R, rate, f, omega = fields.R, fields.rate, fields.integrand, fields.omega
     for k in range(swimmer.blocks):
         i = WIDTH * k
-        k2, k3 = take(rate, 0, i), take(rate, 1, i)
-        put(f, 0, i, take(R, 3, i) * k2 + take(R, 6, i) * k3)
-        put(f, 1, i, take(R, 4, i) * k2 + take(R, 7, i) * k3)
-        put(f, 2, i, take(R, 5, i) * k2 + take(R, 8, i) * k3)
+        x, y, z = bent(R, rate, i)
+        put_three(f, 0, i, x, y, z)
     integrate_both(swimmer.upto, R, fields.r, f, omega)
     for k in range(swimmer.blocks):
         i = WIDTH * k

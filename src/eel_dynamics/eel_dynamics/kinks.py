@@ -13,6 +13,7 @@ import numpy as np
 
 from .compiled import inlined
 from .lanes import WIDTH, below, bits, lowest, put, spread, take, total, where
+from .vectors import cross, three
 
 ZERO, ONE, TWO = (np.uintp(k) for k in range(3))  # indices that are unsigned need no test for Python's negative ones
 PRINTED, LAMINAR, BLENDED = 0, 1, 2  # laws of friction, as in the scene
@@ -205,8 +206,8 @@ def weigh_steps(kinks, count, drag2, drag3, drag_roll, rubbing, speed, R, r):
             if kind == ROLL:
                 x = y = z = none
             else:
-                rx, ry, rz = take(r, 0, node), take(r, 1, node), take(r, 2, node)
-                tx, ty, tz = ry * z - rz * y, rz * x - rx * z, rx * y - ry * x
+                rx, ry, rz = three(r, 0, node)
+                tx, ty, tz = cross(rx, ry, rz, x, y, z)
             put(density, j, 0, k, tx)
             put(density, j, 1, k, ty)
             put(density, j, 2, k, tz)

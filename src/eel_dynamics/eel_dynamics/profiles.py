@@ -16,20 +16,16 @@ from .integrator import MARCHED, SINGULAR, head_axes, march, powers_of_state, st
 from .kernel import (
     add_head_twist,
     configure,
-    cross,
-    in_section,
     integrate,
     momentum_of_twist,
     product,
     put_axes,
-    put_three,
-    three,
     turns,
-    two,
 )
 from .kinks import BLENDED, LAMINAR, integrate_balance
 from .lanes import WIDTH, put, root, size, spread, take, where, work_space
-from .wrench import kinetic_energies
+from .vectors import bent, cross, in_section, put_three, three, two
+from .wrench import kinetic_energies, moving_gain, turning_gain
 
 
 class Profiles(NamedTuple):
@@ -173,10 +169,8 @@ def velocities(swimmer, stations, fields, here, twist):
     R, f = fields.R, fields.integrand
     for block in range(swimmer.blocks):
         i = WIDTH * block
-        k2, k3 = take(fields.rate, 0, i), take(fields.rate, 1, i)
-        bx, by, bz = three(R, 3, i)
-        cx, cy, cz = three(R, 6, i)
-        put_three(f, 0, i, bx * k2 + cx * k3, by * k2 + cy * k3, bz * k2 + cz * k3)
+        x, y, z = bent(R, fields.rate, i)
+        put_three(f, 0, i, x, y, z)
         ox, oy, oz = three(fields.omega, 0, i)
         tx, ty, tz = three(R, 0, i)
         x, y, z = cross(ox, oy, oz, tx, ty, tz)
@@ -192,18 +186,10 @@ def accelerations(swimmer, stations, fields, balance, here):
     R, f, head = fields.R, fields.integrand, balance.head
     for block in range(swimmer.blocks):
         i = WIDTH * block
-        k2, k3, l2, l3 = *two(fields.rate, i), *two(fields.accel, i)
-        bx, by, bz = three(R, 3, i)
-        cx, cy, cz = three(R, 6, i)
-        ox, oy, oz = three(fields.omega, 0, i)
-        x, y, z = cross(ox, oy, oz, bx * k2 + cx * k3, by * k2 + cy * k3, bz * k2 + cz * k3)
-        put_three(f, 0, i, bx * l2 + cx * l3 + x, by * l2 + cy * l3 + y, bz * l2 + cz * l3 + z)
-        tx, ty, tz = three(R, 0, i)
-        x, y, z = cross(ox, oy, oz, tx, ty, tz)
-        x, y, z = cross(ox, oy, oz, x, y, z)
-        ax, ay, az = three(balance.alpha, 0, i)
-        ux, uy, uz = cross(ax, ay, az, tx, ty, tz)
-        put_three(f, 3, i, x + ux, y + uy, z + uz)
+        x, y, z = turning_gain(R, fields.omega, fields.rate, fields.accel, i)
+        put_three(f, 0, i, x, y, z)
+        x, y, z = moving_gain(R, fields.omega, balance.alpha, i)
+        put_three(f, 3, i, x, y, z)
     upto = stations.section.upto
     integrate(upto, f, 0, balance.alpha, (head[0], head[1], head[2]), here.alpha)
     integrate(upto, f, 3, balance.acc, (head[3], head[4], head[5]), here.acc)

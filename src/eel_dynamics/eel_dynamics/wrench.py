@@ -13,9 +13,10 @@ import numpy as np
 
 from .compiled import inlined
 from .drag import add_resistance
-from .kernel import add_head_motion, cross, dot, in_section, integrate_along, put_three, solve, three
+from .kernel import add_head_motion, integrate_along, solve
 from .kinks import integrate_steps
-from .lanes import WIDTH, put, spread, take, total, work_space
+from .lanes import WIDTH, spread, take, total, work_space
+from .vectors import bent, cross, dot, from_section, in_section, put_three, three
 
 
 class Balance(NamedTuple):
@@ -43,27 +44,40 @@ def balance_of(nodes: int) -> Balance:
 
 
 @inlined
+def turning_gain(R, omega, rate, accel, i):
+    """alpha' of eight sections from i on."""
+    ax, ay, az = bent(R, accel, i)
+    kx, ky, kz = bent(R, rate, i)
+    ox, oy, oz = three(omega, 0, i)
+    x, y, z = cross(ox, oy, oz, kx, ky, kz)
+    return ax + x, ay + y, az + z
+
+
+@inlined
+def moving_gain(R, omega, alpha, i):
+    """acc' of eight sections from i on."""
+    ox, oy, oz = three(omega, 0, i)
+    tx, ty, tz = three(R, 0, i)
+    ax, ay, az = three(alpha, 0, i)
+    along, square = dot(ox, oy, oz, tx, ty, tz), dot(ox, oy, oz, ox, oy, oz)
+    x, y, z = cross(ax, ay, az, tx, ty, tz)
+    return x + along * ox - square * tx, y + along * oy - square * ty, z + along * oz - square * tz
+
+
+@inlined
 def shape_accelerations(swimmer, fields, balance):
     """Accelerations of the sections where the head has none: alpha and acc with zero at the nose."""
     R, omega, f, rate, accel = fields.R, fields.omega, fields.integrand, fields.rate, fields.accel
     alpha = balance.alpha
     for k in range(swimmer.blocks):
         i = WIDTH * k
-        k2, k3, l2, l3 = take(rate, 0, i), take(rate, 1, i), take(accel, 0, i), take(accel, 1, i)
-        bx, by, bz = three(R, 3, i)
-        cx, cy, cz = three(R, 6, i)
-        ox, oy, oz = three(omega, 0, i)
-        x, y, z = cross(ox, oy, oz, bx * k2 + cx * k3, by * k2 + cy * k3, bz * k2 + cz * k3)
-        put_three(f, 0, i, bx * l2 + cx * l3 + x, by * l2 + cy * l3 + y, bz * l2 + cz * l3 + z)
+        x, y, z = turning_gain(R, omega, rate, accel, i)
+        put_three(f, 0, i, x, y, z)
     integrate_along(swimmer, f, 0, alpha)
     for k in range(swimmer.blocks):
         i = WIDTH * k
-        ox, oy, oz = three(omega, 0, i)
-        tx, ty, tz = three(R, 0, i)
-        ax, ay, az = three(alpha, 0, i)
-        along, square = dot(ox, oy, oz, tx, ty, tz), dot(ox, oy, oz, ox, oy, oz)
-        x, y, z = cross(ax, ay, az, tx, ty, tz)
-        put_three(f, 0, i, x + along * ox - square * tx, y + along * oy - square * ty, z + along * oz - square * tz)
+        x, y, z = moving_gain(R, omega, alpha, i)
+        put_three(f, 0, i, x, y, z)
     integrate_along(swimmer, f, 0, balance.acc)
 
 
@@ -96,15 +110,11 @@ def section_densities(swimmer, fields, balance):
         g1 = j1 * e1 + (o2 * s3 - o3 * s2) + (v2 * p3 - v3 * p2)
         g2 = j2 * e2 + (o3 * s1 - o1 * s3) + (v3 * p1 - v1 * p3)
         g3 = j3 * e3 + (o1 * s2 - o2 * s1) + (v1 * p2 - v2 * p1)
-        ax, ay, az = three(R, 0, i)
-        bx, by, bz = three(R, 3, i)
-        cx, cy, cz = three(R, 6, i)
-        hx, hy, hz = ax * f1 + bx * f2 + cx * f3, ay * f1 + by * f2 + cy * f3, az * f1 + bz * f2 + cz * f3
+        hx, hy, hz = from_section(R, i, f1, f2, f3)
+        gx, gy, gz = from_section(R, i, g1, g2, g3)
         x, y, z = three(r, 0, i)
         ux, uy, uz = cross(x, y, z, hx, hy, hz)
-        put(density, 0, i, ax * g1 + bx * g2 + cx * g3 + ux)
-        put(density, 1, i, ay * g1 + by * g2 + cy * g3 + uy)
-        put(density, 2, i, az * g1 + bz * g2 + cz * g3 + uz)
+        put_three(density, 0, i, gx + ux, gy + uy, gz + uz)
         put_three(density, 3, i, hx, hy, hz)
 
 
