@@ -17,9 +17,11 @@ import numpy as np
 PRESETS = {"draft": 1e-2, "standard": 1e-4, "fine": 1e-6, "reference": 1e-8}
 COARSEST, FINEST = 0.1, 1e-10
 TABLE_FILE = Path(__file__).with_name("accuracy_table.csv")
-FIELDS = ("drag", "torque", "plane", "target", "resolution", "tolerance", "method", "order", "fixed")
+FIELDS = ("drag", "torque", "plane", "target", "resolution", "kinks", "tolerance", "method", "order", "fixed")
 KEYS = FIELDS[:3]
+CHOSEN = "kinks", "tolerance", "method", "order"  # for steps that are not fixed
 FIXED = "fixed steps"
+KINKS = "all", "jumps", "none"
 ORDERS = {"adams": (1, 2, 3, 4, 5, 6), "dormand_prince": (5,), "classical": (4,)}
 FINEST_TOLERANCE = 1e-13  # below, round-off
 LOOSEST_TOLERANCE = 1e-4  # of the pair, and of what an estimate compares with: above, a gait's longest step rules,
@@ -32,11 +34,12 @@ WAVES_POWER = 0.85  # points grow with this power of the number of waves on the 
 
 @dataclass(frozen=True, kw_only=True)
 class Accuracy:
-    """Settings of a run. `resolution`: points per body length; `tolerance`: relative error per adaptive step; `method`
-    "dormand_prince" (order 5) or "adams" (`order` 1 to 6; 5 where none is given); `step` [s]: where given, steps of the
-    classical Runge-Kutta method (order 4) of this length instead; `fixed`: where given, that many of them by the
-    shortest period of the law (or second). `target`: the relative error that the settings are for, None where they were
-    given one by one."""
+    """Settings of a run. `resolution`: points per body length; `kinks`: which of the drag's along the body (where cross
+    flow or roll change their sign, V|V| has a kink; the printed friction law jumps) are found and integrated exactly,
+    "all", the "jumps" alone, or "none"; `tolerance`: relative error per adaptive step; `method` "dormand_prince" (order
+    5) or "adams" (`order` 1 to 6; 5 where none is given); `step` [s]: where given, steps of the classical Runge-Kutta
+    method (order 4) of this length instead; `fixed`: where given, that many of them by the shortest period of the law
+    (or second). `target`: the relative error that the settings are for, None where they were given one by one."""
 
     name: str
     resolution: float
@@ -46,6 +49,7 @@ class Accuracy:
     order: int | None = None
     target: float | None = None
     fixed: float | None = None
+    kinks: str = "all"
 
     def __post_init__(self):
         if self.step is not None or self.fixed is not None:
@@ -65,6 +69,8 @@ class Accuracy:
             raise ValueError(
                 f"accuracy resolution must lie in 1 to 1000 points per body length, got {self.resolution!r}"
             )
+        if self.kinks not in KINKS:
+            raise ValueError(f"accuracy kinks must be one of {', '.join(KINKS)}, got {self.kinks!r}")
         if not (np.isfinite(self.tolerance) and self.tolerance > 0.0):
             raise ValueError(f"accuracy tolerance must be > 0, got {self.tolerance!r}")
         if self.step is not None and not (np.isfinite(self.step) and self.step > 0.0):
@@ -87,20 +93,23 @@ class Accuracy:
     def of_violence(self) -> "Accuracy":
         """The same target for one who is thrown in: the table was measured with gaits that start from rest, and the
         errors of Adams' steps add up to ten times more in some turns of a spin. The pair's do not."""
-        if self.target is None or self.method != "adams":
+        if self.target is None:
             return self
-        return replace(self, method="dormand_prince", order=5, tolerance=min(self.tolerance, LOOSEST_TOLERANCE))
+        if self.method != "adams":
+            return replace(self, kinks="all")
+        tolerance = min(self.tolerance, LOOSEST_TOLERANCE)
+        return replace(self, kinks="all", method="dormand_prince", order=5, tolerance=tolerance)
 
     def finer(self) -> "Accuracy":
         """Settings that are at least some ten times as exact: what an estimate of the error compares with."""
         resolution = min(1000.0, max(1.4 * self.resolution + 2.0, self.resolution + FURTHER_POINTS))
         if self.step is not None:
-            return replace(self, resolution=resolution, step=0.5 * self.step, target=None)
+            return replace(self, resolution=resolution, kinks="all", step=0.5 * self.step, target=None)
         if self.fixed is not None:
-            return replace(self, resolution=resolution, fixed=2.0 * self.fixed, target=None)
+            return replace(self, resolution=resolution, kinks="all", fixed=2.0 * self.fixed, target=None)
         tolerance = max(self.tolerance / 30.0, min(self.tolerance, FINEST_TOLERANCE))
         tolerance = min(tolerance, LOOSEST_TOLERANCE)
-        return replace(self, resolution=resolution, tolerance=tolerance, target=None)
+        return replace(self, resolution=resolution, kinks="all", tolerance=tolerance, target=None)
 
     @staticmethod
     def of(value: "str | float | Accuracy") -> "Accuracy":
@@ -150,7 +159,7 @@ def table() -> dict[tuple[bool, bool, bool], tuple[dict, ...]]:
             {"target": float(row["target"])}
             | {name: row[name] == "1" for name in KEYS}
             | {"resolution": float(row["resolution"]), "tolerance": float(row["tolerance"])}
-            | {"method": row["method"], "order": int(row["order"])}
+            | {"method": row["method"], "order": int(row["order"]), "kinks": row["kinks"]}
             | {"fixed": float(row["fixed"]) if row["fixed"] else None}
             for row in csv.DictReader(file)
         ]
@@ -165,7 +174,7 @@ def _from_target(name: str, target: float, key: tuple[bool, bool, bool], fixed: 
     rows = [row for row in table()[key] if not fixed or row["fixed"] is not None]
     for row in rows:
         if row["target"] <= target * (1.0 + 1e-9):
-            given = {"fixed": row["fixed"]} if fixed else {name: row[name] for name in ("tolerance", "method", "order")}
+            given = {"fixed": row["fixed"]} if fixed else {name: row[name] for name in CHOSEN}
             return Accuracy(name=name, resolution=row["resolution"], target=target, **given)
     if name == "reference":
         return Accuracy(name=name, **BEST)

@@ -5,7 +5,7 @@ greater of the head's position at the end and of the torque (`errors`). Points a
 varied apart, since their errors add. For each target the table gets the cheapest settings whose worst error over all
 cases stays below it, also when all cases swim with them as they are: apart for cases that stay in a plane and others.
 What is cheap is counted in evaluations of the head's dynamics; for runs with torque those of the ledger count too, a
-number per step that is measured here.
+number per step that is measured here. The kinks of the drag are looked for where that is cheaper than further points.
 """
 
 import csv
@@ -22,7 +22,7 @@ from eel_gaits.law import Law, Ramp, Term
 
 from eel_gaits import falling, gait
 
-from .accuracy import FIELDS, FINEST, LOOSEST_TOLERANCE, TABLE_FILE, Accuracy
+from .accuracy import ANY, CHOSEN, FIELDS, FINEST, KINKS, LOOSEST_TOLERANCE, TABLE_FILE, Accuracy
 from .body import Body
 from .errors import errors
 from .run import Run, simulate
@@ -45,6 +45,8 @@ SHARE = 0.7  # of the target for the worst case: laws and scenes that are not am
 PART_OF_SPACE = 0.25  # of that, for the points along the body
 MOST_FINER = 4  # settings that are tried in place of one which misses its target as a whole
 CHECKED = 0.85  # of the target, for the worst case with both
+# what it costs to look for the drag's kinks, in nodes that cost as much; and where the motion stays in a plane
+COST_OF_KINKS = {"none": 0, "jumps": 5, "all": 13}, {"none": 0, "jumps": 15, "all": 30}
 TURNS = 15  # in which runs with the ledger and without are timed
 
 
@@ -174,8 +176,8 @@ class Errors:
 
     case: Case
     reference: Run
-    space: np.ndarray  # (resolutions, 2)
-    alone: np.ndarray  # (resolutions, 1): of position, on the coarser grids of runs without torque
+    space: np.ndarray  # (kinds of kinks, resolutions, 2)
+    alone: np.ndarray  # (kinds of kinks, resolutions, 1): of position, on the coarser grids of runs without torque
     time: np.ndarray  # (methods, tolerances, 4): errors, evaluations, steps
     fixed: np.ndarray  # (numbers of fixed steps, 4)
 
@@ -183,9 +185,8 @@ class Errors:
 def _measure(case: Case, say) -> Errors:
     reference = swim(case, REFERENCE)
     setting = Accuracy(name="calibration", resolution=DENSE, tolerance=EXACT)
-    space = [_of(case, reference, replace(setting, resolution=resolution))[:2] for resolution in RESOLUTIONS]
-    lean = _without_torque(case)
-    alone = [_of(lean, reference, replace(setting, resolution=resolution))[:1] for resolution in RESOLUTIONS]
+    space = _in_space(case, reference, setting, 2)
+    alone = _in_space(_without_torque(case), reference, setting, 1)
     time = [
         [
             _of(case, reference, replace(setting, tolerance=tolerance, method=method, order=order))
@@ -199,7 +200,19 @@ def _measure(case: Case, say) -> Errors:
         _of(case, reference, Accuracy(name="calibration", resolution=DENSE, fixed=number)) for number in FIXED_STEPS
     ]
     say(f"{case.name}: measured")
-    return Errors(case, reference, np.array(space), np.array(alone), np.array(time), np.array(fixed))
+    return Errors(case, reference, space, alone, np.array(time), np.array(fixed))
+
+
+def _in_space(case: Case, reference: Run, setting: Accuracy, counted: int) -> np.ndarray:
+    """Errors (kinds of kinks, resolutions, `counted`) by the points along the body, of position and torque."""
+    found = [
+        [
+            _of(case, reference, replace(setting, resolution=resolution, kinks=kinks))[:counted]
+            for resolution in RESOLUTIONS
+        ]
+        for kinks in KINKS
+    ]
+    return np.array(found)
 
 
 def _of(case: Case, reference: Run, accuracy: Accuracy) -> tuple[float, float, float, float]:
@@ -218,49 +231,70 @@ def _without_torque(case: Case) -> Case:
 def _rows(found: list[Errors], torque: bool, ledger: float):
     """The rows of a table; `ledger`: evaluations that a step costs besides its own."""
     kinds = slice(0, 2 if torque else 1)
-    space = np.max([each.space if torque else each.alone for each in found], axis=(0, 2))
+    space = np.max([each.space if torque else each.alone for each in found], axis=(0, 3))
     time = np.max([each.time[..., kinds] for each in found], axis=(0, 3))
     fixed = np.max([each.fixed[:, kinds] for each in found], axis=(0, 2))
     cost = np.mean([each.time[..., 2] + ledger * each.time[..., 3] for each in found], axis=0)
     for target in TARGETS:
         for_space, for_time = PART_OF_SPACE * SHARE * target, (1.0 - PART_OF_SPACE) * SHARE * target
-        points = _first(space, for_space)
+        grids = _grids(space, for_space, torque, found[0].case.plane)
         choices = [
             (costs[good], method, order, TOLERANCES[good])
             for (method, order), worst, costs in zip(METHODS, time, cost, strict=True)
             if (good := _first(worst, for_time)) is not None
         ]
-        if points is None or not choices or target < FINEST:
+        if not grids or not choices or target < FINEST:
             continue
         _, method, order, tolerance = min(choices)
         number = _first(fixed, for_time)
-        setting = Accuracy(
-            name="calibration",
-            resolution=_filled(RESOLUTIONS[points], torque),
-            tolerance=float(f"{tolerance:.2e}"),
-            method=method,
-            order=order,
-        )
-        setting = _checked(found, torque, target, setting)
+        setting = Accuracy(name="calibration", tolerance=float(f"{tolerance:.2e}"), method=method, order=order, **ANY)
+        settings = [replace(setting, resolution=resolution, kinks=kinks) for resolution, kinks in grids]
+        setting = _checked(found, torque, target, settings)
         if setting is not None:
-            row = {name: getattr(setting, name) for name in ("resolution", "tolerance", "method", "order")}
+            row = {name: getattr(setting, name) for name in ("resolution", *CHOSEN)}
             yield {"target": target} | row | {"fixed": "" if number is None else FIXED_STEPS[number]}
+
+
+def _grids(space: np.ndarray, allowed: float, torque: bool, plane: bool) -> list[tuple[float, str]]:
+    """Resolutions whose errors stay below what is `allowed`, one for each kind of kinks that are looked for, the
+    cheapest first."""
+    found = []
+    for kinks, worst in zip(KINKS, space, strict=True):
+        points = _first(worst, allowed)
+        if points is not None:
+            resolution = _filled(RESOLUTIONS[points], torque)
+            found.append((_nodes(resolution, torque) + COST_OF_KINKS[plane][kinks], resolution, kinks))
+    return [(resolution, kinks) for _, resolution, kinks in sorted(found)]
+
+
+def _nodes(resolution: float, torque: bool) -> int:
+    """Of the paper's robot."""
+    return sum(panel.points for panel in panels_of(Body.boyer2010(), resolution, (), torque))
 
 
 def _filled(resolution: float, torque: bool) -> float:
     """The finest resolution that costs the paper's robot no further eight nodes: a margin for laws of more waves."""
-    body, nodes = Body.boyer2010(), lambda each: sum(panel.points for panel in panels_of(body, each, (), torque))
-    return max(each for each in (resolution, *RESOLUTIONS) if nodes(each) <= nodes(resolution))
+    most = _nodes(resolution, torque)
+    return max(each for each in (resolution, *RESOLUTIONS) if _nodes(each, torque) <= most)
 
 
-def _checked(found: list[Errors], torque: bool, target: float, setting: Accuracy) -> Accuracy | None:
-    """`setting`, or the nearest finer one with which all cases stay below the target; None where none does."""
+def _worst(found: list[Errors], torque: bool, setting: Accuracy) -> float:
+    """The greatest error of all cases, as they are with a `setting`."""
+    lean = [each.case if torque else _without_torque(each.case) for each in found]
+    return max(
+        max(_of(case, each.reference, setting)[: 2 if torque else 1]) for case, each in zip(lean, found, strict=True)
+    )
+
+
+def _checked(found: list[Errors], torque: bool, target: float, settings: list[Accuracy]) -> Accuracy | None:
+    """The first of the `settings` with which all cases stay below the target, or the nearest finer one to the last of
+    them that looks for all kinks; None where none does."""
+    for setting in settings:
+        if _worst(found, torque, setting) <= CHECKED * target:
+            return setting
+    setting = replace(settings[-1], kinks="all")
     for _ in range(MOST_FINER):
-        worst = 0.0
-        for each in found:
-            case = each.case if torque else _without_torque(each.case)
-            worst = max(worst, *_of(case, each.reference, setting)[: 2 if torque else 1])
-        if worst <= CHECKED * target:
+        if _worst(found, torque, setting) <= CHECKED * target:
             return setting
         finer = [resolution for resolution in RESOLUTIONS if resolution > setting.resolution]
         setting = replace(

@@ -23,11 +23,14 @@ OPTIONS = {
 }
 
 
+SIGNS = b"from .compiled import", b"from numba", b"(NamedTuple)"  # of files that the loops are compiled from
+
+
 def _stamp() -> str:
     content = hashlib.sha256(Path(__file__).read_bytes())
     for path in sorted(Path(__file__).parent.glob("*.py")):
         source = path.read_bytes()
-        if b"from .compiled import" in source:
+        if any(sign in source for sign in SIGNS):
             content.update(path.name.encode() + source)
     return content.hexdigest()
 

@@ -80,9 +80,8 @@ class Step(NamedTuple):
     past: Past
 
 
-def step_of(method: Method) -> Step:
-    """Work space for steps of `method`."""
-    stages, past = len(method.c), max(method.adams, 1)
+def step_of(stages: int, past: int) -> Step:
+    """Work space for steps of a method of so many `stages`, that goes back by `past` steps."""
     y, end, trial, defect, k, differences, starred = work_space(
         ((), (), (), (), (stages,), (past + 1,), (past + 2,)), STATE - WIDTH + 1
     )
@@ -163,6 +162,20 @@ def dormand_prince() -> Method:
         ]
     )
     return Method(a, np.array([0.0, 0.2, 0.3, 0.8, 8 / 9, 1.0, 1.0]), error, dense, True, 5, 0)
+
+
+@inlined
+def begin_at(step, time, y, work, length):
+    """Let the next step begin at `time` [s] in state `y` (13,) with the works `work` (4,); `length` [s]: that of the
+    first of all."""
+    for k in range(STATE):
+        step.end[k] = y[k]
+    for k in range(WORKS):
+        step.work[k] = work[k]
+    step.time[0], step.time[1] = time, 0.0
+    if step.time[2] == 0.0:
+        step.time[2] = length
+    step.fresh[0] = 1
 
 
 @inlined

@@ -18,6 +18,7 @@ from .vectors import cross, three
 ZERO, ONE, TWO = (np.uintp(k) for k in range(3))  # indices that are unsigned need no test for Python's negative ones
 PRINTED, LAMINAR, BLENDED = 0, 1, 2  # laws of friction, as in the scene
 AXIAL, SIDE, HEIGHT, ROLL, RATIO = (np.uintp(k) for k in range(5))  # V1, V2, V3, Omega1, Re/8e4 - 1
+WATCHED = {"all": SIDE, "jumps": RATIO, "none": RATIO + ONE}  # the first row whose changes of sign are looked for
 DEGREE = np.arange(1.0, 100.0)  # of Legendre polynomials: P_(n+1) = UPPER z P_n - LOWER P_(n-1)
 UPPER, LOWER, INTEGRAL = (2.0 * DEGREE + 1.0) / (DEGREE + 1.0), DEGREE / (DEGREE + 1.0), 0.5 / (2.0 * DEGREE + 1.0)
 
@@ -101,7 +102,7 @@ def integrals_upto(swimmer, begin, count, t, row, at):
 def note_step(swimmer, fields, kind, shared, i, start, noise):
     """Note the step of the load where row `kind` of the speeds changes its sign before node `i` (`start`: the value at
     the nose). Have the load's weights, the row `shared`, integrate it; a change below `noise` is round-off."""
-    kinks, speed, share, exact = fields.kinks, fields.speed, fields.share, kind == RATIO
+    kinks, speed, share, jump = fields.kinks, fields.speed, fields.share, kind == RATIO
     value, before = speed[kind, i], start
     if i > ZERO:
         before = speed[kind, i - ONE]
@@ -109,8 +110,8 @@ def note_step(swimmer, fields, kind, shared, i, start, noise):
     if abs(value - before) > noise and j < len(kinks.kind):
         kinks.number[0] = j + 1
         begin, count = swimmer.first[i], np.int64(swimmer.count[i])
-        t = zero_between(swimmer, speed, kind, begin, count, i, before, exact)
-        step = (1.0 if exact else 2.0) * (1.0 if value >= 0.0 else -1.0)
+        t = zero_between(swimmer, speed, kind, begin, count, i, before, jump and swimmer.watched <= SIDE)
+        step = (1.0 if jump else 2.0) * (1.0 if value >= 0.0 else -1.0)
         integrals_upto(swimmer, begin, count, t, kinks.row, j)
         kinks.kind[j], kinks.begin[j], kinks.fraction[j], kinks.step[j] = kind, begin, t, step
         for k in range(0, count, WIDTH):
@@ -123,14 +124,16 @@ def note_step(swimmer, fields, kind, shared, i, start, noise):
 @inlined
 def find_steps(swimmer, fields, at_nose, noise, noise_of_roll, planar):
     """Note the steps of the loads: where V2, V3 or Omega1 (V2 alone where `planar`) or Re/8e4 - 1 changes its sign
-    along the body, from its value `at_nose`. What is below its `noise` is round-off, and has the sign of what is before
-    it."""
+    along the body, from its value `at_nose`; of these the rows from `swimmer.watched` on. What is below its `noise` is
+    round-off, and has the sign of what is before it."""
     nodes, kinds = len(swimmer.x), ROLL + ONE
     if swimmer.friction == PRINTED:
         kinds = RATIO + ONE
     fields.kinks.number[0] = 0
     for kind in range(SIDE, kinds):
         start, least, shared = at_nose[0], noise, kind
+        if kind < swimmer.watched:
+            continue
         if kind == HEIGHT:
             if planar:
                 continue

@@ -5,6 +5,7 @@ run.
 """
 
 import math
+from functools import cache, lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -12,10 +13,24 @@ import numpy as np
 from .compiled import compiled, inlined
 from .drag import inverse_fifth_root, turbulent_part
 from .drive import combine, combine_moments, factors
-from .integrator import MARCHED, SINGULAR, head_axes, march, powers_of_state, state_at, to_head, to_world
+from .integrator import (
+    MARCHED,
+    SINGULAR,
+    begin_at,
+    head_axes,
+    march,
+    powers_of_state,
+    square_of,
+    state_at,
+    step_of,
+    to_head,
+    to_world,
+)
 from .kernel import (
+    Fields,
     add_head_twist,
     configure,
+    fields_of,
     integrate,
     momentum_of_twist,
     product,
@@ -24,8 +39,10 @@ from .kernel import (
 )
 from .kinks import BLENDED, LAMINAR, integrate_balance
 from .lanes import WIDTH, put, root, size, spread, take, where, work_space
+from .packed import Layout, opener
+from .sections import example
 from .vectors import bent, cross, in_section, put_three, three, two
-from .wrench import kinetic_energies, moving_gain, turning_gain
+from .wrench import Balance, balance_of, kinetic_energies, moving_gain, turning_gain
 
 
 class Profiles(NamedTuple):
@@ -108,10 +125,62 @@ def show(rows, first, result):
         result[i, 0], result[i, 1], result[i, 2] = rows[first, i], rows[first + 1, i], rows[first + 2, i]
 
 
+class Scratch(NamedTuple):
+    """Work space of an instant: nothing in it is kept from one to the next."""
+
+    fields: Fields
+    balance: Balance
+    here: StationFields
+
+
+@lru_cache(maxsize=256)
+def scratch_layout(nodes: int, widest: int, rows: int, stations: int) -> Layout:
+    """For `nodes` nodes in panels of up to `widest`, a law of up to `rows` rows, and so many `stations`."""
+    return Layout(Scratch(fields_of(nodes, rows, widest), balance_of(nodes), station_fields_of(stations)))
+
+
+@cache
+def step_layout(stages: int, past: int) -> Layout:
+    """For a method of so many `stages`, that goes back by so many steps."""
+    return Layout(step_of(stages, past))
+
+
+open_swimmer = opener(lambda: example()[0])
+open_stations = opener(lambda: example()[1])
+open_scratch = opener(lambda: Scratch(fields_of(1, 1, 1), balance_of(1), station_fields_of(1)))
+open_step = opener(lambda: step_of(1, 1))
+
+
 @compiled
-def set_in_motion(swimmer, drive, fields, time, twist, y):
+def set_in_motion(swimmer, drive, scratch, time, twist, y):
     """Give state `y` (13,) at `time` the momentum of the head's `twist` (6,) relative to the water. Returns the kinetic
-    energy [J] of body and water (without the nose's)."""
+    energy [J] of body and water (without the nose's). `swimmer` and `scratch` are packed."""
+    return momentum_and_energy(open_swimmer(swimmer), drive, open_scratch(scratch).fields, time, twist, y)
+
+
+@compiled
+def begin(swimmer, drive, scratch, step, control, time, twist, y, work, length):
+    """As `set_in_motion`, and let the march begin there, with the works `work` (4,), a first step of `length` [s] and
+    no step behind it."""
+    energy = momentum_and_energy(open_swimmer(swimmer), drive, open_scratch(scratch).fields, time, twist, y)
+    step = open_step(step)
+    step.scale[0], step.scale[1] = square_of(y, 7, 10), square_of(y, 10, 13)
+    step.budget[0] = control.spare_steps
+    for k in range(3):
+        step.time[k], step.count[k] = 0.0, 0
+    begin_at(step, time, y, work, length)
+    return energy
+
+
+@compiled
+def begin_again(step, time, y, work, length):
+    """Let the next step begin at `time` [s] in state `y` (13,), with the works `work` (4,)."""
+    begin_at(open_step(step), time, y, work, length)
+
+
+@inlined
+def momentum_and_energy(swimmer, drive, fields, time, twist, y):
+    """What `set_in_motion` does."""
     factors(drive, time, fields.factor)
     configure(swimmer, drive, fields)
     momentum_of_twist(swimmer, fields, twist, y[7:])
@@ -355,9 +424,7 @@ def swim(
     swimmer,
     stations,
     drive,
-    fields,
-    balance,
-    here,
+    scratch,
     step,
     current,
     distributed,
@@ -375,10 +442,13 @@ def swim(
     out,
 ):
     """March through `times` (T,) [s], ascending: the state `y` (13,) ends as the last, `works` (T, 4) holds each; where
-    `look`, one instant of `out` is filled at each. Returns the number of instants reached, and a status.
+    `look`, one instant of `out` is filled at each. Returns the number of instants reached, and a status. Packed are
+    `swimmer`, `stations`, `scratch` and `step`.
 
     The one entry to all loops: what is compiled once for it serves every use.
     """
+    swimmer, stations, step = open_swimmer(swimmer), open_stations(stations), open_step(step)
+    fields, balance, here = open_scratch(scratch)
     for sample in range(len(times)):
         status = march(
             swimmer, drive, fields, balance, current, method, control, breakpoints, lobatto, series, step, times[sample]

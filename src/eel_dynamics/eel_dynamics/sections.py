@@ -9,12 +9,14 @@ paper).
 
 import math
 from dataclasses import replace
+from functools import cache
 from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
 from .body import Body
+from .kinks import WATCHED
 from .lanes import WIDTH, aligned
 from .quadrature import Blocks, Grid, Panel
 from .scene import FRICTION, Scene
@@ -51,6 +53,7 @@ class Swimmer(NamedTuple):
     reynolds: np.ndarray  # s/m, 1/transition
     friction: int  # index into scene.FRICTION
     resistive: bool
+    watched: int  # first row of the speeds along the body whose changes of sign are looked for (`kinks`)
     wake: float  # 1; 0 where no water is swept past the sections
     nose_mass: float  # kg, m_o
     nose_drag: float  # kg/m, 1/2 rho_f k_o
@@ -106,8 +109,9 @@ def added_masses(body: Body, scene: Scene, a_squared, b_squared):
     return rho * np.pi * along2, rho * np.pi * along3, rho * np.pi / 8.0 * (a_squared - b_squared) ** 2
 
 
-def swimmer_of(body: Body, scene: Scene, grid: Grid) -> Swimmer:
-    """Tabulate `body` in `scene` at the nodes of `grid`."""
+def swimmer_of(body: Body, scene: Scene, grid: Grid, kinks: str = "all") -> Swimmer:
+    """Tabulate `body` in `scene` at the nodes of `grid`; `kinks`: which of the drag's are integrated exactly
+    (`Accuracy`)."""
     before = np.where(np.arange(len(grid.x)) > grid.first, np.roll(grid.fraction, 1), 0.0)
     behind = np.where(grid.fraction < 1.0, np.roll(grid.fraction, -1), 2.0)
     apart, span = 1.0 / (grid.fraction - before), 1.0 / (behind - before)
@@ -115,6 +119,7 @@ def swimmer_of(body: Body, scene: Scene, grid: Grid) -> Swimmer:
         body,
         scene,
         grid.x,
+        watched=int(WATCHED[kinks]),
         upto=grid.blocks(),
         weight=aligned(grid.weight),
         first=grid.first,
@@ -148,6 +153,7 @@ def stations_of(body: Body, scene: Scene, grid: Grid, x: np.ndarray) -> Stations
             body,
             scene,
             x,
+            watched=0,
             upto=grid.blocks(x),
             weight=none,
             first=no_index,
@@ -163,6 +169,14 @@ def stations_of(body: Body, scene: Scene, grid: Grid, x: np.ndarray) -> Stations
         added3_slope=aligned(slope3),
         added_roll_slope=aligned(rho * np.pi / 4.0 * (a_squared - b_squared) * (a_slope - b_slope)),
     )
+
+
+@cache
+def example() -> tuple[Swimmer, Stations]:
+    """A swimmer and its stations, for the types of their arrays."""
+    body, scene = Body.boyer2010(), Scene()
+    grid = Grid.of(panels_of(body, 1.0))
+    return swimmer_of(body, scene, grid), stations_of(body, scene, grid, np.array([0.0, body.length]))
 
 
 def _tabulate(body: Body, scene: Scene, x, **grid) -> Swimmer:

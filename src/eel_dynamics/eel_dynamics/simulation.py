@@ -30,16 +30,14 @@ from .integrator import (
     dormand_prince,
     head_axes,
     settle,
-    step_of,
 )
-from .kernel import fields_of
-from .profiles import Profiles, profiles_of, set_in_motion, station_fields_of, swim
+from .packed import Layout, Packed
+from .profiles import Profiles, begin, begin_again, profiles_of, scratch_layout, set_in_motion, step_layout, swim
 from .quadrature import Grid
 from .scene import Scene
-from .sections import Stations, Swimmer, panels_of, stations_of, swimmer_of
+from .sections import Swimmer, panels_of, stations_of, swimmer_of
 from .shape import Shape, knots_of_law, waves_of_law
 from .snapshot import Snapshot
-from .wrench import balance_of
 
 LONGEST_STEP = 0.1  # of the shortest time over which the shape changes: works are integrals of what goes on within it
 MOST_STEPS = 20_000.0  # per period of the law, or second; the most exact runs need a tenth of it
@@ -51,6 +49,7 @@ PART_OF_SPEED = 0.5  # of the speed that the shape gives the body: momenta below
 PART_OF_SPAN = 0.25  # between two breakpoints of the shape, that a step may take
 PART_OF_RAMP = 0.125  # the same for the ledger: of what a sudden ramp puts in, most comes back, and little may be left
 FIRST_STEP = 0.02  # of the longest
+ROWS_AT_ONCE = 8  # of a law, for which there is space
 THROWN = 0.2  # periods, in which one who starts faster than a swimmer goes by its length, or turns by one
 
 
@@ -84,21 +83,32 @@ class Table(NamedTuple):
 
     grid: Grid
     swimmer: Swimmer
-    stations: Stations
+    packed: tuple[Packed, Packed]  # swimmer, stations
     tabulation: Tabulation
 
 
 @lru_cache(maxsize=256)
-def tabulated(body: Body, scene: Scene, resolution: float, knots: tuple[float, ...], stations: bytes) -> Table:
+def tabulated(
+    body: Body, scene: Scene, resolution: float, kinks: str, knots: tuple[float, ...], stations: bytes
+) -> Table:
     """Tabulate `body` in `scene` on a grid of `resolution` points per body length, cut at the `knots` of a law, and at
-    the X of the `stations` (the bytes of their array)."""
+    the X of the `stations` (the bytes of their array); `kinks` as in `Accuracy`."""
     x = np.frombuffer(stations).copy()  # that can be written to, as elsewhere: the loops are compiled for such
     grid = Grid.of(panels_of(body, resolution, knots, scene.internal_wrench or scene.ledger))
     here = stations_of(body, scene, grid, x)
     base = np.where(here.node >= 0, grid.x[here.node], 0.0)
-    swimmer = swimmer_of(body, scene, grid)
+    swimmer = swimmer_of(body, scene, grid, kinks)
     check_inertia(swimmer, body.length, scene.planar)
-    return Table(grid, swimmer, here, Tabulation(grid.x, grid.previous, x, base))
+    packed = Layout(swimmer).packed, Layout(here).packed
+    return Table(grid, swimmer, packed, Tabulation(grid.x, grid.previous, x, base))
+
+
+class Built(NamedTuple):
+    """What a grid was built for."""
+
+    resolution: float
+    kinks: str
+    knots: tuple[float, ...]
 
 
 class Simulation:
@@ -152,16 +162,31 @@ class Simulation:
 
     def _build(self, resolution: float, knots: tuple[float, ...] = ()):
         """Have body and scene tabulated on a grid of `resolution` points per body length, cut at `knots` [m]."""
-        table = tabulated(self.body, self.scene, resolution, knots, self.x.tobytes())
-        self._grid, self._resolution, self._knots = table.grid, resolution, knots
-        self.swimmer, self._stations, self._tabulation = table.swimmer, table.stations, table.tabulation
-        self.balance = balance_of(len(self._grid.x))
-        self._here = station_fields_of(len(self.x))
+        kinks = self.accuracy.kinks
+        table = tabulated(self.body, self.scene, resolution, kinks, knots, self.x.tobytes())
+        self._grid, self._built = table.grid, Built(resolution, kinks, knots)
+        self.swimmer, self._packed, self._tabulation = table.swimmer, table.packed, table.tabulation
+        self._scratch, self._rows = None, 0
 
     @cached_property
     def _out(self) -> Profiles:
         """Space for one instant."""
         return profiles_of(1, len(self.x))
+
+    @property
+    def fields(self):
+        """Work space of the loops, `kernel.Fields`."""
+        return self._scratch.views.fields
+
+    @property
+    def balance(self):
+        """Work space of the loops, `wrench.Balance`."""
+        return self._scratch.views.balance
+
+    @property
+    def step(self):
+        """The step in time that the state is in, `integrator.Step`."""
+        return self._step.views
 
     # -- what drives the body
 
@@ -219,15 +244,15 @@ class Simulation:
 
     def _use_accuracy(self, plane: bool):
         """Take the settings for a motion that stays in a `plane`, or for any; the march so far counts on."""
-        accuracy, before = self._wanted.in_scene(self.scene, plane), getattr(self, "step", None)
+        accuracy, before = self._wanted.in_scene(self.scene, plane), getattr(self, "_step", None)
         if self._thrown:
             accuracy = accuracy.of_violence()
         if before is not None and accuracy == self.accuracy:
             return
         self.accuracy, self._method = accuracy, method_of(accuracy)
-        self.step = step_of(self._method)
+        self._step = step_layout(len(self._method.c), max(self._method.adams, 1)).space()
         for name in ("time", "count", "scale", "budget") if before is not None else ():
-            getattr(self.step, name)[:] = getattr(before, name)
+            self._step.view(name)[:] = before.view(name)
 
     def _needs(self, law: Law) -> tuple[float, tuple[float, ...]]:
         """Waves on the body, and knots [m] of the splines of `law`, that the grid has to carry."""
@@ -265,8 +290,10 @@ class Simulation:
     def _refine(self, waves: float, knots: tuple[float, ...] = ()):
         """Have a grid that is fine enough for a shape of `waves` waves on the body, cut at its `knots` [m]; the head's
         motion goes on as it is."""
-        resolution = max(self._resolution, self.accuracy.points_per_length(waves))
-        if resolution <= self._resolution * (1.0 + 1e-9) and set(knots) <= set(self._knots):
+        built = self._built
+        resolution = max(built.resolution, self.accuracy.points_per_length(waves))
+        fine_enough = resolution <= built.resolution * (1.0 + 1e-9) and set(knots) <= set(built.knots)
+        if fine_enough and self.accuracy.kinks == built.kinks:
             return
         old, twist = self._grid, self._twist()
         self._build(resolution, knots)
@@ -410,13 +437,10 @@ class Simulation:
 
     def _swim(self, times, works, out, *, look: bool = True, wrench: bool = False, load: bool = False):
         return swim(
-            self.swimmer,
-            self._stations,
+            *self._packed,
             self.drive,
-            self.fields,
-            self.balance,
-            self._here,
-            self.step,
+            self._scratch.packed,
+            self._step.packed,
             self._current,
             self._distributed,
             self._method,
@@ -436,7 +460,7 @@ class Simulation:
     @property
     def evaluations(self) -> tuple[int, int, int]:
         """Steps, rejected steps and evaluations of the head's dynamics so far."""
-        return tuple(int(value) for value in self.step.count)
+        return tuple(self._step.view("count").tolist())
 
     # -- states
 
@@ -461,7 +485,10 @@ class Simulation:
 
     def _use_drive(self):
         self.drive = self.shape.drive
-        self.fields = fields_of(len(self._grid.x), len(self.drive.axis), self._grid.matrix.shape[1])
+        rows = ROWS_AT_ONCE * -(-len(self.drive.axis) // ROWS_AT_ONCE)
+        if self._scratch is None or rows > self._rows:
+            nodes, widest = self._grid.matrix.shape
+            self._scratch, self._rows = scratch_layout(nodes, widest, rows, len(self.x)).space(), rows
         self._breakpoints = self.shape.breakpoints()
         scale = min(self.shape.time_scale, self._motion_scale)
         longest = LONGEST_STEP * min(scale, 10.0)
@@ -489,13 +516,11 @@ class Simulation:
         self._begin_step()
 
     def _begin_step(self):
-        step = self.step
-        step.end[: len(self.state)] = self.state
-        step.work[:] = self._works[0]
-        step.time[0], step.time[1] = self.time, 0.0
-        if step.time[2] == 0.0:
-            step.time[2] = FIRST_STEP * self._control.step
-        step.fresh[0] = 1
+        begin_again(self._step.packed, self.time, self.state, self._works[0], self._first_step)
+
+    @property
+    def _first_step(self) -> float:
+        return FIRST_STEP * self._control.step
 
     def _relative_start(self) -> np.ndarray:
         """Initial twist (6,) of the head relative to the water."""
@@ -523,11 +548,10 @@ class Simulation:
         relative = self._relative_start()
         self._motion_scale = self._scale_of(relative)
         self._use_drive()
-        self.kinetic_at_start = self._set_momentum(relative)
-        self.step.time[:], self.step.count[:], self.step.budget[:] = 0.0, 0, self._control.spare_steps
-        angular, linear = self.state[7:10], self.state[10:13]
-        self.step.scale[:] = angular @ angular, linear @ linear
-        self._begin_step()
+        self.kinetic_at_start = begin(
+            *(self._packed[0], self.drive, self._scratch.packed, self._step.packed, self._control),
+            *(self.time, relative, self.state, self._works[0], self._first_step),
+        )
         if not np.isfinite(self.kinetic_at_start):
             raise SimulationStopped(self.time, "kinetic energy", self.kinetic_at_start, "start slower")
 
@@ -542,4 +566,4 @@ class Simulation:
     def _set_momentum(self, twist: np.ndarray) -> float:
         """Give the present state the momentum of the head's `twist` (6,) relative to the water. Returns its kinetic
         energy [J]."""
-        return set_in_motion(self.swimmer, self.drive, self.fields, self.time, twist, self.state)
+        return set_in_motion(self._packed[0], self.drive, self._scratch.packed, self.time, twist, self.state)
