@@ -9,7 +9,7 @@ fewer steps) and others.
 
 import csv
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -117,6 +117,10 @@ class Accuracy:
         of time such as "fastest within 5 ms per second" (`budget`). `ValueError` says what is possible."""
         if isinstance(value, Accuracy):
             return value
+        return _of_number(value) if type(value) is float else Accuracy._of(value)
+
+    @staticmethod
+    def _of(value) -> "Accuracy":
         if isinstance(value, str):
             name = value.strip()
             if name in PRESETS:
@@ -143,6 +147,9 @@ class Accuracy:
                 f"run no further than that), got {value!r}"
             )
         return Accuracy(name=f"{target:g}", target=target, **ANY)
+
+
+_of_number = lru_cache(maxsize=64)(Accuracy._of)
 
 
 def key_of(scene, plane: bool = False) -> tuple[bool, bool, bool]:

@@ -21,6 +21,7 @@ from .lanes import WIDTH, aligned, first, following, put, spread, take
 
 SPACE = 2 * WIDTH  # that a state takes
 FRACTIONS = aligned(1.0 / np.arange(1.0, WIDTH + 1.0), WIDTH)
+EQUAL = np.array([1, 1 / 2, 5 / 12, 3 / 8, 251 / 720, 95 / 288, 19087 / 60480, 5257 / 17280])  # g_j of equal steps
 HIGHEST = 6  # beyond, the steps that are stable are shorter than those that are exact
 SHORT = 0.0125  # of the longest step: below, the order may fall; the most exact runs that are offered do not get there
 
@@ -41,17 +42,22 @@ def extrapolate(past, length, y, trial):
     """The step: `trial` (16,) from `y` (16,), and the phi*. Returns the number of terms."""
     terms = min(past.order[0], past.known[0] + 1)
     top = terms + past.order[2]  # the last g, for the error
-    row = take(FRACTIONS, 0)
-    past.weight[0] = 1.0
-    new = length  # s, from the end of the step to rates before
-    for j in range(1, top + 1):
-        row -= following(row) * (length / new)
-        past.weight[j] = first(row)
-        new += past.lengths[j - 1]
+    equal = True
+    for j in range(top - 1):
+        equal &= past.lengths[j] == length
+    if equal:
+        put(past.weight, 0, take(EQUAL, 0))
+    else:
+        row = take(FRACTIONS, 0)
+        new = length  # s, from the end of the step to rates before
+        for j in range(1, top + 1):
+            row -= following(row) * (length / new)
+            past.weight[j] = first(row)
+            new += past.lengths[j - 1]
     low = high = spread(0.0)
     beta, new, old = 1.0, length, 0.0  # old: s, from the start of the step to rates before
     for j in range(top):
-        if j > 0:
+        if j > 0 and not equal:
             old += past.lengths[j - 1]
             beta *= new / old
             new += past.lengths[j - 1]

@@ -14,6 +14,17 @@ def checked_instance(name: str, value, kind: type):
 
 def checked_row(name: str, values, size: int | None) -> np.ndarray:
     """`values` as (size,) finite floats; any size where it is None."""
+    if type(values) is tuple and all(type(value) is float for value in values):
+        return _checked_tuple(name, values, size).copy()
+    return _checked_row(name, values, size)
+
+
+@lru_cache(maxsize=64)
+def _checked_tuple(name: str, values: tuple, size: int | None) -> np.ndarray:
+    return _checked_row(name, values, size)
+
+
+def _checked_row(name: str, values, size: int | None) -> np.ndarray:
     try:
         array = np.array(values, dtype=float)
     except (TypeError, ValueError):

@@ -46,6 +46,7 @@ PART_OF_SPACE = 0.25  # of that, for the points along the body
 MOST_FINER = 4  # settings that are tried in place of one which misses its target as a whole
 CHECKED = 0.85  # of the target, for the worst case with both
 # what it costs to look for the drag's kinks, in nodes that cost as much; and where the motion stays in a plane
+KINKS_FROM = 1e-4  # target, below which all kinks are looked for: their errors differ too much from law to law
 COST_OF_KINKS = {"none": 0, "jumps": 5, "all": 13}, {"none": 0, "jumps": 15, "all": 30}
 TURNS = 15  # in which runs with the ledger and without are timed
 
@@ -103,7 +104,7 @@ def cases(drag: bool = True, seeds=range(6)) -> list[Case]:
         Case(name=f"{name}, {scene}", law=law, body=body, scene=scenes[scene], duration=_duration(name, drag))
         for name, law, body in swimming
         for scene in scenes
-        if scene != "printed" or name in ("falling", "kern_fast")
+        if scene != "printed" or name in ("falling", "straight", "turning", "kern_fast")
     ]
     plane = Scene(planar=True, friction="laminar", resistive=drag, ledger=False)
     return [*found, Case(name="straight, planar", law=gait("straight"), body=boyer, scene=plane)]
@@ -237,7 +238,8 @@ def _rows(found: list[Errors], torque: bool, ledger: float):
     cost = np.mean([each.time[..., 2] + ledger * each.time[..., 3] for each in found], axis=0)
     for target in TARGETS:
         for_space, for_time = PART_OF_SPACE * SHARE * target, (1.0 - PART_OF_SPACE) * SHARE * target
-        grids = _grids(space, for_space, torque, found[0].case.plane)
+        kinds = KINKS if target >= KINKS_FROM else KINKS[:1]
+        grids = _grids(space[: len(kinds)], kinds, for_space, torque, found[0].case.plane)
         choices = [
             (costs[good], method, order, TOLERANCES[good])
             for (method, order), worst, costs in zip(METHODS, time, cost, strict=True)
@@ -255,11 +257,11 @@ def _rows(found: list[Errors], torque: bool, ledger: float):
             yield {"target": target} | row | {"fixed": "" if number is None else FIXED_STEPS[number]}
 
 
-def _grids(space: np.ndarray, allowed: float, torque: bool, plane: bool) -> list[tuple[float, str]]:
+def _grids(space: np.ndarray, kinds, allowed: float, torque: bool, plane: bool) -> list[tuple[float, str]]:
     """Resolutions whose errors stay below what is `allowed`, one for each kind of kinks that are looked for, the
     cheapest first."""
     found = []
-    for kinks, worst in zip(KINKS, space, strict=True):
+    for kinks, worst in zip(kinds, space, strict=True):
         points = _first(worst, allowed)
         if points is not None:
             resolution = _filled(RESOLUTIONS[points], torque)

@@ -19,7 +19,7 @@ from .adams import HIGHEST, SHORT, SPACE, Past, adams_growth, defect_of_order, e
 from .compiled import inlined, spliced
 from .drive import combine, factors
 from .kernel import add_head_twist, configure, find_loads, momentum_rates, twist_of_momentum
-from .lanes import WIDTH, put, size, spread, take, total, work_space
+from .lanes import WIDTH, inverse_root, put, size, spread, take, total, work_space
 from .planar import move_plane, powers_plane, rate_of_state_plane
 from .wrench import accelerate, actuator_power
 
@@ -452,7 +452,7 @@ def fitted(method, control, step, start, before, target, tiny):
 def growth_of(error, order):
     """How many times longer the next step may be, for the `error` by the tolerance of one whose error goes with the
     power `order` of its length."""
-    return 5.0 if error < 1e-4 else min(5.0, 0.9 * error ** (-1.0 / order))
+    return 5.0 if error < 1e-4 else min(5.0, 0.9 * inverse_root(error, order))
 
 
 @spliced
@@ -527,7 +527,7 @@ def march(swimmer, drive, fields, balance, current, method, control, breakpoints
                 break
             step.count[1] += 1
             step.budget[0] -= 1.0
-            length *= 0.1 if status != MARCHED else max(0.2, 0.9 * error ** (-1.0 / method.order))
+            length *= 0.1 if status != MARCHED else max(0.2, 0.9 * inverse_root(error, method.order))
             proposed = length
             if not method.adaptive or length < control.smallest:
                 step.fresh[0] = 1

@@ -357,3 +357,19 @@ def root_guess(typingctx, value):
         return builder.bitcast(builder.fptosi(scaled, _INTEGERS), _VECTOR)
 
     return LANES(LANES), lowering
+
+
+@intrinsic
+def inverse_root(typingctx, value, order):
+    """x^(-1/n) of a positive number, n >= 1, within 6 per cent: as `root_guess`."""
+
+    def lowering(context, builder, sig, args):
+        x, n = args[0], builder.sitofp(context.cast(builder, args[1], sig.args[1], types.int64), _REAL)
+        part = builder.fdiv(_REAL(1.0), n)
+        number = builder.sitofp(builder.bitcast(x, _INDEX), _REAL)
+        scaled = builder.fsub(
+            builder.fmul(builder.fadd(_REAL(1.0), part), _REAL((1023 - 0.045) * 2.0**52)), builder.fmul(number, part)
+        )
+        return builder.bitcast(builder.fptosi(scaled, _INDEX), _REAL)
+
+    return types.float64(types.float64, order), lowering

@@ -79,19 +79,24 @@ def profiles_of(
 ) -> Profiles:
     """Space for `samples` instants at `stations` stations; the profiles that are not asked for have no instants.
     swimmers: (B,) for so many of them, a first axis."""
-    asked, shapes = (wrench, load), []
+    places = places_of(samples, stations, wrench, load)
+    whole = np.zeros((*swimmers, places[-1][1]))
+    return Profiles(*(whole[..., begin:end].reshape(*swimmers, *shape) for begin, end, shape in places), whole)
+
+
+@lru_cache(maxsize=64)
+def places_of(samples: int, stations: int, wrench: bool, load: bool) -> tuple[tuple[int, int, tuple[int, ...]], ...]:
+    """Begin, end and shape of each of the profiles in the whole."""
+    asked, end, places = (wrench, load), 0, []
     for name in Profiles._fields[:-1]:
         if name in ALONG:
             count = samples if name not in ASKED or asked[ASKED[name]] else 0
-            shapes.append((count, stations, 4 if name == "section_orientation" else 3))
+            shape = count, stations, 4 if name == "section_orientation" else 3
         else:
-            shapes.append((samples, SIZES.get(name, 3)))
-    counts = [math.prod(shape) for shape in shapes]
-    whole, begin, arrays = np.zeros((*swimmers, sum(counts))), 0, []
-    for shape, count in zip(shapes, counts, strict=True):
-        arrays.append(whole[..., begin : begin + count].reshape(*swimmers, *shape))
-        begin += count
-    return Profiles(*arrays, whole)
+            shape = samples, SIZES.get(name, 3)
+        begin, end = end, end + math.prod(shape)
+        places.append((begin, end, shape))
+    return tuple(places)
 
 
 class StationFields(NamedTuple):

@@ -10,7 +10,7 @@ from bisect import insort
 from functools import lru_cache
 
 import numpy as np
-from eel_gaits.law import Law
+from eel_gaits.law import Law, Term, amplitude_of
 from eel_gaits.spline import natural_spline
 
 from .drive import AXES, Drive, Tabulation, factors
@@ -137,6 +137,8 @@ class Shape:
     def breakpoints(self) -> np.ndarray:
         """Times [s] at which a derivative of the shape jumps, ascending."""
         drive = self.drive
+        if drive.blend < 0 and "ends" in self._source:
+            return drive.origin + self._source["ends"]
         times = {drive.origin + time for ramp in drive.ramps[:, :2].tolist() for time in ramp}
         times |= {drive.blend_end} if drive.blend >= 0 else set()
         times |= {drive.segment_start, drive.segment_end} if drive.segment >= 0 else set()
@@ -146,14 +148,14 @@ class Shape:
     def time_scale(self) -> float:
         """Shortest period [s] of the law; inf where it has none. Ramps, blends and samples begin and end on steps
         anyway."""
-        return float(min(self.drive.period[self.drive.period > 0.0], default=np.inf))
+        return min((period for period in self.drive.period.tolist() if period > 0.0), default=math.inf)
 
     def reach(self, weight: np.ndarray) -> float:
         """Speed [m/s] that the shape gives to the body, of the order of: mean over the sections, of the weights (n,)
         [m] of the nodes; 0 for a shape that stands still."""
         source = self._source
         if "reach" not in source:
-            source["reach"] = _reach(self.drive, weight) if "sine" in source else 0.0
+            source["reach"] = _reach(source, self.drive.angle, weight) if "sine" in source else 0.0
         return source["reach"]
 
     def end_blend(self, now: float):
@@ -216,20 +218,24 @@ def _split(tabulation: Tabulation, rows: np.ndarray) -> dict:
     return {"node": node, "angle": angle, "bend": bend, "station": station, "station_bend": station_bend}
 
 
-@lru_cache(maxsize=4096)
 def waves_of_law(law: Law, length: float) -> float:
     """How many waves a law bends a body of `length` [m] into, at most; a spline counts an eighth of its intervals.
 
     A turn of the backbone is a wave too, as its direction goes once around: turns are counted by the term that turns it
     most, and by three quarters of what all do together where the body is bent most.
     """
-    waves = [length * abs(term.wave_number) / (2.0 * np.pi) for term in law.terms]
-    waves += [(len(term.knots) - 1) / 8.0 for term in law.terms]
+    return _waves(tuple((term.axis, _waveform(term)) for term in law.terms), length)
+
+
+@lru_cache(maxsize=4096)
+def _waves(waveforms: tuple, length: float) -> float:
+    waves = [length * abs(wave_number) / (2.0 * np.pi) for _, (_, _, wave_number, _) in waveforms]
+    waves += [(len(knots) - 1) / 8.0 for _, (_, knots, _, _) in waveforms]
     x = length * (np.arange(TURN_POINTS) + 0.5) / TURN_POINTS
-    bends = [np.abs(term.amplitude_at(x)) for term in law.terms]
+    bends = [np.abs(amplitude_of(amplitude, knots, x)) for _, (amplitude, knots, _, _) in waveforms]
     together = np.zeros((2, TURN_POINTS))
-    for term, bend in zip(law.terms, bends, strict=True):
-        together[int(term.axis == "yaw")] += bend
+    for (axis, _), bend in zip(waveforms, bends, strict=True):
+        together[AXES[axis]] += bend
     turns = [*(np.mean(bend) for bend in bends), PART_OF_PEAK * np.max(np.hypot(*together))]
     return float(max(*waves, *(length / (2.0 * np.pi) * turn for turn in turns), 0.0))
 
@@ -261,59 +267,87 @@ def _constant(value: np.ndarray) -> dict:
     }
 
 
-def _reach(drive: Drive, weight: np.ndarray) -> float:
-    """As `Shape.reach`: the mean square of what the terms move the sections by, about their mean place, times their
-    rates."""
-    if not len(drive.period):
-        return 0.0
-    counted = list(zip(drive.ramp_first, drive.ramp_count, strict=True))
-    spans = [drive.ramps[first : first + max(count, 0)] for first, count in counted]
-    height = np.array([np.abs(drive.ramps[k : k + n, 2]).max(initial=0.0) if n >= 0 else 1.0 for k, n in counted])
-    shortest = np.array([(span[:, 1] - span[:, 0]).min(initial=np.inf) for span in spans])
-    with np.errstate(divide="ignore"):
-        rate = np.where(drive.period > 0.0, 2.0 * np.pi / drive.period, 2.0 / shortest) * height
-    length = weight.sum()
-    square = 0.0
-    for rows in (drive.sine, np.where(drive.cosine >= 0, drive.cosine, drive.sine)):
-        offset = np.cumsum(drive.angle[rows] * weight, axis=1)
-        offset -= (offset @ weight)[:, None] / length
-        square += float(rate**2 @ (offset**2 @ weight)) / length
-    return math.sqrt(0.5 * square)
+def _waveform(term: Term) -> tuple:
+    """What a term is along the body: amplitude and its knots, wave number, phase."""
+    return term.amplitude, term.knots, term.wave_number, term.phase
 
 
-@lru_cache(maxsize=256)
-def _law_rows(law: Law, tabulation: Tabulation) -> dict:
-    """Rows and time factors of a law; terms of equal axis, period and envelope share their rows."""
-    groups: dict = {}
-    for term in law.terms:
-        groups.setdefault((term.axis, term.period, term.envelope), []).append(term)
-    if not groups:
-        return _straight(tabulation)
-    rows, axis, sine, cosine, period, first, count, ramps = [], [], [], [], [], [], [], []
-    for (name, duration, envelope), terms in groups.items():
-        angle = [term.wave_number * tabulation.x + term.phase for term in terms]
-        amplitude = [term.amplitude_at(tabulation.x) for term in terms]
+@lru_cache(maxsize=1024)
+def _pattern(groups: tuple, tabulation: Tabulation) -> dict:
+    """Rows along the body of `groups` of terms: (axis, whether they have a period, their waveforms)."""
+    rows, axis, sine, cosine = [], [], [], []
+    for name, moving, waveforms in groups:
+        angle = [wave_number * tabulation.x + phase for _, _, wave_number, phase in waveforms]
+        amplitude = [amplitude_of(*of, tabulation.x) for *of, _, _ in waveforms]
         sine.append(len(rows))
         rows.append(sum(a * np.sin(b) for a, b in zip(amplitude, angle, strict=True)))
-        cosine.append(len(rows) if duration else -1)
-        if duration:
+        cosine.append(len(rows) if moving else -1)
+        if moving:
             rows.append(sum(a * np.cos(b) for a, b in zip(amplitude, angle, strict=True)))
-        axis += [AXES[name]] * (2 if duration else 1)
-        period.append(duration)
-        first.append(len(ramps))
-        count.append(len(envelope) if envelope else -1)
-        ramps += [(ramp.start, ramp.end, ramp.delta) for ramp in envelope]
+        axis += [AXES[name]] * (2 if moving else 1)
     table = tabulation.columns(np.array(rows))
     return {
-        "law": law,
         "rows": table,
         "split": _split(tabulation, table),
-        "origin": 0.0,
         "axis": np.array(axis, dtype=np.int64),
         "sine": np.array(sine, dtype=np.int64),
         "cosine": np.array(cosine, dtype=np.int64),
-        "period": np.array(period, dtype=float),
+    }
+
+
+@lru_cache(maxsize=1024)
+def _law_rows(law: Law, tabulation: Tabulation) -> dict:
+    """Rows and time factors of a law; terms of equal axis, period and envelope share their rows. Laws that differ in
+    periods and envelopes alone share theirs."""
+    groups: dict = {}
+    for term in law.terms:
+        groups.setdefault((term.axis, term.period, term.envelope), []).append(_waveform(term))
+    if not groups:
+        return _straight(tabulation)
+    first, count, ramps = [], [], []
+    for _, _, envelope in groups:
+        first.append(len(ramps))
+        count.append(len(envelope) if envelope else -1)
+        ramps += [(ramp.start, ramp.end, ramp.delta) for ramp in envelope]
+    pattern = _pattern(tuple((key[0], key[1] > 0.0, tuple(terms)) for key, terms in groups.items()), tabulation)
+    return pattern | {
+        "law": law,
+        "pattern": pattern,
+        "origin": 0.0,
+        "period": np.array([period for _, period, _ in groups]),
         "ramp_first": np.array(first, dtype=np.int64),
         "ramp_count": np.array(count, dtype=np.int64),
         "ramps": np.array(ramps, dtype=float).reshape(-1, 3),
+        "ends": np.array(sorted({time for *ends, _ in ramps for time in ends}), dtype=float),
     }
+
+
+def _reach(source: dict, angle: np.ndarray, weight: np.ndarray) -> float:
+    """As `Shape.reach`, of the `angle` of the rows (m, n) [rad]: the mean square of what the terms move the sections by,
+    about their mean place, times their rates."""
+    period, ramps = source["period"].tolist(), source["ramps"].tolist()
+    if not period:
+        return 0.0
+    pattern = source.get("pattern", source)
+    if "moved" not in pattern:
+        pattern["moved"] = _moved(pattern, angle, weight)
+    square = 0.0
+    for k, moved in enumerate(pattern["moved"]):
+        count = int(source["ramp_count"][k])
+        mine = ramps[source["ramp_first"][k] :][: max(count, 0)]
+        height = max((abs(delta) for _, _, delta in mine), default=0.0) if count >= 0 else 1.0
+        shortest = min((end - start for start, end, _ in mine), default=math.inf)
+        rate = 2.0 * math.pi / period[k] if period[k] > 0.0 else 2.0 / shortest if shortest > 0.0 else math.inf
+        square += rate * height * rate * height * moved
+    return math.sqrt(0.5 * square)
+
+
+def _moved(pattern: dict, angle: np.ndarray, weight: np.ndarray) -> list[float]:
+    """Of each group of terms: the mean square [m^2] of what its rows, sine and cosine, move the sections by, about
+    their mean place, added."""
+    length = weight.sum()
+    offset = np.cumsum(angle * weight, axis=1)
+    offset -= (offset @ weight)[:, None] / length
+    moved = (offset**2 @ weight) / length
+    sine, cosine = pattern["sine"], pattern["cosine"]
+    return (moved[sine] + moved[np.where(cosine >= 0, cosine, sine)]).tolist()

@@ -72,7 +72,7 @@ def method_of(accuracy: Accuracy) -> Method:
 def in_plane(law: Law | None, orientation, twist, current) -> bool:
     """Whether a swim stays in the plane of the head's axes 1 and 2: the law bends in yaw alone, and the head, of the
     given `orientation` and `twist`, does not move out of it over the water of a `current`."""
-    if law is None or any(term.axis == "pitch" for term in law.terms):
+    if law is None or not law.in_plane:
         return False
     rising = twist[5] - matrix_of(orientation)[:, 2] @ current
     return not (twist[0] or twist[1] or rising)
@@ -84,6 +84,7 @@ class Table(NamedTuple):
     grid: Grid
     swimmer: Swimmer
     packed: tuple[Packed, Packed]  # swimmer, stations
+    mass: float  # kg, of the body
     tabulation: Tabulation
 
 
@@ -100,7 +101,8 @@ def tabulated(
     swimmer = swimmer_of(body, scene, grid, kinks)
     check_inertia(swimmer, body.length, scene.planar)
     packed = Layout(swimmer).packed, Layout(here).packed
-    return Table(grid, swimmer, packed, Tabulation(grid.x, grid.previous, x, base))
+    mass = float(swimmer.weight @ swimmer.mass)
+    return Table(grid, swimmer, packed, mass, Tabulation(grid.x, grid.previous, x, base))
 
 
 class Built(NamedTuple):
@@ -164,7 +166,7 @@ class Simulation:
         """Have body and scene tabulated on a grid of `resolution` points per body length, cut at `knots` [m]."""
         kinks = self.accuracy.kinks
         table = tabulated(self.body, self.scene, resolution, kinks, knots, self.x.tobytes())
-        self._grid, self._built = table.grid, Built(resolution, kinks, knots)
+        self._grid, self._mass, self._built = table.grid, table.mass, Built(resolution, kinks, knots)
         self.swimmer, self._packed, self._tabulation = table.swimmer, table.packed, table.tabulation
         self._scratch, self._rows = None, 0
 
@@ -217,7 +219,7 @@ class Simulation:
         own, or the default. `ValueError` for a law that the scene does not allow.
         """
         checked_instance("law", law, Law)
-        if self.scene.planar and any(term.axis == "pitch" for term in law.terms):
+        if self.scene.planar and not law.in_plane:
             raise ValueError(f"law {law.name!r} has a pitch term: a planar scene cannot bend out of its plane")
         if not np.isfinite(origin):
             raise ValueError(f"law origin must be finite, got {origin!r} s")
@@ -225,7 +227,7 @@ class Simulation:
         if not (np.isfinite(blend) and blend > 0.0):
             raise ValueError(f"transition must be finite and > 0 s, got {transition!r}")
         first = not self._started
-        if any(term.axis == "pitch" for term in law.terms):
+        if not law.in_plane:
             self._use_accuracy(False)
         self._refine(*self._needs(law))
         before = copy(self.shape)
@@ -493,7 +495,6 @@ class Simulation:
         scale = min(self.shape.time_scale, self._motion_scale)
         longest = LONGEST_STEP * min(scale, 10.0)
         fixed = self.accuracy.step or (self.accuracy.fixed and min(scale, 1.0) / self.accuracy.fixed)
-        mass = self._mass = float(self.swimmer.weight @ self.swimmer.mass)
         slowest = max(
             SLOWEST * self.body.length / min(scale, 10.0), PART_OF_SPEED * self.shape.reach(self.swimmer.weight)
         )
@@ -502,7 +503,7 @@ class Simulation:
             step=fixed or longest,
             smallest=1e-11 * min(scale, 1.0),
             length=self.body.length,
-            momentum_floor=mass * slowest,
+            momentum_floor=self._mass * slowest,
             part_of_span=PART_OF_RAMP if self.scene.ledger and self.drive.segment < 0 else PART_OF_SPAN,
             most_steps=MOST_STEPS / min(scale, 1.0),
             spare_steps=max(LEAST_SPARE, SPARE_STEPS * min(1.0, SPARE_POINTS / len(self._grid.x))),

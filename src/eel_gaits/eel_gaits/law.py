@@ -128,10 +128,7 @@ class Term:
 
     def amplitude_at(self, x):
         """The amplitude [rad/m], shape (len(x),), at the stations x [m], shape (len(x),)."""
-        x = np.asarray(x, dtype=float)
-        if self.knots:
-            return natural_spline(self.knots, self.amplitude, x)
-        return np.polynomial.polynomial.polyval(x, self.amplitude)
+        return amplitude_of(self.amplitude, self.knots, np.asarray(x, dtype=float))
 
     def envelope_at(self, t):
         """The envelope [1] and its first and second time derivatives at t [s]: three arrays of t's shape."""
@@ -183,6 +180,21 @@ class Law:
         object.__setattr__(self, "name", _name(name))
         object.__setattr__(self, "transition", transition)
 
+    def __hash__(self):  # kept: tables are looked up by it
+        found = self.__dict__.get("_hash")
+        if found is None:
+            found = hash((self.terms, self.name, self.transition))
+            object.__setattr__(self, "_hash", found)
+        return found
+
+    def __getstate__(self):
+        return {name: value for name, value in self.__dict__.items() if name != "_hash"}  # of this process's strings
+
+    @property
+    def in_plane(self) -> bool:
+        """Whether the body bends in yaw alone."""
+        return all(term.axis == "yaw" for term in self.terms)
+
     def curvature(self, time, x):
         """Curvature, its rate and its acceleration at one time.
 
@@ -199,6 +211,13 @@ class Law:
         for term in self.terms:
             total[:, :, AXES[term.axis]] += term.curvature(time, x)
         return total[0], total[1], total[2]
+
+
+def amplitude_of(amplitude, knots, x):
+    """The amplitude [rad/m], shape (len(x),), of a term of such `amplitude` and `knots`, at the stations x [m]."""
+    if knots:
+        return natural_spline(knots, amplitude, x)
+    return np.polynomial.polynomial.polyval(x, amplitude)
 
 
 def _numbers(name, values):
