@@ -5,7 +5,8 @@ greater of the head's position at the end and of the torque (`errors`). Points a
 varied apart, since their errors add. For each target the table gets the cheapest settings whose worst error over all
 cases stays below it, also when all cases swim with them as they are: apart for cases that stay in a plane and others.
 What is cheap is counted in evaluations of the head's dynamics; for runs with torque those of the ledger count too, a
-number per step that is measured here. The kinks of the drag are looked for where that is cheaper than further points.
+number per step that is measured here. The kinks of the drag are looked for where that is cheaper than further points
+and further steps (without it the drag is less smooth in time, too).
 """
 
 import csv
@@ -35,7 +36,7 @@ RESOLUTIONS = (
     *(2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.5, 13.0, 15.0, 17.0, 19.0, 22.0, 26.0, 30.0, 35.0, 40.0, 47.0),
     *(55.0, 65.0, 75.0, 100.0, 140.0, 200.0),
 )
-TOLERANCES = tuple(10.0 ** (-k / 3.0) for k in range(6, 40))
+TOLERANCES = tuple(10.0 ** (-k / 6.0) for k in range(12, 79))
 METHODS = (("adams", 4), ("adams", 5), ("adams", 6), ("dormand_prince", 5))
 FIXED_STEPS = tuple(float(round(8.0 * 10.0 ** (0.1 * k))) for k in range(21))  # by period, of the classical method
 ADAMS_LEAST = 1e-9  # tolerance below which Adams' steps are never the cheaper ones
@@ -46,7 +47,10 @@ PART_OF_SPACE = 0.25  # of that, for the points along the body
 MOST_FINER = 4  # settings that are tried in place of one which misses its target as a whole
 CHECKED = 0.85  # of the target, for the worst case with both
 # what it costs to look for the drag's kinks, in nodes that cost as much; and where the motion stays in a plane
-KINKS_FROM = 1e-4  # target, below which all kinks are looked for: their errors differ too much from law to law
+BESIDES = 22  # what an evaluation and its step cost whatever the nodes, in nodes that cost as much
+COARSE = 1e-4  # target, from which on points and steps are chosen together, and whether to look for kinks: below, their
+# errors differ too much from law to law
+FINER_STEPS, MOST_STEPS = 3, 10  # of the tolerances that are tried for these
 COST_OF_KINKS = {"none": 0, "jumps": 5, "all": 13}, {"none": 0, "jumps": 15, "all": 30}
 TURNS = 15  # in which runs with the ledger and without are timed
 
@@ -238,35 +242,44 @@ def _rows(found: list[Errors], torque: bool, ledger: float):
     cost = np.mean([each.time[..., 2] + ledger * each.time[..., 3] for each in found], axis=0)
     for target in TARGETS:
         for_space, for_time = PART_OF_SPACE * SHARE * target, (1.0 - PART_OF_SPACE) * SHARE * target
-        kinds = KINKS if target >= KINKS_FROM else KINKS[:1]
-        grids = _grids(space[: len(kinds)], kinds, for_space, torque, found[0].case.plane)
-        choices = [
-            (costs[good], method, order, TOLERANCES[good])
-            for (method, order), worst, costs in zip(METHODS, time, cost, strict=True)
-            if (good := _first(worst, for_time)) is not None
-        ]
-        if not grids or not choices or target < FINEST:
-            continue
-        _, method, order, tolerance = min(choices)
+        coarse = target >= COARSE
+        kinds = KINKS if coarse else KINKS[:1]
+        grids = _grids(space[: len(kinds)], kinds, for_space, torque)
+        steps = _steps(time, cost, SHARE * target, FINER_STEPS) if coarse else _steps(time, cost, for_time)[:1]
         number = _first(fixed, for_time)
-        setting = Accuracy(name="calibration", tolerance=float(f"{tolerance:.2e}"), method=method, order=order, **ANY)
-        settings = [replace(setting, resolution=resolution, kinks=kinks) for resolution, kinks in grids]
-        setting = _checked(found, torque, target, settings)
+        settings = [
+            replace(step, resolution=resolution, kinks=kinks)
+            for step in steps[:MOST_STEPS]
+            for resolution, kinks in grids
+        ]
+        if not settings or target < FINEST:
+            continue
+        setting = _checked(found, torque, (SHARE if coarse else CHECKED) * target, ledger, settings)
         if setting is not None:
             row = {name: getattr(setting, name) for name in ("resolution", *CHOSEN)}
             yield {"target": target} | row | {"fixed": "" if number is None else FIXED_STEPS[number]}
 
 
-def _grids(space: np.ndarray, kinds, allowed: float, torque: bool, plane: bool) -> list[tuple[float, str]]:
-    """Resolutions whose errors stay below what is `allowed`, one for each kind of kinks that are looked for, the
-    cheapest first."""
-    found = []
-    for kinks, worst in zip(kinds, space, strict=True):
-        points = _first(worst, allowed)
-        if points is not None:
-            resolution = _filled(RESOLUTIONS[points], torque)
-            found.append((_nodes(resolution, torque) + COST_OF_KINKS[plane][kinks], resolution, kinks))
-    return [(resolution, kinks) for _, resolution, kinks in sorted(found)]
+def _steps(time: np.ndarray, cost: np.ndarray, allowed: float, finer: int = 0) -> list[Accuracy]:
+    """Methods and tolerances whose errors stay below what is `allowed`, the cheapest first: of each method the loosest
+    tolerance, and so many `finer` ones."""
+    choices = []
+    for (method, order), worst, costs in zip(METHODS, time, cost, strict=True):
+        good = _first(worst, allowed)
+        for each in () if good is None else range(good, min(good + finer + 1, len(costs))):
+            if np.isfinite(costs[each]):
+                choices.append((costs[each], method, order, float(f"{TOLERANCES[each]:.2e}")))
+    return [
+        Accuracy(name="calibration", method=method, order=order, tolerance=tolerance, **ANY)
+        for _, method, order, tolerance in sorted(choices)
+    ]
+
+
+def _grids(space: np.ndarray, kinds, allowed: float, torque: bool) -> list[tuple[float, str]]:
+    """Resolutions whose errors stay below what is `allowed`, one for each kind of kinks that are looked for."""
+    points = [_first(worst, allowed) for worst in space]
+    found = zip(points, kinds, strict=True)
+    return [(_filled(RESOLUTIONS[point], torque), kinks) for point, kinks in found if point is not None]
 
 
 def _nodes(resolution: float, torque: bool) -> int:
@@ -280,23 +293,30 @@ def _filled(resolution: float, torque: bool) -> float:
     return max(each for each in (resolution, *RESOLUTIONS) if _nodes(each, torque) <= most)
 
 
-def _worst(found: list[Errors], torque: bool, setting: Accuracy) -> float:
-    """The greatest error of all cases, as they are with a `setting`."""
+def _swum(found: list[Errors], torque: bool, setting: Accuracy, ledger: float) -> tuple[float, float]:
+    """The greatest error of all cases, as they are with a `setting`, and what they cost."""
     lean = [each.case if torque else _without_torque(each.case) for each in found]
-    return max(
-        max(_of(case, each.reference, setting)[: 2 if torque else 1]) for case, each in zip(lean, found, strict=True)
-    )
+    swum = [_of(case, each.reference, setting) for case, each in zip(lean, found, strict=True)]
+    worst = max(max(each[: 2 if torque else 1]) for each in swum)
+    return worst, float(np.mean([evaluations + ledger * steps for *_, evaluations, steps in swum]))
 
 
-def _checked(found: list[Errors], torque: bool, target: float, settings: list[Accuracy]) -> Accuracy | None:
-    """The first of the `settings` with which all cases stay below the target, or the nearest finer one to the last of
-    them that looks for all kinks; None where none does."""
+def _checked(
+    found: list[Errors], torque: bool, allowed: float, ledger: float, settings: list[Accuracy]
+) -> Accuracy | None:
+    """The cheapest of the `settings` with which the errors of all cases stay below what is `allowed`, or the nearest
+    finer one to the last of them that looks for all kinks; None where none does."""
+    good = []
     for setting in settings:
-        if _worst(found, torque, setting) <= CHECKED * target:
-            return setting
+        worst, evaluations = _swum(found, torque, setting, ledger)
+        if worst <= allowed:
+            cost = BESIDES + _nodes(setting.resolution, torque) + COST_OF_KINKS[found[0].case.plane][setting.kinks]
+            good.append((evaluations * cost, len(good), setting))
+    if good:
+        return min(good)[-1]
     setting = replace(settings[-1], kinks="all")
     for _ in range(MOST_FINER):
-        if _worst(found, torque, setting) <= CHECKED * target:
+        if _swum(found, torque, setting, ledger)[0] <= allowed:
             return setting
         finer = [resolution for resolution in RESOLUTIONS if resolution > setting.resolution]
         setting = replace(

@@ -19,7 +19,7 @@ from .adams import HIGHEST, SHORT, SPACE, Past, adams_growth, defect_of_order, e
 from .compiled import inlined, spliced
 from .drive import combine, factors
 from .kernel import add_head_twist, configure, find_loads, momentum_rates, twist_of_momentum
-from .lanes import WIDTH, inverse_root, put, size, spread, take, total, work_space
+from .lanes import WIDTH, inverse_root_guess, put, size, spread, take, total, work_space
 from .planar import move_plane, powers_plane, rate_of_state_plane
 from .wrench import accelerate, actuator_power
 
@@ -446,6 +446,16 @@ def fitted(method, control, step, start, before, target, tiny):
     if length > left - tiny:
         return left
     return min(length, 0.5 * left) if length > 0.5 * left else length
+
+
+@spliced
+def inverse_root(x, n):
+    """x^(-1/n) of a positive number within half a per cent, by one step of Newton's method; for less than a power."""
+    y = inverse_root_guess(x, n)
+    left = x
+    for _ in range(n):
+        left *= y
+    return y * (1.0 + (1.0 - left) / n)
 
 
 @spliced

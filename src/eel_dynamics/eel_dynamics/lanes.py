@@ -360,7 +360,7 @@ def root_guess(typingctx, value):
 
 
 @intrinsic
-def inverse_root(typingctx, value, order):
+def inverse_root_guess(typingctx, value, order):
     """x^(-1/n) of a positive number, n >= 1, within 6 per cent: as `root_guess`."""
 
     def lowering(context, builder, sig, args):

@@ -323,9 +323,9 @@ def _law_rows(law: Law, tabulation: Tabulation) -> dict:
 
 
 def _reach(source: dict, angle: np.ndarray, weight: np.ndarray) -> float:
-    """As `Shape.reach`, of the `angle` of the rows (m, n) [rad]: the mean square of what the terms move the sections by,
-    about their mean place, times their rates."""
-    period, ramps = source["period"].tolist(), source["ramps"].tolist()
+    """As `Shape.reach`, of the `angle` of the rows (m, n) [rad]: the mean square of what the terms move the sections
+    by, about their mean place, times their rates."""
+    period, ramps = source["period"].tolist(), source["ramps"].tolist() if "ramps" in source else []
     if not period:
         return 0.0
     pattern = source.get("pattern", source)
