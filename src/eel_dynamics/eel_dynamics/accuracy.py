@@ -30,6 +30,7 @@ BEST = {"resolution": 200.0, "tolerance": 1e-11}  # of the preset reference, whe
 ANY = {"resolution": 30.0}  # until the scene is known
 FURTHER_POINTS = 9.0  # per length, with which a grid is finer for certain: the last eight nodes are always filled
 WAVES_POWER = 0.85  # points grow with this power of the number of waves on the body
+SPARED = 4.0  # points per length, of those that the panels have to spare, that grow too
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -81,7 +82,7 @@ class Accuracy:
 
     def points_per_length(self, waves: float) -> float:
         """Points per body length for a shape of `waves` waves on the body; one wave or less needs `resolution`."""
-        return min(1000.0, self.resolution * max(1.0, waves) ** WAVES_POWER)
+        return min(1000.0, (self.resolution + SPARED) * max(1.0, waves) ** WAVES_POWER - SPARED)
 
     def in_scene(self, scene, plane: bool = False) -> "Accuracy":
         """The settings that deliver the target in `scene`, for a motion that stays in a `plane` or for any; the same
