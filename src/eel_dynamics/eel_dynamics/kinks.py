@@ -51,7 +51,8 @@ def zero_between(swimmer, values, kind, begin, count, i, before, exact):
     """Fraction of the panel at which `values` are zero, between node i and the one before it (value `before`).
 
     That of the quadratic through these and the next node of the panel: an error e moves the load of V|V| by e^3. Where
-    it has to be `exact`, that of the polynomial through all nodes, by Newton's method from there, or by halves.
+    it has to be `exact`, that of the polynomial through all nodes, by Newton's method from there, or by halves; the
+    panel's start where it has none.
     """
     start, end, f, g = 0.0, swimmer.fraction[i], before, values[kind, i]
     if i > begin:
@@ -68,18 +69,25 @@ def zero_between(swimmer, values, kind, begin, count, i, before, exact):
     if not (start < t < end):
         t = min(max(start - f / slope, start), end)
     if exact:
-        step = end - start
+        at_node = i > begin  # else the panel's polynomial may have its zero before the panel
+        before = last = end - start
         for _ in range(40):
             value, rise = value_and_slope(swimmer, values, kind, begin, count, t)
-            if (value > 0.0) == (g > 0.0):
+            if (value > 0.0) != (g > 0.0):
+                start = t
+            elif t > start:
                 end = t
             else:
-                start = t
-            before, step, t = step, -value / rise, t - value / rise
-            if not (start < t < end) or abs(step) > 0.5 * abs(before):
-                t, step = 0.5 * (start + end), 0.5 * (end - start)
-            if abs(step) < 1e-10:  # the next step of Newton's would be its square
                 break
+            step = -value / rise
+            if abs(step) < 1e-6:  # what is left is of the order of its square
+                t = min(max(t + step, start), end)
+                break
+            if t + step <= start and not at_node:
+                step, at_node = start - t, True
+            elif not (start < t + step < end) or abs(step) > 0.5 * abs(before):
+                step = 0.5 * (start + end) - t
+            before, last, t = last, step, t + step
     return t
 
 
