@@ -16,32 +16,18 @@ from against_paper_scheme import paper_scheme
 from against_peers import peers
 from batch import batch
 from eel_dynamics.calibration import REFERENCE
-from eel_dynamics.integrator import rate_of_state
-from eel_dynamics.planar import rate_of_state_plane
 from growth import growth
 from integrators import integrators
 from measuring import median_ratio, times_in_turn
-from numba import njit
+from switches import evaluate, plane, switches
 from ticks import ticks
 from visualiser import visualiser
 
 from eel_dynamics import Accuracy, Body, Scene, Simulation, simulate
-from eel_gaits import falling, straight
+from eel_gaits import falling
 
 REPEATS = 9
 BODY = Body.boyer2010()
-
-
-@njit
-def _evaluate(count, swimmer, drive, fields, current, time, y, step, dy):
-    for _ in range(count):
-        rate_of_state(swimmer, drive, fields, current, time, y, step, dy)
-
-
-@njit
-def _evaluate_plane(count, swimmer, drive, fields, current, time, y, step, dy):
-    for _ in range(count):
-        rate_of_state_plane(swimmer, drive, fields, current, time, y, step, dy)
 
 
 def median_seconds(action, repeats: int = REPEATS) -> float:
@@ -65,40 +51,8 @@ def evaluation():
         nodes, count, dy = len(swimmer.swimmer.x), 2000, np.zeros(13)
         state, step = swimmer.observe(), swimmer.step
         arguments = swimmer.swimmer, swimmer.drive, swimmer.fields, np.zeros(3), state.time, swimmer.state, step, dy
-        times = times_in_turn({"one": lambda: _evaluate(count, *arguments)})["one"]  # noqa: B023
+        times = times_in_turn({"one": lambda: evaluate(count, *arguments)})["one"]  # noqa: B023
         yield f"{nodes:4d} nodes", statistics.median(times) / count * 1e6, "us per evaluation (CPU)"
-
-
-def plane():
-    """The planar kernel against that in space: one evaluation of the straight gait at equal nodes, and 10 s of motion
-    alone at equal targets."""
-    count, arguments, dy = 2000, {}, np.zeros(13)
-    for planar in (False, True):
-        lean = Scene(planar=planar, ledger=False, internal_wrench=False)
-        swimmer = Simulation(body=BODY, scene=lean, accuracy=Accuracy(name="bench", resolution=13.0))
-        swimmer.adopt(straight())
-        swimmer.advance(2.3)
-        arguments[planar] = (
-            *(swimmer.swimmer, swimmer.drive, swimmer.fields, np.zeros(3), 2.3),
-            *(swimmer.state, swimmer.step, dy),
-        )
-    times = times_in_turn(
-        {
-            "space": lambda: _evaluate(count, *arguments[False]),
-            "plane": lambda: _evaluate_plane(count, *arguments[True]),
-        }
-    )
-    yield "in space", statistics.median(times["space"]) / count * 1e6, "us per evaluation (CPU)"
-    yield "in the plane", statistics.median(times["plane"]) / count * 1e6, "us per evaluation (CPU)"
-    yield "ratio, one evaluation", median_ratio(times["space"], times["plane"]), "times cheaper"
-    for target in (1e-2, 1e-4, 1e-6):
-        scenes = {planar: Scene(planar=planar, ledger=False, internal_wrench=False) for planar in (False, True)}
-        swim = {
-            planar: partial(simulate, straight(), body=BODY, accuracy=target, scene=scene, sample_period=10.0)
-            for planar, scene in scenes.items()
-        }
-        times = times_in_turn(swim)
-        yield f"ratio, 10 s, target {target:g}", median_ratio(times[False], times[True]), "times cheaper"
 
 
 def falling_gait():
@@ -129,7 +83,7 @@ def wrench():
     instants = np.full(count, 2.3)
     asked = {"motion, powers": (False, False), "and the internal wrench": (True, False), "and the load": (True, True)}
     cases = {name: partial(swimmer.record, instants, *wanted) for name, wanted in asked.items()}
-    times = times_in_turn({"an evaluation": lambda: _evaluate(count, *arguments)} | cases)
+    times = times_in_turn({"an evaluation": lambda: evaluate(count, *arguments)} | cases)
     for name, values in times.items():
         yield name, statistics.median(values) / count * 1e6, "us (CPU)"
     for name in cases:
@@ -137,31 +91,6 @@ def wrench():
     before, after = times["motion, powers"], times["and the internal wrench"]
     alone = [b - a for a, b in zip(before, after, strict=True)]
     yield "what the wrench adds", median_ratio(alone, times["an evaluation"]), "evaluations"
-
-
-def switches():
-    """What a switch of the scene costs: time of 10 s of a straight gait by that with everything on, at equal
-    accuracy."""
-    scenes = {
-        "everything": Scene(),
-        "no ledger": Scene(ledger=False),
-        "no internal wrench": Scene(internal_wrench=False),
-        "no ledger, no wrench": Scene(ledger=False, internal_wrench=False),
-        "  and no friction": Scene(ledger=False, internal_wrench=False, friction="none"),
-        "  and no drag": Scene(ledger=False, internal_wrench=False, resistive=False),
-        "  and planar": Scene(ledger=False, internal_wrench=False, planar=True),
-    }
-    step = Accuracy(name="bench", resolution=20.0, step=0.02)
-    times = {name: [] for name in scenes}
-    for repeat in range(REPEATS + 1):
-        for name, scene in scenes.items():
-            start = time.perf_counter()
-            simulate(straight(), body=BODY, accuracy=step, scene=scene)
-            if repeat:
-                times[name].append(time.perf_counter() - start)
-    whole = statistics.median(times["everything"])
-    for name, values in times.items():
-        yield name, statistics.median(values) / whole, f"of {whole * 1e3:.1f} ms"
 
 
 def start():

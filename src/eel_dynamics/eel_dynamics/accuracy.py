@@ -30,7 +30,7 @@ BEST = {"resolution": 200.0, "tolerance": 1e-11}  # of the preset reference, whe
 ANY = {"resolution": 30.0}  # until the scene is known
 FURTHER_POINTS = 9.0  # per length, with which a grid is finer for certain: the last eight nodes are always filled
 WAVES_POWER = 0.85  # points grow with this power of the number of waves on the body
-SPARED = 4.0  # points per length, of those that the panels have to spare, that grow too
+SPARED = 8.0  # points per length, of those that the panels have to spare, that grow too
 
 
 @dataclass(frozen=True, kw_only=True)
