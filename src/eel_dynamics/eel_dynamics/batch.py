@@ -10,6 +10,7 @@ than once are tabulated once.
 """
 
 import os
+import threading
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -20,7 +21,7 @@ from eel_gaits.law import Law
 from .accuracy import Accuracy
 from .arguments import checked_stations
 from .body import Body
-from .broadcast import swimmers_of
+from .broadcast import Swimmer, swimmers_of
 from .energy import EnergyLedger
 from .member import Member
 from .profiles import Profiles, profiles_of
@@ -29,6 +30,7 @@ from .scene import Scene
 from .simulation import SimulationStopped
 
 ALONG = "backbone", "section_orientation", "curvature", "curvature_rate", "torque", "force", "fluid_force"
+MOST_MEMBERS = 100  # that a thread keeps
 MOST_MEMORY = 0.8  # of the machine's, that a batch may fill
 
 
@@ -137,14 +139,14 @@ def simulate_batch(
     out = _space(count, len(times), len(x[0]), any(wrench), load)
     works, samples, start = np.zeros((count, len(times), 4)), np.zeros(count, dtype=np.int64), np.zeros(count)
     steps, evaluations, errors = samples.copy(), samples.copy(), [None] * count
-    settings = [each.accuracy for each in members]
+    settings, crew = [each.accuracy for each in members], Crew()
 
     def swim(index: int):
         try:
             with np.errstate(
                 over="ignore", invalid="ignore", divide="ignore"
             ):  # what is not finite stops the swimmer, and is told
-                member = Member(stations=x[index], **members[index]._asdict())
+                member = crew.take(members[index], x[index])
         except (SimulationStopped, ValueError) as error:
             errors[index] = _stopped_at_start(error)
             return
@@ -153,6 +155,8 @@ def simulate_batch(
             times, _of_one(out, index, wrench[index]), works[index], wrench=wrench[index], load=load
         )
         steps[index], _, evaluations[index] = member.evaluations
+        if errors[index] is None:
+            crew.bring_back(members[index], member)
 
     _for_each(swim, count, threads, progress)
     for index in np.flatnonzero(samples < len(times)):
@@ -160,6 +164,27 @@ def simulate_batch(
             array[samples[index] :] = 0.0
     counts = steps, evaluations
     return _batch_of(members, settings, times, samples, errors, counts, x, out, works, start, wrench, load, stations)
+
+
+class Crew(threading.local):
+    """The members that a thread has, by body, scene and accuracy: they swim again and again."""
+
+    def __init__(self):
+        self._resting: dict = {}
+
+    def take(self, swimmer: Swimmer, x: np.ndarray) -> Member:
+        """A member at the start of `swimmer`, with the stations `x` (M,) [m], the same for the same body."""
+        member = self._resting.pop(swimmer[1:4], None)
+        if member is None:
+            return Member(stations=x, **swimmer._asdict())
+        member.begin_anew(swimmer.law, swimmer.position, swimmer.orientation, swimmer.twist)
+        return member
+
+    def bring_back(self, swimmer: Swimmer, member: Member):
+        """Keep a member that is sound."""
+        if len(self._resting) >= MOST_MEMBERS:
+            self._resting.clear()
+        self._resting[swimmer[1:4]] = member
 
 
 def _batch_of(members, settings, times, samples, errors, counts, x, out, works, start, wrench, load, stations):

@@ -6,6 +6,8 @@ nowhere. Where that is more than a share of all energy that was there or passed,
 too small for the body's scale to ask steps for (`floor`) is let go: its error counts by the length of the body.
 """
 
+import math
+
 import numpy as np
 
 OPEN = 0.2  # share of the energy; at twice the longest useful step of the robot's gaits it is 0.03, then grows at once
@@ -17,7 +19,7 @@ def failure_of(out, works: np.ndarray, done: int, start: float, floor: float) ->
     infinite: the ledger is not looked at. None: all are good."""
     with np.errstate(over="ignore", invalid="ignore"):
         failures = []
-        if not np.isfinite(np.add.reduce(out.whole) + np.add.reduce(works, axis=None)):
+        if not math.isfinite(np.add.reduce(out.whole) + np.add.reduce(works, axis=None)):
             arrays = {**out._asdict(), "works": works}
             del arrays["whole"]
             failures = [_not_finite(name, array[:done]) for name, array in arrays.items()]

@@ -106,7 +106,7 @@ def tabulated(
 
 
 class Built(NamedTuple):
-    """What a grid was built for."""
+    """What a grid is built for: points per body length, kinks of the drag that are looked for, knots [m] of a law."""
 
     resolution: float
     kinks: str
@@ -141,20 +141,28 @@ class Simulation:
         self.x = checked_stations(stations, self.body.length)
         self._current = np.array(self.scene.current)
         self._distributed = self.scene.tail_pressure == "distributed"
-        self._start = (
+        start = (
             checked_row("position", position, 3),
             checked_quaternion("orientation", orientation),
             checked_row("twist", twist, 6),
         )
         if self.scene.planar:
-            check_planar(*self._start)
-        self._thrown = self._is_thrown(law)
-        self._use_accuracy(in_plane(law, *self._start[1:], self._current) and not self._thrown)
+            check_planar(*start)
         if not (np.isfinite(default_transition) and default_transition > 0.0):
             raise ValueError(f"default_transition must be finite and > 0 s, got {default_transition!r}")
+        self._default_transition, self._built = float(default_transition), None
+        self._begin(law, start)
+
+    def _begin(self, law: Law | None, start: tuple[np.ndarray, np.ndarray, np.ndarray]):
+        """Stand at the `start`: position, orientation, twist; and follow `law`, if there is one."""
+        self._start = start
+        self._thrown = self._is_thrown(law)
+        self._use_accuracy(in_plane(law, *start[1:], self._current) and not self._thrown)
         waves, knots = (1.0, ()) if law is None else self._needs(law)
-        self._build(self.accuracy.points_per_length(waves), knots)
-        self.shape = Shape(self._tabulation, float(default_transition))
+        wanted = Built(self.accuracy.points_per_length(waves), self.accuracy.kinks, knots)
+        if wanted != self._built:
+            self._build(wanted)
+        self.shape = Shape(self._tabulation, self._default_transition)
         self.ready = self._started = False
         self.time = 0.0
         if law is None:
@@ -162,11 +170,10 @@ class Simulation:
         else:
             self.adopt(law)
 
-    def _build(self, resolution: float, knots: tuple[float, ...] = ()):
-        """Have body and scene tabulated on a grid of `resolution` points per body length, cut at `knots` [m]."""
-        kinks = self.accuracy.kinks
-        table = tabulated(self.body, self.scene, resolution, kinks, knots, self.x.tobytes())
-        self._grid, self._mass, self._built = table.grid, table.mass, Built(resolution, kinks, knots)
+    def _build(self, wanted: Built):
+        """Have body and scene tabulated on the grid that is `wanted`."""
+        table = tabulated(self.body, self.scene, *wanted, self.x.tobytes())
+        self._grid, self._mass, self._built = table.grid, table.mass, wanted
         self.swimmer, self._packed, self._tabulation = table.swimmer, table.packed, table.tabulation
         self._scratch, self._rows = None, 0
 
@@ -298,7 +305,7 @@ class Simulation:
         if fine_enough and self.accuracy.kinks == built.kinks:
             return
         old, twist = self._grid, self._twist()
-        self._build(resolution, knots)
+        self._build(Built(resolution, self.accuracy.kinks, knots))
         rows, first, _ = old.rows_at(self._tabulation.x, "value")
 
         def values(fields):

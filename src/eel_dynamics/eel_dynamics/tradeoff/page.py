@@ -20,8 +20,8 @@ its path, and of the torque field (51 stations, 201 instants) by its greatest ma
 
 `P`, `T`: on the Pareto front of pose, of torque: no other setting is both cheaper and more exact. `adams` takes one
 evaluation a step, of variable length; `dormand-prince` is the pair of orders 5(4), six evaluations a step, of a length
-chosen by the tolerance; `classical` is the Runge-Kutta method of order 4 with fixed steps. `no kinks`: the places
-where cross flow and roll change their sign, and where the printed friction law jumps, are not looked for along the body.
+chosen by the tolerance; `classical` is the Runge-Kutta method of order 4 with fixed steps. `no kinks`: the
+places along the body where cross flow and roll change their sign, and the printed friction jumps, are not looked for.
 
 How to read the second table of a gait: a poorer model, solved exactly, is off by that much, so a setting whose own
 error is a tenth of it is exact enough wherever that physics is in doubt. What makes no difference to a gait may be left
