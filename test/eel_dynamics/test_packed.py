@@ -1,11 +1,16 @@
 """What is packed comes out as it went in, in Python and in compiled loops."""
 
+from copy import deepcopy
 from typing import NamedTuple
 
 import numpy as np
+import pytest
 from eel_dynamics.kernel import fields_of
 from eel_dynamics.packed import Layout, opener
 from numba import njit
+
+from eel_dynamics import Simulation
+from eel_gaits import falling
 
 
 class Inner(NamedTuple):
@@ -74,3 +79,21 @@ def test_arrays_begin_where_eight_numbers_are_loaded_at_once():
     fields = Layout(fields_of(13, 3, 7)).space().views
     for array in (fields.turn, fields.R, fields.factor, fields.kinks.density):
         assert array.__array_interface__["data"][0] % 64 == 0
+
+
+def test_what_is_neither_array_nor_number_is_refused():
+    with pytest.raises(TypeError, match="what is packed must be arrays, whole numbers or floats, got 'text'"):
+        Layout(Inner(np.zeros(3), "text"))
+
+
+def test_a_copy_of_a_simulation_goes_on_by_itself():
+    first = Simulation(law=falling())
+    first.advance(1.0)
+    first.observe()
+    assert len(first.fields.kinks.kind) and first.step.time[0] > 0.0
+    second = deepcopy(first)
+    second.advance(2.0)
+    there = second.observe().position.copy()
+    assert first.time == 1.0 and first.step.time[0] < 1.1 < second.step.time[0] + 0.2
+    first.advance(2.0)
+    np.testing.assert_array_equal(first.observe().position, there)

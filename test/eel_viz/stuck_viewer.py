@@ -1,8 +1,9 @@
 """Shows a made-up swimmer in a file and to a viewer that does not read, and tells the memory; a process of its own.
 
 Usage: stuck_viewer.py FILE SINK PORT MEGABYTES: SINK is connect (the viewer listens on PORT) or serve (on PORT; whoever
-comes is the viewer). Goes on for 6 s at least and until the file has so much; prints lines of JSON: seconds, MB of the
-file, MB of memory that this process has for itself, and what was said so far.
+comes is the viewer). Goes on for 6 s at least, until the file has so much, and until the viewer has been found stuck,
+but no further than three times as much: buffers hide it for a while. Prints lines of JSON: seconds, MB of the file, MB
+of memory that this process has for itself, and what was said so far.
 """
 
 import json
@@ -18,7 +19,9 @@ from eel_viz.sinks import destinations
 from made_up_recording import body, sample
 
 STEP = 10**7  # ns
-NOTICED = 6.0  # s, by when it has been said that the viewer does not read
+NOTICED = 6.0  # s, by when it has been said that the viewer does not read, where buffers are full at once
+SIGNS = "has not read", "does not answer"
+MOST = 3.0  # of the megabytes
 WAIT = 0.5  # s between two lines
 
 
@@ -44,7 +47,11 @@ def main() -> None:
     def tell() -> None:
         print(json.dumps([now, path.stat().st_size / 1e6, anonymous_memory(), said]), flush=True)
 
-    while now < NOTICED or path.stat().st_size / 1e6 < wanted:
+    def done() -> bool:
+        size, stuck = path.stat().st_size / 1e6, any(sign in line for sign in SIGNS for line in said)
+        return now >= NOTICED and size >= wanted and (stuck or size >= MOST * wanted)
+
+    while not done():
         stamp = k * STEP
         for topic, arguments in samples[k % len(samples)].items():
             for loggers in made.at(topic, stamp):

@@ -2,7 +2,7 @@
 
 Numba keeps a compiled function for as long as its own file is unchanged, but not the files of the functions that it
 calls: after an upgrade, old and new loops would mix. Here a function is kept for as long as every file that holds
-compiled functions is unchanged.
+compiled functions, or the arrays that they take, is unchanged.
 """
 
 import hashlib
@@ -23,7 +23,7 @@ OPTIONS = {
 }
 
 
-SIGNS = b"from .compiled import", b"from numba", b"(NamedTuple)"  # of files that the loops are compiled from
+SIGNS = b"from .compiled import", b"from numba", b"from .lanes import"  # of files that the loops are compiled from
 
 
 def _stamp() -> str:

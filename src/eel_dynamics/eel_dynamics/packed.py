@@ -43,8 +43,12 @@ class Layout:
                 self._begins.append(words)
                 table += [words, *leaf.shape]
                 words += -(-leaf.size * WORD // ALIGNMENT) * ALIGNMENT // WORD
+            elif isinstance(leaf, float):
+                table.append(int(np.float64(leaf).view(np.int64)))
+            elif isinstance(leaf, (int, np.integer)):
+                table.append(int(leaf))
             else:
-                table.append(int(np.float64(leaf).view(np.int64)) if isinstance(leaf, float) else int(leaf))
+                raise TypeError(f"what is packed must be arrays, whole numbers or floats, got {leaf!r}")
         self.packed = Packed(aligned_zeros(words), np.array(table, dtype=np.int64))
         for leaf, begin in zip(_arrays(value), self._begins, strict=True):
             self.packed.memory[begin : begin + leaf.size] = leaf.ravel().view(np.float64)
@@ -72,6 +76,9 @@ class Space:
 
     def __init__(self, layout: Layout, packed: Packed):
         self._layout, self.packed = layout, packed
+
+    def __getstate__(self):  # a copy's views are of its own memory
+        return {"_layout": self._layout, "packed": self.packed}
 
     @cached_property
     def views(self):
