@@ -96,21 +96,21 @@ class Accuracy:
         errors of Adams' steps add up to ten times more in some turns of a spin. The pair's do not."""
         if self.target is None:
             return self
+        exact = replace(self, kinks="all")
         if self.method != "adams":
-            return replace(self, kinks="all")
-        tolerance = min(self.tolerance, LOOSEST_TOLERANCE)
-        return replace(self, kinks="all", method="dormand_prince", order=5, tolerance=tolerance)
+            return exact
+        return replace(exact, method="dormand_prince", order=5, tolerance=min(self.tolerance, LOOSEST_TOLERANCE))
 
     def finer(self) -> "Accuracy":
         """Settings that are at least some ten times as exact: what an estimate of the error compares with."""
         resolution = min(1000.0, max(1.4 * self.resolution + 2.0, self.resolution + FURTHER_POINTS))
+        in_space = {"resolution": resolution, "kinks": "all", "target": None}
         if self.step is not None:
-            return replace(self, resolution=resolution, kinks="all", step=0.5 * self.step, target=None)
+            return replace(self, **in_space, step=0.5 * self.step)
         if self.fixed is not None:
-            return replace(self, resolution=resolution, kinks="all", fixed=2.0 * self.fixed, target=None)
+            return replace(self, **in_space, fixed=2.0 * self.fixed)
         tolerance = max(self.tolerance / 30.0, min(self.tolerance, FINEST_TOLERANCE))
-        tolerance = min(tolerance, LOOSEST_TOLERANCE)
-        return replace(self, resolution=resolution, kinks="all", tolerance=tolerance, target=None)
+        return replace(self, **in_space, tolerance=min(tolerance, LOOSEST_TOLERANCE))
 
     @staticmethod
     def of(value: "str | float | Accuracy") -> "Accuracy":

@@ -46,11 +46,11 @@ SHARE = 0.7  # of the target for the worst case: laws and scenes that are not am
 PART_OF_SPACE = 0.25  # of that, for the points along the body
 MOST_FINER = 4  # settings that are tried in place of one which misses its target as a whole
 CHECKED = 0.85  # of the target, for the worst case with both
-# what it costs to look for the drag's kinks, in nodes that cost as much; and where the motion stays in a plane
 BESIDES = 22  # what an evaluation and its step cost whatever the nodes, in nodes that cost as much
 COARSE = 1e-4  # target, from which on points and steps are chosen together, and whether to look for kinks: below, their
 # errors differ too much from law to law
 FINER_STEPS, MOST_STEPS = 3, 10  # of the tolerances that are tried for these
+# what it costs to look for the drag's kinks, in nodes that cost as much; and where the motion stays in a plane
 COST_OF_KINKS = {"none": 0, "jumps": 5, "all": 13}, {"none": 0, "jumps": 15, "all": 30}
 TURNS = 15  # in which runs with the ledger and without are timed
 
@@ -235,10 +235,10 @@ def _without_torque(case: Case) -> Case:
 
 def _rows(found: list[Errors], torque: bool, ledger: float):
     """The rows of a table; `ledger`: evaluations that a step costs besides its own."""
-    kinds = slice(0, 2 if torque else 1)
+    counted = slice(0, 2 if torque else 1)
     space = np.max([each.space if torque else each.alone for each in found], axis=(0, 3))
-    time = np.max([each.time[..., kinds] for each in found], axis=(0, 3))
-    fixed = np.max([each.fixed[:, kinds] for each in found], axis=(0, 2))
+    time = np.max([each.time[..., counted] for each in found], axis=(0, 3))
+    fixed = np.max([each.fixed[:, counted] for each in found], axis=(0, 2))
     cost = np.mean([each.time[..., 2] + ledger * each.time[..., 3] for each in found], axis=0)
     for target in TARGETS:
         for_space, for_time = PART_OF_SPACE * SHARE * target, (1.0 - PART_OF_SPACE) * SHARE * target

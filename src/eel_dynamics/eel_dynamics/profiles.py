@@ -156,36 +156,10 @@ open_scratch = opener(lambda: Scratch(fields_of(1, 1, 1), balance_of(1), station
 open_step = opener(lambda: step_of(1, 1))
 
 
-@compiled
-def set_in_motion(swimmer, drive, scratch, time, twist, y):
-    """Give state `y` (13,) at `time` the momentum of the head's `twist` (6,) relative to the water. Returns the kinetic
-    energy [J] of body and water (without the nose's). `swimmer` and `scratch` are packed."""
-    return momentum_and_energy(open_swimmer(swimmer), drive, open_scratch(scratch).fields, time, twist, y)
-
-
-@compiled
-def begin(swimmer, drive, scratch, step, control, time, twist, y, work, length):
-    """As `set_in_motion`, and let the march begin there, with the works `work` (4,), a first step of `length` [s] and
-    no step behind it."""
-    energy = momentum_and_energy(open_swimmer(swimmer), drive, open_scratch(scratch).fields, time, twist, y)
-    step = open_step(step)
-    step.scale[0], step.scale[1] = square_of(y, 7, 10), square_of(y, 10, 13)
-    step.budget[0] = control.spare_steps
-    for k in range(3):
-        step.time[k], step.count[k] = 0.0, 0
-    begin_at(step, time, y, work, length)
-    return energy
-
-
-@compiled
-def begin_again(step, time, y, work, length):
-    """Let the next step begin at `time` [s] in state `y` (13,), with the works `work` (4,)."""
-    begin_at(open_step(step), time, y, work, length)
-
-
 @inlined
-def momentum_and_energy(swimmer, drive, fields, time, twist, y):
-    """What `set_in_motion` does."""
+def set_in_motion(swimmer, drive, fields, time, twist, y):
+    """Give state `y` (13,) at `time` the momentum of the head's `twist` (6,) relative to the water. Returns the kinetic
+    energy [J] of body and water (without the nose's)."""
     factors(drive, time, fields.factor)
     configure(swimmer, drive, fields)
     momentum_of_twist(swimmer, fields, twist, y[7:])
@@ -195,6 +169,27 @@ def momentum_and_energy(swimmer, drive, fields, time, twist, y):
     add_head_twist(swimmer, fields, twist)
     body, water = kinetic_energies(swimmer, fields)
     return body + water
+
+
+@compiled
+def begin(swimmer, drive, scratch, step, control, time, twist, y, work, length, first):
+    """As `set_in_motion`, and let the march begin there, with the works `work` (4,), a first step of `length` [s] and,
+    where it is the `first` of a run, no step behind it. Packed are `swimmer`, `scratch` and `step`."""
+    energy = set_in_motion(open_swimmer(swimmer), drive, open_scratch(scratch).fields, time, twist, y)
+    step = open_step(step)
+    if first:
+        step.scale[0], step.scale[1] = square_of(y, 7, 10), square_of(y, 10, 13)
+        step.budget[0] = control.spare_steps
+        for k in range(3):
+            step.time[k], step.count[k] = 0.0, 0
+    begin_at(step, time, y, work, length)
+    return energy
+
+
+@compiled
+def begin_again(step, time, y, work, length):
+    """Let the next step begin at `time` [s] in state `y` (13,), with the works `work` (4,). Packed is `step`."""
+    begin_at(open_step(step), time, y, work, length)
 
 
 @inlined

@@ -32,7 +32,7 @@ from .integrator import (
     settle,
 )
 from .packed import Layout, Packed
-from .profiles import Profiles, begin, begin_again, profiles_of, scratch_layout, set_in_motion, step_layout, swim
+from .profiles import Profiles, begin, begin_again, profiles_of, scratch_layout, step_layout, swim
 from .quadrature import Grid
 from .scene import Scene
 from .sections import Swimmer, panels_of, stations_of, swimmer_of
@@ -316,8 +316,7 @@ class Simulation:
 
         self.shape.move(self._tabulation, values)
         self._use_drive()
-        self._set_momentum(twist)
-        self._restart()
+        self._begin_with(twist, first=False)
 
     # -- march
 
@@ -484,13 +483,16 @@ class Simulation:
             self.adopt(law)
 
     def warm_up(self):
-        """Compile (or load) every loop, on the first call in a process: march a moment and observe it."""
+        """Compile (or load) every loop, on the first call in a process: march a moment and observe it, then go on with
+        a law that needs another grid."""
         from eel_gaits import straight
 
         trial = Simulation(self.body, self.scene, self.accuracy, self.x)
         trial.adopt(straight())
         trial.advance(1e-3)
         trial.observe()
+        trial.adopt(straight(wavelength=0.4 * self.body.length))
+        trial.advance(2e-3)
 
     def _use_drive(self):
         self.drive = self.shape.drive
@@ -556,10 +558,7 @@ class Simulation:
         relative = self._relative_start()
         self._motion_scale = self._scale_of(relative)
         self._use_drive()
-        self.kinetic_at_start = begin(
-            *(self._packed[0], self.drive, self._scratch.packed, self._step.packed, self._control),
-            *(self.time, relative, self.state, self._works[0], self._first_step),
-        )
+        self.kinetic_at_start = self._begin_with(relative, first=True)
         if not np.isfinite(self.kinetic_at_start):
             raise SimulationStopped(self.time, "kinetic energy", self.kinetic_at_start, "start slower")
 
@@ -571,7 +570,10 @@ class Simulation:
             raise self._stopped(SINGULAR)
         return twist
 
-    def _set_momentum(self, twist: np.ndarray) -> float:
-        """Give the present state the momentum of the head's `twist` (6,) relative to the water. Returns its kinetic
-        energy [J]."""
-        return set_in_motion(self._packed[0], self.drive, self._scratch.packed, self.time, twist, self.state)
+    def _begin_with(self, twist: np.ndarray, *, first: bool) -> float:
+        """Give the present state the momentum of the head's `twist` (6,) relative to the water, and let the next step,
+        or the `first`, begin there. Returns its kinetic energy [J]."""
+        return begin(
+            *(self._packed[0], self.drive, self._scratch.packed, self._step.packed, self._control),
+            *(self.time, twist, self.state, self._works[0], self._first_step, first),
+        )

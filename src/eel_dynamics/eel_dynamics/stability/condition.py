@@ -12,7 +12,7 @@ from eel_gaits import falling, straight
 
 from ..body import Body
 from ..inertia import MOST, condition_of, straight_inertia
-from ..profiles import momentum_and_energy
+from ..profiles import set_in_motion
 from ..run import simulate
 from ..scene import Scene
 from ..simulation import Simulation, SimulationStopped
@@ -78,7 +78,7 @@ def of_bent(size: float, ratio: float) -> float:
 def inertia_at(swimmer: Simulation, time: float) -> np.ndarray:
     """Matrix (6, 6) of inertia about the head, in its axes, of the shape at `time` [s]; body of 1 m."""
     fields = swimmer.fields
-    momentum_and_energy(swimmer.swimmer, swimmer.drive, fields, time, np.zeros(6), swimmer.state.copy())
+    set_in_motion(swimmer.swimmer, swimmer.drive, fields, time, np.zeros(6), swimmer.state.copy())
     lower = np.tril(fields.inertia)
     return lower + np.tril(lower, -1).T
 
