@@ -1,18 +1,30 @@
 #!/usr/bin/env bash
-# All tests but the long ones. Without arguments as two pytest processes side by side, each in ROS domains of its own: they
-# wait most of the time. What the mechanics measured comes last. Arguments go to one pytest.
+# All tests but the long ones. Without arguments as three pytest processes side by side, each in ROS domains of its own:
+# they wait most of the time. Arguments go to one pytest.
 set -uo pipefail
 if [ $# -gt 0 ]; then exec python -m pytest -m "not soak" "$@"; fi
 
 mkdir -p out
-log=out/test-dynamics.log
-python -m pytest -m "not soak" test/eel_dynamics > "$log" 2>&1 &
-dynamics=$!
-trap 'kill -INT "$dynamics" 2> /dev/null; wait "$dynamics"; exit 130' INT TERM
-echo "[test] test/eel_gaits, test/eel_viz and test/system here; test/eel_dynamics beside them, shown when it is done"
-python -m pytest -m "not soak" test/eel_gaits test/eel_viz test/system
-here=$?
-wait "$dynamics"
-beside=$?
-cat "$log"
-[ "$here" -eq 0 ] && [ "$beside" -eq 0 ]
+declare -A beside
+stop() {
+    kill -INT "${beside[@]}" 2> /dev/null
+    wait "${beside[@]}"
+    exit 130
+}
+trap stop INT TERM
+begin() {   # NAME TESTS...: into out/test-NAME.log
+    python -m pytest -m "not soak" "${@:2}" > "out/test-$1.log" 2>&1 &
+    beside[$1]=$!
+}
+
+nodes=(test/eel_dynamics/test_node_[!r]*.py test/eel_dynamics/test_sweep.py)
+begin nodes "${nodes[@]}"
+begin viz test/eel_viz test/eel_gaits
+echo "[test] mechanics and test/system here; the dynamics node, test/eel_viz and test/eel_gaits beside, shown when done"
+python -m pytest -m "not soak" test/eel_dynamics test/system "${nodes[@]/#/--ignore=}"
+status=$?
+for name in nodes viz; do
+    wait "${beside[$name]}" || status=1
+    cat "out/test-$name.log"
+done
+exit "$status"
