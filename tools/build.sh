@@ -71,8 +71,8 @@ link_executables() {
 
 compile_kernels() {
     local key
-    key="$({ grep -l 'from .compiled import' src/eel_dynamics/eel_dynamics/*.py; echo src/eel_dynamics/eel_dynamics/compiled.py; } |
-        sort | xargs sha256sum | key_of "$(cat install/stamp)")"
+    key="$({ grep -lE 'from (\.compiled|numba|\.lanes) import' src/eel_dynamics/eel_dynamics/*.py; echo src/eel_dynamics/eel_dynamics/compiled.py; } |
+        sort -u | xargs sha256sum | key_of "$(cat install/stamp)")"
     stamped build/numba_cache/stamp "$key" && return
     say "compiling the kernels (numba, cached in build/numba_cache)"
     mkdir -p build/numba_cache

@@ -10,7 +10,6 @@ than once are tabulated once.
 """
 
 import os
-import threading
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -21,16 +20,20 @@ from eel_gaits.law import Law
 from .accuracy import Accuracy
 from .arguments import checked_stations
 from .body import Body
-from .broadcast import Swimmer, swimmers_of
+from .broadcast import swimmers_of
 from .energy import EnergyLedger
-from .member import Member
-from .profiles import Profiles, profiles_of
+from .guard import failure_of
+from .integrator import MARCHED
+from .leg import COUNT, ENERGY, PLACE, REACHED, STATUS
+from .member import Crew, Member, swim_together
+from .profiles import Profiles, profiles_of, row_of
 from .run import Run, checked_times, run_of
 from .scene import Scene
-from .simulation import SimulationStopped
+from .simulation import ReadyLeg, SimulationStopped
 
 ALONG = "backbone", "section_orientation", "curvature", "curvature_rate", "torque", "force", "fluid_force"
-MOST_MEMBERS = 100  # that a thread keeps
+MOST_TOGETHER = 16  # swimmers of one call of the loops: the lock of Python is let go once for all of them
+PARTS_PER_THREAD = 4  # at least, so that none waits long for the others at the end
 MOST_MEMORY = 0.8  # of the machine's, that a batch may fill
 
 
@@ -137,54 +140,55 @@ def simulate_batch(
     load = bool(load) and stations is not None
     count = len(x)
     out = _space(count, len(times), len(x[0]), any(wrench), load)
-    works, samples, start = np.zeros((count, len(times), 4)), np.zeros(count, dtype=np.int64), np.zeros(count)
-    steps, evaluations, errors = samples.copy(), samples.copy(), [None] * count
-    settings, crew = [each.accuracy for each in members], Crew()
+    works, places = np.zeros((count, len(times), 4)), np.zeros((count, PLACE))
+    rows, floors = row_of(out, any(wrench), load), np.full(count, np.inf)
+    settings, errors, crew = [each.accuracy for each in members], [None] * count, Crew()
 
-    def swim(index: int):
+    def ready(index: int) -> ReadyLeg | None:
+        where = places[index], times, works[index], rows[index]
         try:
-            with np.errstate(
-                over="ignore", invalid="ignore", divide="ignore"
-            ):  # what is not finite stops the swimmer, and is told
-                member = crew.take(members[index], x[index])
+            member = crew.member(members[index], x[index])
+            leg = member.leg_of(members[index], *where, wrench=wrench[index], load=load)
+        except (SimulationStopped, ValueError) as error:
+            errors[index] = _stopped_at_start(error)
+            return None
+        settings[index], floors[index] = member.accuracy, member.energy_floor
+        return leg
+
+    def swim(indices: range):
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):  # what is not finite stops a swimmer
+            swim_together([leg for leg in map(ready, indices) if leg is not None])
+        part = slice(indices.start, indices.stop)
+        finite = np.isfinite(out.whole[part].sum(axis=1) + works[part].sum(axis=(1, 2)))
+        for index in indices:
+            if errors[index] is None and not (finite[index - part.start] and is_sound(index)):
+                swim_again(index)
+
+    def is_sound(index: int) -> bool:
+        if places[index, STATUS] != MARCHED:
+            return False
+        if np.isinf(floors[index]):
+            return True
+        return not failure_of(_of_one(out, index), works[index], len(times), places[index, ENERGY], floors[index])
+
+    def swim_again(index: int):
+        """One that stopped: alone, for what stopped it."""
+        try:
+            member = Member(members[index], x[index])
         except (SimulationStopped, ValueError) as error:
             errors[index] = _stopped_at_start(error)
             return
-        start[index], settings[index] = member.kinetic_at_start, member.accuracy
-        samples[index], errors[index] = member.swim_into(
-            times, _of_one(out, index, wrench[index]), works[index], wrench=wrench[index], load=load
-        )
-        steps[index], _, evaluations[index] = member.evaluations
-        if errors[index] is None:
-            crew.bring_back(members[index], member)
+        one = _of_one(out, index, wrench[index])
+        done, errors[index] = member.swim_into(times, one, works[index], wrench=wrench[index], load=load)
+        places[index, ENERGY:] = member.kinetic_at_start, *member.evaluations, done, MARCHED
 
     _for_each(swim, count, threads, progress)
+    start, (samples, steps, evaluations) = places[:, ENERGY], places[:, [REACHED, COUNT, COUNT + 2]].T.astype(int)
     for index in np.flatnonzero(samples < len(times)):
         for array in (*_of_one(out, index)[:-1], works[index]):
             array[samples[index] :] = 0.0
     counts = steps, evaluations
     return _batch_of(members, settings, times, samples, errors, counts, x, out, works, start, wrench, load, stations)
-
-
-class Crew(threading.local):
-    """The members that a thread has, by body, scene and accuracy: they swim again and again."""
-
-    def __init__(self):
-        self._resting: dict = {}
-
-    def take(self, swimmer: Swimmer, x: np.ndarray) -> Member:
-        """A member at the start of `swimmer`, with the stations `x` (M,) [m], the same for the same body."""
-        member = self._resting.pop(swimmer[1:4], None)
-        if member is None:
-            return Member(stations=x, **swimmer._asdict())
-        member.begin_anew(swimmer.law, swimmer.position, swimmer.orientation, swimmer.twist)
-        return member
-
-    def bring_back(self, swimmer: Swimmer, member: Member):
-        """Keep a member that is sound."""
-        if len(self._resting) >= MOST_MEMBERS:
-            self._resting.clear()
-        self._resting[swimmer[1:4]] = member
 
 
 def _batch_of(members, settings, times, samples, errors, counts, x, out, works, start, wrench, load, stations):
@@ -217,28 +221,29 @@ def _batch_of(members, settings, times, samples, errors, counts, x, out, works, 
 
 
 def _for_each(swim, count: int, threads: int | None, progress):
-    """`swim(index)` for every index, in `threads` threads; the first, which may compile, alone."""
+    """`swim(range)` for all of `count`, some at a time, in `threads` threads; the first, which may compile, alone."""
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
     threads = cores if threads is None else threads
     if isinstance(threads, bool) or not isinstance(threads, (int, np.integer)) or threads < 1:
         raise ValueError(f"threads must be a whole number >= 1, got {threads!r}")
-    said = max(1, count // 100)
+    some = max(1, min(MOST_TOGETHER, count // (PARTS_PER_THREAD * threads)))
+    parts = [range(1), *(range(k, min(k + some, count)) for k in range(1, count, some))]
 
-    def tell(done: int):
-        if progress is not None and (done % said == 0 or done == count):
-            progress(done, count)
+    def tell(part: range):
+        if progress is not None:
+            progress(part.stop, count)
 
-    swim(0)
-    tell(1)
+    swim(parts[0])
+    tell(parts[0])
     if threads == 1:
-        for index in range(1, count):
-            swim(index)
-            tell(index + 1)
+        for part in parts[1:]:
+            swim(part)
+            tell(part)
         return
     with ThreadPoolExecutor(threads, thread_name_prefix="swimmer") as pool:
         try:
-            for done, _ in enumerate(pool.map(swim, range(1, count)), 2):
-                tell(done)
+            for part, _ in zip(parts[1:], pool.map(swim, parts[1:]), strict=True):
+                tell(part)
         except BaseException:
             pool.shutdown(cancel_futures=True)
             raise

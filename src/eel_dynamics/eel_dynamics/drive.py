@@ -16,6 +16,7 @@ import numpy as np
 
 from .compiled import inlined
 from .lanes import WIDTH, aligned, floor, put, spread, take
+from .packed import Form
 
 AXES = {"pitch": 0, "yaw": 1}
 MOMENT_POINTS = 10  # Gauss points per interval for the Magnus moments
@@ -25,8 +26,8 @@ SINE = (-1 / 1307674368000, 1 / 6227020800, -1 / 39916800, 1 / 362880, -1 / 5040
 COSINE = (1 / 20922789888000, -1 / 87178291200, 1 / 479001600, -1 / 3628800, 1 / 40320, -1 / 720, 1 / 24, -0.5)
 
 
-class Drive(NamedTuple):
-    """A tabulated shape of m rows on n nodes and s stations, as the loops take it."""
+class Tables(NamedTuple):
+    """A shape of m rows, tabulated on n nodes and s stations; k groups of terms."""
 
     axis: np.ndarray  # (m,) int, 0 pitch (K2), 1 yaw (K3)
     node: np.ndarray  # (m, n) rad/m at the nodes, per unit of factor
@@ -34,9 +35,14 @@ class Drive(NamedTuple):
     bend: np.ndarray  # (m, 3, n) rad, Magnus moments between the nodes
     station: np.ndarray  # (m, s) rad/m
     station_bend: np.ndarray  # (m, 3, s) rad, from the node before each station
-    origin: float  # s, simulation time of the law's own t = 0
     sine: np.ndarray  # (k,) int, row of sin(kX + phase) of the k-th group of terms
     cosine: np.ndarray  # (k,) int, row of cos(kX + phase), -1 without a period
+
+
+class Times(NamedTuple):
+    """What the factors of the rows are made of."""
+
+    origin: float  # s, simulation time of the law's own t = 0
     period: np.ndarray  # (k,) s, 0: constant
     ramp_first: np.ndarray  # (k,) int, first ramp of the envelope
     ramp_count: np.ndarray  # (k,) int, -1: no envelope
@@ -47,6 +53,24 @@ class Drive(NamedTuple):
     blend: int  # first of the 6 rows of a blend, -1: none
     blend_start: float  # s
     blend_end: float  # s
+
+
+Drive = NamedTuple("Drive", [*Tables.__annotations__.items(), *Times.__annotations__.items()])
+Drive.__doc__ = """A tabulated shape as the loops take it: `Tables` and `Times`, one behind the other."""
+
+
+def _any_tables() -> Tables:
+    index, rows, moments = np.zeros(1, dtype=np.int64), np.zeros((1, 1)), np.zeros((1, 1, 1))
+    return Tables(index, rows, rows, moments, rows, moments, index, index)
+
+
+def _any_times() -> Times:
+    index = np.zeros(1, dtype=np.int64)
+    return Times(0.0, np.zeros(1), index, index, np.zeros((1, 1)), -1, 0.0, 0.0, -1, 0.0, 0.0)
+
+
+TABLES, TIMES = Form(_any_tables), Form(_any_times)
+DRIVE = Form(lambda: Drive(*TABLES.example, *TIMES.example))
 
 
 class Tabulation:

@@ -20,6 +20,7 @@ from .compiled import inlined, spliced
 from .drive import combine, factors
 from .kernel import add_head_twist, configure, find_loads, momentum_rates, twist_of_momentum
 from .lanes import WIDTH, inverse_root_guess, put, size, spread, take, total, work_space
+from .packed import Form
 from .planar import move_plane, powers_plane, rate_of_state_plane
 from .wrench import accelerate, actuator_power
 
@@ -162,6 +163,10 @@ def dormand_prince() -> Method:
         ]
     )
     return Method(a, np.array([0.0, 0.2, 0.3, 0.8, 8 / 9, 1.0, 1.0]), error, dense, True, 5, 0)
+
+
+METHOD = Form(classical)
+CONTROL = Form(lambda: Control(*([0.0] * 8), True, True))
 
 
 @inlined
@@ -313,7 +318,7 @@ def interpolate(method, step, theta, y):
 
 
 @spliced
-def works_upto(step, theta, series, work):
+def works_upto(step, theta, work):
     """Works (4,) [J] at the fraction `theta` of the step: the integral of the cubic through the powers at Lobatto's
     points."""
     for k in range(WORKS):
@@ -321,7 +326,7 @@ def works_upto(step, theta, series, work):
     power = theta
     for j in range(4):
         for i in range(4):
-            weight = step.time[1] * power / (j + 1.0) * series[j, i]
+            weight = step.time[1] * power / (j + 1.0) * LOBATTO_SERIES[j, i]
             for k in range(WORKS):
                 work[k] += weight * step.power[i, k]
         power *= theta
@@ -336,7 +341,7 @@ def evaluate(swimmer, drive, fields, current, control, time, y, step, dy):
 
 
 @spliced
-def state_at(method, control, series, step, time, y, work):
+def state_at(method, control, step, time, y, work):
     """State `y` (13,) and works (4,) at `time` [s] within the step."""
     length, theta = step.time[1], 1.0
     if abs(step.time[0] + length - time) <= 1e-12 * max(1.0, abs(time)):
@@ -348,7 +353,7 @@ def state_at(method, control, series, step, time, y, work):
         for k in range(STATE):
             y[k] = step.trial[k]
     if control.ledger:
-        works_upto(step, theta, series, work)
+        works_upto(step, theta, work)
 
 
 @spliced
@@ -494,10 +499,10 @@ def adapt_order(method, control, step, length, growth):
 
 
 @spliced
-def accept(control, step, start, length, series):
+def accept(control, step, start, length):
     """Make the trial step the step."""
     if control.ledger:
-        works_upto(step, 1.0, series, step.work)
+        works_upto(step, 1.0, step.work)
         for k in range(WORKS):
             step.power[0, k] = step.power[3, k]
     for k in range(0, SPACE, WIDTH):
@@ -511,7 +516,7 @@ def accept(control, step, start, length, series):
 
 
 @spliced
-def march(swimmer, drive, fields, balance, current, method, control, breakpoints, lobatto, series, step, until):
+def march(swimmer, drive, fields, balance, current, method, control, breakpoints, step, until):
     """March until the step holds the time `until` [s]. Returns MARCHED, or why it could not."""
     tiny = 1e-12 * max(1.0, abs(until))
     while step.time[0] + step.time[1] < until - tiny:
@@ -550,13 +555,13 @@ def march(swimmer, drive, fields, balance, current, method, control, breakpoints
         step.time[2] = min(control.step, grown if length >= proposed else max(proposed, grown))
         if abs(start + length - target) <= tiny:
             length = target - start
-        accept(control, step, start, length, series)
+        accept(control, step, start, length)
         if control.ledger:
             for j in range(3, -anew, -1):  # the step's end first, which was evaluated last
                 there = j == 3
                 if not there:
-                    interpolate(method, step, lobatto[j], step.trial)
-                time = start + lobatto[j] * length
+                    interpolate(method, step, LOBATTO[j], step.trial)
+                time = start + LOBATTO[j] * length
                 if not powers_in_step(
                     swimmer, drive, fields, balance, control, time, step.trial, there, step, step.power[j]
                 ):

@@ -1,26 +1,59 @@
-"""One swimmer of a batch: a `Simulation` that is marched straight into the batch's arrays."""
+"""Those of a batch that swim one after the other in one call of the loops."""
 
-from eel_gaits.law import Law
+import threading
 
-from .profiles import Profiles
-from .simulation import Simulation, SimulationStopped
+import numpy as np
+
+from .broadcast import Swimmer
+from .leg import CURRENT, ENERGY, FIRST, TWIST, swim
+from .simulation import ReadyLeg, Simulation, SimulationStopped
+
+MOST_MEMBERS = 100  # that a thread keeps
 
 
 class Member(Simulation):
-    """As `Simulation` with `law` adopted, for one swimmer after the other. `ValueError` names what does not fit."""
+    """A body in a scene, at an accuracy and with stations, in which one swimmer after the other swims."""
 
-    def __init__(self, law: Law, **arguments):
-        super().__init__(law=law, **arguments)
+    def __init__(self, swimmer: Swimmer, x: np.ndarray):
+        super().__init__(stations=x, **swimmer._asdict())
 
-    def begin_anew(self, law: Law, position, orientation, twist):
-        """Be the swimmer of the same body, scene, accuracy and stations that starts there: (3,) [m], unit quaternion
-        (4,) and (6,) [rad/s, m/s], checked."""
-        self._begin(law, (position, orientation, twist))
+    def leg_of(self, swimmer: Swimmer, place, times, works, out, **wanted) -> ReadyLeg:
+        """The whole way of `swimmer`, of the same body, scene and accuracy, through `times` (T,) [s] into `works`
+        (T, 4) [J] and the profiles of the row `out`; `place` (28,) as in `leg`."""
+        self._prepare(swimmer.law, (swimmer.position, swimmer.orientation, swimmer.twist))
+        place[:ENERGY] = self._place[:ENERGY]
+        place[TWIST:CURRENT] = self._relative
+        return self._leg(place, times, works, out, begin=FIRST, **wanted)
 
-    def swim_into(
-        self, times, out: Profiles, works, *, wrench: bool, load: bool
-    ) -> tuple[int, SimulationStopped | None]:
-        """March through `times` (T,) [s] and fill `out` and `works` (T, 4) [J]. Returns how many instants were reached,
-        and what stopped it."""
+    def swim_into(self, times, out, works, *, wrench: bool, load: bool) -> tuple[int, SimulationStopped | None]:
+        """March through `times` (T,) [s] and fill `out` (profiles) and `works` (T, 4) [J]. Returns how many instants
+        were reached, and what stopped it."""
         self._started = True
         return self._swim_through(times, works, out, wrench, load)
+
+
+class Crew(threading.local):
+    """The members that a thread has, by body, scene and accuracy: they swim again and again."""
+
+    def __init__(self):
+        self._members: dict = {}
+
+    def member(self, swimmer: Swimmer, x: np.ndarray) -> Member:
+        """One of the body, scene and accuracy of `swimmer`, with the stations `x` (M,) [m], the same for the same
+        body."""
+        member = self._members.get(swimmer[1:4])
+        if member is None:
+            member = Member(swimmer, x)
+            if len(self._members) >= MOST_MEMBERS:
+                self._members.clear()
+            self._members[swimmer[1:4]] = member
+        return member
+
+
+def swim_together(legs: list[ReadyLeg]):
+    """Swim all of them, in one call: Python's lock is let go once."""
+    if legs:
+        swim(np.array([leg.row for leg in legs]))
+
+
+__all__ = ["Crew", "Member", "swim_together"]

@@ -10,39 +10,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .compiled import compiled, inlined
+from .compiled import inlined
 from .drag import inverse_fifth_root, turbulent_part
-from .drive import combine, combine_moments, factors
-from .integrator import (
-    MARCHED,
-    SINGULAR,
-    begin_at,
-    head_axes,
-    march,
-    powers_of_state,
-    square_of,
-    state_at,
-    step_of,
-    to_head,
-    to_world,
-)
-from .kernel import (
-    Fields,
-    add_head_twist,
-    configure,
-    fields_of,
-    integrate,
-    momentum_of_twist,
-    product,
-    put_axes,
-    turns,
-)
+from .drive import combine, combine_moments
+from .integrator import head_axes, powers_of_state, to_head, to_world
+from .kernel import integrate, product, put_axes, turns
 from .kinks import BLENDED, LAMINAR, integrate_balance
 from .lanes import WIDTH, put, root, size, spread, take, where, work_space
-from .packed import Layout, opener
-from .sections import example
+from .packed import Form, address_of, relative
 from .vectors import bent, cross, in_section, put_three, three, two
-from .wrench import Balance, balance_of, kinetic_energies, moving_gain, turning_gain
+from .wrench import kinetic_energies, moving_gain, turning_gain
 
 
 class Profiles(NamedTuple):
@@ -99,6 +76,35 @@ def places_of(samples: int, stations: int, wrench: bool, load: bool) -> tuple[tu
     return tuple(places)
 
 
+PROFILES = Form(lambda: profiles_of(1, 2))
+
+
+@lru_cache(maxsize=64)
+def _row(samples: int, stations: int, wrench: bool, load: bool) -> tuple[np.ndarray, np.ndarray]:
+    """Row of such profiles whose whole begins at address 0, and 1 for each of its words that is an address."""
+    like = profiles_of(samples, stations, wrench, load)
+    return relative(PROFILES, like, like.whole)
+
+
+def row_of(out: Profiles, wrench: bool = True, load: bool = True) -> np.ndarray:
+    """Row (words,) of `out`, made by `profiles_of` with the same `wrench` and `load`; (B, words) for so many
+    swimmers."""
+    row, moves = _row(*out.backbone.shape[-3:-1], wrench, load)
+    begin, whole = address_of(out.whole), out.whole
+    if whole.ndim == 1:
+        return row + begin * moves
+    return row + (begin + np.arange(len(whole)) * whole.strides[0])[:, None] * moves
+
+
+@cache
+def no_profiles() -> np.ndarray:
+    """Row of profiles for legs that nobody looks at."""
+    return row_of(_NONE)
+
+
+_NONE = profiles_of(0, 0)
+
+
 class StationFields(NamedTuple):
     """Work space of the fields at M stations, as in the kernel's `Fields` and the `Balance`."""
 
@@ -128,68 +134,6 @@ def show(rows, first, result):
     """Put three `rows` from `first` on into the `result` (M, 3)."""
     for i in range(result.shape[0]):
         result[i, 0], result[i, 1], result[i, 2] = rows[first, i], rows[first + 1, i], rows[first + 2, i]
-
-
-class Scratch(NamedTuple):
-    """Work space of an instant: nothing in it is kept from one to the next."""
-
-    fields: Fields
-    balance: Balance
-    here: StationFields
-
-
-@lru_cache(maxsize=256)
-def scratch_layout(nodes: int, widest: int, rows: int, stations: int) -> Layout:
-    """For `nodes` nodes in panels of up to `widest`, a law of up to `rows` rows, and so many `stations`."""
-    return Layout(Scratch(fields_of(nodes, rows, widest), balance_of(nodes), station_fields_of(stations)))
-
-
-@cache
-def step_layout(stages: int, past: int) -> Layout:
-    """For a method of so many `stages`, that goes back by so many steps."""
-    return Layout(step_of(stages, past))
-
-
-open_swimmer = opener(lambda: example()[0])
-open_stations = opener(lambda: example()[1])
-open_scratch = opener(lambda: Scratch(fields_of(1, 1, 1), balance_of(1), station_fields_of(1)))
-open_step = opener(lambda: step_of(1, 1))
-
-
-@inlined
-def set_in_motion(swimmer, drive, fields, time, twist, y):
-    """Give state `y` (13,) at `time` the momentum of the head's `twist` (6,) relative to the water. Returns the kinetic
-    energy [J] of body and water (without the nose's)."""
-    factors(drive, time, fields.factor)
-    configure(swimmer, drive, fields)
-    momentum_of_twist(swimmer, fields, twist, y[7:])
-    axes = head_axes(y)
-    to_world(axes, y, 7)
-    to_world(axes, y, 10)
-    add_head_twist(swimmer, fields, twist)
-    body, water = kinetic_energies(swimmer, fields)
-    return body + water
-
-
-@compiled
-def begin(swimmer, drive, scratch, step, control, time, twist, y, work, length, first):
-    """As `set_in_motion`, and let the march begin there, with the works `work` (4,), a first step of `length` [s] and,
-    where it is the `first` of a run, no step behind it. Packed are `swimmer`, `scratch` and `step`."""
-    energy = set_in_motion(open_swimmer(swimmer), drive, open_scratch(scratch).fields, time, twist, y)
-    step = open_step(step)
-    if first:
-        step.scale[0], step.scale[1] = square_of(y, 7, 10), square_of(y, 10, 13)
-        step.budget[0] = control.spare_steps
-        for k in range(3):
-            step.time[k], step.count[k] = 0.0, 0
-    begin_at(step, time, y, work, length)
-    return energy
-
-
-@compiled
-def begin_again(step, time, y, work, length):
-    """Let the next step begin at `time` [s] in state `y` (13,), with the works `work` (4,). Packed is `step`."""
-    begin_at(open_step(step), time, y, work, length)
 
 
 @inlined
@@ -417,61 +361,3 @@ def observe(
         out.tail_force[sample, 0] = 0.0 if distributed else -fields.losses[2]
         out.nose_force[sample, 0] = balance.nose[0]
     return True
-
-
-@compiled
-def swim(
-    swimmer,
-    stations,
-    drive,
-    scratch,
-    step,
-    current,
-    distributed,
-    method,
-    control,
-    breakpoints,
-    lobatto,
-    series,
-    look,
-    want_wrench,
-    want_load,
-    times,
-    y,
-    works,
-    out,
-):
-    """March through `times` (T,) [s], ascending: the state `y` (13,) ends as the last, `works` (T, 4) holds each; where
-    `look`, one instant of `out` is filled at each. Returns the number of instants reached, and a status. Packed are
-    `swimmer`, `stations`, `scratch` and `step`.
-
-    The one entry to all loops: what is compiled once for it serves every use.
-    """
-    swimmer, stations, step = open_swimmer(swimmer), open_stations(stations), open_step(step)
-    fields, balance, here = open_scratch(scratch)
-    for sample in range(len(times)):
-        status = march(
-            swimmer, drive, fields, balance, current, method, control, breakpoints, lobatto, series, step, times[sample]
-        )
-        if status != MARCHED:
-            return sample, status
-        state_at(method, control, series, step, times[sample], y, works[sample])
-        if look and not observe(
-            swimmer,
-            stations,
-            drive,
-            fields,
-            balance,
-            here,
-            step,
-            current,
-            distributed,
-            want_wrench,
-            want_load,
-            times[sample],
-            y,
-            sample,
-            out,
-        ):
-            return sample, SINGULAR
-    return len(times), MARCHED

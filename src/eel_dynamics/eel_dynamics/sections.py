@@ -18,6 +18,7 @@ import numpy as np
 from .body import Body
 from .kinks import WATCHED
 from .lanes import WIDTH, aligned
+from .packed import Form
 from .quadrature import Blocks, Grid, Panel
 from .scene import FRICTION, Scene
 
@@ -177,6 +178,9 @@ def example() -> tuple[Swimmer, Stations]:
     body, scene = Body.boyer2010(), Scene()
     grid = Grid.of(panels_of(body, 1.0))
     return swimmer_of(body, scene, grid), stations_of(body, scene, grid, np.array([0.0, body.length]))
+
+
+SWIMMER, STATIONS = Form(lambda: example()[0]), Form(lambda: example()[1])
 
 
 def _tabulate(body: Body, scene: Scene, x, **grid) -> Swimmer:

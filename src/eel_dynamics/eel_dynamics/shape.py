@@ -13,25 +13,26 @@ import numpy as np
 from eel_gaits.law import Law, Term, amplitude_of
 from eel_gaits.spline import natural_spline
 
-from .drive import AXES, Drive, Tabulation, factors
+from .drive import AXES, TABLES, TIMES, Drive, Tables, Tabulation, Times, factors
 from .lanes import aligned
+from .packed import Packed
 
 PART_OF_PEAK = 0.75  # of the turns where all terms bend the body most
 TURN_POINTS = 64  # along the body, for the angle that a law bends it by
 MOST_KNOTS = 8  # of laws whose panels are cut at them
-NONE = np.zeros(0, dtype=np.int64)
+NONE, NO_NUMBER, NO_RAMP = np.zeros(0, dtype=np.int64), np.zeros(0), np.zeros((0, 3))
 
 
 class Shape:
     """The present source of curvature, its blend, and the tabulated `drive` of both for the loops.
 
-    `default_transition` [s] holds where a law gives none, and for samples.
+    `default_transition` [s] holds where a law gives none, and for samples. law: the first; without one it is straight.
     """
 
-    def __init__(self, tabulation: Tabulation, default_transition: float):
+    def __init__(self, tabulation: Tabulation, default_transition: float, law: Law | None = None):
         self.tabulation = tabulation
         self.default_transition = default_transition
-        self.law: Law | None = None
+        self.law = law
         self.origin = 0.0
         self.samples: list[
             tuple[float, np.ndarray]
@@ -42,7 +43,8 @@ class Shape:
         self._spline: tuple[np.ndarray, np.ndarray] | None = None
         self._source: dict = {}
         self.drive: Drive = None
-        self._follow(_straight(tabulation))
+        self.packed: tuple[Packed, Packed] = ()  # of the drive: `Tables`, `Times`
+        self._follow(_straight(tabulation) if law is None else _law_rows(law, tabulation))
 
     def move(self, tabulation: Tabulation, values_at_nodes):
         """Go over to another tabulation. `values_at_nodes(rows)` takes fields at the old nodes (..., n) to the new
@@ -53,7 +55,7 @@ class Shape:
         if "law" in self._source:
             self._source = _law_rows(self._source["law"], tabulation) | {"origin": self._source["origin"]}
         else:
-            self._source = self._source | {"rows": convert(self._source["rows"]), "split": None}
+            self._source = self._source | {"rows": convert(self._source["rows"]), "tables": None}
         if self._blend is not None:
             self._blend = (convert(self._blend[0]), *self._blend[1:])
         self.samples = [(time, convert(rows)) for time, rows in self.samples]
@@ -191,17 +193,15 @@ class Shape:
             difference, blend_start, blend_end = self._blend
             rows, axis = np.concatenate((rows, difference)), np.concatenate((axis, np.repeat((0, 1), 3)))
         self._rows = rows
-        split = source.get("split") if self._blend is None else None
-        self.drive = Drive(
-            axis=np.asarray(axis, dtype=np.int64),
-            **(split or _split(self.tabulation, rows)),
+        tables = source.get("tables") if self._blend is None else None
+        if tables is None:
+            tables = _tables(self.tabulation, rows, axis, source.get("sine", NONE), source.get("cosine", NONE))
+        times = Times(
             origin=float(source.get("origin", 0.0)),
-            sine=source.get("sine", NONE),
-            cosine=source.get("cosine", NONE),
-            period=source.get("period", np.zeros(0)),
+            period=source.get("period", NO_NUMBER),
             ramp_first=source.get("ramp_first", NONE),
             ramp_count=source.get("ramp_count", NONE),
-            ramps=source.get("ramps", np.zeros((0, 3))),
+            ramps=source.get("ramps", NO_RAMP),
             segment=0 if "segment" in source else -1,
             segment_start=float(start),
             segment_end=float(end),
@@ -209,13 +209,16 @@ class Shape:
             blend_start=float(blend_start),
             blend_end=float(blend_end),
         )
+        self.drive = Drive(*tables.value, *times)
+        self.packed = tables, TIMES.packed(times)
 
 
-def _split(tabulation: Tabulation, rows: np.ndarray) -> dict:
-    """The parts of tabulated `rows` (m, width), by their names in `Drive`."""
+def _tables(tabulation: Tabulation, rows: np.ndarray, axis, sine, cosine) -> Packed:
+    """`Tables` of tabulated `rows` (m, width)."""
     node, bend, station, station_bend = tabulation.split(rows)
     angle = aligned(np.cumsum(bend[:, 0], axis=1), bend.shape[-1])
-    return {"node": node, "angle": angle, "bend": bend, "station": station, "station_bend": station_bend}
+    axis = np.asarray(axis, dtype=np.int64)
+    return TABLES.packed(Tables(axis, node, angle, bend, station, station_bend, sine, cosine))
 
 
 def waves_of_law(law: Law, length: float) -> float:
@@ -250,7 +253,7 @@ def knots_of_law(law: Law) -> tuple[float, ...]:
 def _straight(tabulation: Tabulation) -> dict:
     """The straight shape at rest."""
     source = _constant(np.zeros((2, tabulation.width)))
-    return source | {"split": _split(tabulation, source["rows"])}
+    return source | {"tables": _tables(tabulation, *(source[name] for name in ("rows", "axis", "sine", "cosine")))}
 
 
 def _constant(value: np.ndarray) -> dict:
@@ -286,13 +289,9 @@ def _pattern(groups: tuple, tabulation: Tabulation) -> dict:
             rows.append(sum(a * np.cos(b) for a, b in zip(amplitude, angle, strict=True)))
         axis += [AXES[name]] * (2 if moving else 1)
     table = tabulation.columns(np.array(rows))
-    return {
-        "rows": table,
-        "split": _split(tabulation, table),
-        "axis": np.array(axis, dtype=np.int64),
-        "sine": np.array(sine, dtype=np.int64),
-        "cosine": np.array(cosine, dtype=np.int64),
-    }
+    axis, sine, cosine = (np.array(each, dtype=np.int64) for each in (axis, sine, cosine))
+    tables = _tables(tabulation, table, axis, sine, cosine)
+    return {"rows": table, "tables": tables, "axis": axis, "sine": sine, "cosine": cosine}
 
 
 @lru_cache(maxsize=1024)

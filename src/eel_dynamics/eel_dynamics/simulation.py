@@ -2,7 +2,7 @@
 
 import math
 from copy import copy
-from functools import cached_property, lru_cache
+from functools import cache, cached_property, lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -17,25 +17,42 @@ from .frames import matrix_of
 from .guard import failure_of
 from .inertia import check_inertia
 from .integrator import (
-    LOBATTO,
-    LOBATTO_SERIES,
+    CONTROL,
     MARCHED,
+    METHOD,
     NOT_FINITE,
     SINGULAR,
     TOO_MANY_STEPS,
     Control,
-    Method,
     adams_bashforth,
     classical,
     dormand_prince,
-    head_axes,
-    settle,
 )
-from .packed import Layout, Packed
-from .profiles import Profiles, begin, begin_again, profiles_of, scratch_layout, step_layout, swim
+from .leg import (
+    AGAIN,
+    COUNT,
+    CURRENT,
+    ENERGY,
+    FIRST,
+    GO_ON,
+    MOVED,
+    ORDER,
+    PLACE,
+    REACHED,
+    STATUS,
+    STILL,
+    TWIST,
+    Order,
+    Y,
+    scratch_layout,
+    step_layout,
+    swim,
+)
+from .packed import Packed
+from .profiles import PROFILES, Profiles, no_profiles, profiles_of, row_of
 from .quadrature import Grid
 from .scene import Scene
-from .sections import Swimmer, panels_of, stations_of, swimmer_of
+from .sections import STATIONS, SWIMMER, Swimmer, panels_of, stations_of, swimmer_of
 from .shape import Shape, knots_of_law, waves_of_law
 from .snapshot import Snapshot
 
@@ -50,6 +67,7 @@ PART_OF_SPAN = 0.25  # between two breakpoints of the shape, that a step may tak
 PART_OF_RAMP = 0.125  # the same for the ledger: of what a sudden ramp puts in, most comes back, and little may be left
 FIRST_STEP = 0.02  # of the longest
 ROWS_AT_ONCE = 8  # of a law, for which there is space
+NONE = np.zeros(0)
 THROWN = 0.2  # periods, in which one who starts faster than a swimmer goes by its length, or turns by one
 
 
@@ -62,11 +80,16 @@ class SimulationStopped(RuntimeError):
         self.diverged = False  # the steps were too long
 
 
-def method_of(accuracy: Accuracy) -> Method:
-    """The method of integration of an `accuracy`."""
-    if accuracy.method == "classical":
-        return classical()
-    return adams_bashforth(accuracy.order) if accuracy.method == "adams" else dormand_prince()
+@cache
+def method_of(name: str, order: int) -> Packed:
+    """The method of integration of an accuracy, its `Method`."""
+    if name == "adams":
+        return METHOD.packed(adams_bashforth(order))
+    return METHOD.packed(classical() if name == "classical" else dormand_prince())
+
+
+def _not_begun(law: Law, stopped: SimulationStopped) -> ValueError:
+    return ValueError(f"law {law.name!r} cannot be begun: {stopped.quantity}")
 
 
 def in_plane(law: Law | None, orientation, twist, current) -> bool:
@@ -82,8 +105,8 @@ class Table(NamedTuple):
     """What a run has of its body, its scene and its stations; the same for every run of the same."""
 
     grid: Grid
-    swimmer: Swimmer
-    packed: tuple[Packed, Packed]  # swimmer, stations
+    swimmer: Packed
+    stations: Packed
     mass: float  # kg, of the body
     tabulation: Tabulation
 
@@ -100,9 +123,9 @@ def tabulated(
     base = np.where(here.node >= 0, grid.x[here.node], 0.0)
     swimmer = swimmer_of(body, scene, grid, kinks)
     check_inertia(swimmer, body.length, scene.planar)
-    packed = Layout(swimmer).packed, Layout(here).packed
     mass = float(swimmer.weight @ swimmer.mass)
-    return Table(grid, swimmer, packed, mass, Tabulation(grid.x, grid.previous, x, base))
+    tabulation = Tabulation(grid.x, grid.previous, x, base)
+    return Table(grid, SWIMMER.packed(swimmer), STATIONS.packed(here), mass, tabulation)
 
 
 class Built(NamedTuple):
@@ -111,6 +134,14 @@ class Built(NamedTuple):
     resolution: float
     kinks: str
     knots: tuple[float, ...]
+
+
+class ReadyLeg(NamedTuple):
+    """A leg for `swim`, and what has to stay in memory until it is over."""
+
+    row: np.ndarray  # (words,)
+    order: Order
+    parts: tuple
 
 
 class Simulation:
@@ -155,32 +186,48 @@ class Simulation:
 
     def _begin(self, law: Law | None, start: tuple[np.ndarray, np.ndarray, np.ndarray]):
         """Stand at the `start`: position, orientation, twist; and follow `law`, if there is one."""
+        with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is reported
+            self._prepare(law, start)
+            try:
+                self._set_off()
+            except SimulationStopped as stopped:
+                raise stopped if law is None else _not_begun(law, stopped) from None
+
+    def _prepare(self, law: Law | None, start: tuple[np.ndarray, np.ndarray, np.ndarray]):
+        """All of `_begin` but the momentum that the motion starts with."""
         self._start = start
+        self._relative = self._relative_start()
+        self._motion_scale = self._scale_of(self._relative)
         self._thrown = self._is_thrown(law)
         self._use_accuracy(in_plane(law, *start[1:], self._current) and not self._thrown)
         waves, knots = (1.0, ()) if law is None else self._needs(law)
         wanted = Built(self.accuracy.points_per_length(waves), self.accuracy.kinks, knots)
         if wanted != self._built:
             self._build(wanted)
-        self.shape = Shape(self._tabulation, self._default_transition)
-        self.ready = self._started = False
-        self.time = 0.0
-        if law is None:
-            self._take_initial_state()
-        else:
-            self.adopt(law)
+        self.shape = Shape(self._table.tabulation, self._default_transition, law)
+        self.ready, self._started, self.time = law is not None, False, 0.0
+        self._stand()
 
     def _build(self, wanted: Built):
         """Have body and scene tabulated on the grid that is `wanted`."""
         table = tabulated(self.body, self.scene, *wanted, self.x.tobytes())
-        self._grid, self._mass, self._built = table.grid, table.mass, wanted
-        self.swimmer, self._packed, self._tabulation = table.swimmer, table.packed, table.tabulation
+        self._table, self._built = table, wanted
         self._scratch, self._rows = None, 0
 
     @cached_property
-    def _out(self) -> Profiles:
-        """Space for one instant."""
-        return profiles_of(1, len(self.x))
+    def _out(self) -> Packed:
+        """Space for one instant, `Profiles`."""
+        return PROFILES.packed(profiles_of(1, len(self.x)))
+
+    @property
+    def state(self) -> np.ndarray:
+        """(13,) as the integrator has it: position, orientation, momentum."""
+        return self._place[Y:TWIST]
+
+    @property
+    def swimmer(self) -> Swimmer:
+        """What the loops know of the body and the scene."""
+        return self._table.swimmer.value
 
     @property
     def fields(self):
@@ -225,9 +272,7 @@ class Simulation:
         The first law, before the start, needs no blend; a later one takes over during `transition` [s], or the law's
         own, or the default. `ValueError` for a law that the scene does not allow.
         """
-        checked_instance("law", law, Law)
-        if self.scene.planar and not law.in_plane:
-            raise ValueError(f"law {law.name!r} has a pitch term: a planar scene cannot bend out of its plane")
+        needs = self._needs(law)
         if not np.isfinite(origin):
             raise ValueError(f"law origin must be finite, got {origin!r} s")
         blend = transition or law.transition or self.shape.default_transition
@@ -236,7 +281,7 @@ class Simulation:
         first = not self._started
         if not law.in_plane:
             self._use_accuracy(False)
-        self._refine(*self._needs(law))
+        self._refine(*needs)
         before = copy(self.shape)
         self.shape.adopt(law, origin=float(origin), time=self.time, transition=0.0 if first else float(blend))
         if first:
@@ -246,7 +291,7 @@ class Simulation:
             except SimulationStopped as stopped:
                 self.shape = before
                 self._take_initial_state()
-                raise ValueError(f"law {law.name!r} cannot be begun: {stopped.quantity}") from None
+                raise _not_begun(law, stopped) from None
         else:
             self._restart()
         self.ready = True
@@ -256,16 +301,20 @@ class Simulation:
         accuracy, before = self._wanted.in_scene(self.scene, plane), getattr(self, "_step", None)
         if self._thrown:
             accuracy = accuracy.of_violence()
-        if before is not None and accuracy == self.accuracy:
+        if before is not None and (accuracy is self.accuracy or accuracy == self.accuracy):
             return
-        self.accuracy, self._method = accuracy, method_of(accuracy)
-        self._step = step_layout(len(self._method.c), max(self._method.adams, 1)).space()
+        self.accuracy, self._method = accuracy, method_of(accuracy.method, accuracy.order)
+        method = self._method.value
+        self._step = step_layout(len(method.c), max(method.adams, 1)).space()
         for name in ("time", "count", "scale", "budget") if before is not None else ():
             self._step.view(name)[:] = before.view(name)
 
     def _needs(self, law: Law) -> tuple[float, tuple[float, ...]]:
-        """Waves on the body, and knots [m] of the splines of `law`, that the grid has to carry."""
+        """Waves on the body, and knots [m] of the splines of `law`, that the grid has to carry. `ValueError` for one
+        that the scene does not allow."""
         checked_instance("law", law, Law)
+        if self.scene.planar and not law.in_plane:
+            raise ValueError(f"law {law.name!r} has a pitch term: a planar scene cannot bend out of its plane")
         return waves_of_law(law, self.body.length), knots_of_law(law)
 
     def add_samples(self, time, x, pitch, pitch_rate, pitch_accel, yaw, yaw_rate, yaw_accel):
@@ -304,9 +353,9 @@ class Simulation:
         fine_enough = resolution <= built.resolution * (1.0 + 1e-9) and set(knots) <= set(built.knots)
         if fine_enough and self.accuracy.kinks == built.kinks:
             return
-        old, twist = self._grid, self._twist()
+        old, twist = self._table.grid, self._twist()
         self._build(Built(resolution, self.accuracy.kinks, knots))
-        rows, first, _ = old.rows_at(self._tabulation.x, "value")
+        rows, first, _ = old.rows_at(self._table.tabulation.x, "value")
 
         def values(fields):
             return sum(
@@ -314,7 +363,7 @@ class Simulation:
                 for j in range(rows.shape[1])
             )
 
-        self.shape.move(self._tabulation, values)
+        self.shape.move(self._table.tabulation, values)
         self._use_drive()
         self._begin_with(twist, first=False)
 
@@ -340,7 +389,7 @@ class Simulation:
             self._use_drive()
 
     def _march_to(self, time: float):
-        status = self._swim(np.array([time]), self._works, self._out, look=False)[1]
+        status = self._swim(np.array([time]), self._works)
         if status != MARCHED:
             self._restart()
             raise self._stopped(status)
@@ -356,7 +405,7 @@ class Simulation:
             stopped.diverged = True
             return stopped
         if status == TOO_MANY_STEPS:
-            density = self._control.most_steps
+            density = self._control.value.most_steps
             return SimulationStopped(
                 self.time,
                 "more steps per second than any motion of a swimmer needs",
@@ -366,7 +415,7 @@ class Simulation:
         return SimulationStopped(
             self.time,
             "step for the wanted accuracy is too small",
-            self._control.smallest,
+            self._control.value.smallest,
             "take a coarser accuracy, or a slower law",
         )
 
@@ -377,7 +426,7 @@ class Simulation:
         the body."""
         wrench = wrench and self.scene.internal_wrench
         self._look(wrench, load)
-        out, ledger = self._out, self.scene.ledger
+        out, ledger = self._out.value, self.scene.ledger
         return Snapshot(
             time=self.time,
             position=out.position[0],
@@ -409,6 +458,7 @@ class Simulation:
     ) -> tuple[Profiles, np.ndarray, int, SimulationStopped | None]:
         """March through `times` (T,) [s] under the law in force, observing each: the profiles, the works (T, 4) [J] of
         actuators, wake, nose and drag, how many instants were reached, and what stopped it, if anything did."""
+        times = np.array(times, dtype=float)
         out, works = profiles_of(len(times), len(self.x), wrench, load), np.zeros((len(times), 4))
         done, stopped = self._swim_through(times, works, out, wrench, load)
         if done:
@@ -418,10 +468,9 @@ class Simulation:
     def _swim_through(self, times, works, out, wrench, load) -> tuple[int, SimulationStopped | None]:
         """March through `times` (T,) [s] into `out` and `works` (T, 4) [J]: how many samples are good, and what stopped
         it. One who goes on behind a bad sample must reset."""
-        done, status = self._swim(times, works, out, wrench=wrench, load=load)
-        watched = self.scene.ledger and self.accuracy.method == "classical"  # else the step's own error is watched
-        floor = self._control.momentum_floor**2 / self._mass if watched else np.inf
-        failure = failure_of(out, works, done, self.kinetic_at_start, floor)
+        status = self._swim(times, works, row_of(out, wrench, load), wrench=wrench, load=load)
+        done = int(self._place[REACHED])
+        failure = failure_of(out, works, done, self.kinetic_at_start, self.energy_floor)
         if failure:
             done, quantity, value = failure
         if done:
@@ -429,6 +478,12 @@ class Simulation:
         if failure:
             return done, SimulationStopped(self.time, quantity, value, self._remedy())
         return done, None if status == MARCHED else self._stopped(status)
+
+    @property
+    def energy_floor(self) -> float:
+        """As `failure_of` has it: where steps are chosen by their error, that is what watches."""
+        watched = self.scene.ledger and self.accuracy.method == "classical"
+        return self._control.value.momentum_floor**2 / self._table.mass if watched else np.inf
 
     def _remedy(self) -> str:
         """What to change where numbers have grown beyond reason."""
@@ -440,42 +495,46 @@ class Simulation:
 
     def _look(self, wrench: bool, load: bool):
         """Fill the one instant of `_out` with the present."""
-        if self._swim(np.array([self.time]), self._works, self._out, wrench=wrench, load=load)[1] != MARCHED:
+        if self._swim(np.array([self.time]), self._works, self._out.row, wrench=wrench, load=load) != MARCHED:
             raise self._stopped(SINGULAR)
 
-    def _swim(self, times, works, out, *, look: bool = True, wrench: bool = False, load: bool = False):
-        return swim(
-            *self._packed,
-            self.drive,
-            self._scratch.packed,
-            self._step.packed,
-            self._current,
-            self._distributed,
-            self._method,
-            self._control,
-            self._breakpoints,
-            LOBATTO,
-            LOBATTO_SERIES,
-            look,
-            wrench,
-            load,
-            times,
-            self.state,
-            works,
-            out,
+    def _swim(self, times, works, out: np.ndarray | None = None, **wanted) -> float:
+        """Swim a leg, as `_leg` has it. Returns its status."""
+        leg = self._leg(self._place, times, works, out, **wanted)
+        swim(leg.row[None])
+        return self._place[STATUS]
+
+    def _leg(self, place, times, works, out=None, *, begin=GO_ON, wrench=False, load=False) -> ReadyLeg:
+        """A leg from the present on, of `Order`'s meanings; `out`: the row of the profiles, if someone looks."""
+        order = Order(
+            place=place,
+            breakpoints=self._breakpoints,
+            distributed=self._distributed,
+            begin=begin,
+            time=self.time,
+            first_step=FIRST_STEP * self._control.value.step,
+            look=out is not None,
+            wrench=wrench,
+            load=load,
+            times=times,
+            works=works,
         )
+        table, march = (self._table.swimmer, self._table.stations), (self._step, self._method, self._control)
+        parts = *table, *self._drive, self._scratch, *march
+        rows = [part.row for part in parts]
+        return ReadyLeg(np.concatenate((*rows, no_profiles() if out is None else out, ORDER.row(order))), order, parts)
 
     @property
     def evaluations(self) -> tuple[int, int, int]:
         """Steps, rejected steps and evaluations of the head's dynamics so far."""
-        return tuple(self._step.view("count").tolist())
+        return tuple(int(count) for count in self._place[COUNT:REACHED])
 
     # -- states
 
     def reset(self):
         """State and time to the start; the last law kept, with its own t = 0 at 0."""
         law = self.shape.law
-        self.shape = Shape(self._tabulation, self.shape.default_transition)
+        self.shape = Shape(self._table.tabulation, self.shape.default_transition)
         self.time, self.ready, self._started = 0.0, False, False
         if law is None:
             self._take_initial_state()
@@ -495,10 +554,10 @@ class Simulation:
         trial.advance(2e-3)
 
     def _use_drive(self):
-        self.drive = self.shape.drive
+        self.drive, self._drive = self.shape.drive, self.shape.packed
         rows = ROWS_AT_ONCE * -(-len(self.drive.axis) // ROWS_AT_ONCE)
         if self._scratch is None or rows > self._rows:
-            nodes, widest = self._grid.matrix.shape
+            nodes, widest = self._table.grid.matrix.shape
             self._scratch, self._rows = scratch_layout(nodes, widest, rows, len(self.x)).space(), rows
         self._breakpoints = self.shape.breakpoints()
         scale = min(self.shape.time_scale, self._motion_scale)
@@ -507,30 +566,24 @@ class Simulation:
         slowest = max(
             SLOWEST * self.body.length / min(scale, 10.0), PART_OF_SPEED * self.shape.reach(self.swimmer.weight)
         )
-        self._control = Control(
+        control = Control(
             tolerance=self.accuracy.tolerance,
             step=fixed or longest,
             smallest=1e-11 * min(scale, 1.0),
             length=self.body.length,
-            momentum_floor=self._mass * slowest,
+            momentum_floor=self._table.mass * slowest,
             part_of_span=PART_OF_RAMP if self.scene.ledger and self.drive.segment < 0 else PART_OF_SPAN,
             most_steps=MOST_STEPS / min(scale, 1.0),
-            spare_steps=max(LEAST_SPARE, SPARE_STEPS * min(1.0, SPARE_POINTS / len(self._grid.x))),
+            spare_steps=max(LEAST_SPARE, SPARE_STEPS * min(1.0, SPARE_POINTS / len(self._table.grid.x))),
             ledger=bool(self.scene.ledger),
             planar=bool(self.scene.planar),
         )
+        self._control = CONTROL.packed(control)
 
     def _restart(self):
         """Let the next step begin at the present state, with what drives the body now."""
         self._use_drive()
-        self._begin_step()
-
-    def _begin_step(self):
-        begin_again(self._step.packed, self.time, self.state, self._works[0], self._first_step)
-
-    @property
-    def _first_step(self) -> float:
-        return FIRST_STEP * self._control.step
+        self._swim(NONE, self._works, begin=AGAIN)
 
     def _relative_start(self) -> np.ndarray:
         """Initial twist (6,) of the head relative to the water."""
@@ -549,31 +602,34 @@ class Simulation:
     def _is_thrown(self, law: Law | None) -> bool:
         """Whether it starts much faster than `law` swims."""
         periods = [term.period for term in law.terms if term.period] if isinstance(law, Law) else []
-        return self._scale_of(self._relative_start()) < THROWN * min(periods, default=1.0)
+        return self._motion_scale < THROWN * min(periods, default=1.0)
 
     def _take_initial_state(self):
+        self._stand()
+        self._set_off()
+
+    def _stand(self):
+        """State and works of the start, but for the momentum."""
         position, orientation, _ = self._start
-        self.state, self._works = np.zeros(13), np.zeros((1, 4))
+        self._place, self._works = np.zeros(PLACE), np.zeros((1, 4))
+        self._place[CURRENT:ENERGY] = self.scene.current
         self.state[:3], self.state[3:7] = position, orientation
-        relative = self._relative_start()
-        self._motion_scale = self._scale_of(relative)
         self._use_drive()
-        self.kinetic_at_start = self._begin_with(relative, first=True)
+
+    def _set_off(self):
+        self.kinetic_at_start = self._begin_with(self._relative, first=True)
         if not np.isfinite(self.kinetic_at_start):
             raise SimulationStopped(self.time, "kinetic energy", self.kinetic_at_start, "start slower")
 
     def _twist(self) -> np.ndarray:
         """Twist (6,) of the head relative to the water, in its axes, of the present state."""
-        twist = np.zeros(6)
-        axes = head_axes(self.state)
-        if not settle(self.swimmer, self.drive, self.fields, self.time, self.state, axes, np.zeros(6), twist):
+        if self._swim(NONE, self._works, begin=STILL) != MARCHED:
             raise self._stopped(SINGULAR)
-        return twist
+        return self._place[TWIST:CURRENT].copy()
 
     def _begin_with(self, twist: np.ndarray, *, first: bool) -> float:
         """Give the present state the momentum of the head's `twist` (6,) relative to the water, and let the next step,
         or the `first`, begin there. Returns its kinetic energy [J]."""
-        return begin(
-            *(self._packed[0], self.drive, self._scratch.packed, self._step.packed, self._control),
-            *(self.time, twist, self.state, self._works[0], self._first_step, first),
-        )
+        self._place[TWIST:CURRENT] = twist
+        self._swim(NONE, self._works, begin=FIRST if first else MOVED)
+        return float(self._place[ENERGY])

@@ -12,7 +12,7 @@ from eel_gaits import falling, straight
 
 from ..body import Body
 from ..inertia import MOST, condition_of, straight_inertia
-from ..profiles import set_in_motion
+from ..leg import set_in_motion
 from ..run import simulate
 from ..scene import Scene
 from ..simulation import Simulation, SimulationStopped
