@@ -38,7 +38,7 @@ def swim(start, *settings):
 )
 def test_a_disk_that_is_full(start, fresh_domain, tmp_path):
     """A limit on the size of files stands in for it: the operating system refuses to write in the same way."""
-    node = visualise(start, "sink:=[save]", f"recording:={tmp_path / 'run.rrd'}", limit_of_files=1500)
+    node = visualise(start, "sink:=[save]", f"recording:={tmp_path / 'run.rrd'}", limit_of_files=5000)
     node.wait_for_output("saving to")
     dynamics = swim(start, "real_time_factor:=0", "duration:=20", "wait_for_subscribers:=1")
     node.wait_for_output("cannot be written any more: File too large; it ends here", LIMIT)
