@@ -5,7 +5,7 @@ import pytest
 from cases import random_law
 
 from eel_dynamics import Accuracy, Body, Scene, SimulationStopped, simulate, simulate_batch
-from eel_gaits import falling, straight, turning
+from eel_gaits import Law, Term, falling, straight, turning
 
 MOTION = ["time", "position", "orientation", "twist", "head_acceleration", "center_of_mass"]
 ALONG = ["x", "backbone", "section_orientation", "curvature", "curvature_rate", "torque", "force"]
@@ -102,6 +102,19 @@ def test_a_swimmer_that_stops_keeps_its_samples_and_disturbs_no_other():
     for array in (batch.position, batch.twist, batch.torque, batch.backbone, batch.energy.drag_work):
         assert np.all(np.isfinite(array)) and not np.any(array[1, done:])
     assert_same(batch[2], simulate(falling(), 0.4, accuracy=LONG, sample_period=0.05, stations=5))
+
+
+@pytest.mark.parametrize("accuracy", [1e-2, "draft, fixed steps", Accuracy(name="long", resolution=10.0, step=0.05)])
+def test_those_of_one_call_do_not_notice_who_stops_beside_them(accuracy):
+    """Of the same body, scene and accuracy, up to sixteen at a time swim in the same work space."""
+    wild = [Law(Term(axis=axis, amplitude=(1e150,), wavelength=0.4, period=0.3)) for axis in ("yaw", "pitch")]
+    laws = [wild[k % 2] if k % 3 == 1 else falling(period=0.8 + 0.02 * k) for k in range(24)]
+    settings = {"accuracy": accuracy, "sample_period": 0.1, "stations": 3, "load": True}
+    batch = simulate_batch(laws, 0.3, threads=1, **settings)
+    assert batch.stopped.tolist() == [law in wild for law in laws]
+    for index, law in enumerate(laws):
+        if law not in wild:
+            assert_same(batch[index], simulate(law, 0.3, **settings))
 
 
 def test_a_swimmer_that_cannot_begin_is_told_apart():

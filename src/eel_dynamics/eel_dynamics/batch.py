@@ -156,10 +156,10 @@ def simulate_batch(
         return leg
 
     def swim(indices: range):
+        part = slice(indices.start, indices.stop)
         with np.errstate(over="ignore", invalid="ignore", divide="ignore"):  # what is not finite stops a swimmer
             swim_together([leg for leg in map(ready, indices) if leg is not None])
-        part = slice(indices.start, indices.stop)
-        finite = np.isfinite(out.whole[part].sum(axis=1) + works[part].sum(axis=(1, 2)))
+            finite = np.isfinite(out.whole[part].sum(axis=1) + works[part].sum(axis=(1, 2)))
         for index in indices:
             if errors[index] is None and not (finite[index - part.start] and is_sound(index)):
                 swim_again(index)
@@ -173,6 +173,7 @@ def simulate_batch(
 
     def swim_again(index: int):
         """One that stopped: alone, for what stopped it."""
+        crew.dismiss(members[index])
         try:
             member = Member(members[index], x[index])
         except (SimulationStopped, ValueError) as error:

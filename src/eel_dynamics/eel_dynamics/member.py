@@ -16,11 +16,14 @@ class Member(Simulation):
 
     def __init__(self, swimmer: Swimmer, x: np.ndarray):
         super().__init__(stations=x, **swimmer._asdict())
+        self._at_start = swimmer
 
     def leg_of(self, swimmer: Swimmer, place, times, works, out, **wanted) -> ReadyLeg:
         """The whole way of `swimmer`, of the same body, scene and accuracy, through `times` (T,) [s] into `works`
         (T, 4) [J] and the profiles of the row `out`; `place` (28,) as in `leg`."""
-        self._prepare(swimmer.law, (swimmer.position, swimmer.orientation, swimmer.twist))
+        if swimmer is not self._at_start:
+            self._prepare(swimmer.law, (swimmer.position, swimmer.orientation, swimmer.twist))
+        self._at_start = None
         place[:ENERGY] = self._place[:ENERGY]
         place[TWIST:CURRENT] = self._relative
         return self._leg(place, times, works, out, begin=FIRST, **wanted)
@@ -48,6 +51,10 @@ class Crew(threading.local):
                 self._members.clear()
             self._members[swimmer[1:4]] = member
         return member
+
+    def dismiss(self, swimmer: Swimmer):
+        """Let go of the one of the body, scene and accuracy of `swimmer`."""
+        self._members.pop(swimmer[1:4], None)
 
 
 def swim_together(legs: list[ReadyLeg]):
