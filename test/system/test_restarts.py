@@ -176,11 +176,13 @@ def test_a_dynamics_node_that_is_found_late_begins_a_new_recording(start, fresh_
 
 
 @pytest.mark.fault("neighbours", "two whole systems in two ROS domains, with the same names", "no cross-talk at all")
-def test_two_systems_in_two_domains(start, fresh_domain, monkeypatch):
+def test_two_systems_in_two_domains(start, fresh_domain, monkeypatch, request):
     other = reserve_domain()
+    request.addfinalizer(other.claim.close)
     ears, nodes = {}, {}
     for name, number in (("falling", fresh_domain), ("straight", other.number)):
         ears[name] = SwimClient(domain=number, topics=("curvature", "head_pose"), clock=True)
+        request.addfinalizer(ears[name].close)
         monkeypatch.setenv("ROS_DOMAIN_ID", str(number))
         start("gait_generator", "--ros-args", "-p", f"gait:={name}")
         nodes[name] = start(
@@ -203,6 +205,8 @@ def test_two_systems_in_two_domains(start, fresh_domain, monkeypatch):
         assert ticks == sorted(ticks)
         assert {message.status[0].name for message in ear.heard["/diagnostics"]} == {"/dynamics"}
         assert "already" not in nodes[name].output()  # of /clock
+        ear.until(  # it may be found after the samples that it brought about
+            lambda ear=ear: ear.node.count_publishers("curvature_law") >= 2,
+            f"the gait generator of {name}",
+        )
         assert ear.node.count_publishers("curvature_law") == 2  # the gait generator's and this test's own
-        ear.close()
-    other.claim.close()
