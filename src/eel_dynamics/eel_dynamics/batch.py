@@ -133,9 +133,9 @@ def simulate_batch(
     """
     times = checked_times(duration, sample_period)
     members = swimmers_of(laws, bodies, scenes, accuracy, positions, orientations, twists)
-    rows = {each.body.length: None for each in members}
-    rows = {length: checked_stations([0.0] if stations is None else stations, length) for length in rows}
-    x = [rows[each.body.length] for each in members]
+    along = [0.0] if stations is None else stations
+    x_of = {length: checked_stations(along, length) for length in dict.fromkeys(each.body.length for each in members)}
+    x = [x_of[each.body.length] for each in members]
     wrench = [each.scene.internal_wrench and stations is not None for each in members]
     load = bool(load) and stations is not None
     count = len(x)

@@ -84,7 +84,7 @@ class Form:
                 continue
             if leaf.dtype.char != letter:
                 raise TypeError(f"array must be of type {letter!r}, got {leaf.dtype.char!r}")
-            words += (addressof(_BYTES.from_buffer(leaf)), *leaf.shape)
+            words += (address_of(leaf), *leaf.shape)
         try:
             return np.frombuffer(self._struct.pack(*words), dtype=np.int64)
         except struct.error as error:

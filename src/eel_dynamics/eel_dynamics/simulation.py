@@ -612,7 +612,7 @@ class Simulation:
         """State and works of the start, but for the momentum."""
         position, orientation, _ = self._start
         self._place, self._works = np.zeros(PLACE), np.zeros((1, 4))
-        self._place[CURRENT:ENERGY] = self.scene.current
+        self._place[CURRENT:ENERGY] = self._current
         self.state[:3], self.state[3:7] = position, orientation
         self._use_drive()
 
