@@ -71,10 +71,9 @@ link_executables() {
 
 compile_kernels() {
     local key
-    key="$({ grep -lE 'from (\.compiled|numba|\.lanes) import' src/eel_dynamics/eel_dynamics/*.py; echo src/eel_dynamics/eel_dynamics/compiled.py; } |
-        sort -u | xargs sha256sum | key_of "$(cat install/stamp)")"
+    key="$(sha256sum src/eel_dynamics/eel_dynamics/*.py | key_of "$(cat install/stamp)")"
     stamped build/numba_cache/stamp "$key" && return
-    say "compiling the kernels (numba, cached in build/numba_cache)"
+    say "compiling the kernels, a minute or two where their sources have changed (numba, cached in build/numba_cache)"
     mkdir -p build/numba_cache
     tools/run.sh python -c "from eel_dynamics import Simulation; Simulation().warm_up()"
     printf '%s' "$key" > build/numba_cache/stamp

@@ -18,9 +18,9 @@ from eel_gaits import Law, Ramp, Term, falling, helix, still, straight
 def test_steps_are_counted_over_the_run_however_often_it_is_sampled(ledger, monkeypatch):
     """Of 40 steps and as many per period, a run that needs more is stopped at the same place by 3 as by 3,000
     samples."""
-    monkeypatch.setattr("eel_dynamics.simulation.SPARE_STEPS", 40.0)
-    monkeypatch.setattr("eel_dynamics.simulation.LEAST_SPARE", 40.0)
-    monkeypatch.setattr("eel_dynamics.simulation.MOST_STEPS", 20.0)
+    monkeypatch.setattr("eel_dynamics.bounds.SPARE_STEPS", 40.0)
+    monkeypatch.setattr("eel_dynamics.bounds.LEAST_SPARE", 40.0)
+    monkeypatch.setattr("eel_dynamics.bounds.MOST_STEPS", 20.0)
     stopped = []
     for period in (1.0, 0.1, 0.001):
         with pytest.raises(SimulationStopped, match="more steps per second") as caught:

@@ -7,8 +7,9 @@ from .energy import EnergyLedger
 from .prescribed import HydrodynamicWrench, hydrodynamic_wrench
 from .run import Run, simulate
 from .scene import Scene
-from .simulation import Simulation, SimulationStopped
+from .simulation import Simulation
 from .snapshot import Snapshot
+from .stopping import SimulationStopped
 from .sweeps import sweep
 
 __all__ = [

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from .simulation import SimulationStopped
+from .stopping import SimulationStopped
 
 CHECKED = (
     *("position", "orientation", "twist", "backbone", "section_orientation", "curvature", "curvature_rate"),

@@ -14,6 +14,8 @@ from pathlib import Path
 
 import numpy as np
 
+from .kinks import WATCHED
+
 PRESETS = {"draft": 1e-2, "standard": 1e-4, "fine": 1e-6, "reference": 1e-8}
 COARSEST, FINEST = 0.1, 1e-10
 TABLE_FILE = Path(__file__).with_name("accuracy_table.csv")
@@ -21,7 +23,7 @@ FIELDS = ("drag", "torque", "plane", "target", "resolution", "kinks", "tolerance
 KEYS = FIELDS[:3]
 CHOSEN = "kinks", "tolerance", "method", "order"  # for steps that are not fixed
 FIXED = "fixed steps"
-KINKS = "all", "jumps", "none"
+KINKS = tuple(WATCHED)
 ORDERS = {"adams": (1, 2, 3, 4, 5, 6), "dormand_prince": (5,), "classical": (4,)}
 FINEST_TOLERANCE = 1e-13  # below, round-off
 LOOSEST_TOLERANCE = 1e-4  # of the pair, and of what an estimate compares with: above, a gait's longest step rules,

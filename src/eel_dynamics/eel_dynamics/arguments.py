@@ -70,3 +70,9 @@ def check_planar(position, orientation, twist):
         raise ValueError(
             f"twist must lie in the plane of a planar scene (Omega_1 = Omega_2 = V_3 = 0), got {twist.tolist()}"
         )
+
+
+def check_planar_law(law):
+    """`ValueError` unless `law` bends the body in the plane."""
+    if not law.in_plane:
+        raise ValueError(f"law {law.name!r} has a pitch term: a planar scene cannot bend out of its plane")

@@ -29,7 +29,8 @@ from .member import Crew, Member, swim_together
 from .profiles import Profiles, profiles_of, row_of
 from .run import Run, checked_times, run_of
 from .scene import Scene
-from .simulation import ReadyLeg, SimulationStopped
+from .simulation import ReadyLeg
+from .stopping import SimulationStopped
 
 ALONG = "backbone", "section_orientation", "curvature", "curvature_rate", "torque", "force", "fluid_force"
 MOST_TOGETHER = 16  # swimmers of one call of the loops: the lock of Python is let go once for all of them

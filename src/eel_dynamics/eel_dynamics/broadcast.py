@@ -6,9 +6,10 @@ import numpy as np
 from eel_gaits.law import Law
 
 from .accuracy import Accuracy
-from .arguments import check_planar, checked_instance, checked_quaternion, checked_row
+from .arguments import check_planar, check_planar_law, checked_instance, checked_quaternion, checked_row
 from .body import Body
 from .scene import Scene
+from .start import Start
 
 
 class Swimmer(NamedTuple):
@@ -21,6 +22,11 @@ class Swimmer(NamedTuple):
     position: np.ndarray  # (3,) m, head, world
     orientation: np.ndarray  # (4,) x y z w, world from head
     twist: np.ndarray  # (6,) (Omega, V) rad/s, m/s, head's axes
+
+    @property
+    def start(self) -> Start:
+        """The head at t = 0."""
+        return Start(self.position, self.orientation, self.twist)
 
 
 def swimmers_of(laws, bodies, scenes, accuracy, positions, orientations, twists) -> list[Swimmer]:
@@ -74,8 +80,7 @@ def _rows(name: str, values, check) -> list[np.ndarray]:
 
 def _check_planar(index: int, swimmer: Swimmer):
     try:
-        check_planar(swimmer.position, swimmer.orientation, swimmer.twist)
-        if any(term.axis == "pitch" for term in swimmer.law.terms):
-            raise ValueError(f"law {swimmer.law.name!r} has a pitch term: a planar scene cannot bend out of its plane")
+        check_planar(*swimmer.start)
+        check_planar_law(swimmer.law)
     except ValueError as error:
         raise ValueError(f"swimmer {index}: {error}") from None

@@ -29,7 +29,8 @@ from .errors import errors
 from .run import Run, simulate
 from .scene import Scene
 from .sections import panels_of
-from .simulation import Simulation, SimulationStopped
+from .simulation import Simulation
+from .stopping import SimulationStopped
 
 TARGETS = (1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 3e-8, 1e-8, 1e-9, 1e-10)
 RESOLUTIONS = (

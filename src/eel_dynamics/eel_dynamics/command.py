@@ -21,7 +21,7 @@ from .body import NAMED, Body
 from .ending import leave_on_interrupt
 from .run import Run, simulate
 from .scene import Scene
-from .simulation import SimulationStopped
+from .stopping import SimulationStopped
 
 ARRAYS = [
     "time",

@@ -73,7 +73,7 @@ def refined(run):
 def stable_step(swim, accuracy) -> float | None:
     """The longest step [s], halved from that of `accuracy`, at which `swim(accuracy)` gets through; None if none was
     found."""
-    from .simulation import SimulationStopped
+    from .stopping import SimulationStopped
 
     step = accuracy.step
     for _ in range(HALVINGS):

@@ -12,7 +12,7 @@ from collections import deque
 from .accounts import Accounts
 from .pacing import Pace
 from .report import ERROR
-from .simulation import SimulationStopped
+from .stopping import SimulationStopped
 from .watch import Watch
 
 TICK = 0.05  # s of wall time between two messages on /clock while the simulation stands

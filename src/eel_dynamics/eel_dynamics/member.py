@@ -6,7 +6,8 @@ import numpy as np
 
 from .broadcast import Swimmer
 from .leg import CURRENT, ENERGY, FIRST, TWIST, swim
-from .simulation import ReadyLeg, Simulation, SimulationStopped
+from .simulation import ReadyLeg, Simulation
+from .stopping import SimulationStopped
 
 MOST_MEMBERS = 100  # that a thread keeps
 
@@ -22,7 +23,7 @@ class Member(Simulation):
         """The whole way of `swimmer`, of the same body, scene and accuracy, through `times` (T,) [s] into `works`
         (T, 4) [J] and the profiles of the row `out`; `place` (28,) as in `leg`."""
         if swimmer is not self._at_start:
-            self._prepare(swimmer.law, (swimmer.position, swimmer.orientation, swimmer.twist))
+            self._prepare(swimmer.law, swimmer.start)
         self._at_start = None
         place[:ENERGY] = self._place[:ENERGY]
         place[TWIST:CURRENT] = self._relative

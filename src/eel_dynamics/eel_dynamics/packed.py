@@ -117,14 +117,18 @@ class Form:
         return opened
 
 
-class Packed:
+class _Placed:
+    """What knows where its arrays are: a copy, whose arrays are elsewhere, has to look again."""
+
+    def __getstate__(self):
+        return {name: value for name, value in self.__dict__.items() if name not in ("row", "views")}
+
+
+class Packed(_Placed):
     """A value and its row."""
 
     def __init__(self, form: Form, value):
         self._form, self.value = form, value
-
-    def __getstate__(self):  # the arrays of a copy are elsewhere
-        return {"_form": self._form, "value": self.value}
 
     @cached_property
     def row(self) -> np.ndarray:
@@ -170,14 +174,11 @@ class Layout:
         return _view(memory, wanted, self._begins[index])
 
 
-class Space:
+class Space(_Placed):
     """Memory of a layout."""
 
     def __init__(self, layout: Layout, memory: np.ndarray):
         self._layout, self._memory = layout, memory
-
-    def __getstate__(self):  # the memory of a copy is elsewhere
-        return {"_layout": self._layout, "_memory": self._memory}
 
     @cached_property
     def row(self) -> np.ndarray:

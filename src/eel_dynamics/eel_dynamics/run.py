@@ -18,7 +18,8 @@ from .errors import Errors, errors, refined, stable_step
 from .limits import warnings_of
 from .records import records
 from .scene import Scene
-from .simulation import Simulation, SimulationStopped
+from .simulation import Simulation
+from .stopping import SimulationStopped
 from .summary import describe
 
 MOST_REFINEMENTS = 3  # of a run whose error is above its target

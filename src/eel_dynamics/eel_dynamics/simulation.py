@@ -1,33 +1,26 @@
 """A swimmer in water, marched in time and observed: the algorithm of section 7.1 of Boyer, Porez and Leroyer (2010)."""
 
-import math
 from copy import copy
-from functools import cache, cached_property, lru_cache
+from functools import cache, cached_property
 from typing import NamedTuple
 
 import numpy as np
 from eel_gaits.law import Law
 
 from .accuracy import Accuracy
-from .arguments import check_planar, checked_instance, checked_quaternion, checked_row, checked_stations
-from .body import Body
-from .drive import Tabulation
-from .energy import EnergyLedger
-from .frames import matrix_of
-from .guard import failure_of
-from .inertia import check_inertia
-from .integrator import (
-    CONTROL,
-    MARCHED,
-    METHOD,
-    NOT_FINITE,
-    SINGULAR,
-    TOO_MANY_STEPS,
-    Control,
-    adams_bashforth,
-    classical,
-    dormand_prince,
+from .arguments import (
+    check_planar,
+    check_planar_law,
+    checked_instance,
+    checked_quaternion,
+    checked_row,
+    checked_stations,
 )
+from .body import Body
+from .bounds import FIRST_STEP, control_of
+from .energy import EnergyLedger
+from .guard import failure_of
+from .integrator import CONTROL, MARCHED, METHOD, SINGULAR, adams_bashforth, classical, dormand_prince
 from .leg import (
     AGAIN,
     COUNT,
@@ -50,34 +43,16 @@ from .leg import (
 )
 from .packed import Packed
 from .profiles import PROFILES, Profiles, no_profiles, profiles_of, row_of
-from .quadrature import Grid
 from .scene import Scene
-from .sections import STATIONS, SWIMMER, Swimmer, panels_of, stations_of, swimmer_of
+from .sections import Swimmer
 from .shape import Shape, knots_of_law, waves_of_law
 from .snapshot import Snapshot
+from .start import Start, is_thrown, stays_in_plane, time_scale
+from .stopping import SimulationStopped, not_begun, remedy, stopped_by
+from .tables import Built, tabulated
 
-LONGEST_STEP = 0.1  # of the shortest time over which the shape changes: works are integrals of what goes on within it
-MOST_STEPS = 20_000.0  # per period of the law, or second; the most exact runs need a tenth of it
-SPARE_STEPS = 200_000.0  # beyond these, at any time of a run, with up to
-SPARE_POINTS = 30.0  # points along the body; with more so many fewer, for a step costs as much more,
-LEAST_SPARE = 6_000.0  # but not less than these
-SLOWEST = 1e-3  # body lengths per time scale, below which the head counts as at rest
-PART_OF_SPEED = 0.5  # of the speed that the shape gives the body: momenta below need not be exact to the last digit
-PART_OF_SPAN = 0.25  # between two breakpoints of the shape, that a step may take
-PART_OF_RAMP = 0.125  # the same for the ledger: of what a sudden ramp puts in, most comes back, and little may be left
-FIRST_STEP = 0.02  # of the longest
 ROWS_AT_ONCE = 8  # of a law, for which there is space
 NONE = np.zeros(0)
-THROWN = 0.2  # periods, in which one who starts faster than a swimmer goes by its length, or turns by one
-
-
-class SimulationStopped(RuntimeError):
-    """The march could not go on. `time` [s], `quantity` and `value` that failed, `hint`: what to change."""
-
-    def __init__(self, time: float, quantity: str, value: float, hint: str):
-        super().__init__(f"stopped at t = {time:.6g} s: {quantity} ({value:.3g}); {hint}")
-        self.time, self.quantity, self.value, self.hint = time, quantity, value, hint
-        self.diverged = False  # the steps were too long
 
 
 @cache
@@ -86,54 +61,6 @@ def method_of(name: str, order: int) -> Packed:
     if name == "adams":
         return METHOD.packed(adams_bashforth(order))
     return METHOD.packed(classical() if name == "classical" else dormand_prince())
-
-
-def _not_begun(law: Law, stopped: SimulationStopped) -> ValueError:
-    return ValueError(f"law {law.name!r} cannot be begun: {stopped.quantity}")
-
-
-def in_plane(law: Law | None, orientation, twist, current) -> bool:
-    """Whether a swim stays in the plane of the head's axes 1 and 2: the law bends in yaw alone, and the head, of the
-    given `orientation` and `twist`, does not move out of it over the water of a `current`."""
-    if law is None or not law.in_plane:
-        return False
-    rising = twist[5] - matrix_of(orientation)[:, 2] @ current
-    return not (twist[0] or twist[1] or rising)
-
-
-class Table(NamedTuple):
-    """What a run has of its body, its scene and its stations; the same for every run of the same."""
-
-    grid: Grid
-    swimmer: Packed
-    stations: Packed
-    mass: float  # kg, of the body
-    tabulation: Tabulation
-
-
-@lru_cache(maxsize=256)
-def tabulated(
-    body: Body, scene: Scene, resolution: float, kinks: str, knots: tuple[float, ...], stations: bytes
-) -> Table:
-    """Tabulate `body` in `scene` on a grid of `resolution` points per body length, cut at the `knots` of a law, and at
-    the X of the `stations` (the bytes of their array); `kinks` as in `Accuracy`."""
-    x = np.frombuffer(stations).copy()  # that can be written to, as elsewhere: the loops are compiled for such
-    grid = Grid.of(panels_of(body, resolution, knots, scene.internal_wrench or scene.ledger))
-    here = stations_of(body, scene, grid, x)
-    base = np.where(here.node >= 0, grid.x[here.node], 0.0)
-    swimmer = swimmer_of(body, scene, grid, kinks)
-    check_inertia(swimmer, body.length, scene.planar)
-    mass = float(swimmer.weight @ swimmer.mass)
-    tabulation = Tabulation(grid.x, grid.previous, x, base)
-    return Table(grid, SWIMMER.packed(swimmer), STATIONS.packed(here), mass, tabulation)
-
-
-class Built(NamedTuple):
-    """What a grid is built for: points per body length, kinks of the drag that are looked for, knots [m] of a law."""
-
-    resolution: float
-    kinks: str
-    knots: tuple[float, ...]
 
 
 class ReadyLeg(NamedTuple):
@@ -172,7 +99,7 @@ class Simulation:
         self.x = checked_stations(stations, self.body.length)
         self._current = np.array(self.scene.current)
         self._distributed = self.scene.tail_pressure == "distributed"
-        start = (
+        start = Start(
             checked_row("position", position, 3),
             checked_quaternion("orientation", orientation),
             checked_row("twist", twist, 6),
@@ -184,22 +111,21 @@ class Simulation:
         self._default_transition, self._built = float(default_transition), None
         self._begin(law, start)
 
-    def _begin(self, law: Law | None, start: tuple[np.ndarray, np.ndarray, np.ndarray]):
-        """Stand at the `start`: position, orientation, twist; and follow `law`, if there is one."""
+    def _begin(self, law: Law | None, start: Start):
+        """Stand at the `start`, and follow `law`, if there is one."""
         with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is reported
             self._prepare(law, start)
             try:
                 self._set_off()
             except SimulationStopped as stopped:
-                raise stopped if law is None else _not_begun(law, stopped) from None
+                raise stopped if law is None else not_begun(law, stopped) from None
 
-    def _prepare(self, law: Law | None, start: tuple[np.ndarray, np.ndarray, np.ndarray]):
+    def _prepare(self, law: Law | None, start: Start):
         """All of `_begin` but the momentum that the motion starts with."""
-        self._start = start
-        self._relative = self._relative_start()
-        self._motion_scale = self._scale_of(self._relative)
-        self._thrown = self._is_thrown(law)
-        self._use_accuracy(in_plane(law, *start[1:], self._current) and not self._thrown)
+        self._start, self._relative = start, start.in_water(self._current)
+        self._motion_scale = time_scale(self._relative, self.body.length)
+        self._thrown = is_thrown(law, self._motion_scale)
+        self._use_accuracy(stays_in_plane(law, self._relative) and not self._thrown)
         waves, knots = (1.0, ()) if law is None else self._needs(law)
         wanted = Built(self.accuracy.points_per_length(waves), self.accuracy.kinks, knots)
         if wanted != self._built:
@@ -210,7 +136,7 @@ class Simulation:
 
     def _build(self, wanted: Built):
         """Have body and scene tabulated on the grid that is `wanted`."""
-        table = tabulated(self.body, self.scene, *wanted, self.x.tobytes())
+        table = tabulated(self.body, self.scene, wanted, self.x.tobytes())
         self._table, self._built = table, wanted
         self._scratch, self._rows = None, 0
 
@@ -291,7 +217,7 @@ class Simulation:
             except SimulationStopped as stopped:
                 self.shape = before
                 self._take_initial_state()
-                raise _not_begun(law, stopped) from None
+                raise not_begun(law, stopped) from None
         else:
             self._restart()
         self.ready = True
@@ -313,8 +239,8 @@ class Simulation:
         """Waves on the body, and knots [m] of the splines of `law`, that the grid has to carry. `ValueError` for one
         that the scene does not allow."""
         checked_instance("law", law, Law)
-        if self.scene.planar and not law.in_plane:
-            raise ValueError(f"law {law.name!r} has a pitch term: a planar scene cannot bend out of its plane")
+        if self.scene.planar:
+            check_planar_law(law)
         return waves_of_law(law, self.body.length), knots_of_law(law)
 
     def add_samples(self, time, x, pitch, pitch_rate, pitch_accel, yaw, yaw_rate, yaw_accel):
@@ -396,28 +322,7 @@ class Simulation:
         self.time = time
 
     def _stopped(self, status: int) -> SimulationStopped:
-        if status == SINGULAR:
-            return SimulationStopped(
-                self.time, "inertia of body and water is not positive definite", np.nan, "check the body's section data"
-            )
-        if status == NOT_FINITE:
-            stopped = SimulationStopped(self.time, "momentum is not finite", np.nan, self._remedy())
-            stopped.diverged = True
-            return stopped
-        if status == TOO_MANY_STEPS:
-            density = self._control.value.most_steps
-            return SimulationStopped(
-                self.time,
-                "more steps per second than any motion of a swimmer needs",
-                density,
-                "take a slower or gentler law",
-            )
-        return SimulationStopped(
-            self.time,
-            "step for the wanted accuracy is too small",
-            self._control.value.smallest,
-            "take a coarser accuracy, or a slower law",
-        )
+        return stopped_by(status, self.time, self._control.value, self.accuracy)
 
     # -- observe
 
@@ -476,7 +381,7 @@ class Simulation:
         if done:
             self.time = float(times[done - 1])
         if failure:
-            return done, SimulationStopped(self.time, quantity, value, self._remedy())
+            return done, SimulationStopped(self.time, quantity, value, remedy(self.accuracy))
         return done, None if status == MARCHED else self._stopped(status)
 
     @property
@@ -484,14 +389,6 @@ class Simulation:
         """As `failure_of` has it: where steps are chosen by their error, that is what watches."""
         watched = self.scene.ledger and self.accuracy.method == "classical"
         return self._control.value.momentum_floor**2 / self._table.mass if watched else np.inf
-
-    def _remedy(self) -> str:
-        """What to change where numbers have grown beyond reason."""
-        if self.accuracy.step is not None:
-            return "take a smaller step, or an accuracy in its place"
-        if self.accuracy.fixed is not None:
-            return "take the accuracy without fixed steps, or a gentler law"
-        return "take a gentler law, or start slower"
 
     def _look(self, wrench: bool, load: bool):
         """Fill the one instant of `_out` with the present."""
@@ -560,49 +457,14 @@ class Simulation:
             nodes, widest = self._table.grid.matrix.shape
             self._scratch, self._rows = scratch_layout(nodes, widest, rows, len(self.x)).space(), rows
         self._breakpoints = self.shape.breakpoints()
-        scale = min(self.shape.time_scale, self._motion_scale)
-        longest = LONGEST_STEP * min(scale, 10.0)
-        fixed = self.accuracy.step or (self.accuracy.fixed and min(scale, 1.0) / self.accuracy.fixed)
-        slowest = max(
-            SLOWEST * self.body.length / min(scale, 10.0), PART_OF_SPEED * self.shape.reach(self.swimmer.weight)
+        self._control = CONTROL.packed(
+            control_of(self.accuracy, self.scene, self.shape, self._table, self.body.length, self._motion_scale)
         )
-        control = Control(
-            tolerance=self.accuracy.tolerance,
-            step=fixed or longest,
-            smallest=1e-11 * min(scale, 1.0),
-            length=self.body.length,
-            momentum_floor=self._table.mass * slowest,
-            part_of_span=PART_OF_RAMP if self.scene.ledger and self.drive.segment < 0 else PART_OF_SPAN,
-            most_steps=MOST_STEPS / min(scale, 1.0),
-            spare_steps=max(LEAST_SPARE, SPARE_STEPS * min(1.0, SPARE_POINTS / len(self._table.grid.x))),
-            ledger=bool(self.scene.ledger),
-            planar=bool(self.scene.planar),
-        )
-        self._control = CONTROL.packed(control)
 
     def _restart(self):
         """Let the next step begin at the present state, with what drives the body now."""
         self._use_drive()
         self._swim(NONE, self._works, begin=AGAIN)
-
-    def _relative_start(self) -> np.ndarray:
-        """Initial twist (6,) of the head relative to the water."""
-        _, orientation, twist = self._start
-        relative = twist - 0.0
-        if any(self.scene.current):
-            relative[3:] -= matrix_of(orientation).T @ self._current
-        return relative
-
-    def _scale_of(self, twist: np.ndarray) -> float:
-        """Time [s] in which a `twist` (6,) takes the body by its length, or turns it by one."""
-        a, b, c, u, v, w = twist.tolist()
-        speed, spin = math.hypot(u, v, w), math.hypot(a, b, c)
-        return min(self.body.length / speed if speed else np.inf, 1.0 / spin if spin else np.inf)
-
-    def _is_thrown(self, law: Law | None) -> bool:
-        """Whether it starts much faster than `law` swims."""
-        periods = [term.period for term in law.terms if term.period] if isinstance(law, Law) else []
-        return self._motion_scale < THROWN * min(periods, default=1.0)
 
     def _take_initial_state(self):
         self._stand()
@@ -610,10 +472,9 @@ class Simulation:
 
     def _stand(self):
         """State and works of the start, but for the momentum."""
-        position, orientation, _ = self._start
         self._place, self._works = np.zeros(PLACE), np.zeros((1, 4))
         self._place[CURRENT:ENERGY] = self._current
-        self.state[:3], self.state[3:7] = position, orientation
+        self.state[:3], self.state[3:7] = self._start[:2]
         self._use_drive()
 
     def _set_off(self):

@@ -1,0 +1,39 @@
+"""What bounds the steps of a run: the accuracy, the shape's and the motion's times, the body."""
+
+from .accuracy import Accuracy
+from .integrator import Control
+from .scene import Scene
+from .shape import Shape
+from .tables import Table
+
+LONGEST_STEP = 0.1  # of the shortest time over which the shape changes: works are integrals of what goes on within it
+MOST_STEPS = 20_000.0  # per period of the law, or second; the most exact runs need a tenth of it
+SPARE_STEPS = 200_000.0  # beyond these, at any time of a run, with up to
+SPARE_POINTS = 30.0  # points along the body; with more so many fewer, for a step costs as much more,
+LEAST_SPARE = 6_000.0  # but not less than these
+SLOWEST = 1e-3  # body lengths per time scale, below which the head counts as at rest
+PART_OF_SPEED = 0.5  # of the speed that the shape gives the body: momenta below need not be exact to the last digit
+PART_OF_SPAN = 0.25  # between two breakpoints of the shape, that a step may take
+PART_OF_RAMP = 0.125  # the same for the ledger: of what a sudden ramp puts in, most comes back, and little may be left
+FIRST_STEP = 0.02  # of the longest
+
+
+def control_of(accuracy: Accuracy, scene: Scene, shape: Shape, table: Table, length: float, scale: float) -> Control:
+    """The bounds for a body of `length` [m], tabulated in `table`, whose motion at the start has the time `scale` [s]
+    and which is driven by `shape`."""
+    scale = min(shape.time_scale, scale)
+    longest = LONGEST_STEP * min(scale, 10.0)
+    fixed = accuracy.step or (accuracy.fixed and min(scale, 1.0) / accuracy.fixed)
+    slowest = max(SLOWEST * length / min(scale, 10.0), PART_OF_SPEED * shape.reach(table.swimmer.value.weight))
+    return Control(
+        tolerance=accuracy.tolerance,
+        step=fixed or longest,
+        smallest=1e-11 * min(scale, 1.0),
+        length=length,
+        momentum_floor=table.mass * slowest,
+        part_of_span=PART_OF_RAMP if scene.ledger and shape.drive.segment < 0 else PART_OF_SPAN,
+        most_steps=MOST_STEPS / min(scale, 1.0),
+        spare_steps=max(LEAST_SPARE, SPARE_STEPS * min(1.0, SPARE_POINTS / len(table.grid.x))),
+        ledger=bool(scene.ledger),
+        planar=bool(scene.planar),
+    )
