@@ -6,8 +6,8 @@ and Bashforth (one evaluation a step), with a corrector (PEC one, PECE two); and
 """
 
 import numpy as np
-from eel_dynamics.integrator import rate_of_state
-from eel_dynamics.kernel import Kinks
+from eel_dynamics.fields import Kinks
+from eel_dynamics.rates import rate_of_state
 from numba import njit
 from tableaus import adams_weights, tableaus
 

@@ -8,12 +8,12 @@ from functools import partial
 
 import numpy as np
 from eel_dynamics.compiled import OPTIONS
-from eel_dynamics.integrator import rate_of_state
 from eel_dynamics.planar import rate_of_state_plane
+from eel_dynamics.rates import rate_of_state
 from measuring import median_ratio, times_in_turn
 from numba import njit
 
-from eel_dynamics import Accuracy, Scene, Simulation, integrator, kernel, simulate
+from eel_dynamics import Accuracy, Scene, Simulation, kernel, rates, simulate
 from eel_gaits import straight
 
 COUNT = 2000  # evaluations that are timed together
@@ -114,8 +114,8 @@ def _evaluation_without_drag():
     """`evaluate` of the same source, but for the branch on `swimmer.resistive`."""
     inner = dict(vars(kernel))
     _compile_again(kernel.find_loads, inner)
-    outer = dict(vars(integrator), momentum_rates=_compile_again(kernel.momentum_rates, inner))
-    outer["rate_of_state"] = _compile_again(integrator.rate_of_state, outer)
+    outer = dict(vars(rates), momentum_rates=_compile_again(kernel.momentum_rates, inner))
+    outer["rate_of_state"] = _compile_again(rates.rate_of_state, outer)
     return _compile_again(evaluate, outer, forceinline=False)
 
 

@@ -6,7 +6,7 @@ Dormand's DOP853 (Hairer, Norsett and Wanner, section II.5), read from scipy.
 """
 
 import numpy as np
-from eel_dynamics.integrator import dormand_prince
+from eel_dynamics.methods import dormand_prince
 
 
 def _tableau(order, rows, weights):

@@ -1,7 +1,9 @@
-"""What a signal does that comes while loops are compiled."""
+"""What a signal does that comes while loops are compiled, and what an upgrade finds that was compiled before."""
 
+import pickle
 import signal
 
+import numba
 import pytest
 from eel_dynamics.compiled import compiled
 
@@ -43,3 +45,28 @@ def test_a_signal_is_heard_once_the_function_is_compiled(monkeypatch, number):
             signal.raise_signal(number)
     finally:
         signal.signal(number, before)
+
+
+def halving():
+    @compiled
+    def halve(x):
+        return 0.5 * x
+
+    return halve
+
+
+def test_what_an_older_version_has_kept_may_be_of_types_that_are_gone():
+    before = halving()
+    before._cache.flush()
+    assert before(3.0) == 1.5
+    index = before._cache._cache_file._index_path
+    gone = pickle.dumps(numba.__version__) + b"ceel_dynamics.kernel\nNoSuchType\n."
+    with open(index, "wb") as file:
+        file.write(gone)
+    after = halving()
+    assert after(3.0) == 1.5
+    with open(index, "rb") as file:
+        assert file.read() != gone
+    again = halving()
+    again(3.0)
+    assert again.stats.cache_hits[again.signatures[0]] == 1

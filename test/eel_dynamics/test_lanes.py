@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from eel_dynamics.drag import inverse_fifth_root
 from eel_dynamics.drive import cosine_and_sine
-from eel_dynamics.kernel import factorise, integrate, solve, turns
+from eel_dynamics.kernel import integrate
 from eel_dynamics.lanes import (
     ALIGNMENT,
     aligned,
@@ -32,7 +32,9 @@ from eel_dynamics.lanes import (
     where,
     work_space,
 )
+from eel_dynamics.momentum import factorise, solve
 from eel_dynamics.quadrature import Grid, Panel
+from eel_dynamics.rotations import turns
 from numba import njit
 
 A = np.array([3.0, -1.5, 0.25, -0.0, 7.0, -2.0, 1e-3, 40.0])

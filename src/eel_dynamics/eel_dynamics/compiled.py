@@ -23,7 +23,8 @@ OPTIONS = {
 }
 
 
-SIGNS = b"from .compiled import", b"from numba", b"from .lanes import"  # of files that the loops are compiled from
+# of files that the loops are compiled from
+SIGNS = b"from .compiled import", b"from numba", b"from .lanes import", b"from .packed import Form"
 
 
 def _stamp() -> str:
@@ -55,7 +56,11 @@ def spliced(function):
 
 
 def _kept(dispatcher):
-    dispatcher._cache._cache_file._source_stamp = STAMP
+    kept = dispatcher._cache._cache_file
+    kept._source_stamp = STAMP
+    kept._version = (
+        f"{kept._version} {STAMP}"  # what another version has kept is not even opened: its types may be gone
+    )
     compile_it = dispatcher.compile
 
     def compile_whole(signature):

@@ -1,48 +1,29 @@
-"""March of the head in time: explicit Runge-Kutta steps of the momentum form, with dense output, compiled.
+"""March of the head in time: steps of the momentum form, with dense output, compiled.
 
 State y (17,), world axes: position of the head 0:3 [m]; orientation 3:7, quaternion x y z w; momentum of body, water
 and nose about the head 7:10 [kg m^2/s] and linear 10:13 [kg m/s]; work of actuators, wake, nose and drag since the
 start 13:17 [J]. The works are integrals along the way, from the acceleration form at the Lobatto points of each step.
 
-Three methods: steps of Adams and Bashforth of orders 1 to 6 (`adams`), and the pair of Dormand and Prince of orders
-5(4) (J. Comp. Appl. Math. 6 (1980); dense output of order 4 by Shampine, Math. Comp. 46 (1986)), both with a step
+Three methods (`methods`): steps of Adams and Bashforth (`adams`) and the pair of Dormand and Prince, both with a step
 chosen by the error estimate; and the classical Runge-Kutta method with a given step. Steps end at the breakpoints of
-the shape, where its derivatives jump. docs/integrators.md tells why these.
+the shape, where its derivatives jump.
 """
 
-from functools import cache
 from typing import NamedTuple
 
 import numpy as np
 
-from .adams import HIGHEST, SHORT, SPACE, Past, adams_growth, defect_of_order, extrapolate, remember
+from .adams import SHORT, SPACE, Past, adams_growth, defect_of_order, extrapolate, remember
 from .compiled import inlined, spliced
-from .drive import combine, factors
-from .kernel import add_head_twist, configure, find_loads, momentum_rates, twist_of_momentum
 from .lanes import WIDTH, inverse_root_guess, put, size, spread, take, total, work_space
 from .packed import Form
-from .planar import move_plane, powers_plane, rate_of_state_plane
-from .wrench import accelerate, actuator_power
+from .rates import WORKS, evaluate, normalise, powers_in_step
 
 STATE = 13
-WORKS = 4
 LOBATTO = np.array([0.0, 0.5 - np.sqrt(5.0) / 10.0, 0.5 + np.sqrt(5.0) / 10.0, 1.0])
 LOBATTO_SERIES = np.linalg.inv(np.vander(LOBATTO, increasing=True))  # coefficients of the cubic through values there
 
 MARCHED, NOT_FINITE, STEP_TOO_SMALL, SINGULAR, TOO_MANY_STEPS = 0, 1, 2, 3, 4
-
-
-class Method(NamedTuple):
-    """A method whose last rate is the first of the next step: of s stages, or (`adams` > 0) Adams' of that order, whose
-    rows are the rate at the start, the mean rate and the rate at the end."""
-
-    a: np.ndarray  # (s, s)
-    c: np.ndarray  # (s,)
-    error: np.ndarray  # (s,) weights of the error estimate, zero where there is none
-    dense: np.ndarray  # (s, 4) y(theta) = y + h sum_i k_i sum_j dense[i, j] theta^(j+1)
-    adaptive: bool
-    order: int  # of the error's size by the step's length
-    adams: int  # order, 0: a Runge-Kutta method
 
 
 class Control(NamedTuple):
@@ -113,59 +94,6 @@ def step_of(stages: int, past: int) -> Step:
     )
 
 
-@cache
-def classical() -> Method:
-    """The classical Runge-Kutta method of order 4; between steps the cubic that meets value and rate at both ends."""
-    a = np.zeros((5, 5))
-    a[1, 0], a[2, 1], a[3, 2] = 0.5, 0.5, 1.0
-    a[4, :4] = 1 / 6, 1 / 3, 1 / 3, 1 / 6
-    return Method(a, np.array([0.0, 0.5, 0.5, 1.0, 1.0]), np.zeros(5), _hermite(a[4]), False, 4, 0)
-
-
-@cache
-def adams_bashforth(order: int) -> Method:
-    """Steps of Adams and Bashforth of an `order` from 1 to 6; between them as with the classical method."""
-    if not 1 <= order <= HIGHEST:
-        raise ValueError(f"order of the method adams must be 1 to {HIGHEST}, got {order!r}")
-    return Method(
-        np.zeros((3, 3)), np.array([0.0, 0.5, 1.0]), np.zeros(3), _hermite([0.0, 1.0, 0.0]), True, order + 1, order
-    )
-
-
-def _hermite(mean) -> np.ndarray:
-    """Dense output by the cubic that meets value and rate at both ends; `mean` (s,): the weights of the mean rate."""
-    dense = np.outer(mean, [0.0, 3.0, -2.0, 0.0])
-    dense[0] += [1.0, -2.0, 1.0, 0.0]
-    dense[-1] += [0.0, -1.0, 1.0, 0.0]
-    return dense
-
-
-@cache
-def dormand_prince() -> Method:
-    """The pair of orders 5(4)."""
-    a = np.zeros((7, 7))
-    a[1, :1] = 1 / 5
-    a[2, :2] = 3 / 40, 9 / 40
-    a[3, :3] = 44 / 45, -56 / 15, 32 / 9
-    a[4, :4] = 19372 / 6561, -25360 / 2187, 64448 / 6561, -212 / 729
-    a[5, :5] = 9017 / 3168, -355 / 33, 46732 / 5247, 49 / 176, -5103 / 18656
-    a[6, :6] = 35 / 384, 0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84
-    error = np.array([71 / 57600, 0, -71 / 16695, 71 / 1920, -17253 / 339200, 22 / 525, -1 / 40])
-    dense = np.array(
-        [
-            [1, -8048581381 / 2820520608, 8663915743 / 2820520608, -12715105075 / 11282082432],
-            [0, 0, 0, 0],
-            [0, 131558114200 / 32700410799, -68118460800 / 10900136933, 87487479700 / 32700410799],
-            [0, -1754552775 / 470086768, 14199869525 / 1410260304, -10690763975 / 1880347072],
-            [0, 127303824393 / 49829197408, -318862633887 / 49829197408, 701980252875 / 199316789632],
-            [0, -282668133 / 205662961, 2019193451 / 616988883, -1453857185 / 822651844],
-            [0, 40617522 / 29380423, -110615467 / 29380423, 69997945 / 29380423],
-        ]
-    )
-    return Method(a, np.array([0.0, 0.2, 0.3, 0.8, 8 / 9, 1.0, 1.0]), error, dense, True, 5, 0)
-
-
-METHOD = Form(classical)
 CONTROL = Form(lambda: Control(*([0.0] * 8), True, True))
 
 
@@ -181,126 +109,6 @@ def begin_at(step, time, y, work, length):
     if step.time[2] == 0.0:
         step.time[2] = length
     step.fresh[0] = 1
-
-
-@inlined
-def normalise(y):
-    """Make the orientation of state `y` a unit quaternion."""
-    size = np.sqrt(y[3] * y[3] + y[4] * y[4] + y[5] * y[5] + y[6] * y[6])
-    for k in range(3, 7):
-        y[k] /= size
-
-
-@inlined
-def head_axes(y):
-    """Columns t1, t2, t3 of the rotation of state `y`, world from head, one after the other."""
-    x, v, z, w = y[3], y[4], y[5], y[6]
-    two = 2.0 / (x * x + v * v + z * z + w * w)
-    xx, vv, zz, xv, xz, vz = two * x * x, two * v * v, two * z * z, two * x * v, two * x * z, two * v * z
-    wx, wv, wz = two * w * x, two * w * v, two * w * z
-    return 1.0 - vv - zz, xv + wz, xz - wv, xv - wz, 1.0 - xx - zz, vz + wx, xz + wv, vz - wx, 1.0 - xx - vv
-
-
-@inlined
-def to_world(t, vector, at):
-    """Turn `vector[at : at + 3]` in place from the head's axes, `t` of `head_axes`, to the world's."""
-    a, b, c = vector[at], vector[at + 1], vector[at + 2]
-    vector[at] = t[0] * a + t[3] * b + t[6] * c
-    vector[at + 1] = t[1] * a + t[4] * b + t[7] * c
-    vector[at + 2] = t[2] * a + t[5] * b + t[8] * c
-
-
-@inlined
-def to_head(t, vector, at):
-    """The inverse of `to_world`."""
-    a, b, c = vector[at], vector[at + 1], vector[at + 2]
-    vector[at] = t[0] * a + t[1] * b + t[2] * c
-    vector[at + 1] = t[3] * a + t[4] * b + t[5] * c
-    vector[at + 2] = t[6] * a + t[7] * b + t[8] * c
-
-
-@inlined
-def settle(swimmer, drive, fields, time, y, axes, momentum, twist):
-    """Configure the body at `time` and find the head's `twist` from the momentum of state `y`, whose axes are `axes`.
-    False where it has none."""
-    factors(drive, time, fields.factor)
-    configure(swimmer, drive, fields)
-    for k in range(6):
-        momentum[k] = y[7 + k]
-    to_head(axes, momentum, 0)
-    to_head(axes, momentum, 3)
-    return twist_of_momentum(swimmer, fields, momentum, twist)
-
-
-@inlined
-def rate_of_state(swimmer, drive, fields, current, time, y, step, dy):
-    """Rate `dy` (13,) of state `y` at `time` (eq. 27 in the momentum form). False where the inertia is singular."""
-    axes = head_axes(y)
-    if not settle(swimmer, drive, fields, time, y, axes, step.momentum, step.twist):
-        return False
-    momentum_rates(swimmer, fields, step.momentum, step.twist, step.rates)
-    twist, rates = step.twist, step.rates
-    dy[0], dy[1], dy[2] = twist[3], twist[4], twist[5]
-    to_world(axes, dy, 0)
-    for k in range(3):
-        dy[k] += current[k]
-    x, v, z, w = y[3], y[4], y[5], y[6]
-    ox, oy, oz = 0.5 * twist[0], 0.5 * twist[1], 0.5 * twist[2]
-    dy[3] = w * ox + v * oz - z * oy
-    dy[4] = w * oy + z * ox - x * oz
-    dy[5] = w * oz + x * oy - v * ox
-    dy[6] = -x * ox - v * oy - z * oz
-    for k in range(6):
-        dy[7 + k] = rates[k]
-    to_world(axes, dy, 7)
-    to_world(axes, dy, 10)
-    return True
-
-
-@inlined
-def powers_here(swimmer, drive, fields, balance, step, power):
-    """Powers (4,) [W] of actuators, wake, nose and drag, by the acceleration form, in the state of which `fields` and
-    `step.twist` hold velocities and loads."""
-    combine(drive.axis, drive.node, fields.factor[2], swimmer.blocks, fields.accel)
-    accelerate(swimmer, fields, step.twist, balance)
-    actuator_power(swimmer, fields, balance)
-    for k in range(WORKS):
-        power[k] = balance.powers[k]
-
-
-@inlined
-def move(swimmer, drive, fields, time, y, step):
-    """Velocities and loads in state `y` at `time`, into `fields` and `step.twist`. False where the inertia is
-    singular."""
-    if not settle(swimmer, drive, fields, time, y, head_axes(y), step.momentum, step.twist):
-        return False
-    add_head_twist(swimmer, fields, step.twist)
-    find_loads(swimmer, fields, step.twist)
-    return True
-
-
-@inlined
-def powers_of_state(swimmer, drive, fields, balance, time, y, step, power):
-    """`powers_here` of state `y` at `time`. False where the inertia is singular."""
-    if not move(swimmer, drive, fields, time, y, step):
-        return False
-    powers_here(swimmer, drive, fields, balance, step, power)
-    return True
-
-
-@spliced
-def powers_in_step(swimmer, drive, fields, balance, control, time, y, there, step, power):
-    """Powers (4,) [W] in state `y` at `time`, by the scene's kernel; `there`: the state was the last to be evaluated.
-    False where the inertia is singular."""
-    if control.planar:
-        if not there and not move_plane(swimmer, drive, fields, time, y, step.momentum, step.twist):
-            return False
-        powers_plane(swimmer, drive, fields, balance, step.twist, power)
-    else:
-        if not there and not move(swimmer, drive, fields, time, y, step):
-            return False
-        powers_here(swimmer, drive, fields, balance, step, power)
-    return True
 
 
 @spliced
@@ -330,14 +138,6 @@ def works_upto(step, theta, work):
             for k in range(WORKS):
                 work[k] += weight * step.power[i, k]
         power *= theta
-
-
-@spliced
-def evaluate(swimmer, drive, fields, current, control, time, y, step, dy):
-    """Rate `dy` (13,) of state `y` at `time`, by the scene's kernel. False where the inertia is singular."""
-    if control.planar:
-        return rate_of_state_plane(swimmer, drive, fields, current, time, y, step, dy)
-    return rate_of_state(swimmer, drive, fields, current, time, y, step, dy)
 
 
 @spliced

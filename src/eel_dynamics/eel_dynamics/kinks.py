@@ -6,7 +6,7 @@ either would take the quadrature its order. Each such load is s(X) G(X) with G s
     integral of s G = s_0 integral of G + sum_j step_j (integral of G from X_j to the end),
 
 and the integrals to X_j come from the polynomial through the panel's nodes, as all others do. What a step changes is
-kept as weights of the nodes (`share`), and as a list of steps (`Kinks` of the kernel) for the integrals up to a point.
+kept as weights of the nodes (`share`), and as a list of steps (`fields.Kinks`) for the integrals up to a point.
 """
 
 import numpy as np

@@ -11,27 +11,26 @@ import numpy as np
 
 from .compiled import compiled, inlined, spliced
 from .drive import DRIVE, Drive, factors
+from .fields import Fields, fields_of
 from .integrator import (
     CONTROL,
     MARCHED,
-    METHOD,
     NOT_FINITE,
     SINGULAR,
     Control,
-    Method,
     Step,
     begin_at,
-    head_axes,
     march,
-    settle,
     square_of,
     state_at,
     step_of,
-    to_world,
 )
-from .kernel import Fields, add_head_twist, configure, fields_of, momentum_of_twist
+from .kernel import add_head_twist, configure
+from .methods import METHOD, Method
+from .momentum import momentum_of_twist
 from .packed import Form, Layout
 from .profiles import PROFILES, Profiles, StationFields, observe, station_fields_of
+from .rates import head_axes, settle, to_world
 from .sections import STATIONS, SWIMMER, Stations, Swimmer
 from .wrench import Balance, balance_of, kinetic_energies
 

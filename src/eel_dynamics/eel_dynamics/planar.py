@@ -184,7 +184,7 @@ def move_plane(swimmer, drive, fields, time, y, momentum, twist):
 
 @inlined
 def rate_of_state_plane(swimmer, drive, fields, current, time, y, step, dy):
-    """As `rate_of_state` of the integrator, for a state in the plane: rate `dy` (13,) of state `y` at `time`."""
+    """As `rate_of_state` of `rates`, for a state in the plane: rate `dy` (13,) of state `y` at `time`."""
     momentum, twist = step.momentum, step.twist
     if not move_plane(swimmer, drive, fields, time, y, momentum, twist):
         return False
@@ -230,7 +230,7 @@ def densities_plane(swimmer, fields, balance, result):
 
 @inlined
 def powers_plane(swimmer, drive, fields, balance, twist, power):
-    """Powers (4,) [W] of actuators, wake, nose and drag, as `powers_here` of the integrator, after `move_plane`."""
+    """Powers (4,) [W] of actuators, wake, nose and drag, as `powers_here` of `rates`, after `move_plane`."""
     R, r, omega, speed, f = fields.R, fields.r, fields.omega, fields.speed, fields.integrand
     alpha, acc, head, whole, density = balance.alpha, balance.acc, balance.head, balance.total, balance.density
     for k in range(swimmer.blocks):

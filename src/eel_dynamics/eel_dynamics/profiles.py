@@ -13,11 +13,12 @@ import numpy as np
 from .compiled import inlined
 from .drag import inverse_fifth_root, turbulent_part
 from .drive import combine, combine_moments
-from .integrator import head_axes, powers_of_state, to_head, to_world
-from .kernel import integrate, product, put_axes, turns
+from .kernel import integrate
 from .kinks import BLENDED, LAMINAR, integrate_balance
 from .lanes import WIDTH, put, root, size, spread, take, where, work_space
 from .packed import Form, address_of, relative
+from .rates import head_axes, powers_of_state, to_head, to_world
+from .rotations import product, put_axes, turns
 from .vectors import bent, cross, in_section, put_three, three, two
 from .wrench import kinetic_energies, moving_gain, turning_gain
 

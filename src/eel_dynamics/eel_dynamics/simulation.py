@@ -20,7 +20,7 @@ from .body import Body
 from .bounds import FIRST_STEP, control_of
 from .energy import EnergyLedger
 from .guard import failure_of
-from .integrator import CONTROL, MARCHED, METHOD, SINGULAR, adams_bashforth, classical, dormand_prince
+from .integrator import CONTROL, MARCHED, SINGULAR
 from .leg import (
     AGAIN,
     COUNT,
@@ -41,6 +41,7 @@ from .leg import (
     step_layout,
     swim,
 )
+from .methods import METHOD, adams_bashforth, classical, dormand_prince
 from .packed import Packed
 from .profiles import PROFILES, Profiles, no_profiles, profiles_of, row_of
 from .scene import Scene
@@ -157,7 +158,7 @@ class Simulation:
 
     @property
     def fields(self):
-        """Work space of the loops, `kernel.Fields`."""
+        """Work space of the loops, `fields.Fields`."""
         return self._scratch.views.fields
 
     @property

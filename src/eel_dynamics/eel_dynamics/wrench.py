@@ -13,9 +13,10 @@ import numpy as np
 
 from .compiled import inlined
 from .drag import add_resistance
-from .kernel import add_head_motion, integrate_along, solve
+from .kernel import add_head_motion, integrate_along
 from .kinks import integrate_steps
 from .lanes import WIDTH, spread, take, total, work_space
+from .momentum import solve
 from .vectors import bent, cross, dot, from_section, in_section, put_three, three
 
 
