@@ -32,7 +32,7 @@ from eel_dynamics.lanes import (
     where,
     work_space,
 )
-from eel_dynamics.momentum import factorise, solve
+from eel_dynamics.momentum import factors_of, is_definite, solve, solved
 from eel_dynamics.quadrature import Grid, Panel
 from eel_dynamics.rotations import turns
 from numba import njit
@@ -177,20 +177,28 @@ def test_blocks_integrate_polynomials_to_their_points(at):
     assert np.all(np.diff(upto.place[: len(x)]) > 0.0)
 
 
+LOWER = np.tril_indices(6)
+
+
 def test_factors_solve_and_know_what_is_not_positive():
     rng = np.random.default_rng(5)
     for _ in range(50):
         root_of_it = rng.normal(size=(6, 6)) * np.exp(rng.uniform(-4.0, 4.0, 6))[:, None]
         matrix, right = root_of_it @ root_of_it.T, rng.normal(size=6)
-        factors, x = np.tril(matrix), right.copy()
-        assert factorise(factors)
-        solve(factors, x)
+        factors = factors_of(tuple(matrix[LOWER]))
+        x = np.array(solved(factors, tuple(right)))
+        assert is_definite(factors)
         np.testing.assert_allclose(matrix @ x, right, atol=1e-9 * np.abs(matrix).max() * np.abs(x).max())
-        negative = np.tril(matrix)
+        kept, again = np.zeros((6, 6)), right.copy()
+        kept[LOWER] = factors
+        solve(kept, again)
+        np.testing.assert_array_equal(again, x)
+        negative = matrix.copy()
         index = rng.integers(6)
         negative[index, index] = -negative[index, index]
-        assert not factorise(negative)
-    assert not factorise(np.full((6, 6), np.nan))
+        assert not is_definite(factors_of(tuple(negative[LOWER])))
+    for value in (np.nan, 0.0, np.inf):
+        assert not is_definite(factors_of(tuple((value * np.ones((6, 6)))[LOWER])))
 
 
 @pytest.mark.parametrize("angle", [1e-9, 0.3, 0.99, 1.01, 2.5, 9.0])

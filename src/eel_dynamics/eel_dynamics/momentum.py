@@ -3,14 +3,17 @@
 The head moves as the momentum says: momentum = I_o twist + what the change of shape alone carries.
 """
 
+import numpy as np
+
 from .compiled import inlined
 from .lanes import WIDTH, spread, take, total
 from .vectors import cross, dot, three
 
 
 @inlined
-def gather_inertia(swimmer, fields):
-    """Inertia (6, 6) of body and water about the head, I_o of section 6, the nose's m_o included; lower triangle.
+def inertia_of(swimmer, fields):
+    """Inertia of body and water about the head, I_o of section 6, the nose's m_o included: its lower triangle (21,),
+    row by row.
 
     With b, c = t2, t3: M = m + m2 b b^T + m3 c c^T along the body, and about the head
     r x M x r^T = m (r.r - r r^T) + m2 (r x b)(r x b)^T + m3 (r x c)(r x c)^T.
@@ -62,19 +65,17 @@ def gather_inertia(swimmer, fields):
         wyy += j + fy * by + gy * cy + py * uy + qy * wy + (mx * x + mz * z)
         wyz += fy * bz + gy * cz + py * uz + qy * wz - my * z
         wzz += j + fz * bz + gz * cz + pz * uz + qz * wz + (mx * x + my * y)
-    inertia = fields.inertia
-    inertia[0, 0], inertia[1, 0], inertia[2, 0] = total(wxx), total(wxy), total(wxz)
-    inertia[1, 1], inertia[2, 1], inertia[2, 2] = total(wyy), total(wyz), total(wzz)
-    # below: the momentum P by Omega, (r x M)^T
-    inertia[3, 0], inertia[4, 0], inertia[5, 0] = total(cxx), total(cxy), total(cxz)
-    inertia[3, 1], inertia[4, 1], inertia[5, 1] = total(cyx), total(cyy), total(cyz)
-    inertia[3, 2], inertia[4, 2], inertia[5, 2] = total(czx), total(czy), total(czz)
-    inertia[3, 3], inertia[4, 3], inertia[5, 3] = total(vxx) + swimmer.nose_mass, total(vxy), total(vxz)
-    inertia[4, 4], inertia[5, 4], inertia[5, 5] = total(vyy), total(vyz), total(vzz)
+    # from the fourth row on: the momentum P by Omega, (r x M)^T
+    return (
+        *(total(wxx), total(wxy), total(wyy), total(wxz), total(wyz), total(wzz)),
+        *(total(cxx), total(cyx), total(czx), total(vxx) + swimmer.nose_mass),
+        *(total(cxy), total(cyy), total(czy), total(vxy), total(vyy)),
+        *(total(cxz), total(cyz), total(czz), total(vxz), total(vyz), total(vzz)),
+    )
 
 
 @inlined
-def gather_momentum(swimmer, fields, momentum):
+def momentum_of(swimmer, fields):
     """Momentum (6,) of body and water about the head due to `omega`, `v` (the nose's m_o not in it)."""
     R, r, omega, v = fields.R, fields.r, fields.omega, fields.v
     lx = ly = lz = px = py = pz = spread(0.0)
@@ -102,82 +103,113 @@ def gather_momentum(swimmer, fields, momentum):
         lx += j * ox + s2 * bx + s3 * cx + tx
         ly += j * oy + s2 * by + s3 * cy + ty
         lz += j * oz + s2 * bz + s3 * cz + tz
-    momentum[0], momentum[1], momentum[2] = total(lx), total(ly), total(lz)
-    momentum[3], momentum[4], momentum[5] = total(px), total(py), total(pz)
+    return total(lx), total(ly), total(lz), total(px), total(py), total(pz)
 
 
 @inlined
-def factorise(a):
-    """Factors L and 1/D of a symmetric positive definite matrix (6, 6) = L D L^T, in place: L below the diagonal, 1/D
-    on it. From its lower triangle; False if it is not positive definite."""
-    good = a[0, 0] > 0.0
-    d = 1.0 / a[0, 0]
-    a[0, 0] = d
-    b1, b2, b3, b4, b5 = a[1, 0], a[2, 0], a[3, 0], a[4, 0], a[5, 0]
-    l1, l2, l3, l4, l5 = b1 * d, b2 * d, b3 * d, b4 * d, b5 * d
-    a[1, 0], a[2, 0], a[3, 0], a[4, 0], a[5, 0] = l1, l2, l3, l4, l5
-    a11 = a[1, 1] - b1 * l1
-    a21, a22 = a[2, 1] - b2 * l1, a[2, 2] - b2 * l2
-    a31, a32, a33 = a[3, 1] - b3 * l1, a[3, 2] - b3 * l2, a[3, 3] - b3 * l3
-    a41, a42, a43, a44 = a[4, 1] - b4 * l1, a[4, 2] - b4 * l2, a[4, 3] - b4 * l3, a[4, 4] - b4 * l4
-    a51, a52, a53, a54 = a[5, 1] - b5 * l1, a[5, 2] - b5 * l2, a[5, 3] - b5 * l3, a[5, 4] - b5 * l4
-    a55 = a[5, 5] - b5 * l5
-    good &= a11 > 0.0
-    d = 1.0 / a11
-    l2, l3, l4, l5 = a21 * d, a31 * d, a41 * d, a51 * d
-    a[1, 1], a[2, 1], a[3, 1], a[4, 1], a[5, 1] = d, l2, l3, l4, l5
-    a22 -= a21 * l2
-    a32, a33 = a32 - a31 * l2, a33 - a31 * l3
-    a42, a43, a44 = a42 - a41 * l2, a43 - a41 * l3, a44 - a41 * l4
-    a52, a53, a54, a55 = a52 - a51 * l2, a53 - a51 * l3, a54 - a51 * l4, a55 - a51 * l5
-    good &= a22 > 0.0
-    d = 1.0 / a22
-    l3, l4, l5 = a32 * d, a42 * d, a52 * d
-    a[2, 2], a[3, 2], a[4, 2], a[5, 2] = d, l3, l4, l5
-    a33 -= a32 * l3
-    a43, a44 = a43 - a42 * l3, a44 - a42 * l4
-    a53, a54, a55 = a53 - a52 * l3, a54 - a52 * l4, a55 - a52 * l5
-    good &= a33 > 0.0
-    d = 1.0 / a33
-    l4, l5 = a43 * d, a53 * d
-    a[3, 3], a[4, 3], a[5, 3] = d, l4, l5
-    a44 -= a43 * l4
-    a54, a55 = a54 - a53 * l4, a55 - a53 * l5
-    good &= a44 > 0.0
-    d = 1.0 / a44
-    l5 = a54 * d
-    a[4, 4], a[5, 4] = d, l5
-    a55 -= a54 * l5
-    good &= a55 > 0.0
-    a[5, 5] = 1.0 / a55
+def factors_of(a):
+    """Factors of a symmetric positive definite matrix (6, 6) = L D L^T from its lower triangle `a` (21,), row
+    by row, in its place: L below the diagonal, 1/D on it."""
+    a00, a10, a11, a20, a21, a22, a30, a31, a32, a33 = a[:10]
+    a40, a41, a42, a43, a44, a50, a51, a52, a53, a54, a55 = a[10:]
+    d0 = 1.0 / a00
+    l1, l2, l3, l4, l5 = a10 * d0, a20 * d0, a30 * d0, a40 * d0, a50 * d0
+    a11 = a11 - a10 * l1
+    a21, a22 = a21 - a20 * l1, a22 - a20 * l2
+    a31, a32, a33 = a31 - a30 * l1, a32 - a30 * l2, a33 - a30 * l3
+    a41, a42, a43, a44 = a41 - a40 * l1, a42 - a40 * l2, a43 - a40 * l3, a44 - a40 * l4
+    a51, a52, a53, a54, a55 = a51 - a50 * l1, a52 - a50 * l2, a53 - a50 * l3, a54 - a50 * l4, a55 - a50 * l5
+    d1 = 1.0 / a11
+    m2, m3, m4, m5 = a21 * d1, a31 * d1, a41 * d1, a51 * d1
+    a22 = a22 - a21 * m2
+    a32, a33 = a32 - a31 * m2, a33 - a31 * m3
+    a42, a43, a44 = a42 - a41 * m2, a43 - a41 * m3, a44 - a41 * m4
+    a52, a53, a54, a55 = a52 - a51 * m2, a53 - a51 * m3, a54 - a51 * m4, a55 - a51 * m5
+    d2 = 1.0 / a22
+    n3, n4, n5 = a32 * d2, a42 * d2, a52 * d2
+    a33 = a33 - a32 * n3
+    a43, a44 = a43 - a42 * n3, a44 - a42 * n4
+    a53, a54, a55 = a53 - a52 * n3, a54 - a52 * n4, a55 - a52 * n5
+    d3 = 1.0 / a33
+    o4, o5 = a43 * d3, a53 * d3
+    a44 = a44 - a43 * o4
+    a54, a55 = a54 - a53 * o4, a55 - a53 * o5
+    d4 = 1.0 / a44
+    p5 = a54 * d4
+    a55 = a55 - a54 * p5
+    d5 = 1.0 / a55
+    return (
+        *(d0,),
+        *(l1, d1),
+        *(l2, m2, d2),
+        *(l3, m3, n3, d3),
+        *(l4, m4, n4, o4, d4),
+        *(l5, m5, n5, o5, p5, d5),
+    )
+
+
+@inlined
+def is_definite(f):
+    """Whether the matrix of the factors `f` is positive definite."""
+    good = True
+    for each in (f[0], f[2], f[5], f[9], f[14], f[20]):
+        good &= (each > 0.0) & (each < np.inf)
     return good
 
 
 @inlined
+def solved(f, b):
+    """Solution (6,) with the factors `f` of `factors_of` for the right side `b` (6,)."""
+    d0, l1, d1, l2, m2, d2, l3, m3, n3, d3 = f[:10]
+    l4, m4, n4, o4, d4, l5, m5, n5, o5, p5, d5 = f[10:]
+    b0, b1, b2, b3, b4, b5 = b
+    b1 = b1 - l1 * b0
+    b2 = b2 - l2 * b0 - m2 * b1
+    b3 = b3 - l3 * b0 - m3 * b1 - n3 * b2
+    b4 = b4 - l4 * b0 - m4 * b1 - n4 * b2 - o4 * b3
+    b5 = b5 - l5 * b0 - m5 * b1 - n5 * b2 - o5 * b3 - p5 * b4
+    b5 = b5 * d5
+    b4 = b4 * d4 - p5 * b5
+    b3 = b3 * d3 - o5 * b5 - o4 * b4
+    b2 = b2 * d2 - n5 * b5 - n4 * b4 - n3 * b3
+    b1 = b1 * d1 - m5 * b5 - m4 * b4 - m3 * b3 - m2 * b2
+    b0 = b0 * d0 - l5 * b5 - l4 * b4 - l3 * b3 - l2 * b2 - l1 * b1
+    return b0, b1, b2, b3, b4, b5
+
+
+@inlined
+def triangle(a):
+    """Lower triangle (21,) of a matrix (6, 6), row by row."""
+    return (
+        *(a[0, 0], a[1, 0], a[1, 1], a[2, 0], a[2, 1], a[2, 2]),
+        *(a[3, 0], a[3, 1], a[3, 2], a[3, 3]),
+        *(a[4, 0], a[4, 1], a[4, 2], a[4, 3], a[4, 4]),
+        *(a[5, 0], a[5, 1], a[5, 2], a[5, 3], a[5, 4], a[5, 5]),
+    )
+
+
+@inlined
+def put_triangle(a, values):
+    """Store the lower triangle of a matrix (6, 6)."""
+    a[0, 0], a[1, 0], a[1, 1], a[2, 0], a[2, 1], a[2, 2] = values[:6]
+    a[3, 0], a[3, 1], a[3, 2], a[3, 3] = values[6:10]
+    a[4, 0], a[4, 1], a[4, 2], a[4, 3], a[4, 4] = values[10:15]
+    a[5, 0], a[5, 1], a[5, 2], a[5, 3], a[5, 4], a[5, 5] = values[15:]
+
+
+@inlined
 def solve(a, b):
-    """Solve with the factors `a` (6, 6) of `factorise` for the right side `b` (6,), in place."""
-    b0 = b[0]
-    b1 = b[1] - a[1, 0] * b0
-    b2 = b[2] - a[2, 0] * b0 - a[2, 1] * b1
-    b3 = b[3] - a[3, 0] * b0 - a[3, 1] * b1 - a[3, 2] * b2
-    b4 = b[4] - a[4, 0] * b0 - a[4, 1] * b1 - a[4, 2] * b2 - a[4, 3] * b3
-    b5 = b[5] - a[5, 0] * b0 - a[5, 1] * b1 - a[5, 2] * b2 - a[5, 3] * b3 - a[5, 4] * b4
-    b5 = b5 * a[5, 5]
-    b4 = b4 * a[4, 4] - a[5, 4] * b5
-    b3 = b3 * a[3, 3] - a[5, 3] * b5 - a[4, 3] * b4
-    b2 = b2 * a[2, 2] - a[5, 2] * b5 - a[4, 2] * b4 - a[3, 2] * b3
-    b1 = b1 * a[1, 1] - a[5, 1] * b5 - a[4, 1] * b4 - a[3, 1] * b3 - a[2, 1] * b2
-    b0 = b0 * a[0, 0] - a[5, 0] * b5 - a[4, 0] * b4 - a[3, 0] * b3 - a[2, 0] * b2 - a[1, 0] * b1
-    b[0], b[1], b[2], b[3], b[4], b[5] = b0, b1, b2, b3, b4, b5
+    """Solve with the factors kept in the lower triangle of `a` (6, 6) for the right side `b` (6,), in place."""
+    b[0], b[1], b[2], b[3], b[4], b[5] = solved(triangle(a), (b[0], b[1], b[2], b[3], b[4], b[5]))
 
 
 @inlined
 def momentum_of_twist(swimmer, fields, twist, momentum):
     """Momentum (6,) of body, water and nose for the head's `twist` (6,), in a configured body."""
-    gather_momentum(swimmer, fields, momentum)
-    gather_inertia(swimmer, fields)
-    inertia = fields.inertia
+    shape, inertia = momentum_of(swimmer, fields), fields.inertia
+    put_triangle(inertia, inertia_of(swimmer, fields))
     for i in range(6):
+        momentum[i] = shape[i]
         for j in range(6):
             momentum[i] += (inertia[i, j] if j <= i else inertia[j, i]) * twist[j]
 
@@ -189,11 +221,14 @@ def twist_of_momentum(swimmer, fields, momentum, twist):
 
     False where the inertia is not positive definite. Leaves the factors of I_o in `fields.inertia`.
     """
-    gather_momentum(swimmer, fields, twist)
-    gather_inertia(swimmer, fields)
-    for i in range(6):
-        twist[i] = momentum[i] - twist[i]
-    if not factorise(fields.inertia):
-        return False
-    solve(fields.inertia, twist)
-    return True
+    s0, s1, s2, s3, s4, s5 = momentum_of(swimmer, fields)
+    factors = factors_of(inertia_of(swimmer, fields))
+    put_triangle(fields.inertia, factors)
+    twist[0], twist[1], twist[2], twist[3], twist[4], twist[5] = solved(
+        factors,
+        (
+            *(momentum[0] - s0, momentum[1] - s1, momentum[2] - s2),
+            *(momentum[3] - s3, momentum[4] - s4, momentum[5] - s5),
+        ),
+    )
+    return is_definite(factors)
