@@ -2,11 +2,14 @@
 
 import os
 import random
+import re
 import socket
 from dataclasses import dataclass
+from pathlib import Path
 
 DOMAINS = range(60, 100)  # above 101 the ports meet Linux's own range for outgoing connections
 PORT_BASE, PORTS_PER_DOMAIN = 7400, 250  # of the RTPS standard: discovery listens on UDP 7400 + 250 * domain
+SHARED_MEMORY = Path("/dev/shm")
 
 
 @dataclass(frozen=True)
@@ -34,5 +37,22 @@ def reserve_domain() -> Domain:
         except OSError:
             claim.close()
             continue
+        forget_the_killed(number)
         return Domain(number, claim)
     raise RuntimeError(f"every ROS domain from {DOMAINS.start} to {DOMAINS.stop - 1} is in use on this machine")
+
+
+def forget_the_killed(number: int, folder: Path = SHARED_MEMORY):
+    """Remove what processes in a domain have left of their ports in shared memory, where none runs any more.
+
+    A killed process leaves them, at times locked; Fast DDS then finds the next one in the domain but hands it nothing
+    (eProsima/Fast-DDS issues 1144, 5053).
+    """
+    ports = range(PORT_BASE + PORTS_PER_DOMAIN * number, PORT_BASE + PORTS_PER_DOMAIN * (number + 1))
+    for path in folder.glob("*fastrtps_port*"):
+        match = re.fullmatch(r"(?:sem\.)?fastrtps_port(\d+)(?:_el|_mutex)?", path.name)
+        if match and int(match[1]) in ports:
+            try:
+                path.unlink(missing_ok=True)
+            except PermissionError:  # another user's: not ours to mend
+                continue
