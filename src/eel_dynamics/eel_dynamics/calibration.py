@@ -69,7 +69,7 @@ class Case:
     @property
     def plane(self) -> bool:
         """The motion stays in a plane."""
-        return all(term.axis == "yaw" for term in self.law.terms)
+        return self.law.in_plane
 
 
 def random_law(seed: int, length: float, planar: bool = False) -> Law:

@@ -11,6 +11,7 @@ from functools import partial
 import numpy as np
 
 from .accuracy import FINEST_TOLERANCE
+from .stopping import SimulationStopped
 
 MORE_STEPS = 1.4  # of a finer run, at least: coarse tolerances may leave the steps at their longest
 MOST_FINER = 3  # tries for these
@@ -73,8 +74,6 @@ def refined(run):
 def stable_step(swim, accuracy) -> float | None:
     """The longest step [s], halved from that of `accuracy`, at which `swim(accuracy)` gets through; None if none was
     found."""
-    from .stopping import SimulationStopped
-
     step = accuracy.step
     for _ in range(HALVINGS):
         step *= 0.5

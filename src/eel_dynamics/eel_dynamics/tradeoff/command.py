@@ -86,8 +86,7 @@ def _measure_all(options) -> list[tuple]:
     for law in laws:
         fixed = {"duration": options.duration, "body": body, "scene": Scene(), "say": _say}
         _say(f"gait {law.name}")
-        plane = all(term.axis == "yaw" for term in law.terms)
-        rows = settings(fixed["scene"], options.quick, plane)
+        rows = settings(fixed["scene"], options.quick, law.in_plane)
         trade = measuring.measure(law, rows, repeats=options.repeats, **fixed)
         found.append((trade, models.compare(law, trade.reference, **fixed)))
     return found
