@@ -12,6 +12,7 @@ import time
 from functools import partial
 
 import numpy as np
+from abreast import abreast
 from against_paper_scheme import paper_scheme
 from against_peers import peers
 from batch import batch
@@ -117,6 +118,7 @@ FIGURES = {
     "growth": growth,
     "integrators": integrators,
     "batch": batch,
+    "abreast": abreast,
     "paper_scheme": paper_scheme,
     "visualiser": visualiser,
 }

@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .compiled import spliced
+from .compiled import inlined, spliced
 from .lanes import WIDTH, aligned, first, following, put, spread, take
 
 SPACE = 2 * WIDTH  # that a state takes
@@ -102,11 +102,31 @@ def defect_of_order(past, terms, rate, row, defect):
     put(defect, WIDTH, past.weight[terms] * high)
 
 
+@inlined
+def next_order(order, since, terms, highest, short, growth, below, above):
+    """The order in force after a step of so many `terms`, `since` how many steps it has been, 1 where it may rise by a
+    look at its neighbour, and the `growth` of the step. Where steps are `short`: `below` and `above` are the growths
+    that the neighbours promise, 0 where they were not looked at."""
+    settled, change = since > order, 0
+    since += 1
+    if not short:
+        if settled and order < highest:
+            order, since = order + 1, 0
+        return order, since, 0, growth
+    if below > 1.1 * growth:
+        growth, change = below, -1
+    elif settled and terms == order < highest and above > 1.3 * growth:
+        growth, change = above, 1
+    if change != 0:
+        order, since = terms + change, 0
+    return order, since, 1 if since > terms and order < highest else 0, growth
+
+
 @spliced
-def adams_growth(past, growth):
+def adams_growth(known, order, growth):
     """What of a proposed `growth` of the step is taken: none where it is little, so that steps stay equal; twice at
-    most while the order rises, and half as much again later."""
-    if past.known[0] + 1 < past.order[0]:
+    most while the `order` is not yet reached by the steps that are `known`, and half as much again later."""
+    if known + 1 < order:
         return min(2.0, growth)
     if 1.0 <= growth < 1.15:
         return 1.0

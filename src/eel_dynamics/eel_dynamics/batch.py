@@ -1,4 +1,4 @@
-"""Many swimmers side by side: `simulate_batch`, each as `simulate` would swim it, to the last bit.
+"""Many swimmers side by side: `simulate_batch`, each as `simulate` would swim it.
 
     batch = simulate_batch([straight(period=p) for p in periods], 10.0, accuracy=1e-3, stations=None)
     batch.position[:, -1]                 # (B, 3), head at the end
@@ -6,7 +6,7 @@
     batch[7]                              # a Run, of the samples that it has
 
 The loops run in threads without Python's lock, as many as there are cores; bodies, scenes and stations that come more
-than once are tabulated once.
+than once are tabulated once. Of the same body, scene and accuracy several swim abreast, where they can (`abreast`).
 """
 
 import os
@@ -17,6 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from eel_gaits.law import Law
 
+from .abreast import MOST_ABREAST
 from .accuracy import Accuracy
 from .arguments import checked_stations
 from .body import Body
@@ -24,16 +25,16 @@ from .broadcast import swimmers_of
 from .energy import EnergyLedger
 from .guard import failure_of
 from .integrator import MARCHED
-from .leg import COUNT, ENERGY, PLACE, REACHED, STATUS
+from .leg import COUNT, ENERGY, PLACE, REACHED, STATUS, ReadyLeg
 from .member import Crew, Member, swim_together
 from .profiles import Profiles, profiles_of, row_of
 from .run import Run, checked_times, run_of
 from .scene import Scene
-from .simulation import ReadyLeg
 from .stopping import SimulationStopped
 
 ALONG = "backbone", "section_orientation", "curvature", "curvature_rate", "torque", "force", "fluid_force"
-MOST_TOGETHER = 16  # swimmers of one call of the loops: the lock of Python is let go once for all of them
+MOST_TOGETHER = 64  # swimmers of one call of the loops: the lock of Python is let go once for all of them, and
+# lanes stand empty at the end of it only
 PARTS_PER_THREAD = 4  # at least, so that none waits long for the others at the end
 MOST_MEMORY = 0.8  # of the machine's, that a batch may fill
 
@@ -128,9 +129,9 @@ def simulate_batch(
     how many per body, or their X [m], for the profiles along the body; None: no profiles, the motion and the energies
     alone. threads: None for one per core that this process may use. progress(done, B): called now and then.
 
-    Each swimmer is the `simulate` of its arguments, bit for bit. One that cannot begin or go on keeps the samples until
-    then, with a `SimulationStopped` in `error`; the others do not notice. `ValueError` names an argument that does not
-    fit, with the number of the swimmer.
+    Each swimmer is the `simulate` of its arguments: to the last bit in a scene with the ledger, else to round-off and
+    with the same steps. One that cannot begin or go on keeps the samples until then, with a `SimulationStopped` in
+    `error`; the others do not notice. `ValueError` names an argument that does not fit, with the number of the swimmer.
     """
     times = checked_times(duration, sample_period)
     members = swimmers_of(laws, bodies, scenes, accuracy, positions, orientations, twists)
@@ -184,7 +185,7 @@ def simulate_batch(
         done, errors[index] = member.swim_into(times, one, works[index], wrench=wrench[index], load=load)
         places[index, ENERGY:] = member.kinetic_at_start, *member.evaluations, done, MARCHED
 
-    _for_each(swim, count, threads, progress)
+    _for_each(swim, count, threads, progress, 1 if all(each.scene.ledger for each in members) else MOST_ABREAST)
     start, (samples, steps, evaluations) = places[:, ENERGY], places[:, [REACHED, COUNT, COUNT + 2]].T.astype(int)
     for index in np.flatnonzero(samples < len(times)):
         for array in (*_of_one(out, index)[:-1], works[index]):
@@ -222,13 +223,14 @@ def _batch_of(members, settings, times, samples, errors, counts, x, out, works, 
     )
 
 
-def _for_each(swim, count: int, threads: int | None, progress):
-    """`swim(range)` for all of `count`, some at a time, in `threads` threads; the first, which may compile, alone."""
+def _for_each(swim, count: int, threads: int | None, progress, lanes: int):
+    """`swim(range)` for all of `count`, some at a time, in `threads` threads; the first, which may compile, alone.
+    lanes: how many can swim abreast."""
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
     threads = cores if threads is None else threads
     if isinstance(threads, bool) or not isinstance(threads, (int, np.integer)) or threads < 1:
         raise ValueError(f"threads must be a whole number >= 1, got {threads!r}")
-    some = max(1, min(MOST_TOGETHER, count // (PARTS_PER_THREAD * threads)))
+    some = _size_of_parts(count, threads, lanes)
     parts = [range(1), *(range(k, min(k + some, count)) for k in range(1, count, some))]
 
     def tell(part: range):
@@ -249,6 +251,14 @@ def _for_each(swim, count: int, threads: int | None, progress):
         except BaseException:
             pool.shutdown(cancel_futures=True)
             raise
+
+
+def _size_of_parts(count: int, threads: int, lanes: int) -> int:
+    """How many of `count` swimmers go into the loops at a time: whole `lanes` of them, but work for every thread."""
+    most = min(MOST_TOGETHER, count // (PARTS_PER_THREAD * threads))
+    if most >= lanes:
+        return max(1, most - most % lanes)
+    return max(1, min(lanes, -(-(count - 1) // threads)))
 
 
 def _stopped_at_start(error: Exception) -> SimulationStopped:

@@ -86,14 +86,14 @@ def rub(swimmer, fields):
             put(speed, RATIO, i, ratio - 1.0)
             put(part, i, where(ratio > 1.0, whole, none))
     if swimmer.friction == BLENDED:
-        for i in range(len(swimmer.x)):
-            part[i] = turbulent_part(BLENDED, swimmer.transition[i], abs(speed[AXIAL, i]))
+        for i in range(WIDTH * swimmer.blocks):
+            part[i] = turbulent_part(BLENDED, 1.0, speed[RATIO, i] + 1.0)
 
 
 @inlined
-def share_loads(swimmer, fields, twist):
-    """Weights `share` (4, n) [m] that integrate the loads: of the turbulent law's excess over the laminar one, and with
-    the sign of their speed, of cross flow and roll. `twist` (6,): of the head."""
+def share_loads(swimmer, fields):
+    """Weights `share` (4, n) [m] that integrate the loads, as if they had no steps: of the turbulent law's excess over
+    the laminar one, and with the sign of their speed, of cross flow and roll."""
     speed, share, part = fields.speed, fields.share, fields.part
     for k in range(swimmer.blocks):
         i = WIDTH * k
@@ -102,6 +102,12 @@ def share_loads(swimmer, fields, twist):
         put(share, SIDE, i, signed(weight, take(speed, SIDE, i)))
         put(share, HEIGHT, i, signed(weight, take(speed, HEIGHT, i)))
         put(share, ROLL, i, signed(weight, take(speed, ROLL, i)))
+
+
+@inlined
+def share_steps(swimmer, fields, twist):
+    """Have the weights integrate the steps of the loads too (`kinks`). `twist` (6,): of the head."""
+    speed = fields.speed
     tail = len(swimmer.x) - 1
     spin = abs(fields.omega[0, tail]) + abs(fields.omega[1, tail]) + abs(fields.omega[2, tail])
     noise = NOISE * (abs(speed[AXIAL, tail]) + abs(speed[SIDE, tail]) + abs(speed[HEIGHT, tail]))
@@ -109,12 +115,9 @@ def share_loads(swimmer, fields, twist):
 
 
 @inlined
-def add_resistive_loads(swimmer, fields, twist, wrench):
-    """Add the drag along the body to `wrench` (6,), on the body (section 7.2.1), from the true velocities; `twist` (6,)
-    is the head's. Returns its power [W]."""
-    section_speeds(swimmer, fields)
-    rub(swimmer, fields)
-    share_loads(swimmer, fields, twist)
+def resistive_sums(swimmer, fields):
+    """Wrench (6,) of the drag along the body about the head, and its power [W], each as lanes that are still to be
+    added up."""
     R, r, speed, share = fields.R, fields.r, fields.speed, fields.share
     tx = ty = tz = fx = fy = fz = power = spread(0.0)
     for k in range(swimmer.blocks):
@@ -133,6 +136,18 @@ def add_resistive_loads(swimmer, fields, twist, wrench):
         fy += ny
         fz += nz
         power += n1 * v1 + n2 * v2 + n3 * v3 + c1 * roll
+    return tx, ty, tz, fx, fy, fz, power
+
+
+@inlined
+def add_resistive_loads(swimmer, fields, twist, wrench):
+    """Add the drag along the body to `wrench` (6,), on the body (section 7.2.1), from the true velocities; `twist` (6,)
+    is the head's. Returns its power [W]."""
+    section_speeds(swimmer, fields)
+    rub(swimmer, fields)
+    share_loads(swimmer, fields)
+    share_steps(swimmer, fields, twist)
+    tx, ty, tz, fx, fy, fz, power = resistive_sums(swimmer, fields)
     wrench[0] += total(tx)
     wrench[1] += total(ty)
     wrench[2] += total(tz)

@@ -13,9 +13,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .adams import SHORT, SPACE, Past, adams_growth, defect_of_order, extrapolate, remember
+from .adams import SHORT, SPACE, Past, adams_growth, defect_of_order, extrapolate, next_order, remember
 from .compiled import inlined, spliced
-from .lanes import WIDTH, inverse_root_guess, put, size, spread, take, total, work_space
+from .lanes import WIDTH, floor, inverse_root_guess, put, size, spread, take, total, work_space
 from .packed import Form
 from .rates import WORKS, evaluate, normalise, powers_in_step
 
@@ -238,14 +238,27 @@ def begin_anew(method, step):
     put(past.differences, 0, WIDTH, take(step.k, 0, WIDTH))
 
 
+@inlined
+def span_at(breakpoints, time):
+    """The last of the `breakpoints` [s] up to `time`, and the next one."""
+    before, target = -np.inf, np.inf
+    for j in range(len(breakpoints)):
+        if breakpoints[j] > time:
+            target = breakpoints[j]
+            break
+        before = breakpoints[j]
+    return before, target
+
+
 @spliced
-def fitted(method, control, step, start, before, target, tiny):
-    """Length [s] of the next step: as proposed, or such that steps end on `target` without a sliver before it; at most
-    a part of what lies between the breakpoint `before` and it, for the works are integrals of what goes on there."""
+def fitted(method, control, proposed, start, before, target, tiny):
+    """Length [s] of the next step: as `proposed`, or such that steps end on `target` without a sliver before it; at
+    most a part of what lies between the breakpoint `before` and it, for the works are integrals of what goes on
+    there."""
     left = target - start
     if not method.adaptive:
         return left / np.ceil(left / control.step - 1e-9) if left < 1e100 else control.step
-    length = min(control.step, step.time[2], control.part_of_span * (target - before))
+    length = min(control.step, proposed, control.part_of_span * (target - before))
     if method.adams > 0 and left < 8.0 * length:
         return left / np.ceil(left / length - 1e-9)  # equal steps
     if length > left - tiny:
@@ -263,6 +276,13 @@ def inverse_root(x, n):
     return y * (1.0 + (1.0 - left) / n)
 
 
+@inlined
+def in_parts(growth):
+    """A `growth` of the step in whole parts of 32, no greater: as it is chosen by an estimate of the error, steps that
+    went with all its digits would hand the last one, which hangs on the processor, on to all that follow."""
+    return floor(32.0 * growth) / 32.0
+
+
 @spliced
 def growth_of(error, order):
     """How many times longer the next step may be, for the `error` by the tolerance of one whose error goes with the
@@ -273,28 +293,18 @@ def growth_of(error, order):
 @spliced
 def adapt_order(method, control, step, length, growth):
     """Choose the order of the next step of Adams; returns the `growth` that goes with it."""
-    past, last = step.past, method.a.shape[0] - 1
-    terms, settled = past.known[1], past.order[1] > past.order[0]
-    past.order[1] += 1
-    if length > SHORT * control.step:
-        past.order[2] = 0
-        if settled and past.order[0] < method.adams:
-            past.order[0], past.order[1] = past.order[0] + 1, 0
-        return growth
-    change = 0
-    if terms > 1:
-        defect_of_order(past, terms - 1, step.k, last, step.defect)
-        other = growth_of(error_by_tolerance(control, step, length), terms)
-        if other > 1.1 * growth:
-            growth, change = other, -1
-    if change == 0 and settled and terms == past.order[0] < method.adams and past.order[2] == 1:
-        defect_of_order(past, terms + 1, step.k, last, step.defect)
-        other = growth_of(error_by_tolerance(control, step, length), terms + 2)
-        if other > 1.3 * growth:
-            growth, change = other, 1
-    if change != 0:
-        past.order[0], past.order[1] = terms + change, 0
-    past.order[2] = 1 if past.order[1] > terms and past.order[0] < method.adams else 0
+    past, last, terms = step.past, method.a.shape[0] - 1, step.past.known[1]
+    below = above = 0.0
+    if length <= SHORT * control.step:
+        if terms > 1:
+            defect_of_order(past, terms - 1, step.k, last, step.defect)
+            below = growth_of(error_by_tolerance(control, step, length), terms)
+        if past.order[2] == 1:
+            defect_of_order(past, terms + 1, step.k, last, step.defect)
+            above = growth_of(error_by_tolerance(control, step, length), terms + 2)
+    past.order[0], past.order[1], past.order[2], growth = next_order(
+        *(past.order[0], past.order[1], terms, method.adams, length <= SHORT * control.step, growth, below, above)
+    )
     return growth
 
 
@@ -323,18 +333,13 @@ def march(swimmer, drive, fields, balance, current, method, control, breakpoints
         start = step.time[0] + step.time[1]
         if step.budget[0] < 0.0:
             return TOO_MANY_STEPS
-        before, target = -np.inf, np.inf
-        for j in range(len(breakpoints)):
-            if breakpoints[j] > start + tiny:
-                target = breakpoints[j]
-                break
-            before = breakpoints[j]
+        before, target = span_at(breakpoints, start + tiny)
         anew = step.fresh[0]
         if anew == 0:  # the last rate of a step is the first of the next
             for k in range(0, SPACE, WIDTH):
                 put(step.k, 0, k, take(step.k, method.a.shape[0] - 1, k))
         proposed = step.time[2]
-        length = fitted(method, control, step, start, before, target, tiny)
+        length = fitted(method, control, proposed, start, before, target, tiny)
         accepted = 4.0 if method.adams > 0 else 1.0  # Adams' next step is the shorter: cheaper than to repeat this one
         while True:
             status, error = attempt(swimmer, drive, fields, current, method, control, step, start, length)
@@ -342,16 +347,17 @@ def march(swimmer, drive, fields, balance, current, method, control, breakpoints
                 break
             step.count[1] += 1
             step.budget[0] -= 1.0
-            length *= 0.1 if status != MARCHED else max(0.2, 0.9 * inverse_root(error, method.order))
+            length *= 0.1 if status != MARCHED else in_parts(max(0.2, 0.9 * inverse_root(error, method.order)))
             proposed = length
             if not method.adaptive or length < control.smallest:
                 step.fresh[0] = 1
                 return STEP_TOO_SMALL if status == MARCHED else status
         growth = growth_of(error, method.order if method.adams == 0 else step.past.order[0] + 1)
         if method.adams > 0:
-            growth = adams_growth(step.past, adapt_order(method, control, step, length, growth))
+            growth = adapt_order(method, control, step, length, growth)
+            growth = adams_growth(step.past.known[0], step.past.order[0], growth)
             remember(step.past, step.past.known[1], length, step.k, method.a.shape[0] - 1)
-        grown = length * growth
+        grown = length * in_parts(growth)
         step.time[2] = min(control.step, grown if length >= proposed else max(proposed, grown))
         if abs(start + length - target) <= tiny:
             length = target - start

@@ -12,9 +12,9 @@ from .compiled import inlined
 from .drag import add_resistive_loads
 from .drive import combine, combine_moments
 from .kinks import ONE, ZERO
-from .lanes import WIDTH, put, spread, take
+from .lanes import WIDTH, put, size, spread, take
 from .rotations import orient, turns
-from .vectors import bent, cross, put_three, three
+from .vectors import bent, cross, dot, put_three, three
 
 
 @inlined
@@ -113,25 +113,33 @@ def add_head_twist(swimmer, fields, twist):
 
 
 @inlined
+def wake_of(wake, added2, added3, added_roll, t1, t2, t3, r, omega, v):
+    """Wrench (6,) of the wake about the head, w_tail of eq. (60), of a tail with such added masses, axes, position and
+    velocities; with V1 [m/s] and T_f [J/m] there. Of one tail, or of eight."""
+    vx, vy, vz = v
+    v1 = wake * dot(*t1, vx, vy, vz)
+    v2, v3, roll = dot(*t2, vx, vy, vz), dot(*t3, vx, vy, vz), dot(*t1, *omega)
+    p2, p3, s1 = added2 * v2, added3 * v3, added_roll * roll
+    energy = 0.5 * wake * (s1 * roll + p2 * v2 + p3 * v3)
+    nx = v1 * (p2 * t2[0] + p3 * t3[0]) - energy * t1[0]
+    ny = v1 * (p2 * t2[1] + p3 * t3[1]) - energy * t1[1]
+    nz = v1 * (p2 * t2[2] + p3 * t3[2]) - energy * t1[2]
+    x, y, z = cross(*r, nx, ny, nz)
+    return (v1 * s1 * t1[0] + x, v1 * s1 * t1[1] + y, v1 * s1 * t1[2] + z, nx, ny, nz), v1, energy
+
+
+@inlined
 def find_loads(swimmer, fields, twist):
     """Loads on the body from the true velocities: of the wake, w_tail of eq. (60), into `tail`, and of the drag along
     the body into `drag`; what they take and give into `losses`. `twist` (6,) is the head's."""
     R, r, omega, v, tail, drag = fields.R, fields.r, fields.omega, fields.v, fields.tail, fields.drag
     i = len(swimmer.x) - 1
-    vx, vy, vz = v[0, i], v[1, i], v[2, i]
-    v1 = swimmer.wake * (R[0, i] * vx + R[1, i] * vy + R[2, i] * vz)
-    v2 = R[3, i] * vx + R[4, i] * vy + R[5, i] * vz
-    v3 = R[6, i] * vx + R[7, i] * vy + R[8, i] * vz
-    roll = R[0, i] * omega[0, i] + R[1, i] * omega[1, i] + R[2, i] * omega[2, i]
-    p2, p3, s1 = swimmer.added2[i] * v2, swimmer.added3[i] * v3, swimmer.added_roll[i] * roll
-    energy = 0.5 * swimmer.wake * (s1 * roll + p2 * v2 + p3 * v3)
-    nx = v1 * (p2 * R[3, i] + p3 * R[6, i]) - energy * R[0, i]
-    ny = v1 * (p2 * R[4, i] + p3 * R[7, i]) - energy * R[1, i]
-    nz = v1 * (p2 * R[5, i] + p3 * R[8, i]) - energy * R[2, i]
-    tail[0] = v1 * s1 * R[0, i] + r[1, i] * nz - r[2, i] * ny
-    tail[1] = v1 * s1 * R[1, i] + r[2, i] * nx - r[0, i] * nz
-    tail[2] = v1 * s1 * R[2, i] + r[0, i] * ny - r[1, i] * nx
-    tail[3], tail[4], tail[5] = nx, ny, nz
+    loads, v1, energy = wake_of(
+        *(swimmer.wake, swimmer.added2[i], swimmer.added3[i], swimmer.added_roll[i]),
+        *((R[0, i], R[1, i], R[2, i]), (R[3, i], R[4, i], R[5, i]), (R[6, i], R[7, i], R[8, i])),
+        *((r[0, i], r[1, i], r[2, i]), (omega[0, i], omega[1, i], omega[2, i]), (v[0, i], v[1, i], v[2, i])),
+    )
+    tail[0], tail[1], tail[2], tail[3], tail[4], tail[5] = loads
     fields.losses[0], fields.losses[1], fields.losses[2] = 0.0, v1, energy
     for k in range(6):
         drag[k] = 0.0
@@ -158,16 +166,25 @@ def momentum_rates(swimmer, fields, momentum, twist, rates):
     to the velocities in `fields`."""
     add_head_twist(swimmer, fields, twist)
     find_loads(swimmer, fields, twist)
-    for i in range(6):
-        rates[i] = fields.tail[i] + fields.drag[i]
-    _, oy, oz, vx, vy, vz = twist[0], twist[1], twist[2], twist[3], twist[4], twist[5]
-    nose = swimmer.nose_mass
+    tail, drag = fields.tail, fields.drag
+    rates[0], rates[1], rates[2], rates[3], rates[4], rates[5] = rates_of(
+        swimmer,
+        (tail[0] + drag[0], tail[1] + drag[1], tail[2] + drag[2]),
+        (tail[3] + drag[3], tail[4] + drag[4], tail[5] + drag[5]),
+        (momentum[3], momentum[4], momentum[5]),
+        (twist[1], twist[2]),
+        (twist[3], twist[4], twist[5]),
+    )
+
+
+@inlined
+def rates_of(swimmer, torque, force, impulse, turning, velocity):
+    """Rates (6,) of momentum about the moving head, from the loads of wake and drag, the linear momentum and the head's
+    twist (of its angular part 2 and 3). Of one swimmer, or of eight."""
+    (oy, oz), (vx, vy, vz), nose = turning, velocity, swimmer.nose_mass
     # n_nose less what is the derivative of m_o V1 E1 (its gyroscopic part), and the nose's drag
-    rates[3] -= nose * (oy * vz - oz * vy) + swimmer.nose_drag * vx * abs(vx)
-    rates[4] += nose * vx * oz
-    rates[5] -= nose * vx * oy
+    fx = force[0] - (nose * (oy * vz - oz * vy) + swimmer.nose_drag * vx * size(vx))
+    fy, fz = force[1] + nose * vx * oz, force[2] - nose * vx * oy
     # about the moving head: - V x (P' - m_o V1 E1)
-    px, py, pz = momentum[3] - nose * vx, momentum[4], momentum[5]
-    rates[0] -= vy * pz - vz * py
-    rates[1] -= vz * px - vx * pz
-    rates[2] -= vx * py - vy * px
+    x, y, z = cross(vx, vy, vz, impulse[0] - nose * vx, impulse[1], impulse[2])
+    return torque[0] - x, torque[1] - y, torque[2] - z, fx, fy, fz

@@ -11,6 +11,7 @@ the widest instructions of the processor: one of 512 bits, two of 256, four of 1
 
 import math
 import operator
+from typing import NamedTuple
 
 import numpy as np
 from numba import types
@@ -153,6 +154,16 @@ def put(array, *index_and_value):
     raise NotImplementedError("only in compiled loops")
 
 
+class Each(NamedTuple):
+    """Numbers that count for eight swimmers each: taken from 8 i on, number i in all lanes."""
+
+    value: np.ndarray
+
+
+def _is_each(kind) -> bool:
+    return getattr(kind, "instance_class", None) is Each
+
+
 @infer_global(take)
 class _Taking(AbstractTemplate):
     def generic(self, args, kws):
@@ -167,6 +178,11 @@ class _Putting(AbstractTemplate):
 
 @lower_builtin(take, types.VarArg(types.Any))
 def _take(context, builder, sig, args):
+    if _is_each(sig.args[0]):
+        index = builder.lshr(context.cast(builder, args[1], sig.args[1], types.int64), _INDEX(WIDTH.bit_length() - 1))
+        array_type = sig.args[0].types[0]
+        array = context.make_array(array_type)(context, builder, builder.extract_value(args[0], 0))
+        return _spread(builder, builder.load(builder.gep(array.data, [index])))
     return builder.load(_place(context, builder, sig.args[0], args[0], sig.args[1:], args[1:]), align=8)
 
 

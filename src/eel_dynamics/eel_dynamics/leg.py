@@ -28,13 +28,13 @@ from .integrator import (
 from .kernel import add_head_twist, configure
 from .methods import METHOD, Method
 from .momentum import momentum_of_twist
-from .packed import Form, Layout
+from .packed import Form, Layout, Packed, Space
 from .profiles import PROFILES, Profiles, StationFields, observe, station_fields_of
 from .rates import head_axes, settle, to_world
 from .sections import STATIONS, SWIMMER, Stations, Swimmer
 from .wrench import Balance, balance_of, kinetic_energies
 
-GO_ON, AGAIN, MOVED, FIRST, STILL = range(5)  # how a leg begins: `Order.begin`
+GO_ON, AGAIN, MOVED, FIRST, STILL, KNOWN = range(6)  # how a leg begins: `Order.begin`
 # Where the numbers begin that a leg takes and leaves, in `Order.place` (28,): state y (13,), which ends as the last;
 # twist (6,) of the head relative to the water, in its axes, rad/s and m/s; current (3,) m/s; then what became of the
 # leg: kinetic energy J where the state got a twist; steps, rejected steps and evaluations so far; samples reached;
@@ -57,7 +57,8 @@ class Order(NamedTuple):
     breakpoints: np.ndarray  # (.,) s, of the shape
     distributed: bool  # the tail's pressure
     begin: int  # GO_ON within the step; AGAIN: a step begins at `time` in the state; MOVED: so, with the momentum of
-    # the twist; FIRST: so, and nothing has been before; STILL: no step, the state's own twist is found
+    # the twist; FIRST: so, and nothing has been before; STILL: no step, the state's own twist is found; KNOWN: the
+    # states at the samples are in `out` (`note`)
     time: float  # s
     first_step: float  # s, length of the first of all steps
     look: bool  # fill `out`
@@ -79,6 +80,21 @@ class Leg(NamedTuple):
     control: Control
     out: Profiles
     order: Order
+
+
+class ReadyLeg(NamedTuple):
+    """A leg for `swim`, and what has to stay in memory until it is over."""
+
+    row: np.ndarray  # (words,)
+    order: Order
+    swimmer: Packed
+    stations: Packed
+    tables: Packed
+    times: Packed
+    scratch: Space
+    step: Space
+    method: Packed
+    control: Packed
 
 
 def _any_scratch() -> Scratch:
@@ -149,6 +165,28 @@ def begin(row):
     return MARCHED
 
 
+@inlined
+def note(out, sample, y):
+    """Leave state `y` (13,) in `out` for `recall`."""
+    for k in range(3):
+        out.position[sample, k] = y[k]
+    for k in range(4):
+        out.orientation[sample, k] = y[3 + k]
+    for k in range(6):
+        out.twist[sample, k] = y[7 + k]
+
+
+@inlined
+def recall(out, sample, y):
+    """State `y` (13,) of a sample that is not yet observed."""
+    for k in range(3):
+        y[k] = out.position[sample, k]
+    for k in range(4):
+        y[3 + k] = out.orientation[sample, k]
+    for k in range(6):
+        y[7 + k] = out.twist[sample, k]
+
+
 @spliced
 def go(row, order, step):
     """March through the samples of the leg of the `row`, which has begun. Returns how many were reached, and a
@@ -157,14 +195,17 @@ def go(row, order, step):
     fields, balance, here = open_scratch(row)
     y, current = order.place[Y:TWIST], order.place[CURRENT:ENERGY]
     for sample in range(len(order.times)):
-        time = order.times[sample]
-        status = march(swimmer, drive, fields, balance, current, method, control, order.breakpoints, step, time)
-        if status != MARCHED:
-            return sample, status
-        state_at(method, control, step, time, y, order.works[sample])
+        time, out = order.times[sample], open_out(row)
+        if order.begin == KNOWN:
+            recall(out, sample, y)
+        else:
+            status = march(swimmer, drive, fields, balance, current, method, control, order.breakpoints, step, time)
+            if status != MARCHED:
+                return sample, status
+            state_at(method, control, step, time, y, order.works[sample])
         if order.look and not observe(
             *(swimmer, open_stations(row), drive, fields, balance, here, step, current, order.distributed),
-            *(order.wrench, order.load, time, y, sample, open_out(row)),
+            *(order.wrench, order.load, time, y, sample, out),
         ):
             return sample, SINGULAR
     return len(order.times), MARCHED
@@ -179,9 +220,10 @@ def swim(legs):
     for k in range(legs.shape[0]):
         row = legs[k]
         order, step = open_order(row), open_step(row)
-        reached, status = 0, MARCHED if order.begin == GO_ON else begin(row)
+        known = order.begin == KNOWN
+        reached, status = 0, MARCHED if known or order.begin == GO_ON else begin(row)
         if status == MARCHED:
             reached, status = go(row, order, step)
         order.place[REACHED], order.place[STATUS] = reached, status
-        for j in range(3):
+        for j in range(0 if known else 3):
             order.place[COUNT + j] = step.count[j]

@@ -4,12 +4,14 @@ import threading
 
 import numpy as np
 
+from .abreast import can_abreast, swim_abreast
 from .broadcast import Swimmer
-from .leg import CURRENT, ENERGY, FIRST, TWIST, swim
-from .simulation import ReadyLeg, Simulation
+from .leg import CURRENT, ENERGY, FIRST, TWIST, ReadyLeg, swim
+from .simulation import Simulation
 from .stopping import SimulationStopped
 
 MOST_MEMBERS = 100  # that a thread keeps
+LEAST_ABREAST = 5  # swimmers; fewer are quicker one by one
 
 
 class Member(Simulation):
@@ -59,9 +61,16 @@ class Crew(threading.local):
 
 
 def swim_together(legs: list[ReadyLeg]):
-    """Swim all of them, in one call: Python's lock is let go once."""
-    if legs:
-        swim(np.array([leg.row for leg in legs]))
+    """Swim all of them, in one call for each body and method: Python's lock is let go once. Where enough of them can,
+    they swim abreast."""
+    groups: dict = {}
+    for leg in legs:
+        groups.setdefault((leg.swimmer, leg.method, can_abreast(leg)), []).append(leg)
+    for (*_, abreast), group in groups.items():
+        rows = np.array([leg.row for leg in group])
+        if abreast and len(group) >= LEAST_ABREAST:
+            swim_abreast(group, rows)
+        swim(rows)
 
 
 __all__ = ["Crew", "Member", "swim_together"]

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .adams import HIGHEST
-from .packed import Form
+from .packed import Form, Packed
 
 
 class Method(NamedTuple):
@@ -80,3 +80,11 @@ def dormand_prince() -> Method:
 
 
 METHOD = Form(classical)
+
+
+@cache
+def method_of(name: str, order: int) -> Packed:
+    """The method of integration of an accuracy, its `Method`."""
+    if name == "adams":
+        return METHOD.packed(adams_bashforth(order))
+    return METHOD.packed(classical() if name == "classical" else dormand_prince())

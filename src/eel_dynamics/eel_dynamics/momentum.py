@@ -11,9 +11,9 @@ from .vectors import cross, dot, three
 
 
 @inlined
-def inertia_of(swimmer, fields):
-    """Inertia of body and water about the head, I_o of section 6, the nose's m_o included: its lower triangle (21,),
-    row by row.
+def inertia_sums(swimmer, fields):
+    """Inertia of body and water about the head, I_o of section 6, without the nose's m_o: its lower triangle (21,), row
+    by row, each as lanes that are still to be added up.
 
     With b, c = t2, t3: M = m + m2 b b^T + m3 c c^T along the body, and about the head
     r x M x r^T = m (r.r - r r^T) + m2 (r x b)(r x b)^T + m3 (r x c)(r x c)^T.
@@ -67,16 +67,29 @@ def inertia_of(swimmer, fields):
         wzz += j + fz * bz + gz * cz + pz * uz + qz * wz + (mx * x + my * y)
     # from the fourth row on: the momentum P by Omega, (r x M)^T
     return (
-        *(total(wxx), total(wxy), total(wyy), total(wxz), total(wyz), total(wzz)),
-        *(total(cxx), total(cyx), total(czx), total(vxx) + swimmer.nose_mass),
-        *(total(cxy), total(cyy), total(czy), total(vxy), total(vyy)),
-        *(total(cxz), total(cyz), total(czz), total(vxz), total(vyz), total(vzz)),
+        *(wxx, wxy, wyy, wxz, wyz, wzz),
+        *(cxx, cyx, czx, vxx),
+        *(cxy, cyy, czy, vxy, vyy),
+        *(cxz, cyz, czz, vxz, vyz, vzz),
     )
 
 
 @inlined
-def momentum_of(swimmer, fields):
-    """Momentum (6,) of body and water about the head due to `omega`, `v` (the nose's m_o not in it)."""
+def inertia_of(swimmer, fields):
+    """I_o of section 6, the nose's m_o included: its lower triangle (21,), row by row."""
+    a = inertia_sums(swimmer, fields)
+    return (
+        *(total(a[0]), total(a[1]), total(a[2]), total(a[3]), total(a[4]), total(a[5])),
+        *(total(a[6]), total(a[7]), total(a[8]), total(a[9]) + swimmer.nose_mass),
+        *(total(a[10]), total(a[11]), total(a[12]), total(a[13]), total(a[14])),
+        *(total(a[15]), total(a[16]), total(a[17]), total(a[18]), total(a[19]), total(a[20])),
+    )
+
+
+@inlined
+def momentum_sums(swimmer, fields):
+    """Momentum (6,) of body and water about the head due to `omega`, `v` (the nose's m_o not in it), each as lanes that
+    are still to be added up."""
     R, r, omega, v = fields.R, fields.r, fields.omega, fields.v
     lx = ly = lz = px = py = pz = spread(0.0)
     for k in range(swimmer.blocks):
@@ -103,6 +116,13 @@ def momentum_of(swimmer, fields):
         lx += j * ox + s2 * bx + s3 * cx + tx
         ly += j * oy + s2 * by + s3 * cy + ty
         lz += j * oz + s2 * bz + s3 * cz + tz
+    return lx, ly, lz, px, py, pz
+
+
+@inlined
+def momentum_of(swimmer, fields):
+    """Momentum (6,) of body and water about the head due to `omega`, `v` (the nose's m_o not in it)."""
+    lx, ly, lz, px, py, pz = momentum_sums(swimmer, fields)
     return total(lx), total(ly), total(lz), total(px), total(py), total(pz)
 
 

@@ -5,6 +5,8 @@ The same momentum form as in the kernel, for yaw alone: t1 = (cos, sin) of the t
 K3 and so a sum of tabulated rows, as its rate is. The fields' components out of the plane stay zero.
 """
 
+import numpy as np
+
 from .compiled import inlined
 from .drag import NOISE, rub
 from .drive import cosine_and_sine, factors
@@ -59,9 +61,10 @@ def configure_plane(swimmer, drive, fields):
 
 
 @inlined
-def twist_plane(swimmer, fields, momentum, twist):
-    """Twist (Omega3, V1, V2) of the head from the momentum (L3, P1, P2) of a configured body. False without positive
-    inertia. Leaves the inertia's factors in `fields.inertia`."""
+def sums_plane(swimmer, fields):
+    """Of body and water about the head, the nose's m_o not in it, each as lanes that are still to be added up: inertia
+    along axes 1 and 2 (xx, xy, yy), what couples them to the turn (cx, cy), that of the turn (w), and the momentum
+    (L3, P1, P2) of the change of shape."""
     R, r, omega, v = fields.R, fields.r, fields.omega, fields.v
     sxx = sxy = syy = scx = scy = sw = slz = spx = spy = spread(0.0)
     for k in range(swimmer.blocks):
@@ -82,37 +85,57 @@ def twist_plane(swimmer, fields, momentum, twist):
         spx += ixx * vx + ixy * vy
         spy += ixy * vx + iyy * vy
         slz += j * take(omega, 2, i) + dx * vx + dy * vy
-    xx, xy, yy, cx, cy, w = total(sxx) + swimmer.nose_mass, total(sxy), total(syy), total(scx), total(scy), total(sw)
-    # L D L^T with V1 eliminated first, then V2
+    return sxx, sxy, syy, scx, scy, sw, slz, spx, spy
+
+
+@inlined
+def factors_plane(xx, xy, yy, cx, cy, w):
+    """Factors (6,) of the inertia = L D L^T, with V1 eliminated first, then V2: 1/D and L."""
     by_xx = 1.0 / xx
     p, q = xy * by_xx, cx * by_xx
-    yy -= p * xy
-    cy -= p * cx
+    yy = yy - p * xy
+    cy = cy - p * cx
     by_yy = 1.0 / yy
     t = cy * by_yy
-    w -= q * cx + t * cy
-    f = fields.inertia
-    f[0, 0], f[1, 1], f[2, 2] = by_xx, by_yy, 1.0 / w
-    f[1, 0], f[2, 0], f[2, 1] = p, q, t
-    twist[0], twist[1], twist[2] = momentum[0] - total(slz), momentum[1] - total(spx), momentum[2] - total(spy)
-    solve_plane(f, twist)
-    return xx > 0.0 and yy > 0.0 and w > 0.0
+    w = w - (q * cx + t * cy)
+    return by_xx, by_yy, 1.0 / w, p, q, t
+
+
+@inlined
+def solved_plane(f, b0, b1, b2):
+    """Solution (3,) with the factors `f` for the right side (angular, along axes 1 and 2)."""
+    by_xx, by_yy, by_w, p, q, t = f
+    b2 = b2 - p * b1
+    b0 = (b0 - q * b1 - t * b2) * by_w
+    b2 = b2 * by_yy - t * b0
+    return b0, b1 * by_xx - p * b2 - q * b0, b2
+
+
+@inlined
+def twist_plane(swimmer, fields, momentum, twist):
+    """Twist (Omega3, V1, V2) of the head from the momentum (L3, P1, P2) of a configured body. False without positive
+    inertia. Leaves the inertia's factors in `fields.inertia`."""
+    sxx, sxy, syy, scx, scy, sw, slz, spx, spy = sums_plane(swimmer, fields)
+    f = factors_plane(total(sxx) + swimmer.nose_mass, total(sxy), total(syy), total(scx), total(scy), total(sw))
+    kept = fields.inertia
+    kept[0, 0], kept[1, 1], kept[2, 2], kept[1, 0], kept[2, 0], kept[2, 1] = f
+    twist[0], twist[1], twist[2] = solved_plane(
+        f, momentum[0] - total(slz), momentum[1] - total(spx), momentum[2] - total(spy)
+    )
+    return 0.0 < f[0] < np.inf and 0.0 < f[1] < np.inf and 0.0 < f[2] < np.inf
 
 
 @inlined
 def solve_plane(f, b):
-    """Solve with the factors of `twist_plane` for the right side `b` (angular, along axes 1 and 2), in place."""
-    b1 = b[1]
-    b2 = b[2] - f[1, 0] * b1
-    b0 = (b[0] - f[2, 0] * b1 - f[2, 1] * b2) * f[2, 2]
-    b2 = b2 * f[1, 1] - f[2, 1] * b0
-    b[0], b[1], b[2] = b0, b1 * f[0, 0] - f[1, 0] * b2 - f[2, 0] * b0, b2
+    """Solve with the factors that `twist_plane` has kept for the right side `b` (3,), in place."""
+    kept = f[0, 0], f[1, 1], f[2, 2], f[1, 0], f[2, 0], f[2, 1]
+    b[0], b[1], b[2] = solved_plane(kept, b[0], b[1], b[2])
 
 
 @inlined
-def loads_plane(swimmer, fields, twist):
-    """Loads (T3, F1, F2) of wake and drag along the body about the head, into `tail[2:5]` and `drag[2:5]`, with
-    `losses`; adds the head's `twist` to the velocities."""
+def add_head_twist_plane(swimmer, fields, twist):
+    """Add the motion of the head, `twist` (Omega3, V1, V2), to the velocities due to the change of shape, with the
+    sections' speeds."""
     R, r, omega, v, speed = fields.R, fields.r, fields.omega, fields.v, fields.speed
     for k in range(swimmer.blocks):
         i = WIDTH * k
@@ -124,54 +147,84 @@ def loads_plane(swimmer, fields, twist):
         c, s = take(R, 0, i), take(R, 1, i)
         put(speed, AXIAL, i, c * vx + s * vy)
         put(speed, SIDE, i, c * vy - s * vx)
-    tail = len(swimmer.x) - 1
-    c, s = R[0, tail], R[1, tail]
-    v1, v2 = speed[AXIAL, tail], speed[SIDE, tail]
-    p2 = swimmer.wake * swimmer.added2[tail] * v2
+
+
+@inlined
+def wake_plane(momentum_per_speed, c, s, x, y, v1, v2):
+    """Wrench (T3, F1, F2) of the wake about the head of a tail of that added mass (0 without a wake), direction,
+    position and speeds, and T_f there. Of one tail, or of eight."""
+    p2 = momentum_per_speed * v2
     n1, n2 = -0.5 * p2 * v2, v1 * p2
     fx, fy = c * n1 - s * n2, s * n1 + c * n2
-    fields.tail[2], fields.tail[3], fields.tail[4] = r[0, tail] * fy - r[1, tail] * fx, fx, fy
-    fields.losses[0], fields.losses[1], fields.losses[2] = 0.0, v1, -n1
+    return x * fy - y * fx, fx, fy, -n1
+
+
+@inlined
+def share_loads_plane(swimmer, fields):
+    """As `drag.share_loads`."""
+    rub(swimmer, fields)
+    for k in range(swimmer.blocks):
+        i = WIDTH * k
+        weight = take(swimmer.weight, i)
+        put(fields.share, 0, i, weight * take(fields.part, i))
+        put(fields.share, SIDE, i, signed(weight, take(fields.speed, SIDE, i)))
+
+
+@inlined
+def resistive_sums_plane(swimmer, fields):
+    """Wrench (T3, F1, F2) of the drag along the body about the head, and its power [W], each as lanes that are still to
+    be added up."""
+    R, r, speed, share = fields.R, fields.r, fields.speed, fields.share
+    sx = sy = sz = power = spread(0.0)
+    for k in range(swimmer.blocks):
+        i = WIDTH * k
+        c, s = take(R, 0, i), take(R, 1, i)
+        u1, u2 = take(speed, AXIAL, i), take(speed, SIDE, i)
+        rubbing = take(swimmer.weight, i) * take(fields.rubbing, 0, i)
+        f1 = -(rubbing + take(share, 0, i) * take(fields.rubbing, 1, i)) * u1
+        f2 = -take(share, SIDE, i) * take(swimmer.drag2, i) * u2 * u2
+        nx, ny = c * f1 - s * f2, s * f1 + c * f2
+        sx += nx
+        sy += ny
+        sz += take(r, 0, i) * ny - take(r, 1, i) * nx
+        power += f1 * u1 + f2 * u2
+    return sz, sx, sy, power
+
+
+@inlined
+def loads_plane(swimmer, fields, twist):
+    """Loads (T3, F1, F2) of wake and drag along the body about the head, into `tail[2:5]` and `drag[2:5]`, with
+    `losses`; adds the head's `twist` to the velocities."""
+    add_head_twist_plane(swimmer, fields, twist)
+    R, r, speed, loads = fields.R, fields.r, fields.speed, fields.tail
+    tail = len(swimmer.x) - 1
+    v1, v2 = speed[AXIAL, tail], speed[SIDE, tail]
+    loads[2], loads[3], loads[4], energy = wake_plane(
+        *(swimmer.wake * swimmer.added2[tail], R[0, tail], R[1, tail], r[0, tail], r[1, tail], v1, v2)
+    )
+    fields.losses[0], fields.losses[1], fields.losses[2] = 0.0, v1, energy
     fields.drag[2] = fields.drag[3] = fields.drag[4] = 0.0
     fields.kinks.number[0] = 0
     if swimmer.resistive:
-        share = fields.share
-        rub(swimmer, fields)
-        for k in range(swimmer.blocks):
-            i = WIDTH * k
-            weight = take(swimmer.weight, i)
-            put(share, 0, i, weight * take(fields.part, i))
-            put(share, SIDE, i, signed(weight, take(speed, SIDE, i)))
+        share_loads_plane(swimmer, fields)
         find_steps(swimmer, fields, (twist[2], 0.0, 0.0), NOISE * (abs(v1) + abs(v2)), 0.0, True)
-        sx = sy = sz = power = spread(0.0)
-        for k in range(swimmer.blocks):
-            i = WIDTH * k
-            c, s = take(R, 0, i), take(R, 1, i)
-            u1, u2 = take(speed, AXIAL, i), take(speed, SIDE, i)
-            rubbing = take(swimmer.weight, i) * take(fields.rubbing, 0, i)
-            f1 = -(rubbing + take(share, 0, i) * take(fields.rubbing, 1, i)) * u1
-            f2 = -take(share, SIDE, i) * take(swimmer.drag2, i) * u2 * u2
-            nx, ny = c * f1 - s * f2, s * f1 + c * f2
-            sx += nx
-            sy += ny
-            sz += take(r, 0, i) * ny - take(r, 1, i) * nx
-            power += f1 * u1 + f2 * u2
+        sz, sx, sy, power = resistive_sums_plane(swimmer, fields)
         fields.drag[2], fields.drag[3], fields.drag[4] = total(sz), total(sx), total(sy)
         fields.losses[0] = total(power)
 
 
 @inlined
-def heading(y):
-    """Cosine and sine of the head's turn about axis 3 in state `y`."""
-    square = y[5] * y[5] + y[6] * y[6]
-    return (y[6] * y[6] - y[5] * y[5]) / square, 2.0 * y[5] * y[6] / square
+def heading(z, w):
+    """Cosine and sine of the head's turn about axis 3, by its quaternion (0, 0, z, w)."""
+    square = z * z + w * w
+    return (w * w - z * z) / square, 2.0 * z * w / square
 
 
 @inlined
 def move_plane(swimmer, drive, fields, time, y, momentum, twist):
     """Velocities and loads in state `y` at `time`, into `fields` and `twist` (Omega3, V1, V2); its `momentum` (L3, P1,
     P2) in the head's axes. False where the inertia is singular."""
-    cosine, sine = heading(y)
+    cosine, sine = heading(y[5], y[6])
     momentum[0] = y[9]
     momentum[1], momentum[2] = cosine * y[10] + sine * y[11], -sine * y[10] + cosine * y[11]
     factors(drive, time, fields.factor)
@@ -188,18 +241,31 @@ def rate_of_state_plane(swimmer, drive, fields, current, time, y, step, dy):
     momentum, twist = step.momentum, step.twist
     if not move_plane(swimmer, drive, fields, time, y, momentum, twist):
         return False
-    cosine, sine = heading(y)
-    turn, vx, vy, nose = twist[0], twist[1], twist[2], swimmer.nose_mass
+    cosine, sine = heading(y[5], y[6])
     tail, drag = fields.tail, fields.drag
-    fx = tail[3] + drag[3] + nose * turn * vy - swimmer.nose_drag * vx * abs(vx)
-    fy = tail[4] + drag[4] + nose * vx * turn
     for k in range(13):
         dy[k] = 0.0
-    dy[0], dy[1], dy[2] = cosine * vx - sine * vy + current[0], sine * vx + cosine * vy + current[1], current[2]
-    dy[5], dy[6] = 0.5 * y[6] * turn, -0.5 * y[5] * turn
-    dy[9] = tail[2] + drag[2] - vx * momentum[2] + vy * (momentum[1] - nose * vx)
-    dy[10], dy[11] = cosine * fx - sine * fy, sine * fx + cosine * fy
+    dy[0], dy[1], dy[5], dy[6], dy[9], dy[10], dy[11] = rates_of_plane(
+        *(swimmer, cosine, sine, y[5], y[6], tail[2] + drag[2], tail[3] + drag[3], tail[4] + drag[4]),
+        *(momentum[1], momentum[2], twist[0], twist[1], twist[2]),
+    )
+    dy[0], dy[1], dy[2] = dy[0] + current[0], dy[1] + current[1], current[2]
     return True
+
+
+@inlined
+def rates_of_plane(swimmer, cosine, sine, z, w, torque, fx, fy, px, py, turn, vx, vy):
+    """Rates of position (2), quaternion (2), angular (1) and linear (2) momentum, in the world's axes and without the
+    current, from the loads, the linear momentum and the twist, in the head's. Of one swimmer, or of eight."""
+    nose = swimmer.nose_mass
+    fx = fx + nose * turn * vy - swimmer.nose_drag * vx * size(vx)
+    fy = fy + nose * vx * turn
+    return (
+        *(cosine * vx - sine * vy, sine * vx + cosine * vy),
+        *(0.5 * w * turn, -0.5 * z * turn),
+        torque - vx * py + vy * (px - nose * vx),
+        *(cosine * fx - sine * fy, sine * fx + cosine * fy),
+    )
 
 
 @inlined

@@ -11,6 +11,7 @@ from .drive import combine, factors
 from .kernel import add_head_twist, configure, find_loads, momentum_rates
 from .momentum import twist_of_momentum
 from .planar import move_plane, powers_plane, rate_of_state_plane
+from .vectors import dot
 from .wrench import accelerate, actuator_power
 
 WORKS = 4
@@ -35,21 +36,27 @@ def head_axes(y):
 
 
 @inlined
+def in_world(t, a, b, c):
+    """Components along the world's axes of a vector by those along the head's, `t` of `head_axes`."""
+    return t[0] * a + t[3] * b + t[6] * c, t[1] * a + t[4] * b + t[7] * c, t[2] * a + t[5] * b + t[8] * c
+
+
+@inlined
+def in_head(t, a, b, c):
+    """The inverse of `in_world`."""
+    return dot(a, b, c, t[0], t[1], t[2]), dot(a, b, c, t[3], t[4], t[5]), dot(a, b, c, t[6], t[7], t[8])
+
+
+@inlined
 def to_world(t, vector, at):
     """Turn `vector[at : at + 3]` in place from the head's axes, `t` of `head_axes`, to the world's."""
-    a, b, c = vector[at], vector[at + 1], vector[at + 2]
-    vector[at] = t[0] * a + t[3] * b + t[6] * c
-    vector[at + 1] = t[1] * a + t[4] * b + t[7] * c
-    vector[at + 2] = t[2] * a + t[5] * b + t[8] * c
+    vector[at], vector[at + 1], vector[at + 2] = in_world(t, vector[at], vector[at + 1], vector[at + 2])
 
 
 @inlined
 def to_head(t, vector, at):
     """The inverse of `to_world`."""
-    a, b, c = vector[at], vector[at + 1], vector[at + 2]
-    vector[at] = t[0] * a + t[1] * b + t[2] * c
-    vector[at + 1] = t[3] * a + t[4] * b + t[5] * c
-    vector[at + 2] = t[6] * a + t[7] * b + t[8] * c
+    vector[at], vector[at + 1], vector[at + 2] = in_head(t, vector[at], vector[at + 1], vector[at + 2])
 
 
 @inlined
@@ -66,6 +73,13 @@ def settle(swimmer, drive, fields, time, y, axes, momentum, twist):
 
 
 @inlined
+def turning_rate(x, y, z, w, ox, oy, oz):
+    """Rate (4,) [1/s] of the quaternion (x, y, z, w) by the angular velocity in the head's axes."""
+    ox, oy, oz = 0.5 * ox, 0.5 * oy, 0.5 * oz
+    return w * ox + y * oz - z * oy, w * oy + z * ox - x * oz, w * oz + x * oy - y * ox, -x * ox - y * oy - z * oz
+
+
+@inlined
 def rate_of_state(swimmer, drive, fields, current, time, y, step, dy):
     """Rate `dy` (13,) of state `y` at `time` (eq. 27 in the momentum form). False where the inertia is singular."""
     axes = head_axes(y)
@@ -77,12 +91,7 @@ def rate_of_state(swimmer, drive, fields, current, time, y, step, dy):
     to_world(axes, dy, 0)
     for k in range(3):
         dy[k] += current[k]
-    x, v, z, w = y[3], y[4], y[5], y[6]
-    ox, oy, oz = 0.5 * twist[0], 0.5 * twist[1], 0.5 * twist[2]
-    dy[3] = w * ox + v * oz - z * oy
-    dy[4] = w * oy + z * ox - x * oz
-    dy[5] = w * oz + x * oy - v * ox
-    dy[6] = -x * ox - v * oy - z * oz
+    dy[3], dy[4], dy[5], dy[6] = turning_rate(y[3], y[4], y[5], y[6], twist[0], twist[1], twist[2])
     for k in range(6):
         dy[7 + k] = rates[k]
     to_world(axes, dy, 7)

@@ -5,8 +5,31 @@ import numpy as np
 from .compiled import compiled, inlined
 from .drive import series_of
 from .lanes import WIDTH, any_of, last, moved1, moved2, moved4, put, spread, take
+from .vectors import put_three
 
 SERIES = 0.25  # square of half an angle, up to which sine and cosine are taken from their series
+
+
+@inlined
+def put_turns(turn, i, b2, b3, l2, l3, q2, q3):
+    """Store eight rotations from `i` on, of intervals with the Magnus moments B0, alpha2, alpha3 of (K2, K3)."""
+    a2, a3 = b2 - q2 * (1.0 / 12.0), b3 - q3 * (1.0 / 12.0)
+    c1 = a2 * l3 - a3 * l2
+    u2, u3 = 20.0 * a2 + q2, 20.0 * a3 + q3
+    w1 = -(a2 * q3 - a3 * q2) * (1.0 / 30.0)
+    w2 = a3 * c1 * (1.0 / 60.0) - l2
+    w3 = -a2 * c1 * (1.0 / 60.0) - l3
+    e1 = -(u2 * w3 - u3 * w2) * (1.0 / 240.0)
+    e2 = b2 - (u3 * w1 - c1 * w3) * (1.0 / 240.0)
+    e3 = b3 - (c1 * w2 - u2 * w1) * (1.0 / 240.0)
+    z = 0.25 * (e1 * e1 + e2 * e2 + e3 * e3)  # half angle squared
+    s, c = series_of(z)
+    s *= 0.5
+    put_three(turn, 0, i, s * e1, s * e2, s * e3)
+    put(turn, 3, i, c)
+    if any_of(z > SERIES):
+        put_three(turn, 0, i, e1, e2, e3)
+        turn_far(turn, i)
 
 
 @inlined
@@ -20,28 +43,7 @@ def turns(bend, blocks, turn):
         i = WIDTH * k
         b2, b3 = take(bend, 0, 0, i), take(bend, 0, 1, i)
         l2, l3 = take(bend, 1, 0, i), take(bend, 1, 1, i)
-        q2, q3 = take(bend, 2, 0, i), take(bend, 2, 1, i)
-        a2, a3 = b2 - q2 * (1.0 / 12.0), b3 - q3 * (1.0 / 12.0)
-        c1 = a2 * l3 - a3 * l2
-        u2, u3 = 20.0 * a2 + q2, 20.0 * a3 + q3
-        w1 = -(a2 * q3 - a3 * q2) * (1.0 / 30.0)
-        w2 = a3 * c1 * (1.0 / 60.0) - l2
-        w3 = -a2 * c1 * (1.0 / 60.0) - l3
-        e1 = -(u2 * w3 - u3 * w2) * (1.0 / 240.0)
-        e2 = b2 - (u3 * w1 - c1 * w3) * (1.0 / 240.0)
-        e3 = b3 - (c1 * w2 - u2 * w1) * (1.0 / 240.0)
-        z = 0.25 * (e1 * e1 + e2 * e2 + e3 * e3)  # half angle squared
-        s, c = series_of(z)
-        s *= 0.5
-        put(turn, 0, i, s * e1)
-        put(turn, 1, i, s * e2)
-        put(turn, 2, i, s * e3)
-        put(turn, 3, i, c)
-        if any_of(z > SERIES):
-            put(turn, 0, i, e1)
-            put(turn, 1, i, e2)
-            put(turn, 2, i, e3)
-            turn_far(turn, i)
+        put_turns(turn, i, b2, b3, l2, l3, take(bend, 2, 0, i), take(bend, 2, 1, i))
 
 
 @compiled

@@ -1,8 +1,7 @@
 """A swimmer in water, marched in time and observed: the algorithm of section 7.1 of Boyer, Porez and Leroyer (2010)."""
 
 from copy import copy
-from functools import cache, cached_property
-from typing import NamedTuple
+from functools import cached_property
 
 import numpy as np
 from eel_gaits.law import Law
@@ -36,12 +35,13 @@ from .leg import (
     STILL,
     TWIST,
     Order,
+    ReadyLeg,
     Y,
     scratch_layout,
     step_layout,
     swim,
 )
-from .methods import METHOD, adams_bashforth, classical, dormand_prince
+from .methods import method_of
 from .packed import Packed
 from .profiles import PROFILES, Profiles, no_profiles, profiles_of, row_of
 from .scene import Scene
@@ -54,22 +54,6 @@ from .tables import Built, tabulated
 
 ROWS_AT_ONCE = 8  # of a law, for which there is space
 NONE = np.zeros(0)
-
-
-@cache
-def method_of(name: str, order: int) -> Packed:
-    """The method of integration of an accuracy, its `Method`."""
-    if name == "adams":
-        return METHOD.packed(adams_bashforth(order))
-    return METHOD.packed(classical() if name == "classical" else dormand_prince())
-
-
-class ReadyLeg(NamedTuple):
-    """A leg for `swim`, and what has to stay in memory until it is over."""
-
-    row: np.ndarray  # (words,)
-    order: Order
-    parts: tuple
 
 
 class Simulation:
@@ -420,7 +404,7 @@ class Simulation:
         table, march = (self._table.swimmer, self._table.stations), (self._step, self._method, self._control)
         parts = *table, *self._drive, self._scratch, *march
         rows = [part.row for part in parts]
-        return ReadyLeg(np.concatenate((*rows, no_profiles() if out is None else out, ORDER.row(order))), order, parts)
+        return ReadyLeg(np.concatenate((*rows, no_profiles() if out is None else out, ORDER.row(order))), order, *parts)
 
     @property
     def evaluations(self) -> tuple[int, int, int]:
