@@ -20,6 +20,7 @@ from .one_abreast import set_out, take_on, weigh
 from .shoal import NOBODY, open_space, space_layout
 
 MOST_ABREAST = WIDTH
+MOST_ROWS = 64  # of a law: each lane has space for as many as the law with the most of them takes
 open_many = MANY.opener()
 
 
@@ -162,8 +163,10 @@ def march_abreast(legs, many_row, space):
 
 
 def can_abreast(leg) -> bool:
-    """Whether a leg of `simulation.ReadyLeg` can be swum abreast: by Adams' steps, without the ledger."""
-    return leg.method.value.adams > 0 and not leg.control.value.ledger
+    """Whether a `ReadyLeg` can be swum abreast: by Adams' steps, without the ledger, by a law of no more rows than
+    there is space for."""
+    few = len(leg.tables.value.axis) <= MOST_ROWS
+    return few and leg.method.value.adams > 0 and not leg.control.value.ledger
 
 
 def swim_abreast(group, rows: np.ndarray):

@@ -33,7 +33,7 @@ from .scene import Scene
 from .stopping import SimulationStopped
 
 ALONG = "backbone", "section_orientation", "curvature", "curvature_rate", "torque", "force", "fluid_force"
-MOST_TOGETHER = 64  # swimmers of one call of the loops: the lock of Python is let go once for all of them, and
+MOST_TOGETHER = 32  # swimmers of one call of the loops: the lock of Python is let go once for all of them, and
 # lanes stand empty at the end of it only
 PARTS_PER_THREAD = 4  # at least, so that none waits long for the others at the end
 MOST_MEMORY = 0.8  # of the machine's, that a batch may fill

@@ -143,7 +143,7 @@ def round_off(row, lane, shoal):
 
 @spliced
 def set_out(row, method, lane, laws, shoal):
-    """Choose the step of the `lane`, and have the factors of its law at the end. False where that is not for here."""
+    """Choose the step of the `lane`, and have the factors of its law at the end. False where it cannot go on here."""
     order, control, drive = open_order(row), open_control(row), open_drive(row)
     start, length = shoal.start[lane], shoal.length[lane]
     if shoal.fresh[lane] == 0 and shoal.again[lane] == 0:

@@ -132,7 +132,7 @@ def shoal_of(rows: int) -> Shoal:
 SPACE = Form(lambda: Space(shoal_of(1), laws_of(1, 1, 1), abreast_of(1, 1)))
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=8)
 def space_layout(nodes: int, widest: int, pitch: int, yaw: int) -> Layout:
     """For bodies of `nodes` nodes in panels of up to `widest`, and laws of up to so many rows of pitch and of yaw."""
     return Layout(SPACE, Space(shoal_of(pitch + yaw), laws_of(nodes, pitch, yaw), abreast_of(nodes, widest)))
