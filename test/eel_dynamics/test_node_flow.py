@@ -60,6 +60,22 @@ def test_a_subscriber_that_is_slow_for_a_while_loses_nothing(start, client):
 
 @pytest.mark.fault(
     "subscribers",
+    "a subscriber that takes nothing for 8 s, while the run comes to its end",
+    "the node stays for it, half a minute or `subscriber_timeout`; it gets every sample",
+)
+def test_a_run_that_is_over_waits_for_who_is_behind(start, client):
+    """8,001 samples: what the subscriber's history cannot hold (5,000) is in the node's."""
+    swim = client(topics=("head_pose",))
+    swim.laws.publish(law_to_message(falling()))
+    node = start("dynamics", *FLAT_OUT, "-p", "duration:=8", "-p", "rate:=1000")
+    node.wait_for_output("waiting for a law", LIMIT)
+    time.sleep(8.0)
+    swim.until(lambda: len(swim.heard["head_pose"]) >= 8001, "8001 samples")
+    assert node.wait(LIMIT) == 0 and "received everything" not in node.output()
+
+
+@pytest.mark.fault(
+    "subscribers",
     "a subscriber stopped by SIGSTOP, as fast as it goes",
     "waited for `subscriber_timeout`, once; then WARN, and all others get every sample",
 )

@@ -40,6 +40,7 @@ LATCHED = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 LOSSLESS = QoSProfile(history=HistoryPolicy.KEEP_ALL)  # reliable, as the others are
 PROMPT = 1.0  # s: a service has answered by then
 FAREWELL = 5.0  # s: longest wait for acknowledgements at the end of a run
+BACKLOG = 30.0  # s: likewise where no sample may be lost: a history full of them, for one who takes its time
 HASTE = 0.2  # s: likewise after a signal
 
 
@@ -94,6 +95,13 @@ class DynamicsNode(Node):
         name = self.get_fully_qualified_name()
         self._diagnostics.publish(diagnostic_array(self.march.time, name, level, text, values))
 
+    @property
+    def farewell(self) -> float:
+        """Longest wait [s] for subscribers at the end of a run."""
+        if not self.outlets.waits:
+            return FAREWELL
+        return max(BACKLOG, self.parameters.values.subscriber_timeout)
+
     def see_off(self, seconds: float, interrupted):
         """Waits until subscribers have received everything, at most so long."""
         received = self.outlets.wait_until_received([self._diagnostics, self._body], seconds, interrupted)
@@ -142,7 +150,7 @@ def main(args=None) -> int:
     if error is not None:
         node.get_logger().fatal("".join(traceback.format_exception(error)))
     node.tell(final=True)
-    node.see_off(FAREWELL if done else HASTE, lambda: ending.signalled)
+    node.see_off(node.farewell if done else HASTE, lambda: ending.signalled)
     if joined:
         executor.shutdown()
         node.destroy_node()

@@ -45,6 +45,7 @@ class Publishers:
         self._received = received
         self._values, self._stopped, self._report = values, stopped, report
         self._lossless = values().real_time_factor == 0.0
+        self._given_up = False  # a subscriber that was stuck
         self._channels = {
             name: Channel(create, type(message), name, self._lossless) for name, message in sample.messages.items()
         }
@@ -97,6 +98,11 @@ class Publishers:
             self._audience, self._audience_since = counts, now
         return min(counts) >= wanted or (max(counts) >= wanted and now - self._audience_since > CALM)
 
+    @property
+    def waits(self) -> bool:
+        """Whether every sample is to reach every subscriber, and none has been given up."""
+        return self._lossless and not self._given_up
+
     def wait_until_received(self, others: list, seconds: float, interrupted) -> bool:
         """Waits until all is received, of `others` (publishers) too; False after `seconds`, or once `interrupted()`."""
         end = time.monotonic() + seconds
@@ -134,6 +140,7 @@ class Publishers:
                 return
 
     def _give_up(self, channel: Channel):
+        self._given_up = True
         self._report.begin(
             "stuck " + channel.topic,
             f"a subscriber of {channel.topic} has been stuck for {self._values().subscriber_timeout:g} s: "
