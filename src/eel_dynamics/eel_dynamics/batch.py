@@ -257,7 +257,7 @@ def _size_of_parts(count: int, threads: int, lanes: int) -> int:
     """How many of `count` swimmers go into the loops at a time: whole `lanes` of them, but work for every thread."""
     most = min(MOST_TOGETHER, count // (PARTS_PER_THREAD * threads))
     if most >= lanes:
-        return max(1, most - most % lanes)
+        return most - most % lanes
     return max(1, min(lanes, -(-(count - 1) // threads)))
 
 

@@ -61,16 +61,20 @@ class Crew(threading.local):
 
 
 def swim_together(legs: list[ReadyLeg]):
-    """Swim all of them, in one call for each body and method: Python's lock is let go once. Where enough of them can,
+    """Swim all of them, in one call: Python's lock is let go once. Before it, where enough of one body and method can,
     they swim abreast."""
-    groups: dict = {}
-    for leg in legs:
-        groups.setdefault((leg.swimmer, leg.method, can_abreast(leg)), []).append(leg)
-    for (*_, abreast), group in groups.items():
-        rows = np.array([leg.row for leg in group])
-        if abreast and len(group) >= LEAST_ABREAST:
-            swim_abreast(group, rows)
-        swim(rows)
+    if not legs:
+        return
+    rows, groups = np.array([leg.row for leg in legs]), {}
+    for index, leg in enumerate(legs):
+        if can_abreast(leg):
+            groups.setdefault((leg.swimmer, leg.method), []).append(index)
+    for group in groups.values():
+        if len(group) >= LEAST_ABREAST:
+            some = rows[group]
+            swim_abreast([legs[index] for index in group], some)
+            rows[group] = some
+    swim(rows)
 
 
 __all__ = ["Crew", "Member", "swim_together"]
