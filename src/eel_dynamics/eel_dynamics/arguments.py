@@ -64,9 +64,11 @@ def checked_stations(stations, length: float) -> np.ndarray:
 
 def check_planar(position, orientation, twist):
     """`ValueError` unless the initial state lies in the plane z = const and stays there."""
-    if np.any(np.abs(orientation[:2]) > 1e-12):
+    x, y, _, _ = orientation.tolist()
+    if abs(x) > 1e-12 or abs(y) > 1e-12:
         raise ValueError(f"orientation must be a turn about z in a planar scene, got {orientation.tolist()}")
-    if twist[0] or twist[1] or twist[5]:
+    roll, pitch, _, _, _, heave = twist.tolist()
+    if roll or pitch or heave:
         raise ValueError(
             f"twist must lie in the plane of a planar scene (Omega_1 = Omega_2 = V_3 = 0), got {twist.tolist()}"
         )

@@ -175,7 +175,7 @@ def simulate_batch(
 
     def swim_again(index: int):
         """One that stopped: alone, for what stopped it."""
-        crew.dismiss(members[index])
+        crew.dismiss(members[index], x[index])
         try:
             member = Member(members[index], x[index])
         except (SimulationStopped, ValueError) as error:

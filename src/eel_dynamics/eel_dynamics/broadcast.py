@@ -1,4 +1,4 @@
-"""The arguments of a batch, one for all or one for each, as one set for each swimmer."""
+"""What swimmers are and how they begin: of one, or the arguments of a batch, one for all or one for each."""
 
 from typing import NamedTuple
 
@@ -13,7 +13,7 @@ from .start import Start
 
 
 class Swimmer(NamedTuple):
-    """What one swimmer of a batch is, and how it begins."""
+    """What a swimmer is, and how it begins."""
 
     law: Law
     body: Body
@@ -22,6 +22,22 @@ class Swimmer(NamedTuple):
     position: np.ndarray  # (3,) m, head, world
     orientation: np.ndarray  # (4,) x y z w, world from head
     twist: np.ndarray  # (6,) (Omega, V) rad/s, m/s, head's axes
+
+    @staticmethod
+    def of(law, body, scene, accuracy, position, orientation, twist) -> "Swimmer":
+        """One of the arguments of `simulate`. `ValueError` names what does not fit."""
+        swimmer = Swimmer(
+            checked_instance("law", law, Law),
+            Body.boyer2010() if body is None else checked_instance("body", body, Body),
+            Scene() if scene is None else checked_instance("scene", scene, Scene),
+            Accuracy.of(accuracy),
+            checked_row("position", position, 3),
+            checked_quaternion("orientation", orientation),
+            checked_row("twist", twist, 6),
+        )
+        if swimmer.scene.planar:
+            check_planar(*swimmer.start)
+        return swimmer
 
     @property
     def start(self) -> Start:

@@ -1,4 +1,4 @@
-"""Those of a batch that swim one after the other in one call of the loops."""
+"""Those who swim one after the other in what was made for the first of them: in `simulate`, and in a batch."""
 
 import threading
 
@@ -6,11 +6,12 @@ import numpy as np
 
 from .abreast import can_abreast, swim_abreast
 from .broadcast import Swimmer
-from .leg import CURRENT, ENERGY, FIRST, TWIST, ReadyLeg, swim
+from .leg import CURRENT, ENERGY, FIRST, PLACE, TWIST, ReadyLeg, swim
+from .profiles import Profiles, profiles_of, row_of
 from .simulation import Simulation
-from .stopping import SimulationStopped
+from .stopping import SimulationStopped, not_begun
 
-MOST_MEMBERS = 100  # that a thread keeps
+MOST_MEMBERS = 100  # that a thread keeps for a batch
 LEAST_ABREAST = 5  # swimmers; fewer are quicker one by one
 
 
@@ -31,6 +32,21 @@ class Member(Simulation):
         place[TWIST:CURRENT] = self._relative
         return self._leg(place, times, works, out, begin=FIRST, **wanted)
 
+    def record_of(
+        self, swimmer: Swimmer, times, wrench: bool, load: bool
+    ) -> tuple[Profiles, np.ndarray, int, SimulationStopped | None]:
+        """The whole way of `swimmer`, as `leg_of` has it, and what it gives as `record` does. `ValueError` where it
+        cannot be begun."""
+        out, works = profiles_of(len(times), len(self.x), wrench, load), np.zeros((len(times), 4))
+        place = np.zeros(PLACE)
+        with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is reported
+            leg = self.leg_of(swimmer, place, times, works, row_of(out, wrench, load), wrench=wrench, load=load)
+        swim(leg.row[None])
+        self._place, self.kinetic_at_start = place, float(place[ENERGY])
+        if not np.isfinite(self.kinetic_at_start):
+            raise not_begun(swimmer.law, SimulationStopped(0.0, "kinetic energy", self.kinetic_at_start, ""))
+        return out, works, *self._outcome(times, works, out)
+
     def swim_into(self, times, out, works, *, wrench: bool, load: bool) -> tuple[int, SimulationStopped | None]:
         """March through `times` (T,) [s] and fill `out` (profiles) and `works` (T, 4) [J]. Returns how many instants
         were reached, and what stopped it."""
@@ -39,25 +55,25 @@ class Member(Simulation):
 
 
 class Crew(threading.local):
-    """The members that a thread has, by body, scene and accuracy: they swim again and again."""
+    """The members that a thread has, up to `most`, by body, scene, accuracy and stations: they swim again and again."""
 
-    def __init__(self):
-        self._members: dict = {}
+    def __init__(self, most: int = MOST_MEMBERS):
+        self._members, self._most = {}, most
 
     def member(self, swimmer: Swimmer, x: np.ndarray) -> Member:
-        """One of the body, scene and accuracy of `swimmer`, with the stations `x` (M,) [m], the same for the same
-        body."""
-        member = self._members.get(swimmer[1:4])
+        """One of the body, scene and accuracy of `swimmer`, with the stations `x` (M,) [m]."""
+        key = *swimmer[1:4], x.tobytes()
+        member = self._members.get(key)
         if member is None:
             member = Member(swimmer, x)
-            if len(self._members) >= MOST_MEMBERS:
+            if len(self._members) >= self._most:
                 self._members.clear()
-            self._members[swimmer[1:4]] = member
+            self._members[key] = member
         return member
 
-    def dismiss(self, swimmer: Swimmer):
-        """Let go of the one of the body, scene and accuracy of `swimmer`."""
-        self._members.pop(swimmer[1:4], None)
+    def dismiss(self, swimmer: Swimmer, x: np.ndarray):
+        """Let go of the one of the body, scene and accuracy of `swimmer` with the stations `x`."""
+        self._members.pop((*swimmer[1:4], x.tobytes()), None)
 
 
 def swim_together(legs: list[ReadyLeg]):

@@ -11,18 +11,22 @@ from eel_gaits.law import Law
 from .accuracy import Accuracy
 from .actuators import Actuators, actuators_of
 from .analysis import Analysis
-from .arguments import checked_instance
+from .arguments import checked_stations
 from .body import Body
+from .broadcast import Swimmer
 from .energy import EnergyLedger
 from .errors import Errors, errors, refined, stable_step
 from .limits import warnings_of
+from .member import Crew
+from .profiles import Profiles
 from .records import records
 from .scene import Scene
-from .simulation import Simulation
 from .stopping import SimulationStopped
 from .summary import describe
 
 MOST_REFINEMENTS = 3  # of a run whose error is above its target
+MOST_SWIMMERS = 8  # bodies in scenes at accuracies, that a thread keeps for the next run of the same
+_crew = Crew(MOST_SWIMMERS)
 _searching = ContextVar("searching", default=False)  # for a stable step
 
 
@@ -176,40 +180,33 @@ def simulate(
         twist=twist,
         load=load,
     )
-    swimmer = Simulation(
-        body=body,
-        scene=scene,
-        accuracy=accuracy,
-        stations=stations,
-        position=position,
-        orientation=orientation,
-        twist=twist,
-        law=checked_instance("law", law, Law),
-    )
-    wrench = swimmer.scene.internal_wrench
-    out, works, done, stopped = swimmer.record(times, wrench, bool(load))
-    steps, _, evaluations = swimmer.evaluations
+    swimmer = Swimmer.of(law, body, scene, accuracy, position, orientation, twist)
+    x, wrench = checked_stations(stations, swimmer.body.length), swimmer.scene.internal_wrench
+    member = _crew.member(swimmer, x)
+    out, works, done, stopped = member.record_of(swimmer, times, wrench, bool(load))
+    steps, _, evaluations = member.evaluations
     run = run_of(
         law=law,
         body=swimmer.body,
         scene=swimmer.scene,
-        accuracy=swimmer.accuracy,
-        x=swimmer.x,
+        accuracy=member.accuracy,
+        x=x,
         times=times[:done],
         out=out,
         works=works[:done],
-        kinetic_at_start=swimmer.kinetic_at_start,
+        kinetic_at_start=member.kinetic_at_start,
         wrench=wrench,
         load=load,
         steps=steps,
         evaluations=evaluations,
     )
     if stopped is not None:
+        _crew.dismiss(swimmer, x)
         stopped.run = run
-        if swimmer.accuracy.step is not None and not _searching.get():
-            stopped = _with_stable_step(stopped, again, swimmer.accuracy)
+        if run.accuracy.step is not None and not _searching.get():
+            stopped = _with_stable_step(stopped, again, run.accuracy)
         raise stopped
-    sensitive = swimmer.accuracy.target is not None and not (swimmer.scene.resistive or swimmer.scene.planar)
+    sensitive = run.accuracy.target is not None and not (run.scene.resistive or run.scene.planar)
     return _verified(run) if verify or (verify is None and sensitive and done > 1) else run
 
 
@@ -258,33 +255,34 @@ def run_of(
     *, law, body, scene, accuracy, x, times, out, works, kinetic_at_start, wrench, load, steps, evaluations
 ) -> Run:
     """The `Run` of samples `out` (a `Profiles`) and `works`, of which those at `times` were reached."""
-    done = len(times)
-    energy = EnergyLedger.of(out.kinetic[:done], out.powers[:done], works, kinetic_at_start) if scene.ledger else None
+    if len(times) < len(out.position):
+        out = Profiles(*(array[: len(times)] for array in out[:-1]), out.whole)
+    energy = EnergyLedger.of(out.kinetic, out.powers, works, kinetic_at_start) if scene.ledger else None
     return Run(
         law=law,
         body=body,
         scene=scene,
         accuracy=accuracy,
         time=times,
-        position=out.position[:done],
-        orientation=out.orientation[:done],
-        twist=out.twist[:done],
-        head_acceleration=out.head_acceleration[:done],
-        center_of_mass=out.center_of_mass[:done],
+        position=out.position,
+        orientation=out.orientation,
+        twist=out.twist,
+        head_acceleration=out.head_acceleration,
+        center_of_mass=out.center_of_mass,
         x=x,
-        backbone=out.backbone[:done],
-        section_orientation=out.section_orientation[:done],
-        curvature=out.curvature[:done],
-        curvature_rate=out.curvature_rate[:done],
-        torque=out.torque[:done] if wrench else None,
-        force=out.force[:done] if wrench else None,
-        fluid_force=out.fluid_force[:done] if load else None,
-        resistive_force=out.resistive_force[:done] if load else None,
-        tail_force=out.tail_force[:done] if load else None,
-        nose_force=out.nose_force[:done] if load else None,
+        backbone=out.backbone,
+        section_orientation=out.section_orientation,
+        curvature=out.curvature,
+        curvature_rate=out.curvature_rate,
+        torque=out.torque if wrench else None,
+        force=out.force if wrench else None,
+        fluid_force=out.fluid_force if load else None,
+        resistive_force=out.resistive_force if load else None,
+        tail_force=out.tail_force if load else None,
+        nose_force=out.nose_force if load else None,
         energy=energy,
-        closure_torque=out.closure[:done, 0] if wrench else None,
-        closure_force=out.closure[:done, 1] if wrench else None,
+        closure_torque=out.closure[:, 0] if wrench else None,
+        closure_force=out.closure[:, 1] if wrench else None,
         steps=steps,
         evaluations=evaluations,
     )

@@ -286,7 +286,7 @@ class Simulation:
             raise RuntimeError("no law has been adopted")
         if not np.isfinite(time) or time < self.time:
             raise ValueError(f"time must be finite and >= the present {self.time} s, got {time!r}")
-        self._started = True
+        self._started, time = True, float(time)
         while True:
             self.shape.pass_event(self.time)
             if self.shape.drive is not self.drive:
@@ -358,8 +358,12 @@ class Simulation:
     def _swim_through(self, times, works, out, wrench, load) -> tuple[int, SimulationStopped | None]:
         """March through `times` (T,) [s] into `out` and `works` (T, 4) [J]: how many samples are good, and what stopped
         it. One who goes on behind a bad sample must reset."""
-        status = self._swim(times, works, row_of(out, wrench, load), wrench=wrench, load=load)
-        done = int(self._place[REACHED])
+        self._swim(times, works, row_of(out, wrench, load), wrench=wrench, load=load)
+        return self._outcome(times, works, out)
+
+    def _outcome(self, times, works, out) -> tuple[int, SimulationStopped | None]:
+        """Of the march that has just been: how many samples are good, and what stopped it."""
+        status, done = self._place[STATUS], int(self._place[REACHED])
         failure = failure_of(out, works, done, self.kinetic_at_start, self.energy_floor)
         if failure:
             done, quantity, value = failure
