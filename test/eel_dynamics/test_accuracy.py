@@ -14,7 +14,7 @@ from eel_dynamics.calibration import REFERENCE, Case, cases, random_law, swim
 from eel_dynamics.errors import errors
 from eel_dynamics.tradeoff.delivered import CLOSE, FAR, trials_of
 
-from eel_dynamics import Accuracy, Body, Scene, Simulation, SimulationStopped, simulate
+from eel_dynamics import Accuracy, Body, Scene, Simulation, SimulationStopped, simulate, simulate_batch
 from eel_gaits import falling, gait, straight
 
 KNOWN = {case.name: case for drag in (True, False) for case in cases(drag)}
@@ -119,6 +119,11 @@ def test_a_budget_buys_the_finest_target_that_keeps_within_it(monkeypatch):
 def test_a_budget_is_measured_on_this_machine():
     run = simulate(gait("straight"), 0.2, accuracy="fastest within 900 s per second", scene=Scene(planar=True))
     assert run.accuracy.target == table()[True, True, True][-1]["target"]  # so much time affords the finest
+    batch = simulate_batch(
+        [gait("straight")] * 2, 0.2, accuracy="fastest within 900 s per second", scenes=Scene(planar=True)
+    )
+    assert [each.target for each in batch.accuracies] == [run.accuracy.target] * 2
+    np.testing.assert_array_equal(batch.position, [run.position] * 2)
 
 
 @pytest.mark.parametrize("text", ["fastest", "fastest within five ms", "fastest within -3 ms per second"])

@@ -117,20 +117,23 @@ class Accuracy:
     @staticmethod
     def of(value: "str | float | Accuracy") -> "Accuracy":
         """The settings for a preset's name, a target relative error, either with ", fixed steps" behind it, or a budget
-        of time such as "fastest within 5 ms per second" (`budget`). `ValueError` says what is possible."""
+        of time such as "fastest within 5 ms per second" (`budget`), or what is such settings or a budget already.
+        `ValueError` says what is possible."""
         if isinstance(value, Accuracy):
             return value
         return _of_number(value) if type(value) is float else Accuracy._of(value)
 
     @staticmethod
     def _of(value) -> "Accuracy":
+        from .budget import Budget
+
+        if isinstance(value, Budget):
+            return value
         if isinstance(value, str):
             name = value.strip()
             if name in PRESETS:
                 return Accuracy(name=name, target=PRESETS[name], **ANY)
             if name.startswith("fastest"):
-                from .budget import Budget
-
                 return Budget.of(name)
             if name.endswith(FIXED):
                 wanted = Accuracy.of(name.removesuffix(FIXED).rstrip(" ,"))
