@@ -3,8 +3,8 @@
 A target is a relative error: of the head's position at the end by the length of its path (or of the body, if longer),
 and of the torque field by its own maximum. What delivers it was measured, and stands in `accuracy_table.csv`, which
 `calibration.calibrate` writes: apart for scenes with drag and without (free motion in space is sensitive: errors grow),
-for runs with the internal wrench or the ledger and without, and for motions that stay in a plane (smoother: they need
-fewer steps) and others.
+with a friction law that has a turbulent part (the printed one jumps) and without, for runs with the internal wrench or
+the ledger and without, and for motions that stay in a plane (smoother: they need fewer steps) and others.
 """
 
 import csv
@@ -19,9 +19,22 @@ from .kinks import WATCHED
 PRESETS = {"draft": 1e-2, "standard": 1e-4, "fine": 1e-6, "reference": 1e-8}
 COARSEST, FINEST = 0.1, 1e-10
 TABLE_FILE = Path(__file__).with_name("accuracy_table.csv")
-FIELDS = ("drag", "torque", "plane", "target", "resolution", "kinks", "tolerance", "method", "order", "fixed")
-KEYS = FIELDS[:3]
+FIELDS = (
+    "drag",
+    "turbulent",
+    "torque",
+    "plane",
+    "target",
+    "resolution",
+    "kinks",
+    "tolerance",
+    "method",
+    "order",
+    "fixed",
+)
+KEYS = FIELDS[:4]
 CHOSEN = "kinks", "tolerance", "method", "order"  # for steps that are not fixed
+TURBULENT = "printed", "blended"  # laws of friction
 FIXED = "fixed steps"
 KINKS = tuple(WATCHED)
 ORDERS = {"adams": (1, 2, 3, 4, 5, 6), "dormand_prince": (5,), "classical": (4,)}
@@ -158,14 +171,17 @@ class Accuracy:
 _of_number = lru_cache(maxsize=64)(Accuracy._of)
 
 
-def key_of(scene, plane: bool = False) -> tuple[bool, bool, bool]:
+def key_of(scene, plane: bool = False) -> tuple[bool, bool, bool, bool]:
     """The rows of the `table` for `scene`, and for a motion that stays in a `plane` or for any."""
-    return bool(scene.resistive), bool(scene.internal_wrench or scene.ledger), bool(scene.planar or plane)
+    drag = bool(scene.resistive)
+    turbulent = drag and scene.friction in TURBULENT
+    return drag, turbulent, bool(scene.internal_wrench or scene.ledger), bool(scene.planar or plane)
 
 
 @cache
-def table() -> dict[tuple[bool, bool, bool], tuple[dict, ...]]:
-    """Rows of the table of targets, from the coarsest to the finest, for scenes (with drag, with torque, in a plane).
+def table() -> dict[tuple[bool, bool, bool, bool], tuple[dict, ...]]:
+    """Rows of the table of targets, from the coarsest to the finest, for scenes (with drag, with turbulent friction,
+    with torque, in a plane).
     `fixed`: steps of the classical method by period, None where no number of them delivers the target."""
     with open(TABLE_FILE, newline="") as file:
         rows = [
@@ -183,7 +199,7 @@ def table() -> dict[tuple[bool, bool, bool], tuple[dict, ...]]:
 
 
 @cache
-def _from_target(name: str, target: float, key: tuple[bool, bool, bool], fixed: bool) -> Accuracy:
+def _from_target(name: str, target: float, key: tuple[bool, bool, bool, bool], fixed: bool) -> Accuracy:
     rows = [row for row in table()[key] if not fixed or row["fixed"] is not None]
     for row in rows:
         if row["target"] <= target * (1.0 + 1e-9):
@@ -191,7 +207,7 @@ def _from_target(name: str, target: float, key: tuple[bool, bool, bool], fixed: 
             return Accuracy(name=name, resolution=row["resolution"], target=target, **given)
     if name == "reference":
         return Accuracy(name=name, **BEST)
-    drag = "with drag" if key[0] else "without drag"
+    drag = ("with drag and turbulent friction" if key[1] else "with drag") if key[0] else "without drag"
     raise ValueError(
         f"accuracy {name} cannot be had {drag}: the finest that was measured to be delivered is {rows[-1]['target']:g}"
     )

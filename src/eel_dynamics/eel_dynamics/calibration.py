@@ -6,7 +6,8 @@ varied apart, since their errors add. For each target the table gets the cheapes
 cases stays below it, also when all cases swim with them as they are: apart for cases that stay in a plane and others.
 What is cheap is counted in evaluations of the head's dynamics; for runs with torque those of the ledger count too, a
 number per step that is measured here. The kinks of the drag are looked for where that is cheaper than further points
-and further steps (without it the drag is less smooth in time, too).
+and further steps (without it the drag is less smooth in time, too). What comes of it is fitted to many more laws
+(`fitting`).
 """
 
 import csv
@@ -23,9 +24,10 @@ from eel_gaits.law import Law, Ramp, Term
 
 from eel_gaits import falling, gait
 
-from .accuracy import ANY, CHOSEN, FIELDS, FINEST, KINKS, LOOSEST_TOLERANCE, TABLE_FILE, Accuracy
+from .accuracy import ANY, CHOSEN, FIELDS, FINEST, KINKS, LOOSEST_TOLERANCE, TABLE_FILE, TURBULENT, Accuracy
 from .body import Body
 from .errors import errors
+from .fitting import Fitting
 from .run import Run, simulate
 from .scene import Scene
 from .sections import panels_of
@@ -47,6 +49,11 @@ SHARE = 0.7  # of the target for the worst case: laws and scenes that are not am
 PART_OF_SPACE = 0.25  # of that, for the points along the body
 MOST_FINER = 4  # settings that are tried in place of one which misses its target as a whole
 CHECKED = 0.85  # of the target, for the worst case with both
+FITTED = 0.6  # of the target, for the worst of the many laws that the settings are fitted to: few others are twice as
+# bad
+MANY = range(6, 66)  # their seeds
+WAIVED = 3  # of these, where nothing damps the motion in space: some are so sensitive that `simulate` verifies runs
+FINEST_IN_SPACE = 1e-8  # with drag: beyond, laws differ too much
 BESIDES = 22  # what an evaluation and its step cost whatever the nodes, in nodes that cost as much
 COARSE = 1e-4  # target, from which on points and steps are chosen together, and whether to look for kinks: below, their
 # errors differ too much from law to law
@@ -99,9 +106,7 @@ def cases(drag: bool = True, seeds=range(6)) -> list[Case]:
     boyer, kern = Body.boyer2010(), Body.kern2006()
     names = ("falling", "straight", "turning", "rolling", "helix", "kern_fast", "backward")
     swimming = [(name, gait(name), boyer if "kern" not in name else kern) for name in names]
-    for seed in seeds:  # every third in the plane
-        law = random_law(seed, 1.0, planar=seed % 3 == 2)
-        swimming.append((law.name, law, (boyer, kern)[seed % 2]))
+    swimming += [_of_seed(seed) for seed in seeds]
     scenes = {"laminar": Scene(friction="laminar", ledger=False), "printed": Scene(ledger=False)}
     if not drag:
         scenes = {"no drag": Scene(resistive=False, ledger=False)}
@@ -109,10 +114,18 @@ def cases(drag: bool = True, seeds=range(6)) -> list[Case]:
         Case(name=f"{name}, {scene}", law=law, body=body, scene=scenes[scene], duration=_duration(name, drag))
         for name, law, body in swimming
         for scene in scenes
-        if scene != "printed" or name in ("falling", "straight", "turning", "kern_fast")
     ]
-    plane = Scene(planar=True, friction="laminar", resistive=drag, ledger=False)
-    return [*found, Case(name="straight, planar", law=gait("straight"), body=boyer, scene=plane)]
+    flat = [
+        Case(name=f"straight, planar, {name}", law=gait("straight"), body=boyer, scene=replace(scene, planar=True))
+        for name, scene in scenes.items()
+    ]
+    return found + flat
+
+
+def _of_seed(seed: int) -> tuple[str, Law, Body]:
+    """A random law, every third in the plane, and the body that swims it."""
+    law = random_law(seed, 1.0, planar=seed % 3 == 2)
+    return law.name, law, (Body.boyer2010(), Body.kern2006())[seed % 2]
 
 
 def _duration(name: str, drag: bool) -> float:
@@ -138,21 +151,44 @@ def calibrate(path: Path | str | None = None, say: Callable = lambda text: None)
     """Measure the table of targets anew and write it to `path` (by default the library's own). Returns its rows."""
     rows, ledger = [], ledger_of_a_step()
     say(f"the ledger of a step costs {ledger:.2f} evaluations")
-    for drag in (True, False):
-        group = cases(drag)
-        with ThreadPoolExecutor(os.cpu_count()) as pool:  # the loops run outside Python's lock
-            found = list(pool.map(lambda case: _measure(case, say), group))
-        for torque in (True, False):
-            for plane in (True, False):
-                chosen = [measured for measured in found if measured.case.plane == plane]
-                for row in _rows(chosen, torque, ledger if torque else 0.0):
-                    rows.append({"drag": int(drag), "torque": int(torque), "plane": int(plane)} | row)
-                    say(f"{rows[-1]}")
+    with ThreadPoolExecutor(os.cpu_count()) as pool:  # the loops run outside Python's lock
+        for drag in (True, False):
+            found = list(pool.map(lambda case: _measure(case, say), cases(drag)))
+            many = cases(drag, MANY)
+            say(f"{len(many)} runs to compare with")
+            many = list(zip(many, pool.map(lambda case: swim(case, REFERENCE), many), strict=True))
+            for key in sorted({_key(each.case) for each in found}, reverse=True):
+                for torque in (True, False):
+                    some = [measured for measured in found if _key(measured.case) == key]
+                    all_of_them = _fitting([each for each in many if _key(each[0]) == key], torque, pool)
+                    for row in _rows(some, torque, ledger if torque else 0.0, all_of_them):
+                        kind = {"drag": int(drag), "turbulent": key[0], "torque": int(torque), "plane": key[1]}
+                        rows.append(kind | row)
+                        say(f"{rows[-1]}")
     with open(TABLE_FILE if path is None else path, "w", newline="") as file:
         writer = csv.DictWriter(file, FIELDS)
         writer.writeheader()
         writer.writerows(rows)
     return rows
+
+
+def _key(case: Case) -> tuple[int, int]:
+    """Turbulent friction, and in the plane, 1 or 0: what has rows of its own."""
+    return int(case.scene.resistive and case.scene.friction in TURBULENT), int(case.plane)
+
+
+def _fitting(many: list[tuple[Case, Run]], torque: bool, pool: ThreadPoolExecutor) -> Fitting:
+    """The swims of `many` cases, each with the run that it is compared with."""
+
+    def error(swimmer: tuple[Case, Run], setting: Accuracy) -> float:
+        case, reference = swimmer
+        found = _of(case if torque else _without_torque(case), reference, setting)
+        return max(found[: 2 if torque else 1])
+
+    grids = tuple(dict.fromkeys(_filled(each, torque) for each in RESOLUTIONS))
+    free = not (many[0][0].scene.resistive or many[0][0].plane)
+    gaits = {case.name for case in cases(False, ())}
+    return Fitting(list(many), error, grids, pool, WAIVED if free else 0, lambda swimmer: swimmer[0].name not in gaits)
 
 
 def ledger_of_a_step(turns: int = TURNS) -> float:
@@ -234,13 +270,15 @@ def _without_torque(case: Case) -> Case:
     return replace(case, scene=replace(case.scene, internal_wrench=False))
 
 
-def _rows(found: list[Errors], torque: bool, ledger: float):
+def _rows(found: list[Errors], torque: bool, ledger: float, fitting: Fitting):
     """The rows of a table; `ledger`: evaluations that a step costs besides its own."""
     counted = slice(0, 2 if torque else 1)
     space = np.max([each.space if torque else each.alone for each in found], axis=(0, 3))
     time = np.max([each.time[..., counted] for each in found], axis=(0, 3))
     fixed = np.max([each.fixed[:, counted] for each in found], axis=(0, 2))
     cost = np.mean([each.time[..., 2] + ledger * each.time[..., 3] for each in found], axis=0)
+    if torque:  # the ledger's works are integrals over steps: with Adams' longest ones they miss some hundredths
+        cost[[method == "adams" for method, _ in METHODS]] = np.inf
     for target in TARGETS:
         for_space, for_time = PART_OF_SPACE * SHARE * target, (1.0 - PART_OF_SPACE) * SHARE * target
         coarse = target >= COARSE
@@ -253,9 +291,11 @@ def _rows(found: list[Errors], torque: bool, ledger: float):
             for step in steps[:MOST_STEPS]
             for resolution, kinks in grids
         ]
-        if not settings or target < FINEST:
+        resistive = found[0].case.scene.resistive
+        if not settings or target < (FINEST_IN_SPACE if resistive and not found[0].case.plane else FINEST):
             continue
         setting = _checked(found, torque, (SHARE if coarse else CHECKED) * target, ledger, settings)
+        setting = fitting.fitted(setting or replace(settings[-1], kinks="all"), FITTED * target)
         if setting is not None:
             row = {name: getattr(setting, name) for name in ("resolution", *CHOSEN)}
             yield {"target": target} | row | {"fixed": "" if number is None else FIXED_STEPS[number]}

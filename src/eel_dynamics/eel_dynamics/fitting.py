@@ -1,0 +1,86 @@
+"""Second part of the calibration: settings that a few laws have led to, fitted to many.
+
+Laws differ in what a setting makes of them by a factor of thirty and more. So what the gaits and a few random laws ask
+for is swum by many others: with shorter steps or more points until all of them keep within the target, then with longer
+steps and fewer points for as long as they do.
+"""
+
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+
+from .accuracy import LOOSEST_TOLERANCE, Accuracy
+
+STEP = 10.0 ** (1.0 / 6.0)  # of the tolerance
+SHORTER = 2, 6  # so many of them: few of the loosest may leave the steps at their longest
+LOOSEST = {"adams": 1e-2, "dormand_prince": LOOSEST_TOLERANCE}
+MOST_FINER = 14  # settings that are tried in place of one that is too coarse
+AT_ONCE = 8  # swims between two looks whether one has failed
+
+
+@dataclass
+class Fitting:
+    """The many who swim. `error(swimmer, setting)`: of one of the `swimmers`; grids: resolutions [points per length]
+    that differ in their nodes, ascending; `waived`: how many of those that `may_miss` what is allowed do so."""
+
+    swimmers: list
+    error: Callable
+    grids: tuple[float, ...]
+    pool: ThreadPoolExecutor
+    waived: int = 0
+    may_miss: Callable = lambda swimmer: True
+
+    def fitted(self, setting: Accuracy, allowed: float) -> Accuracy | None:
+        """The setting nearest to `setting` with which no error is above what is `allowed`, and that cannot be loosened;
+        None where none of those that were tried will do."""
+        for _ in range(MOST_FINER):
+            if self._holds(setting, allowed):
+                return self._loosened(setting, allowed)
+            # the one that has failed leads: it tells what would help
+            choices = [self._shorter(setting, steps) for steps in SHORTER]
+            choices += [each for each in (self._finer(setting), self._looking(setting)) if each]
+            errors = list(self.pool.map(lambda choice: self.error(self.swimmers[0], choice), choices))
+            setting = choices[errors.index(min(errors))]
+        return None
+
+    def _loosened(self, setting: Accuracy, allowed: float) -> Accuracy:
+        for loosen in (self._coarser, self._longer, self._coarser):
+            looser = loosen(setting)
+            while looser is not None and self._holds(looser, allowed):
+                setting, looser = looser, loosen(looser)
+        return setting
+
+    def _holds(self, setting: Accuracy, allowed: float) -> bool:
+        """Whether all keep within it, but for those that are waived. The one too many goes to the front."""
+        missed = 0
+        for begin in range(0, len(self.swimmers), AT_ONCE):
+            some = self.swimmers[begin : begin + AT_ONCE]
+            for index, error in enumerate(self.pool.map(lambda swimmer: self.error(swimmer, setting), some)):
+                if error <= allowed:
+                    continue
+                missed += 1
+                if missed > self.waived or not self.may_miss(some[index]):
+                    self.swimmers.insert(0, self.swimmers.pop(begin + index))
+                    return False
+        return True
+
+    @staticmethod
+    def _longer(setting: Accuracy) -> Accuracy | None:
+        tolerance = float(f"{setting.tolerance * STEP:.2e}")
+        return replace(setting, tolerance=tolerance) if tolerance <= LOOSEST[setting.method] * 1.01 else None
+
+    @staticmethod
+    def _shorter(setting: Accuracy, steps: int) -> Accuracy:
+        return replace(setting, tolerance=float(f"{setting.tolerance / STEP**steps:.2e}"))
+
+    def _coarser(self, setting: Accuracy) -> Accuracy | None:
+        below = [each for each in self.grids if each < setting.resolution]
+        return replace(setting, resolution=below[-1]) if below else None
+
+    def _finer(self, setting: Accuracy) -> Accuracy | None:
+        above = [each for each in self.grids if each > setting.resolution]
+        return replace(setting, resolution=above[0]) if above else None
+
+    @staticmethod
+    def _looking(setting: Accuracy) -> Accuracy | None:
+        return replace(setting, kinks="all") if setting.kinks != "all" else None
