@@ -58,3 +58,12 @@ def test_a_tolerance_that_leaves_the_steps_at_their_longest_is_passed_over(pool)
 
     found = Fitting([0], capped, GRIDS, pool).fitted(START, 1e-4)
     assert found is not None and found.tolerance <= 1.1e-6 and found.resolution == GRIDS[0]
+
+
+def test_the_fewest_fixed_steps_that_hold(pool):
+    def of_steps(swimmer, setting):
+        return swimmer * setting.fixed**-4.0
+
+    fitting = Fitting([1.0, 5.0, 2.0], of_steps, GRIDS, pool)
+    assert fitting.fewest(START, (8.0, 16.0, 32.0), 1e-4) == 16.0
+    assert fitting.fewest(START, (8.0,), 1e-4) is None and fitting.fewest(START, (), 1e-4) is None

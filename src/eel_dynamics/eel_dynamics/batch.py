@@ -129,8 +129,8 @@ def simulate_batch(
     how many per body, or their X [m], for the profiles along the body; None: no profiles, the motion and the energies
     alone. threads: None for one per core that this process may use. progress(done, B): called now and then.
 
-    Each swimmer is the `simulate` of its arguments: to the last bit in a scene with the ledger, else to round-off and
-    with the same steps. One that cannot begin or go on keeps the samples until then, with a `SimulationStopped` in
+    Each swimmer is the `simulate` of its arguments, not verified: to the last bit with the ledger, else to round-off
+    and with the same steps. One that cannot begin or go on keeps the samples until then, with a `SimulationStopped` in
     `error`; the others do not notice. `ValueError` names an argument that does not fit, with the number of the swimmer.
     """
     times = checked_times(duration, sample_period)

@@ -43,6 +43,14 @@ class Fitting:
             setting = choices[errors.index(min(errors))]
         return None
 
+    def fewest(self, setting: Accuracy, numbers: tuple[float, ...], allowed: float) -> float | None:
+        """The first of the `numbers` of fixed steps that holds on the grid of `setting`; None where none does."""
+        for number in numbers:
+            fixed = Accuracy(name=setting.name, resolution=setting.resolution, kinks=setting.kinks, fixed=number)
+            if self._holds(fixed, allowed):
+                return number
+        return None
+
     def _loosened(self, setting: Accuracy, allowed: float) -> Accuracy:
         for loosen in (self._coarser, self._longer, self._coarser):
             looser = loosen(setting)
