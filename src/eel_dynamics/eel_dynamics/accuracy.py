@@ -45,6 +45,8 @@ BEST = {"resolution": 200.0, "tolerance": 1e-11}  # of the preset reference, whe
 ANY = {"resolution": 30.0}  # until the scene is known
 FURTHER_POINTS = 9.0  # per length, with which a grid is finer for certain: the last eight nodes are always filled
 WAVES_POWER = 0.85  # points grow with this power of the number of waves on the body
+BENT = 1.5  # waves on the body, that no law of the table's has
+BENT_POWER = 1.5  # of the waves beyond, that steps become finer with: of the tolerance
 SPARED = 8.0  # points per length, of those that the panels have to spare, that grow too
 
 
@@ -105,6 +107,13 @@ class Accuracy:
         if self.target is None:
             return self
         return _from_target(self.name, self.target, key_of(scene, plane), self.fixed is not None)
+
+    def for_waves(self, waves: float) -> "Accuracy":
+        """The same target for a shape of `waves` waves on the body, where those are more than the laws of the table
+        have: a body that is rolled up carries its head about, and takes steps by their error, not by their longest."""
+        if self.target is None or self.fixed is not None or waves <= BENT:
+            return self
+        return replace(self, tolerance=self.tolerance * (BENT / waves) ** BENT_POWER)
 
     def of_violence(self) -> "Accuracy":
         """The same target for one who is thrown in: the table was measured with gaits that start from rest, and the

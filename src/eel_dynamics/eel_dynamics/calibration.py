@@ -52,7 +52,6 @@ CHECKED = 0.85  # of the target, for the worst case with both
 FITTED = 0.6  # of the target, for the worst of the many laws that the settings are fitted to: few others are twice as
 # bad
 MANY = range(6, 66)  # their seeds
-WILD = range(24)  # seeds of the wild ones, for targets that are coarse; with drag
 WAIVED = 3  # of these, where nothing damps the motion in space: some are so sensitive that `simulate` verifies runs
 FINEST_IN_SPACE = 1e-8  # with drag: beyond, laws differ too much
 BESIDES = 22  # what an evaluation and its step cost whatever the nodes, in nodes that cost as much
@@ -80,25 +79,18 @@ class Case:
         return self.law.in_plane
 
 
-def random_law(seed: int, length: float, planar: bool = False, wild: bool = False) -> Law:
-    """A law with waves in yaw and pitch and a bend, begun over a time of its own; `wild`: of waves shorter and longer
-    than swimmers', that bend the body up to some turns."""
+def random_law(seed: int, length: float, planar: bool = False) -> Law:
+    """A law with waves in yaw and pitch and a bend, begun over a time of its own."""
     rng = np.random.default_rng(seed)
     terms = []
     for axis in ("yaw",) if planar else ("yaw", "pitch"):
         size = (1.0 if axis == "yaw" else 0.5) / length
         amplitude = tuple(size * rng.uniform(-1.0, 1.0, 3) * (1.5, 1.0 / length, 2.0 / length**2))
-        if wild:
-            height = np.exp(rng.uniform(*np.log((3.0, 30.0))))
-            amplitude = tuple(height * each for each in amplitude)
-            wavelength = length * np.exp(rng.uniform(*np.log((0.3, 30.0))))
-        else:
-            wavelength = length * rng.uniform(0.7, 2.0)
         terms.append(
             Term(
                 axis=axis,
                 amplitude=amplitude,
-                wavelength=wavelength,
+                wavelength=length * rng.uniform(0.7, 2.0),
                 period=rng.uniform(0.7, 1.5),
                 phase=rng.uniform(0.0, 6.0),
                 envelope=(Ramp(0.0, rng.uniform(0.5, 1.5), 1.0),),
@@ -106,16 +98,15 @@ def random_law(seed: int, length: float, planar: bool = False, wild: bool = Fals
         )
         bend = Ramp(rng.uniform(0.5, 1.5), rng.uniform(2.0, 3.0), 1.0)
         terms.append(Term(axis=axis, amplitude=(0.7 * size,), phase=np.pi / 2.0, envelope=(bend,)))
-    return Law(*terms, name=f"{'wild' if wild else 'random'} {seed}{' in the plane' if planar else ''}")
+    return Law(*terms, name=f"random {seed}{' in the plane' if planar else ''}")
 
 
-def cases(drag: bool = True, seeds=range(6), wild=()) -> list[Case]:
-    """The library's gaits and random laws, on both bodies, in the scenes that differ most; with or without drag.
-    `wild`: seeds of laws beyond swimmers'."""
+def cases(drag: bool = True, seeds=range(6)) -> list[Case]:
+    """The library's gaits and random laws, on both bodies, in the scenes that differ most; with or without drag."""
     boyer, kern = Body.boyer2010(), Body.kern2006()
     names = ("falling", "straight", "turning", "rolling", "helix", "kern_fast", "backward")
     swimming = [(name, gait(name), boyer if "kern" not in name else kern) for name in names]
-    swimming += [_of_seed(seed) for seed in seeds] + [_of_seed(seed, True) for seed in wild]
+    swimming += [_of_seed(seed) for seed in seeds]
     scenes = {"laminar": Scene(friction="laminar", ledger=False), "printed": Scene(ledger=False)}
     if not drag:
         scenes = {"no drag": Scene(resistive=False, ledger=False)}
@@ -131,17 +122,14 @@ def cases(drag: bool = True, seeds=range(6), wild=()) -> list[Case]:
     return found + flat
 
 
-def _of_seed(seed: int, wild: bool = False) -> tuple[str, Law, Body]:
+def _of_seed(seed: int) -> tuple[str, Law, Body]:
     """A random law, every third in the plane, and the body that swims it."""
-    law = random_law(seed, 1.0, planar=seed % 3 == 2, wild=wild)
+    law = random_law(seed, 1.0, planar=seed % 3 == 2)
     return law.name, law, (Body.boyer2010(), Body.kern2006())[seed % 2]
 
 
 def _duration(name: str, drag: bool) -> float:
-    """The paper's gait needs 10 s to be whole; without drag that is too sensitive to stand for others. What is wild
-    shows at once."""
-    if name.startswith("wild"):
-        return 2.0
+    """The paper's gait needs 10 s to be whole; without drag that is too sensitive to stand for others."""
     return 10.0 if name == "falling" and drag else 4.0
 
 
@@ -166,16 +154,14 @@ def calibrate(path: Path | str | None = None, say: Callable = lambda text: None)
     with ThreadPoolExecutor(os.cpu_count()) as pool:  # the loops run outside Python's lock
         for drag in (True, False):
             found = list(pool.map(lambda case: _measure(case, say), cases(drag)))
-            many = cases(drag, MANY, WILD if drag else ())
+            many = cases(drag, MANY)
             say(f"{len(many)} runs to compare with")
             many = list(zip(many, pool.map(lambda case: swim(case, REFERENCE), many), strict=True))
             for key in sorted({_key(each.case) for each in found}, reverse=True):
                 for torque in (True, False):
                     some = [measured for measured in found if _key(measured.case) == key]
                     same = [each for each in many if _key(each[0]) == key]
-                    tame = [each for each in same if not each[0].name.startswith("wild")]
-                    fittings = _fitting(same, torque, pool), _fitting(tame, torque, pool)
-                    for row in _rows(some, torque, ledger if torque else 0.0, fittings):
+                    for row in _rows(some, torque, ledger if torque else 0.0, _fitting(same, torque, pool)):
                         kind = {"drag": int(drag), "turbulent": key[0], "torque": int(torque), "plane": key[1]}
                         rows.append(kind | row)
                         say(f"{rows[-1]}")
@@ -280,9 +266,8 @@ def _without_torque(case: Case) -> Case:
     return replace(case, scene=replace(case.scene, internal_wrench=False))
 
 
-def _rows(found: list[Errors], torque: bool, ledger: float, fittings: tuple[Fitting, Fitting]):
-    """The rows of a table; `ledger`: evaluations that a step costs besides its own; `fittings`: to all laws, for coarse
-    targets, and to those that are not wild."""
+def _rows(found: list[Errors], torque: bool, ledger: float, fitting: Fitting):
+    """The rows of a table; `ledger`: evaluations that a step costs besides its own."""
     counted = slice(0, 2 if torque else 1)
     space = np.max([each.space if torque else each.alone for each in found], axis=(0, 3))
     time = np.max([each.time[..., counted] for each in found], axis=(0, 3))
@@ -305,11 +290,10 @@ def _rows(found: list[Errors], torque: bool, ledger: float, fittings: tuple[Fitt
         if not settings or target < (FINEST_IN_SPACE if resistive and not found[0].case.plane else FINEST):
             continue
         setting = _checked(found, torque, (SHARE if coarse else CHECKED) * target, ledger, settings)
-        fitting = fittings[0 if coarse else 1]
         setting = fitting.fitted(setting or replace(settings[-1], kinks="all"), FITTED * target)
         if setting is not None:
             row = {name: getattr(setting, name) for name in ("resolution", *CHOSEN)}
-            number = fittings[1].fewest(setting, numbers, FITTED * target)
+            number = fitting.fewest(setting, numbers, FITTED * target)
             numbers = tuple(each for each in numbers if number is None or each >= number)
             yield {"target": target} | row | {"fixed": number or ""}
 

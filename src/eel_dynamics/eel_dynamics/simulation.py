@@ -110,8 +110,8 @@ class Simulation:
         self._start, self._relative = start, start.in_water(self._current)
         self._motion_scale = time_scale(self._relative, self.body.length)
         self._thrown = is_thrown(law, self._motion_scale)
-        self._use_accuracy(stays_in_plane(law, self._relative) and not self._thrown)
         waves, knots = (1.0, ()) if law is None else self._needs(law)
+        self._use_accuracy(stays_in_plane(law, self._relative) and not self._thrown, waves)
         wanted = Built(self.accuracy.points_per_length(waves), self.accuracy.kinks, knots)
         if wanted != self._built:
             self._build(wanted)
@@ -190,8 +190,7 @@ class Simulation:
         if not (np.isfinite(blend) and blend > 0.0):
             raise ValueError(f"transition must be finite and > 0 s, got {transition!r}")
         first = not self._started
-        if not law.in_plane:
-            self._use_accuracy(False)
+        self._use_accuracy(self._plane and law.in_plane, max(self._waves, needs[0]))
         self._refine(*needs)
         before = copy(self.shape)
         self.shape.adopt(law, origin=float(origin), time=self.time, transition=0.0 if first else float(blend))
@@ -207,11 +206,14 @@ class Simulation:
             self._restart()
         self.ready = True
 
-    def _use_accuracy(self, plane: bool):
-        """Take the settings for a motion that stays in a `plane`, or for any; the march so far counts on."""
+    def _use_accuracy(self, plane: bool, waves: float):
+        """Take the settings for a motion that stays in a `plane`, or for any, of a shape of up to so many `waves`; the
+        march so far counts on."""
         accuracy, before = self._wanted.in_scene(self.scene, plane), getattr(self, "_step", None)
+        self._plane, self._waves = plane, waves
         if self._thrown:
             accuracy = accuracy.of_violence()
+        accuracy = accuracy.for_waves(waves)
         if before is not None and (accuracy is self.accuracy or accuracy == self.accuracy):
             return
         self.accuracy, self._method = accuracy, method_of(accuracy.method, accuracy.order)
@@ -251,7 +253,7 @@ class Simulation:
             raise ValueError(
                 f"curvature samples time must lie ahead of the simulation ({self.time:.6f} s), got {time} s"
             )
-        self._use_accuracy(False)
+        self._use_accuracy(False, self._waves)
         self._refine((len(x) - 1) / 8.0)
         self.shape.add(float(time), self.time, x, np.reshape(values, (2, 3, len(x))))
         self.ready = True
