@@ -13,6 +13,7 @@ from eel_dynamics.budget import Budget
 from eel_dynamics.calibration import REFERENCE, Case, cases, random_law, swim
 from eel_dynamics.errors import errors
 from eel_dynamics.tradeoff.delivered import CLOSE, FAR, trials_of
+from eel_gaits.law import Law, Term
 
 from eel_dynamics import Accuracy, Body, Scene, Simulation, SimulationStopped, simulate, simulate_batch
 from eel_gaits import falling, gait, straight
@@ -170,5 +171,11 @@ def test_a_body_bent_into_turns_gets_shorter_steps():
     swimmer = Simulation(accuracy=1e-3, law=straight())
     swimmer.adopt(rolled)
     assert swimmer.accuracy == settings
+    swimmer.adopt(straight(period=2.0))
+    swimmer.adopt(straight())
+    assert swimmer.accuracy == usual
+    with pytest.raises(ValueError, match="cannot be begun"):
+        swimmer.adopt(Law(Term(amplitude=(1e200,), wavelength=1.0, period=1e-3)))
+    assert swimmer.accuracy == usual
     run = simulate(rolled, 4.0, accuracy=1e-3)
     assert run.error_estimate.worst < 1e-3

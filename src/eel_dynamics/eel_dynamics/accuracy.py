@@ -46,7 +46,7 @@ ANY = {"resolution": 30.0}  # until the scene is known
 FURTHER_POINTS = 9.0  # per length, with which a grid is finer for certain: the last eight nodes are always filled
 WAVES_POWER = 0.85  # points grow with this power of the number of waves on the body
 BENT = 1.5  # waves on the body, that no law of the table's has
-BENT_POWER = 1.5  # of the waves beyond, that steps become finer with: of the tolerance
+BENT_POWER, BENT_LEAST = 1.5, 0.01  # of the waves beyond, that the tolerance falls with, and how far
 SPARED = 8.0  # points per length, of those that the panels have to spare, that grow too
 
 
@@ -113,7 +113,7 @@ class Accuracy:
         have: a body that is rolled up carries its head about, and takes steps by their error, not by their longest."""
         if self.target is None or self.fixed is not None or waves <= BENT:
             return self
-        return replace(self, tolerance=self.tolerance * (BENT / waves) ** BENT_POWER)
+        return replace(self, tolerance=self.tolerance * max(BENT_LEAST, (BENT / waves) ** BENT_POWER))
 
     def of_violence(self) -> "Accuracy":
         """The same target for one who is thrown in: the table was measured with gaits that start from rest, and the

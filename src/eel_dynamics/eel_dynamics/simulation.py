@@ -190,7 +190,9 @@ class Simulation:
         if not (np.isfinite(blend) and blend > 0.0):
             raise ValueError(f"transition must be finite and > 0 s, got {transition!r}")
         first = not self._started
-        self._use_accuracy(self._plane and law.in_plane, max(self._waves, needs[0]))
+        plane, waves = self._plane, self._waves
+        self._use_accuracy(plane and law.in_plane, max(waves, needs[0]))
+        self._waves = needs[0]  # a law that comes after the next needs no care for the present one
         self._refine(*needs)
         before = copy(self.shape)
         self.shape.adopt(law, origin=float(origin), time=self.time, transition=0.0 if first else float(blend))
@@ -200,6 +202,7 @@ class Simulation:
                     self._take_initial_state()
             except SimulationStopped as stopped:
                 self.shape = before
+                self._use_accuracy(plane, waves)
                 self._take_initial_state()
                 raise not_begun(law, stopped) from None
         else:
