@@ -191,17 +191,17 @@ class Simulation:
             raise ValueError(f"transition must be finite and > 0 s, got {transition!r}")
         first = not self._started
         plane, waves = self._plane, self._waves
+        before = copy(self.shape), self._table, self._built
         self._use_accuracy(plane and law.in_plane, max(waves, needs[0]))
         self._waves = needs[0]  # a law that comes after the next needs no care for the present one
         self._refine(*needs)
-        before = copy(self.shape)
         self.shape.adopt(law, origin=float(origin), time=self.time, transition=0.0 if first else float(blend))
         if first:
             try:
                 with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is reported below
                     self._take_initial_state()
             except SimulationStopped as stopped:
-                self.shape = before
+                (self.shape, self._table, self._built), self._scratch = before, None
                 self._use_accuracy(plane, waves)
                 self._take_initial_state()
                 raise not_begun(law, stopped) from None
