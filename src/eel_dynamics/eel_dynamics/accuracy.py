@@ -19,20 +19,8 @@ from .kinks import WATCHED
 PRESETS = {"draft": 1e-2, "standard": 1e-4, "fine": 1e-6, "reference": 1e-8}
 COARSEST, FINEST = 0.1, 1e-10
 TABLE_FILE = Path(__file__).with_name("accuracy_table.csv")
-FIELDS = (
-    "drag",
-    "turbulent",
-    "torque",
-    "plane",
-    "target",
-    "resolution",
-    "kinks",
-    "tolerance",
-    "method",
-    "order",
-    "fixed",
-)
-KEYS = FIELDS[:4]
+KEYS = "drag", "turbulent", "torque", "plane"
+FIELDS = (*KEYS, "target", "resolution", "kinks", "tolerance", "method", "order", "fixed")
 CHOSEN = "kinks", "tolerance", "method", "order"  # for steps that are not fixed
 TURBULENT = "printed", "blended"  # laws of friction
 FIXED = "fixed steps"

@@ -62,7 +62,7 @@ class Crew(threading.local):
 
     def member(self, swimmer: Swimmer, x: np.ndarray) -> Member:
         """One of the body, scene and accuracy of `swimmer`, with the stations `x` (M,) [m]."""
-        key = *swimmer[1:4], x.tobytes()
+        key = self._key(swimmer, x)
         member = self._members.get(key)
         if member is None:
             member = Member(swimmer, x)
@@ -73,7 +73,11 @@ class Crew(threading.local):
 
     def dismiss(self, swimmer: Swimmer, x: np.ndarray):
         """Let go of the one of the body, scene and accuracy of `swimmer` with the stations `x`."""
-        self._members.pop((*swimmer[1:4], x.tobytes()), None)
+        self._members.pop(self._key(swimmer, x), None)
+
+    @staticmethod
+    def _key(swimmer: Swimmer, x: np.ndarray) -> tuple:
+        return *swimmer[1:4], x.tobytes()
 
 
 def swim_together(legs: list[ReadyLeg]):
