@@ -18,10 +18,12 @@ begin() {   # NAME TESTS...: into out/test-NAME.log
 }
 
 nodes=(test/eel_dynamics/test_node_[!r]*.py test/eel_dynamics/test_sweep.py)
+recordings=(test/system/test_recordings.py test/system/test_soak.py)
 begin nodes "${nodes[@]}"
-begin viz test/eel_viz test/eel_gaits
-echo "[test] mechanics and test/system here; the dynamics node, test/eel_viz and test/eel_gaits beside, shown when done"
-python -m pytest -m "not soak" test/eel_dynamics test/system "${nodes[@]/#/--ignore=}"
+begin viz test/eel_viz test/eel_gaits "${recordings[@]}"
+echo "[test] mechanics and test/system here; the dynamics node, test/eel_viz, test/eel_gaits and recordings beside, shown when done"
+elsewhere=("${nodes[@]}" "${recordings[@]}")
+python -m pytest -m "not soak" test/eel_dynamics test/system "${elsewhere[@]/#/--ignore=}"
 status=$?
 for name in nodes viz; do
     wait "${beside[$name]}" || status=1

@@ -48,6 +48,9 @@ def test_those_who_are_waived_do_not_count(pool):
     assert few == alone
     firm = Fitting(list(swimmers), error, GRIDS, pool, waived=2, may_miss=lambda swimmer: swimmer[0] < 1.0)
     assert firm.fitted(START, 1e-4) is None
+    near = Fitting(list(swimmers), error, GRIDS, pool, waived=2, at_most=2.0).fitted(START, 1e-2)
+    assert max(error(swimmer, near) for swimmer in swimmers) <= 2e-2
+    assert near != Fitting(list(swimmers), error, GRIDS, pool, waived=2).fitted(START, 1e-2)
 
 
 def test_a_tolerance_that_leaves_the_steps_at_their_longest_is_passed_over(pool):

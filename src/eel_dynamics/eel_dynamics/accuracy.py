@@ -4,23 +4,36 @@ A target is a relative error: of the head's position at the end by the length of
 and of the torque field by its own maximum. What delivers it was measured, and stands in `accuracy_table.csv`, which
 `calibration.calibrate` writes: apart for scenes with drag and without (free motion in space is sensitive: errors grow),
 with a friction law that has a turbulent part (the printed one jumps) and without, for runs with the internal wrench or
-the ledger and without, and for motions that stay in a plane (smoother: they need fewer steps) and others.
+the ledger and without, and for motions that stay in a plane (smoother: they need fewer steps) and others. It holds for
+a swim of usual effort: one that is harder takes the settings of a finer target, one that is easier those of a coarser
+(`effort`).
 """
 
 import csv
 from dataclasses import dataclass, replace
 from functools import cache, lru_cache
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
+from .effort import USUAL, Effort
 from .kinks import WATCHED
+
+
+class Key(NamedTuple):
+    """What has rows of its own in the `table`."""
+
+    drag: bool
+    turbulent: bool  # friction
+    torque: bool  # the internal wrench or the ledger
+    plane: bool
+
 
 PRESETS = {"draft": 1e-2, "standard": 1e-4, "fine": 1e-6, "reference": 1e-8}
 COARSEST, FINEST = 0.1, 1e-10
 TABLE_FILE = Path(__file__).with_name("accuracy_table.csv")
-KEYS = "drag", "turbulent", "torque", "plane"
-FIELDS = (*KEYS, "target", "resolution", "kinks", "tolerance", "method", "order", "fixed")
+FIELDS = (*Key._fields, "target", "resolution", "kinks", "tolerance", "method", "order", "fixed")
 CHOSEN = "kinks", "tolerance", "method", "order"  # for steps that are not fixed
 TURBULENT = "printed", "blended"  # laws of friction
 FIXED = "fixed steps"
@@ -29,12 +42,16 @@ ORDERS = {"adams": (1, 2, 3, 4, 5, 6), "dormand_prince": (5,), "classical": (4,)
 FINEST_TOLERANCE = 1e-13  # below, round-off
 LOOSEST_TOLERANCE = 1e-4  # of the pair, and of what an estimate compares with: above, a gait's longest step rules,
 # and a light body that the water stops has steps by it alone
+LOOSEST = {"adams": 1e-2, "dormand_prince": LOOSEST_TOLERANCE}
+LEAST_EASED = 3e-8  # target: beyond, errors are of the places of kinks and of round-off, which gentle swims have too
+MORE_POINTS, MORE_STEPS = (
+    0.2,
+    0.25,
+)  # powers of what is wanted beyond the finest row, that points and fixed steps grow with
 BEST = {"resolution": 200.0, "tolerance": 1e-11}  # of the preset reference, where its target cannot be promised
 ANY = {"resolution": 30.0}  # until the scene is known
 FURTHER_POINTS = 9.0  # per length, with which a grid is finer for certain: the last eight nodes are always filled
 WAVES_POWER = 0.85  # points grow with this power of the number of waves on the body
-BENT = 1.5  # waves on the body, that no law of the table's has
-BENT_POWER, BENT_LEAST = 1.5, 0.01  # of the waves beyond, that the tolerance falls with, and how far
 SPARED = 8.0  # points per length, of those that the panels have to spare, that grow too
 
 
@@ -89,19 +106,15 @@ class Accuracy:
         """Points per body length for a shape of `waves` waves on the body; one wave or less needs `resolution`."""
         return min(1000.0, (self.resolution + SPARED) * max(1.0, waves) ** WAVES_POWER - SPARED)
 
-    def in_scene(self, scene, plane: bool = False) -> "Accuracy":
-        """The settings that deliver the target in `scene`, for a motion that stays in a `plane` or for any; the same
-        where they were given one by one."""
+    def in_scene(self, scene, plane: bool = False, effort: Effort = USUAL) -> "Accuracy":
+        """The settings that deliver the target in `scene` for a swim of such `effort`, for a motion that stays in a
+        `plane` or for any; the same where they were given one by one."""
         if self.target is None:
             return self
-        return _from_target(self.name, self.target, key_of(scene, plane), self.fixed is not None)
-
-    def for_waves(self, waves: float) -> "Accuracy":
-        """The same target for a shape of `waves` waves on the body, where those are more than the laws of the table
-        have: a body that is rolled up carries its head about, and takes steps by their error, not by their longest."""
-        if self.target is None or self.fixed is not None or waves <= BENT:
-            return self
-        return replace(self, tolerance=self.tolerance * max(BENT_LEAST, (BENT / waves) ** BENT_POWER))
+        key = key_of(scene, plane)
+        return _from_target(
+            self.name, self.target, key, self.fixed is not None, effort.ease(key.drag, key.torque, key.plane)
+        )
 
     def of_violence(self) -> "Accuracy":
         """The same target for one who is thrown in: the table was measured with gaits that start from rest, and the
@@ -168,22 +181,21 @@ class Accuracy:
 _of_number = lru_cache(maxsize=64)(Accuracy._of)
 
 
-def key_of(scene, plane: bool = False) -> tuple[bool, bool, bool, bool]:
+def key_of(scene, plane: bool = False) -> Key:
     """The rows of the `table` for `scene`, and for a motion that stays in a `plane` or for any."""
     drag = bool(scene.resistive)
     turbulent = drag and scene.friction in TURBULENT
-    return drag, turbulent, bool(scene.internal_wrench or scene.ledger), bool(scene.planar or plane)
+    return Key(drag, turbulent, bool(scene.internal_wrench or scene.ledger), bool(scene.planar or plane))
 
 
 @cache
-def table() -> dict[tuple[bool, bool, bool, bool], tuple[dict, ...]]:
-    """Rows of the table of targets, from the coarsest to the finest, for scenes (with drag, with turbulent friction,
-    with torque, in a plane).
-    `fixed`: steps of the classical method by period, None where no number of them delivers the target."""
+def table() -> dict[Key, tuple[dict, ...]]:
+    """Rows of the table of targets, from the coarsest to the finest. `fixed`: steps of the classical method by period,
+    None where no number of them delivers the target."""
     with open(TABLE_FILE, newline="") as file:
         rows = [
             {"target": float(row["target"])}
-            | {name: row[name] == "1" for name in KEYS}
+            | {name: row[name] == "1" for name in Key._fields}
             | {"resolution": float(row["resolution"]), "tolerance": float(row["tolerance"])}
             | {"method": row["method"], "order": int(row["order"]), "kinks": row["kinks"]}
             | {"fixed": float(row["fixed"]) if row["fixed"] else None}
@@ -191,20 +203,36 @@ def table() -> dict[tuple[bool, bool, bool, bool], tuple[dict, ...]]:
         ]
     found = {}
     for row in sorted(rows, key=lambda row: -row["target"]):
-        found.setdefault(tuple(row[name] for name in KEYS), []).append(row)
+        found.setdefault(Key(*(row[name] for name in Key._fields)), []).append(row)
     return {key: tuple(rows) for key, rows in found.items()}
 
 
 @cache
-def _from_target(name: str, target: float, key: tuple[bool, bool, bool, bool], fixed: bool) -> Accuracy:
+def _from_target(name: str, target: float, key: Key, fixed: bool, ease: float) -> Accuracy:
     rows = [row for row in table()[key] if not fixed or row["fixed"] is not None]
-    for row in rows:
-        if row["target"] <= target * (1.0 + 1e-9):
-            given = {"fixed": row["fixed"]} if fixed else {name: row[name] for name in CHOSEN}
-            return Accuracy(name=name, resolution=row["resolution"], target=target, **given)
-    if name == "reference":
-        return Accuracy(name=name, **BEST)
-    drag = ("with drag and turbulent friction" if key[1] else "with drag") if key[0] else "without drag"
-    raise ValueError(
-        f"accuracy {name} cannot be had {drag}: the finest that was measured to be delivered is {rows[-1]['target']:g}"
-    )
+    if rows[-1]["target"] > target * (1.0 + 1e-9):
+        if name == "reference":
+            return Accuracy(name=name, **BEST)
+        drag = ("with drag and turbulent friction" if key.turbulent else "with drag") if key.drag else "without drag"
+        finest = rows[-1]["target"]
+        raise ValueError(
+            f"accuracy {name} cannot be had {drag}: the finest that was measured to be delivered is {finest:g}"
+        )
+    ease = min(ease, 1.0) if target < LEAST_EASED else ease
+    fitting = [row for row in rows if row["target"] <= target * ease * (1.0 + 1e-9)]
+    row = fitting[0] if fitting else rows[-1]
+    coarser = rows[max(0, len(rows) - len(fitting) - 1)]
+    return _eased(row, coarser, target * ease / row["target"], fixed, name=name, target=target)
+
+
+def _eased(row: dict, coarser: dict, by: float, fixed: bool, **named) -> Accuracy:
+    """The settings of a `row` of the table for `by` times its target, no looser than those of the `coarser` row; finer
+    ones, of the finest row, if that is less than 1."""
+    resolution = min(1000.0, row["resolution"] * max(1.0, by**-MORE_POINTS))
+    if fixed:
+        return Accuracy(resolution=resolution, fixed=row["fixed"] * max(1.0, by**-MORE_STEPS), **named)
+    chosen = {each: row[each] for each in CHOSEN}
+    alike = all(row[each] == coarser[each] for each in ("method", "order")) and coarser is not row
+    loosest = coarser["tolerance"] if alike else LOOSEST[row["method"]]
+    chosen["tolerance"] = max(min(row["tolerance"] * by, loosest), FINEST_TOLERANCE)
+    return Accuracy(resolution=resolution, **chosen, **named)

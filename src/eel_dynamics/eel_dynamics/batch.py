@@ -134,7 +134,7 @@ def simulate_batch(
     `error`; the others do not notice. `ValueError` names an argument that does not fit, with the number of the swimmer.
     """
     times = checked_times(duration, sample_period)
-    members = swimmers_of(laws, bodies, scenes, accuracy, positions, orientations, twists)
+    members = swimmers_of(laws, bodies, scenes, accuracy, positions, orientations, twists, duration)
     along = [0.0] if stations is None else stations
     x_of = {length: checked_stations(along, length) for length in dict.fromkeys(each.body.length for each in members)}
     x = [x_of[each.body.length] for each in members]

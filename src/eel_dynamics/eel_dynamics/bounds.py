@@ -24,7 +24,7 @@ def control_of(accuracy: Accuracy, scene: Scene, shape: Shape, table: Table, len
     scale = min(shape.time_scale, scale)
     longest = LONGEST_STEP * min(scale, 10.0)
     fixed = accuracy.step or (accuracy.fixed and min(scale, 1.0) / accuracy.fixed)
-    slowest = max(SLOWEST * length / min(scale, 10.0), PART_OF_SPEED * shape.reach(table.swimmer.value.weight))
+    slowest = max(SLOWEST * length / min(scale, 10.0), PART_OF_SPEED * shape.speed(length))
     return Control(
         tolerance=accuracy.tolerance,
         step=fixed or longest,

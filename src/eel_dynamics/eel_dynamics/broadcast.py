@@ -22,9 +22,10 @@ class Swimmer(NamedTuple):
     position: np.ndarray  # (3,) m, head, world
     orientation: np.ndarray  # (4,) x y z w, world from head
     twist: np.ndarray  # (6,) (Omega, V) rad/s, m/s, head's axes
+    horizon: float  # s, how long it swims
 
     @staticmethod
-    def of(law, body, scene, accuracy, position, orientation, twist) -> "Swimmer":
+    def of(law, body, scene, accuracy, position, orientation, twist, duration) -> "Swimmer":
         """One of the arguments of `simulate`. `ValueError` names what does not fit."""
         swimmer = Swimmer(
             checked_instance("law", law, Law),
@@ -34,6 +35,7 @@ class Swimmer(NamedTuple):
             checked_row("position", position, 3),
             checked_quaternion("orientation", orientation),
             checked_row("twist", twist, 6),
+            float(duration),
         )
         if swimmer.scene.planar:
             check_planar(*swimmer.start)
@@ -45,9 +47,10 @@ class Swimmer(NamedTuple):
         return Start(self.position, self.orientation, self.twist)
 
 
-def swimmers_of(laws, bodies, scenes, accuracy, positions, orientations, twists) -> list[Swimmer]:
-    """B swimmers. Each argument is one for all, or a sequence of B (rows of an array (B, .) for the last three); a
-    sequence of length 1 counts as one for all. `ValueError` names what does not fit, and the swimmer's number."""
+def swimmers_of(laws, bodies, scenes, accuracy, positions, orientations, twists, duration) -> list[Swimmer]:
+    """B swimmers, for a `duration` [s]. Each other argument is one for all, or a sequence of B (rows of an array (B, .)
+    for the last three of them); a sequence of length 1 counts as one for all. `ValueError` names what does not fit, and
+    the swimmer's number."""
     columns = _broadcast(
         laws=_several("laws", laws, Law),
         bodies=_several("bodies", Body.boyer2010() if bodies is None else bodies, Body),
@@ -57,7 +60,7 @@ def swimmers_of(laws, bodies, scenes, accuracy, positions, orientations, twists)
         orientations=_rows("orientations", orientations, checked_quaternion),
         twists=_rows("twists", twists, lambda name, row: checked_row(name, row, 6)),
     )
-    swimmers = [Swimmer(*row) for row in zip(*columns, strict=True)]
+    swimmers = [Swimmer(*row, float(duration)) for row in zip(*columns, strict=True)]
     for index, swimmer in enumerate(swimmers):
         if swimmer.scene.planar:
             _check_planar(index, swimmer)

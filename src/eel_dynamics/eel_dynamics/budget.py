@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from functools import cache
 
 from .accuracy import Accuracy, key_of, table
+from .effort import USUAL, Effort
 from .scene import Scene
 
 UNITS = {"us": 1e-6, "ms": 1e-3, "s": 1.0}
@@ -39,9 +40,9 @@ class Budget:
             )
         return Budget(text.strip(), seconds)
 
-    def in_scene(self, scene: Scene, plane: bool = False) -> Accuracy:
+    def in_scene(self, scene: Scene, plane: bool = False, effort: Effort = USUAL) -> Accuracy:
         """The finest settings of the table that keep within the budget in `scene`, for a motion that stays in a `plane`
-        or for any. `ValueError` where none does."""
+        or for any, with the target that they deliver in a swim of such `effort`. `ValueError` where none does."""
         best, fastest = None, None
         for row in table()[key_of(scene)]:
             seconds = seconds_per_second(scene, row["target"])
@@ -54,7 +55,9 @@ class Budget:
                 f"accuracy {self.name!r} cannot be met on this machine in this scene: the coarsest run takes "
                 f"{1e3 * fastest:.3g} ms per second"
             )
-        return replace(Accuracy.of(best).in_scene(scene, plane), name=self.name)
+        key = key_of(scene, plane)
+        ease = effort.ease(key.drag, key.torque, key.plane)
+        return replace(Accuracy.of(best).in_scene(scene, plane), name=self.name, target=best / ease)
 
 
 @cache
@@ -65,11 +68,11 @@ def seconds_per_second(scene: Scene, target: float) -> float:
 
     from .run import simulate
 
-    law = straight() if scene.planar else falling()
+    law, settings = straight() if scene.planar else falling(), replace(Accuracy.of(target).in_scene(scene), target=None)
     best = float("inf")
     for repeat in range(REPEATS + 1):  # the first call tabulates, and may compile
         start = time.perf_counter()
-        simulate(law, DURATION, scene=scene, accuracy=target)
+        simulate(law, DURATION, scene=scene, accuracy=settings)
         if repeat:
             best = min(best, (time.perf_counter() - start) / DURATION)
     return best

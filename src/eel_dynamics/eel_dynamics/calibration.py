@@ -4,10 +4,10 @@ Every case is swum once with far more points and far smaller steps than any sett
 greater of the head's position at the end and of the torque (`errors`). Points along the body and steps in time are
 varied apart, since their errors add. For each target the table gets the cheapest settings whose worst error over all
 cases stays below it, also when all cases swim with them as they are: apart for cases that stay in a plane and others.
-What is cheap is counted in evaluations of the head's dynamics; for runs with torque those of the ledger count too, a
-number per step that is measured here. The kinks of the drag are looked for where that is cheaper than further points
-and further steps (without it the drag is less smooth in time, too). What comes of it is fitted to many more laws
-(`fitting`).
+Errors are taken by the difficulty of the swim (`effort`), as targets are when their settings are looked up. What is
+cheap is counted in evaluations of the head's dynamics; for runs with torque those of the ledger count too, a number per
+step that is measured here. The kinks of the drag are looked for where that is cheaper than further points and further
+steps (without it the drag is less smooth in time, too). What comes of it is fitted to many more laws (`fitting`).
 """
 
 import csv
@@ -26,6 +26,7 @@ from eel_gaits import falling, gait
 
 from .accuracy import ANY, CHOSEN, FIELDS, FINEST, KINKS, LOOSEST_TOLERANCE, TABLE_FILE, TURBULENT, Accuracy
 from .body import Body
+from .effort import effort_of
 from .errors import errors
 from .fitting import Fitting
 from .run import Run, simulate
@@ -47,12 +48,15 @@ REFERENCE = Accuracy(name="reference of the calibration", resolution=300.0, tole
 DENSE, EXACT = 140.0, 1e-12  # resolution and tolerance of what is not varied
 SHARE = 0.7  # of the target for the worst case: laws and scenes that are not among the cases may be worse
 PART_OF_SPACE = 0.25  # of that, for the points along the body
-MOST_FINER = 4  # settings that are tried in place of one which misses its target as a whole
 CHECKED = 0.85  # of the target, for the worst case with both
-FITTED = 0.6  # of the target, for the worst of the many laws that the settings are fitted to: few others are twice as
-# bad
+FITTED = 0.7  # of the target, for the gaits and most of the many laws that the settings are fitted to
 MANY = range(6, 66)  # their seeds
-WAIVED = 3  # of these, where nothing damps the motion in space: some are so sensitive that `simulate` verifies runs
+LONG = (
+    ("falling", "kern_fast"),
+    60.0,
+)  # gaits that count among these laws, and for how long [s]: the most sensitive to it
+WAIVED = 0.05  # part of the laws that may go over that, up to the target
+WAIVED_FREE = 3  # of them may miss the target where nothing damps the motion in space: `simulate` verifies such runs
 FINEST_IN_SPACE = 1e-8  # with drag: beyond, laws differ too much
 BESIDES = 22  # what an evaluation and its step cost whatever the nodes, in nodes that cost as much
 COARSE = 1e-4  # target, from which on points and steps are chosen together, and whether to look for kinks: below, their
@@ -60,6 +64,9 @@ COARSE = 1e-4  # target, from which on points and steps are chosen together, and
 FINER_STEPS, MOST_STEPS = 3, 10  # of the tolerances that are tried for these
 # what it costs to look for the drag's kinks, in nodes that cost as much; and where the motion stays in a plane
 COST_OF_KINKS = {"none": 0, "jumps": 5, "all": 13}, {"none": 0, "jumps": 15, "all": 30}
+# of the random laws, decadic logarithms, lowest and highest: of the bends and the pace of `random_law`, and of the time
+# [s] that they are swum for at that pace
+BENDS, PACES, SECONDS = (-0.7, 0.3), (-0.4, 0.4), (0.4, 1.2)
 TURNS = 15  # in which runs with the ledger and without are timed
 
 
@@ -77,6 +84,11 @@ class Case:
     def plane(self) -> bool:
         """The motion stays in a plane."""
         return self.law.in_plane
+
+    def difficulty(self, torque: bool) -> float:
+        """What errors of position, or with `torque` of either, are taken by."""
+        effort = effort_of(self.law, self.body.length, self.duration)
+        return effort.difficulty(self.scene.resistive, torque, self.plane)
 
 
 def random_law(seed: int, length: float, planar: bool = False) -> Law:
@@ -101,36 +113,62 @@ def random_law(seed: int, length: float, planar: bool = False) -> Law:
     return Law(*terms, name=f"random {seed}{' in the plane' if planar else ''}")
 
 
-def cases(drag: bool = True, seeds=range(6)) -> list[Case]:
-    """The library's gaits and random laws, on both bodies, in the scenes that differ most; with or without drag."""
+def cases(drag: bool = True, seeds=range(6), seconds: float | None = None) -> list[Case]:
+    """The library's gaits (for so many `seconds`; None: 10, or 4 without drag, where motions get too sensitive to stand
+    for others) and random laws, on both bodies, in the scenes that differ most; with or without drag."""
     boyer, kern = Body.boyer2010(), Body.kern2006()
     names = ("falling", "straight", "turning", "rolling", "helix", "kern_fast", "backward")
-    swimming = [(name, gait(name), boyer if "kern" not in name else kern) for name in names]
-    swimming += [_of_seed(seed) for seed in seeds]
+    seconds = seconds or (10.0 if drag else 4.0)
+    swimming = [(name, gait(name), boyer if "kern" not in name else kern, seconds) for name in names]
+    swimming += [_of_seed(seed, drag) for seed in seeds]
     scenes = {"laminar": Scene(friction="laminar", ledger=False), "printed": Scene(ledger=False)}
     if not drag:
         scenes = {"no drag": Scene(resistive=False, ledger=False)}
     found = [
-        Case(name=f"{name}, {scene}", law=law, body=body, scene=scenes[scene], duration=_duration(name, drag))
-        for name, law, body in swimming
+        Case(name=f"{name}, {scene}", law=law, body=body, scene=scenes[scene], duration=duration)
+        for name, law, body, duration in swimming
         for scene in scenes
     ]
     flat = [
-        Case(name=f"straight, planar, {name}", law=gait("straight"), body=boyer, scene=replace(scene, planar=True))
+        Case(
+            name=f"straight, planar, {name}",
+            law=gait("straight"),
+            body=boyer,
+            scene=replace(scene, planar=True),
+            duration=seconds,
+        )
         for name, scene in scenes.items()
     ]
     return found + flat
 
 
-def _of_seed(seed: int) -> tuple[str, Law, Body]:
-    """A random law, every third in the plane, and the body that swims it."""
-    law = random_law(seed, 1.0, planar=seed % 3 == 2)
-    return law.name, law, (Body.boyer2010(), Body.kern2006())[seed % 2]
+def _long() -> list[Case]:
+    """Gaits that swim for long."""
+    names, seconds = LONG
+    some = [case for case in cases(True, (), seconds) if case.name.split(",")[0] in names]
+    return [replace(case, name=f"{case.name}, {seconds:g} s") for case in some]
 
 
-def _duration(name: str, drag: bool) -> float:
-    """The paper's gait needs 10 s to be whole; without drag that is too sensitive to stand for others."""
-    return 10.0 if name == "falling" and drag else 4.0
+def _of_seed(seed: int, drag: bool) -> tuple[str, Law, Body, float]:
+    """A random law, every third in the plane, the body that swims it, and for how long [s]."""
+    rng = np.random.default_rng(1000 + seed)
+    bends, pace, seconds = 10.0 ** rng.uniform(*BENDS), 10.0 ** rng.uniform(*PACES), 10.0 ** rng.uniform(*SECONDS)
+    law = varied(random_law(seed, 1.0, planar=seed % 3 == 2), bends, pace)
+    return law.name, law, (Body.boyer2010(), Body.kern2006())[seed % 2], (seconds if drag else 4.0) / pace
+
+
+def varied(law: Law, bends: float, pace: float) -> Law:
+    """The same with so many times the bends, at so many times the pace."""
+    terms = [
+        replace(
+            term,
+            amplitude=tuple(bends * value for value in term.amplitude),
+            period=term.period / pace,
+            envelope=tuple(replace(ramp, start=ramp.start / pace, end=ramp.end / pace) for ramp in term.envelope),
+        )
+        for term in law.terms
+    ]
+    return Law(*terms, name=law.name)
 
 
 def swim(case: Case, accuracy) -> Run:
@@ -154,7 +192,7 @@ def calibrate(path: Path | str | None = None, say: Callable = lambda text: None)
     with ThreadPoolExecutor(os.cpu_count()) as pool:  # the loops run outside Python's lock
         for drag in (True, False):
             found = list(pool.map(lambda case: _measure(case, say), cases(drag)))
-            many = cases(drag, MANY)
+            many = cases(drag, MANY) + (_long() if drag else [])
             say(f"{len(many)} runs to compare with")
             many = list(zip(many, pool.map(lambda case: swim(case, REFERENCE), many), strict=True))
             for key in sorted({_key(each.case) for each in found}, reverse=True):
@@ -183,12 +221,20 @@ def _fitting(many: list[tuple[Case, Run]], torque: bool, pool: ThreadPoolExecuto
     def error(swimmer: tuple[Case, Run], setting: Accuracy) -> float:
         case, reference = swimmer
         found = _of(case if torque else _without_torque(case), reference, setting)
-        return max(found[: 2 if torque else 1])
+        return max(found[: 2 if torque else 1]) / case.difficulty(torque)
 
     grids = tuple(dict.fromkeys(_filled(each, torque) for each in RESOLUTIONS))
     free = not (many[0][0].scene.resistive or many[0][0].plane)
-    gaits = {case.name for case in cases(False, ())}
-    return Fitting(list(many), error, grids, pool, WAIVED if free else 0, lambda swimmer: swimmer[0].name not in gaits)
+    gaits = {case.name for drag in (True, False) for case in cases(drag, ())}
+    return Fitting(
+        list(many),
+        error,
+        grids,
+        pool,
+        waived=WAIVED_FREE if free else int(WAIVED * len(many)),
+        at_most=np.inf if free else 1.0 / FITTED,
+        may_miss=lambda swimmer: swimmer[0].name not in gaits,
+    )
 
 
 def ledger_of_a_step(turns: int = TURNS) -> float:
@@ -269,8 +315,11 @@ def _without_torque(case: Case) -> Case:
 def _rows(found: list[Errors], torque: bool, ledger: float, fitting: Fitting):
     """The rows of a table; `ledger`: evaluations that a step costs besides its own."""
     counted = slice(0, 2 if torque else 1)
-    space = np.max([each.space if torque else each.alone for each in found], axis=(0, 3))
-    time = np.max([each.time[..., counted] for each in found], axis=(0, 3))
+    by = [each.case.difficulty(torque) for each in found]
+    space = np.max(
+        [(each.space if torque else each.alone) / hard for each, hard in zip(found, by, strict=True)], axis=(0, 3)
+    )
+    time = np.max([each.time[..., counted] / hard for each, hard in zip(found, by, strict=True)], axis=(0, 3))
     cost = np.mean([each.time[..., 2] + ledger * each.time[..., 3] for each in found], axis=0)
     if torque:  # the ledger's works are integrals over steps: with Adams' longest ones they miss some hundredths
         cost[[method == "adams" for method, _ in METHODS]] = np.inf
@@ -289,8 +338,8 @@ def _rows(found: list[Errors], torque: bool, ledger: float, fitting: Fitting):
         resistive = found[0].case.scene.resistive
         if not settings or target < (FINEST_IN_SPACE if resistive and not found[0].case.plane else FINEST):
             continue
-        setting = _checked(found, torque, (SHARE if coarse else CHECKED) * target, ledger, settings)
-        setting = fitting.fitted(setting or replace(settings[-1], kinks="all"), FITTED * target)
+        setting = _cheapest(found, torque, (SHARE if coarse else CHECKED) * target, ledger, settings)
+        setting = fitting.fitted(setting, FITTED * target)
         if setting is not None:
             row = {name: getattr(setting, name) for name in ("resolution", *CHOSEN)}
             number = fitting.fewest(setting, numbers, FITTED * target)
@@ -335,34 +384,21 @@ def _swum(found: list[Errors], torque: bool, setting: Accuracy, ledger: float) -
     """The greatest error of all cases, as they are with a `setting`, and what they cost."""
     lean = [each.case if torque else _without_torque(each.case) for each in found]
     swum = [_of(case, each.reference, setting) for case, each in zip(lean, found, strict=True)]
-    worst = max(max(each[: 2 if torque else 1]) for each in swum)
+    counted = 2 if torque else 1
+    worst = max(max(each[:counted]) / case.difficulty(torque) for each, case in zip(swum, lean, strict=True))
     return worst, float(np.mean([evaluations + ledger * steps for *_, evaluations, steps in swum]))
 
 
-def _checked(
-    found: list[Errors], torque: bool, allowed: float, ledger: float, settings: list[Accuracy]
-) -> Accuracy | None:
-    """The cheapest of the `settings` with which the errors of all cases stay below what is `allowed`, or the nearest
-    finer one to the last of them that looks for all kinks; None where none does."""
+def _cheapest(found: list[Errors], torque: bool, allowed: float, ledger: float, settings: list[Accuracy]) -> Accuracy:
+    """The cheapest of the `settings` with which the errors of all cases stay below what is `allowed`; the last of them,
+    with all kinks, where none does."""
     good = []
     for setting in settings:
         worst, evaluations = _swum(found, torque, setting, ledger)
         if worst <= allowed:
             cost = BESIDES + _nodes(setting.resolution, torque) + COST_OF_KINKS[found[0].case.plane][setting.kinks]
             good.append((evaluations * cost, len(good), setting))
-    if good:
-        return min(good)[-1]
-    setting = replace(settings[-1], kinks="all")
-    for _ in range(MOST_FINER):
-        if _swum(found, torque, setting, ledger)[0] <= allowed:
-            return setting
-        finer = [resolution for resolution in RESOLUTIONS if resolution > setting.resolution]
-        setting = replace(
-            setting,
-            resolution=finer[0] if finer else setting.resolution,
-            tolerance=float(f"{setting.tolerance * 10.0 ** (-1.0 / 3.0):.2e}"),
-        )
-    return None
+    return min(good)[-1] if good else replace(settings[-1], kinks="all")
 
 
 def _first(errors, allowed: float) -> int | None:

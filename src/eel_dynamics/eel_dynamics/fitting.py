@@ -5,15 +5,15 @@ for is swum by many others: with shorter steps or more points until all of them 
 steps and fewer points for as long as they do.
 """
 
+import math
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
-from .accuracy import LOOSEST_TOLERANCE, Accuracy
+from .accuracy import LOOSEST, Accuracy
 
 STEP = 10.0 ** (1.0 / 6.0)  # of the tolerance
 SHORTER = 2, 6  # so many of them: few of the loosest may leave the steps at their longest
-LOOSEST = {"adams": 1e-2, "dormand_prince": LOOSEST_TOLERANCE}
 MOST_FINER = 14  # settings that are tried in place of one that is too coarse
 AT_ONCE = 8  # swims between two looks whether one has failed
 
@@ -21,13 +21,15 @@ AT_ONCE = 8  # swims between two looks whether one has failed
 @dataclass
 class Fitting:
     """The many who swim. `error(swimmer, setting)`: of one of the `swimmers`; grids: resolutions [points per length]
-    that differ in their nodes, ascending; `waived`: how many of those that `may_miss` what is allowed do so."""
+    that differ in their nodes, ascending; `waived`: how many of those that `may_miss` what is allowed do so, by no more
+    than a factor `at_most`."""
 
     swimmers: list
     error: Callable
     grids: tuple[float, ...]
     pool: ThreadPoolExecutor
     waived: int = 0
+    at_most: float = math.inf
     may_miss: Callable = lambda swimmer: True
 
     def fitted(self, setting: Accuracy, allowed: float) -> Accuracy | None:
@@ -67,7 +69,7 @@ class Fitting:
                 if error <= allowed:
                     continue
                 missed += 1
-                if missed > self.waived or not self.may_miss(some[index]):
+                if missed > self.waived or error > self.at_most * allowed or not self.may_miss(some[index]):
                     self.swimmers.insert(0, self.swimmers.pop(begin + index))
                     return False
         return True

@@ -26,6 +26,7 @@ class Member(Simulation):
         """The whole way of `swimmer`, of the same body, scene and accuracy, through `times` (T,) [s] into `works`
         (T, 4) [J] and the profiles of the row `out`; `place` (28,) as in `leg`."""
         if swimmer is not self._at_start:
+            self._horizon = swimmer.horizon
             self._prepare(swimmer.law, swimmer.start)
         self._at_start = None
         place[:ENERGY] = self._place[:ENERGY]

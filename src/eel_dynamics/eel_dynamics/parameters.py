@@ -21,7 +21,9 @@ class DynamicsParameters:
     """
 
     accuracy: str = _parameter(
-        "standard", "preset (draft, standard, fine, reference) or a target relative error", number=True
+        "standard",
+        "preset (draft, standard, fine, reference) or a target relative error, of a swim of that duration, or 10 s",
+        number=True,
     )
     rate: float = _parameter(
         100.0, "samples published per simulated second", "Hz", minimum=0.0, exclusive=True, maximum=1e4

@@ -180,7 +180,7 @@ def simulate(
         twist=twist,
         load=load,
     )
-    swimmer = Swimmer.of(law, body, scene, accuracy, position, orientation, twist)
+    swimmer = Swimmer.of(law, body, scene, accuracy, position, orientation, twist, duration)
     x, wrench = checked_stations(stations, swimmer.body.length), swimmer.scene.internal_wrench
     member = _crew.member(swimmer, x)
     out, works, done, stopped = member.record_of(swimmer, times, wrench, bool(load))

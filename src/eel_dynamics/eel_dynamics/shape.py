@@ -10,16 +10,15 @@ from bisect import insort
 from functools import lru_cache
 
 import numpy as np
-from eel_gaits.law import Law, Term, amplitude_of
+from eel_gaits.law import Law, amplitude_of
 from eel_gaits.spline import natural_spline
 
 from .drive import AXES, TABLES, TIMES, Drive, Tables, Tabulation, Times, factors
+from .effort import speed_of
 from .lanes import aligned
 from .packed import Packed
+from .waveforms import groups_of
 
-PART_OF_PEAK = 0.75  # of the turns where all terms bend the body most
-TURN_POINTS = 64  # along the body, for the angle that a law bends it by
-MOST_KNOTS = 8  # of laws whose panels are cut at them
 NONE, NO_NUMBER, NO_RAMP = np.zeros(0, dtype=np.int64), np.zeros(0), np.zeros((0, 3))
 
 
@@ -152,13 +151,9 @@ class Shape:
         anyway."""
         return min((period for period in self.drive.period.tolist() if period > 0.0), default=math.inf)
 
-    def reach(self, weight: np.ndarray) -> float:
-        """Speed [m/s] that the shape gives to the body, of the order of: mean over the sections, of the weights (n,)
-        [m] of the nodes; 0 for a shape that stands still."""
-        source = self._source
-        if "reach" not in source:
-            source["reach"] = _reach(source, self.drive.angle, weight) if "sine" in source else 0.0
-        return source["reach"]
+    def speed(self, length: float) -> float:
+        """Speed [m/s] that the law gives to a body of `length` [m], of the order of; 0 for samples and at rest."""
+        return speed_of(self._source["law"], length) if "law" in self._source else 0.0
 
     def end_blend(self, now: float):
         """Drop a blend that is over, so that it costs nothing."""
@@ -221,34 +216,6 @@ def _tables(tabulation: Tabulation, rows: np.ndarray, axis, sine, cosine) -> Pac
     return TABLES.packed(Tables(axis, node, angle, bend, station, station_bend, sine, cosine))
 
 
-def waves_of_law(law: Law, length: float) -> float:
-    """How many waves a law bends a body of `length` [m] into, at most; a spline counts an eighth of its intervals.
-
-    A turn of the backbone is a wave too, as its direction goes once around: turns are counted by the term that turns it
-    most, and by three quarters of what all do together where the body is bent most.
-    """
-    return _waves(tuple((term.axis, _waveform(term)) for term in law.terms), length)
-
-
-@lru_cache(maxsize=4096)
-def _waves(waveforms: tuple, length: float) -> float:
-    waves = [length * abs(wave_number) / (2.0 * np.pi) for _, (_, _, wave_number, _) in waveforms]
-    waves += [(len(knots) - 1) / 8.0 for _, (_, knots, _, _) in waveforms]
-    x = length * (np.arange(TURN_POINTS) + 0.5) / TURN_POINTS
-    bends = [np.abs(amplitude_of(amplitude, knots, x)) for _, (amplitude, knots, _, _) in waveforms]
-    together = np.zeros((2, TURN_POINTS))
-    for (axis, _), bend in zip(waveforms, bends, strict=True):
-        together[AXES[axis]] += bend
-    turns = [*(np.mean(bend) for bend in bends), PART_OF_PEAK * np.max(np.hypot(*together))]
-    return float(max(*waves, *(length / (2.0 * np.pi) * turn for turn in turns), 0.0))
-
-
-def knots_of_law(law: Law) -> tuple[float, ...]:
-    """X [m] inside the splines of `law`, where their third derivative jumps; none where there are many."""
-    knots = sorted({knot for term in law.terms for knot in term.knots[1:-1]})
-    return tuple(knots) if len(knots) <= MOST_KNOTS else ()
-
-
 @lru_cache(maxsize=256)
 def _straight(tabulation: Tabulation) -> dict:
     """The straight shape at rest."""
@@ -268,11 +235,6 @@ def _constant(value: np.ndarray) -> dict:
         "ramp_first": np.zeros(2, dtype=np.int64),
         "ramp_count": np.full(2, -1),
     }
-
-
-def _waveform(term: Term) -> tuple:
-    """What a term is along the body: amplitude and its knots, wave number, phase."""
-    return term.amplitude, term.knots, term.wave_number, term.phase
 
 
 @lru_cache(maxsize=1024)
@@ -298,9 +260,7 @@ def _pattern(groups: tuple, tabulation: Tabulation) -> dict:
 def _law_rows(law: Law, tabulation: Tabulation) -> dict:
     """Rows and time factors of a law; terms of equal axis, period and envelope share their rows. Laws that differ in
     periods and envelopes alone share theirs."""
-    groups: dict = {}
-    for term in law.terms:
-        groups.setdefault((term.axis, term.period, term.envelope), []).append(_waveform(term))
+    groups = groups_of(law)
     if not groups:
         return _straight(tabulation)
     first, count, ramps = [], [], []
@@ -319,34 +279,3 @@ def _law_rows(law: Law, tabulation: Tabulation) -> dict:
         "ramps": np.array(ramps, dtype=float).reshape(-1, 3),
         "ends": np.array(sorted({time for *ends, _ in ramps for time in ends}), dtype=float),
     }
-
-
-def _reach(source: dict, angle: np.ndarray, weight: np.ndarray) -> float:
-    """As `Shape.reach`, of the `angle` of the rows (m, n) [rad]: the mean square of what the terms move the sections
-    by, about their mean place, times their rates."""
-    period, ramps = source["period"].tolist(), source["ramps"].tolist() if "ramps" in source else []
-    if not period:
-        return 0.0
-    pattern = source.get("pattern", source)
-    if "moved" not in pattern:
-        pattern["moved"] = _moved(pattern, angle, weight)
-    square = 0.0
-    for k, moved in enumerate(pattern["moved"]):
-        count = int(source["ramp_count"][k])
-        mine = ramps[source["ramp_first"][k] :][: max(count, 0)]
-        height = max((abs(delta) for _, _, delta in mine), default=0.0) if count >= 0 else 1.0
-        shortest = min((end - start for start, end, _ in mine), default=math.inf)
-        rate = 2.0 * math.pi / period[k] if period[k] > 0.0 else 2.0 / shortest if shortest > 0.0 else math.inf
-        square += rate * height * rate * height * moved
-    return math.sqrt(0.5 * square)
-
-
-def _moved(pattern: dict, angle: np.ndarray, weight: np.ndarray) -> list[float]:
-    """Of each group of terms: the mean square [m^2] of what its rows, sine and cosine, move the sections by, about
-    their mean place, added."""
-    length = weight.sum()
-    offset = np.cumsum(angle * weight, axis=1)
-    offset -= (offset @ weight)[:, None] / length
-    moved = (offset**2 @ weight) / length
-    sine, cosine = pattern["sine"], pattern["cosine"]
-    return (moved[sine] + moved[np.where(cosine >= 0, cosine, sine)]).tolist()

@@ -17,6 +17,7 @@ from .arguments import (
 )
 from .body import Body
 from .bounds import FIRST_STEP, control_of
+from .effort import HORIZON, USUAL, Effort, effort_of
 from .energy import EnergyLedger
 from .guard import failure_of
 from .integrator import CONTROL, MARCHED, SINGULAR
@@ -46,11 +47,12 @@ from .packed import Packed
 from .profiles import PROFILES, Profiles, no_profiles, profiles_of, row_of
 from .scene import Scene
 from .sections import Swimmer
-from .shape import Shape, knots_of_law, waves_of_law
+from .shape import Shape
 from .snapshot import Snapshot
 from .start import Start, is_thrown, stays_in_plane, time_scale
 from .stopping import SimulationStopped, not_begun, remedy, stopped_by
 from .tables import Built, tabulated
+from .waveforms import knots_of_law, waves_of_law
 
 ROWS_AT_ONCE = 8  # of a law, for which there is space
 NONE = np.zeros(0)
@@ -62,7 +64,7 @@ class Simulation:
     body, scene: what swims in what. accuracy: preset, target relative error, or `Accuracy`. stations: how many, or
     their X (M,) [m]. position [m], orientation (x y z w, world from head), twist ((Omega, V) [rad/s, m/s], head's
     axes): the initial state, in the library's axes. default_transition [s]: of blends where a law gives none. law: the
-    first to adopt.
+    first to adopt. horizon [s]: how long a swim a target of accuracy is for.
     `ValueError` names the argument that does not fit.
     """
 
@@ -77,6 +79,7 @@ class Simulation:
         twist=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
         default_transition: float = 1.0,
         law: Law | None = None,
+        horizon: float = HORIZON,
     ):
         self.body = Body.boyer2010() if body is None else checked_instance("body", body, Body)
         self.scene = Scene() if scene is None else checked_instance("scene", scene, Scene)
@@ -93,7 +96,9 @@ class Simulation:
             check_planar(*start)
         if not (np.isfinite(default_transition) and default_transition > 0.0):
             raise ValueError(f"default_transition must be finite and > 0 s, got {default_transition!r}")
-        self._default_transition, self._built = float(default_transition), None
+        if not (np.isfinite(horizon) and horizon >= 0.0):
+            raise ValueError(f"horizon must be finite and >= 0 s, got {horizon!r}")
+        self._default_transition, self._horizon, self._built = float(default_transition), float(horizon), None
         self._begin(law, start)
 
     def _begin(self, law: Law | None, start: Start):
@@ -111,7 +116,8 @@ class Simulation:
         self._motion_scale = time_scale(self._relative, self.body.length)
         self._thrown = is_thrown(law, self._motion_scale)
         waves, knots = (1.0, ()) if law is None else self._needs(law)
-        self._use_accuracy(stays_in_plane(law, self._relative) and not self._thrown, waves)
+        self._moving = bool(self._relative.any())
+        self._use_accuracy(stays_in_plane(law, self._relative) and not self._thrown, self._effort_of(law))
         wanted = Built(self.accuracy.points_per_length(waves), self.accuracy.kinks, knots)
         if wanted != self._built:
             self._build(wanted)
@@ -190,10 +196,10 @@ class Simulation:
         if not (np.isfinite(blend) and blend > 0.0):
             raise ValueError(f"transition must be finite and > 0 s, got {transition!r}")
         first = not self._started
-        plane, waves = self._plane, self._waves
+        plane, effort, further = self._plane, self._effort, self._effort_of(law)
         before = copy(self.shape), self._table, self._built
-        self._use_accuracy(plane and law.in_plane, max(waves, needs[0]))
-        self._waves = needs[0]  # a law that comes after the next needs no care for the present one
+        self._use_accuracy(plane and law.in_plane, further if first else effort.at_least(further))
+        self._effort = further  # a law that comes after the next needs no care for the present one
         self._refine(*needs)
         self.shape.adopt(law, origin=float(origin), time=self.time, transition=0.0 if first else float(blend))
         if first:
@@ -202,21 +208,27 @@ class Simulation:
                     self._take_initial_state()
             except SimulationStopped as stopped:
                 (self.shape, self._table, self._built), self._scratch = before, None
-                self._use_accuracy(plane, waves)
+                self._use_accuracy(plane, effort)
                 self._take_initial_state()
                 raise not_begun(law, stopped) from None
         else:
             self._restart()
         self.ready = True
 
-    def _use_accuracy(self, plane: bool, waves: float):
-        """Take the settings for a motion that stays in a `plane`, or for any, of a shape of up to so many `waves`; the
-        march so far counts on."""
-        accuracy, before = self._wanted.in_scene(self.scene, plane), getattr(self, "_step", None)
-        self._plane, self._waves = plane, waves
+    def _effort_of(self, law: Law | None) -> Effort:
+        """What `law` has the body do until the horizon; the usual where it is not known, or the body moves already."""
+        if law is None:
+            return USUAL
+        effort = effort_of(law, self.body.length, self._horizon)
+        return effort.at_least(USUAL) if self._moving else effort
+
+    def _use_accuracy(self, plane: bool, effort: Effort):
+        """Take the settings for a motion that stays in a `plane`, or for any, and takes such `effort`; the march so far
+        counts on."""
+        accuracy, before = self._wanted.in_scene(self.scene, plane, effort), getattr(self, "_step", None)
+        self._plane, self._effort = plane, effort
         if self._thrown:
             accuracy = accuracy.of_violence()
-        accuracy = accuracy.for_waves(waves)
         if before is not None and (accuracy is self.accuracy or accuracy == self.accuracy):
             return
         self.accuracy, self._method = accuracy, method_of(accuracy.method, accuracy.order)
@@ -256,7 +268,7 @@ class Simulation:
             raise ValueError(
                 f"curvature samples time must lie ahead of the simulation ({self.time:.6f} s), got {time} s"
             )
-        self._use_accuracy(False, self._waves)
+        self._use_accuracy(False, self._effort.at_least(USUAL))
         self._refine((len(x) - 1) / 8.0)
         self.shape.add(float(time), self.time, x, np.reshape(values, (2, 3, len(x))))
         self.ready = True

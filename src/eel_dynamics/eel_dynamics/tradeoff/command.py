@@ -14,6 +14,7 @@ from pathlib import Path
 from eel_gaits.registry import GAITS, gait
 
 from ..body import NAMED, Body
+from ..effort import effort_of
 from ..ending import leave_on_interrupt
 from ..scene import Scene
 from . import measuring, models
@@ -86,7 +87,7 @@ def _measure_all(options) -> list[tuple]:
     for law in laws:
         fixed = {"duration": options.duration, "body": body, "scene": Scene(), "say": _say}
         _say(f"gait {law.name}")
-        rows = settings(fixed["scene"], options.quick, law.in_plane)
+        rows = settings(fixed["scene"], options.quick, law.in_plane, effort_of(law, body.length, options.duration))
         trade = measuring.measure(law, rows, repeats=options.repeats, **fixed)
         found.append((trade, models.compare(law, trade.reference, **fixed)))
     return found

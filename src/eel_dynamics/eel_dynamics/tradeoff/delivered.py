@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..accuracy import key_of, table
+from ..accuracy import Accuracy, key_of, table
 from ..calibration import REFERENCE, Case, cases, swim
 from ..errors import Errors, errors
 from .table import laid_out
@@ -71,7 +71,8 @@ def trials_of(case: Case, targets=TARGETS, reference=None) -> list[Trial]:
     """The runs of a case at those of the `targets` that the table has, against a `reference` run."""
     rows = table()[key_of(case.scene, case.plane)]
     reference = reference or swim(case, REFERENCE)
-    coarse = errors(swim(case, rows[0]["target"]), reference).worst
+    coarsest = replace(Accuracy.of(rows[0]["target"]).in_scene(case.scene, case.plane), target=None)
+    coarse = errors(swim(case, coarsest), reference).worst
     found = []
     for target in (each for each in targets if each >= rows[-1]["target"]):
         run = swim(case, target)

@@ -34,11 +34,13 @@ DELIVERED = """
 
 Each target of 1e-2 to 1e-9 that the table of accuracy has, on {cases} cases: the gaits of the library and random laws
 that the calibration has not seen, both bodies, laminar and printed friction and no drag. Error: the greater of the
-head's position and the torque, or of the position where no torque was asked for. The settings of the table are those of
-its worst case, for motions in a plane and others apart, so an easy gait gets more than it asked for: a swim that starts
-gently, or for a short way, is more exact at the same tolerance per step than one that falls through ramps for 10 s. A
-pilot run would tell, and cost what it could save: steps of a fifth-order method for an error thirty times larger are
-twice as long. The estimate of a run's own error is the difference from a finer run (`run.error_estimate`).
+head's position and the torque, or of the position where no torque was asked for. Gaits swim for 10 s (4 s without
+drag), random laws of a fifth of the usual bends to twice these and 0.4 to 2.5 times the usual pace for 3 to 16 s at
+that pace. The settings are the table's for a swim that is as hard (`effort.py`); laws that are equally hard still
+differ by ten and more, also because the place where a swim ends is one of many where its error could be read. Nearly
+all of them are to keep within their target, so many get more than they asked for. A pilot run would tell, and cost what
+it could save: steps of a fifth-order method for an error thirty times larger are twice as long. The estimate of a run's
+own error is the difference from a finer run (`run.error_estimate`).
 
 """
 
