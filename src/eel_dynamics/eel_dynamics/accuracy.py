@@ -44,14 +44,13 @@ LOOSEST_TOLERANCE = 1e-4  # of the pair, and of what an estimate compares with: 
 # and a light body that the water stops has steps by it alone
 LOOSEST = {"adams": 1e-2, "dormand_prince": LOOSEST_TOLERANCE}
 LEAST_EASED = 3e-8  # target: beyond, errors are of the places of kinks and of round-off, which gentle swims have too
-MORE_POINTS, MORE_STEPS = (
-    0.2,
-    0.25,
-)  # powers of what is wanted beyond the finest row, that points and fixed steps grow with
+MORE_POINTS, MORE_STEPS = 0.2, 0.25  # powers that points and fixed steps grow with beyond the finest row
 BEST = {"resolution": 200.0, "tolerance": 1e-11}  # of the preset reference, where its target cannot be promised
 ANY = {"resolution": 30.0}  # until the scene is known
 FURTHER_POINTS = 9.0  # per length, with which a grid is finer for certain: the last eight nodes are always filled
 WAVES_POWER = 0.85  # points grow with this power of the number of waves on the body
+BENT = 1.5  # waves on the body, that no law of the table's has
+BENT_POWER, BENT_LEAST = 1.5, 0.01  # of the waves beyond, that the tolerance falls with, and how far
 SPARED = 8.0  # points per length, of those that the panels have to spare, that grow too
 
 
@@ -112,9 +111,15 @@ class Accuracy:
         if self.target is None:
             return self
         key = key_of(scene, plane)
-        return _from_target(
-            self.name, self.target, key, self.fixed is not None, effort.ease(key.drag, key.torque, key.plane)
-        )
+        ease = effort.ease(key.drag, key.torque, key.plane)
+        return _from_target(self.name, self.target, key, self.fixed is not None, ease)
+
+    def for_waves(self, waves: float) -> "Accuracy":
+        """The same target for a shape of `waves` waves on the body, where those are more than the laws of the table
+        have: a body that is rolled up carries its head about, and takes steps by their error, not by their longest."""
+        if self.target is None or self.fixed is not None or waves <= BENT:
+            return self
+        return replace(self, tolerance=self.tolerance * max(BENT_LEAST, (BENT / waves) ** BENT_POWER))
 
     def of_violence(self) -> "Accuracy":
         """The same target for one who is thrown in: the table was measured with gaits that start from rest, and the

@@ -51,10 +51,7 @@ PART_OF_SPACE = 0.25  # of that, for the points along the body
 CHECKED = 0.85  # of the target, for the worst case with both
 FITTED = 0.7  # of the target, for the gaits and most of the many laws that the settings are fitted to
 MANY = range(6, 66)  # their seeds
-LONG = (
-    ("falling", "kern_fast"),
-    60.0,
-)  # gaits that count among these laws, and for how long [s]: the most sensitive to it
+LONG = ("falling", "kern_fast"), 60.0  # gaits that count among them, and for how long [s]: the most sensitive to it
 WAIVED = 0.05  # part of the laws that may go over that, up to the target
 WAIVED_FREE = 3  # of them may miss the target where nothing damps the motion in space: `simulate` verifies such runs
 FINEST_IN_SPACE = 1e-8  # with drag: beyond, laws differ too much

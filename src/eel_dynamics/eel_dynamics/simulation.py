@@ -117,7 +117,7 @@ class Simulation:
         self._thrown = is_thrown(law, self._motion_scale)
         waves, knots = (1.0, ()) if law is None else self._needs(law)
         self._moving = bool(self._relative.any())
-        self._use_accuracy(stays_in_plane(law, self._relative) and not self._thrown, self._effort_of(law))
+        self._use_accuracy(stays_in_plane(law, self._relative) and not self._thrown, waves, self._effort_of(law))
         wanted = Built(self.accuracy.points_per_length(waves), self.accuracy.kinks, knots)
         if wanted != self._built:
             self._build(wanted)
@@ -196,10 +196,11 @@ class Simulation:
         if not (np.isfinite(blend) and blend > 0.0):
             raise ValueError(f"transition must be finite and > 0 s, got {transition!r}")
         first = not self._started
-        plane, effort, further = self._plane, self._effort, self._effort_of(law)
+        plane, waves, effort, further = self._plane, self._waves, self._effort, self._effort_of(law)
         before = copy(self.shape), self._table, self._built
-        self._use_accuracy(plane and law.in_plane, further if first else effort.at_least(further))
-        self._effort = further  # a law that comes after the next needs no care for the present one
+        both = (needs[0], further) if first else (max(waves, needs[0]), effort.at_least(further))
+        self._use_accuracy(plane and law.in_plane, *both)
+        self._waves, self._effort = needs[0], further  # a law after the next needs no care for the present one
         self._refine(*needs)
         self.shape.adopt(law, origin=float(origin), time=self.time, transition=0.0 if first else float(blend))
         if first:
@@ -208,7 +209,7 @@ class Simulation:
                     self._take_initial_state()
             except SimulationStopped as stopped:
                 (self.shape, self._table, self._built), self._scratch = before, None
-                self._use_accuracy(plane, effort)
+                self._use_accuracy(plane, waves, effort)
                 self._take_initial_state()
                 raise not_begun(law, stopped) from None
         else:
@@ -222,13 +223,14 @@ class Simulation:
         effort = effort_of(law, self.body.length, self._horizon)
         return effort.at_least(USUAL) if self._moving else effort
 
-    def _use_accuracy(self, plane: bool, effort: Effort):
-        """Take the settings for a motion that stays in a `plane`, or for any, and takes such `effort`; the march so far
-        counts on."""
+    def _use_accuracy(self, plane: bool, waves: float, effort: Effort):
+        """Take the settings for a motion that stays in a `plane`, or for any, of a shape of up to so many `waves`, and
+        for such `effort`; the march so far counts on."""
         accuracy, before = self._wanted.in_scene(self.scene, plane, effort), getattr(self, "_step", None)
-        self._plane, self._effort = plane, effort
+        self._plane, self._waves, self._effort = plane, waves, effort
         if self._thrown:
             accuracy = accuracy.of_violence()
+        accuracy = accuracy.for_waves(waves)
         if before is not None and (accuracy is self.accuracy or accuracy == self.accuracy):
             return
         self.accuracy, self._method = accuracy, method_of(accuracy.method, accuracy.order)
@@ -268,7 +270,7 @@ class Simulation:
             raise ValueError(
                 f"curvature samples time must lie ahead of the simulation ({self.time:.6f} s), got {time} s"
             )
-        self._use_accuracy(False, self._effort.at_least(USUAL))
+        self._use_accuracy(False, self._waves, self._effort.at_least(USUAL))
         self._refine((len(x) - 1) / 8.0)
         self.shape.add(float(time), self.time, x, np.reshape(values, (2, 3, len(x))))
         self.ready = True
