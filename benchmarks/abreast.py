@@ -52,7 +52,7 @@ def _ready(scene: Scene, accuracy: Accuracy, planar: bool):
     """Legs of as many swimmers, the (28,) numbers that each leaves, and what has to stay in memory."""
     gait = straight if planar else falling
     laws = [gait(period=period) for period in np.linspace(0.8, 1.4, SWIMMERS)]
-    swimmers, crew, x = swimmers_of(laws, None, scene, accuracy, *AT), Crew(), np.zeros(1)
+    swimmers, crew, x = swimmers_of(laws, None, scene, accuracy, *AT, TIMES[-1]), Crew(), np.zeros(1)
     places, works = np.zeros((SWIMMERS, PLACE)), np.zeros((SWIMMERS, len(TIMES), 4))
     out = profiles_of(len(TIMES), 1, False, False, (SWIMMERS,))
     rows = row_of(out, False, False)

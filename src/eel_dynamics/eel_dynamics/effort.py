@@ -2,8 +2,8 @@
 
 At the same settings the error of the head's position grows with the way that the shape moves the sections by in the
 whole swim (up to some body lengths: beyond, the head's path, which it is taken by, grows as well), and that of the
-torque with the stroke, what it moves them by in a period: measured over laws of an eighth of the usual bends to twice
-these, at a third of the usual pace to three times that, swum for 2 to 60 s. Both count in body lengths, as root mean
+torque with the stroke, what it moves them by in a period: measured over laws of a tenth of the usual bends to twice
+these, at a third of the usual pace to three times that, swum for 1 to 60 s. Both count in body lengths, as root mean
 squares over the sections, about the body's mean place, as if it lay still.
 """
 
