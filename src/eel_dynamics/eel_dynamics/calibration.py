@@ -64,6 +64,7 @@ COST_OF_KINKS = {"none": 0, "jumps": 5, "all": 13}, {"none": 0, "jumps": 15, "al
 # of the random laws, decadic logarithms, lowest and highest: of the bends and the pace of `random_law`, and of the time
 # [s] that they are swum for at that pace
 BENDS, PACES, SECONDS = (-0.7, 0.3), (-0.4, 0.4), (0.4, 1.2)
+PRICED = 10  # of the laws, that tell what settings cost
 TURNS = 15  # in which runs with the ledger and without are timed
 
 
@@ -196,7 +197,8 @@ def calibrate(path: Path | str | None = None, say: Callable = lambda text: None)
                 for torque in (True, False):
                     some = [measured for measured in found if _key(measured.case) == key]
                     same = [each for each in many if _key(each[0]) == key]
-                    for row in _rows(some, torque, ledger if torque else 0.0, _fitting(same, torque, pool)):
+                    fitting, price = _fitting(same, torque, pool), _price(same, torque, ledger, pool)
+                    for row in _rows(some, torque, ledger if torque else 0.0, fitting, price):
                         kind = {"drag": int(drag), "turbulent": key[0], "torque": int(torque), "plane": key[1]}
                         rows.append(kind | row)
                         say(f"{rows[-1]}")
@@ -301,7 +303,7 @@ def _of(case: Case, reference: Run, accuracy: Accuracy) -> tuple[float, float, f
         run = swim(case, accuracy)
     except SimulationStopped:
         return (np.inf,) * 4
-    found = errors(run, reference)
+    found = errors(run, run if reference is None else reference)
     return found.position, found.torque, run.evaluations, run.steps
 
 
@@ -309,7 +311,7 @@ def _without_torque(case: Case) -> Case:
     return replace(case, scene=replace(case.scene, internal_wrench=False))
 
 
-def _rows(found: list[Errors], torque: bool, ledger: float, fitting: Fitting):
+def _rows(found: list[Errors], torque: bool, ledger: float, fitting: Fitting, price: Callable):
     """The rows of a table; `ledger`: evaluations that a step costs besides its own."""
     counted = slice(0, 2 if torque else 1)
     by = [each.case.difficulty(torque) for each in found]
@@ -338,6 +340,7 @@ def _rows(found: list[Errors], torque: bool, ledger: float, fitting: Fitting):
         setting = _cheapest(found, torque, (SHARE if coarse else CHECKED) * target, ledger, settings)
         setting = fitting.fitted(setting, FITTED * target)
         if setting is not None:
+            setting = fitting.cheapest(setting, FITTED * target, price, METHODS[-1:] if torque else METHODS)
             row = {name: getattr(setting, name) for name in ("resolution", *CHOSEN)}
             number = fitting.fewest(setting, numbers, FITTED * target)
             numbers = tuple(each for each in numbers if number is None or each >= number)
@@ -375,6 +378,20 @@ def _filled(resolution: float, torque: bool) -> float:
     """The finest resolution that costs the paper's robot no further eight nodes: a margin for laws of more waves."""
     most = _nodes(resolution, torque)
     return max(each for each in (resolution, *RESOLUTIONS) if _nodes(each, torque) <= most)
+
+
+def _price(many: list[tuple[Case, Run]], torque: bool, ledger: float, pool: ThreadPoolExecutor) -> Callable:
+    """What a setting costs some of `many` cases: evaluations, those of the ledger counted, times what one costs, in
+    nodes."""
+    some = [case if torque else _without_torque(case) for case, _ in many[:: max(1, len(many) // PRICED)]]
+    plane = some[0].plane
+
+    def price(setting: Accuracy) -> float:
+        runs = list(pool.map(lambda case: _of(case, None, setting), some))
+        nodes = BESIDES + _nodes(setting.resolution, torque) + COST_OF_KINKS[plane][setting.kinks]
+        return nodes * sum(evaluations + (ledger if torque else 0.0) * steps for *_, evaluations, steps in runs)
+
+    return price
 
 
 def _swum(found: list[Errors], torque: bool, setting: Accuracy, ledger: float) -> tuple[float, float]:

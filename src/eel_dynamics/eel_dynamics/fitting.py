@@ -2,7 +2,7 @@
 
 Laws differ in what a setting makes of them by a factor of thirty and more. So what the gaits and a few random laws ask
 for is swum by many others: with shorter steps or more points until all of them keep within the target, then with longer
-steps and fewer points for as long as they do.
+steps and fewer points for as long as they do; and by other methods and fewer points still, where that is cheaper.
 """
 
 import math
@@ -15,6 +15,7 @@ from .accuracy import LOOSEST, Accuracy
 STEP = 10.0 ** (1.0 / 6.0)  # of the tolerance
 SHORTER = 2, 6  # so many of them: few of the loosest may leave the steps at their longest
 MOST_FINER = 14  # settings that are tried in place of one that is too coarse
+GRIDS_BELOW, MOST_LONGER, MOST_SHORTER = 2, 6, 3  # grids and tolerances that are tried for what is cheaper
 AT_ONCE = 8  # swims between two looks whether one has failed
 
 
@@ -44,6 +45,27 @@ class Fitting:
             errors = list(self.pool.map(lambda choice: self.error(self.swimmers[0], choice), choices))
             setting = choices[errors.index(min(errors))]
         return None
+
+    def cheapest(self, setting: Accuracy, allowed: float, cost: Callable, methods) -> Accuracy:
+        """`setting`, or what costs less, as `cost(setting)` has it, and holds as the next tolerance below its own does:
+        by other `methods` (method, order), at other tolerances, on coarser grids, or with all kinks."""
+        grids = [each for each in self.grids if each <= setting.resolution][-GRIDS_BELOW - 1 :]
+        found, least = setting, cost(setting)
+        for kinks in dict.fromkeys((setting.kinks, "all")):
+            for method, order in methods:
+                for resolution in reversed(grids):
+                    other = replace(setting, method=method, order=order, resolution=resolution, kinks=kinks)
+                    for steps in range(-MOST_LONGER, MOST_SHORTER + 1):
+                        trial = self._shorter(other, steps)
+                        if trial.tolerance > LOOSEST[method] * 1.01:
+                            continue
+                        price = cost(trial)
+                        if price >= least:
+                            break
+                        if self._holds(trial, allowed) and self._holds(self._shorter(trial, 1), allowed):
+                            found, least = trial, price
+                            break
+        return found
 
     def fewest(self, setting: Accuracy, numbers: tuple[float, ...], allowed: float) -> float | None:
         """The first of the `numbers` of fixed steps that holds on the grid of `setting`; None where none does."""
