@@ -53,6 +53,44 @@ def test_those_who_are_waived_do_not_count(pool):
     assert near != Fitting(list(swimmers), error, GRIDS, pool, waived=2).fitted(START, 1e-2)
 
 
+METHODS = ("adams", 5), ("dormand_prince", 5)
+
+
+def price(setting: Accuracy) -> float:
+    """Adams' steps cost one evaluation in place of six."""
+    return (20.0 + setting.resolution) * setting.tolerance**-0.2 * (1.0 if setting.method == "adams" else 6.0)
+
+
+def test_what_is_cheaper_and_holds_takes_the_place_of_what_was_fitted(pool):
+    swimmers = [(1e-3 * k, 0.1 + k) for k in range(20)]
+
+    def by_method(swimmer, setting):  # Adams' steps err by twice as much in time
+        space, time = swimmer
+        return error((space, time * (2.0 if setting.method == "adams" else 1.0)), setting)
+
+    fitting = Fitting(list(swimmers), by_method, GRIDS, pool)
+    fitted = fitting.fitted(Accuracy(name="fitted", resolution=40.0, tolerance=1e-6), 1e-4)
+    assert fitted.method == "dormand_prince"
+    found = fitting.cheapest(fitted, 1e-4, price, METHODS)
+    assert found.method == "adams" and price(found) < 0.3 * price(fitted)
+    assert max(by_method(swimmer, found) for swimmer in swimmers) <= 1e-4
+    assert fitting.cheapest(found, 1e-4, price, METHODS) == found
+    assert fitting.cheapest(fitted, 1e-4, lambda setting: 1.0, METHODS) == fitted  # nothing is cheaper
+
+
+def test_a_lucky_tolerance_does_not_count(pool):
+    """One that holds while the next below it does not."""
+    lucky = 4.64e-5
+
+    def luck(swimmer, setting):
+        near = abs(setting.tolerance / lucky - 1.0) < 0.05
+        return 1e-5 if near or setting.tolerance < 1.1e-5 else 1e-3
+
+    setting = Accuracy(name="fitted", resolution=15.0, tolerance=1e-6)
+    found = Fitting([0], luck, GRIDS, pool).cheapest(setting, 1e-4, price, METHODS[1:])
+    assert 3e-6 < found.tolerance < 1.1e-5
+
+
 def test_a_tolerance_that_leaves_the_steps_at_their_longest_is_passed_over(pool):
     """From 1e-4 down to 1e-6 the steps, and so the error, stay; points do not help, or next to nothing."""
 
