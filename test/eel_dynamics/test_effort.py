@@ -85,7 +85,7 @@ def test_settings_between_the_rows_of_the_table_and_beyond_them():
     rows = {row["target"]: row for row in table()[key]}
     at, between = (Accuracy.of(target).in_scene(ALONE) for target in (1e-5, 2e-5))
     assert (at.resolution, at.tolerance) == (rows[1e-5]["resolution"], rows[1e-5]["tolerance"])
-    assert between.resolution == at.resolution and between.tolerance == pytest.approx(2.0 * at.tolerance)
+    assert between.resolution == at.resolution and between.tolerance == pytest.approx(2.0**0.8 * at.tolerance)
     finest = min(rows)
     hard = Effort(USUAL.stroke, 100.0 * USUAL.way)
     plain, harder = (Accuracy.of(finest).in_scene(ALONE, False, effort) for effort in (USUAL, hard))

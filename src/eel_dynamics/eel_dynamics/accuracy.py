@@ -43,6 +43,7 @@ FINEST_TOLERANCE = 1e-13  # below, round-off
 LOOSEST_TOLERANCE = 1e-4  # of the pair, and of what an estimate compares with: above, a gait's longest step rules,
 # and a light body that the water stops has steps by it alone
 LOOSEST = {"adams": 1e-2, "dormand_prince": LOOSEST_TOLERANCE}
+LOOSENED = 0.8  # power of what may be more than a row's target, that its tolerance grows with: errors may grow faster
 LEAST_EASED = 3e-8  # target: beyond, errors are of the places of kinks and of round-off, which gentle swims have too
 MORE_POINTS, MORE_STEPS = 0.2, 0.25  # powers that points and fixed steps grow with beyond the finest row
 BEST = {"resolution": 200.0, "tolerance": 1e-11}  # of the preset reference, where its target cannot be promised
@@ -239,5 +240,6 @@ def _eased(row: dict, coarser: dict, by: float, fixed: bool, **named) -> Accurac
     chosen = {each: row[each] for each in CHOSEN}
     alike = all(row[each] == coarser[each] for each in ("method", "order")) and coarser is not row
     loosest = coarser["tolerance"] if alike else LOOSEST[row["method"]]
-    chosen["tolerance"] = max(min(row["tolerance"] * by, loosest), FINEST_TOLERANCE)
+    tolerance = row["tolerance"] * (by**LOOSENED if by > 1.0 else by)
+    chosen["tolerance"] = max(min(tolerance, loosest), FINEST_TOLERANCE)
     return Accuracy(resolution=resolution, **chosen, **named)

@@ -24,7 +24,7 @@ EASIEST, HARDEST = 0.05, 1e3  # by which settings are made looser and finer
 # plane, in runs of the motion alone and with torque; and of torque with the stroke
 POWERS = {(True, False): (1.0, 1.2), (True, True): (0.65, 0.9), (False, False): (0.75, 1.2), (False, True): (0.5, 1.0)}
 OF_STROKE = 0.75
-FURTHER, FIERCER = 0.5, 0.3  # the same of way and stroke beyond the usual
+FURTHER, FIERCER = 0.7, 0.3  # the same of way and stroke beyond the usual
 LEVELS = 12  # of difficulty, to a decade
 
 
