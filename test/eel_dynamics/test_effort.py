@@ -56,6 +56,11 @@ def test_a_bend_is_a_way_once():
     assert effort_of(Law(Term(amplitude=(1.0,), phase=1.0)), LENGTH, 10.0) == Effort(0.0, 0.0)  # bent from the start
 
 
+def test_beyond_sixty_periods_a_swim_gets_no_harder():
+    minute, hour = (effort_of(Law(WAVE), LENGTH, 0.7 * periods) for periods in (60.0, 3600.0))
+    assert hour == minute and minute.way == pytest.approx(60.0 * minute.stroke)
+
+
 def test_scales_that_do_not_matter():
     """Twice as large a body with half the bends, at another pace: the same swim."""
     law = Law(WAVE, Term(axis="pitch", amplitude=(0.5,), period=1.1, envelope=(Ramp(0.2, 0.9, 1.0),)))

@@ -19,6 +19,7 @@ from .waveforms import groups_of
 POINTS = 64  # along the body
 STROKE, WAY = 0.37, 3.7  # body lengths, of the paper's gait in a period and in 10 s: what the table of targets is for
 HORIZON = 10.0  # s, of a swim without a known end
+LONGEST = 60.0  # periods: in longer swims the error by the path no longer grows
 EASIEST, HARDEST = 0.05, 1e3  # by which settings are made looser and finer
 # powers that errors grow with up to the usual: of position with the way, with drag and without, in space and in the
 # plane, in runs of the motion alone and with torque; and of torque with the stroke
@@ -72,7 +73,8 @@ def effort_of(law: Law, length: float, duration: float) -> Effort:
     turns the swimmer for as long as it is there."""
     motions = motions_of(law, length)
     period = min((each.time for each in motions if not each.once), default=math.inf)
-    ways = [each.stroke * min(duration / each.time, max(1.0, duration / period)) for each in motions]
+    periods = max(1.0, min(duration / period, LONGEST))
+    ways = [each.stroke * min(duration / each.time, periods) for each in motions]
     return Effort(math.hypot(*(each.stroke for each in motions)), math.hypot(*ways))
 
 
