@@ -70,15 +70,15 @@ link_executables() {
 }
 
 compile_kernels() {
-    local key abreast
+    local key beside
     key="$(sha256sum src/eel_dynamics/eel_dynamics/*.py | key_of "$(cat install/stamp)")"
     stamped build/numba_cache/stamp "$key" && return
-    say "compiling the kernels, a minute or two where their sources have changed (numba, cached in build/numba_cache)"
+    say "compiling the kernels, a minute or so where their sources have changed (numba, cached in build/numba_cache)"
     mkdir -p build/numba_cache
     tools/run.sh python -c "from eel_dynamics.abreast import warm_up; warm_up()" &   # what batches take besides
-    abreast=$!
+    beside=$!
     tools/run.sh python -c "from eel_dynamics import Simulation; Simulation().warm_up()"
-    wait "$abreast"
+    wait "$beside"
     printf '%s' "$key" > build/numba_cache/stamp
 }
 

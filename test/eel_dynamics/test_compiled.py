@@ -5,7 +5,7 @@ import signal
 
 import numba
 import pytest
-from eel_dynamics.compiled import compiled
+from eel_dynamics.compiled import compiled, inlined, shared
 
 
 class Heard(Exception):
@@ -70,3 +70,20 @@ def test_what_an_older_version_has_kept_may_be_of_types_that_are_gone():
     again = halving()
     again(3.0)
     assert again.stats.cache_hits[again.signatures[0]] == 1
+
+
+def test_what_is_for_loops_has_no_way_in_from_python_and_says_so():
+    @inlined
+    def third(x):
+        return x / 3.0
+
+    @shared
+    def ninth(x):
+        return third(third(x))
+
+    for part in (third, ninth):
+        part._cache.flush()
+    assert ninth(9.0) == 1.0
+    with pytest.raises(TypeError, match="third is for compiled loops to call"):
+        third(9.0)
+    assert len(third.overloads) == 1

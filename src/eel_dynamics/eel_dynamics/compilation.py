@@ -33,7 +33,7 @@ def ensure(say, interrupted) -> bool:
     """Has all loops compiled; False where `interrupted(seconds)`, which waits so long, became true in the meantime."""
     if load():
         return True
-    say("compiling the physics, which takes a minute or two and is kept for the next start")
+    say("compiling the physics, which takes a minute or so and is kept for the next start")
     return compile_apart(interrupted)
 
 

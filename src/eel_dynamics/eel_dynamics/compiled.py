@@ -45,7 +45,20 @@ def compiled(function):
 
 
 def inlined(function):
-    """Decorator: as `compiled`, and built into whoever calls it; for the parts of one evaluation."""
+    """Decorator: as `compiled`, and built into whoever calls it; for the parts of one evaluation. `TypeError` where
+    Python calls it: the way in from there takes as long to compile as the function."""
+
+    def refuse(*arguments, **named):
+        raise TypeError(f"{function.__name__} is for compiled loops to call")
+
+    dispatcher = njit(**OPTIONS, forceinline=True, no_cpython_wrapper=True, no_cfunc_wrapper=True)(function)
+    dispatcher._insert = lambda *entry, **named: None  # there is none
+    dispatcher._compile_for_args = refuse
+    return _kept(dispatcher)
+
+
+def shared(function):
+    """Decorator: as `inlined`, and for Python to call as well."""
     return _kept(njit(**OPTIONS, forceinline=True)(function))
 
 

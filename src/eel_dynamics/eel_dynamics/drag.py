@@ -7,7 +7,7 @@ What of it is not smooth along the body is integrated exactly: `kinks`.
 
 import numpy as np
 
-from .compiled import inlined
+from .compiled import inlined, shared
 from .kinks import AXIAL, BLENDED, HEIGHT, LAMINAR, PRINTED, RATIO, ROLL, SIDE, find_steps
 from .lanes import WIDTH, put, root, root_guess, signed, size, spread, take, total, where
 from .vectors import cross, from_section, in_section, put_three, three
@@ -139,7 +139,7 @@ def resistive_sums(swimmer, fields):
     return tx, ty, tz, fx, fy, fz, power
 
 
-@inlined
+@shared
 def add_resistive_loads(swimmer, fields, twist, wrench):
     """Add the drag along the body to `wrench` (6,), on the body (section 7.2.1), from the true velocities; `twist` (6,)
     is the head's. Returns its power [W]."""

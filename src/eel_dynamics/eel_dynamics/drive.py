@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .compiled import inlined
+from .compiled import inlined, shared
 from .lanes import WIDTH, aligned, floor, put, spread, take
 from .packed import Form
 
@@ -163,7 +163,7 @@ def quintic(s, length, sign, factor, row):
     factor[2, row + 2] = scale * d2 * (1.0 - s) * (1.0 - s * (8.0 - 10.0 * s))
 
 
-@inlined
+@shared
 def factors(drive, time, factor):
     """Factors c_m (3, m) at `time` [s]: value, rate [1/s] and acceleration [1/s^2]."""
     own = time - drive.origin
@@ -214,7 +214,7 @@ def factors(drive, time, factor):
                 quintic(max(0.0, part), length, 1.0, factor, drive.blend + 3 * axis)
 
 
-@inlined
+@shared
 def combine(axis, rows, factor, blocks, result):
     """Sum over rows of factor (m,) times rows (m, n), apart for pitch and yaw, into `result` (2, n)."""
     for k in range(blocks):

@@ -8,7 +8,7 @@ Momentum form: the balance (60) of Boyer, Porez and Leroyer (2010) is the time d
 water. With that momentum as the state, neither accelerations nor the second derivative of the law are needed to march.
 """
 
-from .compiled import inlined
+from .compiled import inlined, shared
 from .drag import add_resistive_loads
 from .drive import combine, combine_moments
 from .kinks import ONE, ZERO
@@ -106,7 +106,7 @@ def add_head_motion(swimmer, r, motion, turning, moving):
         put(moving, 2, i, bz + (motion[5] + motion[0] * y - motion[1] * x))
 
 
-@inlined
+@shared
 def add_head_twist(swimmer, fields, twist):
     """Add the motion of the head, `twist` (6,), to the velocities due to the change of shape: the true ones."""
     add_head_motion(swimmer, fields.r, twist, fields.omega, fields.v)
@@ -128,7 +128,7 @@ def wake_of(wake, added2, added3, added_roll, t1, t2, t3, r, omega, v):
     return (v1 * s1 * t1[0] + x, v1 * s1 * t1[1] + y, v1 * s1 * t1[2] + z, nx, ny, nz), v1, energy
 
 
-@inlined
+@shared
 def find_loads(swimmer, fields, twist):
     """Loads on the body from the true velocities: of the wake, w_tail of eq. (60), into `tail`, and of the drag along
     the body into `drag`; what they take and give into `losses`. `twist` (6,) is the head's."""
@@ -149,7 +149,7 @@ def find_loads(swimmer, fields, twist):
         fields.kinks.number[0] = 0
 
 
-@inlined
+@shared
 def configure(swimmer, drive, fields):
     """Configuration and shape velocities of the body at the instant of the time factors (the first loop of section
     7.1)."""

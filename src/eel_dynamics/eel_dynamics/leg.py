@@ -187,26 +187,36 @@ def recall(out, sample, y):
         y[7 + k] = out.twist[sample, k]
 
 
+@compiled
+def look(row, sample, time):
+    """Fill the `sample` of `out` for the leg of the `row`, which has come to `time`. Returns whether it could be done.
+    Not built into `swim`: a call for a sample costs nothing, and to compile it there as well takes half a minute."""
+    order = open_order(row)
+    fields, balance, here = open_scratch(row)
+    return observe(
+        *(open_swimmer(row), open_stations(row), open_drive(row), fields, balance, here, open_step(row)),
+        *(order.place[CURRENT:ENERGY], order.distributed, order.wrench, order.load, time, order.place[Y:TWIST], sample),
+        open_out(row),
+    )
+
+
 @spliced
 def go(row, order, step):
     """March through the samples of the leg of the `row`, which has begun. Returns how many were reached, and a
     status."""
     swimmer, drive, method, control = open_swimmer(row), open_drive(row), open_method(row), open_control(row)
-    fields, balance, here = open_scratch(row)
+    fields, balance, _ = open_scratch(row)
     y, current = order.place[Y:TWIST], order.place[CURRENT:ENERGY]
     for sample in range(len(order.times)):
-        time, out = order.times[sample], open_out(row)
+        time = order.times[sample]
         if order.begin == KNOWN:
-            recall(out, sample, y)
+            recall(open_out(row), sample, y)
         else:
             status = march(swimmer, drive, fields, balance, current, method, control, order.breakpoints, step, time)
             if status != MARCHED:
                 return sample, status
             state_at(method, control, step, time, y, order.works[sample])
-        if order.look and not observe(
-            *(swimmer, open_stations(row), drive, fields, balance, here, step, current, order.distributed),
-            *(order.wrench, order.load, time, y, sample, out),
-        ):
+        if order.look and not look(row, sample, time):
             return sample, SINGULAR
     return len(order.times), MARCHED
 

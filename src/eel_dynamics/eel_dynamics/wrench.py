@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .compiled import inlined
+from .compiled import inlined, shared
 from .drag import add_resistance
 from .kernel import add_head_motion, integrate_along
 from .kinks import integrate_steps
@@ -65,7 +65,7 @@ def moving_gain(R, omega, alpha, i):
     return x + along * ox - square * tx, y + along * oy - square * ty, z + along * oz - square * tz
 
 
-@inlined
+@shared
 def shape_accelerations(swimmer, fields, balance):
     """Accelerations of the sections where the head has none: alpha and acc with zero at the nose."""
     R, omega, f, rate, accel = fields.R, fields.omega, fields.integrand, fields.rate, fields.accel
@@ -82,13 +82,13 @@ def shape_accelerations(swimmer, fields, balance):
     integrate_along(swimmer, f, 0, balance.acc)
 
 
-@inlined
+@shared
 def add_head_acceleration(swimmer, fields, balance):
     """Add the head's acceleration to the accelerations of the sections: the true ones."""
     add_head_motion(swimmer, fields.r, balance.head, balance.alpha, balance.acc)
 
 
-@inlined
+@shared
 def section_densities(swimmer, fields, balance):
     """What the section's motion takes, f_N = M Vdot + Omega x M V, f_C = J Omegadot + Omega x J Omega + V x M V, moved
     to the head, into `density` (6, n)."""
@@ -119,7 +119,7 @@ def section_densities(swimmer, fields, balance):
         put_three(density, 3, i, hx, hy, hz)
 
 
-@inlined
+@shared
 def gather(swimmer, density, result):
     """Integral (6,) over the body of `density` (6, n)."""
     a = b = c = d = e = f = spread(0.0)
