@@ -74,6 +74,11 @@ def _runge_kutta(swimmer, drive, fields, step, y, start, h, count, a, b, c, grou
 
 
 @njit(**_COMPILE)
+def _rate(swimmer, drive, fields, step, y, time, rate):
+    rate_of_state(swimmer, drive, fields, np.zeros(3), time, y, step, rate)
+
+
+@njit(**_COMPILE)
 def _adams(swimmer, drive, fields, step, y, start, h, count, predictor, corrector, mode, rates):
     order, none, trial, new = len(predictor), np.zeros(3), np.zeros(13), np.zeros(13)
     head = order - 1
@@ -125,10 +130,10 @@ def adams(order, mode, per_second, scene) -> tuple[np.ndarray, int]:
     h, count = 1.0 / per_second, round(DURATION * per_second)
     _, a, b, c = tableaus()["classical"]
     rates = np.zeros((order, 13))
-    rate_of_state(*parts[:3], np.zeros(3), 0.0, y, parts[3], rates[0])
+    _rate(*parts, y, 0.0, rates[0])
     for m in range(1, order):
         _runge_kutta(*parts, y, (m - 1) * h, 0.5 * h, 2, a, b, c, False)
-        rate_of_state(*parts[:3], np.zeros(3), m * h, y, parts[3], rates[m])
+        _rate(*parts, y, m * h, rates[m])
     predictor, corrector = adams_weights(-np.arange(order)), adams_weights(1.0 - np.arange(order))
     _adams(*parts, y, (order - 1) * h, h, count - order + 1, predictor, corrector, mode, rates)
     return y, (count - order + 1) * (2 if mode == PECE else 1) + 9 * (order - 1)
