@@ -13,6 +13,7 @@ from eel_viz.centre_line import Resampling
 from eel_viz.messages import Backbone, Load
 from eel_viz.orientation import world_from_section
 from eel_viz.outlet import Outlet
+from eel_viz.stations import same
 
 ALONG = 24  # arrows between nose and tail
 KEPT = 512  # that wait; the oldest is given up
@@ -48,8 +49,8 @@ class Arrows:
     def _draw(self, stamp: int, backbone: Backbone, load: Load) -> None:
         along = self._stations(backbone.x)
         x, force = backbone.x[along], load.profiles.together("force_1", "force_2", "force_3")
-        same = np.array_equal(load.profiles.x, backbone.x)
-        force = force[along] if same else Resampling(load.profiles.x, x).linear(force)
+        alike = same(load.profiles.x, backbone.x)
+        force = force[along] if alike else Resampling(load.profiles.x, x).linear(force)
         vectors = world_from_section(backbone.orientation[along], force) * self._load_scale
         self._log(stamp, entities.LOAD, backbone.position[along], vectors)
         ends = [0, -1]
@@ -58,7 +59,7 @@ class Arrows:
 
     def _stations(self, x: np.ndarray) -> np.ndarray:
         """Indices of the stations that have an arrow: evenly along the body, and nothing is interpolated."""
-        if self._along is None or not np.array_equal(self._along[0], x):
+        if self._along is None or not same(self._along[0], x):
             wanted = np.linspace(x[0], x[-1], ALONG + 2)[1:-1]
             self._along = x, np.unique(np.searchsorted(x, wanted - 1e-9))
         return self._along[1]

@@ -15,6 +15,7 @@ def _unit(vector: np.ndarray) -> np.ndarray:
 AHEAD = _unit(TARGET - EYE)
 RIGHT = _unit(np.cross(AHEAD, (0.0, 0.0, 1.0)))
 UP = np.cross(RIGHT, AHEAD)
+SEEN = np.stack([RIGHT, UP, AHEAD], axis=1)  # right, up and ahead of a vector
 
 
 def before_eye(ahead: float, right: float, up: float) -> np.ndarray:
@@ -24,8 +25,8 @@ def before_eye(ahead: float, right: float, up: float) -> np.ndarray:
 
 def in_picture(points: np.ndarray) -> np.ndarray:
     """Where `points` (..., 3) [m] before the eye are seen: (..., 2), tangents to the right and up from the centre."""
-    ray = np.asarray(points) - EYE
-    return np.stack([ray @ RIGHT, ray @ UP], axis=-1) / (ray @ AHEAD)[..., None]
+    seen = (np.asarray(points) - EYE) @ SEEN
+    return seen[..., :2] / seen[..., 2:]
 
 
 class Steady:

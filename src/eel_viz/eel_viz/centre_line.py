@@ -6,21 +6,21 @@ So the skin can have its own abscissae, finer at the nose, and keeps its mesh wh
 import numpy as np
 
 from eel_viz.orientation import world_from_body
+from eel_viz.stations import same
 
 
 class Resampling:
     """Values at abscissae `target` [m], shape (R,), from those at strictly increasing stations `x` [m], shape (M,)."""
 
     def __init__(self, x: np.ndarray, target: np.ndarray) -> None:
-        self.x = np.array(x, dtype=float)
-        self.target = np.array(target, dtype=float)
+        self.x, self.target = x, target
         self.left = np.clip(np.searchsorted(self.x, self.target, side="right") - 1, 0, len(self.x) - 2)
         self.span = self.x[self.left + 1] - self.x[self.left]
         self.fraction = np.clip((self.target - self.x[self.left]) / self.span, 0.0, 1.0)
 
     def matches(self, x: np.ndarray, target: np.ndarray) -> bool:
         """Whether these weights serve for `x` and `target`, so that they can be kept."""
-        return np.array_equal(self.x, x) and np.array_equal(self.target, target)
+        return same(self.x, x) and same(self.target, target)
 
     def linear(self, values: np.ndarray) -> np.ndarray:
         """Linear interpolation of `values`, shape (M,) or (M, n); returns (R,) or (R, n)."""

@@ -12,7 +12,7 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
 ATTEND = 0.1  # s between two calls of `attend`
-PAUSE = 0.03  # s between two calls of `work` that found nothing
+PAUSE = 0.1  # s between two calls of `work` that found nothing: what comes in bursts is shown for less
 LAST_LOOK = 0.25  # s at most, at the end, for what has arrived and is not yet taken
 EMPTY = 0.005  # s that the executor waits for a message there; three times in vain, and there is none
 

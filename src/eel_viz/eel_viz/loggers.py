@@ -25,6 +25,7 @@ from eel_viz.scene import Water, log_legend
 from eel_viz.series import log_styles
 from eel_viz.settings import Settings
 from eel_viz.skin import Skin
+from eel_viz.stations import same
 from eel_viz.summary import Summary
 from eel_viz.track import Track
 
@@ -261,7 +262,7 @@ class Loggers:
     ) -> None:
         """Arrays as components of their own; the stations only when they are new."""
         known = self._stations.get(path)
-        if x is not None and (known is None or not np.array_equal(known, x)):
+        if x is not None and (known is None or not same(known, x)):
             self._stations[path] = x
             values = {"x": x, **values}
         self._outlet.numbers(stamp, path, name, values)

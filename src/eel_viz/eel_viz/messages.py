@@ -5,6 +5,8 @@ field, instead of guessing. Frames and units are those of the message.
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
+from math import isfinite
 
 import numpy as np
 
@@ -64,7 +66,7 @@ class Profiles:
 
     def together(self, *names: str) -> np.ndarray:
         """The profiles `names` side by side, (M, len(names))."""
-        return np.stack([self.values[name] for name in names], axis=1)
+        return np.array([self.values[name] for name in names]).T
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -110,7 +112,7 @@ def read_pose(pose) -> Pose:
     p, q = pose.position, pose.orientation
     orientation = np.array([q.x, q.y, q.z, q.w])
     _check_unit("orientation", orientation)
-    return Pose(position=_finite("position", np.array([p.x, p.y, p.z])), orientation=orientation)
+    return Pose(position=_vector("position", p), orientation=orientation)
 
 
 def read_twist(twist) -> Twist:
@@ -185,11 +187,20 @@ def read_diagnostics(message) -> list[Status]:
 
 def _profiles(message, names: tuple[str, ...]) -> Profiles:
     x = _stations(message.x)
-    return Profiles(x=x, values={name: _finite(name, _sized(name, getattr(message, name), len(x))) for name in names})
+    values = {name: _sized(name, getattr(message, name), len(x)) for name in names}
+    if not np.isfinite(np.array([*values.values()])).all():
+        for name, array in values.items():
+            _finite(name, array)
+    return Profiles(x=x, values=values)
 
 
 def _stations(values) -> np.ndarray:
-    x = _finite("x", np.asarray(values, dtype=float))
+    return _checked_stations(np.asarray(values, dtype=float).tobytes())
+
+
+@lru_cache(maxsize=16)  # one array for all messages that have the same
+def _checked_stations(content: bytes) -> np.ndarray:
+    x = _finite("x", np.frombuffer(content))
     if len(x) < 2:
         raise BadMessage("x", f"must have at least 2 stations, got {len(x)}")
     if not (x[1:] > x[:-1]).all():
@@ -211,7 +222,10 @@ def _finite(name: str, array: np.ndarray) -> np.ndarray:
 
 
 def _vector(name: str, vector) -> np.ndarray:
-    return _finite(name, np.array([vector.x, vector.y, vector.z]))
+    values = vector.x, vector.y, vector.z
+    if not all(map(isfinite, values)):
+        raise BadMessage(name, "has values that are not finite")
+    return np.array(values)
 
 
 def _check_unit(name: str, quaternions: np.ndarray) -> None:

@@ -7,6 +7,8 @@ from collections import deque
 
 import numpy as np
 
+from eel_viz.stations import same
+
 KEPT = 1024  # samples of either run that wait; the oldest are given up
 
 
@@ -49,6 +51,6 @@ class Pairs:
 
 def _on(x: np.ndarray | None, own: np.ndarray | None, values: np.ndarray) -> np.ndarray:
     """`values` at the abscissae `x` instead of their `own`."""
-    if x is None or np.array_equal(x, own):
+    if x is None or same(x, own):
         return values
     return np.stack([np.interp(x, own, column) for column in values.T], axis=1)

@@ -10,6 +10,7 @@ import rerun as rr
 
 from eel_viz import colours, entities
 from eel_viz.outlet import Outlet
+from eel_viz.stations import same
 
 WIDTH = 5.2
 LABEL_RISE = 0.085  # a label hangs below its point
@@ -45,8 +46,8 @@ class ProfilePlot:
 
     def include(self, x: np.ndarray, values: np.ndarray) -> None:
         """Widen the envelope and the limit by `values`, (M, n) at stations `x` [m], (M,)."""
-        if self._x is None or not np.array_equal(self._x, x):
-            self._x, self._low, self._high = np.array(x), np.array(values), np.array(values)
+        if self._x is None or not same(self._x, x):
+            self._x, self._low, self._high = x, np.array(values), np.array(values)
         else:
             np.minimum(self._low, values, out=self._low)
             np.maximum(self._high, values, out=self._high)

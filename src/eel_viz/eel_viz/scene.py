@@ -4,6 +4,8 @@ The floor is a grid of 12 m by 12 m that jumps along by whole metres, so it has 
 the swimmer comes near; its labels say where it is in the world frame.
 """
 
+from functools import lru_cache
+
 import numpy as np
 import rerun as rr
 
@@ -45,7 +47,7 @@ class Water:
         shadow = np.array(position[:: max(1, len(position) // 24)], dtype=np.float32)
         shadow[:, 2] = floor + 0.002
         self._outlet.row(stamp, entities.SHADOW, rr.LineStrips3D, strips=shadow[None])
-        labels = _clear_labels(_labels(x, y, floor), position - middle, middle)
+        labels = _clear_labels(*_labels(x, y, floor), position - middle, middle)
         if labels != self._labelled:
             self._labelled = labels
             self._label(stamp, labels)
@@ -64,21 +66,23 @@ class Water:
         )
 
 
-def _labels(x: int, y: int, floor: int) -> dict[tuple[int, int, int], str]:
-    """Places [m] on the floor around (x, y), and what to write there: a row of x, a row of y, a corner with all."""
+@lru_cache(maxsize=4)
+def _labels(x: int, y: int, floor: int) -> tuple[dict[tuple[int, int, int], str], np.ndarray]:
+    """Places [m] on the floor around (x, y), and what to write there: a row of x, a row of y, a corner with all. And
+    the places as an array (N, 3)."""
     right, far = x + 2, y + 4
     row = {(i, far, floor): f"x {i} m" for i in range(right - 5, right)}
     column = {(right, j, floor): f"y {j} m" for j in range(y - 1, far)}
-    return {**row, **column, (right, far, floor): f"x {right}, y {far}, z {floor} m"}
+    labels = {**row, **column, (right, far, floor): f"x {right}, y {far}, z {floor} m"}
+    return labels, np.array(list(labels), dtype=float)
 
 
-def _clear_labels(labels: dict, swimmer: np.ndarray, middle: np.ndarray) -> dict:
-    """Those of `labels` that are not before or behind the `swimmer`, (M, 3) [m] about its `middle`, in the picture."""
-    seen = camera.in_picture(swimmer)
-    places = camera.in_picture(np.array(list(labels), dtype=float) - middle)
-    apart = np.abs(places[:, None] - seen) / LABEL_SIZE
-    clear = np.all(np.max(apart, axis=2) > 1.0, axis=1)
-    return {place: text for (place, text), free in zip(labels.items(), clear, strict=True) if free}
+def _clear_labels(labels: dict, places: np.ndarray, swimmer: np.ndarray, middle: np.ndarray) -> dict:
+    """Those of `labels` at `places`, (N, 3) [m], that are not before or behind the `swimmer`, (M, 3) [m] about its
+    `middle`, in the picture."""
+    apart = np.abs(camera.in_picture(places - middle)[:, None] - camera.in_picture(swimmer))
+    hidden = ((apart <= LABEL_SIZE).all(axis=2)).any(axis=1)
+    return {place: text for (place, text), behind in zip(labels.items(), hidden.tolist(), strict=True) if not behind}
 
 
 def log_legend(outlet: Outlet, *, limit: float, unit: str, name: str) -> None:

@@ -63,7 +63,7 @@ class Skin:
 
     def spread(self, x: np.ndarray, values: np.ndarray) -> np.ndarray:
         """One value for each vertex, (rings * sides,), from `values` at stations `x`, (M,)."""
-        return np.repeat(Resampling(x, self.x).linear(values), self._sides)
+        return np.repeat(self.resampling(x).linear(values), self._sides)
 
 
 def _graded(rings: int) -> np.ndarray:

@@ -2,8 +2,6 @@
 seconds as a trail that fades into the water.
 """
 
-from collections import deque
-
 import numpy as np
 import rerun as rr
 
@@ -12,6 +10,7 @@ from eel_viz.outlet import Outlet
 
 LENGTH = 3.0  # s of the trail
 PIECES, POINTS = 10, 6  # of one brightness each, and points along one
+ROOM = 64  # places, at least, between two moves of what is remembered
 
 
 class Track:
@@ -19,7 +18,8 @@ class Track:
 
     def __init__(self, outlet: Outlet) -> None:
         self._outlet = outlet
-        self._recent: deque[tuple[int, np.ndarray]] = deque()
+        self._stamps, self._places = np.empty(0), np.empty((0, 3))  # ns, m: rows `begin` to `end` are the last seconds
+        self._begin = self._end = 0
         self._ages = _ages() * 1e9  # ns, (PIECES, POINTS), from the present backwards
         thin = rr.Radius.ui_points(0.8)
         outlet.fixed(entities.TRACK, rr.LineStrips3D.from_fields(colors=[colours.dim(colours.AMBER)], radii=[thin]))
@@ -30,17 +30,27 @@ class Track:
 
     def draw(self, stamp: int, position: np.ndarray) -> None:
         """Go on to `position`, (3,) [m], at `stamp` [ns]."""
-        if self._recent:
-            piece = np.stack([self._recent[-1][1], position])
+        if self._end > self._begin:
+            piece = np.array([self._places[self._end - 1], position])
             self._outlet.row(stamp, entities.TRACK, rr.LineStrips3D, strips=piece[None])
-        self._recent.append((stamp, np.array(position)))
-        while len(self._recent) > 2 and self._recent[1][0] < stamp - LENGTH * 1e9:
-            self._recent.popleft()
-        stamps = np.array([each for each, _ in self._recent], dtype=float)
-        places = np.array([place for _, place in self._recent])
-        wanted = stamp - self._ages
-        trail = np.stack([np.interp(wanted, stamps, places[:, axis]) for axis in range(3)], axis=-1)
-        self._outlet.row(stamp, entities.TRAIL, rr.LineStrips3D, strips=trail.astype(np.float32))
+        stamps, places = self._remember(stamp, position)
+        wanted, trail = stamp - self._ages, np.empty((PIECES, POINTS, 3), dtype=np.float32)
+        for axis in range(3):
+            trail[..., axis] = np.interp(wanted, stamps, places[:, axis])
+        self._outlet.row(stamp, entities.TRAIL, rr.LineStrips3D, strips=trail)
+
+    def _remember(self, stamp: int, position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Stamps [ns] (K,) and places [m] (K, 3) of the last seconds, with the present."""
+        if self._end == len(self._stamps):  # make room: for as many again as there are
+            kept, count = slice(self._begin, self._end), self._end - self._begin
+            stamps, places = np.empty(2 * count + ROOM), np.empty((2 * count + ROOM, 3))
+            stamps[:count], places[:count] = self._stamps[kept], self._places[kept]
+            self._stamps, self._places, self._begin, self._end = stamps, places, 0, count
+        self._stamps[self._end], self._places[self._end] = stamp, position
+        self._end += 1
+        while self._end - self._begin > 2 and self._stamps[self._begin + 1] < stamp - LENGTH * 1e9:
+            self._begin += 1
+        return self._stamps[self._begin : self._end], self._places[self._begin : self._end]
 
 
 def _ages() -> np.ndarray:
