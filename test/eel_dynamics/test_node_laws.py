@@ -205,8 +205,10 @@ def test_two_publishers_of_laws_are_a_warning_while_it_lasts(start, client):
     node = start("dynamics", "--ros-args")
     swim.until_time(0.2)
     second = swim.node.create_publisher(CurvatureLaw, "curvature_law", QoSProfile(depth=1))
-    swim.until(lambda: swim.diagnosis()[0] == 1, "warning")
-    assert "2 publishers of curvature_law" in swim.diagnosis()[1] and swim.diagnosis()[2]["publishers_of_laws"] == "2"
+    swim.until(  # among others, on a busy machine
+        lambda: "2 publishers of curvature_law" in swim.diagnosis()[2]["warnings"], "warning"
+    )
+    assert swim.diagnosis()[0] == 1 and swim.diagnosis()[2]["publishers_of_laws"] == "2"
     swim.node.destroy_publisher(second)
     swim.until(lambda: swim.diagnosis()[0] == 0, "end of the warning")
     assert node.output().count("2 publishers of curvature_law") == 1
