@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# All tests but the long ones. Without arguments as three pytest processes side by side, each in ROS domains of its own:
+# All tests but the long ones. Without arguments as four pytest processes side by side, each in ROS domains of its own:
 # they wait most of the time. Arguments go to one pytest.
 set -uo pipefail
 if [ $# -gt 0 ]; then exec python -m pytest -m "not soak" "$@"; fi
@@ -17,15 +17,14 @@ begin() {   # NAME TESTS...: into out/test-NAME.log
     beside[$1]=$!
 }
 
-nodes=(test/eel_dynamics/test_node_[!r]*.py test/eel_dynamics/test_sweep.py)
-recordings=(test/system/test_recordings.py test/system/test_soak.py)
+nodes=(test/eel_dynamics/test_node_[!r]*.py)
 begin nodes "${nodes[@]}"
-begin viz test/eel_viz test/eel_gaits "${recordings[@]}"
-echo "[test] mechanics and test/system here; the dynamics node, test/eel_viz, test/eel_gaits and recordings beside, shown when done"
-elsewhere=("${nodes[@]}" "${recordings[@]}")
-python -m pytest -m "not soak" test/eel_dynamics test/system "${elsewhere[@]/#/--ignore=}"
+begin viz test/eel_viz test/eel_gaits
+begin system test/system
+echo "[test] mechanics here; the dynamics node, test/eel_viz with test/eel_gaits, and test/system beside, shown when done"
+python -m pytest -m "not soak" test/eel_dynamics "${nodes[@]/#/--ignore=}"
 status=$?
-for name in nodes viz; do
+for name in nodes viz system; do
     wait "${beside[$name]}" || status=1
     cat "out/test-$name.log"
 done
