@@ -5,6 +5,7 @@ scenes is `eel_dynamics.calibration`; here are cases of each kind, and laws with
 """
 
 import warnings
+from functools import partial
 
 import numpy as np
 import pytest
@@ -78,7 +79,8 @@ def test_fixed_steps_deliver_the_target_too(name, target):
 def test_a_law_that_leaves_the_plane_gets_settings_for_it():
     """A motion in a plane needs less; what follows it does not get less than it needs."""
     flat, any_motion = straight(), falling()
-    swimmer, other = Simulation(accuracy=1e-5, law=flat), Simulation(accuracy=1e-5)
+    swimming = partial(Simulation, accuracy=1e-5, horizon=10.0)
+    swimmer, other = swimming(law=flat), swimming()
     assert swimmer.accuracy.tolerance > other.accuracy.tolerance
     swimmer.advance(0.5)
     steps = swimmer.evaluations[0]
@@ -86,7 +88,7 @@ def test_a_law_that_leaves_the_plane_gets_settings_for_it():
     assert swimmer.accuracy == other.accuracy and swimmer.evaluations[0] == steps
     swimmer.advance(1.0)
     assert swimmer.evaluations[0] > steps and np.all(np.isfinite(swimmer.state))
-    thrown = Simulation(accuracy=1e-5, law=flat, twist=(0.0, 0.1, 0.0, 0.0, 0.0, 0.0))
+    thrown = swimming(law=flat, twist=(0.0, 0.1, 0.0, 0.0, 0.0, 0.0))
     assert thrown.accuracy == other.accuracy
 
 

@@ -2,12 +2,13 @@
 
 import math
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
 from eel_dynamics.accuracy import Key, key_of, table
 from eel_dynamics.calibration import REFERENCE, Case, swim, varied
-from eel_dynamics.effort import EASIEST, HARDEST, HORIZON, USUAL, Effort, effort_of, speed_of
+from eel_dynamics.effort import EASIEST, HARDEST, USUAL, Effort, effort_of, speed_of
 from eel_dynamics.errors import errors
 from eel_gaits.law import Law, Ramp, Term
 
@@ -112,14 +113,23 @@ def test_who_moves_or_is_led_gets_the_settings_of_the_usual_swim():
 
 
 def test_the_horizon_is_the_duration_of_a_run():
-    far = Simulation(scene=ALONE, accuracy=1e-4, law=falling(), horizon=100.0).accuracy
-    assert simulate(falling(), 100.0, scene=ALONE, accuracy=1e-4, sample_period=100.0).accuracy == far
-    usual = Simulation(scene=ALONE, accuracy=1e-4, law=falling()).accuracy
-    assert (
-        usual == simulate(falling(), HORIZON, scene=ALONE, accuracy=1e-4).accuracy and usual.tolerance > far.tolerance
+    usual, far = (
+        simulate(falling(), duration, scene=ALONE, accuracy=1e-4, sample_period=duration).accuracy
+        for duration in (10.0, 100.0)
     )
-    with pytest.raises(ValueError, match="horizon must be finite and >= 0 s, got nan"):
-        Simulation(horizon=math.nan)
+    assert usual.tolerance > far.tolerance
+    at = partial(Simulation, scene=ALONE, accuracy=1e-4, law=falling())
+    assert at(horizon=10.0).accuracy == usual and at(horizon=100.0).accuracy == far
+    for wrong in (math.nan, -1.0):
+        with pytest.raises(ValueError, match=f"horizon must be >= 0 s, got {wrong}"):
+            at(horizon=wrong)
+
+
+def test_who_swims_for_nobody_knows_how_long_gets_settings_that_hold_for_ever():
+    endless = Simulation(scene=ALONE, accuracy=1e-4, law=falling())
+    assert endless.accuracy == simulate(falling(), 1e3, scene=ALONE, accuracy=1e-4, sample_period=1e3).accuracy
+    bend = Law(Term(axis="yaw", amplitude=(0.5,), envelope=(Ramp(0.2, 0.9, 1.0),)))
+    assert effort_of(bend, LENGTH, math.inf) == effort_of(bend, LENGTH, 1e6)
 
 
 def test_a_batch_of_gentle_and_violent_laws_swims_as_each_alone():

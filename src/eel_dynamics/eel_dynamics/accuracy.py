@@ -132,6 +132,10 @@ class Accuracy:
             return exact
         return replace(exact, method="dormand_prince", order=5, tolerance=min(self.tolerance, LOOSEST_TOLERANCE))
 
+    def as_it_is(self) -> "Accuracy":
+        """The same settings, for no target: no scene and no motion changes them."""
+        return replace(self, target=None)
+
     def finer(self) -> "Accuracy":
         """Settings that are at least some ten times as exact: what an estimate of the error compares with."""
         resolution = min(1000.0, max(1.4 * self.resolution + 2.0, self.resolution + FURTHER_POINTS))

@@ -1,10 +1,10 @@
 """From the node's parameters, in ROS (REP-103) frames, to the simulation, in the library's."""
 
+import math
 from dataclasses import replace
 from pathlib import Path
 
 from .body import Body
-from .effort import HORIZON
 from .frames import turn_quaternion, turn_vector
 from .parameters import DynamicsParameters
 from .scene import Scene
@@ -23,7 +23,7 @@ def simulation_of(parameters: DynamicsParameters, scene: Scene) -> Simulation:
         orientation=turn_quaternion(parameters.initial_orientation),
         twist=turn_vector([twist[:3], twist[3:]]).ravel(),
         default_transition=parameters.default_transition,
-        horizon=parameters.duration or HORIZON,
+        horizon=parameters.duration or math.inf,
     )
 
 

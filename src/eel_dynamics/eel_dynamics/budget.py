@@ -68,7 +68,8 @@ def seconds_per_second(scene: Scene, target: float) -> float:
 
     from .run import simulate
 
-    law, settings = straight() if scene.planar else falling(), replace(Accuracy.of(target).in_scene(scene), target=None)
+    law = straight() if scene.planar else falling()
+    settings = Accuracy.of(target).in_scene(scene).as_it_is()
     best = float("inf")
     for repeat in range(REPEATS + 1):  # the first call tabulates, and may compile
         start = time.perf_counter()

@@ -18,7 +18,6 @@ from .waveforms import groups_of
 
 POINTS = 64  # along the body
 STROKE, WAY = 0.37, 3.7  # body lengths, of the paper's gait in a period and in 10 s: what the table of targets is for
-HORIZON = 10.0  # s, of a swim without a known end
 LONGEST = 60.0  # periods: in longer swims the error by the path no longer grows
 EASIEST, HARDEST = 0.05, 1e3  # by which settings are made looser and finer
 # powers that errors grow with up to the usual: of position with the way, with drag and without, in space and in the
@@ -69,11 +68,11 @@ class Motion(NamedTuple):
 
 
 def effort_of(law: Law, length: float, duration: float) -> Effort:
-    """Of `law` for a body of `length` [m] that swims for `duration` [s]. A bend counts in every period of the waves: it
-    turns the swimmer for as long as it is there."""
+    """Of `law` for a body of `length` [m] that swims for `duration` [s], infinite where nobody knows how long. A bend
+    counts in every period of the waves: it turns the swimmer for as long as it is there."""
     motions = motions_of(law, length)
-    period = min((each.time for each in motions if not each.once), default=math.inf)
-    periods = max(1.0, min(duration / period, LONGEST))
+    shortest = min((each.time for each in motions if not each.once), default=None)
+    periods = max(1.0, min(duration / shortest, LONGEST)) if shortest else 1.0
     ways = [each.stroke * min(duration / each.time, periods) for each in motions]
     return Effort(math.hypot(*(each.stroke for each in motions)), math.hypot(*ways))
 

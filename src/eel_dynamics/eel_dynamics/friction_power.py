@@ -1,7 +1,5 @@
 """Power of the axial friction, k1 of section 7.2.1, apart from the rest of the drag."""
 
-from dataclasses import replace
-
 import numpy as np
 
 from .drag import add_resistive_loads
@@ -18,7 +16,7 @@ def drag_powers(run) -> np.ndarray:
     Evaluated anew at the nodes of a simulation with the settings of the run, from the law and the head's motion: their
     sum is the ledger's `drag_power`.
     """
-    settings = replace(run.accuracy, target=None)  # as they are, whatever motion they were chosen for
+    settings = run.accuracy.as_it_is()
     swimmer = Simulation(body=run.body, scene=run.scene, accuracy=settings, stations=2)
     swimmer.adopt(run.law)
     drive, fields, water = swimmer.drive, swimmer.fields, swimmer.swimmer

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .compiled import compiled, inlined, spliced
+from .compiled import compiled, inlined, shared, spliced
 from .drive import DRIVE, Drive, factors
 from .fields import Fields, fields_of
 from .integrator import (
@@ -123,7 +123,7 @@ def step_layout(stages: int, past: int) -> Layout:
     return Layout(STEP, step_of(stages, past))
 
 
-@inlined
+@shared
 def set_in_motion(swimmer, drive, fields, time, twist, y):
     """Give state `y` (13,) at `time` the momentum of the head's `twist` (6,) relative to the water. Returns the kinetic
     energy [J] of body and water (without the nose's)."""

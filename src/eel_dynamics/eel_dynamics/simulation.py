@@ -1,5 +1,6 @@
 """A swimmer in water, marched in time and observed: the algorithm of section 7.1 of Boyer, Porez and Leroyer (2010)."""
 
+import math
 from copy import copy
 from functools import cached_property
 
@@ -17,7 +18,7 @@ from .arguments import (
 )
 from .body import Body
 from .bounds import FIRST_STEP, control_of
-from .effort import HORIZON, USUAL, Effort, effort_of
+from .effort import USUAL, Effort, effort_of
 from .energy import EnergyLedger
 from .guard import failure_of
 from .integrator import CONTROL, MARCHED, SINGULAR
@@ -64,7 +65,7 @@ class Simulation:
     body, scene: what swims in what. accuracy: preset, target relative error, or `Accuracy`. stations: how many, or
     their X (M,) [m]. position [m], orientation (x y z w, world from head), twist ((Omega, V) [rad/s, m/s], head's
     axes): the initial state, in the library's axes. default_transition [s]: of blends where a law gives none. law: the
-    first to adopt. horizon [s]: how long a swim a target of accuracy is for.
+    first to adopt. horizon [s]: how long a swim a target of accuracy is for, by default however long.
     `ValueError` names the argument that does not fit.
     """
 
@@ -79,7 +80,7 @@ class Simulation:
         twist=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
         default_transition: float = 1.0,
         law: Law | None = None,
-        horizon: float = HORIZON,
+        horizon: float = math.inf,
     ):
         self.body = Body.boyer2010() if body is None else checked_instance("body", body, Body)
         self.scene = Scene() if scene is None else checked_instance("scene", scene, Scene)
@@ -96,8 +97,8 @@ class Simulation:
             check_planar(*start)
         if not (np.isfinite(default_transition) and default_transition > 0.0):
             raise ValueError(f"default_transition must be finite and > 0 s, got {default_transition!r}")
-        if not (np.isfinite(horizon) and horizon >= 0.0):
-            raise ValueError(f"horizon must be finite and >= 0 s, got {horizon!r}")
+        if not horizon >= 0.0:
+            raise ValueError(f"horizon must be >= 0 s, got {horizon!r}")
         self._default_transition, self._horizon, self._built = float(default_transition), float(horizon), None
         self._begin(law, start)
 

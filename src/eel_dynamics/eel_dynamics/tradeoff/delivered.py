@@ -71,7 +71,7 @@ def trials_of(case: Case, targets=TARGETS, reference=None) -> list[Trial]:
     """The runs of a case at those of the `targets` that the table has, against a `reference` run."""
     rows = table()[key_of(case.scene, case.plane)]
     reference = reference or swim(case, REFERENCE)
-    coarsest = replace(Accuracy.of(rows[0]["target"]).in_scene(case.scene, case.plane), target=None)
+    coarsest = Accuracy.of(rows[0]["target"]).in_scene(case.scene, case.plane).as_it_is()
     coarse = errors(swim(case, coarsest), reference).worst
     found = []
     for target in (each for each in targets if each >= rows[-1]["target"]):

@@ -39,4 +39,4 @@ def settings(scene: Scene, quick: bool = False, plane: bool = False, effort: Eff
             rows.append(Accuracy(name=f"{nodes}, step {step:g} s", resolution=resolution, step=step))
     # The presets without their target, which would have them take other settings where the wrench is off, for timing.
     presets = [Accuracy.of(name).in_scene(scene, plane, effort) for name in PRESETS]
-    return rows + [replace(each, target=None) for each in presets]
+    return rows + [each.as_it_is() for each in presets]
