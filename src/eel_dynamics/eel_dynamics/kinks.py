@@ -12,7 +12,7 @@ kept as weights of the nodes (`share`), and as a list of steps (`fields.Kinks`) 
 import numpy as np
 
 from .compiled import inlined
-from .lanes import WIDTH, below, bits, lowest, put, spread, take, total, where
+from .lanes import WIDTH, below, bits, fused, lowest, put, spread, take, total, where
 from .vectors import cross, three
 
 ZERO, ONE, TWO = (np.uintp(k) for k in range(3))  # indices that are unsigned need no test for Python's negative ones
@@ -94,15 +94,25 @@ def zero_between(swimmer, values, kind, begin, count, i, before, exact):
 @inlined
 def integrals_upto(swimmer, begin, count, t, row, at):
     """Weights `row[at]` (count,) [m] of the panel's nodes for the integral from its start to its fraction `t`."""
-    for k in range(0, count, WIDTH):
-        node = begin + np.uintp(k)
+    z = 2.0 * t - 1.0
+    for k in range(0, count, 2 * WIDTH):
+        node, low, middle = begin + np.uintp(k), 1.0, z  # Legendre polynomials
         weights = t * take(swimmer.series, ZERO, node)
-        z = 2.0 * t - 1.0
-        low, middle = 1.0, z  # Legendre polynomials
-        for m in range(np.uintp(count) - ONE):
-            high = UPPER[m] * z * middle - LOWER[m] * low
-            weights += INTEGRAL[m] * (high - low) * take(swimmer.series, m + ONE, node)
-            low, middle = middle, high
+        if count - k <= WIDTH:
+            for m in range(np.uintp(count) - ONE):
+                high = fused(UPPER[m] * z, middle, -LOWER[m] * low)
+                weights += INTEGRAL[m] * (high - low) * take(swimmer.series, m + ONE, node)
+                low, middle = middle, high
+        else:
+            behind = node + np.uintp(WIDTH)
+            others = t * take(swimmer.series, ZERO, behind)
+            for m in range(np.uintp(count) - ONE):
+                high = fused(UPPER[m] * z, middle, -LOWER[m] * low)
+                share = INTEGRAL[m] * (high - low)
+                weights += share * take(swimmer.series, m + ONE, node)
+                others += share * take(swimmer.series, m + ONE, behind)
+                low, middle = middle, high
+            put(row, at, k + WIDTH, others)
         put(row, at, k, weights)
 
 

@@ -309,6 +309,18 @@ def signed(typingctx, value, sign):
 
 
 @intrinsic
+def fused(typingctx, a, b, c):
+    """`a b + c` of plain numbers, and in this order: a compiler that may reorder has a recurrence wait for more."""
+    real = types.float64
+
+    def lowering(context, builder, sig, args):
+        kind = ir.FunctionType(_REAL, [_REAL] * 3)
+        return builder.call(cgutils.get_or_insert_function(builder.module, kind, "llvm.fmuladd.f64"), args)
+
+    return real(real, real, real), lowering
+
+
+@intrinsic
 def where(typingctx, mask, yes, no):
     """Lane by lane `yes` or `no`."""
 
