@@ -20,6 +20,7 @@ from eel_dynamics.calibration import REFERENCE
 from growth import growth
 from integrators import integrators
 from measuring import median_ratio, times_in_turn
+from nodes import nodes
 from switches import evaluate, plane, switches
 from ticks import ticks
 from visualiser import visualiser
@@ -121,6 +122,7 @@ FIGURES = {
     "abreast": abreast,
     "paper_scheme": paper_scheme,
     "visualiser": visualiser,
+    "nodes": nodes,
 }
 OPTIONAL = {"peers": peers}  # on request: installs other people's simulators
 

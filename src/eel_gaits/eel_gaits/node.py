@@ -29,6 +29,9 @@ NAME = "gait_generator"
 DEFAULTS = ["--ros-args", "-p", "use_sim_time:=true", "--"]  # what the user says comes after, and wins
 
 
+PAUSE = 0.05  # s between two looks at what has come
+
+
 class GaitGenerator(Node):
     """Parameters `gait`, `transition` and the gait's own numbers; topic `curvature_law`."""
 
@@ -129,7 +132,7 @@ def main(args=None):
     executor.add_node(node)
     while not signals:
         executor.spin_once(timeout_sec=0.1)
-        time.sleep(0.01)  # /clock may tick thousands of times a second: the newest tick is enough
+        time.sleep(PAUSE)  # /clock may tick thousands of times a second: the newest tick is enough
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, signal.SIG_IGN)  # until the process is gone: a second one would spoil its exit status
     executor.shutdown()
