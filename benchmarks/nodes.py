@@ -15,9 +15,8 @@ import numpy as np
 from eel_gaits.messages import law_to_message
 from geometry_msgs.msg import PoseStamped
 from node_process import NodeProcess
-from rclpy.qos import HistoryPolicy, QoSProfile
 from ros_domain import reserve_domain
-from swim_client import SwimClient, nanoseconds
+from swim_client import LOSSLESS, SwimClient, nanoseconds
 from visualiser import cpu_time
 
 from eel_gaits import Law, Term
@@ -34,7 +33,7 @@ def nodes():
 
 
 def _measured(folder: Path, domain):
-    running = []
+    running, client = [], None
 
     def start(executable: str, *settings: str) -> NodeProcess:
         words = ["--ros-args", *(word for setting in settings for word in ("-p", setting))]
@@ -52,7 +51,7 @@ def _measured(folder: Path, domain):
             PoseStamped,
             "head_pose",
             lambda message, about: published.append((about["source_timestamp"], nanoseconds(message.header.stamp))),
-            QoSProfile(history=HistoryPolicy.KEEP_ALL, depth=0),
+            LOSSLESS,
         )
         swimming = start("dynamics", "rate:=100.0", "wait_for_subscribers:=1"), start("gait_generator", "gait:=falling")
         client.until_time(SETTLED)
@@ -75,8 +74,9 @@ def _measured(folder: Path, domain):
             statistics.median(delays),
             f"ms, median (greatest {max(delays):.3g})",
         )
-        client.close()
     finally:
+        if client is not None:
+            client.close()
         for node in reversed(running):
             node.end()
 

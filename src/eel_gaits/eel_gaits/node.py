@@ -27,8 +27,6 @@ from eel_msgs.msg import CurvatureLaw
 
 NAME = "gait_generator"
 DEFAULTS = ["--ros-args", "-p", "use_sim_time:=true", "--"]  # what the user says comes after, and wins
-
-
 PAUSE = 0.05  # s between two looks at what has come
 
 

@@ -223,9 +223,8 @@ def _finite(name: str, array: np.ndarray) -> np.ndarray:
 
 def _vector(name: str, vector) -> np.ndarray:
     values = vector.x, vector.y, vector.z
-    if not all(map(isfinite, values)):
-        raise BadMessage(name, "has values that are not finite")
-    return np.array(values)
+    array = np.array(values)
+    return array if all(map(isfinite, values)) else _finite(name, array)
 
 
 def _check_unit(name: str, quaternions: np.ndarray) -> None:
