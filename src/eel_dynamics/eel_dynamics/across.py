@@ -13,7 +13,7 @@ from .fields import MOST_KINKS
 from .kernel import add_head_motion, rates_of, wake_of
 from .kinks import AXIAL, HEIGHT, ONE, PRINTED, RATIO, ROLL, SIDE, ZERO, integrals_upto, zero_between
 from .lanes import WIDTH, bits, lowest, put, size, spread, take, where
-from .momentum import factors_of, inertia_sums, momentum_sums, solved
+from .momentum import factors_of, lower_triangle, moving_sums, solved, turning_sums
 from .rates import head_axes, in_head, in_world, turning_rate
 from .rotations import product, put_axes, put_turns
 from .vectors import cross, put_three, three
@@ -103,9 +103,9 @@ def configure_across(many, laws, fields):
 def twist_across(swimmer, fields, angular, linear):
     """The heads' twist (6,) in configured bodies of the given momentum, in the heads' axes; and the lanes in which the
     inertia is not positive definite, as bits."""
-    a, s = inertia_sums(swimmer, fields), momentum_sums(swimmer, fields)
-    nose = swimmer.nose_mass
-    f = factors_of((*a[:9], a[9] + nose, *a[10:]))
+    turn, coupling = turning_sums(swimmer, fields)
+    by_velocity, s = moving_sums(swimmer, fields)
+    f = factors_of(lower_triangle(turn, coupling, by_velocity, swimmer.nose_mass))
     twist = solved(
         f,
         (

@@ -11,15 +11,15 @@ from .vectors import cross, dot, three
 
 
 @inlined
-def inertia_sums(swimmer, fields):
-    """Inertia of body and water about the head, I_o of section 6, without the nose's m_o: its lower triangle (21,), row
-    by row, each as lanes that are still to be added up.
+def turning_sums(swimmer, fields):
+    """Of I_o of section 6, the inertia of body and water about the head, what the turn of the head takes part in, each
+    as lanes that are still to be added up: angular momentum by Omega (xx, xy, xz, yy, yz, zz), and by V (9,), row by
+    row.
 
     With b, c = t2, t3: M = m + m2 b b^T + m3 c c^T along the body, and about the head
     r x M x r^T = m (r.r - r r^T) + m2 (r x b)(r x b)^T + m3 (r x c)(r x c)^T.
     """
     R, r = fields.R, fields.r
-    vxx = vxy = vxz = vyy = vyz = vzz = spread(0.0)
     cxx = cxy = cxz = cyx = cyy = cyz = czx = czy = czz = spread(0.0)
     wxx = wxy = wxz = wyy = wyz = wzz = spread(0.0)
     for k in range(swimmer.blocks):
@@ -35,28 +35,20 @@ def inertia_sums(swimmer, fields):
         x, y, z = three(r, 0, i)
         ux, uy, uz = cross(x, y, z, bx, by, bz)
         wx, wy, wz = cross(x, y, z, cx, cy, cz)
-        px, py, pz = m2 * bx, m2 * by, m2 * bz
-        qx, qy, qz = m3 * cx, m3 * cy, m3 * cz
-        vxx += m + px * bx + qx * cx
-        vxy += px * by + qx * cy
-        vxz += px * bz + qx * cz
-        vyy += m + py * by + qy * cy
-        vyz += py * bz + qy * cz
-        vzz += m + pz * bz + qz * cz
-        mx, my, mz = m * x, m * y, m * z
-        cxx += ux * px + wx * qx
-        cxy += ux * py + wx * qy - mz
-        cxz += ux * pz + wx * qz + my
-        cyx += uy * px + wy * qx + mz
-        cyy += uy * py + wy * qy
-        cyz += uy * pz + wy * qz - mx
-        czx += uz * px + wz * qx - my
-        czy += uz * py + wz * qy + mx
-        czz += uz * pz + wz * qz
-        j = weight * take(swimmer.inertia1, i)
-        j2, j3 = weight * take(swimmer.inertia2, i) - j, weight * take(swimmer.inertia3, i) - j
         px, py, pz = m2 * ux, m2 * uy, m2 * uz
         qx, qy, qz = m3 * wx, m3 * wy, m3 * wz
+        mx, my, mz = m * x, m * y, m * z
+        cxx += px * bx + qx * cx
+        cxy += px * by + qx * cy - mz
+        cxz += px * bz + qx * cz + my
+        cyx += py * bx + qy * cx + mz
+        cyy += py * by + qy * cy
+        cyz += py * bz + qy * cz - mx
+        czx += pz * bx + qz * cx - my
+        czy += pz * by + qz * cy + mx
+        czz += pz * bz + qz * cz
+        j = weight * take(swimmer.inertia1, i)
+        j2, j3 = weight * take(swimmer.inertia2, i) - j, weight * take(swimmer.inertia3, i) - j
         fx, fy, fz = j2 * bx, j2 * by, j2 * bz
         gx, gy, gz = j3 * cx, j3 * cy, j3 * cz
         wxx += j + fx * bx + gx * cx + px * ux + qx * wx + (my * y + mz * z)
@@ -65,45 +57,37 @@ def inertia_sums(swimmer, fields):
         wyy += j + fy * by + gy * cy + py * uy + qy * wy + (mx * x + mz * z)
         wyz += fy * bz + gy * cz + py * uz + qy * wz - my * z
         wzz += j + fz * bz + gz * cz + pz * uz + qz * wz + (mx * x + my * y)
-    # from the fourth row on: the momentum P by Omega, (r x M)^T
-    return (
-        *(wxx, wxy, wyy, wxz, wyz, wzz),
-        *(cxx, cyx, czx, vxx),
-        *(cxy, cyy, czy, vxy, vyy),
-        *(cxz, cyz, czz, vxz, vyz, vzz),
-    )
+    return (wxx, wxy, wxz, wyy, wyz, wzz), (cxx, cxy, cxz, cyx, cyy, cyz, czx, czy, czz)
 
 
 @inlined
-def inertia_of(swimmer, fields):
-    """I_o of section 6, the nose's m_o included: its lower triangle (21,), row by row."""
-    a = inertia_sums(swimmer, fields)
-    return (
-        *(total(a[0]), total(a[1]), total(a[2]), total(a[3]), total(a[4]), total(a[5])),
-        *(total(a[6]), total(a[7]), total(a[8]), total(a[9]) + swimmer.nose_mass),
-        *(total(a[10]), total(a[11]), total(a[12]), total(a[13]), total(a[14])),
-        *(total(a[15]), total(a[16]), total(a[17]), total(a[18]), total(a[19]), total(a[20])),
-    )
-
-
-@inlined
-def momentum_sums(swimmer, fields):
-    """Momentum (6,) of body and water about the head due to `omega`, `v` (the nose's m_o not in it), each as lanes that
-    are still to be added up."""
+def moving_sums(swimmer, fields):
+    """Of body and water, without the nose's m_o, each as lanes that are still to be added up: of I_o the linear momentum
+    by V (xx, xy, xz, yy, yz, zz); and the momentum (6,) about the head due to `omega`, `v`. Apart from `turning_sums`:
+    the sums of both together are more than a processor has registers."""
     R, r, omega, v = fields.R, fields.r, fields.omega, fields.v
+    vxx = vxy = vxz = vyy = vyz = vzz = spread(0.0)
     lx = ly = lz = px = py = pz = spread(0.0)
     for k in range(swimmer.blocks):
         i = WIDTH * k
         weight = take(swimmer.weight, i)
         m = weight * take(swimmer.mass, i)
+        m2, m3 = weight * take(swimmer.added2, i), weight * take(swimmer.added3, i)
         bx, by, bz = three(R, 3, i)
         cx, cy, cz = three(R, 6, i)
+        fx, fy, fz = m2 * bx, m2 * by, m2 * bz
+        gx, gy, gz = m3 * cx, m3 * cy, m3 * cz
+        vxx += m + fx * bx + gx * cx
+        vxy += fx * by + gx * cy
+        vxz += fx * bz + gx * cz
+        vyy += m + fy * by + gy * cy
+        vyz += fy * bz + gy * cz
+        vzz += m + fz * bz + gz * cz
         vx, vy, vz = three(v, 0, i)
-        p2 = weight * take(swimmer.added2, i) * dot(bx, by, bz, vx, vy, vz)
-        p3 = weight * take(swimmer.added3, i) * dot(cx, cy, cz, vx, vy, vz)
-        qx = m * vx + p2 * bx + p3 * cx
-        qy = m * vy + p2 * by + p3 * cy
-        qz = m * vz + p2 * bz + p3 * cz
+        v2, v3 = dot(bx, by, bz, vx, vy, vz), dot(cx, cy, cz, vx, vy, vz)
+        qx = m * vx + v2 * fx + v3 * gx
+        qy = m * vy + v2 * fy + v3 * gy
+        qz = m * vz + v2 * fz + v3 * gz
         px += qx
         py += qy
         pz += qz
@@ -116,14 +100,45 @@ def momentum_sums(swimmer, fields):
         lx += j * ox + s2 * bx + s3 * cx + tx
         ly += j * oy + s2 * by + s3 * cy + ty
         lz += j * oz + s2 * bz + s3 * cz + tz
-    return lx, ly, lz, px, py, pz
+    return (vxx, vxy, vxz, vyy, vyz, vzz), (lx, ly, lz, px, py, pz)
 
 
 @inlined
-def momentum_of(swimmer, fields):
-    """Momentum (6,) of body and water about the head due to `omega`, `v` (the nose's m_o not in it)."""
-    lx, ly, lz, px, py, pz = momentum_sums(swimmer, fields)
-    return total(lx), total(ly), total(lz), total(px), total(py), total(pz)
+def lower_triangle(turn, coupling, linear, nose):
+    """Lower triangle (21,) of I_o, row by row, from the sums; `nose` [kg]: the nose's m_o."""
+    wxx, wxy, wxz, wyy, wyz, wzz = turn
+    cxx, cxy, cxz, cyx, cyy, cyz, czx, czy, czz = coupling
+    vxx, vxy, vxz, vyy, vyz, vzz = linear
+    # from the fourth row on: the momentum P by Omega, (r x M)^T
+    return (
+        *(wxx, wxy, wyy, wxz, wyz, wzz),
+        *(cxx, cyx, czx, vxx + nose),
+        *(cxy, cyy, czy, vxy, vyy),
+        *(cxz, cyz, czz, vxz, vyz, vzz),
+    )
+
+
+@inlined
+def three_totals(a, b, c):
+    """Sums of the lanes."""
+    return total(a), total(b), total(c)
+
+
+@inlined
+def six_totals(a, b, c, d, e, f):
+    """Sums of the lanes."""
+    return total(a), total(b), total(c), total(d), total(e), total(f)
+
+
+@inlined
+def sums_of(swimmer, fields):
+    """I_o of section 6, the nose's m_o included: its lower triangle (21,), row by row; and the momentum (6,) of body and
+    water about the head due to `omega`, `v` (the nose's m_o not in it)."""
+    turn, coupling = turning_sums(swimmer, fields)
+    linear, momentum = moving_sums(swimmer, fields)
+    coupling = (*six_totals(*coupling[:6]), *three_totals(*coupling[6:]))
+    inertia = lower_triangle(six_totals(*turn), coupling, six_totals(*linear), swimmer.nose_mass)
+    return inertia, six_totals(*momentum)
 
 
 @inlined
@@ -226,8 +241,9 @@ def solve(a, b):
 @inlined
 def momentum_of_twist(swimmer, fields, twist, momentum):
     """Momentum (6,) of body, water and nose for the head's `twist` (6,), in a configured body."""
-    shape, inertia = momentum_of(swimmer, fields), fields.inertia
-    put_triangle(inertia, inertia_of(swimmer, fields))
+    inertia = fields.inertia
+    sums, shape = sums_of(swimmer, fields)
+    put_triangle(inertia, sums)
     for i in range(6):
         momentum[i] = shape[i]
         for j in range(6):
@@ -241,8 +257,8 @@ def twist_of_momentum(swimmer, fields, momentum, twist):
 
     False where the inertia is not positive definite. Leaves the factors of I_o in `fields.inertia`.
     """
-    s0, s1, s2, s3, s4, s5 = momentum_of(swimmer, fields)
-    factors = factors_of(inertia_of(swimmer, fields))
+    inertia, (s0, s1, s2, s3, s4, s5) = sums_of(swimmer, fields)
+    factors = factors_of(inertia)
     put_triangle(fields.inertia, factors)
     twist[0], twist[1], twist[2], twist[3], twist[4], twist[5] = solved(
         factors,
