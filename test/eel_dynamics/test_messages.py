@@ -1,12 +1,13 @@
 """Snapshots as messages: REP-103 axes where a message is in a ROS frame, section axes where it is not."""
 
-import copy
-
 import numpy as np
 import pytest
 from eel_dynamics.assembly import simulation_of
 from eel_dynamics.messages import Sample, body_message, diagnostic_array, samples_from_message
 from eel_dynamics.parameters import DynamicsParameters
+from eel_dynamics.wire import Wire
+from geometry_msgs.msg import PoseStamped
+from nav_msgs.msg import Odometry, Path
 from rclpy.serialization import deserialize_message, serialize_message
 
 from eel_dynamics import Body, Scene, Simulation
@@ -35,6 +36,11 @@ def xyzw(quaternion):
     return np.array([quaternion.x, quaternion.y, quaternion.z, quaternion.w])
 
 
+def filled(sample, name, snapshot):
+    """The message of a topic as a subscriber gets it."""
+    return deserialize_message(sample.fill(name, snapshot), sample.kinds[name])
+
+
 @pytest.fixture(scope="module")
 def swum():
     """A snapshot in the middle of a turn in three dimensions, and the messages filled from it."""
@@ -44,9 +50,7 @@ def swum():
     snapshot = simulation.observe()
     sample = Sample(simulation.x, simulation.scene, "odom", "base_link")
     sample.set_time(2_300_000_000)
-    for name in sample.messages:
-        sample.fill(name, snapshot)
-    return snapshot, sample.messages
+    return snapshot, {name: filled(sample, name, snapshot) for name in sample.kinds}
 
 
 def test_headers(swum):
@@ -125,20 +129,19 @@ def test_messages_pass_through_the_wire_unchanged(swum):
 
 def test_refilling_replaces_all_that_was_there(swum):
     snapshot, messages = swum
-    before = copy.deepcopy(messages)
     simulation = Simulation(stations=17)
     simulation.adopt(falling())
     sample = Sample(simulation.x, simulation.scene, "odom", "base_link")
-    for name in sample.messages:
+    for name in sample.kinds:
         sample.fill(name, simulation.observe())
     sample.set_time(2_300_000_000)
-    for name in sample.messages:
-        assert sample.fill(name, snapshot) == before[name], name
+    for name in sample.kinds:
+        assert filled(sample, name, snapshot) == messages[name], name
 
 
 def test_what_the_scene_leaves_out_is_not_offered():
-    messages = Sample(np.linspace(0, 1, 5), Scene(internal_wrench=False, ledger=False), "odom", "base_link").messages
-    assert "internal_wrench" not in messages and "energy" not in messages and "curvature" in messages
+    kinds = Sample(np.linspace(0, 1, 5), Scene(internal_wrench=False, ledger=False), "odom", "base_link").kinds
+    assert "internal_wrench" not in kinds and "energy" not in kinds and "curvature" in kinds
 
 
 def test_start_is_given_in_ros_frames_and_published_back():
@@ -155,8 +158,8 @@ def test_start_is_given_in_ros_frames_and_published_back():
     snapshot = simulation.observe()
     assert snapshot.twist[3] == pytest.approx(-0.4)  # library: forward is V1 < 0
     sample = Sample(simulation.x, simulation.scene, "odom", "base_link")
-    pose = sample.fill("head_pose", snapshot).pose
-    twist = sample.fill("head_twist", snapshot).twist
+    pose = filled(sample, "head_pose", snapshot).pose
+    twist = filled(sample, "head_twist", snapshot).twist
     assert np.allclose(xyz(pose.position), (1.0, 2.0, 3.0), rtol=0, atol=1e-15)
     assert np.allclose(xyzw(pose.orientation), orientation, rtol=0, atol=1e-15)
     assert np.allclose(xyz(twist.linear), (0.4, 0.1, -0.2), rtol=0, atol=1e-12)
@@ -205,5 +208,30 @@ def test_zero_is_never_minus_zero():
     simulation.adopt(Law(name="still"))
     sample = Sample(simulation.x, simulation.scene, "odom", "base_link")
     for name in ("head_pose", "head_twist", "odom"):
-        assert "-0.0" not in repr(sample.fill(name, simulation.observe()))
-    assert "-0.0" not in repr(list(sample.fill("backbone", simulation.observe()).orientation))
+        assert "-0.0" not in repr(filled(sample, name, simulation.observe()))
+    assert "-0.0" not in repr(list(filled(sample, "backbone", simulation.observe()).orientation))
+
+
+def test_serialised_message_changes_as_its_fields_do():
+    """Each number and the time at its own place, beside texts that move them off their multiples of eight."""
+    message = Odometry(child_frame_id="a")
+    message.header.frame_id = "world"
+    wire = Wire(message)
+    values = np.random.default_rng(1).normal(size=(4, 4))
+    pose, twist = message.pose.pose, message.twist.twist
+    for target, names, path, row in (
+        (pose.position, "xyz", "pose.pose.position", values[0, :3]),
+        (pose.orientation, "xyzw", "pose.pose.orientation", values[1]),
+        (twist.linear, "xyz", "twist.twist.linear", values[2, :3]),
+        (twist.angular, "xyz", "twist.twist.angular", values[3, :3]),
+    ):
+        for name, value in zip(names, row, strict=True):
+            setattr(target, name, value)
+        wire.numbers[path][:] = row
+    message.header.stamp.sec, message.header.stamp.nanosec = wire.stamp[:] = 7, 999_999_999
+    assert deserialize_message(wire.data(), Odometry) == message
+
+
+def test_a_message_whose_places_are_not_sure_is_refused():
+    with pytest.raises(RuntimeError, match="Path is not serialised as it was expected"):
+        Wire(Path(poses=[PoseStamped()]))  # has two times

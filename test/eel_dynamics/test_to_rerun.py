@@ -2,13 +2,13 @@
 
 import subprocess
 import sys
-from copy import deepcopy
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from eel_dynamics.messages import Sample, body_message, diagnostic_array
 from eel_dynamics.records import records
+from rclpy.serialization import deserialize_message
 
 from eel_dynamics import Scene, simulate
 from eel_gaits import falling, straight
@@ -33,9 +33,9 @@ def node_messages(run, statuses):
         sample.set_time(round(time * 1e9))
         energy = SimpleNamespace(**{name: run.energy[name][k] for name in run.energy.keys()})  # noqa: SIM118
         snapshot = SimpleNamespace(energy=energy, **{name: getattr(run, name)[k] for name in PROFILES})
-        for topic in sample.messages:
+        for topic, kind in sample.kinds.items():
             if not topic.startswith("/"):
-                yield topic, deepcopy(sample.fill(topic, snapshot))  # the node refills what it has sent
+                yield topic, deserialize_message(sample.fill(topic, snapshot), kind)
     yield "diagnostics", statuses[1]
 
 

@@ -1,4 +1,4 @@
-"""The node's messages: the run's samples as ROS messages, built once and refilled, and what comes in.
+"""The node's messages: the run's samples, serialised once and refilled, and what comes in.
 
 Library (the paper's) frames become REP-103 frames here and nowhere else, by `turn_vector` and `turn_quaternion`; fields
 that are kept in section axes (1 = -x, 2 = -y, 3 = +z of base_link) pass unchanged.
@@ -34,6 +34,7 @@ from .frames import turn_quaternion, turn_vector
 from .parameters import limits
 from .records import outline
 from .scene import Scene
+from .wire import Wire
 
 try:
     from tf2_msgs.msg import TFMessage
@@ -49,16 +50,14 @@ def seconds_of(time: Time) -> float:
 
 
 class Sample:
-    """One message per topic of samples; `fill` overwrites the message `name` from a snapshot, in place.
+    """What goes out for a sample: `fill` gives the message of a topic, serialised, from a snapshot; `tick` that of
+    /clock. `kinds`: the types of the topics; `clock`: that of /clock."""
 
-    A float64[] field is an `array.array`, which a numpy view fills without a copy in Python.
-    """
+    clock = Clock
 
     def __init__(self, x: np.ndarray, scene: Scene, world_frame: str, head_frame: str):
-        self._time = Time()  # shared by all
-        self._x = np.ascontiguousarray(x, dtype=float)
-        self.clock = Clock(clock=self._time)
-        self.messages = {
+        self._nanoseconds = 0, 0
+        messages = {
             "head_pose": PoseStamped(),
             "head_twist": TwistStamped(),
             "odom": Odometry(child_frame_id=head_frame),
@@ -70,18 +69,17 @@ class Sample:
         }
         for name, computed in (("internal_wrench", scene.internal_wrench), ("energy", scene.ledger)):
             if not computed:
-                del self.messages[name]
+                del messages[name]
         in_world = ("head_pose", "odom", "backbone", "energy")
-        self._views = {}
-        for name, message in self.messages.items():
-            message.header.stamp = self._time
+        for name, message in messages.items():
             message.header.frame_id = world_frame if name in in_world else head_frame
-            self._views[name] = self._buffers_of(message)
-        self.transform = TransformStamped(child_frame_id=head_frame)
-        self.transform.header.stamp = self._time
-        self.transform.header.frame_id = world_frame
+            _lengthen(message, np.asarray(x, dtype=float))
         if TFMessage is not None:
-            self.messages["/tf"] = TFMessage(transforms=[self.transform])
+            transform = TransformStamped(child_frame_id=head_frame)
+            transform.header.frame_id = world_frame
+            messages["/tf"] = TFMessage(transforms=[transform])
+        self.kinds = {name: type(message) for name, message in messages.items()}
+        self._wires, self._clock = {name: Wire(message) for name, message in messages.items()}, Wire(Clock())
         self._fill = {
             "head_pose": self._fill_pose,
             "head_twist": self._fill_twist,
@@ -93,78 +91,88 @@ class Sample:
             "energy": self._fill_energy,
             "/tf": self._fill_transform,
         }
+        self._of = None  # the snapshot that these are of
+        self._position = self._orientation = self._turning = self._moving = None
 
     def set_time(self, nanoseconds: int):
         """The simulation time [ns] of all messages, /clock's too."""
-        self._time.sec, self._time.nanosec = divmod(nanoseconds, SECOND)
+        self._nanoseconds = divmod(nanoseconds, SECOND)
 
-    def fill(self, name: str, snapshot):
-        """The message of topic `name`, overwritten with `snapshot`."""
-        self._fill[name](snapshot)
-        return self.messages[name]
+    def tick(self) -> bytes:
+        """The message of /clock."""
+        return self._sealed(self._clock)
 
-    def _buffers_of(self, message) -> dict[str, np.ndarray]:
-        views = {}
-        for field, kind in message.get_fields_and_field_types().items():
-            if kind == "sequence<double>":
-                count = {"position": 3, "orientation": 4}.get(field, 1) * len(self._x)
-                setattr(message, field, array.array("d", bytes(8 * count)))
-                views[field] = np.frombuffer(getattr(message, field), dtype=float)  # the message may have copied it
-        if "x" in views:
-            views["x"][:] = self._x
-        return views
+    def fill(self, name: str, snapshot) -> bytes:
+        """The message of topic `name` from `snapshot`."""
+        wire = self._wires[name]
+        if snapshot is not self._of:
+            self._turn(snapshot)
+        self._fill[name](wire.numbers, snapshot)
+        return self._sealed(wire)
 
-    def _fill_pose(self, snapshot):
-        pose = self.messages["head_pose"].pose
-        _set(pose.position, "xyz", turn_vector(snapshot.position))
-        _set(pose.orientation, "xyzw", turn_quaternion(snapshot.orientation))
+    def _sealed(self, wire: Wire) -> bytes:
+        wire.stamp[:] = self._nanoseconds
+        return wire.data()
 
-    def _fill_twist(self, snapshot):
-        twist = self.messages["head_twist"].twist
-        _set(twist.angular, "xyz", turn_vector(snapshot.twist[:3]))
-        _set(twist.linear, "xyz", turn_vector(snapshot.twist[3:]))
+    def _turn(self, snapshot):
+        """Take the head's pose and twist, which several topics tell."""
+        self._of = snapshot
+        self._position, self._orientation = _turned(snapshot.position), turn_quaternion(snapshot.orientation) + 0.0
+        self._turning, self._moving = _turned(snapshot.twist[:3]), _turned(snapshot.twist[3:])
 
-    def _fill_odometry(self, snapshot):
-        message = self.messages["odom"]
-        _set(message.pose.pose.position, "xyz", turn_vector(snapshot.position))
-        _set(message.pose.pose.orientation, "xyzw", turn_quaternion(snapshot.orientation))
-        _set(message.twist.twist.angular, "xyz", turn_vector(snapshot.twist[:3]))
-        _set(message.twist.twist.linear, "xyz", turn_vector(snapshot.twist[3:]))
+    def _fill_pose(self, numbers, snapshot):
+        numbers["pose.position"][:], numbers["pose.orientation"][:] = self._position, self._orientation
 
-    def _fill_transform(self, snapshot):
-        _set(self.transform.transform.translation, "xyz", turn_vector(snapshot.position))
-        _set(self.transform.transform.rotation, "xyzw", turn_quaternion(snapshot.orientation))
+    def _fill_twist(self, numbers, snapshot):
+        numbers["twist.angular"][:], numbers["twist.linear"][:] = self._turning, self._moving
 
-    def _fill_backbone(self, snapshot):
-        views = self._views["backbone"]
-        views["position"].reshape(-1, 3)[:] = turn_vector(snapshot.backbone) + 0.0
-        views["orientation"].reshape(-1, 4)[:] = turn_quaternion(snapshot.section_orientation) + 0.0
+    def _fill_odometry(self, numbers, snapshot):
+        numbers["pose.pose.position"][:], numbers["pose.pose.orientation"][:] = self._position, self._orientation
+        numbers["twist.twist.angular"][:], numbers["twist.twist.linear"][:] = self._turning, self._moving
 
-    def _fill_curvature(self, snapshot):
-        views = self._views["curvature"]
-        views["pitch"][:], views["yaw"][:] = snapshot.curvature[:, 1], snapshot.curvature[:, 2]
-        views["pitch_rate"][:], views["yaw_rate"][:] = snapshot.curvature_rate[:, 1], snapshot.curvature_rate[:, 2]
+    def _fill_transform(self, numbers, snapshot):
+        numbers["transforms.transform.translation"][:] = self._position
+        numbers["transforms.transform.rotation"][:] = self._orientation
 
-    def _fill_wrench(self, snapshot):
-        views = self._views["internal_wrench"]
+    def _fill_backbone(self, numbers, snapshot):
+        numbers["position"][:] = _turned(snapshot.backbone).ravel()
+        numbers["orientation"][:] = (turn_quaternion(snapshot.section_orientation) + 0.0).ravel()
+
+    def _fill_curvature(self, numbers, snapshot):
+        numbers["pitch"][:], numbers["yaw"][:] = snapshot.curvature[:, 1], snapshot.curvature[:, 2]
+        numbers["pitch_rate"][:], numbers["yaw_rate"][:] = snapshot.curvature_rate[:, 1], snapshot.curvature_rate[:, 2]
+
+    def _fill_wrench(self, numbers, snapshot):
         for axis in range(3):
-            views[f"torque_{axis + 1}"][:] = snapshot.torque[:, axis]
-            views[f"force_{axis + 1}"][:] = snapshot.force[:, axis]
+            numbers[TORQUES[axis]][:] = snapshot.torque[:, axis]
+            numbers[FORCES[axis]][:] = snapshot.force[:, axis]
 
-    def _fill_load(self, snapshot):
-        views, message = self._views["hydrodynamic_load"], self.messages["hydrodynamic_load"]
+    def _fill_load(self, numbers, snapshot):
         for axis in range(3):
-            views[f"force_{axis + 1}"][:] = snapshot.fluid_force[:, axis]
-            views[f"resistive_{axis + 1}"][:] = snapshot.resistive_force[:, axis]
-        _set(message.tail_force, "xyz", snapshot.tail_force)
-        _set(message.nose_force, "xyz", snapshot.nose_force)
+            numbers[FORCES[axis]][:] = snapshot.fluid_force[:, axis]
+            numbers[RESISTANCES[axis]][:] = snapshot.resistive_force[:, axis]
+        numbers["tail_force"][:], numbers["nose_force"][:] = snapshot.tail_force + 0.0, snapshot.nose_force + 0.0
 
-    def _fill_energy(self, snapshot):
-        message = self.messages["energy"]
-        for name in ENERGY_FIELDS:
-            setattr(message, name, float(getattr(snapshot.energy, name)))
+    def _fill_energy(self, numbers, snapshot):
+        numbers[""][:] = [getattr(snapshot.energy, name) for name in ENERGY_FIELDS]
 
 
+def _lengthen(message, x: np.ndarray):
+    """Give the sequences of numbers in a `message` their lengths for the stations `x`, and `x` itself."""
+    for field, kind in message.get_fields_and_field_types().items():
+        if kind == "sequence<double>":
+            count = {"position": 3, "orientation": 4}.get(field, 1) * len(x)
+            setattr(message, field, array.array("d", x.tolist() if field == "x" else bytes(8 * count)))
+
+
+def _turned(vector: np.ndarray) -> np.ndarray:
+    """In REP-103 axes, without a minus zero."""
+    return turn_vector(vector) + 0.0
+
+
+TORQUES, FORCES, RESISTANCES = (
+    tuple(f"{name}_{axis}" for axis in (1, 2, 3)) for name in ("torque", "force", "resistive")
+)
 ENERGY_FIELDS = tuple(name for name, kind in EnergyLedger.get_fields_and_field_types().items() if kind == "double")
 
 
@@ -243,9 +251,3 @@ def descriptor_of(item: Field) -> ParameterDescriptor:
                 FloatingPointRange(from_value=float(low), to_value=float("inf") if high is None else float(high))
             ]
     return descriptor
-
-
-def _set(target, names: str, values):
-    """Sets the components of a geometry message to a row of numbers."""
-    for name, value in zip(names, (values + 0.0).tolist(), strict=True):  # + 0.0: no minus zero
-        setattr(target, name, value)

@@ -62,9 +62,9 @@ def turning_sums(swimmer, fields):
 
 @inlined
 def moving_sums(swimmer, fields):
-    """Of body and water, without the nose's m_o, each as lanes that are still to be added up: of I_o the linear momentum
-    by V (xx, xy, xz, yy, yz, zz); and the momentum (6,) about the head due to `omega`, `v`. Apart from `turning_sums`:
-    the sums of both together are more than a processor has registers."""
+    """Of body and water, without the nose's m_o, each as lanes that are still to be added up: of I_o the linear
+    momentum by V (xx, xy, xz, yy, yz, zz); and the momentum (6,) about the head due to `omega`, `v`. Apart from
+    `turning_sums`: the sums of both together are more than a processor has registers."""
     R, r, omega, v = fields.R, fields.r, fields.omega, fields.v
     vxx = vxy = vxz = vyy = vyz = vzz = spread(0.0)
     lx = ly = lz = px = py = pz = spread(0.0)
@@ -132,8 +132,8 @@ def six_totals(a, b, c, d, e, f):
 
 @inlined
 def sums_of(swimmer, fields):
-    """I_o of section 6, the nose's m_o included: its lower triangle (21,), row by row; and the momentum (6,) of body and
-    water about the head due to `omega`, `v` (the nose's m_o not in it)."""
+    """I_o of section 6, the nose's m_o included: its lower triangle (21,), row by row; and the momentum (6,) of body
+    and water about the head due to `omega`, `v` (the nose's m_o not in it)."""
     turn, coupling = turning_sums(swimmer, fields)
     linear, momentum = moving_sums(swimmer, fields)
     coupling = (*six_totals(*coupling[:6]), *three_totals(*coupling[6:]))

@@ -5,6 +5,7 @@ history that is full makes `publish` fail, and it is tried again until the subsc
 stuck. Its topics then change to a history that forgets, so that the run and the other subscribers go on.
 """
 
+import math
 import time
 
 LIVE_DEPTH = 100  # samples: history at real time
@@ -12,8 +13,8 @@ LONG_DEPTH = 5000  # samples: history once a subscriber has been given up, as lo
 RETRY = 0.002  # s between two attempts: lets the other threads run
 SLICE = 0.2  # s: a wait at the end looks so often whether it is interrupted
 CALM = 1.0  # s without a change after which partial subscribers are taken to be complete
+LOOK = 0.1  # s of wall time, after which subscribers are counted again: a count costs as much as a short message
 HEAVY = {"internal_wrench": "wrench", "hydrodynamic_load": "load"}  # topic: what Simulation.observe computes for it
-MARK = {"internal_wrench": "torque", "hydrodynamic_load": "fluid_force"}  # and what of a snapshot tells that it did
 
 
 class Channel:
@@ -35,7 +36,7 @@ class Channel:
 class Publishers:
     """All topics of samples, and /clock.
 
-    sample: the messages (messages.Sample). create: see Channel; destroy(publisher).
+    sample: makes the messages (messages.Sample). create: see Channel; destroy(publisher).
     received(publisher, seconds): waits until all is acknowledged, whether it is. refusal: the exception of a publish
     that failed. values(): the DynamicsParameters in force. stopped(): whether the run is over.
     """
@@ -46,46 +47,45 @@ class Publishers:
         self._values, self._stopped, self._report = values, stopped, report
         self._lossless = values().real_time_factor == 0.0
         self._given_up = False  # a subscriber that was stuck
-        self._channels = {
-            name: Channel(create, type(message), name, self._lossless) for name, message in sample.messages.items()
-        }
+        self._channels = {name: Channel(create, kind, name, self._lossless) for name, kind in sample.kinds.items()}
+        self._heard, self._looked = (), -math.inf  # topics that someone hears, and s: when that was found
         self._clock = None
         self._patience = Patience()
         self._audience, self._audience_since = None, 0.0
 
-    def wants(self, name: str) -> bool:
-        """Whether someone hears the topic."""
-        channel = self._channels.get(name)
-        if channel is None or (name == "/tf" and not self._values().publish_tf):
-            return False
-        return channel.publisher.get_subscription_count() > 0
+    def _look(self):
+        """Find the topics that someone hears."""
+        self._looked = time.monotonic()
+        hidden = () if self._values().publish_tf else ("/tf",)
+        self._heard = tuple(
+            name
+            for name, channel in self._channels.items()
+            if name not in hidden and channel.publisher.get_subscription_count() > 0
+        )
 
     def wanted_parts(self) -> dict[str, bool]:
-        """Which of the costly parts of a snapshot someone wants: the flags of `Simulation.observe`."""
-        return {part: self.wants(name) for name, part in HEAVY.items()}
+        """Which of the costly parts of the next snapshot someone wants: the flags of `Simulation.observe`."""
+        if self._lossless or time.monotonic() - self._looked >= LOOK:
+            self._look()
+        return {part: name in self._heard for name, part in HEAVY.items()}
 
     def publish(self, snapshot, nanoseconds: int):
-        """One sample at simulation time `nanoseconds`, /clock first."""
+        """One sample at simulation time `nanoseconds`, /clock first, to those who were there when `wanted_parts` was
+        asked."""
         self.tick(nanoseconds)
-        for name, channel in self._channels.items():
-            if self.wants(name) and self._is_in(snapshot, name):
-                self._send(channel, self._sample.fill(name, snapshot))
-
-    @staticmethod
-    def _is_in(snapshot, name: str) -> bool:
-        """Whether the snapshot has what the topic tells; a subscriber may have come after it was taken."""
-        return name not in MARK or getattr(snapshot, MARK[name]) is not None
+        for name in self._heard:
+            self._send(self._channels[name], self._sample.fill(name, snapshot))
 
     def tick(self, nanoseconds: int):
         """/clock alone."""
         self._sample.set_time(nanoseconds)
         if self._clock is not None:
-            self._send(self._clock, self._sample.clock)
+            self._send(self._clock, self._sample.tick())
 
     def offer_clock(self, offered: bool):
         """Begins or ends publishing /clock."""
         if offered and self._clock is None:
-            self._clock = Channel(self._create, type(self._sample.clock), "/clock", self._lossless)
+            self._clock = Channel(self._create, self._sample.clock, "/clock", self._lossless)
         elif not offered and self._clock is not None:
             self._destroy(self._clock.publisher)
             self._clock = None
@@ -114,7 +114,7 @@ class Publishers:
                     return False
         return True
 
-    def _send(self, channel: Channel, message):
+    def _send(self, channel: Channel, message: bytes):
         start = None  # s: when the first attempt failed
         while not self._stopped():
             try:
