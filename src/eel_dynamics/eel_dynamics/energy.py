@@ -40,6 +40,9 @@ class EnergyLedger:
     @staticmethod
     def of(kinetic: np.ndarray, powers: np.ndarray, works: np.ndarray, start: float) -> "EnergyLedger":
         """From kinetic energies (..., 2), powers (..., 4), works (..., 4), and the kinetic energy at the start [J]."""
+        if kinetic.ndim == 1:  # an instant, for a node at real time
+            kinetic, powers, works = kinetic.tolist(), powers.tolist(), works.tolist()
+            return EnergyLedger(*kinetic, *powers, sum(kinetic) - start - sum(works), *works)
         residual = kinetic.sum(axis=-1) - start - works.sum(axis=-1)
         return EnergyLedger(
             kinetic[..., 0], kinetic[..., 1], *np.moveaxis(powers, -1, 0), residual, *np.moveaxis(works, -1, 0)

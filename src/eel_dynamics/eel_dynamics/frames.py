@@ -7,10 +7,12 @@ to the world and to every section alike, so one function is its own inverse.
 
 import numpy as np
 
+VECTOR, QUATERNION = np.array([-1.0, -1.0, 1.0]), np.array([-1.0, -1.0, 1.0, 1.0])
+
 
 def turn_vector(vector: np.ndarray) -> np.ndarray:
     """Components (-x, -y, z) of `vector`, shape (..., 3), in the other set of axes. Its own inverse."""
-    return np.asarray(vector, dtype=float) * (-1.0, -1.0, 1.0)
+    return np.asarray(vector, dtype=float) * VECTOR
 
 
 def turn_quaternion(quaternion: np.ndarray) -> np.ndarray:
@@ -18,7 +20,7 @@ def turn_quaternion(quaternion: np.ndarray) -> np.ndarray:
 
     Both the world's and the body's axes are turned, R -> Q R Q^T with Q = diag(-1, -1, 1).
     """
-    return np.asarray(quaternion, dtype=float) * (-1.0, -1.0, 1.0, 1.0)
+    return np.asarray(quaternion, dtype=float) * QUATERNION
 
 
 def matrix_of(quaternion: np.ndarray) -> np.ndarray:

@@ -97,6 +97,26 @@ class ReadyLeg(NamedTuple):
     control: Packed
 
 
+class GoingOn:
+    """The legs by which a swim goes on to an instant, made once for as long as what they are made of stays: to make one
+    takes a node longer than to swim it. A copy makes its own, for its arrays are elsewhere."""
+
+    def __init__(self):
+        self._parts, self._legs, self.times = (), {}, np.zeros(1)
+
+    def __deepcopy__(self, memo):
+        return GoingOn()
+
+    def rows(self, parts: tuple, key, make) -> np.ndarray:
+        """The one row (1, words) of the leg `key`, to `times`, made by `make()` unless it is made of these `parts`."""
+        if len(parts) != len(self._parts) or any(a is not b for a, b in zip(parts, self._parts, strict=True)):
+            self._parts, self._legs = parts, {}
+        if key not in self._legs:
+            leg = make()
+            self._legs[key] = leg, leg.row[None]
+        return self._legs[key][1]
+
+
 def _any_scratch() -> Scratch:
     return Scratch(fields_of(1, 1, 1), balance_of(1), station_fields_of(1))
 

@@ -10,7 +10,7 @@ import time
 from collections import deque
 
 from .accounts import Accounts
-from .pacing import Pace
+from .pacing import Bell, Pace
 from .report import ERROR
 from .stopping import SimulationStopped
 from .watch import Watch
@@ -30,7 +30,7 @@ class March:
         self._simulation, self._parameters, self._publishers, self._report = simulation, parameters, publishers, report
         self._greet = greet  # those who were waited for, before the first sample
         self._pace = Pace(1.0 / parameters.rate, parameters.real_time_factor)
-        self._wake = threading.Condition()
+        self._guard, self._bell = threading.Lock(), Bell()
         self._orders = deque()
         self._sample = 0  # index of the next one
         self._paused = self.failed = False
@@ -54,11 +54,11 @@ class March:
         It takes the place of the order given just before if that `replaces` the same.
         """
         done = threading.Event()
-        with self._wake:
+        with self._guard:
             if replaces and self._orders and self._orders[-1][2] == replaces:
                 self._orders.pop()
             self._orders.append((action, done, replaces))
-            self._wake.notify()
+            self._bell.ring()
         return done
 
     def take_law(self, law, origin: float):
@@ -87,9 +87,9 @@ class March:
 
     def stop(self):
         """Ends the run."""
-        with self._wake:
+        with self._guard:
             self.stopped = True
-            self._wake.notify()
+            self._bell.ring()
 
     @property
     def law(self) -> str:
@@ -217,14 +217,15 @@ class March:
 
     def _wait(self, seconds: float) -> bool:
         """Sleeps, unless an order comes or the run is stopped: then True."""
-        with self._wake:
-            if not self._orders and not self.stopped:
-                self._wake.wait(seconds)
-            return bool(self._orders) or self.stopped
+        with self._guard:
+            if self._orders or self.stopped:
+                return True
+            self._bell.hush()
+        return self._bell.wait(seconds)
 
     def _carry_out_orders(self):
         for _ in range(len(self._orders)):  # those that come meanwhile wait for the next sample
-            with self._wake:
+            with self._guard:
                 action, done, _ = self._orders.popleft()
             action()
             done.set()
@@ -277,7 +278,7 @@ class March:
     def _report_resting(self):
         if self._simulation.resting:
             self._report.begin("resting", f"curvature samples have run out at t = {self.time:g} s: coming to rest")
-        else:
+        elif self._report.lasts("resting"):
             self._report.end("resting", f"curvature samples are back at t = {self.time:g} s")
 
     def _report_delay(self, now: float):

@@ -30,7 +30,7 @@ from eel_msgs.msg import (
     InternalWrench,
 )
 
-from .frames import turn_quaternion, turn_vector
+from .frames import QUATERNION, VECTOR, turn_quaternion, turn_vector
 from .parameters import limits
 from .records import outline
 from .scene import Scene
@@ -116,9 +116,9 @@ class Sample:
 
     def _turn(self, snapshot):
         """Take the head's pose and twist, which several topics tell."""
-        self._of = snapshot
-        self._position, self._orientation = _turned(snapshot.position), turn_quaternion(snapshot.orientation) + 0.0
-        self._turning, self._moving = _turned(snapshot.twist[:3]), _turned(snapshot.twist[3:])
+        head = np.concatenate((snapshot.position, snapshot.orientation, snapshot.twist)) * HEAD + 0.0
+        self._of, self._position, self._orientation = snapshot, head[:3], head[3:7]
+        self._turning, self._moving = head[7:10], head[10:]
 
     def _fill_pose(self, numbers, snapshot):
         numbers["pose.position"][:], numbers["pose.orientation"][:] = self._position, self._orientation
@@ -135,7 +135,7 @@ class Sample:
         numbers["transforms.transform.rotation"][:] = self._orientation
 
     def _fill_backbone(self, numbers, snapshot):
-        numbers["position"][:] = _turned(snapshot.backbone).ravel()
+        numbers["position"][:] = (turn_vector(snapshot.backbone) + 0.0).ravel()
         numbers["orientation"][:] = (turn_quaternion(snapshot.section_orientation) + 0.0).ravel()
 
     def _fill_curvature(self, numbers, snapshot):
@@ -165,11 +165,7 @@ def _lengthen(message, x: np.ndarray):
             setattr(message, field, array.array("d", x.tolist() if field == "x" else bytes(8 * count)))
 
 
-def _turned(vector: np.ndarray) -> np.ndarray:
-    """In REP-103 axes, without a minus zero."""
-    return turn_vector(vector) + 0.0
-
-
+HEAD = np.concatenate((VECTOR, QUATERNION, VECTOR, VECTOR))  # position, orientation, twist in REP-103 axes
 TORQUES, FORCES, RESISTANCES = (
     tuple(f"{name}_{axis}" for axis in (1, 2, 3)) for name in ("torque", "force", "resistive")
 )

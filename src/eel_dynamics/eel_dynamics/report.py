@@ -38,6 +38,10 @@ class Report:
         if self._lasting.pop(kind, None) is not None and text:
             self.info(text)
 
+    def lasts(self, kind: str) -> bool:
+        """Whether the condition has begun and is not over."""
+        return kind in self._lasting
+
     def event(self, kind: str, text: str, level: int = WARN, differing: bool = False):
         """Something that happened; of one kind one a second is logged at most, or some `differing` texts if asked."""
         now = self._now()

@@ -36,6 +36,7 @@ from .leg import (
     STATUS,
     STILL,
     TWIST,
+    GoingOn,
     Order,
     ReadyLeg,
     Y,
@@ -100,6 +101,7 @@ class Simulation:
         if not horizon >= 0.0:
             raise ValueError(f"horizon must be >= 0 s, got {horizon!r}")
         self._default_transition, self._horizon, self._built = float(default_transition), float(horizon), None
+        self._going_on = GoingOn()
         self._begin(law, start)
 
     def _begin(self, law: Law | None, start: Start):
@@ -320,7 +322,7 @@ class Simulation:
             self._use_drive()
 
     def _march_to(self, time: float):
-        status = self._swim(np.array([time]), self._works)
+        status = self._go_on(time)
         if status != MARCHED:
             self._restart()
             raise self._stopped(status)
@@ -361,6 +363,7 @@ class Simulation:
             closure_torque=float(out.closure[0, 0]) if wrench else None,
             closure_force=float(out.closure[0, 1]) if wrench else None,
             actuator_work=float(self._works[0, 0]) if ledger else None,
+            whole=out.whole,
         )
 
     def record(
@@ -401,8 +404,24 @@ class Simulation:
 
     def _look(self, wrench: bool, load: bool):
         """Fill the one instant of `_out` with the present."""
-        if self._swim(np.array([self.time]), self._works, self._out.row, wrench=wrench, load=load) != MARCHED:
+        if self._go_on(self.time, True, wrench, load) != MARCHED:
             raise self._stopped(SINGULAR)
+
+    def _go_on(self, time: float, look: bool = False, wrench: bool = False, load: bool = False) -> float:
+        """March to `time` [s], and there, if it is to `look`, fill the one instant of `_out`. Returns a status."""
+        parts = (
+            *(self._table, self._drive, self._scratch, self._step, self._method, self._control),
+            *(self._place, self._works, self._breakpoints),
+        )
+        times, out = self._going_on.times, self._out.row if look else None
+        times[0] = time
+        swim(
+            self._going_on.rows(
+                *(parts, (look, wrench, load)),
+                lambda: self._leg(self._place, times, self._works, out, wrench=wrench, load=load),
+            )
+        )
+        return self._place[STATUS]
 
     def _swim(self, times, works, out: np.ndarray | None = None, **wanted) -> float:
         """Swim a leg, as `_leg` has it. Returns its status."""

@@ -32,3 +32,4 @@ class Snapshot:
     closure_torque: float | None  # N m, what is left of the internal torque at the nose
     closure_force: float | None  # N, what is left of the internal force there, less the load on the nose
     actuator_work: float | None  # J since the start
+    whole: np.ndarray  # all that was computed, one after another, whatever it is
