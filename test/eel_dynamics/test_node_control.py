@@ -54,16 +54,19 @@ def test_reset_begins_again_with_the_same_law(start, client):
     answer = swim.reset()
     assert answer.success and answer.message == "reset at t = 0 s"
 
-    def begin_of_the_second():
-        """The place of its first sample, which may come after the answer; 0 before."""
-        stamps = [seconds(message) for message in swim.heard["head_pose"]]
-        return next((k for k in range(1, len(stamps)) if stamps[k] < stamps[k - 1]), 0)
+    heard, again = swim.heard["head_pose"], 1
 
-    swim.until(begin_of_the_second, "the second run")
-    swim.until(lambda: seconds(swim.heard["head_pose"][-1]) > 2.0, "as much of the second run")
-    again = begin_of_the_second()
-    first = {seconds(m): m.pose for m in swim.heard["head_pose"][:again]}
-    second = {seconds(m): m.pose for m in swim.heard["head_pose"][again:]}
+    def second_has_begun():
+        """Whether the sample `again` is its first one, which may come thousands of samples after the answer."""
+        nonlocal again
+        while again < len(heard) and seconds(heard[again]) > seconds(heard[again - 1]):
+            again += 1
+        return again < len(heard)
+
+    swim.until(second_has_begun, "the second run")
+    swim.until(lambda: seconds(heard[-1]) > 2.0, "as much of the second run")
+    first = {seconds(m): m.pose for m in heard[:again]}
+    second = {seconds(m): m.pose for m in heard[again:]}
     assert min(first) == min(second) == 0.0
     common = [t for t in first if t in second]
     assert len(common) > 200 and max(common) > 2.0

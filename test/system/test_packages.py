@@ -26,7 +26,7 @@ ROSDEP_KEY = {
 }
 ROS_SIDE = {  # the modules that may import ROS, and those of the command line that are made of them
     "eel_gaits": {"node", "messages"},
-    "eel_dynamics": {"node", "messages", "declaration"},
+    "eel_dynamics": {"node", "messages", "wire", "declaration"},
     "eel_viz": {"node", "messages", "declaration", "lifetime", "quality", "definitions", "inbox", "record", "echo"},
 }
 OPTIONAL = {"tf2_msgs", "distributed", "xarray", "eel_viz"}  # used where it is installed
