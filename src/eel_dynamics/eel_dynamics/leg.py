@@ -104,8 +104,8 @@ class GoingOn:
     def __init__(self):
         self._parts, self._legs, self.times = (), {}, np.zeros(1)
 
-    def __deepcopy__(self, memo):
-        return GoingOn()
+    def __reduce__(self):
+        return GoingOn, ()
 
     def rows(self, parts: tuple, key, make) -> np.ndarray:
         """The one row (1, words) of the leg `key`, to `times`, made by `make()` unless it is made of these `parts`."""

@@ -3,6 +3,7 @@
 The march has a thread of its own (march.py), callbacks run in another, and the main thread waits for the end.
 """
 
+import itertools
 import sys
 import traceback
 
@@ -38,6 +39,7 @@ from .status import Status
 
 LATCHED = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 LOSSLESS = QoSProfile(history=HistoryPolicy.KEEP_ALL)  # reliable, as the others are
+ATTENTION = 0.125  # s: how often the state is looked at, and every other time who publishes /clock
 PROMPT = 1.0  # s: a service has answered by then
 FAREWELL = 5.0  # s: longest wait for acknowledgements at the end of a run
 BACKLOG = 30.0  # s: likewise where no sample may be lost: a history full of them, for one who takes its time
@@ -85,9 +87,16 @@ class DynamicsNode(Node):
         self.create_service(SetBool, "~/pause", self._pause)
         clock = ClockWatch(self, lambda offered: self.march.order(lambda: self.outlets.offer_clock(offered)), report)
         clock.look(values.clock)
-        steady = Clock(clock_type=ClockType.STEADY_TIME)
-        self.create_timer(0.25, lambda: clock.look(self.parameters.values.clock), clock=steady)
-        self.create_timer(0.1, lambda: self.status.due() and self.tell(), clock=steady)
+        turns = itertools.count()
+
+        def attend():
+            """One timer for both: each wakes the executor, which costs more than what it is for."""
+            if self.status.due():
+                self.tell()
+            if next(turns) % 2:
+                clock.look(self.parameters.values.clock)
+
+        self.create_timer(ATTENTION, attend, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     def tell(self, final: bool = False):
         """Publishes /diagnostics."""
