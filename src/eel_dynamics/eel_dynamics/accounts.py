@@ -26,10 +26,11 @@ class Accounts:
 
     def add(self, snapshot):
         """Takes a snapshot's figures in; SimulationStopped if something in it is not finite."""
-        for name in () if math.isfinite(np.add.reduce(snapshot.whole)) else CHECKED:
-            values = getattr(snapshot, name)
-            if values is not None and not np.isfinite(values).all():
-                raise _not_finite(snapshot, name, values)
+        if not math.isfinite(np.add.reduce(snapshot.whole)):
+            for name in CHECKED:
+                values = getattr(snapshot, name)
+                if values is not None and not np.isfinite(values).all():
+                    raise _not_finite(snapshot, name, values)
         if snapshot.energy is not None:
             residual = float(snapshot.energy.residual)
             if not math.isfinite(residual):

@@ -91,8 +91,7 @@ class Sample:
             "energy": self._fill_energy,
             "/tf": self._fill_transform,
         }
-        self._of = None  # the snapshot that these are of
-        self._position = self._orientation = self._turning = self._moving = None
+        self._of = self._head = None  # a snapshot, and the head's position, orientation and twist in it
 
     def set_time(self, nanoseconds: int):
         """The simulation time [ns] of all messages, /clock's too."""
@@ -105,8 +104,9 @@ class Sample:
     def fill(self, name: str, snapshot) -> bytes:
         """The message of topic `name` from `snapshot`."""
         wire = self._wires[name]
-        if snapshot is not self._of:
-            self._turn(snapshot)
+        if snapshot is not self._of:  # several topics tell how the head is
+            head = np.concatenate((snapshot.position, snapshot.orientation, snapshot.twist))
+            self._of, self._head = snapshot, head * HEAD + 0.0
         self._fill[name](wire.numbers, snapshot)
         return self._sealed(wire)
 
@@ -114,25 +114,19 @@ class Sample:
         wire.stamp[:] = self._nanoseconds
         return wire.data()
 
-    def _turn(self, snapshot):
-        """Take the head's pose and twist, which several topics tell."""
-        head = np.concatenate((snapshot.position, snapshot.orientation, snapshot.twist)) * HEAD + 0.0
-        self._of, self._position, self._orientation = snapshot, head[:3], head[3:7]
-        self._turning, self._moving = head[7:10], head[10:]
-
     def _fill_pose(self, numbers, snapshot):
-        numbers["pose.position"][:], numbers["pose.orientation"][:] = self._position, self._orientation
+        numbers["pose.position"][:], numbers["pose.orientation"][:] = self._head[PLACE], self._head[TURN]
 
     def _fill_twist(self, numbers, snapshot):
-        numbers["twist.angular"][:], numbers["twist.linear"][:] = self._turning, self._moving
+        numbers["twist.angular"][:], numbers["twist.linear"][:] = self._head[TURNING], self._head[MOVING]
 
     def _fill_odometry(self, numbers, snapshot):
-        numbers["pose.pose.position"][:], numbers["pose.pose.orientation"][:] = self._position, self._orientation
-        numbers["twist.twist.angular"][:], numbers["twist.twist.linear"][:] = self._turning, self._moving
+        numbers["pose.pose.position"][:], numbers["pose.pose.orientation"][:] = self._head[PLACE], self._head[TURN]
+        numbers["twist.twist.angular"][:], numbers["twist.twist.linear"][:] = self._head[TURNING], self._head[MOVING]
 
     def _fill_transform(self, numbers, snapshot):
-        numbers["transforms.transform.translation"][:] = self._position
-        numbers["transforms.transform.rotation"][:] = self._orientation
+        numbers["transforms.transform.translation"][:] = self._head[PLACE]
+        numbers["transforms.transform.rotation"][:] = self._head[TURN]
 
     def _fill_backbone(self, numbers, snapshot):
         numbers["position"][:] = (turn_vector(snapshot.backbone) + 0.0).ravel()
@@ -165,7 +159,8 @@ def _lengthen(message, x: np.ndarray):
             setattr(message, field, array.array("d", x.tolist() if field == "x" else bytes(8 * count)))
 
 
-HEAD = np.concatenate((VECTOR, QUATERNION, VECTOR, VECTOR))  # position, orientation, twist in REP-103 axes
+HEAD = np.concatenate((VECTOR, QUATERNION, VECTOR, VECTOR))  # to REP-103 axes
+PLACE, TURN, TURNING, MOVING = slice(0, 3), slice(3, 7), slice(7, 10), slice(10, 13)
 TORQUES, FORCES, RESISTANCES = (
     tuple(f"{name}_{axis}" for axis in (1, 2, 3)) for name in ("torque", "force", "resistive")
 )

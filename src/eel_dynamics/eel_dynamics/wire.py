@@ -7,6 +7,7 @@ keeps its layout for as long as its texts and lengths stay: what changes are num
 import array
 from collections.abc import Iterator
 from copy import deepcopy
+from itertools import count, islice
 
 import numpy as np
 from builtin_interfaces.msg import Time
@@ -26,7 +27,7 @@ class Wire:
 
     def __init__(self, message):
         self.kind, data, marked = type(message), serialize_message(message), deepcopy(message)
-        blocks = dict(_marked(marked))
+        blocks = dict(_marked(marked, (MARK * k for k in count(1))))
         where = serialize_message(marked)
         space = np.empty(len(data) + 8, dtype=np.uint8)
         begin = -(space.__array_interface__["data"][0] + HEAD) % 8
@@ -46,30 +47,25 @@ class Wire:
         return self._data.tobytes()
 
 
-def _marked(message, path: str = "", used: list | None = None) -> Iterator[tuple[str, list[float]]]:
-    """Put marks into the time, and into all numbers that lie side by side: their paths, and what stands there now."""
-    used = used if used is not None else []
+def _marked(message, marks: Iterator[float], path: str = "") -> Iterator[tuple[str, list[float]]]:
+    """Put `marks` into the numbers, and one into the time: of all numbers that lie side by side, the path and what
+    stands there now."""
     if isinstance(message, Time):
         message.sec, message.nanosec = MARKED_TIME
-
-    def marks(count: int) -> list[float]:
-        new = [MARK * (len(used) + k + 1) for k in range(count)]
-        used.extend(new)
-        return new
 
     fields = message.get_fields_and_field_types()
     numbers = [name for name, kind in fields.items() if kind == "double"]
     if numbers:
-        values = marks(len(numbers))
+        values = list(islice(marks, len(numbers)))
         for name, value in zip(numbers, values, strict=True):
             setattr(message, name, value)
         yield path, values
     for name, kind in fields.items():
         value, below = getattr(message, name), f"{path}.{name}" if path else name
         if kind == "sequence<double>" and len(value):
-            values = marks(len(value))
+            values = list(islice(marks, len(value)))
             setattr(message, name, array.array("d", values))
             yield below, values
         for each in value if isinstance(value, list) else [value]:
             if hasattr(each, "get_fields_and_field_types"):
-                yield from _marked(each, below, used)
+                yield from _marked(each, marks, below)
