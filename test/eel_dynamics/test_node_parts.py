@@ -7,13 +7,14 @@ from types import SimpleNamespace
 import pytest
 from eel_dynamics.clock_right import ClockRight
 from eel_dynamics.feed import LawFeed
+from eel_dynamics.march import March as MarchOfANode
 from eel_dynamics.pacing import Pace
 from eel_dynamics.parameters import DynamicsParameters, checked, default_of, from_values
 from eel_dynamics.publishers import Patience, Publishers
 from eel_dynamics.report import ERROR, OK, WARN, Report
 
-from eel_dynamics import Scene
-from eel_gaits import Law
+from eel_dynamics import Scene, Simulation
+from eel_gaits import Law, falling
 
 
 class Log:
@@ -318,3 +319,26 @@ def test_a_subscriber_that_comes_after_the_snapshot_was_taken(monkeypatch):
     assert publishers.wanted_parts() == {"wrench": True, "load": True}
     publishers.publish(SimpleNamespace(torque=1, fluid_force=2), 0)
     assert [name for name, *_ in heard] == ["internal_wrench", "hydrodynamic_load", "energy"]
+
+
+# the march
+
+
+@pytest.mark.parametrize(
+    ("wanted", "done_at"), [(lambda march: march.reset(), 0.0), (lambda march: march.order(int), 0.25)]
+)
+def test_an_order_knows_when_it_was_done(wanted, done_at):
+    """However many samples the march has made by the time that who gave it looks: it may be thousands."""
+    orders, stamps = [], []
+
+    def publish(snapshot, nanoseconds):
+        stamps.append(nanoseconds)
+        if nanoseconds == 250_000_000 and not orders:
+            orders.append(wanted(march))
+
+    publishers = SimpleNamespace(wanted_parts=dict, publish=publish, tick=lambda nanoseconds: None)
+    simulation = Simulation(law=falling(), accuracy=1e-2)
+    march = MarchOfANode(simulation, DynamicsParameters(real_time_factor=0.0, duration=1.0), publishers, Report(Log()))
+    march.run()
+    assert stamps[-1] == 10**9 and march.time == 1.0
+    assert orders[0].done.is_set() and orders[0].time == done_at

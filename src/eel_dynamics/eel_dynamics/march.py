@@ -19,6 +19,15 @@ TICK = 0.05  # s of wall time between two messages on /clock while the simulatio
 MOST_AHEAD = 10_000  # instants of a controller that wait for their time
 
 
+class Order:
+    """What another thread wants of the march, which does it between two samples."""
+
+    def __init__(self, action, replaces: str = ""):
+        self.action, self.replaces = action, replaces
+        self.done = threading.Event()
+        self.time = math.nan  # s: simulation time when it had been done
+
+
 class March:
     """Publishes samples k = 0 ... `last_sample` at k/rate of the `simulation`, at the pace asked for.
 
@@ -48,18 +57,18 @@ class March:
 
     # What other threads may call.
 
-    def order(self, action, replaces: str = "") -> threading.Event:
-        """Has `action()` done between two samples; the event is set when it is.
+    def order(self, action, replaces: str = "") -> Order:
+        """Has `action()` done between two samples.
 
         It takes the place of the order given just before if that `replaces` the same.
         """
-        done = threading.Event()
+        order = Order(action, replaces)
         with self._guard:
-            if replaces and self._orders and self._orders[-1][2] == replaces:
+            if replaces and self._orders and self._orders[-1].replaces == replaces:
                 self._orders.pop()
-            self._orders.append((action, done, replaces))
+            self._orders.append(order)
             self._bell.ring()
-        return done
+        return order
 
     def take_law(self, law, origin: float):
         """Adopts a law whose own t = 0 lies at simulation time `origin` [s]; of several before a sample the last."""
@@ -69,11 +78,11 @@ class March:
         """Adds one instant of a law, the arguments of `Simulation.add_samples`."""
         self.order(lambda: self._add_samples(samples))
 
-    def reset(self) -> threading.Event:
+    def reset(self) -> Order:
         """State and time to the start."""
         return self.order(self._reset)
 
-    def pause(self, paused: bool) -> threading.Event:
+    def pause(self, paused: bool) -> Order:
         """Stands still, or goes on."""
         return self.order(lambda: setattr(self, "_paused", paused))
 
@@ -226,9 +235,10 @@ class March:
     def _carry_out_orders(self):
         for _ in range(len(self._orders)):  # those that come meanwhile wait for the next sample
             with self._guard:
-                action, done, _ = self._orders.popleft()
-            action()
-            done.set()
+                order = self._orders.popleft()
+            order.action()
+            order.time = self.time
+            order.done.set()
 
     def _adopt(self, law, origin: float):
         simulation = self._simulation

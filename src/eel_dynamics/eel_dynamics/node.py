@@ -127,9 +127,9 @@ class DynamicsNode(Node):
     def _pause(self, request, response):
         return self._answer(response, self.march.pause(request.data), "paused" if request.data else "going on")
 
-    def _answer(self, response, done, state):
-        response.success = done.wait(PROMPT)
-        response.message = f"{state} at t = {self.march.time:g} s" if response.success else "to be done soon"
+    def _answer(self, response, order, state):
+        response.success = order.done.wait(PROMPT)
+        response.message = f"{state} at t = {order.time:g} s" if response.success else "to be done soon"
         return response
 
 
