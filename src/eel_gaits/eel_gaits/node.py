@@ -6,11 +6,11 @@ which the gait began. Parameters of the same gait leave that time alone; another
 
 import signal
 import sys
-import time
 
 import rclpy
 from builtin_interfaces.msg import Time
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor, SetParametersResult
+from rclpy.callback_groups import CallbackGroup
 from rclpy.clock import JumpThreshold
 from rclpy.duration import Duration
 from rclpy.exceptions import NameValidationException, ParameterException
@@ -27,13 +27,21 @@ from eel_msgs.msg import CurvatureLaw
 
 NAME = "gait_generator"
 DEFAULTS = ["--ros-args", "-p", "use_sim_time:=true", "--"]  # what the user says comes after, and wins
-PAUSE = 0.05  # s between two looks at what has come
+LOOK = 0.25  # s between two looks at whether time went back, or a signal has come
+
+
+class Unattended(CallbackGroup):
+    """What is in it wakes no executor."""
+
+    def can_execute(self, entity):
+        return False
 
 
 class GaitGenerator(Node):
     """Parameters `gait`, `transition` and the gait's own numbers; topic `curvature_law`."""
 
     def __init__(self):
+        self._ticks = Unattended()
         super().__init__(NAME, automatically_declare_parameters_from_overrides=True)
         overrides = {name: parameter.value for name, parameter in self.get_parameters_by_prefix("").items()}
         for name in overrides:
@@ -56,6 +64,19 @@ class GaitGenerator(Node):
         backwards = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1), on_clock_change=False)
         self._jump_handle = self.get_clock().create_jump_callback(backwards, post_callback=self._follow_reset)
         self._publish()
+
+    def create_subscription(self, *args, **kwargs):
+        """The only one is rclpy's own, to /clock, which ticks a hundred times a second, or thousands: its newest tick
+        is enough, once it is asked for."""
+        return super().create_subscription(*args, **kwargs, callback_group=self._ticks)
+
+    def look_at_clock(self):
+        """Take the newest tick of /clock, where this node has one."""
+        for ticks in self.subscriptions:
+            with ticks.handle:
+                taken = ticks.handle.take_message(ticks.msg_type, ticks.raw)
+            if taken is not None:
+                ticks.callback(taken[0])
 
     def _declare_numbers(self):
         for name, value, about in self._settings.quantities():
@@ -92,6 +113,7 @@ class GaitGenerator(Node):
         plan, self._plan = self._plan, None
         if plan is None:  # a declaration, or nothing of ours
             return
+        self.look_at_clock()
         before, self._settings = self._settings, plan
         if plan.gait != before.gait:
             for name, _, _ in before.quantities():
@@ -129,8 +151,8 @@ def main(args=None):
     executor = SingleThreadedExecutor()
     executor.add_node(node)
     while not signals:
-        executor.spin_once(timeout_sec=0.1)
-        time.sleep(PAUSE)  # /clock may tick thousands of times a second: the newest tick is enough
+        executor.spin_once(timeout_sec=LOOK)
+        node.look_at_clock()
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, signal.SIG_IGN)  # until the process is gone: a second one would spoil its exit status
     executor.shutdown()
