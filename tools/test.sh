@@ -19,9 +19,9 @@ begin() {   # NAME TESTS...: into out/test-NAME.log
 
 nodes=(test/eel_dynamics/test_node_[!r]*.py)
 begin nodes "${nodes[@]}"
-begin viz test/eel_viz test/eel_gaits
-begin system test/system
-echo "[test] mechanics here; the dynamics node, test/eel_viz with test/eel_gaits, and test/system beside, shown when done"
+begin viz test/eel_viz
+begin system test/system test/eel_gaits
+echo "[test] mechanics here; the dynamics node, test/eel_viz, and test/system with test/eel_gaits beside, shown when done"
 python -m pytest -m "not soak" test/eel_dynamics "${nodes[@]/#/--ignore=}"
 status=$?
 for name in nodes viz system; do

@@ -77,9 +77,10 @@ def test_a_run_that_is_over_waits_for_who_is_behind(start, client):
 @pytest.mark.fault(
     "subscribers",
     "a subscriber stopped by SIGSTOP, as fast as it goes",
-    "waited for `subscriber_timeout`, once; then WARN, and all others get every sample",
+    "waited for `subscriber_timeout`, once; then WARN, and all others that keep up get every sample",
 )
 def test_a_stuck_subscriber_delays_a_run_once_and_costs_the_others_nothing(start, client):
+    """One that is itself 5000 samples behind when another is given up loses what it had no room for."""
     stuck = start(sys.executable, "-c", LISTENER)
     stuck.wait_for_output("listening")
     swim = client(topics=("backbone", "head_pose"))
@@ -89,7 +90,7 @@ def test_a_stuck_subscriber_delays_a_run_once_and_costs_the_others_nothing(start
         *FLAT_OUT[:-1],
         "wait_for_subscribers:=2",
         "-p",
-        "duration:=10",
+        "duration:=13",
         "-p",
         "rate:=1000",
         "-p",
@@ -100,9 +101,9 @@ def test_a_stuck_subscriber_delays_a_run_once_and_costs_the_others_nothing(start
     os.kill(stuck.process.pid, signal.SIGSTOP)
     try:
         # were it waited for again and again, the thousands of samples that it misses would take hours
-        swim.until(lambda: len(swim.heard["head_pose"]) >= 10001, "all samples of the other topic", 2 * LIMIT)
+        swim.until(lambda: len(swim.heard["head_pose"]) >= 13001, "all samples of the other topic", 2 * LIMIT)
         assert "has been stuck for 3 s" in node.output() and node.output().count("has been stuck") == 1, node.output()
-        swim.until(lambda: len(swim.heard["backbone"]) >= 10001, "all samples of the same topic")
+        swim.until(lambda: len(swim.heard["backbone"]) >= 13001, "all samples of the same topic")
         assert node.wait(LIMIT) == 0
         assert any(swim.diagnosis(message)[0] == 1 for message in swim.heard["/diagnostics"])
     finally:

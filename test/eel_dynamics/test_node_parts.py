@@ -321,6 +321,25 @@ def test_a_subscriber_that_comes_after_the_snapshot_was_taken(monkeypatch):
     assert [name for name, *_ in heard] == ["internal_wrench", "hydrodynamic_load", "energy"]
 
 
+def test_who_was_given_up_does_not_cost_the_others_the_end_of_a_run(monkeypatch):
+    """Its topic gets a short farewell; on the others a backlog is waited for as long as without it."""
+    monkeypatch.setattr("eel_dynamics.publishers.FAREWELL", 0.0)
+    asked = []
+
+    def received(publisher, seconds):
+        asked.append(publisher)
+        return publisher == "head_pose" and asked.count(publisher) == 20
+
+    publishers = Publishers(
+        SimpleNamespace(kinds=dict.fromkeys(("backbone", "head_pose"), str)), create=lambda kind, topic, depth: topic,
+        destroy=lambda publisher: None, received=received, refusal=RuntimeError,
+        values=lambda: DynamicsParameters(real_time_factor=0.0), stopped=lambda: False, report=Report(Log()),
+    )  # fmt: skip
+    publishers._give_up(publishers._channels["backbone"])
+    assert not publishers.wait_until_received([], lambda: False)
+    assert asked == ["head_pose"] * 20 + ["backbone"]
+
+
 # the march
 
 

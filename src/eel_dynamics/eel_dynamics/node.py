@@ -4,7 +4,9 @@ The march has a thread of its own (march.py), callbacks run in another, and the 
 """
 
 import itertools
+import math
 import sys
+import time
 import traceback
 
 import rclpy
@@ -41,9 +43,7 @@ LATCHED = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 LOSSLESS = QoSProfile(history=HistoryPolicy.KEEP_ALL)  # reliable, as the others are
 ATTENTION = 0.125  # s: how often the state is looked at, and every other time who publishes /clock
 PROMPT = 1.0  # s: a service has answered by then
-FAREWELL = 5.0  # s: longest wait for acknowledgements at the end of a run
-BACKLOG = 30.0  # s: likewise where no sample may be lost: a history full of them, for one who takes its time
-HASTE = 0.2  # s: likewise after a signal
+HASTE = 0.2  # s: longest wait for acknowledgements after a signal
 
 
 class DynamicsNode(Node):
@@ -104,18 +104,13 @@ class DynamicsNode(Node):
         name = self.get_fully_qualified_name()
         self._diagnostics.publish(diagnostic_array(self.march.time, name, level, text, values))
 
-    @property
-    def farewell(self) -> float:
-        """Longest wait [s] for subscribers at the end of a run."""
-        if not self.outlets.waits:
-            return FAREWELL
-        return max(BACKLOG, self.parameters.values.subscriber_timeout)
-
-    def see_off(self, seconds: float, interrupted):
-        """Waits until subscribers have received everything, at most so long."""
-        received = self.outlets.wait_until_received([self._diagnostics, self._body], seconds, interrupted)
+    def see_off(self, interrupted, longest: float = math.inf):
+        """Waits until subscribers have received everything, no longer than `longest` [s]."""
+        began = time.monotonic()
+        received = self.outlets.wait_until_received([self._diagnostics, self._body], interrupted, longest)
         if not received and not interrupted():
-            self.get_logger().warning(f"some subscriber has not received everything within {seconds:g} s")
+            waited = time.monotonic() - began
+            self.get_logger().warning(f"some subscriber has not received everything within {waited:.2g} s")
 
     def _introduce(self):
         """Waits until all who have come know the body, which they need for what follows."""
@@ -159,7 +154,7 @@ def main(args=None) -> int:
     if error is not None:
         node.get_logger().fatal("".join(traceback.format_exception(error)))
     node.tell(final=True)
-    node.see_off(node.farewell if done else HASTE, lambda: ending.signalled)
+    node.see_off(lambda: ending.signalled, math.inf if done else HASTE)
     if joined:
         executor.shutdown()
         node.destroy_node()

@@ -11,6 +11,8 @@ import time
 LIVE_DEPTH = 100  # samples: history at real time
 LONG_DEPTH = 5000  # samples: history once a subscriber has been given up, as long as that which keeps all
 RETRY = 0.002  # s between two attempts: lets the other threads run
+FAREWELL = 5.0  # s: longest wait for acknowledgements at the end of a run
+BACKLOG = 30.0  # s: likewise where no sample may be lost: a history full of them, for one who takes its time
 SLICE = 0.2  # s: a wait at the end looks so often whether it is interrupted
 CALM = 1.0  # s without a change after which partial subscribers are taken to be complete
 LOOK = 0.1  # s of wall time, after which subscribers are counted again: a count costs as much as a short message
@@ -46,7 +48,6 @@ class Publishers:
         self._received = received
         self._values, self._stopped, self._report = values, stopped, report
         self._lossless = values().real_time_factor == 0.0
-        self._given_up = False  # a subscriber that was stuck
         self._channels = {name: Channel(create, kind, name, self._lossless) for name, kind in sample.kinds.items()}
         self._heard, self._looked = (), -math.inf  # topics that someone hears, and s: when that was found
         self._clock = None
@@ -98,17 +99,20 @@ class Publishers:
             self._audience, self._audience_since = counts, now
         return min(counts) >= wanted or (max(counts) >= wanted and now - self._audience_since > CALM)
 
-    @property
-    def waits(self) -> bool:
-        """Whether every sample is to reach every subscriber, and none has been given up."""
-        return self._lossless and not self._given_up
-
-    def wait_until_received(self, others: list, seconds: float, interrupted) -> bool:
-        """Waits until all is received, of `others` (publishers) too; False after `seconds`, or once `interrupted()`."""
-        end = time.monotonic() + seconds
+    def wait_until_received(self, others: list, interrupted, longest: float = math.inf) -> bool:
+        """Waits until all is received, of `others` (publishers) too; False after a farewell, or `longest` [s], or once
+        `interrupted()`. Where no sample may be lost that is long, but for topics of which somebody was given up."""
         clock = [self._clock] if self._clock is not None else []
-        waiting = [channel.publisher for channel in [*self._channels.values(), *clock]] if self._lossless else []
-        for publisher in waiting + others:
+        samples = [*self._channels.values(), *clock] if self._lossless else []
+        whole = [channel.publisher for channel in samples if channel.lossless]
+        rest = [channel.publisher for channel in samples if not channel.lossless] + others
+        backlog = max(BACKLOG, self._values().subscriber_timeout)
+        all_samples = self._wait_for(whole, min(backlog, longest), interrupted)
+        return self._wait_for(rest, min(FAREWELL, longest), interrupted) and all_samples
+
+    def _wait_for(self, publishers: list, seconds: float, interrupted) -> bool:
+        end = time.monotonic() + seconds
+        for publisher in publishers:
             while not self._received(publisher, min(SLICE, max(0.0, end - time.monotonic()))):
                 if time.monotonic() >= end or interrupted():
                     return False
@@ -140,7 +144,6 @@ class Publishers:
                 return
 
     def _give_up(self, channel: Channel):
-        self._given_up = True
         self._report.begin(
             "stuck " + channel.topic,
             f"a subscriber of {channel.topic} has been stuck for {self._values().subscriber_timeout:g} s: "
