@@ -4,8 +4,10 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from eel_dynamics.errors import Errors
 from eel_dynamics.tradeoff import measuring, models, table
 from eel_dynamics.tradeoff.command import main
+from eel_dynamics.tradeoff.delivered import Trial, scatter_of
 from eel_dynamics.tradeoff.drawing import _apart
 from eel_dynamics.tradeoff.settings import REFERENCE, settings
 
@@ -136,3 +138,22 @@ def test_calibrate_writes_the_table_of_the_presets(monkeypatch, capsys):
     monkeypatch.setattr(calibration, "calibrate", lambda path, say: asked.append(path))
     assert main(["--calibrate"]) == 0
     assert asked == [accuracy.TABLE_FILE] and str(accuracy.TABLE_FILE) in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("next_luck", [1.0, -0.5])
+def test_scatter_is_about_the_mean_of_each_target(next_luck):
+    """Swims of known luck, in decades; one target is met by far more than another, which is no scatter."""
+    luck = np.array([-0.3, -0.1, 0.1, 0.3])
+    scene = SimpleNamespace(resistive=True, friction="laminar", internal_wrench=True)
+    trials = []
+    for name, decades in zip("abcd", luck, strict=True):
+        case = SimpleNamespace(name=name, scene=scene, plane=False)
+        for target, below in ((1e-3, 2.0 + decades), (1e-4, 1.0 + next_luck * decades)):
+            error = Errors(target / 10.0**below, None)
+            trials.append(Trial(case, target, error, error, coarse=1.0))
+        trials.append(Trial(case, 1e-2, Errors(1e-9, None), error, coarse=1e-3))  # waived: does not count
+    found = scatter_of(trials)
+    both = np.concatenate((luck, next_luck * luck))
+    assert found.decades == pytest.approx(np.sqrt(np.sum(both**2) / 6.0))
+    assert found.likeness == pytest.approx(np.sign(next_luck))
+    assert found.sides == pytest.approx(0.5 * np.log10(30.0) / found.decades)

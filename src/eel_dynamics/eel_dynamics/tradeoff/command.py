@@ -18,7 +18,7 @@ from ..effort import effort_of
 from ..ending import leave_on_interrupt
 from ..scene import Scene
 from . import measuring, models
-from .delivered import deliver, delivered_table, exceeding, farthest
+from .delivered import deliver, delivered_table, exceeding, farthest, scatter_line
 from .page import reference_line, write_page
 from .settings import settings
 from .table import model_table, trade_table, write_csv
@@ -34,6 +34,7 @@ def main(arguments: list[str] | None = None) -> int:
     if options.delivered:
         trials = deliver(say=_say)
         print(delivered_table(trials))
+        print(scatter_line(trials))
         print(f"farther below the target than 30: {'; '.join(farthest(trials)) or 'none'}")
         print(f"above the target: {'; '.join(exceeding(trials)) or 'none'}")
         return 0

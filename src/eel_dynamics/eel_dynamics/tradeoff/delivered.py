@@ -6,6 +6,7 @@ calibration. Errors as in `errors`, against a run with far more points and far s
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from ..calibration import REFERENCE, Case, cases, swim
 from ..errors import Errors, errors
 from .table import laid_out
 
-TARGETS = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9)
+TARGETS = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9)  # each a tenth of the one before
 UNSEEN = range(100, 108)  # seeds of laws; the calibration has the first few
 FAR = 30.0  # below the target: time was wasted
 CLOSE = 10.0  # of the truth, for an estimate
@@ -115,6 +116,57 @@ def _row(scene: str, motion: str, quantity: str, trials: list[Trial]) -> list[st
         *(str(sum(trial.far for trial in trials)), f"{np.median(below):.0f}", f"{np.max(counted, initial=0.0):.0f}"),
         *(f"{np.sum(misjudged <= CLOSE)}", f"{np.max(misjudged):.1f}"),
     ]
+
+
+@dataclass(frozen=True)
+class Scatter:
+    """How errors of different swims at one target, taken by the same settings of the table, lie about their mean.
+
+    decades: standard deviation of their decadic logarithms. likeness: correlation of what is left of them, at a target
+    and at a tenth of it in the same swim: 1 if an easy swim is easy at all targets, 0 if each draws its luck anew.
+    """
+
+    decades: float
+    likeness: float
+
+    @property
+    def sides(self) -> float:
+        """Standard deviations from the middle of a factor `FAR` to its ends."""
+        return 0.5 * np.log10(FAR) / self.decades
+
+
+def scatter_of(trials: list[Trial]) -> Scatter:
+    """Over the trials whose settings could have been coarser, about the means of those of the same target, drag,
+    motion and quantity."""
+    groups, tenth = {}, dict(pairwise(TARGETS))
+    for trial in trials:
+        if not trial.waived:
+            scene = trial.case.scene
+            kind = trial.target, scene.resistive, scene.friction, scene.internal_wrench, trial.case.plane
+            groups.setdefault(kind, {})[trial.case.name] = np.log10(trial.below)
+    left = {
+        (name, *kind): value - np.mean(list(group.values()))
+        for kind, group in groups.items()
+        for name, value in group.items()
+    }
+    pairs = [
+        (value, left[beside])
+        for (name, target, *kind), value in left.items()
+        if (beside := (name, tenth.get(target), *kind)) in left
+    ]
+    freedom = len(left) - len(groups)
+    decades = np.sqrt(sum(value**2 for value in left.values()) / freedom)
+    return Scatter(float(decades), float(np.corrcoef(np.transpose(pairs))[0, 1]))
+
+
+def scatter_line(trials: list[Trial]) -> str:
+    """The same in words."""
+    found = scatter_of(trials)
+    return (
+        f"From swim to swim, errors at a target scatter by a factor of {10.0**found.decades:.1f} (standard deviation "
+        f"of the logarithm: {found.decades:.2f} decades; correlation of a swim's luck at a target and at a tenth of "
+        f"it: {found.likeness:.2f}), so a factor of {FAR:g} is {found.sides:.1f} standard deviations to either side."
+    )
 
 
 def farthest(trials: list[Trial]) -> list[str]:

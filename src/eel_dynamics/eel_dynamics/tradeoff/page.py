@@ -5,7 +5,7 @@ from datetime import date
 from pathlib import Path
 
 from .. import compiled
-from .delivered import FAR, Trial, delivered_table, exceeding, farthest
+from .delivered import FAR, Trial, delivered_table, exceeding, farthest, scatter_line
 from .models import Model
 from .settings import CHECK, REFERENCE
 from .table import model_table, trade_table
@@ -36,11 +36,12 @@ Each target of 1e-2 to 1e-9 that the table of accuracy has, on {cases} cases: th
 that the calibration has not seen, both bodies, laminar and printed friction and no drag. Error: the greater of the
 head's position and the torque, or of the position where no torque was asked for. Gaits swim for 10 s (4 s without
 drag), random laws of a fifth of the usual bends to twice these and 0.4 to 2.5 times the usual pace for 3 to 16 s at
-that pace. The settings are the table's for a swim that is as hard (`effort.py`); laws that are equally hard still
-differ by ten and more, also because the place where a swim ends is one of many where its error could be read. Nearly
-all of them are to keep within their target, so many get more than they asked for. A pilot run would tell, and cost what
-it could save: steps of a fifth-order method for an error thirty times larger are twice as long. The estimate of a run's
-own error is the difference from a finer run (`run.error_estimate`).
+that pace. The settings are the table's for a swim that is as hard (`effort.py`). What is left is luck: errors of many
+steps and panels cancel more or less, and the place where a swim ends is one of many where its error could be read.
+Nearly all swims are to keep within their target, so many get more than they asked for, and no table can have all of
+them within 30 below it. Nor could a pilot run: the luck at ten times the target tells little of that at the target, and
+it would cost six tenths of what it is for. The estimate of a run's own error is the difference from a finer run
+(`run.error_estimate`).
 
 """
 
@@ -66,6 +67,7 @@ def write_page(path: Path, found: list[tuple], picture: str | None, trials: list
     if trials:
         text += DELIVERED.format(cases=len({trial.case.name for trial in trials}))
         text += delivered_table(trials, markdown=True) + "\n"
+        text += f"\n{scatter_line(trials)}\n"
         text += f"\nFarther than {FAR:g} below the target: {'; '.join(farthest(trials)) or 'none'}.\n"
         text += f"\nAbove the target: {'; '.join(exceeding(trials)) or 'none'}.\n"
     path.write_text(text, encoding="utf-8")
