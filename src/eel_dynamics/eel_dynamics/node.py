@@ -3,7 +3,6 @@
 The march has a thread of its own (march.py), callbacks run in another, and the main thread waits for the end.
 """
 
-import itertools
 import math
 import sys
 import time
@@ -41,7 +40,7 @@ from .status import Status
 
 LATCHED = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 LOSSLESS = QoSProfile(history=HistoryPolicy.KEEP_ALL)  # reliable, as the others are
-ATTENTION = 0.125  # s: how often the state is looked at, and every other time who publishes /clock
+ATTENTION = 0.25  # s: how often the state is looked at, and who publishes /clock
 PROMPT = 1.0  # s: a service has answered by then
 HASTE = 0.2  # s: longest wait for acknowledgements after a signal
 
@@ -87,14 +86,12 @@ class DynamicsNode(Node):
         self.create_service(SetBool, "~/pause", self._pause)
         clock = ClockWatch(self, lambda offered: self.march.order(lambda: self.outlets.offer_clock(offered)), report)
         clock.look(values.clock)
-        turns = itertools.count()
 
         def attend():
             """One timer for both: each wakes the executor, which costs more than what it is for."""
             if self.status.due():
                 self.tell()
-            if next(turns) % 2:
-                clock.look(self.parameters.values.clock)
+            clock.look(self.parameters.values.clock)
 
         self.create_timer(ATTENTION, attend, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
@@ -149,7 +146,7 @@ def main(args=None) -> int:
     done, error = ending.wait()
     node.march.stop()
     ending.over = True
-    executor.wake()
+    executor.create_task(lambda: None)  # one more turn, its last
     joined = ending.join(HASTE)
     if error is not None:
         node.get_logger().fatal("".join(traceback.format_exception(error)))
@@ -166,4 +163,4 @@ def main(args=None) -> int:
 def spin(executor, ending):
     """Serves callbacks until the process ends."""
     while not ending.over:
-        executor.spin_once(timeout_sec=HASTE)
+        executor.spin_once()
