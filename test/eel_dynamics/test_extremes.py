@@ -5,12 +5,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from draws import few, numbers
+from eel_dynamics.errors import errors
 from eel_dynamics.guard import failure_of
 from hypothesis import given
 from hypothesis import strategies as st
 from random_scenes import fixed, pointed
 
-from eel_dynamics import Accuracy, Body, Scene, SimulationStopped, simulate, simulate_batch
+from eel_dynamics import Accuracy, Body, Scene, Simulation, SimulationStopped, simulate, simulate_batch
 from eel_gaits import Law, Ramp, Term, falling, helix, still, straight
 
 
@@ -213,3 +214,49 @@ def test_settings_by_hand_that_are_too_coarse_are_told_by_warning_and_estimate(a
     run = simulate(straight(), 4.0, accuracy=accuracy, sample_period=0.25)
     assert any("energy ledger" in text for text in run.warnings)
     assert run.error_estimate.position > 1e-3
+
+
+@pytest.mark.parametrize(("knots", "seed"), [(20, 1), (30, 0), (50, 3), (100, 2)])
+def test_splines_of_many_knots_keep_the_target(knots, seed):
+    """Rough ones, whose waves are in the amplitude alone."""
+    amplitude = tuple(5.0 * np.random.default_rng(seed).standard_normal(knots))
+    term = Term(amplitude=amplitude, knots=tuple(np.linspace(0.0, 1.0, knots)), period=1.0, envelope=(Ramp(0, 1, 1),))
+    run = simulate(Law(term), 5.0, accuracy=1e-4)
+    found = errors(run, simulate(Law(term), 5.0, accuracy=Accuracy(name="fine", resolution=900.0, tolerance=1e-11)))
+    assert found.worst < 1e-4
+
+
+@pytest.mark.fault(
+    "laws", "waves too short for any grid, or a ramp that is a jump", "refused by the law's name, with the limit"
+)
+@pytest.mark.parametrize(
+    ("law", "said"),
+    [
+        (straight(wavelength=5e-4), "law 'straight' bends the body into 2e.03 waves or turns: at most 200"),
+        (Law(Term(amplitude=(1e300,), period=1.0), name="x"), r"law 'x' bends the body into .*e\+299 waves or turns"),
+        (
+            Law(Term(amplitude=(2.0,), envelope=(Ramp(0.5, 0.5 + 1e-12, 1.0),)), name="x"),
+            "law 'x' has a ramp at 0.5 s of 1e-12 s: at least 1e-09 s",
+        ),
+        (
+            Law(Term(amplitude=(2.0,), envelope=(Ramp(1e3, 1e3 + 1e-9, 1.0),)), name="x"),
+            "law 'x' has a ramp at 1000 s of 1e-09 s: at least 1e-06 s",
+        ),
+    ],
+)
+def test_a_law_that_cannot_be_resolved_is_refused(law, said):
+    """Its motion would be of what the grid or the steps see of it, and both checks of a run would be content."""
+    with pytest.raises(ValueError, match=said):
+        simulate(law, 2.0)
+    swimmer = Simulation(law=falling(), accuracy=1e-2)
+    swimmer.advance(0.5)
+    with pytest.raises(ValueError, match=said):
+        swimmer.adopt(law)
+    swimmer.advance(1.0)  # with the law that it had
+    assert swimmer.law.name == "falling"
+
+
+def test_waves_that_a_grid_just_carries():
+    """The greatest torque goes with the cube of a short wave's length, down to the limit."""
+    torques = [simulate(straight(wavelength=1.0 / waves), 2.0).greatest_torque()[0] for waves in (100.0, 200.0)]
+    assert torques[0] / torques[1] == pytest.approx(8.0, rel=0.1)

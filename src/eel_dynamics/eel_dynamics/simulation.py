@@ -15,6 +15,7 @@ from .arguments import (
     checked_quaternion,
     checked_row,
     checked_stations,
+    is_finite,
 )
 from .body import Body
 from .bounds import FIRST_STEP, control_of
@@ -54,7 +55,7 @@ from .snapshot import Snapshot
 from .start import Start, is_thrown, stays_in_plane, time_scale
 from .stopping import SimulationStopped, not_begun, remedy, stopped_by
 from .tables import Built, tabulated
-from .waveforms import knots_of_law, waves_of_law
+from .waveforms import check_law, knots_of_law
 
 ROWS_AT_ONCE = 8  # of a law, for which there is space
 NONE = np.zeros(0)
@@ -248,7 +249,7 @@ class Simulation:
         checked_instance("law", law, Law)
         if self.scene.planar:
             check_planar_law(law)
-        return waves_of_law(law, self.body.length), knots_of_law(law)
+        return check_law(law, self.body.length), knots_of_law(law)
 
     def add_samples(self, time, x, pitch, pitch_rate, pitch_accel, yaw, yaw_rate, yaw_accel):
         """One instant of a controller: curvature [rad/m], its rate and acceleration at the points `x` [m], `time` [s]
@@ -306,7 +307,7 @@ class Simulation:
         """March to `time` [s]. Raises `SimulationStopped` where it cannot; the state stays the last good one."""
         if not self.ready:
             raise RuntimeError("no law has been adopted")
-        if not np.isfinite(time) or time < self.time:
+        if not is_finite(time) or time < self.time:
             raise ValueError(f"time must be finite and >= the present {self.time} s, got {time!r}")
         self._started, time = True, float(time)
         while True:

@@ -10,6 +10,10 @@ from .drive import AXES
 PART_OF_PEAK = 0.75  # of the turns where all terms bend the body most
 TURN_POINTS = 64  # along the body, for the angle that a law bends it by
 MOST_KNOTS = 8  # of laws whose panels are cut at them
+MOST_WAVES = 200.0  # on the body: with the most points that a grid may have, five for each
+WIGGLE_POINTS, WINDOW = 1024, 128  # along the body, for the turning points of an amplitude; of these close together
+SHARPNESS, FEW_KNOTS = 1.5, 6  # of a spline's waves; of one whose waves need no count
+SHORTEST_RAMP = 1e-9  # s, or of the time that it ends at: below, steps of time do not see it
 
 
 def groups_of(law: Law) -> dict:
@@ -26,7 +30,8 @@ def waveform(term: Term) -> tuple:
 
 
 def waves_of_law(law: Law, length: float) -> float:
-    """How many waves a law bends a body of `length` [m] into, at most; a spline counts an eighth of its intervals.
+    """How many waves a law bends a body of `length` [m] into, at most; a spline counts an eighth of its intervals, and
+    an amplitude the waves that it has itself, where they are shortest.
 
     A turn of the backbone is a wave too, as its direction goes once around: turns are counted by the term that turns it
     most, and by three quarters of what all do together where the body is bent most.
@@ -38,6 +43,7 @@ def waves_of_law(law: Law, length: float) -> float:
 def _waves(waveforms: tuple, length: float) -> float:
     waves = [length * abs(wave_number) / (2.0 * np.pi) for _, (_, _, wave_number, _) in waveforms]
     waves += [(len(knots) - 1) / 8.0 for _, (_, knots, _, _) in waveforms]
+    waves += [_wiggles(amplitude, knots, length) for _, (amplitude, knots, _, _) in waveforms]
     x = length * (np.arange(TURN_POINTS) + 0.5) / TURN_POINTS
     bends = [np.abs(amplitude_of(amplitude, knots, x)) for _, (amplitude, knots, _, _) in waveforms]
     together = np.zeros((2, TURN_POINTS))
@@ -45,6 +51,38 @@ def _waves(waveforms: tuple, length: float) -> float:
         together[AXES[axis]] += bend
     turns = [*(np.mean(bend) for bend in bends), PART_OF_PEAK * np.max(np.hypot(*together))]
     return float(max(*waves, *(length / (2.0 * np.pi) * turn for turn in turns), 0.0))
+
+
+@lru_cache(maxsize=4096)
+def _wiggles(amplitude: tuple, knots: tuple, length: float) -> float:
+    """Waves on a body of `length` [m] of an amplitude itself, by its turning points: of all, or as if there were as
+    many everywhere as where they are closest. They are sharper than sines, and count half again. Splines of few knots
+    have none: panels are cut at these."""
+    if len(amplitude) <= 2 or 0 < len(knots) <= FEW_KNOTS:
+        return 0.0
+    steps = np.diff(amplitude_of(amplitude, knots, np.linspace(0.0, length, WIGGLE_POINTS + 1)))
+    turning = np.concatenate(([0], np.cumsum(np.diff(np.sign(steps)) != 0)))
+    closest = np.max(turning[WINDOW:] - turning[:-WINDOW])
+    return SHARPNESS * 0.5 * max(int(turning[-1]), (int(closest) - 1) * WIGGLE_POINTS // WINDOW)
+
+
+def check_law(law: Law, length: float) -> float:
+    """Waves on a body of `length` [m]; `ValueError` for a law whose waves no grid carries, or with a ramp that is a
+    jump."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        waves = waves_of_law(law, length)
+    if not waves <= MOST_WAVES:
+        raise ValueError(
+            f"law {law.name!r} bends the body into {waves:.3g} waves or turns: at most {MOST_WAVES:g} can be resolved"
+        )
+    for ramp in (ramp for term in law.terms for ramp in term.envelope):
+        least = SHORTEST_RAMP * max(1.0, abs(ramp.end))
+        if ramp.end - ramp.start < least:
+            raise ValueError(
+                f"law {law.name!r} has a ramp at {ramp.start:g} s of {ramp.end - ramp.start:.3g} s: at least "
+                f"{least:.3g} s can be resolved"
+            )
+    return waves
 
 
 def knots_of_law(law: Law) -> tuple[float, ...]:
