@@ -2,9 +2,12 @@
 
 import signal
 import time
+from dataclasses import fields
 
 import psutil
 import pytest
+from eel_dynamics.parameters import DynamicsParameters
+from eel_dynamics.scene import Scene
 from eel_gaits.messages import law_to_message
 from swim_client import LIMIT
 
@@ -86,6 +89,37 @@ def test_bad_parameter_file_is_one_line_and_status_2(start, tmp_path, text, word
     lines = [line for line in node.output().splitlines() if line.startswith("dynamics: ")]
     assert len(lines) == 1 and all(word in lines[0] for word in words), node.output()
     assert "Traceback" not in node.output()
+
+
+@pytest.mark.fault(
+    "names", "words for the dynamics node that are no ROS arguments", "one line, status 2; --help: a usage"
+)
+@pytest.mark.parametrize(
+    ("word", "status", "beginning", "lines"),
+    [
+        (
+            "-h",
+            0,
+            "usage: dynamics [--ros-args -p NAME:=VALUE ...]\n",
+            len(fields(DynamicsParameters)) + len(fields(Scene)) + 5,
+        ),
+        ("--rosargs", 2, "dynamics: unknown argument '--rosargs' (parameters come after --ros-args", 1),
+    ],
+)
+def test_words_that_are_no_ros_arguments(start, word, status, beginning, lines):
+    node = start("dynamics", word)
+    assert node.wait(LIMIT) == status
+    assert node.output().startswith(beginning)
+    assert node.output().count("\n") == lines
+
+
+@pytest.mark.fault("names", "a parameter of the dynamics node that there is not", "a warning that names it")
+def test_overrides_that_are_no_parameters_are_named(start):
+    given = ("rate:=50", "foo:=1", "scene.plane:=true", "use_sim_time:=false")
+    node = start("dynamics", "--ros-args", *(part for each in given for part in ("-p", each)))
+    node.wait_for_output("waiting for a law", LIMIT)
+    assert node.output().count("WARN") == 1
+    assert "not parameters of this node, ignored: 'foo', 'scene.plane'\n" in node.output()
 
 
 def test_body_from_a_file_and_numbers_of_every_kind(start, client, tmp_path):

@@ -5,6 +5,7 @@ import signal
 import time
 
 import pytest
+from eel_gaits.settings import Settings
 from rclpy.qos import QoSProfile
 
 from eel_gaits import falling, gait, turning
@@ -201,6 +202,35 @@ def test_a_bad_params_file_ends_it_with_status_2(start, tmp_path):
     process = start("gait_generator", "--ros-args", "--params-file", str(tmp_path / "missing.yaml"))
     assert process.wait(90.0) == 2
     assert "missing.yaml" in process.output() and "Traceback" not in process.output()
+
+
+@pytest.mark.fault("names", "words for the gait generator that are no ROS arguments", "one line, status 2")
+@pytest.mark.parametrize("before", [(), ("--ros-args", "-p", "period:=2.0", "--")])
+def test_a_word_that_is_no_ros_argument_ends_it_with_one_line_and_status_2(start, before):
+    process = start("gait_generator", *before, "--rosargs", "-p", "period:=2.0")
+    assert process.wait(90.0) == 2
+    assert process.output() == (
+        "gait_generator: unknown argument '--rosargs' (parameters come after --ros-args as -p NAME:=VALUE)\n"
+    )
+
+
+def test_help_tells_every_parameter(start):
+    process = start("gait_generator", "--help")
+    assert process.wait(90.0) == 0
+    assert process.output().startswith("usage: gait_generator [--ros-args -p NAME:=VALUE ...]\n")
+    for name in Settings.known_names():
+        assert f"\n  {name} " in process.output()
+    assert (
+        "yaw curvature of the turn; positive: to the right, negative: to the left [rad/m], of turning (default 0.5)"
+        in (process.output())
+    )
+
+
+@pytest.mark.fault("names", "a parameter of the gait generator that there is not", "a warning that names it")
+def test_overrides_that_are_no_parameters_are_named(generator):
+    process = generator("-p", "perod:=0.5", "-p", "yaw_bend:=1", "-p", "qos_overrides./a.publisher.depth:=2")
+    assert process.output().count("WARN") == 1
+    assert "not parameters of this node, ignored: 'perod'\n" in process.output()
 
 
 @pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])

@@ -134,6 +134,13 @@ def test_what_cannot_be_is_said_in_one_line(recording, tmp_path, capsys, monkeyp
     assert "a picture must end in .png, got 'a.jpg'" in refusal(capsys, recording, "-o", "a.jpg")
     assert "ffmpeg is not installed" in refusal(capsys, recording, "-o", "a.mp4", "--fps", "10")
     assert "'no/a.png' cannot be written" in refusal(capsys, recording, "-o", "no/a.png")
+    assert "'text.rrd/a' cannot be written" in refusal(capsys, recording, "-o", "text.rrd/a", "--fps", "1")
+    for value in ("0", "-1", "nan"):
+        assert f"fps must be > 0, got {value}" in refusal(capsys, recording, "-o", "a", "--fps", value)
+        assert f"speed must be > 0, got {value}" in refusal(
+            capsys, recording, "-o", "a", "--fps", "1", "--speed", value
+        )
+    assert "recording must be a file" in refusal(capsys, "none.rrd", "-o", "a", "--fps", "1")
     for wrong in ([], ["-o", "a.png", "--size", "big"], ["-o", "a", "--fps", "1", "--at", "2"]):
         with pytest.raises(SystemExit, match="2"):
             main([str(recording), *wrong])

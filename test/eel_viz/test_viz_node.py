@@ -3,12 +3,14 @@
 import signal
 import subprocess
 import time
+from dataclasses import fields
 from pathlib import Path
 
 import made_up
 import numpy as np
 import pytest
 from eel_viz.reading import read
+from eel_viz.settings import Settings
 from eel_viz.viewer import native_viewer
 from fake_swimmer import TOPICS, arrived, body_message, found, messages
 
@@ -196,10 +198,32 @@ def test_what_cannot_be_is_refused_in_one_line_with_status_2(start, tmp_path, mo
     assert words in said[0]
 
 
+@pytest.mark.fault("names", "words for the visualiser that are no ROS arguments", "one line, status 2; --help: a usage")
+@pytest.mark.parametrize(
+    ("word", "status", "beginning", "lines"),
+    [
+        ("--help", 0, "usage: visualiser [--ros-args -p NAME:=VALUE ...]\n", len(fields(Settings)) + 5),
+        ("--rosargs", 2, "visualiser: unknown argument '--rosargs' (parameters come after --ros-args", 1),
+    ],
+)
+def test_words_that_are_no_ros_arguments(start, tmp_path, monkeypatch, word, status, beginning, lines):
+    folder = tmp_path / "empty"
+    folder.mkdir()
+    monkeypatch.chdir(folder)
+    node = start("visualiser", word, "--ros-args", "-p", "sink:=[save]")
+    assert node.wait(90.0) == status
+    assert node.output().startswith(beginning)
+    assert node.output().count("\n") == lines
+    assert list(folder.iterdir()) == []
+
+
 def test_parameters_take_integers_and_describe_themselves(start, network, tmp_path):
     from rclpy.parameter_client import AsyncParameterClient
 
-    node = visualise(start, tmp_path / "run.rrd", "rate:=10", "torque_limit:=2", "stop_with_publisher:=false")
+    node = visualise(
+        start, tmp_path / "run.rrd", "rate:=10", "torque_limit:=2", "stop_with_publisher:=false", "ratio:=3"
+    )
+    assert "not parameters of this node, ignored: 'ratio'\n" in node.output()
     client = AsyncParameterClient(network, "visualiser")
     assert client.wait_for_services(timeout_sec=90.0)
 

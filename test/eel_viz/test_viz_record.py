@@ -224,6 +224,26 @@ def test_a_folder_that_is_there_is_refused(start, tmp_path):
     assert "exists already" in said[0]
 
 
+@pytest.mark.fault("parameters", "a duration or a timeout of 0, below 0 or nan", "one line, status 2; nothing is made")
+@pytest.mark.parametrize(
+    ("words", "line"),
+    [
+        (("record", "-o", "bag", "--duration", "nan"), "record: --duration must be > 0 s, got nan"),
+        (("record", "-o", "bag", "--duration", "-1"), "record: --duration must be > 0 s, got -1"),
+        ((*ECHO, "x", "--timeout", "nan"), "eel_echo: --timeout must be > 0 s, got nan"),
+        ((*ECHO, "x", "--timeout", "0"), "eel_echo: --timeout must be > 0 s, got 0"),
+    ],
+)
+def test_a_time_that_cannot_be_is_refused_in_one_line(start, tmp_path, monkeypatch, words, line):
+    folder = tmp_path / "empty"
+    folder.mkdir()
+    monkeypatch.chdir(folder)
+    process = start(*words)
+    assert process.wait(90.0) == 2
+    assert process.output() == line + "\n"
+    assert list(folder.iterdir()) == []
+
+
 def test_a_recording_without_messages_is_a_bag_too(start, tmp_path):
     recorder = start("record", "-o", str(tmp_path / "bag"), "--duration", "0.5", "head_pose")
     assert recorder.wait(90.0) == 0, recorder.output()

@@ -7,10 +7,12 @@ import math
 import sys
 import time
 import traceback
+from dataclasses import fields
 
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from eel_gaits.messages import law_from_message
+from eel_gaits.node import answer_words, take_overrides, warn_of_unknown
 from rclpy.clock import Clock, ClockType
 from rclpy.duration import Duration
 from rclpy.event_handler import SubscriptionEventCallbacks
@@ -33,11 +35,15 @@ from .ending import Ending, leave_at_once
 from .feed import LawFeed
 from .march import March
 from .messages import Sample, body_message, diagnostic_array, opened_law, samples_from_message
+from .parameters import DynamicsParameters, default_of
 from .publishers import Publishers
 from .repair import repair_soon
 from .report import Report
+from .scene import Scene
 from .status import Status
 
+NAME = "dynamics"
+ABOUT = "Simulates the swimmer that the laws on curvature_law bend, and publishes how it moves."
 LATCHED = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 LOSSLESS = QoSProfile(history=HistoryPolicy.KEEP_ALL)  # reliable, as the others are
 ATTENTION = 0.25  # s: how often the state is looked at, and who publishes /clock
@@ -49,9 +55,11 @@ class DynamicsNode(Node):
     """Topics, services and parameters of a run."""
 
     def __init__(self):
-        super().__init__("dynamics")
+        super().__init__(NAME, automatically_declare_parameters_from_overrides=True)
+        overrides = take_overrides(self)
         report = Report(self.get_logger())
         self.parameters = Declaration(self, lambda values: self.march.change(values))
+        warn_of_unknown(self, overrides, {name for name in overrides if self.has_parameter(name)})
         values, scene = self.parameters.values, self.parameters.scene
         simulation = simulation_of(values, scene)
         self.outlets = Publishers(
@@ -125,18 +133,29 @@ class DynamicsNode(Node):
         return response
 
 
+def parameter_rows():
+    """Name, description and default of each parameter."""
+    for prefix, kind in (("", DynamicsParameters), ("scene.", Scene)):
+        for item in fields(kind):
+            unit = f" [{item.metadata['unit']}]" if item.metadata["unit"] else ""
+            yield prefix + item.name, item.metadata["description"] + unit, default_of(item)
+
+
 def main(args=None) -> int:
     """Runs the node; status 0 after its duration, SIGINT or SIGTERM, 2 if it cannot start as asked, 1 if it fails, or
     if a simulation that nobody attends (a duration, no pace) cannot go on."""
     ending = Ending()
     repair_soon()
     try:
+        status = answer_words(NAME, ABOUT, parameter_rows(), sys.argv if args is None else args)
+        if status is not None:
+            return status
         rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
-        if not ensure(get_logger("dynamics").info, ending.comes_within):
+        if not ensure(get_logger(NAME).info, ending.comes_within):
             return 0
         node = DynamicsNode()
     except (ValueError, RuntimeError, ParameterException, NameValidationException) as error:
-        sys.stderr.write(f"dynamics: {' '.join(str(error).split())}\n")
+        sys.stderr.write(f"{NAME}: {' '.join(str(error).split())}\n")
         rclpy.try_shutdown()
         return 2
     executor = SingleThreadedExecutor()

@@ -6,6 +6,7 @@ which the gait began. Parameters of the same gait leave that time alone; another
 
 import signal
 import sys
+from dataclasses import fields
 
 import rclpy
 from builtin_interfaces.msg import Time
@@ -19,15 +20,54 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.signals import SignalHandlerOptions
+from rclpy.utilities import remove_ros_args
 
 from eel_gaits.messages import law_to_message
 from eel_gaits.registry import GAITS
-from eel_gaits.settings import Settings
+from eel_gaits.settings import Settings, Transition
 from eel_msgs.msg import CurvatureLaw
 
 NAME = "gait_generator"
 DEFAULTS = ["--ros-args", "-p", "use_sim_time:=true", "--"]  # what the user says comes after, and wins
+ABOUT = "Publishes the curvature law of a gait, and a new one whenever a parameter is set."
+OF_ROS = ("use_sim_time", "start_type_description_service", "qos_overrides.")  # beginnings of its own parameters' names
 LOOK = 0.25  # s between two looks at whether time went back, or a signal has come
+
+
+def answer_words(name, about, parameters, words):
+    """The exit status that the command line `words` (the program first) comes to by what is no ROS argument: 0 for -h
+    or --help, with a usage; 2 for anything else, with one line; None without any.
+
+    `parameters` are rows of name, description and default.
+    """
+    rest = remove_ros_args(words)[1:]
+    if not rest:
+        return None
+    if not {"-h", "--help"} & set(rest):
+        sys.stderr.write(f"{name}: unknown argument {rest[0]!r} (parameters come after --ros-args as -p NAME:=VALUE)\n")
+        return 2
+    print(f"usage: {name} [--ros-args -p NAME:=VALUE ...]\n\n{about}\n\nparameters:")
+    for key, description, default in parameters:
+        shown = str(default).lower() if isinstance(default, bool) else "empty" if default == "" else default
+        print(f"  {key:<24}  {description} (default {shown})")
+    return 0
+
+
+def take_overrides(node):
+    """What the user gave `node` at start, by name, which rclpy declared: undeclared again, but for ROS's own, to be
+    declared anew with type and range."""
+    overrides = {name: parameter.value for name, parameter in node.get_parameters_by_prefix("").items()}
+    for name in overrides:
+        if not name.startswith(OF_ROS):
+            node.undeclare_parameter(name)
+    return overrides
+
+
+def warn_of_unknown(node, overrides, known):
+    """One line that names the overrides that are not `known`; a parameter file for several nodes may hold some."""
+    unknown = [repr(name) for name in overrides if name not in known and not name.startswith(OF_ROS)]
+    if unknown:
+        node.get_logger().warning(f"not parameters of this node, ignored: {', '.join(unknown)}")
 
 
 class Unattended(CallbackGroup):
@@ -43,11 +83,9 @@ class GaitGenerator(Node):
     def __init__(self):
         self._ticks = Unattended()
         super().__init__(NAME, automatically_declare_parameters_from_overrides=True)
-        overrides = {name: parameter.value for name, parameter in self.get_parameters_by_prefix("").items()}
-        for name in overrides:
-            if name != "use_sim_time" and not self.describe_parameter(name).read_only:
-                self.undeclare_parameter(name)  # to be declared anew with its type and range
+        overrides = take_overrides(self)
         self._settings = Settings.start(overrides)
+        warn_of_unknown(self, overrides, Settings.known_names())
         self._plan = None  # in mid-change: the new Settings, or the reason of a refusal
         self._stamp = Time()
         quality = QoSProfile(
@@ -136,13 +174,29 @@ class GaitGenerator(Node):
         )
 
 
+def parameter_rows():
+    """Name, description and default of each parameter; those of a gait say of which."""
+    yield "gait", f"name of the gait, one of {', '.join(sorted(GAITS))}", Settings.gait
+    gaits = {}  # of each number
+    for kind, gait in [(Transition, None), *((make.numbers, name) for name, make in GAITS.items())]:
+        for entry in fields(kind):
+            unit = f" [{entry.metadata['unit']}]" if entry.metadata["unit"] else ""
+            gaits.setdefault((entry.name, entry.metadata["description"] + unit, entry.default), []).append(gait)
+    for (name, description, default), names in gaits.items():
+        yield name, description if None in names else f"{description}, of {', '.join(names)}", default
+
+
 def main(args=None):
-    """Run the node; the exit status is 0 after SIGINT or SIGTERM, 2 if a parameter is refused at start."""
+    """Run the node; the exit status is 0 after SIGINT or SIGTERM, 2 if a parameter or a word is refused at start."""
+    words = sys.argv if args is None else args
     signals = []
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda received, _: signals.append(received))
     try:
-        rclpy.init(args=DEFAULTS + (sys.argv if args is None else args), signal_handler_options=SignalHandlerOptions.NO)
+        status = answer_words(NAME, ABOUT, parameter_rows(), words)
+        if status is not None:
+            return status
+        rclpy.init(args=DEFAULTS + words, signal_handler_options=SignalHandlerOptions.NO)
         node = GaitGenerator()
     except (ValueError, RuntimeError, ParameterException, NameValidationException) as error:
         sys.stderr.write(f"{NAME}: {' '.join(str(error).split())}\n")

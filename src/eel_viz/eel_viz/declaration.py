@@ -1,29 +1,63 @@
 """The node's parameters, declared from `Settings`: type, default, range and description are written there alone."""
 
+import sys
 from dataclasses import fields
 
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from rclpy.node import Node
+from rclpy.utilities import remove_ros_args
 
 from eel_viz.settings import Settings, limits
 
+OF_ROS = ("use_sim_time", "start_type_description_service", "qos_overrides.")  # beginnings of its own parameters' names
 UNBOUNDED = 1e9  # upper end of a range that has none
 
 
 def declare_settings(node: Node) -> Settings:
-    """Declare a parameter for each field, fixed at start, and read the user's; ValueError names what is wrong."""
+    """Declare a parameter for each field, fixed at start, and read the user's; ValueError names what is wrong.
+
+    The node has declared what the user gave already; what is no setting is named in a warning.
+    """
+    given = [name for name in node.get_parameters_by_prefix("") if not name.startswith(OF_ROS)]
+    for name in given:
+        node.undeclare_parameter(name)  # to be declared anew with its type and range
     values = {}
     for item in fields(Settings):
         default = list(item.default) if isinstance(item.default, tuple) else item.default
         value = node.declare_parameter(item.name, default, _described(item)).value
         values[item.name] = list(value) if hasattr(value, "typecode") else value
+    unknown = [repr(name) for name in given if name not in values]
+    if unknown:
+        node.get_logger().warning(f"not parameters of this node, ignored: {', '.join(unknown)}")
     return Settings.from_values(values)
+
+
+def answer_words(name: str, about: str, words: list[str]) -> int | None:
+    """The exit status that the command line `words` (the program first) comes to by what is no ROS argument: 0 for -h
+    or --help, with a usage; 2 for anything else, with one line; None without any."""
+    rest = remove_ros_args(words)[1:]
+    if not rest:
+        return None
+    if not {"-h", "--help"} & set(rest):
+        sys.stderr.write(f"{name}: unknown argument {rest[0]!r} (parameters come after --ros-args as -p NAME:=VALUE)\n")
+        return 2
+    print(f"usage: {name} [--ros-args -p NAME:=VALUE ...]\n\n{about}\n\nparameters:")
+    for item in fields(Settings):
+        default = list(item.default) if isinstance(item.default, tuple) else item.default
+        shown = str(default).lower() if isinstance(default, bool) else "empty" if default == "" else default
+        print(f"  {item.name:<20}  {_description(item)} (default {shown})")
+    return 0
+
+
+def _description(item) -> str:
+    unit = item.metadata["unit"]
+    return item.metadata["description"] + (f" [{unit}]" if unit else "")
 
 
 def _described(item) -> ParameterDescriptor:
     about = item.metadata
     descriptor = ParameterDescriptor(
-        description=about["description"] + (f" [{about['unit']}]" if about["unit"] else ""),
+        description=_description(item),
         read_only=True,
         dynamic_typing=True,  # a float may be given as an integer, a list as one text
     )

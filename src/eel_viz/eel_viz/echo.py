@@ -11,10 +11,10 @@ from rclpy.node import Node
 from rclpy.utilities import remove_ros_args
 
 from eel_viz.definitions import message_class
-from eel_viz.lifetime import live
+from eel_viz.lifetime import check_seconds, live
 from eel_viz.quality import fitting
 
-NAME = "echo"
+NAME = "eel_echo"  # the name echo belongs to the shell
 SHORT = 128  # elements of an array that are printed without --full-length
 
 
@@ -22,6 +22,7 @@ class Echo(Node):
     """Waits for a publisher of the topic, to learn its type and quality of service, and prints what comes."""
 
     def __init__(self, options: argparse.Namespace) -> None:
+        check_seconds("--timeout", options.timeout)
         super().__init__(NAME)
         self._options = options
         self._topic = self.resolve_topic_name(options.topic)

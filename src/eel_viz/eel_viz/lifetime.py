@@ -75,6 +75,12 @@ def live(
     return int(bool(failure))
 
 
+def check_seconds(argument: str, value: float | None) -> None:
+    """ValueError that names the argument unless its value [s] is positive, or None."""
+    if value is not None and not value > 0.0:
+        raise ValueError(f"{argument} must be > 0 s, got {value:g}")
+
+
 def take_the_rest(executor: SingleThreadedExecutor, node: Node, work: Callable[[Node], bool] | None) -> None:
     """What has arrived when the end comes belongs to the run: take it, in `LAST_LOOK` [s] at most."""
     limit, in_vain = time.monotonic() + LAST_LOOK, 0

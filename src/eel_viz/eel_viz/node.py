@@ -13,7 +13,7 @@ from nav_msgs.msg import Odometry
 from rclpy.node import Node
 
 from eel_msgs.msg import Backbone, BodyGeometry, Curvature, CurvatureLaw, EnergyLedger, HydrodynamicLoad, InternalWrench
-from eel_viz.declaration import declare_settings
+from eel_viz.declaration import answer_words, declare_settings
 from eel_viz.flow import leave
 from eel_viz.inbox import Inbox
 from eel_viz.intake import Intake
@@ -24,6 +24,7 @@ from eel_viz.sinks import destinations
 from eel_viz.topics import SWIMMER
 
 NAME = "visualiser"
+ABOUT = "Shows and records every topic of a swimmer in Rerun."
 DEFAULTS = ["--ros-args", "-p", "use_sim_time:=true", "--"]  # what the user says comes after, and wins
 GONE = 1.0  # s without publishers and messages, after which `stop_with_publisher` ends the node
 
@@ -43,7 +44,7 @@ class Visualiser(Node):
     """Topics to an intake."""
 
     def __init__(self):
-        super().__init__(NAME)
+        super().__init__(NAME, automatically_declare_parameters_from_overrides=True)
         self.settings = declare_settings(self)
         own = self.get_namespace().rstrip("/")
         other = f"/{self.settings.compare.strip('/')}".rstrip("/")  # empty: the swimmer without a namespace
@@ -114,8 +115,15 @@ class Visualiser(Node):
 
 def main(arguments: list[str] | None = None) -> int:
     """Run the node; the exit status is 0 after SIGINT or SIGTERM, 1 if a file could not be written to its end, 2 if a
-    parameter is refused at start."""
+    parameter or a word is refused at start."""
     given = sys.argv if arguments is None else [NAME, *arguments]
+    try:
+        status = answer_words(NAME, ABOUT, given)
+    except RuntimeError as error:  # of rcl's parser
+        sys.stderr.write(f"{NAME}: {' '.join(str(error).split())}\n")
+        status = 2
+    if status is not None:
+        return status
     return leave(live(NAME, DEFAULTS + given, Visualiser, Visualiser.attend, Visualiser.work, complete=True))
 
 

@@ -17,7 +17,7 @@ from rosbags.interfaces import Qos, QosDurability, QosHistory, QosLiveliness, Qo
 
 from eel_viz.definitions import definition, message_class, type_hash
 from eel_viz.growing_bag import GrowingBag
-from eel_viz.lifetime import live
+from eel_viz.lifetime import check_seconds, live
 from eel_viz.quality import fitting, hears, keep_all
 from eel_viz.topics import GLOBAL, LATCHED, OWN, SWIMMER
 
@@ -33,6 +33,7 @@ class Recorder(Node):
     """One raw subscription per topic, one rosbag2 writer."""
 
     def __init__(self, options: argparse.Namespace) -> None:
+        check_seconds("--duration", options.duration)
         super().__init__(NAME, namespace=options.namespace)
         self._options = options
         self._bag = GrowingBag(options.output)

@@ -41,9 +41,7 @@ def render(
 
 def times(drawing: Drawing, *, fps: float, start: float | None, end: float | None, speed: float) -> list[float]:
     """Times [s] of the pictures of a film with `fps` a second, running `speed` times as fast as the swimmer."""
-    for name, value in (("fps", fps), ("speed", speed)):
-        if not 0.0 < value < math.inf:
-            raise ValueError(f"{name} must be > 0, got {value:g}")
+    _check_positive(fps=fps, speed=speed)
     start = drawing.start if start is None else start
     end = drawing.end if end is None else end
     if not start <= end:
@@ -126,6 +124,8 @@ def main(arguments: list[str] | None = None) -> int:
 
 def _draw(chosen: argparse.Namespace, output: pathlib.Path, size: tuple[int, int]) -> None:
     many = chosen.fps is not None
+    if many:
+        _check_positive(fps=chosen.fps, speed=chosen.speed)
     alone = many and output.suffix in FILMS
     if alone and output.suffix not in ANIMATIONS and ffmpeg() is None:
         raise ValueError(f"ffmpeg is not installed, which {output.suffix} needs; {' and '.join(ANIMATIONS)} do without")
@@ -141,7 +141,9 @@ def _draw(chosen: argparse.Namespace, output: pathlib.Path, size: tuple[int, int
         folder = output
         if alone:
             folder = pathlib.Path(stack.enter_context(tempfile.TemporaryDirectory()))
-        elif any(folder.glob("frame_*.png")):
+        else:
+            folder.mkdir(parents=True, exist_ok=True)
+        if any(folder.glob("frame_*.png")):
             _say(f"{NAME}: {folder} has pictures already, those of the same number are replaced\n")
         written = frames(drawing, folder, at, _say if sys.stderr.isatty() else lambda text: None)
         name = output if alone else folder / FILM
@@ -154,10 +156,16 @@ def _draw(chosen: argparse.Namespace, output: pathlib.Path, size: tuple[int, int
                   f"{folder}/frame_%05d.png -pix_fmt yuv420p {name}")  # fmt: skip
 
 
+def _check_positive(**values: float) -> None:
+    for name, value in values.items():
+        if not 0.0 < value < math.inf:
+            raise ValueError(f"{name} must be > 0, got {value:g}")
+
+
 def _check_writable(output: pathlib.Path, *, folder: bool) -> None:
-    if folder:
-        output.mkdir(parents=True, exist_ok=True)
     where = output if folder else output.parent
+    while folder and not where.exists():  # it is made later, with the folders above it
+        where = where.parent
     if not where.is_dir() or not os.access(where, os.W_OK):
         raise ValueError(f"{str(output)!r} cannot be written")
 
