@@ -80,6 +80,13 @@ def test_one_for_all_and_a_sequence_of_one():
     assert simulate_of_last.fluid_force is None and batch.fluid_force is None
 
 
+def test_accuracies_are_a_sequence_or_an_array():
+    for given in ([1e-3, 1e-4], np.array([1e-3, 1e-4])):
+        batch = simulate_batch(straight(), 0.1, accuracy=given)
+        assert [each.target for each in batch.accuracies] == [1e-3, 1e-4]
+    assert simulate_batch(straight(), 0.1, accuracy=np.array(1e-3)).accuracies[0].target == 1e-3
+
+
 def test_without_stations_only_the_motion_and_the_energies():
     batch = simulate_batch([falling(), straight()], 0.2, accuracy=1e-2)
     assert batch.backbone is None and batch.torque is None and batch[0].torque is None
@@ -147,6 +154,9 @@ def test_progress_reaches_the_end():
         ({"scenes": [Scene(), Scene(planar=True)]}, ("swimmer 1", "pitch")),
         ({"threads": 0}, ("threads", "0")),
         ({"duration": -1.0}, ("duration", "-1")),
+        ({"duration": "a"}, ("duration must be finite and >= 0 s, got 'a'",)),
+        ({"sample_period": 1e-12}, ("duration", "sample_period", r"1e\+11 samples")),
+        ({"accuracy": np.array([1e-3, 0.5]), "laws": [straight()] * 2}, ("accuracy", "0.5")),
         (
             {"stations": 50_000, "positions": np.zeros((5000, 3)), "duration": 100.0},
             ("stations", "5000 swimmers", "GB"),

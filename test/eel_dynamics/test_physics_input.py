@@ -1,5 +1,8 @@
 """Bad input of the library: one ValueError that names the argument and what it got."""
 
+import io
+import re
+
 import numpy as np
 import pytest
 from cases import falling_law, random_law
@@ -90,6 +93,18 @@ def test_body_by_name_and_file(tmp_path):
         Body.from_file(words)
 
 
+def test_body_of_what_is_no_archive(tmp_path):
+    path, packed = tmp_path / "arr.npz", io.BytesIO()
+    np.savez(packed, x=X, half_width=ROUND, half_height=ROUND)
+    plain = io.BytesIO()
+    np.save(plain, X)
+    whole = packed.getvalue()
+    for content in (plain.getvalue(), b"x,half_width\n", b"", whole[:-30], whole[:200] + b"###" + whole[203:]):
+        path.write_bytes(content)
+        with refused("arr.npz", "it is not an .npz archive of section data"):
+            Body.from_file(path)
+
+
 def test_body_from_files(tmp_path):
     table = np.stack([X, ROUND, 2 * ROUND], axis=1)
     np.savetxt(tmp_path / "body.csv", table, delimiter=",", header="x,half_width,half_height", comments="")
@@ -174,6 +189,18 @@ def test_pitch_in_a_planar_scene():
         ({"duration": np.nan}, ("duration", "nan")),
         ({"duration": 1.0, "sample_period": 0.0}, ("sample_period", "0")),
         ({"duration": 1.0, "sample_period": -0.1}, ("sample_period", "-0.1")),
+        ({"duration": "10"}, ("duration must be finite and >= 0 s, got '10'",)),
+        ({"duration": None}, ("duration must be finite and >= 0 s, got None",)),
+        ({"duration": [1.0, 2.0]}, ("duration", "2.0")),
+        ({"duration": np.array([1.0])}, ("duration", "array")),
+        ({"duration": 10**400}, ("duration",)),
+        ({"duration": 1.0, "sample_period": "0.1"}, ("sample_period must be finite and > 0 s, got '0.1'",)),
+        ({"duration": 1e9}, ("duration", "sample_period", r"2e\+10 samples")),
+        ({"duration": 1e300}, ("duration", "sample_period", "10,000,000 samples")),
+        ({"duration": 1e300, "sample_period": 1e-300}, ("duration", "sample_period", "inf samples")),
+        ({"duration": 1.0, "sample_period": 1e-12}, ("duration", "sample_period", r"1e\+12 samples")),
+        ({"duration": 100.0, "sample_period": 1e-8}, ("duration", "sample_period", r"1e\+10 samples")),
+        ({"duration": 9.0, "sample_period": 1e-6, "stations": 10_000}, ("stations", "1 swimmer of", "GB")),
     ],
 )
 def test_simulate(given, words):
@@ -203,8 +230,9 @@ def test_advance_without_a_law_and_backwards():
         simulation.advance(0.1)
     simulation.adopt(Law())
     simulation.advance(0.5)
-    with refused("time", "0.2"):
-        simulation.advance(0.2)
+    for time in (0.2, "1", None, np.nan, [1.0]):
+        with refused("time must be finite", re.escape(repr(time))):
+            simulation.advance(time)
 
 
 @pytest.mark.parametrize(
@@ -230,7 +258,7 @@ def test_a_law_beyond_all_numbers(amplitude):
     try:
         simulation.adopt(Law(Term(axis="yaw", amplitude=(amplitude,), period=1.0)))
     except ValueError as refusal:
-        assert "cannot be begun" in str(refusal) and simulation.law is None and not simulation.ready
+        assert "bends the body into" in str(refusal) and simulation.law is None and not simulation.ready
         return
     try:
         simulation.advance(0.05)

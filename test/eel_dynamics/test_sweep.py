@@ -9,7 +9,7 @@ import pytest
 from eel_dynamics.measures import measures_of
 from eel_dynamics.sweep_command import main
 
-from eel_dynamics import Accuracy, Body, Scene, simulate, sweep
+from eel_dynamics import Accuracy, Body, Scene, simulate, sweep, sweep_command
 from eel_gaits import straight
 
 xarray = pytest.importorskip("xarray")
@@ -131,6 +131,12 @@ def test_command_with_a_cluster_of_its_own(tmp_path, capsys):
     [
         (["--vary", "period"], "NAME=VALUES"),
         (["--vary", "period=1:2:x"], "start:end:count"),
+        (["--vary", "period=1:2:-1"], "start:end:count"),
+        (["--vary", "period=0.5:2:100000000000"], "period must have at most 1000000 points, got 100000000000"),
+        (["--vary", "period=1:2:1001", "--vary", "wavelength=1:2:1000"], "at most 1000000 points, got 1001000"),
+        (["--vary", "period=1,2", "--vary", "period=3"], "period must be given once, got it 2 times"),
+        (["--vary", "period=1,2", "--set", "period=3"], "period must be given once"),
+        (["--vary", "period=1", "--duration", "1e9"], "2e+10 samples"),
         (["--vary", "tail=1"], "tail"),
         (["--vary", "period=-1,1"], "period=-1.0"),
         (["--vary", "scene.colour=red"], "colour"),
@@ -143,6 +149,15 @@ def test_bad_input_of_the_command(options, words, tmp_path, capsys):
     assert main([*options, "--out", str(tmp_path / "out.nc")]) == 2
     said = capsys.readouterr().err
     assert words in said and said.startswith("sweep: ") and said.count("\n") == 1
+
+
+def test_out_of_memory_is_one_line(tmp_path, monkeypatch, capsys):
+    def swum(*_, **__):
+        raise MemoryError("72 GiB")
+
+    monkeypatch.setattr(sweep_command, "sweep", swum)
+    assert main(["--vary", "period=1", "--out", str(tmp_path / "out.nc")]) == 2
+    assert capsys.readouterr().err == "sweep: it does not fit into memory: 72 GiB\n"
 
 
 def test_missing_extra_is_one_clear_error(monkeypatch):

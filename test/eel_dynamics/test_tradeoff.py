@@ -123,6 +123,9 @@ def test_command_leaves_picture_page_table_and_recording(tmp_path, capsys):
         ("wriggling", "wriggling"),
         ("--set period", "period"),
         ("--repeats 0", "repeats"),
+        ("--duration 0 --quick", "--duration must be finite and >= 0.05 s, got 0.0"),
+        ("--duration nan --quick", "--duration"),
+        ("--duration -1 --quick", "--duration"),
         ("--pictures /nowhere", "nowhere"),
     ],
 )

@@ -12,6 +12,21 @@ def checked_instance(name: str, value, kind: type):
     return value
 
 
+def checked_number(name: str, value, unit: str, *, zero: bool = False) -> float:
+    """`value` as a finite float > 0, or >= 0 where `zero` may be."""
+    if not is_finite(value) or value < 0.0 or (value == 0.0 and not zero):
+        raise ValueError(f"{name} must be finite and {'>=' if zero else '>'} 0 {unit}, got {value!r}")
+    return float(value)
+
+
+def is_finite(value) -> bool:
+    """Whether `value` is one finite number; a text is none."""
+    try:
+        return math.isfinite(value) and not getattr(value, "ndim", 0)
+    except (TypeError, ValueError, OverflowError):
+        return False
+
+
 def checked_row(name: str, values, size: int | None) -> np.ndarray:
     """`values` as (size,) finite floats; any size where it is None."""
     if type(values) is tuple and all(type(value) is float for value in values):

@@ -28,7 +28,7 @@ from .integrator import MARCHED
 from .leg import COUNT, ENERGY, PLACE, REACHED, STATUS, ReadyLeg
 from .member import Crew, Member, swim_together
 from .profiles import Profiles, profiles_of, row_of
-from .run import Run, checked_times, run_of
+from .run import Run, check_memory, checked_times, run_of
 from .scene import Scene
 from .stopping import SimulationStopped
 
@@ -36,7 +36,6 @@ ALONG = "backbone", "section_orientation", "curvature", "curvature_rate", "torqu
 MOST_TOGETHER = 32  # swimmers of one call of the loops: the lock of Python is let go once for all of them, and
 # lanes stand empty at the end of it only
 PARTS_PER_THREAD = 4  # at least, so that none waits long for the others at the end
-MOST_MEMORY = 0.8  # of the machine's, that a batch may fill
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,6 +133,7 @@ def simulate_batch(
     `error`; the others do not notice. `ValueError` names an argument that does not fit, with the number of the swimmer.
     """
     times = checked_times(duration, sample_period)
+    accuracy = accuracy.tolist() if isinstance(accuracy, np.ndarray) else accuracy
     members = swimmers_of(laws, bodies, scenes, accuracy, positions, orientations, twists, duration)
     along = [0.0] if stations is None else stations
     x_of = {length: checked_stations(along, length) for length in dict.fromkeys(each.body.length for each in members)}
@@ -269,13 +269,7 @@ def _stopped_at_start(error: Exception) -> SimulationStopped:
 
 def _space(count: int, samples: int, stations: int, wrench: bool, load: bool) -> Profiles:
     """Profiles with a first axis for the swimmers. `ValueError` where they would not fit into memory."""
-    needed = 8.0 * count * samples * profiles_of(1, stations, wrench, load).whole.size
-    there = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") * MOST_MEMORY
-    if needed > there:
-        raise ValueError(
-            f"stations must be fewer (or samples, or swimmers): {count} swimmers of {samples} samples at {stations} "
-            f"stations take {needed / 1e9:.3g} GB, of {there / 1e9:.3g} GB"
-        )
+    check_memory(count, samples, stations, wrench, load)
     return profiles_of(samples, stations, wrench, load, (count,))
 
 

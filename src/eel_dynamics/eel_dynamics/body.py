@@ -5,8 +5,10 @@ X runs from 0 at the nose to the length at the tail. The nose is pointed, a(0) =
 """
 
 import csv
+import zlib
 from functools import cache, cached_property, lru_cache
 from pathlib import Path
+from zipfile import BadZipFile
 
 import numpy as np
 
@@ -212,8 +214,11 @@ NAMED = ("boyer2010", "kern2006")
 
 def _columns(path: Path) -> dict[str, np.ndarray]:
     if path.suffix == ".npz":
-        with np.load(path) as data:
-            return {key: data[key] for key in data.files}
+        try:
+            with np.load(path) as data:
+                return {key: data[key] for key in data.files}
+        except (TypeError, ValueError, EOFError, BadZipFile, zlib.error):
+            raise ValueError("it is not an .npz archive of section data") from None
     with open(path, newline="", encoding="utf-8") as file:
         rows = list(csv.reader(file))
     if not rows:

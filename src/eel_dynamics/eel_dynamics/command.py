@@ -23,6 +23,7 @@ from .run import Run, simulate
 from .scene import Scene
 from .stopping import SimulationStopped
 
+MOST_ACTUATORS = 1000  # joints that --actuators prints a line or two of, each
 ARRAYS = [
     "time",
     "position",
@@ -57,6 +58,8 @@ def main(arguments: list[str] | None = None) -> int:
         law = gait(options.gait, **numbers)
         body = Body.named(options.body) if options.body in NAMED else Body.from_file(options.body)
         scene = Scene(**{name: _scene_value(name, value) for name, value in _pairs("--scene", options.scene)})
+        if options.actuators is not None:
+            _check_actuators(options, scene)
         start = time.perf_counter()
         run = simulate(
             law,
@@ -82,6 +85,9 @@ def main(arguments: list[str] | None = None) -> int:
         return 3
     except (ValueError, OSError) as error:
         print(f"simulate: {error}", file=sys.stderr)
+        return 2
+    except MemoryError as error:
+        print(f"simulate: the run does not fit into memory: {error}", file=sys.stderr)
         return 2
     if out is not None:
         print(f"written to          {out}")
@@ -129,7 +135,26 @@ def _pairs(option: str, texts: list[str]) -> list[tuple[str, str]]:
     for text in texts:
         if "=" not in text:
             raise ValueError(f"{option} must be NAME=VALUE, got {text!r}")
+    check_names(texts)
     return [tuple(text.split("=", 1)) for text in texts]
+
+
+def check_names(texts: list[str]):
+    """`ValueError` where two of the NAME=VALUE have the same name."""
+    names = [text.partition("=")[0] for text in texts]
+    for name in names:
+        if names.count(name) > 1:
+            raise ValueError(f"{name} must be given once, got it {names.count(name)} times")
+
+
+def _check_actuators(options, scene: Scene):
+    """`ValueError` for what `Run.actuators` would refuse, before the swim."""
+    if not 1 <= options.actuators <= MOST_ACTUATORS:
+        raise ValueError(f"--actuators must be 1 to {MOST_ACTUATORS}, got {options.actuators}")
+    if not scene.internal_wrench:
+        raise ValueError("--actuators needs --scene internal_wrench=on, got off")
+    if options.stations < 4:
+        raise ValueError(f"--actuators needs 4 --stations or more, got {options.stations}")
 
 
 def _number(name: str, text: str):

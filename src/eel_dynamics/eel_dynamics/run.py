@@ -1,5 +1,6 @@
 """A whole run of a law: `simulate`, and what it returns."""
 
+import os
 import warnings
 from contextvars import ContextVar
 from dataclasses import dataclass
@@ -11,20 +12,22 @@ from eel_gaits.law import Law
 from .accuracy import Accuracy
 from .actuators import Actuators, actuators_of
 from .analysis import Analysis
-from .arguments import checked_stations
+from .arguments import checked_number, checked_stations
 from .body import Body
 from .broadcast import Swimmer
 from .energy import EnergyLedger
 from .errors import Errors, errors, refined, stable_step
 from .limits import warnings_of
 from .member import Crew
-from .profiles import Profiles
+from .profiles import Profiles, places_of
 from .records import records
 from .scene import Scene
 from .stopping import SimulationStopped
 from .summary import describe
 
 MOST_REFINEMENTS = 3  # of a run whose error is above its target
+MOST_SAMPLES = 10_000_000  # of a run: their motion alone takes gigabytes
+MOST_MEMORY = 0.8  # of the machine's, that the samples may fill
 MOST_SWIMMERS = 8  # bodies in scenes at accuracies, that a thread keeps for the next run of the same
 _crew = Crew(MOST_SWIMMERS)
 _searching = ContextVar("searching", default=False)  # for a stable step
@@ -182,6 +185,7 @@ def simulate(
     )
     swimmer = Swimmer.of(law, body, scene, accuracy, position, orientation, twist, duration)
     x, wrench = checked_stations(stations, swimmer.body.length), swimmer.scene.internal_wrench
+    check_memory(1, len(times), len(x), wrench, bool(load))
     member = _crew.member(swimmer, x)
     out, works, done, stopped = member.record_of(swimmer, times, wrench, bool(load))
     steps, _, evaluations = member.evaluations
@@ -243,12 +247,28 @@ def _with_stable_step(stopped: SimulationStopped, again, accuracy: Accuracy) -> 
 
 
 def checked_times(duration, sample_period) -> np.ndarray:
-    """Instants (T,) [s] of the samples; `ValueError` for a duration or a period that makes no sense."""
-    if not (np.isfinite(duration) and duration >= 0.0):
-        raise ValueError(f"duration must be finite and >= 0 s, got {duration!r}")
-    if not (np.isfinite(sample_period) and sample_period > 0.0):
-        raise ValueError(f"sample_period must be finite and > 0 s, got {sample_period!r}")
-    return np.arange(int(np.floor(duration / sample_period + 1e-9)) + 1) * float(sample_period)
+    """Instants (T,) [s] of the samples; `ValueError` for a duration or a period that makes no sense, or for more than
+    `MOST_SAMPLES`."""
+    duration = checked_number("duration", duration, "s", zero=True)
+    sample_period = checked_number("sample_period", sample_period, "s")
+    steps = duration / sample_period + 1e-9
+    if not steps < MOST_SAMPLES:
+        raise ValueError(
+            f"duration must be at most {MOST_SAMPLES:,} samples of sample_period, got {duration:g} s at "
+            f"{sample_period:g} s: {steps:.4g} samples"
+        )
+    return np.arange(int(steps) + 1) * sample_period
+
+
+def check_memory(swimmers: int, samples: int, stations: int, wrench: bool, load: bool):
+    """`ValueError` where the profiles of so many would not fit into memory."""
+    needed = 8.0 * swimmers * places_of(samples, stations, wrench, load)[-1][1]
+    there = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") * MOST_MEMORY
+    if needed > there:
+        raise ValueError(
+            f"stations must be fewer (or samples, or swimmers): {swimmers} swimmer{'s' if swimmers > 1 else ''} of "
+            f"{samples} samples at {stations} stations take {needed / 1e9:.3g} GB, of {there / 1e9:.3g} GB"
+        )
 
 
 def run_of(

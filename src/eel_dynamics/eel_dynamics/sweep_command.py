@@ -13,7 +13,8 @@ from eel_gaits.registry import GAITS
 
 from .accuracy import PRESETS
 from .body import NAMED, Body
-from .sweeps import sweep
+from .command import check_names
+from .sweeps import check_points, sweep
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -21,6 +22,7 @@ def main(arguments: list[str] | None = None) -> int:
     options = _parser().parse_args(arguments)
     start = time.perf_counter()
     try:
+        check_names(options.vary + options.set)
         grid = dict(_axis(text) for text in options.vary)
         data = sweep(
             grid,
@@ -38,6 +40,9 @@ def main(arguments: list[str] | None = None) -> int:
         )
     except (ValueError, ImportError, OSError) as error:
         print(f"sweep: {error}", file=sys.stderr)
+        return 2
+    except MemoryError as error:
+        print(f"sweep: it does not fit into memory: {error}", file=sys.stderr)
         return 2
     except RuntimeError as error:
         print(f"sweep: {error}", file=sys.stderr)
@@ -94,9 +99,13 @@ def _axis(text: str) -> tuple[str, list]:
     bounds = values.split(":")
     if len(bounds) == 3:
         try:
-            return name, np.linspace(float(bounds[0]), float(bounds[1]), int(bounds[2])).tolist()
+            start, end, count = float(bounds[0]), float(bounds[1]), int(bounds[2])
         except ValueError:
             raise ValueError(f"{name} must be start:end:count, got {values!r}") from None
+        if count < 1:
+            raise ValueError(f"{name} must be start:end:count, count >= 1, got {values!r}")
+        check_points(name, count)
+        return name, np.linspace(start, end, count).tolist()
     return name, [_value(part) for part in values.split(",")]
 
 

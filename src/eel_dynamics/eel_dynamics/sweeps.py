@@ -29,6 +29,7 @@ from .scene import Scene
 from .sweep_parts import Parts, key_of
 
 LONGEST_CHUNK = 64  # points
+MOST_POINTS = 1_000_000  # of a grid, which is built as a whole before it swims
 
 
 class Point(NamedTuple):
@@ -149,12 +150,21 @@ def _checked_grid(grid) -> tuple[list[str], list[list]]:
     for name, values in grid.items():
         if isinstance(values, (str, bytes)) or not np.iterable(values):
             raise ValueError(f"grid {name!r} must have a sequence of values, got {values!r}")
+        if hasattr(values, "__len__"):
+            check_points(f"grid {name!r}", len(values))
         values = [value.item() if isinstance(value, np.generic) else value for value in values]
         labels = [_label(value) for value in values]
         if not values or len(set(labels)) < len(labels):
             raise ValueError(f"grid {name!r} must have one value or more, none twice, got {labels}")
         axes.append(values)
+    check_points("grid", math.prod(len(values) for values in axes))
     return list(grid), axes
+
+
+def check_points(name: str, count: int):
+    """`ValueError` for more points than a grid can have."""
+    if count > MOST_POINTS:
+        raise ValueError(f"{name} must have at most {MOST_POINTS} points, got {count}")
 
 
 def _label(value):

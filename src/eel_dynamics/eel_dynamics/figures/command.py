@@ -10,8 +10,10 @@ from pathlib import Path
 
 from eel_gaits import straight
 
+from ..accuracy import Accuracy
 from ..ending import leave_on_interrupt
 from ..run import simulate
+from ..scene import Scene
 from . import corrections, kern_comparison, orders
 from .notes import page
 from .style import SETTINGS
@@ -42,6 +44,8 @@ def main(arguments: list[str] | None = None) -> int:
         return 2
     folder = Path(options.out)
     try:
+        for reading in corrections.READINGS.values():
+            Accuracy.of(options.accuracy).in_scene(Scene(**reading))  # refused before there is a folder
         folder.mkdir(parents=True, exist_ok=True)
         readings = corrections.swim(accuracy=options.accuracy)
         print(corrections.table_of(readings))

@@ -32,6 +32,8 @@ def main(arguments: list[str] | None = None) -> int:
     try:
         if options.points < 2:
             raise ValueError(f"points must be >= 2, got {options.points}")
+        if options.page:
+            _check_page(options.page, options.study or STUDIES)
         folder = Path(options.out)
         folder.mkdir(parents=True, exist_ok=True)
         for name in options.study or STUDIES:
@@ -53,16 +55,30 @@ def main(arguments: list[str] | None = None) -> int:
     return 0
 
 
+def _check_page(page: str, studies):
+    """`OSError` or `ValueError` for a page that cannot be written, or has no place for one of the `studies`."""
+    with open(page, "r+", encoding="utf-8") as file:
+        text = file.read()
+    for name in studies:
+        _around(text, name)
+
+
 def with_study(page: str, name: str, study) -> str:
     """The page's text with the tables and pictures of the study `name` between its marker lines."""
+    before, first, last, after = _around(page, name)
+    pictures = [f"![{title}](images/stability_{picture}.svg)" for picture, (title, _) in study.pictures.items()]
+    text = "\n".join([study.text, *(["", *pictures] if pictures else [])])
+    return f"{before}{first}\n{text}\n{last}{after}"
+
+
+def _around(page: str, name: str) -> tuple[str, str, str, str]:
+    """The page's text before the study `name`, its marker lines, and the text behind it."""
     first, last = BEGIN.format(name), END.format(name)
     before, begin, rest = page.partition(first)
     _, end, after = rest.partition(last)
     if not begin or not end:
         raise ValueError(f"the page must have the lines {first!r} and {last!r}")
-    pictures = [f"![{title}](images/stability_{picture}.svg)" for picture, (title, _) in study.pictures.items()]
-    text = "\n".join([study.text, *(["", *pictures] if pictures else [])])
-    return f"{before}{first}\n{text}\n{last}{after}"
+    return before, first, last, after
 
 
 def _parser() -> argparse.ArgumentParser:

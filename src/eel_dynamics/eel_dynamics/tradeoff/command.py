@@ -75,6 +75,9 @@ def _measure_all(options) -> list[tuple]:
     numbers = dict(_number(text) for text in options.set)
     laws = [gait(name, **numbers) for name in options.gaits]
     body = Body.named(options.body) if options.body in NAMED else Body.from_file(options.body)
+    least = measuring.SAMPLE_PERIOD  # a single sample has no error
+    if not least <= options.duration < float("inf"):
+        raise ValueError(f"--duration must be finite and >= {least} s, got {options.duration}")
     if not options.repeats >= 1:
         raise ValueError(f"--repeats must be 1 or more, got {options.repeats}")
     for folder in (
