@@ -46,10 +46,11 @@ def answer_words(name, about, parameters, words):
     if not {"-h", "--help"} & set(rest):
         sys.stderr.write(f"{name}: unknown argument {rest[0]!r} (parameters come after --ros-args as -p NAME:=VALUE)\n")
         return 2
-    print(f"usage: {name} [--ros-args -p NAME:=VALUE ...]\n\n{about}\n\nparameters:")
+    lines = [f"usage: {name} [--ros-args -p NAME:=VALUE ...]", "", about, "", "parameters:"]
     for key, description, default in parameters:
         shown = str(default).lower() if isinstance(default, bool) else "empty" if default == "" else default
-        print(f"  {key:<24}  {description} (default {shown})")
+        lines.append(f"  {key:<24}  {description} (default {shown})")
+    print("\n".join(lines))
     return 0
 
 

@@ -41,11 +41,12 @@ def answer_words(name: str, about: str, words: list[str]) -> int | None:
     if not {"-h", "--help"} & set(rest):
         sys.stderr.write(f"{name}: unknown argument {rest[0]!r} (parameters come after --ros-args as -p NAME:=VALUE)\n")
         return 2
-    print(f"usage: {name} [--ros-args -p NAME:=VALUE ...]\n\n{about}\n\nparameters:")
+    lines = [f"usage: {name} [--ros-args -p NAME:=VALUE ...]", "", about, "", "parameters:"]
     for item in fields(Settings):
         default = list(item.default) if isinstance(item.default, tuple) else item.default
         shown = str(default).lower() if isinstance(default, bool) else "empty" if default == "" else default
-        print(f"  {item.name:<20}  {_description(item)} (default {shown})")
+        lines.append(f"  {item.name:<20}  {_description(item)} (default {shown})")
+    print("\n".join(lines))
     return 0
 
 
