@@ -50,7 +50,7 @@ def answer_words(name, about, parameters, words):
     for key, description, default in parameters:
         shown = str(default).lower() if isinstance(default, bool) else "empty" if default == "" else default
         lines.append(f"  {key:<24}  {description} (default {shown})")
-    print("\n".join(lines))
+    sys.stdout.write("\n".join([*lines, ""]))
     return 0
 
 

@@ -46,7 +46,7 @@ def answer_words(name: str, about: str, words: list[str]) -> int | None:
         default = list(item.default) if isinstance(item.default, tuple) else item.default
         shown = str(default).lower() if isinstance(default, bool) else "empty" if default == "" else default
         lines.append(f"  {item.name:<20}  {_description(item)} (default {shown})")
-    print("\n".join(lines))
+    sys.stdout.write("\n".join([*lines, ""]))
     return 0
 
 
