@@ -122,6 +122,7 @@ def test_command_leaves_picture_page_table_and_recording(tmp_path, capsys):
     [
         ("wriggling", "wriggling"),
         ("--set period", "period"),
+        ("--set period=1 --set period=2 --quick", "period must be given once"),
         ("--repeats 0", "repeats"),
         ("--duration 0 --quick", "--duration must be finite and >= 0.05 s, got 0.0"),
         ("--duration nan --quick", "--duration"),

@@ -27,7 +27,7 @@ def main(arguments: list[str] | None = None) -> int:
         data = sweep(
             grid,
             gait=options.gait,
-            numbers={name: values[0] for name, values in map(_axis, options.set)},
+            numbers=dict(_one(text) for text in options.set),
             duration=options.duration,
             body=Body.named(options.body) if options.body in NAMED else Body.from_file(options.body),
             accuracy=options.accuracy,
@@ -90,6 +90,13 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--workers", type=int, metavar="N", help="processes on this machine (one per core)")
     return parser
+
+
+def _one(text: str) -> tuple:
+    name, values = _axis(text)
+    if len(values) != 1:
+        raise ValueError(f"--set must have one value, got {text!r}: --vary takes several")
+    return name, values[0]
 
 
 def _axis(text: str) -> tuple[str, list]:

@@ -14,6 +14,7 @@ from pathlib import Path
 from eel_gaits.registry import GAITS, gait
 
 from ..body import NAMED, Body
+from ..command import check_names
 from ..effort import effort_of
 from ..ending import leave_on_interrupt
 from ..scene import Scene
@@ -72,6 +73,7 @@ def _say(text: str):
 
 
 def _measure_all(options) -> list[tuple]:
+    check_names(options.set)
     numbers = dict(_number(text) for text in options.set)
     laws = [gait(name, **numbers) for name in options.gaits]
     body = Body.named(options.body) if options.body in NAMED else Body.from_file(options.body)
