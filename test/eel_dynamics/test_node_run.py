@@ -117,7 +117,7 @@ def test_two_eels_in_namespaces(start, client):
 )
 def test_a_batch_run_that_cannot_go_on_ends_with_status_1(start, client):
     heard = client(topics=("head_pose", "internal_wrench"))
-    heard.laws.publish(law_to_message(Law(Term(amplitude=(1e6,), period=1.0), name="monster")))
+    heard.laws.publish(law_to_message(Law(Term(amplitude=(1e3,), period=1.0), name="monster")))
     node = start("dynamics", "--ros-args", *FLAT_OUT, "-p", "duration:=5")
     assert node.wait(LIMIT) == 1, node.output()
     heard.until(lambda: heard.heard["/diagnostics"] and heard.diagnosis()[0] == 2, "error in the diagnostics")
