@@ -28,9 +28,8 @@ pictures: build   ## draw the pictures of the visualiser in docs/images
 robustness: build   ## write the table of faults in docs/robustness.md from the tests
 	@$(RUN) python tools/fault_table.py
 
-lint: build   ## ruff: rules and format
-	@$(RUN) ruff check .
-	@$(RUN) ruff format --check .
+lint: build   ## rules, format, imports and spelling of the sources
+	@$(RUN) tools/lint.sh
 
 build:   ## the virtual environment, the four packages, the compiled kernels (PYTHON=... chooses the Python)
 	@PYTHON="$(PYTHON)" tools/build.sh

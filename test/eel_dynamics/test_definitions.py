@@ -24,11 +24,11 @@ def swum():
     return simulate(Law(WAVE), (9 + 1 / 3) * PERIOD, sample_period=SAMPLE, stations=201)
 
 
-def made_up(run, *, center, tail):
+def made_up(run, *, centre, tail):
     """`run` with another path of the centre of mass and of the tail, functions of time (T,) to (T, 3) [m]."""
     backbone = run.backbone.copy()
     backbone[:, -1] = tail(run.time)
-    return dataclasses.replace(run, center_of_mass=center(run.time), backbone=backbone)
+    return dataclasses.replace(run, center_of_mass=centre(run.time), backbone=backbone)
 
 
 def line(time, speed, sway, lead=0.0):
@@ -41,7 +41,7 @@ def test_on_a_straight_path(measured, swum):
     speed, excursion = 0.37, 0.164
     run = made_up(
         swum,
-        center=lambda t: line(t, speed, 0.01, 0.02),
+        centre=lambda t: line(t, speed, 0.01, 0.02),
         tail=lambda t: line(t, speed, excursion / 2, 0.05) + np.eye(3)[0],
     )
     length, viscosity = run.body.length, run.scene.viscosity
@@ -69,7 +69,7 @@ def test_on_a_circle(measured, swum):
         size = radius + out * np.sin(TURN * time)
         return np.stack([size * np.cos(rate * time), size * np.sin(rate * time), 0 * time], axis=1)
 
-    run = made_up(swum, center=lambda t: circle(t, 0.0), tail=lambda t: circle(t, excursion / 2))
+    run = made_up(swum, centre=lambda t: circle(t, 0.0), tail=lambda t: circle(t, excursion / 2))
     got = run.analysis(6)
     wanted = 2 * radius * np.sin(rate * PERIOD / 2) / PERIOD
     measured("mean speed on a circle against its formula", abs(got.mean_speed / wanted - 1), SPLINES)
@@ -81,7 +81,7 @@ def test_a_current_is_taken_out(measured, swum):
     current = (0.2, -0.1, 0.05)
     scene = Scene(current=current)
     drift = lambda t: np.outer(t, current)  # noqa: E731
-    run = made_up(swum, center=lambda t: line(t, 0.3, 0.01) + drift(t), tail=lambda t: line(t, 0.3, 0.05) + drift(t))
+    run = made_up(swum, centre=lambda t: line(t, 0.3, 0.01) + drift(t), tail=lambda t: line(t, 0.3, 0.05) + drift(t))
     got = dataclasses.replace(run, scene=scene).analysis(4)
     measured("mean speed over the water in a current", abs(got.mean_speed / 0.3 - 1), SPLINES)
     measured("tail's excursion in a current", abs(got.tail_excursion / 0.1 - 1), INSTANTS)
@@ -103,7 +103,7 @@ def powers(run, means=MEANS):
 @pytest.mark.parametrize("periods", [None, 1, 4])
 def test_powers_cost_and_efficiency(measured, swum, periods):
     speed = 0.37
-    run = powers(made_up(swum, center=lambda t: line(t, speed, 0.0), tail=lambda t: line(t, speed, 0.1)))
+    run = powers(made_up(swum, centre=lambda t: line(t, speed, 0.0), tail=lambda t: line(t, speed, 0.1)))
     got = run.analysis(periods)
     work, mass = MEANS["actuator"], run.body_mass
     wanted = {

@@ -96,10 +96,10 @@ def test_head_velocity_and_path(runs):
         for curve, each in zip(lines_of(axes), runs, strict=True):
             assert np.array_equal(curve[:, 1], each.twist[:, column])
     for axes, column in zip(drawn(further_drawings.draw_head_path, run).axes, (1, 2), strict=True):
-        head, center, seconds = lines_of(axes)
+        head, centre, seconds = lines_of(axes)
         assert np.array_equal(head, run.position[:, [0, column]])
         assert np.array_equal(seconds, run.position[::20, [0, column]])
-        assert center[-1] == pytest.approx(run.center_of_mass[-21:-1, [0, column]].mean(axis=0))
+        assert centre[-1] == pytest.approx(run.center_of_mass[-21:-1, [0, column]].mean(axis=0))
 
 
 def test_torque_surface_covers_run_and_body(runs):

@@ -76,8 +76,8 @@ def test_free_top(measured, which, least_roll, most_roll, data):
     reference = Reference(boyer_body(), reference_scene(reactive=False), panels_per_span=1)
     rest = np.zeros((reference.space.x.size, 3))
     matrix = reference.mass_matrix(rest)
-    mass, center = matrix[3, 3], np.array([matrix[2, 4], 0, 0]) / matrix[3, 3]
-    A, C, B = (matrix[k, k] - (mass * center[0] ** 2 if k else 0) for k in range(3))
+    mass, centre = matrix[3, 3], np.array([matrix[2, 4], 0, 0]) / matrix[3, 3]
+    A, C, B = (matrix[k, k] - (mass * centre[0] ** 2 if k else 0) for k in range(3))
     omega = np.array([roll, pitch, 0.0])  # the middle moment's component starts at zero
     run = simulate(
         STRAIGHT,
@@ -85,7 +85,7 @@ def test_free_top(measured, which, least_roll, most_roll, data):
         scene=Scene(reactive=False, resistive=False),
         sample_period=0.1,
         accuracy="reference",
-        twist=(*omega, *-np.cross(omega, center)),
+        twist=(*omega, *-np.cross(omega, centre)),
     )
     energy2, momentum2 = A * omega[0] ** 2 + C * omega[1] ** 2, (A * omega[0]) ** 2 + (C * omega[1]) ** 2
     if momentum2 > energy2 * B:  # turns about C
@@ -101,5 +101,5 @@ def test_free_top(measured, which, least_roll, most_roll, data):
     assert (momentum2 > energy2 * B) == (which == "greatest")
     error = distance(run.twist[:, :3], np.stack(wanted, axis=1), np.linalg.norm(omega))
     measured(f"Euler's top for 4 s about its axis of {which} moment, against Jacobi's functions", error, 1e-7)
-    measured("its centre of mass, which rests", np.abs(run.center_of_mass - center), 1e-8, unit="m")
+    measured("its centre of mass, which rests", np.abs(run.center_of_mass - centre), 1e-8, unit="m")
     assert np.ptp(run.twist[:, 2]) > 0.1 * pitch  # it does tumble

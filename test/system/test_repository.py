@@ -73,12 +73,6 @@ def test_colcon_looks_only_at_the_packages():
             assert (ROOT / folder / "COLCON_IGNORE").exists(), folder
 
 
-@pytest.mark.parametrize("rule", [("check",), ("format", "--check")])
-def test_lint(rule):
-    done = subprocess.run(["ruff", *rule, "--no-cache", ROOT], cwd=ROOT, capture_output=True, text=True, timeout=60)
-    assert done.returncode == 0, done.stdout + done.stderr
-
-
 def test_every_peer_of_the_benchmarks_is_pinned():
     files = sorted((ROOT / "benchmarks" / "peers").glob("*.txt"))
     assert [path.stem for path in files] == ["mujoco", "pyelastica"]

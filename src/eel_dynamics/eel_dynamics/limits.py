@@ -163,10 +163,10 @@ def _later_half(run) -> tuple[np.ndarray, float]:
         analysis = run.analysis()
     except ValueError:  # no period, or too few samples
         later = run.time >= 0.5 * (run.time[0] + run.time[-1])
-        time, center = run.time[later], run.center_of_mass[later] - np.outer(run.time[later], run.scene.current)
+        time, centre = run.time[later], run.center_of_mass[later] - np.outer(run.time[later], run.scene.current)
         swims = any(term.period for term in run.law.terms)
         if swims or len(time) < 2:
             return later, 0.0
-        way = float(np.linalg.norm(center[-1] - center[0]))
+        way = float(np.linalg.norm(centre[-1] - centre[0]))
         return later, way / (time[-1] - time[0]) if way > AT_REST * run.body.length else 0.0
     return analysis.window.inside, analysis.mean_speed if analysis.moves else 0.0

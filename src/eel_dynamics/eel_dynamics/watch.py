@@ -41,14 +41,14 @@ class Watch:
         if len(self._wake_power) > 1:
             self._warn("tail", limits.of_tail(self._wake_power))
         self._wake_power = []
-        center = snapshot.center_of_mass - snapshot.time * self._current
+        centre = snapshot.center_of_mass - snapshot.time * self._current
         if self._since is None or snapshot.time < self._since[0]:
-            self._since = snapshot.time, center.copy()
+            self._since = snapshot.time, centre.copy()
         elif snapshot.time - self._since[0] >= SETTLING:
             start, before = self._since
             if start > 0.0:
-                self._warn("speed", limits.of_speed(float(np.linalg.norm(center - before)) / (snapshot.time - start)))
-            self._since = snapshot.time, center.copy()
+                self._warn("speed", limits.of_speed(float(np.linalg.norm(centre - before)) / (snapshot.time - start)))
+            self._since = snapshot.time, centre.copy()
 
     def _warn(self, kind: str, text: str):
         if text and kind not in self._said:

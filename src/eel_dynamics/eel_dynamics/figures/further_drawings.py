@@ -55,9 +55,9 @@ def _draw_surface(axes, run, values, size):
 
 def draw_head_path(figure, run):
     """The head's path and the centre of mass, averaged over a period, from above and from the side."""
-    path, center = run.position, run.center_of_mass
+    path, centre = run.position, run.center_of_mass
     each = round(PERIOD / (run.time[1] - run.time[0]))  # samples in a period
-    averaged = np.array([center[k : k + each].mean(axis=0) for k in range(len(center) - each)])
+    averaged = np.array([centre[k : k + each].mean(axis=0) for k in range(len(centre) - each)])
     figure.set_layout_engine("compressed")  # panels of equal scale, close together
     heights = np.ptp(path[:, 1:], axis=0) + 0.4
     panels = figure.subplots(2, 1, sharex=True, height_ratios=heights)
@@ -94,9 +94,9 @@ def draw_ledger(figure, run):
         ("nose", "nose", PURPLE, (0, (5, 1.5, 1, 1.5))),
     )
     power, work, residual = figure.subplots(3, 1, sharex=True, height_ratios=(1.0, 1.0, 0.6))
-    for name, label, color, dash in lines:
-        power.plot(run.time, energy[f"{name}_power"], color=color, linestyle=dash, linewidth=1.3, label=label)
-        work.plot(run.time, energy[f"{name}_work"], color=color, linestyle=dash, linewidth=1.3, label=f"_{label}")
+    for name, label, colour, dash in lines:
+        power.plot(run.time, energy[f"{name}_power"], color=colour, linestyle=dash, linewidth=1.3, label=label)
+        work.plot(run.time, energy[f"{name}_work"], color=colour, linestyle=dash, linewidth=1.3, label=f"_{label}")
     work.plot(run.time, energy.kinetic_body + energy.kinetic_fluid, color=BLACK, linewidth=1.0, label="kinetic energy")
     left = np.where(energy.residual == 0.0, np.nan, np.abs(energy.residual))  # 0 at the start has no logarithm
     residual.semilogy(run.time, left, color=BLACK, linewidth=1.0)

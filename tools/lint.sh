@@ -1,0 +1,20 @@
+#!/usr/bin/env bash
+# Every check of the sources that runs nothing of them. All are made, whatever fails; the last line says which did.
+set -uo pipefail
+
+failed=()
+check() {   # NAME COMMAND...: the command's output is shown where it fails
+    local output
+    if output="$("${@:2}" 2>&1)"; then
+        echo "[lint] $1: good"
+    else
+        printf '%s\n[lint] %s: failed\n' "$output" "$1"
+        failed+=("$1")
+    fi
+}
+
+check "rules (ruff)" ruff check .
+check "format (ruff)" ruff format --check .
+check "imports (import-linter)" lint-imports --no-cache --no-logo
+check "spelling (codespell)" codespell -D- -Dtools/british.txt
+[ ${#failed[@]} = 0 ] || { printf '[lint] failed:'; printf ' %s;' "${failed[@]}"; echo; exit 1; }
