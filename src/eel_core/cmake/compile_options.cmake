@@ -1,0 +1,27 @@
+# How everything here is compiled. The level of the processor is apart (levels.cmake).
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release)   # -O3
+endif()
+set(CMAKE_CXX_VISIBILITY_PRESET hidden)
+set(CMAKE_VISIBILITY_INLINES_HIDDEN ON)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+
+# A product and a sum may become one rounding; sums keep their order, and NaN and infinity are seen: no -ffast-math.
+set(eel_core_compile_options -ffp-contract=fast)
+set(eel_core_link_options "")
+if(EEL_CORE_SANITIZE)
+  set(sanitizers -fsanitize=address,undefined -fno-sanitize-recover=all)
+  list(APPEND eel_core_compile_options ${sanitizers} -fno-omit-frame-pointer -g -D_GLIBCXX_ASSERTIONS)
+  list(APPEND eel_core_link_options ${sanitizers})
+endif()
+set(eel_core_warnings -Wall -Wextra -Wconversion -Wshadow)
+
+function(eel_core_compile target march)
+  target_link_libraries(${target} PRIVATE eel_core)
+  target_compile_options(${target} PRIVATE ${eel_core_compile_options} ${march} ${eel_core_warnings})
+  target_link_options(${target} PRIVATE ${eel_core_link_options})
+  string(TOUPPER "${CMAKE_BUILD_TYPE}" type)
+  string(JOIN " " flags ${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${type}} ${eel_core_compile_options} ${march})
+  target_compile_definitions(${target} PRIVATE "EEL_CORE_FLAGS=\"${flags}\"")
+endfunction()

@@ -1,0 +1,14 @@
+"""The mechanics of elongated swimmers in water (Boyer, Porez and Leroyer, 2010), compiled.
+
+`eel_core._core` is the compiled module for this processor: its level is chosen here.
+"""
+
+import sys
+
+from eel_core.levels import import_core
+
+_core = sys.modules["eel_core._core"] = import_core()
+
+from eel_core._core import build_info  # noqa: E402
+
+__all__ = ["build_info"]

@@ -1,0 +1,56 @@
+// How the including file is compiled, from what the compiler itself says.
+#pragma once
+
+#include <string_view>
+
+namespace eel_core {
+
+struct BuildInfo {
+    std::string_view level;       // x86-64 level that the code needs, or the name of another architecture
+    std::string_view compiler;    // name and version
+    std::string_view flags;       // as given by the build
+    std::string_view sanitizers;  // empty: none
+};
+
+constexpr std::string_view target_level() {
+#if defined(__AVX512F__) && defined(__AVX512BW__) && defined(__AVX512CD__) && defined(__AVX512DQ__) && defined(__AVX512VL__)
+    return "x86-64-v4";
+#elif defined(__AVX2__) && defined(__FMA__) && defined(__BMI2__)
+    return "x86-64-v3";
+#elif defined(__SSE4_2__) && defined(__SSSE3__)
+    return "x86-64-v2";
+#elif defined(__x86_64__)
+    return "x86-64";
+#elif defined(__aarch64__)
+    return "aarch64";
+#else
+    return "other";
+#endif
+}
+
+constexpr std::string_view compiler_name() {
+#if defined(__clang__)
+    return "Clang " __clang_version__;
+#elif defined(__GNUC__)
+    return "GCC " __VERSION__;
+#else
+    return "other";
+#endif
+}
+
+constexpr std::string_view active_sanitizers() {
+#if defined(__SANITIZE_ADDRESS__)  // GCC
+    return "address,undefined";
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+    return "address,undefined";
+#endif
+#endif
+    return "";
+}
+
+constexpr BuildInfo build_info() {
+    return {target_level(), compiler_name(), EEL_CORE_FLAGS, active_sanitizers()};
+}
+
+}  // namespace eel_core

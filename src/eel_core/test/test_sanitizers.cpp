@@ -1,0 +1,25 @@
+// A sanitizer that reports nothing is of no use: here each has something to report.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <limits>
+#include <memory>
+
+#include "eel_core/build_info.hpp"
+
+class Sanitizers : public testing::Test {
+    void SetUp() override {
+        if (eel_core::build_info().sanitizers.empty()) GTEST_SKIP() << "built without sanitizers";
+    }
+};
+
+TEST_F(Sanitizers, ReportAReadBehindTheEndOfAnArray) {
+    const auto values = std::make_unique<double[]>(4);
+    volatile int behind = 4;
+    EXPECT_DEATH(std::printf("%g", values[static_cast<std::size_t>(behind)]), "heap-buffer-overflow");
+}
+
+TEST_F(Sanitizers, ReportAnOverflowOfIntegers) {
+    volatile int largest = std::numeric_limits<int>::max();
+    EXPECT_DEATH(std::printf("%d", largest + 1), "signed integer overflow");
+}
