@@ -31,7 +31,7 @@ robustness: build   ## write the table of faults in docs/robustness.md from the 
 lint: build   ## rules, format, imports and spelling of the sources
 	@$(RUN) tools/lint.sh
 
-build:   ## the virtual environment, the four packages, the compiled kernels (PYTHON=... chooses the Python)
+build:   ## the virtual environment, the five packages, the compiled kernels (PYTHON=... chooses the Python)
 	@PYTHON="$(PYTHON)" tools/build.sh
 
 clean:   ## remove what build made; out/ stays

@@ -38,13 +38,17 @@ _eel_setup() {
 
     local prefixes=() modules=()
     local libraries=("$root/install/eel_msgs/lib" "$root/.venv/lib" "$root/.venv/$site"/ros_*.libs)
-    for package in eel_viz eel_dynamics eel_gaits eel_msgs; do
+    for package in eel_viz eel_dynamics eel_gaits; do
         prefixes+=("$root/install/$package")
         modules+=("$root/build/$package" "$root/install/$package/$site")
     done
+    for package in eel_core eel_msgs; do
+        prefixes+=("$root/install/$package")
+        modules+=("$root/install/$package/$site")
+    done
     _eel_path PATH "$root/install/bin" "$root/.venv/bin"
     _eel_path AMENT_PREFIX_PATH "${prefixes[@]}" "$root/.venv"
-    _eel_path PYTHONPATH "${modules[@]:0:6}" "$root/install/eel_msgs/$site"
+    _eel_path PYTHONPATH "${modules[@]}"
     _eel_path LD_LIBRARY_PATH "${libraries[@]}"
     unset PYTHONHOME
     export ROS_DISTRO=jazzy ROS_VERSION=2 ROS_PYTHON_VERSION=3
