@@ -20,8 +20,8 @@ begin() {   # NAME TESTS...: into out/test-NAME.log
 nodes=(test/eel_dynamics/test_node_[!r]*.py)
 begin nodes "${nodes[@]}"
 begin viz test/eel_viz
-begin system test/system test/eel_gaits
-echo "[test] mechanics here; the dynamics node, test/eel_viz, and test/system with test/eel_gaits beside, shown when done"
+begin system test/system test/eel_gaits test/eel_core
+echo "[test] mechanics here; the dynamics node, test/eel_viz, and test/system with test/eel_gaits and test/eel_core beside, shown when done"
 python -m pytest -m "not soak" test/eel_dynamics "${nodes[@]/#/--ignore=}"
 status=$?
 for name in nodes viz system; do

@@ -1,4 +1,4 @@
-"""The four packages as colcon and rosdep see them: manifests name what the sources import, executables in place."""
+"""The packages as colcon and rosdep see them: manifests name what the sources import, executables in place."""
 
 import ast
 import os
@@ -63,7 +63,7 @@ def test_manifest_names_what_the_sources_import(package):
     assert not unused, f"package.xml of {package} names {sorted(unused)}, which nothing imports"
 
 
-@pytest.mark.parametrize("package", (*PYTHON_PACKAGES, "eel_msgs"))
+@pytest.mark.parametrize("package", (*PYTHON_PACKAGES, "eel_core", "eel_msgs"))
 def test_manifest_is_valid(package):
     from catkin_pkg.package import parse_package
 

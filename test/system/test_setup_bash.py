@@ -19,7 +19,8 @@ def shell(script: str, **environment: str) -> subprocess.CompletedProcess:
 def test_brings_python_and_nodes():
     done = shell(
         f"source '{ROOT}/setup.bash' && "
-        "python -c 'import eel_dynamics, eel_gaits, eel_msgs.msg, eel_viz, rclpy' && command -v " + " ".join(NODES)
+        "python -c 'import eel_core, eel_dynamics, eel_gaits, eel_msgs.msg, eel_viz, rclpy' && "
+        "command -v " + " ".join(NODES)
     )
     assert done.returncode == 0, done.stderr
     found = done.stdout.split()
