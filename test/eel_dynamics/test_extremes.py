@@ -17,16 +17,18 @@ from eel_gaits import Law, Ramp, Term, falling, helix, still, straight
 
 @pytest.mark.parametrize("ledger", [False, True])
 def test_steps_are_counted_over_the_run_however_often_it_is_sampled(ledger, monkeypatch):
-    """Of 40 steps and as many per period, a run that needs more is stopped at the same place by 3 as by 3,000
-    samples."""
+    """A run of 40 steps to spare and 20 per simulated second, which needs more, is stopped at the same place by 3 as by
+    3,000 samples."""
     monkeypatch.setattr("eel_dynamics.bounds.SPARE_STEPS", 40.0)
     monkeypatch.setattr("eel_dynamics.bounds.LEAST_SPARE", 40.0)
-    monkeypatch.setattr("eel_dynamics.bounds.MOST_STEPS", 20.0)
     stopped = []
     for period in (1.0, 0.1, 0.001):
-        with pytest.raises(SimulationStopped, match="more steps per second") as caught:
+        with pytest.raises(
+            SimulationStopped, match=r"more steps per simulated second.*raise most_evaluations"
+        ) as caught:
             scene = Scene(ledger=ledger, internal_wrench=ledger)
-            simulate(falling(), 3.0, scene=scene, accuracy=1e-6, sample_period=period, stations=2)
+            swim = {"sample_period": period, "stations": 2, "most_evaluations": 120.0}
+            simulate(falling(), 3.0, scene=scene, accuracy=1e-6, **swim)
         stopped.append((caught.value.time, caught.value.run.steps))
     assert stopped[2][0] < 3.0 and len({steps for _, steps in stopped}) == 1
     assert stopped[2][0] - stopped[1][0] < 0.1 and stopped[2][0] - stopped[0][0] < 1.0

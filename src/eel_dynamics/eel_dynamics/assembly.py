@@ -23,6 +23,7 @@ def simulation_of(parameters: DynamicsParameters, scene: Scene) -> Simulation:
         orientation=turn_quaternion(parameters.initial_orientation),
         twist=turn_vector([twist[:3], twist[3:]]).ravel(),
         default_transition=parameters.default_transition,
+        most_evaluations=parameters.most_evaluations,
         horizon=parameters.duration or math.inf,
     )
 

@@ -1,13 +1,16 @@
 """What bounds the steps of a run: the accuracy, the shape's and the motion's times, the body."""
 
+from eel_gaits.law import Law
+
 from .accuracy import Accuracy
 from .integrator import Control
+from .methods import Method
 from .scene import Scene
 from .shape import Shape
 from .tables import Table
 
 LONGEST_STEP = 0.1  # of the shortest time over which the shape changes: works are integrals of what goes on within it
-MOST_STEPS = 20_000.0  # per period of the law, or second; the most exact runs need a tenth of it
+MOST_EVALUATIONS = 500_000.0  # by simulated second: seconds of wall time; the most exact runs need a tenth of it
 SPARE_STEPS = 200_000.0  # beyond these, at any time of a run, with up to
 SPARE_POINTS = 30.0  # points along the body; with more so many fewer, for a step costs as much more,
 LEAST_SPARE = 6_000.0  # but not less than these
@@ -18,9 +21,37 @@ PART_OF_RAMP = 0.125  # the same for the ledger: of what a sudden ramp puts in, 
 FIRST_STEP = 0.02  # of the longest
 
 
-def control_of(accuracy: Accuracy, scene: Scene, shape: Shape, table: Table, length: float, scale: float) -> Control:
+def evaluations_of(method: Method) -> int:
+    """Evaluations of the head's dynamics in a step of `method`: its last is the first of the next step."""
+    return 1 if method.adams else len(method.c) - 1
+
+
+def check_cost(law: Law, most_evaluations: float):
+    """`ValueError` for a law of a period so short that `most_evaluations` by simulated second do not resolve it."""
+    shortest = min((term.period for term in law.terms if term.period), default=None)
+    if shortest is None:
+        return
+    needed = 1.0 / (LONGEST_STEP * shortest)
+    if needed > most_evaluations:
+        raise ValueError(
+            f"law {law.name!r} has a period of {shortest:g} s, which takes {needed:.3g} evaluations per simulated "
+            f"second or more: most_evaluations is {most_evaluations:.3g}"
+        )
+
+
+def control_of(
+    *,
+    accuracy: Accuracy,
+    method: Method,
+    scene: Scene,
+    shape: Shape,
+    table: Table,
+    length: float,
+    scale: float,
+    most_evaluations: float,
+) -> Control:
     """The bounds for a body of `length` [m], tabulated in `table`, whose motion at the start has the time `scale` [s]
-    and which is driven by `shape`."""
+    and which is driven by `shape`; `most_evaluations` by simulated second."""
     scale = min(shape.time_scale, scale)
     longest = LONGEST_STEP * min(scale, 10.0)
     fixed = accuracy.step or (accuracy.fixed and min(scale, 1.0) / accuracy.fixed)
@@ -32,7 +63,7 @@ def control_of(accuracy: Accuracy, scene: Scene, shape: Shape, table: Table, len
         length=length,
         momentum_floor=table.mass * slowest,
         part_of_span=PART_OF_RAMP if scene.ledger and shape.drive.segment < 0 else PART_OF_SPAN,
-        most_steps=MOST_STEPS / min(scale, 1.0),
+        most_steps=most_evaluations / evaluations_of(method),
         spare_steps=max(LEAST_SPARE, SPARE_STEPS * min(1.0, SPARE_POINTS / len(table.grid.x))),
         ledger=bool(scene.ledger),
         planar=bool(scene.planar),

@@ -6,8 +6,9 @@ import numpy as np
 from eel_gaits.law import Law
 
 from .accuracy import Accuracy
-from .arguments import check_planar, check_planar_law, checked_instance, checked_quaternion, checked_row
+from .arguments import check_planar, check_planar_law, checked_instance, checked_number, checked_quaternion, checked_row
 from .body import Body
+from .bounds import MOST_EVALUATIONS
 from .scene import Scene
 from .start import Start
 
@@ -23,9 +24,12 @@ class Swimmer(NamedTuple):
     orientation: np.ndarray  # (4,) x y z w, world from head
     twist: np.ndarray  # (6,) (Omega, V) rad/s, m/s, head's axes
     horizon: float  # s, how long it swims
+    most_evaluations: float = MOST_EVALUATIONS  # by simulated second
 
     @staticmethod
-    def of(law, body, scene, accuracy, position, orientation, twist, duration) -> "Swimmer":
+    def of(
+        law, body, scene, accuracy, position, orientation, twist, duration, most_evaluations=MOST_EVALUATIONS
+    ) -> "Swimmer":
         """One of the arguments of `simulate`. `ValueError` names what does not fit."""
         swimmer = Swimmer(
             checked_instance("law", law, Law),
@@ -36,6 +40,7 @@ class Swimmer(NamedTuple):
             checked_quaternion("orientation", orientation),
             checked_row("twist", twist, 6),
             float(duration),
+            checked_number("most_evaluations", most_evaluations, "per simulated second"),
         )
         if swimmer.scene.planar:
             check_planar(*swimmer.start)

@@ -18,6 +18,7 @@ from eel_gaits.registry import GAITS, gait
 
 from .accuracy import PRESETS
 from .body import NAMED, Body
+from .bounds import MOST_EVALUATIONS
 from .ending import leave_on_interrupt
 from .run import Run, simulate
 from .scene import Scene
@@ -70,6 +71,8 @@ def main(arguments: list[str] | None = None) -> int:
             sample_period=options.sample_period,
             stations=options.stations,
             load=options.load,
+            most_evaluations=options.most_evaluations,
+            progress=Progress(options.duration),
         )
         seconds = time.perf_counter() - start
         if out is not None:
@@ -94,6 +97,19 @@ def main(arguments: list[str] | None = None) -> int:
     return 0
 
 
+class Progress:
+    """Tells on stderr how far a swim of `duration` [s] has come: after 1, 2, 4 ... s, and then every minute."""
+
+    def __init__(self, duration: float):
+        self._duration, self._count = duration, 0
+
+    def __call__(self, reached: float, left: float):
+        """Called once a second: `reached` [s] of the swim, `left` [s] of wall time."""
+        self._count += 1
+        if self._count & (self._count - 1) == 0 or self._count % 60 == 0:
+            print(f"simulate: at {reached:.3g} s of {self._duration:g} s, about {left:.3g} s to go", file=sys.stderr)
+
+
 def _parser() -> argparse.ArgumentParser:
     scene = ", ".join(item.name for item in fields(Scene))
     parser = argparse.ArgumentParser(prog="simulate", description="Swim a gait offline and print the summary.")
@@ -115,6 +131,13 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--sample-period", type=float, default=0.05, help="s (0.05)")
     parser.add_argument("--stations", type=int, default=51, help="points along the body (51)")
+    parser.add_argument(
+        "--most-evaluations",
+        type=float,
+        default=MOST_EVALUATIONS,
+        metavar="N",
+        help=f"of the head's dynamics per simulated second; a swim that takes more ends ({MOST_EVALUATIONS:g})",
+    )
     parser.add_argument("--load", action="store_true", help="keep the water's load along the body too")
     parser.add_argument(
         "--periods", type=int, metavar="N", help="figures of the gait over the last N whole periods (later half)"

@@ -1,7 +1,8 @@
 """The run, in a thread of its own: waits, paces, advances the simulation, has each sample published.
 
-Everything that touches the simulation happens in this thread; what other threads want of it are orders, carried out
-between two samples. No ROS here: `publishers` and `report` come from the node.
+Everything that touches the simulation happens in this thread. What other threads want of it are orders, carried out
+between two samples. An urgent order is carried out on the way to a sample too, and so is any other where that takes
+long. No ROS here: `publishers` and `report` come from the node.
 """
 
 import math
@@ -16,6 +17,7 @@ from .stopping import SimulationStopped
 from .watch import Watch
 
 TICK = 0.05  # s of wall time between two messages on /clock while the simulation stands
+PATIENCE = 1.0  # s of wall time on the way to a sample, after which every order is urgent
 MOST_AHEAD = 10_000  # instants of a controller that wait for their time
 
 
@@ -52,13 +54,15 @@ class March:
         self.stopped = False
         self.accounts, self._watch = Accounts(), Watch(simulation, report)
         self.time = 0.0  # s: simulation time of the last sample
+        self._urgent = False  # an order does not wait for the next sample
+        self._set_out = None  # s, steady clock: since when the next sample is under way
         self.marched_for = 0.0  # s: wall time spent marching, so without standing
         self._marked = time.monotonic()
 
     # What other threads may call.
 
-    def order(self, action, replaces: str = "") -> Order:
-        """Has `action()` done between two samples.
+    def order(self, action, replaces: str = "", urgent: bool = False) -> Order:
+        """Has `action()` done between two samples, or at once if it is `urgent`, after the orders before it.
 
         It takes the place of the order given just before if that `replaces` the same.
         """
@@ -67,6 +71,7 @@ class March:
             if replaces and self._orders and self._orders[-1].replaces == replaces:
                 self._orders.pop()
             self._orders.append(order)
+            self._urgent |= urgent
             self._bell.ring()
         return order
 
@@ -80,11 +85,11 @@ class March:
 
     def reset(self) -> Order:
         """State and time to the start."""
-        return self.order(self._reset)
+        return self.order(self._reset, urgent=True)
 
     def pause(self, paused: bool) -> Order:
         """Stands still, or goes on."""
-        return self.order(lambda: setattr(self, "_paused", paused))
+        return self.order(lambda: setattr(self, "_paused", paused), urgent=True)
 
     def change(self, parameters):
         """Other parameters, of those that may change during the run."""
@@ -107,6 +112,12 @@ class March:
         if simulation.sampled or simulation.resting:
             return "curvature_samples"
         return simulation.law.name if simulation.law is not None else ""
+
+    @property
+    def overdue(self) -> float:
+        """Wall time [s] for which the next sample has been under way, of a run with a pace."""
+        since = self._set_out
+        return time.monotonic() - since if since is not None and self._pace.factor > 0.0 else 0.0
 
     @property
     def samples_published(self) -> int:
@@ -151,7 +162,7 @@ class March:
 
     def _stand(self, obstacle: str):
         """Waits a little for the obstacle to go; /clock ticks on."""
-        now = time.monotonic()
+        now, self._set_out = time.monotonic(), None
         if obstacle != self.standing:
             self.standing = obstacle
             self._report.info(obstacle)
@@ -189,8 +200,8 @@ class March:
         """Advances to the next sample and has it published."""
         simulation, publishers = self._simulation, self._publishers
         try:
-            if self._next_time > simulation.time:
-                simulation.advance(self._next_time)
+            if self._next_time > simulation.time and not self._advance():
+                return
             due, self._account_due = self._account_due or self._sample == self._parameters.last_sample, False
             parts = {part: wanted or due for part, wanted in publishers.wanted_parts().items()}
             snapshot = simulation.observe(**parts)
@@ -206,6 +217,24 @@ class March:
         self._report_resting()
         self._report_delay(now)
         self._sample += 1
+
+    def _advance(self) -> bool:
+        """Marches to the next sample; False where an order comes in between, or the end of the run."""
+        if self._set_out is None:
+            self._set_out = time.monotonic()
+        set_out = self._set_out
+
+        def interrupted() -> bool:
+            return self.stopped or self._urgent or (self._orders and time.monotonic() - set_out > PATIENCE)
+
+        try:
+            reached = self._simulation.advance(self._next_time, interrupted)
+        except SimulationStopped:
+            self._set_out = None
+            raise
+        if reached:
+            self._set_out = None
+        return reached
 
     def _fail(self, error: SimulationStopped):
         self.failed = True
@@ -233,6 +262,7 @@ class March:
         return self._bell.wait(seconds)
 
     def _carry_out_orders(self):
+        self._urgent = False  # before the orders are counted, so that none is missed
         for _ in range(len(self._orders)):  # those that come meanwhile wait for the next sample
             with self._guard:
                 order = self._orders.popleft()
@@ -270,7 +300,7 @@ class March:
         self._pace.restart(self._sample, time.monotonic(), parameters.real_time_factor)
 
     def _reset(self):
-        self._sample, self.time, self._origin = 0, 0.0, 0.0
+        self._sample, self.time, self._origin, self._set_out = 0, 0.0, 0.0, None
         self.failed = False
         self.accounts = Accounts()
         self._watch.restart()

@@ -7,7 +7,7 @@ import numpy as np
 from .abreast import can_abreast, swim_abreast
 from .broadcast import Swimmer
 from .leg import CURRENT, ENERGY, FIRST, PLACE, TWIST, ReadyLeg, swim
-from .profiles import Profiles, profiles_of, row_of
+from .profiles import Profiles, profiles_of
 from .simulation import Simulation
 from .stopping import SimulationStopped, not_begun
 
@@ -25,25 +25,30 @@ class Member(Simulation):
     def leg_of(self, swimmer: Swimmer, place, times, works, out, **wanted) -> ReadyLeg:
         """The whole way of `swimmer`, of the same body, scene and accuracy, through `times` (T,) [s] into `works`
         (T, 4) [J] and the profiles of the row `out`; `place` (28,) as in `leg`."""
+        self._take_place(swimmer, place)
+        return self._leg(place, times, works, out, control=self._control, begin=FIRST, **wanted)
+
+    def _take_place(self, swimmer: Swimmer, place: np.ndarray):
+        """Have `swimmer` at its start, in `place` (28,)."""
         if swimmer is not self._at_start:
-            self._horizon = swimmer.horizon
+            self._horizon, self._most_evaluations = swimmer.horizon, swimmer.most_evaluations
             self._prepare(swimmer.law, swimmer.start)
         self._at_start = None
         place[:ENERGY] = self._place[:ENERGY]
         place[TWIST:CURRENT] = self._relative
-        return self._leg(place, times, works, out, begin=FIRST, **wanted)
 
     def record_of(
-        self, swimmer: Swimmer, times, wrench: bool, load: bool
+        self, swimmer: Swimmer, times, wrench: bool, load: bool, look=None
     ) -> tuple[Profiles, np.ndarray, int, SimulationStopped | None]:
-        """The whole way of `swimmer`, as `leg_of` has it, and what it gives as `record` does. `ValueError` where it
-        cannot be begun."""
+        """The whole way of `swimmer`, as `leg_of` has it, and what it gives as `record` does; look(time [s]) is called
+        between two slices. `ValueError` where it cannot be begun."""
         out, works = profiles_of(len(times), len(self.x), wrench, load), np.zeros((len(times), 4))
         place = np.zeros(PLACE)
         with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is reported
-            leg = self.leg_of(swimmer, place, times, works, row_of(out, wrench, load), wrench=wrench, load=load)
-        swim(leg.row[None])
-        self._place, self.kinetic_at_start = place, float(place[ENERGY])
+            self._take_place(swimmer, place)
+        self._place = place
+        self._swim_slices(times, works, out, FIRST, wrench, load, look)
+        self.kinetic_at_start = float(place[ENERGY])
         if not np.isfinite(self.kinetic_at_start):
             raise not_begun(swimmer.law, SimulationStopped(0.0, "kinetic energy", self.kinetic_at_start, ""))
         return out, works, *self._outcome(times, works, out)

@@ -7,6 +7,8 @@ gave. Poses and velocities are in ROS (REP-103) frames: world `odom`, head `base
 import math
 from dataclasses import MISSING, Field, dataclass, field, fields
 
+from .bounds import MOST_EVALUATIONS
+
 
 def _parameter(default, description, unit="", **bounds):
     return field(default=default, metadata={"description": description, "unit": unit, **bounds})
@@ -39,6 +41,12 @@ class DynamicsParameters:
         0.0, "simulated time after which the node leaves with status 0; 0: no end", "s", minimum=0.0, maximum=1e9
     )
     stations: int = _parameter(51, "points along the backbone where profiles are given", minimum=2, maximum=10_000)
+    most_evaluations: float = _parameter(
+        MOST_EVALUATIONS,
+        "evaluations of the head's dynamics per simulated second; a law that takes more is refused, or stopped",
+        minimum=0.0,
+        exclusive=True,
+    )
     body: str = _parameter(
         "boyer2010", "name of a body, or a .csv or .npz file with columns x, half_width, half_height [m]"
     )

@@ -2,6 +2,7 @@
 
 import os
 import warnings
+from collections.abc import Callable
 from contextvars import ContextVar
 from dataclasses import dataclass
 from functools import cached_property, partial
@@ -14,9 +15,11 @@ from .actuators import Actuators, actuators_of
 from .analysis import Analysis
 from .arguments import checked_number, checked_stations
 from .body import Body
+from .bounds import MOST_EVALUATIONS
 from .broadcast import Swimmer
 from .energy import EnergyLedger
 from .errors import Errors, errors, refined, stable_step
+from .foresight import Foresight
 from .limits import warnings_of
 from .member import Crew
 from .profiles import Profiles, places_of
@@ -160,14 +163,19 @@ def simulate(
     twist=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
     load: bool = False,
     verify: bool | None = None,
+    most_evaluations: float = MOST_EVALUATIONS,
+    progress: Callable[[float, float], None] | None = None,
 ) -> Run:
     """Swim `law` for `duration` [s] and sample every `sample_period` [s], from t = 0 on.
 
     stations: number of equidistant stations, or their X (M,) [m]. position [m], orientation (x y z w), twist ((Omega,
     V) in the head's axes): the head's initial state. load: the water's load along the body too. The steps in time do
     not depend on the sampling. verify: have the error estimated (`Run.error_estimate`); where it is above the target,
-    return a finer run, or warn; None: where the motion is sensitive, that is in space without drag. `ValueError` names
-    what does not fit; `SimulationStopped` carries the samples so far as `run`.
+    return a finer run, or warn; None: where the motion is sensitive, that is in space without drag. most_evaluations:
+    of the head's dynamics by simulated second; what takes more is refused, or stopped. progress(time, left): told once
+    a second the time [s] that the swim has come to, and the wall time [s] that it still takes; without it, a swim that
+    takes more than a minute is warned of. `ValueError` names what does not fit; `SimulationStopped` carries the samples
+    so far as `run`.
     """
     times = checked_times(duration, sample_period)
     again = partial(
@@ -182,12 +190,19 @@ def simulate(
         orientation=orientation,
         twist=twist,
         load=load,
+        most_evaluations=most_evaluations,
+        progress=progress,
     )
-    swimmer = Swimmer.of(law, body, scene, accuracy, position, orientation, twist, duration)
+    swimmer = Swimmer.of(law, body, scene, accuracy, position, orientation, twist, duration, most_evaluations)
     x, wrench = checked_stations(stations, swimmer.body.length), swimmer.scene.internal_wrench
     check_memory(1, len(times), len(x), wrench, bool(load))
     member = _crew.member(swimmer, x)
-    out, works, done, stopped = member.record_of(swimmer, times, wrench, bool(load))
+    foresight = Foresight(swimmer.horizon, progress)
+    try:
+        out, works, done, stopped = member.record_of(swimmer, times, wrench, bool(load), foresight.look)
+    except KeyboardInterrupt:
+        _crew.dismiss(swimmer, x)
+        raise
     steps, _, evaluations = member.evaluations
     run = run_of(
         law=law,

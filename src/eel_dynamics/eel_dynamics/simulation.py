@@ -1,6 +1,7 @@
 """A swimmer in water, marched in time and observed: the algorithm of section 7.1 of Boyer, Porez and Leroyer (2010)."""
 
 import math
+from collections.abc import Callable
 from copy import copy
 from functools import cached_property
 
@@ -12,17 +13,18 @@ from .arguments import (
     check_planar,
     check_planar_law,
     checked_instance,
+    checked_number,
     checked_quaternion,
     checked_row,
     checked_stations,
     is_finite,
 )
 from .body import Body
-from .bounds import FIRST_STEP, control_of
+from .bounds import FIRST_STEP, MOST_EVALUATIONS, check_cost, control_of, evaluations_of
 from .effort import USUAL, Effort, effort_of
 from .energy import EnergyLedger
 from .guard import failure_of
-from .integrator import CONTROL, MARCHED, SINGULAR
+from .integrator import CONTROL, MARCHED, SINGULAR, TOO_MANY_STEPS
 from .leg import (
     AGAIN,
     COUNT,
@@ -47,10 +49,11 @@ from .leg import (
 )
 from .methods import method_of
 from .packed import Packed
-from .profiles import PROFILES, Profiles, no_profiles, profiles_of, row_of
+from .profiles import PROFILES, Profiles, no_profiles, profiles_of
 from .scene import Scene
 from .sections import Swimmer
 from .shape import Shape
+from .slices import Allowance, sliced
 from .snapshot import Snapshot
 from .start import Start, is_thrown, stays_in_plane, time_scale
 from .stopping import SimulationStopped, not_begun, remedy, stopped_by
@@ -68,6 +71,7 @@ class Simulation:
     their X (M,) [m]. position [m], orientation (x y z w, world from head), twist ((Omega, V) [rad/s, m/s], head's
     axes): the initial state, in the library's axes. default_transition [s]: of blends where a law gives none. law: the
     first to adopt. horizon [s]: how long a swim a target of accuracy is for, by default however long.
+    most_evaluations: of the head's dynamics by simulated second; what takes more is refused, or stopped.
     `ValueError` names the argument that does not fit.
     """
 
@@ -83,6 +87,7 @@ class Simulation:
         default_transition: float = 1.0,
         law: Law | None = None,
         horizon: float = math.inf,
+        most_evaluations: float = MOST_EVALUATIONS,
     ):
         self.body = Body.boyer2010() if body is None else checked_instance("body", body, Body)
         self.scene = Scene() if scene is None else checked_instance("scene", scene, Scene)
@@ -102,6 +107,7 @@ class Simulation:
         if not horizon >= 0.0:
             raise ValueError(f"horizon must be >= 0 s, got {horizon!r}")
         self._default_transition, self._horizon, self._built = float(default_transition), float(horizon), None
+        self._most_evaluations = checked_number("most_evaluations", most_evaluations, "per simulated second")
         self._going_on = GoingOn()
         self._begin(law, start)
 
@@ -249,6 +255,7 @@ class Simulation:
         checked_instance("law", law, Law)
         if self.scene.planar:
             check_planar_law(law)
+        check_cost(law, self._most_evaluations)
         return check_law(law, self.body.length), knots_of_law(law)
 
     def add_samples(self, time, x, pitch, pitch_rate, pitch_accel, yaw, yaw_rate, yaw_accel):
@@ -303,8 +310,13 @@ class Simulation:
 
     # -- march
 
-    def advance(self, time: float):
-        """March to `time` [s]. Raises `SimulationStopped` where it cannot; the state stays the last good one."""
+    def advance(self, time: float, interrupted: Callable[[], bool] | None = None) -> bool:
+        """March to `time` [s]; whether it was reached. Raises `SimulationStopped` where it cannot; the state stays the
+        last good one.
+
+        interrupted(): asked every few milliseconds. Once it is true the march ends where it has come to, and another
+        `advance` goes on as if nothing had been.
+        """
         if not self.ready:
             raise RuntimeError("no law has been adopted")
         if not is_finite(time) or time < self.time:
@@ -315,19 +327,40 @@ class Simulation:
             if self.shape.drive is not self.drive:
                 self._restart()
             event = self.shape.next_event(self.time)
-            self._march_to(min(time, event))
+            if not self._march_to(min(time, event), interrupted):
+                return False
             if time <= event:
                 break
         self.shape.end_blend(self.time)
         if self.shape.drive is not self.drive:
             self._use_drive()
+        return True
 
-    def _march_to(self, time: float):
-        status = self._go_on(time)
-        if status != MARCHED:
-            self._restart()
-            raise self._stopped(status)
+    def _march_to(self, time: float, interrupted) -> bool:
+        while (status := self._go_on(time)) != MARCHED:
+            if status != TOO_MANY_STEPS or not self._may_go_on():
+                self._restart()
+                raise self._stopped(status)
+            if interrupted is not None and interrupted():
+                self.time = self._reached
+                self._go_on(self.time)
+                return False
         self.time = time
+        return True
+
+    @property
+    def _reached(self) -> float:
+        """Time [s] at the end of the step under way."""
+        start, length, _ = self._step.view("time").tolist()
+        return start + length
+
+    def _may_go_on(self) -> bool:
+        """After a slice: whether the march may take another."""
+        steps, rejected, _ = self.evaluations
+        if not self._allowance.covers(self._control.value, self._reached, steps + rejected):
+            return False
+        self._step.view("budget")[0] = self._slice.value.spare_steps
+        return True
 
     def _stopped(self, status: int) -> SimulationStopped:
         return stopped_by(status, self.time, self._control.value, self.accuracy)
@@ -382,8 +415,22 @@ class Simulation:
     def _swim_through(self, times, works, out, wrench, load) -> tuple[int, SimulationStopped | None]:
         """March through `times` (T,) [s] into `out` and `works` (T, 4) [J]: how many samples are good, and what stopped
         it. One who goes on behind a bad sample must reset."""
-        self._swim(times, works, row_of(out, wrench, load), wrench=wrench, load=load)
+        self._swim_slices(times, works, out, GO_ON, wrench, load)
         return self._outcome(times, works, out)
+
+    def _swim_slices(self, times, works, out: Profiles, begin: int, wrench: bool, load: bool, look=None):
+        """Swim through `times`, a slice after the other; look(time [s]) is called between two of them."""
+        done = 0
+        while True:
+            rest = PROFILES.row(Profiles(*(array[done:] for array in out[:-1]), out.whole))
+            self._swim(times[done:], works[done:], rest, begin=begin, wrench=wrench, load=load)
+            done += int(self._place[REACHED])
+            if self._place[STATUS] != TOO_MANY_STEPS or not self._may_go_on():
+                break
+            begin = GO_ON
+            if look is not None:
+                look(self._reached)
+        self._place[REACHED] = done
 
     def _outcome(self, times, works, out) -> tuple[int, SimulationStopped | None]:
         """Of the march that has just been: how many samples are good, and what stopped it."""
@@ -411,7 +458,7 @@ class Simulation:
     def _go_on(self, time: float, look: bool = False, wrench: bool = False, load: bool = False) -> float:
         """March to `time` [s], and there, if it is to `look`, fill the one instant of `_out`. Returns a status."""
         parts = (
-            *(self._table, self._drive, self._scratch, self._step, self._method, self._control),
+            *(self._table, self._drive, self._scratch, self._step, self._method, self._slice),
             *(self._place, self._works, self._breakpoints),
         )
         times, out = self._going_on.times, self._out.row if look else None
@@ -430,8 +477,9 @@ class Simulation:
         swim(leg.row[None])
         return self._place[STATUS]
 
-    def _leg(self, place, times, works, out=None, *, begin=GO_ON, wrench=False, load=False) -> ReadyLeg:
-        """A leg from the present on, of `Order`'s meanings; `out`: the row of the profiles, if someone looks."""
+    def _leg(self, place, times, works, out=None, *, control=None, begin=GO_ON, wrench=False, load=False) -> ReadyLeg:
+        """A leg from the present on, of `Order`'s meanings; `out`: the row of the profiles, if someone looks;
+        `control`: for more than a slice."""
         order = Order(
             place=place,
             breakpoints=self._breakpoints,
@@ -445,7 +493,7 @@ class Simulation:
             times=times,
             works=works,
         )
-        table, march = (self._table.swimmer, self._table.stations), (self._step, self._method, self._control)
+        table, march = (self._table.swimmer, self._table.stations), (self._step, self._method, control or self._slice)
         parts = *table, *self._drive, self._scratch, *march
         rows = [part.row for part in parts]
         return ReadyLeg(np.concatenate((*rows, no_profiles() if out is None else out, ORDER.row(order))), order, *parts)
@@ -486,9 +534,19 @@ class Simulation:
             nodes, widest = self._table.grid.matrix.shape
             self._scratch, self._rows = scratch_layout(nodes, widest, rows, len(self.x)).space(), rows
         self._breakpoints = self.shape.breakpoints()
-        self._control = CONTROL.packed(
-            control_of(self.accuracy, self.scene, self.shape, self._table, self.body.length, self._motion_scale)
+        method = self._method.value
+        control = control_of(
+            accuracy=self.accuracy,
+            method=method,
+            scene=self.scene,
+            shape=self.shape,
+            table=self._table,
+            length=self.body.length,
+            scale=self._motion_scale,
+            most_evaluations=self._most_evaluations,
         )
+        self._control = CONTROL.packed(control)
+        self._slice = CONTROL.packed(sliced(control, len(self._table.grid.x), evaluations_of(method)))
 
     def _restart(self):
         """Let the next step begin at the present state, with what drives the body now."""
@@ -501,7 +559,7 @@ class Simulation:
 
     def _stand(self):
         """State and works of the start, but for the momentum."""
-        self._place, self._works = np.zeros(PLACE), np.zeros((1, 4))
+        self._place, self._works, self._allowance = np.zeros(PLACE), np.zeros((1, 4)), Allowance()
         self._place[CURRENT:ENERGY] = self._current
         self.state[:3], self.state[3:7] = self._start[:2]
         self._use_drive()

@@ -2,6 +2,9 @@
 
 import time
 
+from .report import ERROR
+
+OVERDUE = 3.0  # s of wall time on the way to a sample at real time, after which something is wrong
 PERIOD = 1.0  # s of wall time, and of simulation time, after which it is told again
 
 
@@ -30,6 +33,15 @@ class Status:
             self._report.begin("laws", f"{publishers_of_laws} publishers of curvature_law: the later message wins")
         else:
             self._report.end("laws", "no more than one publisher of curvature_law again")
+        if march.overdue > OVERDUE:
+            self._report.begin(
+                "overdue",
+                f"no sample for {march.overdue:.0f} s after t = {march.time:g} s, which takes too many steps: another "
+                "law, reset and pause are heard",
+                ERROR,
+            )
+        else:
+            self._report.end("overdue")
         before, self._seen = (0.0, 0.0) if final else self._seen, (march.time, march.marched_for)
         simulated, wall = self._seen[0] - before[0], self._seen[1] - before[1]
         level, warnings = state = self._report.state()

@@ -27,8 +27,9 @@ def stopped_by(status: int, time: float, control: Control, accuracy: Accuracy) -
         stopped.diverged = True
         return stopped
     if status == TOO_MANY_STEPS:
-        quantity = "more steps per second than any motion of a swimmer needs"
-        return SimulationStopped(time, quantity, control.most_steps, "take a slower or gentler law")
+        quantity = "more steps per simulated second than most_evaluations allows"
+        hint = "take a coarser accuracy, a slower or gentler law, or raise most_evaluations"
+        return SimulationStopped(time, quantity, control.most_steps, hint)
     quantity = "step for the wanted accuracy is too small"
     return SimulationStopped(time, quantity, control.smallest, "take a coarser accuracy, or a slower law")
 
