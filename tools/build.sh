@@ -43,15 +43,22 @@ install_requirements() {
     .venv/bin/python -m pip install --quiet --require-hashes --only-binary :all: -r requirements-uv.txt ||
         { say "pip failed, what it said stands above"; exit 1; }
     .venv/bin/python tools/uv_with_pip_settings.py pip "${what[@]}" --python .venv/bin/python --system-certs \
-        --index-strategy unsafe-best-match 2>&1 | tee "$log" |
-        awk '/^ Downloaded/ {n++; if (n % 10 == 0) print "[build]   " n " large packages fetched"}
-             /^Prepared/ {print "[build]   unpacking"} {fflush()}' && return
-    say "uv failed, its output is in $log.uv; pip takes over, which takes a minute longer"
+        --index-strategy unsafe-best-match 2>&1 | tee "$log" | say_progress && return
+    say "uv failed, its output is in $log.uv; pip takes over, which lasts a minute longer"
     mv "$log" "$log.uv"
-    .venv/bin/python -m pip "${what[@]}" --progress-bar off 2>&1 | tee "$log" |
-        awk '/^Collecting/ {n++; if (n % 20 == 0) print "[build]   " n " packages fetched"}
-             /^Installing/ {print "[build]   unpacking"} /^ERROR|^error/ {print} {fflush()}' ||
+    .venv/bin/python -m pip "${what[@]}" --progress-bar off 2>&1 | tee "$log" | say_progress ||
         { say "pip failed, its output is in $log"; exit 1; }
+}
+
+say_progress() {   # of what uv or pip prints; uv names large packages alone
+    local line count=0
+    while IFS= read -r line; do
+        case "$line" in
+            "Collecting "* | " Downloaded "*) count=$((count + 1)); [ $((count % 10)) != 0 ] || say "  $count packages fetched" ;;
+            Prepared* | Installing*) say "  unpacking" ;;
+            ERROR* | error*) say "  $line" ;;
+        esac
+    done
 }
 
 build_packages() {
@@ -65,7 +72,7 @@ build_packages() {
     rm -f install/stamp
     # With MAKEFLAGS, or colcon lets make start nothing beside while the machine has other work.
     PATH="$root/.venv/bin:$PATH" AMENT_PREFIX_PATH="$root/.venv" CMAKE_PREFIX_PATH="$root/.venv" MAKEFLAGS="-j$(nproc)" \
-        .venv/bin/python .venv/bin/colcon build --symlink-install --cmake-args --no-warn-unused-cli \
+        .venv/bin/python .venv/bin/colcon build --symlink-install --cmake-args -Wno-unused-cli \
         "-DPython3_EXECUTABLE=$root/.venv/bin/python" -DEEL_MSGS_PYTHON_ONLY=ON -DBUILD_TESTING=OFF 9>&- ||
         { say "colcon failed; its output is in log/latest_build"; exit 1; }
     link_executables
