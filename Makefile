@@ -1,17 +1,23 @@
 # The two commands are `make demo` and `make test`; each does all the set-up itself, inside this folder.
 SHELL := /bin/bash
 .DEFAULT_GOAL := help
-.PHONY: pictures help demo test validation build bench lint soak robustness clean
+.PHONY: pictures help demo test sanitize aarch64 validation build bench lint soak robustness clean
 RUN := tools/run.sh
 
 help:   ## this list
-	@sed -n 's/^\([a-z]*\):[^#]*## */make \1\t/p' Makefile | expand -t 17
+	@sed -n 's/^\([a-z0-9]*\):[^#]*## */make \1\t/p' Makefile | expand -t 17
 
 demo: build   ## swim the falling gait through the three nodes; leaves out/falling.rrd and a summary
 	@$(RUN) python tools/demo.py
 
 test: build   ## all tests but the long ones (ARGS=... goes to pytest)
 	@$(RUN) tools/test.sh $(ARGS)
+
+sanitize: build   ## the mechanics under AddressSanitizer and UndefinedBehaviorSanitizer
+	@$(RUN) tools/core_tests.sh sanitize
+
+aarch64: build   ## the C++ tests of the mechanics compiled for 64-bit ARM, run by qemu
+	@$(RUN) tools/core_tests.sh aarch64
 
 validation: build   ## docs/validation.md anew, from what the tests of the mechanics measure
 	@$(RUN) python tools/validation.py

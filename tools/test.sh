@@ -20,11 +20,13 @@ begin() {   # NAME TESTS...: into out/test-NAME.log
 nodes=(test/eel_dynamics/test_node_[!r]*.py)
 begin nodes "${nodes[@]}"
 begin viz test/eel_viz
+tools/core_tests.sh tests > out/test-core.log 2>&1 &
+beside[core]=$!
 begin system test/system test/eel_gaits test/eel_core
-echo "[test] mechanics here; the dynamics node, test/eel_viz, and test/system with test/eel_gaits and test/eel_core beside, shown when done"
+echo "[test] mechanics here; the dynamics node, test/eel_viz, test/system with test/eel_gaits and test/eel_core, and the C++ tests beside, shown when done"
 python -m pytest -m "not soak" test/eel_dynamics "${nodes[@]/#/--ignore=}"
 status=$?
-for name in nodes viz system; do
+for name in core nodes viz system; do
     wait "${beside[$name]}" || status=1
     cat "out/test-$name.log"
 done

@@ -18,7 +18,8 @@ PYBIND11_MODULE(EEL_CORE_MODULE, module) {
             result["compiler"] = info.compiler;
             result["flags"] = info.flags;
             result["sanitizers"] = info.sanitizers;
-            result["pybind11"] = PYBIND11_TOSTRING(PYBIND11_VERSION_MAJOR) "." PYBIND11_TOSTRING(PYBIND11_VERSION_MINOR);
+            result["pybind11"] =
+                PYBIND11_TOSTRING(PYBIND11_VERSION_MAJOR) "." PYBIND11_TOSTRING(PYBIND11_VERSION_MINOR);
             return result;
         },
         "How this module was compiled: level, compiler, flags, sanitizers, pybind11.");

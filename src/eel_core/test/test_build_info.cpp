@@ -16,6 +16,4 @@ TEST(BuildInfo, LevelIsTheOneAskedFor) {
     EXPECT_EQ(info.flags.substr(at + 7, info.level.size()), info.level);
 }
 
-TEST(BuildInfo, NamesTheCompiler) {
-    EXPECT_NE(eel_core::build_info().compiler, "other");
-}
+TEST(BuildInfo, NamesTheCompiler) { EXPECT_NE(eel_core::build_info().compiler, "other"); }

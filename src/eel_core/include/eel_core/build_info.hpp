@@ -13,7 +13,8 @@ struct BuildInfo {
 };
 
 constexpr std::string_view target_level() {
-#if defined(__AVX512F__) && defined(__AVX512BW__) && defined(__AVX512CD__) && defined(__AVX512DQ__) && defined(__AVX512VL__)
+#if defined(__AVX512F__) && defined(__AVX512BW__) && defined(__AVX512CD__) && defined(__AVX512DQ__) && \
+    defined(__AVX512VL__)
     return "x86-64-v4";
 #elif defined(__AVX2__) && defined(__FMA__) && defined(__BMI2__)
     return "x86-64-v3";
@@ -49,8 +50,6 @@ constexpr std::string_view active_sanitizers() {
     return "";
 }
 
-constexpr BuildInfo build_info() {
-    return {target_level(), compiler_name(), EEL_CORE_FLAGS, active_sanitizers()};
-}
+constexpr BuildInfo build_info() { return {target_level(), compiler_name(), EEL_CORE_FLAGS, active_sanitizers()}; }
 
 }  // namespace eel_core

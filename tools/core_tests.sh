@@ -1,0 +1,33 @@
+#!/usr/bin/env bash
+# Builds and runs the C++ tests of eel_core, each kind in a build folder of its own (src/eel_core/CMakePresets.json).
+#   tests      for this machine
+#   sanitize   with AddressSanitizer and UndefinedBehaviorSanitizer, and the Python tests of the mechanics with them
+#   aarch64    for 64-bit ARM, run by qemu; skipped where the tools are missing
+#   clang      compiled by Clang; skipped where it is missing
+set -euo pipefail
+kind="$1"
+folder="build/eel_core_$kind"
+
+skip_without() {   # COMMAND PACKAGE
+    command -v "$1" > /dev/null || { echo "[core] $kind skipped: no $1. On Debian or Ubuntu: sudo apt-get install $2"; exit 0; }
+}
+case "$kind" in
+    tests | sanitize) ;;
+    aarch64) skip_without aarch64-linux-gnu-g++ g++-aarch64-linux-gnu; skip_without qemu-aarch64 qemu-user ;;
+    clang) skip_without clang++ clang ;;
+    *) echo "core_tests.sh: the kind must be tests, sanitize, aarch64 or clang, got '$kind'" >&2; exit 2 ;;
+esac
+
+mkdir -p "$folder"
+{ (cd src/eel_core && cmake --preset "$kind") && cmake --build "$folder" --parallel; } > "$folder/build.log" 2>&1 ||
+    { cat "$folder/build.log"; echo "[core] $kind: the build failed; its output is in $folder/build.log"; exit 1; }
+ctest --test-dir "$folder" --output-on-failure --no-tests=error
+[ "$kind" = sanitize ] || exit 0
+
+# Python itself is not sanitized: its run time comes first, and what Python leaves at its end is no finding.
+cmake --install "$folder" > /dev/null
+library() { "${CXX:-c++}" -print-file-name="$1"; }
+export LD_PRELOAD="$(library libasan.so) $(library libstdc++.so)" ASAN_OPTIONS=detect_leaks=0
+export UBSAN_OPTIONS=print_stacktrace=1 PYTHONPATH="$PWD/$folder/install:$PYTHONPATH"
+python -c 'import eel_core; assert eel_core.build_info()["sanitizers"], "the module is not sanitized"'
+python -m pytest test/eel_core --ignore=test/eel_core/test_build.py --ignore=test/eel_core/test_levels.py   # these build and copy
