@@ -21,7 +21,6 @@ OUT = Path("out")
 RECORDING = OUT / "falling.rrd"
 PICTURE = OUT / "falling.png"
 DURATION, RATE = 10.0, 100.0  # s, Hz
-PICTURE_TIME = 8.3  # s: the eel bends strongly, and its torque shows
 LISTENERS = 2  # the visualiser and this program
 
 
@@ -154,16 +153,16 @@ def library_speed() -> float:
 
 def draw() -> None:
     """The picture, where the viewer can draw without a display."""
-    command = [sys.executable, "-m", "eel_viz.render", str(RECORDING), str(PICTURE), "--at", f"{PICTURE_TIME}"]
+    command = [sys.executable, "-m", "eel_viz.render", str(RECORDING), str(PICTURE)]
     try:
         drawn = subprocess.run(command, capture_output=True, text=True, timeout=60)
         reason = (drawn.stderr or drawn.stdout).strip().splitlines()[-1:] if drawn.returncode else []
     except subprocess.TimeoutExpired:
-        drawn, reason = None, ["the viewer took more than 60 s"]
+        drawn, reason = None, ["no picture: the viewer took more than 60 s"]
     if drawn is not None and drawn.returncode == 0 and PICTURE.exists():
-        say(f"picture of t = {PICTURE_TIME:g} s: {PICTURE}")
+        say(f"picture: {PICTURE}")
     else:
-        say(f"no picture: {reason[0] if reason else 'the viewer gave none'}")
+        say(reason[0].removeprefix("render: ") if reason else "no picture: the viewer gave none")
 
 
 def say(text: str) -> None:

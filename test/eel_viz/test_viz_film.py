@@ -1,5 +1,6 @@
 """`render` as a command: one picture, many, and a film, by one viewer; what cannot be is said in one line."""
 
+import contextlib
 import io
 import stat
 
@@ -117,6 +118,30 @@ def test_the_times_of_a_film():
         times(TenSeconds, fps=30, start=5.0, end=2.0, speed=1.0)
     with pytest.raises(ValueError, match="makes 10000001 pictures"):
         times(TenSeconds, fps=1e6, start=None, end=None, speed=1.0)
+
+
+@pytest.mark.fault("names", "`render` where no driver draws", "one line that names the package, status 3")
+def test_where_no_driver_draws_one_line_names_the_package(recording, tmp_path, monkeypatch, capsys):
+    for name in ("VK_DRIVER_FILES", "VK_ICD_FILENAMES"):
+        monkeypatch.setenv(name, str(tmp_path / "no_driver.json"))
+    monkeypatch.setenv("WGPU_BACKEND", "vulkan")  # OpenGL might draw
+    assert main([str(recording), "-o", str(tmp_path / "picture.png")]) == 3
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "apt-get install" in line and "mesa-vulkan-drivers" in line
+
+
+def test_without_a_time_the_picture_is_of_seven_tenths_of_the_recording(tmp_path, monkeypatch):
+    class Drawing:
+        start, end = 2.0, 12.0
+
+        def png(self, at):
+            return f"at {at:g} s".encode()
+
+    monkeypatch.setattr("eel_viz.render.drawn", lambda *_, **__: contextlib.nullcontext(Drawing()))
+    assert main(["run.rrd", "-o", str(tmp_path / "picture.png")]) == 0
+    assert (tmp_path / "picture.png").read_bytes() == b"at 9 s"
+    assert main(["run.rrd", "-o", str(tmp_path / "picture.png"), "--at", "2"]) == 0
+    assert (tmp_path / "picture.png").read_bytes() == b"at 2 s"
 
 
 @pytest.mark.fault(

@@ -1,6 +1,6 @@
 """A recording to pictures, or to a film, without a display.
 
-render RUN.rrd -o picture.png --at 7.0
+render RUN.rrd -o picture.png                # --at 7.0 for a moment of one's own
 render RUN.rrd -o frames/ --fps 30           # frames/frame_00000.png ..., and frames/film.mp4 where ffmpeg is
 render RUN.rrd -o swim.webp --fps 15 --size 960x540
 """
@@ -21,6 +21,7 @@ from eel_viz.viewer import CannotRender
 NAME = "render"
 FILM = "film.mp4"
 MANY = 100_000  # pictures
+TELLING = 0.7  # of a recording's duration: the swimmer is under way, and the curves have a past
 
 
 def render(
@@ -31,12 +32,14 @@ def render(
     size: tuple[int, int] = SIZE,
     blueprint: str = "",
 ) -> None:
-    """Write the PNG `picture` of `recording` at simulation time `at` [s] (None: its start), `size` in pixels.
+    """Write the PNG `picture` of `recording` at simulation time `at` [s] (None: after `TELLING` of it), `size` in pixels.
 
     `blueprint`: the arrangement shown; empty: the one the recording has in front.
     """
     with drawn(recording, size=size, blueprint=blueprint) as drawing:
-        pathlib.Path(picture).write_bytes(drawing.png(drawing.start if at is None else at))
+        if at is None:
+            at = drawing.start + TELLING * (drawing.end - drawing.start)
+        pathlib.Path(picture).write_bytes(drawing.png(at))
 
 
 def times(drawing: Drawing, *, fps: float, start: float | None, end: float | None, speed: float) -> list[float]:
@@ -83,7 +86,12 @@ def parser() -> argparse.ArgumentParser:
         f"installed, {FILM}; or a film alone: {', '.join(FILMS)} (the last two do without ffmpeg)",
     )
     which = made.add_mutually_exclusive_group()
-    which.add_argument("--at", type=float, metavar="SECONDS", help="simulation time of one picture (default: start)")
+    which.add_argument(
+        "--at",
+        type=float,
+        metavar="SECONDS",
+        help=f"simulation time of one picture (default: after {TELLING:.0%}% of the recording)",
+    )
     which.add_argument("--fps", type=float, metavar="N", help="pictures a second of a film")
     made.add_argument("--start", type=float, metavar="SECONDS", help="of the film (default: the recording's)")
     made.add_argument("--end", type=float, metavar="SECONDS", help="of the film (default: the recording's)")

@@ -16,6 +16,7 @@ from collections.abc import Iterator
 from typing import IO
 
 START_LIMIT = 60.0  # s, until the viewer listens
+END_LIMIT = 5.0  # s, until it has ended
 
 
 class CannotRender(RuntimeError):
@@ -37,10 +38,15 @@ def viewer(size: tuple[int, int] = (1920, 1080)) -> Iterator:
         try:
             _await_listening(process, port, said)
             yield ViewerClient.connect(f"rerun+http://127.0.0.1:{port}/proxy")
+        except ConnectionError as lost:  # without a driver the viewer listens for a moment, then it ends
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                process.wait(timeout=END_LIMIT)
+                raise _ended(process, said) from lost
+            raise
         finally:
             process.terminate()
             try:
-                process.wait(timeout=5)
+                process.wait(timeout=END_LIMIT)
             except subprocess.TimeoutExpired:
                 process.kill()
                 process.wait()
@@ -90,13 +96,18 @@ def _await_listening(process: subprocess.Popen, port: int, said: IO[bytes]) -> N
     limit = time.monotonic() + START_LIMIT
     while not listening(port):
         if process.poll() is not None:
-            said.seek(0)
-            lines = said.read().decode(errors="replace").splitlines()
-            reason = next((line for line in lines if "graphics" in line or "render" in line.lower()), "")
-            raise CannotRender(
-                f"the viewer ended with status {process.returncode} ({reason.strip() or 'no reason given'}); it needs "
-                "a Vulkan driver: apt-get install --no-install-recommends mesa-vulkan-drivers"
-            )
+            raise _ended(process, said)
         if time.monotonic() > limit:
             raise CannotRender(f"the viewer did not start within {START_LIMIT:g} s")
         time.sleep(0.05)
+
+
+def _ended(process: subprocess.Popen, said: IO[bytes]) -> CannotRender:
+    """Why the viewer has ended by itself, with the package that is missing most often."""
+    said.seek(0)
+    lines = said.read().decode(errors="replace").splitlines()
+    reason = next((line for line in lines if "graphics" in line or "render" in line.lower()), "")
+    return CannotRender(
+        f"the viewer ended with status {process.returncode} ({reason.strip() or 'no reason given'}); it needs "
+        "a Vulkan driver: apt-get install --no-install-recommends mesa-vulkan-drivers"
+    )
