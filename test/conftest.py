@@ -1,6 +1,8 @@
 """For all tests: every test session in a ROS domain of its own, and no process left behind."""
 
 import os
+import resource
+import subprocess
 import sys
 from pathlib import Path
 
@@ -72,3 +74,23 @@ def start_for_module(tmp_path_factory):
     yield from starter(tmp_path_factory.mktemp("nodes"))
     domain.claim.close()
     os.environ["ROS_DOMAIN_ID"] = before
+
+
+@pytest.fixture
+def limit_of_files():
+    """limit_of_files(size): no file of this process may become larger [bytes], as on a disk that is full then."""
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    yield lambda size: resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
+    resource.setrlimit(resource.RLIMIT_FSIZE, before)
+
+
+@pytest.fixture
+def small_disk(tmp_path):
+    """The folder of a file system of 1 MB."""
+    folder = tmp_path / "small disk"
+    folder.mkdir()
+    made = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=1m", "tmpfs", folder], capture_output=True, text=True)
+    if made.returncode:
+        pytest.skip(f"no file system can be mounted here: {made.stderr.strip()}")
+    yield folder
+    subprocess.run(["umount", "--lazy", folder], check=True)

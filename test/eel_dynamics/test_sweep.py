@@ -1,13 +1,19 @@
 """Sweeps over a grid of parameters on Dask: labelled, equal to single runs, whole after a lost worker or an end."""
 
+import errno
+import json
 import os
 import signal
+import subprocess
 import sys
+import threading
 
 import numpy as np
 import pytest
 from eel_dynamics.measures import measures_of
 from eel_dynamics.sweep_command import main
+from eel_dynamics.sweep_key import key_of
+from eel_dynamics.sweeps import Point
 
 from eel_dynamics import Accuracy, Body, Scene, simulate, sweep, sweep_command
 from eel_gaits import straight
@@ -90,6 +96,138 @@ def test_goes_on_where_it_was_broken_off(client, tmp_path):
         sweep({"period": [0.5, 0.6]}, scheduler=client, out=out, **SHORT)
 
 
+@pytest.mark.fault(
+    "names",
+    "parts of a sweep that hold text, NaN or half of what they held, or nothing",
+    "said in one line; their points are swum again, the others are kept",
+)
+def test_damaged_parts_are_done_again(client, tmp_path, capsys):
+    grid, out = {"period": [0.5, 0.6, 0.7, 0.8, 0.9]}, tmp_path / "sweep.nc"
+    whole = sweep(grid, scheduler=client, **SHORT)
+
+    def interrupt(done, points):
+        if done == points:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        sweep(grid, scheduler=client, out=out, chunk=1, progress=interrupt, **SHORT)
+    parts = sorted((tmp_path / "sweep.nc.parts").glob("part-*.json"))
+    texts = [part.read_text() for part in parts]
+    (point,) = json.loads(texts[0]).values()
+    damaged = [texts[0].replace(f'"head_x": {point["head_x"]}', text) for text in ('"head_x": "far"', '"head_x": NaN')]
+    damaged += [texts[2][: len(texts[2]) // 2], ""]
+    assert len(parts) == 5 and texts[0] not in damaged
+    for part, text in zip(parts, damaged, strict=False):
+        part.write_text(text)
+    told = []
+    with pytest.warns(UserWarning, match="is damaged .* its points are done again") as warned:
+        again = sweep(grid, scheduler=client, out=out, progress=lambda *pair: told.append(pair), **SHORT)
+    assert told[0] == (1, 5) and again.identical(whole)
+    said = [str(each.message) for each in warned]
+    for part, reason in zip(parts, ("measure 'head_x' must be a real number, got 'far'", "NaN", "", ""), strict=False):
+        assert sum(str(part) in line and reason in line for line in said) == 1
+
+
+def test_what_a_sweep_is_of_is_known_or_it_is_refused(client, tmp_path):
+    grid, out, folder = {"period": [0.5, 0.6]}, tmp_path / "sweep.nc", tmp_path / "sweep.nc.parts"
+    folder.mkdir()
+    (folder / "part-0-1-0.json").write_text("{}")
+    (folder / "notes.txt").write_text("mine")
+    for about in (None, "", '{"sweep"'):
+        if about is not None:
+            (folder / "sweep.json").write_text(about)
+        with pytest.raises(ValueError, match=r"sweep\.nc\.parts holds parts of another sweep"):
+            sweep(grid, scheduler=client, out=out, **SHORT)
+    sweep(grid, scheduler=client, out=out, overwrite=True, **SHORT)
+    assert out.exists() and os.listdir(folder) == ["notes.txt"]
+
+
+def test_an_output_that_is_overwritten_stays_until_the_new_one_is_complete(client, tmp_path, monkeypatch):
+    out = tmp_path / "sweep.nc"
+    sweep({"period": [0.5]}, scheduler=client, out=out, **SHORT)
+    older = out.read_bytes()
+
+    def full(self, path, **_):
+        assert path.parent == tmp_path
+        path.write_bytes(b"CDF half")
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    with monkeypatch.context() as patch:
+        patch.setattr(xarray.Dataset, "to_netcdf", full)
+        with pytest.raises(OSError, match=r"sweep\.nc' cannot be written: No space left on device"):
+            sweep({"period": [0.6]}, scheduler=client, out=out, overwrite=True, **SHORT)
+    assert out.read_bytes() == older and not list(tmp_path.glob("*.part.*"))
+    told = []  # what was swum before is kept
+    sweep(
+        {"period": [0.6]}, scheduler=client, out=out, overwrite=True, progress=lambda *pair: told.append(pair), **SHORT
+    )
+    assert told == [(1, 1)] and xarray.load_dataset(out, engine="scipy").period.item() == 0.6
+
+
+@pytest.mark.fault(
+    "names",
+    "a sweep whose measure has other code or another closure, or whose body has other arrays, than the one on disk",
+    "another sweep: refused, or replaced with `overwrite`",
+)
+def test_the_key_changes_with_whatever_the_results_depend_on():
+    def measure_of(limit):
+        return lambda run: {"far": float(run.path_length > limit)}
+
+    x = np.linspace(0.0, 1.0, 4001)
+    width = 0.05 * np.sqrt(np.sin(np.pi * x * 0.98))
+    between = width.copy()
+    between[1003] *= 1.01  # 201 points do not see it
+    bodies = [Body(x=x, half_width=each, half_height=2.0 * width) for each in (width, between)]
+    bodies += [Body(length=1.0, half_width=lambda x, k=k: k * np.sqrt(x), half_height=np.sqrt) for k in (0.01, 0.02)]
+
+    def key(measure=measures_of, body=bodies[0]):
+        return key_of([Point(0, straight(), body, Scene(), Accuracy.of("draft"))], 1.0, 0.1, 11, measure)
+
+    keys = [key(body=body) for body in bodies]
+    keys += [key(measure) for measure in (measure_of(1.0), measure_of(2.0), lambda run: {"far": 1.0})]
+    assert len(set(keys)) == len(keys)
+    assert key(measure_of(1.0)) == keys[4] and key(body=Body(x=x, half_width=width, half_height=2.0 * width)) == keys[0]
+    lock = threading.Lock()
+    with pytest.raises(ValueError, match="measure must be a function that worker processes can be given"):
+        key(lambda run: {"locked": lock.locked()})
+
+
+def test_the_key_is_the_same_in_another_process(tmp_path):
+    script = tmp_path / "script.py"
+    script.write_text(
+        "from eel_dynamics import Accuracy, Body, Scene\nfrom eel_dynamics.sweep_key import key_of\n"
+        "from eel_dynamics.sweeps import Point\nfrom eel_gaits import straight\nLIMIT = 0.3\n"
+        "def measure(run):\n    return {'far': run.path_length > LIMIT, 'near': run.path_length < LIMIT}\n"
+        "point = Point(0, straight(), Body.kern2006(), Scene(), Accuracy.of('draft'))\n"
+        "print(key_of([point], 1.0, 0.1, 11, measure))\n"
+    )
+
+    def key():
+        done = subprocess.run([sys.executable, script], capture_output=True, text=True, timeout=300, check=True)
+        return done.stdout
+
+    one, two = key(), key()
+    assert one == two != ""
+    script.write_text(script.read_text().replace("LIMIT = 0.3", "LIMIT = 0.4"))
+    assert key() != one
+
+
+@pytest.mark.parametrize("value", [0.5 + 1j, "far", [1.0], np.ones(2), None])
+def test_a_measure_that_is_no_number_is_refused_by_name(client, value):
+    def measure(run):
+        return {"way": value}
+
+    with pytest.raises(ValueError, match="measure 'way' must be a real number, got"):
+        sweep({"period": [0.5]}, scheduler=client, measure=measure, **SHORT)
+
+
+@pytest.mark.parametrize("given", [{"workers": 0}, {"workers": -1}, {"chunk": -1}, {"chunk": "a"}, {"chunk": 0}])
+def test_counts_that_cannot_be_are_refused_by_name(given):
+    ((name, value),) = given.items()
+    with pytest.raises(ValueError, match=f"{name} must be a whole number >= 1, got {value!r}"):
+        sweep({"period": [0.5]}, **given, **SHORT)
+
+
 def test_a_point_that_stops_is_told_and_the_others_stay(client):
     def law(size):
         return straight(amplitude_0=size)
@@ -144,6 +282,8 @@ def test_command_with_a_cluster_of_its_own(tmp_path, capsys):
         (["--vary", "scene.friction=sticky"], "sticky"),
         (["--vary", "period=1,1"], "twice"),
         (["--vary", "period=1", "--scheduler", "nowhere"], "nowhere"),
+        (["--vary", "period=1", "--workers", "0"], "workers must be a whole number >= 1, got 0"),
+        (["--vary", "period=1", "--workers", "-1"], "workers must be a whole number >= 1, got -1"),
     ],
 )
 def test_bad_input_of_the_command(options, words, tmp_path, capsys):

@@ -1,11 +1,13 @@
 """`Run.to_rerun`: bit by bit what the visualiser makes of the node's own messages of the same run."""
 
+import os
 import subprocess
 import sys
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from eel_dynamics.command import main
 from eel_dynamics.messages import Sample, body_message, diagnostic_array
 from eel_dynamics.records import records
 from rclpy.serialization import deserialize_message
@@ -122,7 +124,6 @@ def test_what_a_run_has_not_computed_is_not_shown(tmp_path):
 
 
 def test_simulate_writes_it_too(tmp_path, capsys):
-    from eel_dynamics.command import main
     from eel_viz.reading import read
 
     from eel_viz import entities
@@ -146,6 +147,38 @@ def test_what_cannot_be_is_said(run, tmp_path):
         run.to_rerun(tmp_path / "run.rrd", blueprint="mine")
     with pytest.raises(ValueError, match=r"recording '/proc/none.rrd' cannot be written"):
         run.to_rerun("/proc/none.rrd")
+
+
+@pytest.mark.fault(
+    "ending",
+    "the disk is full while `simulate` or `replay` write, or `Run.to_rerun` does",
+    "one line with the reason, status 1 (`OSError`); an older file stays as it was, nothing else is left",
+)
+@pytest.mark.parametrize("form", ["rrd", "npz", "csv"])
+def test_a_full_disk_leaves_the_older_file(form, small_disk, capsys):
+    out = small_disk / f"run.{form}"
+    words = ["falling", "--duration", "0.5", "--sample-period", "0.01", "--load", "--out", str(out)]
+    assert main([*words, "--stations", "11"]) == 0
+    older = out.read_bytes()
+    (small_disk / "other").write_bytes(bytes(2**20 - len(older) - 3 * 4096))
+    capsys.readouterr()
+    assert main([*words, "--stations", "51"]) == 1
+    told = capsys.readouterr()
+    assert "cannot be written: No space left on device\n" in told.err and "Traceback" not in told.err
+    assert "greatest torque" in told.out and "written to" not in told.out
+    assert out.read_bytes() == older and sorted(os.listdir(small_disk)) == ["other", out.name]
+
+
+@pytest.mark.parametrize("share", [0.0, 0.5, 1.0 - 1e-3])
+def test_a_recording_is_whole_or_not_there(run, share, tmp_path, limit_of_files):
+    """Past a limit of the size of files: at the first bytes, in the middle, and at the end, in the index."""
+    run.to_rerun(tmp_path / "whole.rrd")
+    (tmp_path / "run.rrd").write_bytes(b"RRF2 of yesterday")
+    limit_of_files(int(share * 0.97 * (tmp_path / "whole.rrd").stat().st_size))  # sizes vary by some per cent
+    with pytest.raises(OSError, match=r"recording '.*/run\.rrd' cannot be written: File too large"):
+        run.to_rerun(tmp_path / "run.rrd")
+    assert (tmp_path / "run.rrd").read_bytes() == b"RRF2 of yesterday"
+    assert sorted(os.listdir(tmp_path)) == ["run.rrd", "whole.rrd"]
 
 
 def test_the_library_alone_imports_neither_viz_nor_rerun_and_says_what_is_missing(tmp_path):

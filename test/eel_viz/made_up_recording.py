@@ -3,7 +3,6 @@
 from pathlib import Path
 
 import made_up
-from eel_viz.destination import close_stream
 from eel_viz.file import File
 from eel_viz.loggers import Loggers, Rates
 from eel_viz.settings import Settings
@@ -63,5 +62,5 @@ def record(path: Path, seconds: float, rate: float, *, stations: int = 51, **set
             for side in sides:
                 getattr(side, method)(stamp, *arguments)
     loggers.send()
-    close_stream(stream)
+    destination.end(stream)
     return logged

@@ -3,7 +3,6 @@
 import made_up
 import numpy as np
 import pytest
-from eel_viz.destination import close_stream
 from eel_viz.file import File
 from eel_viz.loggers import Loggers, Rates
 from eel_viz.pairs import Pairs
@@ -21,7 +20,8 @@ SHIFT = (0.003, -0.004, 0.0)  # m: between the two heads
 def record(path, *, other_first=False):
     """Two swimmers beside each other, the other with other stations and half the torque; their samples."""
     settings = Settings(recording=str(path), compare="/draft", blueprint="compare")
-    stream = File(settings, print, print).open(1, "made up")
+    file = File(settings, print, print)
+    stream = file.open(1, "made up")
     loggers = Loggers(stream, settings, Rates(), "standard")
     loggers.body(body())
     loggers.law(0, "made up")
@@ -41,7 +41,7 @@ def record(path, *, other_first=False):
         for method, arguments in messages.items():
             getattr(target, method)(stamp, *arguments)
     loggers.send()
-    close_stream(stream)
+    file.end(stream)
     return logged
 
 
@@ -132,9 +132,10 @@ def test_the_order_of_the_two_does_not_matter(made, tmp_path):
 
 def test_without_another_run_there_is_no_other(record_made_up, tmp_path):
     settings = Settings(recording=str(tmp_path / "alone.rrd"))
-    stream = File(settings, print, print).open(1, "alone")
+    file = File(settings, print, print)
+    stream = file.open(1, "alone")
     with pytest.raises(ValueError, match=r"settings\.compare is empty"):
         _ = Loggers(stream, settings, Rates()).other
-    close_stream(stream)
+    file.end(stream)
     with pytest.raises(ValueError, match="compare must be the other swimmer's namespace"):
         Settings(blueprint="compare")

@@ -10,6 +10,7 @@ import time
 import made_up
 import numpy as np
 import pytest
+import rerun as rr
 from eel_viz.file import REMINDER, File
 from eel_viz.flow import LOOK
 from eel_viz.messages import Status
@@ -146,22 +147,60 @@ def test_a_late_start_shows_the_present(file, ears, tmp_path):
     np.testing.assert_array_equal(read(tmp_path / "run.rrd", entities.SPEED).time, [500.0, 501.0])
 
 
-@pytest.mark.fault("names", "a `recording` that is there already", "replaced, and said")
-def test_a_file_that_is_there_is_replaced_with_a_warning(file, ears, tmp_path):
-    (tmp_path / "run.rrd").write_text("something else")
-    Runs([file], "eel", ears.warned.append).close()
-    assert ears.warned == [f"{tmp_path / 'run.rrd'} is there already and is replaced"]
+@pytest.mark.fault(
+    "names", "a `recording` that is there already", "said at the start; replaced once the new one is complete"
+)
+def test_a_file_that_is_there_is_replaced_when_the_new_one_is_complete(file, ears, tmp_path):
+    (tmp_path / "run.rrd").write_bytes(b"RRF2 of yesterday")
+    made = Runs([file], "eel", ears.warned.append)
+    assert ears.warned == [
+        f"{tmp_path / 'run.rrd'} is there already and is replaced by the new recording when that is complete"
+    ]
+    assert ears.said == [f"saving to {tmp_path / 'run.rrd'}; until it is complete, to run.part.rrd"]
+    send(made, SECOND)
+    assert (tmp_path / "run.rrd").read_bytes() == b"RRF2 of yesterday"
+    made.close()
+    assert read(tmp_path / "run.rrd", entities.SPEED).stamps.tolist() == [SECOND]
+    assert os.listdir(tmp_path) == ["run.rrd"] and not made.lost
 
 
-def test_folders_are_made(tmp_path, ears):
-    path = tmp_path / "a" / "b" / "run.rrd"
-    Runs([File(Settings(recording=str(path)), ears.said.append, ears.warned.append)], "eel", print).close()
-    assert path.exists()
-    assert not ears.warned
+@pytest.mark.fault(
+    "ending",
+    "the disk is full when the visualiser completes a recording",
+    "one warning with the reason; what there is opens as `run.part.rrd`, an older `run.rrd` stays; status 1",
+)
+def test_a_recording_that_cannot_be_completed_stays_a_part(ears, tmp_path, limit_of_files):
+    (tmp_path / "run.rrd").write_bytes(b"RRF2 of yesterday")
+    file = File(Settings(recording=str(tmp_path / "run.rrd")), ears.said.append, ears.warned.append, patient_from=2)
+    stream, part = file.open(1, "eel"), tmp_path / "run.part.rrd"
+    for k in range(3):
+        stream.set_time(entities.TIMELINE, duration=float(k))
+        stream.log(entities.SPEED, rr.Scalars([1.0]))
+    stream.flush()
+    limit_of_files(part.stat().st_size + 100)  # the index does not fit any more
+    file.end(stream)
+    assert file.incomplete and (tmp_path / "run.rrd").read_bytes() == b"RRF2 of yesterday"
+    (told,) = (line for line in ears.warned if "cannot be written any more" in line)
+    assert f"recording {str(part)!r} cannot be written any more: File too large; it ends here" in told
+    assert read(part, entities.SPEED).stamps.tolist() == [0, SECOND, 2 * SECOND]
 
 
-@pytest.mark.parametrize("path", ["/proc/none/run.rrd", "/dev/null/run.rrd", "{folder}"])
+def test_a_folder_that_is_not_there_is_not_made(tmp_path, ears):
+    path = tmp_path / "mistyped" / "run.rrd"
+    with pytest.raises(ValueError, match=r"run\.rrd' cannot be written: there is no folder '.*/mistyped'"):
+        Runs([File(Settings(recording=str(path)), ears.said.append, ears.warned.append)], "eel", print)
+    assert not os.listdir(tmp_path)
+
+
+@pytest.mark.fault("names", "a `recording` that does not end in .rrd", "refused at the start: one line, status 2")
+def test_a_recording_of_another_kind_is_refused():
+    with pytest.raises(ValueError, match=r"recording must end in \.rrd, got 'notes\.txt'"):
+        Settings(recording="notes.txt")
+
+
+@pytest.mark.parametrize("path", ["/proc/none.rrd", "/dev/null/run.rrd", "{folder}/taken.rrd"])
 def test_a_path_that_cannot_be_written(path, tmp_path, ears):
+    (tmp_path / "taken.rrd").mkdir()
     path = path.format(folder=tmp_path)
     file = File(Settings(recording=path), ears.said.append, ears.warned.append)
     with pytest.raises(ValueError, match=r"recording .* cannot be written"):
@@ -185,10 +224,12 @@ def test_a_file_that_cannot_be_written_is_said_again_and_again_and_tried_again(t
         monkeypatch.setattr(time, "monotonic", lambda later=later: now + later)
         send(made, round(later) * SECOND)
         made.attend()
-    told = f"recording {str(path)!r} cannot be written: File exists: nothing of this run is saved; "
+    told = f"recording {str(path)!r} cannot be written: there is no folder {str(place)!r}: "
+    told += "nothing of this run is saved; "
     assert ears.warned == [told + "it is tried again while running"] * 2
     assert list(tmp_path.iterdir()) == [place]
     place.unlink()
+    place.mkdir()
     monkeypatch.setattr(time, "monotonic", lambda: now + 2 * REMINDER)
     made.attend()
     send(made, 99 * SECOND)
@@ -205,19 +246,20 @@ def test_a_later_run_that_cannot_be_written_is_not_the_end(tmp_path, ears):
     for stamp in (0, SECOND, 0, SECOND):
         send(made, stamp)
     made.close()
-    assert made.lost and sum("run-2.rrd' cannot be written: Is a directory" in line for line in ears.warned) == 1
+    assert made.lost and sum("run-2.rrd' cannot be written: it is a folder" in line for line in ears.warned) == 1
     assert len(read(tmp_path / "run.rrd", entities.SPEED).stamps) == 2
 
 
 @pytest.mark.parametrize(("sink", "allowed"), [(("save",), False), (("save", "serve"), True)])
 def test_the_only_sink_must_be_writable_at_the_start(sink, allowed, tmp_path, ears):
-    settings = Settings(sink=sink, recording=str(tmp_path))
+    (tmp_path / "taken.rrd").mkdir()
+    settings = Settings(sink=sink, recording=str(tmp_path / "taken.rrd"))
     made = destinations(settings, ears.said.append, ears.warned.append, live=True)
     if allowed:
         Runs(made, "eel", ears.warned.append).close()
         assert sum("recording" in line for line in ears.warned) == 1
     else:
-        with pytest.raises(ValueError, match=r"recording .* cannot be written: Is a directory"):
+        with pytest.raises(ValueError, match=r"recording .* cannot be written: it is a folder"):
             Runs(made, "eel", ears.warned.append)
 
 
@@ -276,16 +318,16 @@ def test_without_a_name_the_file_is_called_after_the_time(tmp_path, ears, monkey
     assert not ears.warned  # the file's place was taken by itself
 
 
-def test_two_that_begin_in_the_same_second_write_two_files(tmp_path, ears, monkeypatch):
+def test_two_processes_that_begin_in_the_same_second_write_two_files(ears, monkeypatch):
     class Clock(datetime.datetime):
         @classmethod
         def now(cls):
             return cls(2026, 1, 2, 3, 4, 5)
 
-    monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("eel_viz.file.datetime.datetime", Clock)
+    monkeypatch.setattr("eel_viz.file.os.getpid", iter((17, 18)).__next__)
     files = [File(Settings(), ears.said.append, ears.warned.append).path(1) for _ in range(2)]
-    assert [str(path) for path in files] == ["eel-20260102-030405.rrd", f"eel-20260102-030405-{os.getpid()}.rrd"]
+    assert [str(path) for path in files] == ["eel-20260102-030405-17.rrd", "eel-20260102-030405-18.rrd"]
 
 
 @pytest.fixture

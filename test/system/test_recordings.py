@@ -33,10 +33,12 @@ def swim(start, *settings):
 @pytest.mark.fault(
     "ending",
     "the disk is full while the visualiser records",
-    "one warning with the reason; the file is cut to what is whole and opens; the run goes on; status 1 at the end",
+    "one warning with the reason; `run.part.rrd` is cut to what is whole and opens; an older `run.rrd` stays; the run "
+    "goes on; status 1 at the end",
 )
 def test_a_disk_that_is_full(start, fresh_domain, tmp_path):
     """A limit on the size of files stands in for it: the operating system refuses to write in the same way."""
+    (tmp_path / "run.rrd").write_bytes(b"RRF2 of yesterday")
     node = visualise(start, "sink:=[save]", f"recording:={tmp_path / 'run.rrd'}", limit_of_files=5000)
     node.wait_for_output("saving to")
     dynamics = swim(start, "real_time_factor:=0", "duration:=20", "wait_for_subscribers:=1")
@@ -44,14 +46,15 @@ def test_a_disk_that_is_full(start, fresh_domain, tmp_path):
     assert dynamics.wait(LIMIT) == 0 and "stuck" not in dynamics.output(), dynamics.output()
     assert node.interrupt() == 1 and "Traceback" not in node.output(), node.output()
     assert node.output().count("cannot be written") == 1
-    stamps = read(tmp_path / "run.rrd", entities.POSITION).stamps
+    assert (tmp_path / "run.rrd").read_bytes() == b"RRF2 of yesterday"
+    stamps = read(tmp_path / "run.part.rrd", entities.POSITION).stamps
     assert len(stamps) > 20 and np.array_equal(stamps, 10_000_000 * np.arange(len(stamps)))
 
 
 @pytest.mark.fault(
     "ending",
     "SIGKILL while the visualiser and `record` record",
-    "what was recorded up to the last second opens; the run goes on",
+    "what was recorded up to the last second opens, the recording as `run.part.rrd`; the run goes on",
 )
 def test_what_is_killed_leaves_what_it_had(start, fresh_domain, tmp_path):
     node = visualise(start, "sink:=[save]", f"recording:={tmp_path / 'run.rrd'}")
@@ -70,7 +73,7 @@ def test_what_is_killed_leaves_what_it_had(start, fresh_domain, tmp_path):
         return stamp.sec + 1e-9 * stamp.nanosec
 
     def newest_in_the_recording():
-        return read(tmp_path / "run.rrd", entities.POSITION).time[-1]
+        return read(tmp_path / "run.part.rrd", entities.POSITION).time[-1]
 
     def seen(newest):
         try:

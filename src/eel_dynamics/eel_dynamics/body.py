@@ -87,6 +87,11 @@ class Body:
         """a(X) [m] along E3 at `x` [m]."""
         return np.sqrt(self._half_height.square(np.asarray(x, dtype=float)))
 
+    @property
+    def half_axes(self) -> dict:
+        """Width and height as they were given: functions of X, or arrays (2, M) of X and half-axis [m]."""
+        return {"half_width": self._half_width.given, "half_height": self._half_height.given}
+
     def squares(self, x) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """a^2, b^2 [m^2] and their derivatives by X [m] at `x` (M,) [m]; a kink takes the derivative ahead of it."""
         x = np.asarray(x, dtype=float)

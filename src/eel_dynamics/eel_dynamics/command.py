@@ -14,6 +14,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
+from eel_gaits.output_file import NotWritten, check_output, replacing
 from eel_gaits.registry import GAITS, gait
 
 from .accuracy import PRESETS
@@ -49,19 +50,34 @@ ARRAYS = [
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Exit status 0; 2 for bad input, with one line; 3 for a run that stopped, with what it had until then."""
+    """Exit status 0; 1 where the output cannot be written to its end; 2 for bad input; 3 for a run that stopped, with
+    what it had until then. One line says why."""
     if arguments is None:
         leave_on_interrupt()
     options = _parser().parse_args(arguments)
     try:
-        out = _checked_out(options.out)
-        numbers = {name: _number(name, value) for name, value in _pairs("--set", options.set)}
-        law = gait(options.gait, **numbers)
-        body = Body.named(options.body) if options.body in NAMED else Body.from_file(options.body)
-        scene = Scene(**{name: _scene_value(name, value) for name, value in _pairs("--scene", options.scene)})
-        if options.actuators is not None:
-            _check_actuators(options, scene)
-        start = time.perf_counter()
+        return _swim(options, _checked_out(options.out))
+    except NotWritten as error:
+        print(f"simulate: {error}", file=sys.stderr)
+        return 1
+    except (ValueError, OSError) as error:
+        print(f"simulate: {error}", file=sys.stderr)
+        return 2
+    except MemoryError as error:
+        print(f"simulate: the run does not fit into memory: {error}", file=sys.stderr)
+        return 2
+
+
+def _swim(options, out: Path | None) -> int:
+    """Swim, print the summary, write the run; 0, or 3 for a run that stopped."""
+    numbers = {name: _number(name, value) for name, value in _pairs("--set", options.set)}
+    law = gait(options.gait, **numbers)
+    body = Body.named(options.body) if options.body in NAMED else Body.from_file(options.body)
+    scene = Scene(**{name: _scene_value(name, value) for name, value in _pairs("--scene", options.scene)})
+    if options.actuators is not None:
+        _check_actuators(options, scene)
+    start = time.perf_counter()
+    try:
         run = simulate(
             law,
             options.duration,
@@ -74,25 +90,18 @@ def main(arguments: list[str] | None = None) -> int:
             most_evaluations=options.most_evaluations,
             progress=Progress(options.duration),
         )
-        seconds = time.perf_counter() - start
-        if out is not None:
-            _write(run, out)
-        print(run.summary(options.periods))
-        print(f"wall time           {seconds:.3f} s, loading or compiling the loops included")
-        if options.actuators is not None:
-            print(run.actuators(options.actuators).table())
     except SimulationStopped as stopped:
         print(f"simulate: {stopped}", file=sys.stderr)
         if out is not None and len(stopped.run.time):
             _write(stopped.run, out)
         return 3
-    except (ValueError, OSError) as error:
-        print(f"simulate: {error}", file=sys.stderr)
-        return 2
-    except MemoryError as error:
-        print(f"simulate: the run does not fit into memory: {error}", file=sys.stderr)
-        return 2
+    seconds = time.perf_counter() - start
+    print(run.summary(options.periods))
+    print(f"wall time           {seconds:.3f} s, loading or compiling the loops included")
+    if options.actuators is not None:
+        print(run.actuators(options.actuators).table())
     if out is not None:
+        _write(run, out)
         print(f"written to          {out}")
     return 0
 
@@ -208,8 +217,7 @@ def _checked_out(out: str | None) -> Path | None:
         raise ValueError(f"--out must end in .npz, .csv or .rrd, got {out!r}")
     if path.suffix == ".rrd" and find_spec("eel_viz") is None:
         raise ValueError("--out .rrd needs the package eel_viz, with rerun-sdk, which is not installed")
-    if not path.parent.is_dir():
-        raise ValueError(f"--out must lie in a folder that exists, got {out!r}")
+    check_output("--out", path)
     if path.exists():
         print(f"simulate: {path} exists and will be overwritten", file=sys.stderr)
     return path
@@ -222,7 +230,8 @@ def _write(run: Run, path: Path):
     energy = {} if run.energy is None else vars(run.energy)
     if path.suffix == ".npz":
         arrays = {name: getattr(run, name) for name in ARRAYS if getattr(run, name) is not None}
-        np.savez_compressed(path, **arrays, **{f"energy_{name}": values for name, values in energy.items()})
+        with replacing(path) as draft:
+            np.savez_compressed(draft, **arrays, **{f"energy_{name}": values for name, values in energy.items()})
         return
     columns = {"time": run.time}
     groups = (("position", "xyz"), ("orientation", "xyzw"), ("center_of_mass", "xyz"))
@@ -231,7 +240,7 @@ def _write(run: Run, path: Path):
         f"{name}_{axis}": run.twist[:, k]
         for k, (name, axis) in enumerate((name, axis) for name in ("omega", "v") for axis in "123")
     }
-    with open(path, "w", newline="", encoding="utf-8") as file:
+    with replacing(path) as draft, draft.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow([*columns, *energy])
         writer.writerows(np.column_stack([*columns.values(), *energy.values()]).tolist())

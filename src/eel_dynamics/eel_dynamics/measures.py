@@ -69,6 +69,21 @@ def measures_of(run: Run) -> dict[str, float]:
     return {name: float("nan") if value is None else float(value) for name, value in found.items()}
 
 
+def checked_point(found: dict) -> dict:
+    """What is kept of a point, as plain numbers. `ValueError` that names the measure that is none."""
+    if not isinstance(found.get("error"), str):
+        raise ValueError(f"'error' must be the point's own, a text, and no measure, got {found.get('error')!r}")
+    point = {}
+    for name, value in found.items():
+        number = value.item() if hasattr(value, "item") and np.ndim(value) == 0 else value
+        if not isinstance(name, str) or name == "stopped":
+            raise ValueError(f"measure must have a name other than 'stopped', got {name!r}")
+        if name != "error" and not isinstance(number, (bool, int, float)):
+            raise ValueError(f"measure {name!r} must be a real number, got {value!r}")
+        point[name] = number
+    return point
+
+
 def described(name: str) -> dict[str, str]:
     """Unit and description of a measure, as attributes of a labelled array; none for one that is not ours."""
     if name not in MEASURES:
@@ -77,4 +92,4 @@ def described(name: str) -> dict[str, str]:
     return {"units": unit or "1", "long_name": description}
 
 
-__all__ = ["MEASURES", "described", "measures_of"]
+__all__ = ["MEASURES", "checked_point", "described", "measures_of"]

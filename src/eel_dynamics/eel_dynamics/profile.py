@@ -19,7 +19,7 @@ class FunctionProfile:
         if not callable(function):
             raise ValueError(f"body {name} must be a function of X, or an array with x=, got {function!r}")
         self.name = name
-        self._function = function
+        self.given = self._function = function
         self._bounds = np.array(bounds)
         self._check()
 
@@ -73,6 +73,7 @@ class ArrayProfile:
         if values.shape != x.shape:
             raise ValueError(f"body {name} must have as many values as x, {len(x)}, got {len(values)}")
         _check_shape(name, x, values, x[-1])
+        self.given = np.stack((x, values))
         cuts = (
             [0]
             + [int(np.argmin(np.abs(x - kink))) for kink in bounds[1:-1] if np.min(np.abs(x - kink)) < 1e-9 * x[-1]]

@@ -9,17 +9,25 @@ import sys
 import time
 
 import numpy as np
+from eel_gaits.output_file import NotWritten
 from eel_gaits.registry import GAITS
 
 from .accuracy import PRESETS
 from .body import NAMED, Body
 from .command import check_names
+from .one_line_warnings import one_line_warnings
 from .sweeps import check_points, sweep
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Exit status 0; 2 for bad input or a missing package, with one line; 4 where points could not be computed."""
+    """Exit status 0; 1 where the output cannot be written to its end; 2 for bad input or a missing package; 4 where
+    points could not be computed. One line says why."""
     options = _parser().parse_args(arguments)
+    with one_line_warnings("sweep"):
+        return _sweep(options)
+
+
+def _sweep(options) -> int:
     start = time.perf_counter()
     try:
         check_names(options.vary + options.set)
@@ -38,6 +46,9 @@ def main(arguments: list[str] | None = None) -> int:
             progress=_say_progress if sys.stderr.isatty() else None,
             overwrite=options.overwrite,
         )
+    except NotWritten as error:
+        print(f"sweep: {error}", file=sys.stderr)
+        return 1
     except (ValueError, ImportError, OSError) as error:
         print(f"sweep: {error}", file=sys.stderr)
         return 2
@@ -84,7 +95,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--body", default="boyer2010", help=f"{', '.join(NAMED)}, or a file as for simulate")
     parser.add_argument("--sample-period", type=float, default=0.05, help="s (0.05)")
     parser.add_argument("--out", required=True, metavar="FILE.nc", help="NetCDF file; parts lie in FILE.nc.parts")
-    parser.add_argument("--overwrite", action="store_true", help="drop what the output holds of another sweep")
+    parser.add_argument("--overwrite", action="store_true", help="replace what the output holds of another sweep")
     parser.add_argument(
         "--scheduler", metavar="ADDRESS", help="of a Dask scheduler; without: processes of this machine"
     )

@@ -23,10 +23,11 @@ from .accuracy import Accuracy
 from .batch import simulate_batch
 from .body import Body
 from .cluster import connected, needed, spread
-from .measures import described, measures_of
+from .measures import checked_point, described, measures_of
 from .run import checked_times
 from .scene import Scene
-from .sweep_parts import Parts, key_of
+from .sweep_key import key_of
+from .sweep_parts import Parts
 
 LONGEST_CHUNK = 64  # points
 MOST_POINTS = 1_000_000  # of a grid, which is built as a whole before it swims
@@ -71,12 +72,15 @@ def sweep(
     scheduler, client or cluster; None: `workers` processes on this machine. chunk: points per task. progress(done,
     points). A point that stops has NaN, `stopped` and its `error`.
 
-    `ValueError` names the point that does not fit; `RuntimeError` where points could not be computed, with the rest
-    kept.
+    overwrite: replace what `out` and its parts hold of another sweep. `ValueError` names the point or the measure that
+    does not fit; `OSError`: the output cannot be written to its end; `RuntimeError`: points could not be computed, with
+    the rest kept.
     """
     xarray = needed()["xarray"]
     names, axes = _checked_grid(grid)
     checked_times(duration, sample_period)
+    _check_count("workers", workers)
+    _check_count("chunk", chunk)
     base = Point(
         -1,
         None,
@@ -106,6 +110,7 @@ def sweep(
                 if error is not None:
                     failures.append((swum[0].index, error))
                     continue
+                result = {index: checked_point(point) for index, point in result.items()}
                 parts.keep(result)
                 done |= result
                 if progress is not None:
@@ -159,6 +164,14 @@ def _checked_grid(grid) -> tuple[list[str], list[list]]:
         axes.append(values)
     check_points("grid", math.prod(len(values) for values in axes))
     return list(grid), axes
+
+
+def _check_count(name: str, value):
+    """`ValueError` unless `value` is a whole number >= 1, or None."""
+    if value is None:
+        return
+    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < 1:
+        raise ValueError(f"{name} must be a whole number >= 1, got {value!r}")
 
 
 def check_points(name: str, count: int):

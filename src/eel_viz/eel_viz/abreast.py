@@ -29,11 +29,15 @@ def show(
     if len(sources) > 1:
         other = OtherRuns(runs, "/" + names[1])
         intakes.append(Intake(other, namespace=namespaces[1], warn=lambda text: warn(f"{names[1]}: {text}")))
-    try:
+    try:  # a signal ends the recordings here, an error drops them
         for k, (which, topic, message) in enumerate(abreast(sources)):
             intakes[which].take(topic, message)
             if k % OFTEN == 0:
                 runs.attend()
+    except Exception:
+        for destination in destinations:
+            destination.drop()
+        raise
     finally:
         told = intakes[0].close()
     return told

@@ -51,6 +51,12 @@ class Destination:
         """End a run's stream."""
         close_stream(stream)
 
+    def break_off(self, stream: rr.RecordingStream) -> None:
+        """The file of the run's `stream` cannot be written any more."""
+
+    def drop(self) -> None:
+        """An error ends the runs: what is not complete yet is not kept."""
+
     def lost(self) -> bool:
         """Whether what was open has gone, and its stream is to be given up."""
         return False

@@ -6,8 +6,11 @@ import pathlib
 import time
 
 import rerun as rr
+from eel_gaits.output_file import Draft, NotWritten
 
 from eel_viz.destination import Destination, Say
+from eel_viz.flow import why_not_written
+from eel_viz.frames import cut_to_whole_messages, is_complete
 from eel_viz.loggers import Rates
 from eel_viz.settings import Settings
 
@@ -18,8 +21,11 @@ REMINDER = 30.0  # s between two times at which it is said that nothing is saved
 class File(Destination):
     """A .rrd file; the second run and later ones get a number before the suffix.
 
+    A recording is written as `run.part.rrd` and named `run.rrd` when it is complete; an older file stays until then.
+
     `patient_from`: number of the run from which on a file that cannot be written is said, now and then, and tried
-    again; before that, and always if it is None, it is a ValueError.
+    again; before that it is a ValueError. None: the runs do not come from a network and can be had again. Then it is
+    always a ValueError, and a file that cannot be written to its end is removed, with the error `NotWritten`.
     """
 
     def __init__(self, settings: Settings, say: Say, warn: Say, *, patient_from: int | None = None) -> None:
@@ -28,8 +34,10 @@ class File(Destination):
         )
         self._first = pathlib.Path(settings.recording) if settings.recording else new_file()
         self._patient_from = patient_from
-        self._files: dict[int, pathlib.Path] = {}
-        self._incomplete = False
+        self._keep = patient_from is not None  # what there is of a run
+        self._drafts: dict[int, Draft] = {}  # by the number of the run
+        self._streams: dict[int, rr.RecordingStream] = {}
+        self._incomplete = self._dropped = False
         self._reminded = (0, 0.0)  # number of the run, and when [s] it was said that it is not saved
 
     @property
@@ -38,32 +46,90 @@ class File(Destination):
         return self._incomplete
 
     def path(self, run: int) -> pathlib.Path:
-        """The file of run number `run`."""
+        """The name of run number `run`."""
         first = self._first
         return first if run == 1 else first.with_name(f"{first.stem}-{run}{first.suffix}")
 
     def file(self, run: int) -> pathlib.Path | None:
         """The file that run number `run` is written to."""
-        return self._files.get(run)
+        draft = self._drafts.get(run)
+        return draft and draft.path
+
+    def open(self, run: int, name: str) -> rr.RecordingStream | None:
+        """The stream of run number `run`; None: it cannot be written now."""
+        try:
+            stream = super().open(run, name)
+        except RuntimeError:  # the sink's first bytes found no room
+            draft = self._drafts.pop(run)
+            reason = why_not_written(draft.path)
+            draft.discard()
+            if not self._keep:
+                raise NotWritten(f"recording {str(draft.name)!r} cannot be written: {reason}") from None
+            self._refuse(run, draft.name, reason)
+            return None
+        if stream is not None:
+            self._streams[run] = stream
+        return stream
+
+    def end(self, stream: rr.RecordingStream) -> None:
+        """End a run's stream and give its file the name. What the sink could not write at the end shows only now."""
+        super().end(stream)
+        if self._dropped:
+            return
+        draft = self._draft_of(stream)
+        if self.settings.index and not is_complete(draft.path):
+            self.break_off(stream)
+            return
+        try:
+            draft.complete()
+        except OSError as error:
+            self.break_off(stream, error.strerror or str(error))
+
+    def break_off(self, stream: rr.RecordingStream, reason: str = "") -> None:
+        """The stream's file cannot be written any more: keep what there is of a run that cannot be had again."""
+        if self._dropped:
+            return
+        draft = self._draft_of(stream)
+        path, reason = draft.path, reason or why_not_written(draft.path)
+        if not self._keep:
+            self.drop()
+            raise NotWritten(f"recording {str(draft.name)!r} cannot be written: {reason}")
+        self._incomplete = True
+        size = cut_to_whole_messages(path) if path.exists() else 0
+        self.warn(
+            f"recording {str(path)!r} cannot be written any more: {reason}; it ends here, and what there is "
+            f"({size / 1e6:.1f} MB) can be opened"
+        )
+
+    def drop(self) -> None:
+        """An error ends the runs: remove what is not complete, unless it cannot be had again."""
+        self._dropped = not self._keep
+        for draft in self._drafts.values():
+            if self._dropped:
+                draft.discard()
+
+    def _draft_of(self, stream: rr.RecordingStream) -> Draft:
+        return next(self._drafts[run] for run, each in self._streams.items() if each is stream)
 
     def _batches(self) -> rr.ChunkBatcherConfig:
         return rr.ChunkBatcherConfig(flush_tick=FILE_TICK)
 
     def _sink(self, run: int) -> rr.FileSink | None:
         path = self.path(run)
-        existed = path.exists() and path.stat().st_size > 0
-        problem = obstacle(path)
-        if problem:
-            self._refuse(run, f"recording {str(path)!r} cannot be written: {problem}")
+        try:
+            draft = Draft(path)
+        except OSError as error:
+            self._refuse(run, path, error.strerror or str(error))
             return None
-        if existed:
-            self.warn(f"{path} is there already and is replaced")
-        self.say(f"saving to {path}")
-        self._files[run] = path
-        return rr.FileSink(str(path), write_footer=self.settings.index)
+        if path.exists():
+            self.warn(f"{path} is there already and is replaced by the new recording when that is complete")
+        self.say(f"saving to {path}; until it is complete, to {draft.path.name}")
+        self._drafts[run] = draft
+        return rr.FileSink(str(draft.path), write_footer=self.settings.index)
 
-    def _refuse(self, run: int, problem: str) -> None:
+    def _refuse(self, run: int, path: pathlib.Path, reason: str) -> None:
         """Raise, or say that nothing is saved: at once for each run, and then as a reminder."""
+        problem = f"recording {str(path)!r} cannot be written: {reason}"
         if self._patient_from is None or run < self._patient_from:
             raise ValueError(problem)
         self._incomplete = True
@@ -74,23 +140,5 @@ class File(Destination):
 
 
 def new_file() -> pathlib.Path:
-    """A file in the present folder, named after the time; made at once, so that no other process takes the same one."""
-    name = f"eel-{datetime.datetime.now():%Y%m%d-%H%M%S}"
-    path = pathlib.Path(f"{name}.rrd")
-    try:
-        path.open("xb").close()
-    except FileExistsError:
-        return pathlib.Path(f"{name}-{os.getpid()}.rrd")
-    except OSError:
-        pass  # said where it is opened
-    return path
-
-
-def obstacle(path: pathlib.Path) -> str:
-    """Why `path` cannot be written; empty if it can. A FileSink does not say it."""
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with path.open("ab"):
-            return ""
-    except OSError as error:
-        return error.strerror or str(error)
+    """A file in the present folder, named after the time and this process: no other one takes the same."""
+    return pathlib.Path(f"eel-{datetime.datetime.now():%Y%m%d-%H%M%S}-{os.getpid()}.rrd")

@@ -13,8 +13,6 @@ import time
 
 import rerun as rr
 
-from eel_viz.frames import cut_to_whole_messages
-
 LOOK = 0.5  # s between two looks: a process that is killed loses no more of its file
 FILE_LIMIT = 1.0  # s that writing what is there may take, in mid-run
 VIEWER_LIMIT = 0.1  # s in which a viewer takes what is there; nobody waits longer for it
@@ -95,12 +93,7 @@ class Flow:
     def _lose(self) -> None:
         self.lost = True
         abandon(self._stream)
-        reason = why_not_written(self._path)
-        kept = cut_to_whole_messages(self._path) if self._path.exists() else 0
-        self._warn(
-            f"recording {str(self._path)!r} cannot be written any more: {reason}; it ends here, and what there is "
-            f"({kept / 1e6:.1f} MB) can be opened"
-        )
+        self._destination.break_off(self._stream)
 
 
 def why_not_written(path: pathlib.Path) -> str:

@@ -46,7 +46,8 @@ def to_rerun(
     """Show one run, or two that are compared, in `target`: a file to write (one that is there is replaced), or a
     stream.
 
-    `settings` are those of the visualiser, such as blueprint or skin_rate. What cannot be shown is warned of.
+    `settings` are those of the visualiser, such as blueprint or skin_rate. What cannot be shown is warned of. `OSError`
+    where a file cannot be written to its end; an older one stays.
     """
 
     def warn(text: str) -> None:

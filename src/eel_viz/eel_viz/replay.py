@@ -15,6 +15,8 @@ from collections.abc import Iterator
 from dataclasses import fields
 from types import SimpleNamespace
 
+from eel_gaits.output_file import NotWritten
+
 from eel_viz.abreast import show
 from eel_viz.bag import Bag, DamagedBag
 from eel_viz.destination import Say
@@ -149,8 +151,9 @@ def parser() -> argparse.ArgumentParser:
         description="Turn a rosbag2 folder (or one of its .mcap or .db3 files) into a Rerun recording, without ROS "
         "running: the same that the visualiser shows of these messages. Split bags and those compressed with zstd are "
         "read; a bag that was not finished is shown as far as it goes.",
-        epilog="A reset in the bag begins another file, with a number before the suffix. Exit status: 0; 2 if the bag "
-        "cannot be read or the recording not be written, with one line that says why.",
+        epilog="A reset in the bag begins another file, with a number before the suffix. Exit status: 0; 1 if the "
+        "recording cannot be written to its end; 2 if the bag cannot be read or the recording not be begun; one line "
+        "says why.",
     )
     made.add_argument("bag", help="folder of the bag, or a file of one")
     made.add_argument("-o", "--output", metavar="RRD", help="recording to write (default: BAG.rrd, in this folder)")
@@ -176,7 +179,8 @@ def parser() -> argparse.ArgumentParser:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Command line; status 0, 2 with one line on stderr if it cannot be done, 130 after Ctrl-C."""
+    """Command line; status 0; with one line on stderr 1 if the recording cannot be written to its end, 2 if it cannot
+    be begun, 130 after Ctrl-C."""
     chosen = parser().parse_args(arguments)
     output = chosen.output or f"{name_of(chosen.bag)}.rrd"
     other = chosen.compare if chosen.compare.strip("/") and os.path.exists(chosen.compare) else None
@@ -193,6 +197,9 @@ def main(arguments: list[str] | None = None) -> int:
         sink = ("save", "connect") if chosen.connect else ("save",)
         settings = Settings.from_values({**values, "sink": sink, "recording": output})
         told = replay(chosen.bag, settings, other=other, namespace=chosen.namespace, say=print, warn=warn)
+    except NotWritten as error:
+        warn(str(error))
+        return 1
     except (ValueError, OSError) as error:
         warn(" ".join(str(error).split()))
         return 2

@@ -25,7 +25,11 @@ class Settings:
         "where it goes, one or more of: spawn (a viewer window), connect (a viewer that runs, see viewer), serve (gRPC "
         "and web viewer), save (a file, see recording); auto: spawn where there is a display, else save",
     )
-    recording: str = setting("", "file to save, .rrd; empty: eel-DATE-TIME.rrd in the working folder")
+    recording: str = setting(
+        "",
+        "file to save, .rrd, in a folder that exists; .part.rrd until it is complete; empty: eel-DATE-TIME-PROCESS.rrd "
+        "in the working folder",
+    )
     viewer: str = setting("rerun+http://127.0.0.1:9876/proxy", "address of the viewer to connect to")
     port: int = setting(9877, "port of the served data (gRPC), on this machine alone", minimum=1024, maximum=65535)
     web_port: int = setting(9090, "port of the served web viewer", minimum=1024, maximum=65535)
@@ -72,6 +76,8 @@ class Settings:
         for name in self.sink:
             if name not in ("auto", *SINKS):
                 raise ValueError(f"sink must be some of {', '.join(SINKS)} or auto, got {name!r}")
+        if self.recording and not self.recording.endswith(".rrd"):
+            raise ValueError(f"recording must end in .rrd, got {self.recording!r}")
         if self.blueprint not in BLUEPRINTS:
             raise ValueError(f"blueprint must be one of {', '.join(BLUEPRINTS)}, got {self.blueprint!r}")
         if self.blueprint == "compare" and not self.compare:
