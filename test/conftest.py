@@ -1,5 +1,6 @@
 """For all tests: every test session in a ROS domain of its own, and no process left behind."""
 
+import contextlib
 import os
 import resource
 import subprocess
@@ -78,10 +79,18 @@ def start_for_module(tmp_path_factory):
 
 @pytest.fixture
 def limit_of_files():
-    """limit_of_files(size): no file of this process may become larger [bytes], as on a disk that is full then."""
-    before = resource.getrlimit(resource.RLIMIT_FSIZE)
-    yield lambda size: resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
-    resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    """limit_of_files(size): a context in which no file of this process may become larger [bytes]."""
+
+    @contextlib.contextmanager
+    def limited(size):
+        before = resource.getrlimit(resource.RLIMIT_FSIZE)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
+        try:
+            yield
+        finally:
+            resource.setrlimit(resource.RLIMIT_FSIZE, before)
+
+    return limited
 
 
 @pytest.fixture

@@ -174,8 +174,9 @@ def test_a_recording_is_whole_or_not_there(run, share, tmp_path, limit_of_files)
     """Past a limit of the size of files: at the first bytes, in the middle, and at the end, in the index."""
     run.to_rerun(tmp_path / "whole.rrd")
     (tmp_path / "run.rrd").write_bytes(b"RRF2 of yesterday")
-    limit_of_files(int(share * 0.97 * (tmp_path / "whole.rrd").stat().st_size))  # sizes vary by some per cent
-    with pytest.raises(OSError, match=r"recording '.*/run\.rrd' cannot be written: File too large"):
+    size = int(share * 0.97 * (tmp_path / "whole.rrd").stat().st_size)  # it varies by some per cent
+    refused = pytest.raises(OSError, match=r"recording '.*/run\.rrd' cannot be written: File too large")
+    with limit_of_files(size), refused:
         run.to_rerun(tmp_path / "run.rrd")
     assert (tmp_path / "run.rrd").read_bytes() == b"RRF2 of yesterday"
     assert sorted(os.listdir(tmp_path)) == ["run.rrd", "whole.rrd"]

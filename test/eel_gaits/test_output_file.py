@@ -26,8 +26,8 @@ def test_a_file_has_its_name_only_once_it_is_complete(tmp_path):
 def test_an_error_leaves_the_older_file_and_nothing_else(tmp_path, limit_of_files):
     name = tmp_path / "run.npz"
     name.write_bytes(OLD)
-    limit_of_files(1000)
-    with pytest.raises(NotWritten, match=r"'.*/run\.npz' cannot be written: File too large"), replacing(name) as path:
+    refused = pytest.raises(NotWritten, match=r"'.*/run\.npz' cannot be written: File too large")
+    with limit_of_files(1000), refused, replacing(name) as path:
         path.write_bytes(bytes(2000))
     with pytest.raises(ZeroDivisionError), replacing(name) as path:
         path.write_bytes(b"PK half")

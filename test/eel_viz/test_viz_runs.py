@@ -177,8 +177,8 @@ def test_a_recording_that_cannot_be_completed_stays_a_part(ears, tmp_path, limit
         stream.set_time(entities.TIMELINE, duration=float(k))
         stream.log(entities.SPEED, rr.Scalars([1.0]))
     stream.flush()
-    limit_of_files(part.stat().st_size + 100)  # the index does not fit any more
-    file.end(stream)
+    with limit_of_files(part.stat().st_size + 100):  # the index does not fit any more
+        file.end(stream)
     assert file.incomplete and (tmp_path / "run.rrd").read_bytes() == b"RRF2 of yesterday"
     (told,) = (line for line in ears.warned if "cannot be written any more" in line)
     assert f"recording {str(part)!r} cannot be written any more: File too large; it ends here" in told

@@ -41,9 +41,11 @@ def _checked_tuple(name: str, values: tuple, size: int | None) -> np.ndarray:
 
 def _checked_row(name: str, values, size: int | None) -> np.ndarray:
     try:
+        if np.iscomplexobj(values):
+            raise TypeError
         array = np.array(values, dtype=float)
     except (TypeError, ValueError):
-        raise ValueError(f"{name} must be numbers, got {values!r}") from None
+        raise ValueError(f"{name} must be real numbers, got {values!r}") from None
     if array.ndim != 1 or (size is not None and len(array) != size):
         raise ValueError(f"{name} must be {'a row of' if size is None else size} numbers, got {array.size}")
     if not np.isfinite(array).all():

@@ -4,17 +4,17 @@ A section at X has the half-height a(X) along E3 (its major axis on the paper's 
 X runs from 0 at the nose to the length at the tail. The nose is pointed, a(0) = b(0) = 0: it sheds no wake.
 """
 
-import csv
-import zlib
+import warnings
 from functools import cache, cached_property, lru_cache
 from pathlib import Path
-from zipfile import BadZipFile
 
 import numpy as np
 
+from .body_file import columns_of
 from .profile import ArrayProfile, FunctionProfile
 
 PANEL_OF_NOSE = 0.05  # of the length, where a body names no kinks
+LONGEST = 100.0  # m, of a body from a file; one that is longer may be in mm
 SHARP = 1e-3  # of the body's greatest half-axis: a half-axis at the tail that counts as none
 
 
@@ -185,18 +185,10 @@ class Body:
     def from_file(path) -> "Body":
         """A body from columns x, half_width, half_height [m] of a .csv (with a header line) or .npz file."""
         path = Path(path)
-        try:
-            columns = _columns(path)
-        except (OSError, ValueError, KeyError) as error:
-            raise ValueError(f"body file {path} cannot be read: {error}") from None
-        missing = [key for key in ("x", "half_width", "half_height") if key not in columns]
-        if missing:
-            raise ValueError(
-                f"body file {path} must have columns x, half_width, half_height; {', '.join(missing)} missing"
-            )
-        return Body(
-            x=columns["x"], half_width=columns["half_width"], half_height=columns["half_height"], name=path.stem
-        )
+        body = Body(**columns_of(path), name=path.stem)
+        if body.length > LONGEST:
+            warnings.warn(f"body file {path} is {body.length:g} m long: are its columns in m?", stacklevel=2)
+        return body
 
     def _checked_kinks(self, kinks) -> tuple[float, ...]:
         values = _array("kinks", kinks)
@@ -217,23 +209,6 @@ class Body:
 NAMED = ("boyer2010", "kern2006")
 
 
-def _columns(path: Path) -> dict[str, np.ndarray]:
-    if path.suffix == ".npz":
-        try:
-            with np.load(path) as data:
-                return {key: data[key] for key in data.files}
-        except (TypeError, ValueError, EOFError, BadZipFile, zlib.error):
-            raise ValueError("it is not an .npz archive of section data") from None
-    with open(path, newline="", encoding="utf-8") as file:
-        rows = list(csv.reader(file))
-    if not rows:
-        raise ValueError("it is empty")
-    table = np.array([[float(cell) for cell in row] for row in rows[1:] if row], dtype=float)
-    if table.ndim != 2 or table.shape[1] != len(rows[0]):
-        raise ValueError("its rows are not as long as its header")
-    return {key.strip(): table[:, k] for k, key in enumerate(rows[0])}
-
-
 def _positive(name: str, value, unit: str, zero: bool = False) -> float:
     try:
         number = float(value)
@@ -247,10 +222,22 @@ def _positive(name: str, value, unit: str, zero: bool = False) -> float:
 
 
 def _array(name: str, values) -> np.ndarray:
+    """`values` as a row of finite floats; `ValueError` in one line for others, complex ones too."""
     try:
+        if np.iscomplexobj(values):
+            raise TypeError
         array = np.array(values, dtype=float)
     except (TypeError, ValueError):
-        raise ValueError(f"body {name} must be numbers, got {values!r}") from None
-    if array.ndim != 1 or not np.all(np.isfinite(array)):
-        raise ValueError(f"body {name} must be a row of finite numbers, got {values!r}")
+        raise ValueError(f"body {name} must be real numbers, got {_shown(values)}") from None
+    if array.ndim != 1:
+        raise ValueError(f"body {name} must be a row of numbers, got an array of shape {array.shape}")
+    if not np.all(np.isfinite(array)):
+        worst = np.flatnonzero(~np.isfinite(array))[0]
+        raise ValueError(f"body {name} must be finite, got {array[worst]} at index {worst}")
     return array
+
+
+def _shown(value) -> str:
+    """`value` in one short line."""
+    text = " ".join(repr(value).split())
+    return text if len(text) <= 80 else f"{text[:80]}..."

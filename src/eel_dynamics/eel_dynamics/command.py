@@ -21,6 +21,7 @@ from .accuracy import PRESETS
 from .body import NAMED, Body
 from .bounds import MOST_EVALUATIONS
 from .ending import leave_on_interrupt
+from .one_line_warnings import one_line_warnings
 from .run import Run, simulate
 from .scene import Scene
 from .stopping import SimulationStopped
@@ -56,7 +57,8 @@ def main(arguments: list[str] | None = None) -> int:
         leave_on_interrupt()
     options = _parser().parse_args(arguments)
     try:
-        return _swim(options, _checked_out(options.out))
+        with one_line_warnings("simulate"):
+            return _swim(options, _checked_out(options.out))
     except NotWritten as error:
         print(f"simulate: {error}", file=sys.stderr)
         return 1

@@ -35,6 +35,7 @@ from .ending import Ending, leave_at_once
 from .feed import LawFeed
 from .march import March
 from .messages import Sample, body_message, diagnostic_array, opened_law, samples_from_message
+from .one_line_warnings import one_line_warnings
 from .parameters import DynamicsParameters, default_of
 from .publishers import Publishers
 from .repair import repair_soon
@@ -153,7 +154,8 @@ def main(args=None) -> int:
         rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
         if not ensure(get_logger(NAME).info, ending.comes_within):
             return 0
-        node = DynamicsNode()
+        with one_line_warnings(NAME):
+            node = DynamicsNode()
     except (ValueError, RuntimeError, ParameterException, NameValidationException) as error:
         sys.stderr.write(f"{NAME}: {' '.join(str(error).split())}\n")
         rclpy.try_shutdown()
