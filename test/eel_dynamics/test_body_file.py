@@ -61,7 +61,7 @@ def test_complex_columns_of_an_archive_are_refused(tmp_path):
 
 def test_a_fifo_is_refused_at_once(tmp_path):
     os.mkfifo(tmp_path / "fish.csv")
-    with pytest.raises(ValueError, match="fish.csv cannot be read: it is no regular file"):
+    with pytest.raises(ValueError, match=r"fish\.csv cannot be read: it is no regular file"):
         Body.from_file(tmp_path / "fish.csv")
 
 

@@ -95,7 +95,7 @@ def test_a_page_that_cannot_be_is_refused_before_the_studies(tmp_path, monkeypat
     monkeypatch.setitem(STUDIES, "condition", lambda points: pytest.fail("it has begun"))
     bare, folder = tmp_path / "bare.md", tmp_path / "pictures"
     bare.write_text(f"{command.BEGIN.format('drift')}\n{command.END.format('drift')}\n")
-    for page, word in ((tmp_path / "nosuch.md", "nosuch.md"), (tmp_path, "directory"), (bare, "condition")):
+    for page, word in ((tmp_path / "nosuch.md", "nosuch.md"), (tmp_path, "it is a folder"), (bare, "condition")):
         assert command.main(["--study", "condition", "--page", str(page), "--out", str(folder)]) == 2
         said = capsys.readouterr().err
         assert word in said and said.startswith("stability: ") and said.count("\n") == 1 and not folder.exists()

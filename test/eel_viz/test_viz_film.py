@@ -88,7 +88,7 @@ def test_films_by_ffmpeg_or_without(tmp_path, monkeypatch, fake_ffmpeg):
     film(tmp_path, 3, tmp_path / "film.webm", fps=12.5)
     assert "-framerate 12.5" in (tmp_path / "film.webm").read_text()
     (tmp_path / "bin" / "ffmpeg").write_text("#!/bin/sh\necho no such codec >&2\nexit 1\n")
-    with pytest.raises(ValueError, match=r"ffmpeg could not make .*film.mp4: no such codec"):
+    with pytest.raises(OSError, match=r"film\.mp4' cannot be written: ffmpeg said: no such codec"):
         film(tmp_path, 3, tmp_path / "film.mp4", fps=10)
     monkeypatch.setenv("PATH", str(tmp_path / "nothing"))
     with pytest.raises(ValueError, match=r"ffmpeg is not installed, which .mp4 needs; .gif and .webp do without"):
@@ -101,6 +101,31 @@ def test_films_by_ffmpeg_or_without(tmp_path, monkeypatch, fake_ffmpeg):
             assert image.convert("RGB").getpixel((5, 5))[0] == pytest.approx(160, abs=8)  # lossy
     with pytest.raises(ValueError, match=r"film must end in one of .mp4"):
         film(tmp_path, 3, tmp_path / "film.txt", fps=10)
+
+
+@pytest.mark.fault(
+    "ending",
+    "the disk is full while `render`, `figures` or another study draw",
+    "one line with the reason, status 1; an older picture or film stays as it was",
+)
+def test_a_film_that_does_not_fit_leaves_the_older_one(tmp_path, small_disk):
+    noise = np.random.default_rng(1)
+    for k in range(2):
+        Image.fromarray(noise.integers(0, 256, (200, 200, 3), dtype=np.uint8)).save(tmp_path / f"frame_0000{k}.png")
+    older = b"GIF89a of yesterday"
+    (small_disk / "film.gif").write_bytes(older)
+    (small_disk / "other").write_bytes(bytes(2**20 - 6 * 4096))
+    with pytest.raises(OSError, match=r"film\.gif' cannot be written: No space left on device"):
+        film(tmp_path, 2, small_disk / "film.gif", fps=10)
+    assert sorted(path.name for path in small_disk.iterdir()) == ["film.gif", "other"]
+    assert (small_disk / "film.gif").read_bytes() == older
+
+
+def test_a_link_is_not_replaced_by_a_picture(recording, tmp_path, capsys):
+    (tmp_path / "notes.txt").write_text("mine")
+    (tmp_path / "a.png").symlink_to(tmp_path / "notes.txt")
+    assert "a.png' cannot be written: it is a symbolic link" in refusal(capsys, recording, "-o", tmp_path / "a.png")
+    assert (tmp_path / "notes.txt").read_text() == "mine"
 
 
 class TenSeconds:
@@ -158,7 +183,8 @@ def test_what_cannot_be_is_said_in_one_line(recording, tmp_path, capsys, monkeyp
     assert "size must be 64 to 8192 pixels" in refusal(capsys, recording, "-o", "a.png", "--size", "10x10")
     assert "a picture must end in .png, got 'a.jpg'" in refusal(capsys, recording, "-o", "a.jpg")
     assert "ffmpeg is not installed" in refusal(capsys, recording, "-o", "a.mp4", "--fps", "10")
-    assert "'no/a.png' cannot be written" in refusal(capsys, recording, "-o", "no/a.png")
+    assert "'no/a.png' cannot be written: there is no folder" in refusal(capsys, recording, "-o", "no/a.png")
+    assert "'no/a' cannot be written: 'no' is no folder" in refusal(capsys, recording, "-o", "no/a", "--fps", "1")
     assert "'text.rrd/a' cannot be written" in refusal(capsys, recording, "-o", "text.rrd/a", "--fps", "1")
     for value in ("0", "-1", "nan"):
         assert f"fps must be > 0, got {value}" in refusal(capsys, recording, "-o", "a", "--fps", value)

@@ -21,6 +21,7 @@ from pathlib import Path
 
 import numpy as np
 from eel_gaits.law import Law, Ramp, Term
+from eel_gaits.output_file import replacing
 
 from eel_gaits import falling, gait
 
@@ -202,7 +203,7 @@ def calibrate(path: Path | str | None = None, say: Callable = lambda text: None)
                         kind = {"drag": int(drag), "turbulent": key[0], "torque": int(torque), "plane": key[1]}
                         rows.append(kind | row)
                         say(f"{rows[-1]}")
-    with open(TABLE_FILE if path is None else path, "w", newline="") as file:
+    with replacing(TABLE_FILE if path is None else path) as draft, draft.open("w", newline="") as file:
         writer = csv.DictWriter(file, FIELDS)
         writer.writeheader()
         writer.writerows(rows)

@@ -5,6 +5,8 @@ import pathlib
 import shutil
 import subprocess
 
+from eel_gaits.output_file import replacing
+
 ANIMATIONS = (".gif", ".webp")
 FRAME = "frame_%05d.png"
 FILMS = (".mp4", ".webm", ".mkv", ".mov", *ANIMATIONS)
@@ -18,23 +20,28 @@ def ffmpeg() -> str | None:
 def film(folder: str | os.PathLike[str], count: int, output: str | os.PathLike[str], *, fps: float) -> None:
     """Write the film `output` of the first `count` pictures `FRAME` in `folder`, equal in size, `fps` a second.
 
-    `ValueError` says what is missing.
+    `ValueError` says what is missing; `OSError` where it cannot be written to its end.
     """
     path = pathlib.Path(output)
     if path.suffix not in FILMS:
         raise ValueError(f"film must end in one of {', '.join(FILMS)}, got {str(output)!r}")
-    if path.suffix in ANIMATIONS:
-        _animate([pathlib.Path(folder) / (FRAME % k) for k in range(count)], path, fps)
-        return
     program = ffmpeg()
-    if program is None:
+    if path.suffix not in ANIMATIONS and program is None:
         raise ValueError(f"ffmpeg is not installed, which {path.suffix} needs; {' and '.join(ANIMATIONS)} do without")
+    with replacing(path) as draft:
+        if path.suffix in ANIMATIONS:
+            _animate([pathlib.Path(folder) / (FRAME % k) for k in range(count)], draft, fps)
+        else:
+            _encode(program, pathlib.Path(folder) / FRAME, count, draft, fps)
+
+
+def _encode(program: str, pictures: pathlib.Path, count: int, path: pathlib.Path, fps: float) -> None:
     even = "pad=ceil(iw/2)*2:ceil(ih/2)*2"  # most codecs want that
-    command = [program, "-y", "-v", "error", "-framerate", f"{fps:g}", "-i", str(pathlib.Path(folder) / FRAME)]
+    command = [program, "-y", "-v", "error", "-framerate", f"{fps:g}", "-i", str(pictures)]
     command += ["-frames:v", str(count), "-vf", even, "-pix_fmt", "yuv420p", str(path)]
     done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True)
     if done.returncode:
-        raise ValueError(f"ffmpeg could not make {path}: {' '.join(done.stderr.split())[-300:]}")
+        raise OSError(f"ffmpeg said: {' '.join(done.stderr.split())[-300:]}")
 
 
 def _animate(pictures: list[pathlib.Path], path: pathlib.Path, fps: float) -> None:

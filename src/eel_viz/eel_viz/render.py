@@ -14,6 +14,8 @@ import sys
 import tempfile
 from collections.abc import Callable, Sequence
 
+from eel_gaits.output_file import NotWritten, check_output, replacing
+
 from eel_viz.drawing import SIZE, Drawing, drawn
 from eel_viz.film import ANIMATIONS, FILMS, FRAME, ffmpeg, film
 from eel_viz.viewer import CannotRender
@@ -39,7 +41,9 @@ def render(
     with drawn(recording, size=size, blueprint=blueprint) as drawing:
         if at is None:
             at = drawing.start + TELLING * (drawing.end - drawing.start)
-        pathlib.Path(picture).write_bytes(drawing.png(at))
+        png = drawing.png(at)
+    with replacing(picture) as draft:
+        draft.write_bytes(png)
 
 
 def times(drawing: Drawing, *, fps: float, start: float | None, end: float | None, speed: float) -> list[float]:
@@ -61,8 +65,10 @@ def frames(
     """Pictures at the times `at` [s] as frame_00000.png and so on in `folder`; their paths."""
     written = []
     for k, moment in enumerate(at):
+        png = drawing.png(min(moment, drawing.end))
         written.append(folder / (FRAME % k))
-        written[-1].write_bytes(drawing.png(min(moment, drawing.end)))
+        with replacing(written[-1]) as draft:
+            draft.write_bytes(png)
         progress(f"\r{k + 1} of {len(at)}")
     return written
 
@@ -73,8 +79,8 @@ def parser() -> argparse.ArgumentParser:
         prog=NAME,
         description="Draw a Rerun recording to a PNG, to many, or to a film, without a display.",
         epilog="Needs a Vulkan driver; Mesa's software driver will do (apt-get install --no-install-recommends "
-        "mesa-vulkan-drivers). Exit status: 0; 2 for what cannot be; 3 where the viewer cannot draw; with one line "
-        "that says why.",
+        "mesa-vulkan-drivers). Exit status: 0; 1 where the output cannot be written to its end; 2 for what cannot be; "
+        "3 where the viewer cannot draw; with one line that says why.",
     )
     made.add_argument("recording", help="file .rrd; one that was cut short is drawn as far as it goes")
     made.add_argument("picture", nargs="?", help="as -o")
@@ -82,8 +88,8 @@ def parser() -> argparse.ArgumentParser:
         "-o",
         "--output",
         metavar="OUT",
-        help="with --at a PNG; with --fps a folder, made if need be, for frame_00000.png ... and, where ffmpeg is "
-        f"installed, {FILM}; or a film alone: {', '.join(FILMS)} (the last two do without ffmpeg)",
+        help="with --at a PNG; with --fps a folder, made in one that exists, for frame_00000.png ... and, where "
+        f"ffmpeg is installed, {FILM}; or a film alone: {', '.join(FILMS)} (the last two do without ffmpeg)",
     )
     which = made.add_mutually_exclusive_group()
     which.add_argument(
@@ -106,7 +112,8 @@ def parser() -> argparse.ArgumentParser:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Command line; status 0, 2 for what cannot be, 3 where the viewer cannot draw, 130 after Ctrl-C."""
+    """Command line; status 0, 1 where the output cannot be written to its end, 2 for what cannot be, 3 where the viewer
+    cannot draw, 130 after Ctrl-C."""
     made = parser()
     chosen = made.parse_args(arguments)
     output = chosen.output or chosen.picture
@@ -121,6 +128,9 @@ def main(arguments: list[str] | None = None) -> int:
     except (CannotRender, ConnectionError) as reason:
         _say(f"{NAME}: no picture: {' '.join(str(reason).split())}\n")
         return 3
+    except NotWritten as reason:
+        _say(f"{NAME}: {reason}\n")
+        return 1
     except (ValueError, OSError) as reason:
         _say(f"{NAME}: {reason}\n")
         return 2
@@ -150,7 +160,7 @@ def _draw(chosen: argparse.Namespace, output: pathlib.Path, size: tuple[int, int
         if alone:
             folder = pathlib.Path(stack.enter_context(tempfile.TemporaryDirectory()))
         else:
-            folder.mkdir(parents=True, exist_ok=True)
+            folder.mkdir(exist_ok=True)
         if any(folder.glob("frame_*.png")):
             _say(f"{NAME}: {folder} has pictures already, those of the same number are replaced\n")
         written = frames(drawing, folder, at, _say if sys.stderr.isatty() else lambda text: None)
@@ -171,11 +181,14 @@ def _check_positive(**values: float) -> None:
 
 
 def _check_writable(output: pathlib.Path, *, folder: bool) -> None:
-    where = output if folder else output.parent
-    while folder and not where.exists():  # it is made later, with the folders above it
-        where = where.parent
+    if not folder:
+        check_output("output", output)
+        return
+    where = output if output.exists() else output.parent
     if not where.is_dir() or not os.access(where, os.W_OK):
-        raise ValueError(f"{str(output)!r} cannot be written")
+        raise ValueError(
+            f"output {str(output)!r} cannot be written: {str(where)!r} is no folder that can be written to"
+        )
 
 
 def _say(text: str) -> None:

@@ -8,6 +8,8 @@ import argparse
 import sys
 from pathlib import Path
 
+from eel_gaits.output_file import NotWritten, replacing
+
 from eel_gaits import straight
 
 from ..accuracy import Accuracy
@@ -33,7 +35,8 @@ FORMATS = ("svg", "png")
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Exit status 0; 2 with one line where a folder cannot be written, matplotlib is missing or input is bad."""
+    """Exit status 0; 1 where a file cannot be written to its end; 2 where the folder cannot be made, matplotlib is
+    missing or input is bad. One line says why."""
     if arguments is None:
         leave_on_interrupt()
     options = _parser().parse_args(arguments)
@@ -46,7 +49,7 @@ def main(arguments: list[str] | None = None) -> int:
     try:
         for reading in corrections.READINGS.values():
             Accuracy.of(options.accuracy).in_scene(Scene(**reading))  # refused before there is a folder
-        folder.mkdir(parents=True, exist_ok=True)
+        folder.mkdir(exist_ok=True)
         readings = corrections.swim(accuracy=options.accuracy)
         print(corrections.table_of(readings))
         control = simulate(straight(), readings[0].run.time[-1], accuracy=options.accuracy)
@@ -57,11 +60,12 @@ def main(arguments: list[str] | None = None) -> int:
         }
         for path in draw(drawings_of(readings, errors), folder, options.format):
             print(f"{path}  {path.stat().st_size / 1000.0:.0f} kB")
-        (folder / "README.md").write_text(page(readings, control, comparison, errors), encoding="utf-8")
+        with replacing(folder / "README.md") as draft:
+            draft.write_text(page(readings, control, comparison, errors), encoding="utf-8")
         print(folder / "README.md")
     except (ValueError, OSError) as error:
         print(f"figures: {error}", file=sys.stderr)
-        return 2
+        return 1 if isinstance(error, NotWritten) else 2
     return 0
 
 
@@ -76,7 +80,8 @@ def draw(drawings: dict, folder: Path, formats=FORMATS):
             fill(figure)
             for suffix in formats:
                 path = folder / f"{name}.{suffix}"
-                figure.savefig(path, metadata={"Date": None} if suffix == "svg" else {"Software": None})
+                with replacing(path) as draft:
+                    figure.savefig(draft, metadata={"Date": None} if suffix == "svg" else {"Software": None})
                 yield path
 
 

@@ -9,6 +9,8 @@ import argparse
 import sys
 from pathlib import Path
 
+from eel_gaits.output_file import NotWritten, check_output, replacing
+
 from ..ending import leave_on_interrupt
 
 BEGIN, END = "<!-- {}: written by `stability` -->", "<!-- end of {} -->"
@@ -35,7 +37,7 @@ def main(arguments: list[str] | None = None) -> int:
         if options.page:
             _check_page(options.page, options.study or STUDIES)
         folder = Path(options.out)
-        folder.mkdir(parents=True, exist_ok=True)
+        folder.mkdir(exist_ok=True)
         for name in options.study or STUDIES:
             study = found[name](options.points)
             print(f"{study.text}\n")
@@ -45,20 +47,23 @@ def main(arguments: list[str] | None = None) -> int:
                     fill(figure)
                     for suffix in ("png", "svg"):
                         metadata = {"Date": None} if suffix == "svg" else {"Software": None}
-                        figure.savefig(folder / f"stability_{picture}.{suffix}", metadata=metadata)
+                        with replacing(folder / f"stability_{picture}.{suffix}") as draft:
+                            figure.savefig(draft, metadata=metadata)
             if options.page:
                 page = Path(options.page)
-                page.write_text(with_study(page.read_text(encoding="utf-8"), name, study), encoding="utf-8")
+                text = with_study(page.read_text(encoding="utf-8"), name, study)
+                with replacing(page) as draft:
+                    draft.write_text(text, encoding="utf-8")
     except (ValueError, OSError) as error:
         print(f"stability: {error}", file=sys.stderr)
-        return 2
+        return 1 if isinstance(error, NotWritten) else 2
     return 0
 
 
 def _check_page(page: str, studies):
     """`OSError` or `ValueError` for a page that cannot be written, or has no place for one of the `studies`."""
-    with open(page, "r+", encoding="utf-8") as file:
-        text = file.read()
+    check_output("--page", page)
+    text = Path(page).read_text(encoding="utf-8")
     for name in studies:
         _around(text, name)
 

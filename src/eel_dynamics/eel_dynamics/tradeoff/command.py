@@ -11,6 +11,7 @@ import argparse
 import sys
 from pathlib import Path
 
+from eel_gaits.output_file import NotWritten, check_output, replacing
 from eel_gaits.registry import GAITS, gait
 
 from ..body import NAMED, Body
@@ -26,7 +27,8 @@ from .table import model_table, trade_table, write_csv
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Exit status 0; 2 for bad input or a missing package, with one line."""
+    """Exit status 0; 1 where a file cannot be written to its end; 2 for bad input or a missing package. One line says
+    why."""
     if arguments is None:
         leave_on_interrupt()
     options = _parser().parse_args(arguments)
@@ -50,7 +52,7 @@ def main(arguments: list[str] | None = None) -> int:
             print(f"written to {path}")
     except (ValueError, OSError, ImportError) as error:
         print(f"tradeoff: {error}", file=sys.stderr)
-        return 2
+        return 1 if isinstance(error, NotWritten) else 2
     return 0
 
 
@@ -89,6 +91,9 @@ def _measure_all(options) -> list[tuple]:
     ):
         if folder and not Path(folder).is_dir():
             raise ValueError(f"{folder} must be a folder that exists")
+    for option, name in (("--page", options.page), ("--rerun", options.rerun)):
+        if name:
+            check_output(option, name)
     found = []
     for law in laws:
         fixed = {"duration": options.duration, "body": body, "scene": Scene(), "say": _say}
@@ -134,7 +139,8 @@ def _draw(trade, poorer, folder: Path):
         draw_trade(figure, trade, poorer)
         for suffix in ("png", "svg"):
             path = folder / f"tradeoff_{trade.law.name}.{suffix}"
-            figure.savefig(path, metadata={"Date": None} if suffix == "svg" else {"Software": None})
+            with replacing(path) as draft:
+                figure.savefig(draft, metadata={"Date": None} if suffix == "svg" else {"Software": None})
             yield path
 
 

@@ -4,6 +4,8 @@ import platform
 from datetime import date
 from pathlib import Path
 
+from eel_gaits.output_file import replacing
+
 from .. import compiled
 from .delivered import FAR, Trial, delivered_table, exceeding, farthest, scatter_line
 from .models import Model
@@ -70,7 +72,8 @@ def write_page(path: Path, found: list[tuple], picture: str | None, trials: list
         text += f"\n{scatter_line(trials)}\n"
         text += f"\nFarther than {FAR:g} below the target: {'; '.join(farthest(trials)) or 'none'}.\n"
         text += f"\nAbove the target: {'; '.join(exceeding(trials)) or 'none'}.\n"
-    path.write_text(text, encoding="utf-8")
+    with replacing(path) as draft:
+        draft.write_text(text, encoding="utf-8")
 
 
 def reference_line(trade) -> str:

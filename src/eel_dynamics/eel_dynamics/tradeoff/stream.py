@@ -1,8 +1,11 @@
 """The trade as a Rerun recording: every run of a front side by side in time, the trade as points, the table as text."""
 
+import contextlib
+import warnings
 from pathlib import Path
 
 import numpy as np
+from eel_gaits.output_file import replacing
 
 from ..accuracy import PRESETS
 from .models import Model
@@ -16,6 +19,11 @@ def stream(path: Path, found: list[tuple]):
     """Write pairs of a trade and its models to `path` (.rrd). Timeline `time`: the runs' own."""
     import rerun
 
+    with replacing(path) as draft:
+        _write(rerun, draft, found)
+
+
+def _write(rerun, path: Path, found: list[tuple]):
     recording = rerun.RecordingStream("eel_tradeoff")
     recording.save(path)
     for trade, models in found:
@@ -34,8 +42,22 @@ def stream(path: Path, found: list[tuple]):
             if model.run is not None:
                 _log_run(rerun, recording, [name, "models", model.name], model.run, GREY)
                 _log_error(rerun, recording, [name, "error", model.name], model.run, trade.reference)
-    recording.flush()
+    with contextlib.suppress(RuntimeError):  # shows below
+        recording.flush()
     recording.disconnect()
+    _check_complete(path)
+
+
+def _check_complete(path: Path):
+    """`OSError` for a file without its end, which rerun only logs."""
+    from rerun.chunk import RrdReader
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        try:
+            RrdReader(str(path))
+        except (Warning, ValueError) as error:
+            raise OSError("the disk is full, or the file as large as it may be") from error
 
 
 def _log_points(rerun, recording, name: str, trade):

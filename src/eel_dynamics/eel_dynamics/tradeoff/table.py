@@ -3,6 +3,8 @@
 import csv
 from pathlib import Path
 
+from eel_gaits.output_file import replacing
+
 from ..accuracy import PRESETS
 from .measuring import Measured, Trade, front
 from .models import Model
@@ -94,7 +96,7 @@ def exact_enough(model: Model, trade: Trade) -> tuple[str, str]:
 def write_csv(trade: Trade, path: Path):
     """Everything that was measured, one line per setting."""
     marks = marks_of(trade)
-    with open(path, "w", newline="", encoding="utf-8") as file:
+    with replacing(path) as draft, draft.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(HEAD)
         writer.writerows(cells_of(row, marks[id(row)]) for row in sorted(trade.rows, key=seconds))
