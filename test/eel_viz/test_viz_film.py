@@ -160,13 +160,13 @@ def test_without_a_time_the_picture_is_of_seven_tenths_of_the_recording(tmp_path
         start, end = 2.0, 12.0
 
         def png(self, at):
-            return f"at {at:g} s".encode()
+            return b"\x89PNG at %g s" % at
 
     monkeypatch.setattr("eel_viz.render.drawn", lambda *_, **__: contextlib.nullcontext(Drawing()))
     assert main(["run.rrd", "-o", str(tmp_path / "picture.png")]) == 0
-    assert (tmp_path / "picture.png").read_bytes() == b"at 9 s"
+    assert (tmp_path / "picture.png").read_bytes() == b"\x89PNG at 9 s"
     assert main(["run.rrd", "-o", str(tmp_path / "picture.png"), "--at", "2"]) == 0
-    assert (tmp_path / "picture.png").read_bytes() == b"at 2 s"
+    assert (tmp_path / "picture.png").read_bytes() == b"\x89PNG at 2 s"
 
 
 @pytest.mark.fault(

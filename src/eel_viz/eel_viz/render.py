@@ -34,7 +34,7 @@ def render(
     size: tuple[int, int] = SIZE,
     blueprint: str = "",
 ) -> None:
-    """Write the PNG `picture` of `recording` at simulation time `at` [s] (None: after `TELLING` of it), `size` in pixels.
+    """Write the PNG `picture` of `recording` at simulation time `at` [s] (None: after `TELLING` of it), `size` pixels.
 
     `blueprint`: the arrangement shown; empty: the one the recording has in front.
     """
