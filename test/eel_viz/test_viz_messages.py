@@ -5,8 +5,11 @@ import math
 import made_up
 import numpy as np
 import pytest
+from builtin_interfaces.msg import Time
 from eel_viz.messages import BadMessage
 from fake_swimmer import body_message, messages
+from geometry_msgs.msg import PoseStamped
+from std_msgs.msg import Header
 
 from eel_viz import messages as reading
 
@@ -33,6 +36,13 @@ READERS = {
 
 def test_stamp(sent):
     assert reading.stamp_of(sent["backbone"]) == STAMP
+
+
+@pytest.mark.parametrize(("sec", "nanosec"), [(-1, 0), (0, 10**9)])
+def test_a_stamp_that_is_none_is_refused(sec, nanosec):
+    message = PoseStamped(header=Header(stamp=Time(sec=sec, nanosec=nanosec)))
+    with pytest.raises(reading.BadMessage, match=r"header.stamp must be >= 0 s with nanosec < 1e9"):
+        reading.stamp_of(message)
 
 
 def test_arrays_come_through_unchanged(sent):

@@ -61,6 +61,31 @@ def send(made, stamp, topics=None):
 
 @pytest.mark.fault(
     "time",
+    "time that jumps back again and again, at the visualiser",
+    "at most 10 recordings a minute, and said; the last of them takes what comes until the minute is over",
+)
+def test_recordings_are_few_however_often_time_jumps_back(ears, tmp_path, monkeypatch):
+    now = 1000.0
+    monkeypatch.setattr(runs, "time", type("Clock", (), {"monotonic": lambda: now}))
+    file = File(Settings(recording=str(tmp_path / "run.rrd")), ears.said.append, ears.warned.append)
+    made = Runs([file], "eel", ears.warned.append)
+    cycles = 3 * runs.MOST_RUNS
+    for cycle in range(cycles):
+        for stamp in (0, SECOND, 2 * SECOND + cycle):
+            send(made, stamp, {"head_pose"})
+    assert len(list(tmp_path.iterdir())) == runs.MOST_RUNS
+    assert sum("goes into the present one" in text for text in ears.warned) == 1
+    now += runs.MINUTE + 1.0
+    send(made, SECOND, {"head_pose"})
+    made.close()
+    last, following = (tmp_path / f"run-{runs.MOST_RUNS + more}.rrd" for more in (0, 1))
+    shown = read(last, entities.POSITION).stamps.tolist()
+    assert {2 * SECOND + cycle for cycle in range(runs.MOST_RUNS - 1, cycles)} <= set(shown)  # nothing is lost
+    assert read(following, entities.POSITION).stamps.tolist() == [SECOND]
+
+
+@pytest.mark.fault(
+    "time",
     "time that jumps back, at the visualiser",
     "a new recording begins, with a number before its suffix; each is complete",
 )

@@ -18,6 +18,7 @@ from .watch import Watch
 
 TICK = 0.05  # s of wall time between two messages on /clock while the simulation stands
 PATIENCE = 1.0  # s of wall time on the way to a sample, after which every order is urgent
+UNFIT = ValueError, ArithmeticError, MemoryError  # what laws and samples are refused for
 MOST_AHEAD = 10_000  # instants of a controller that wait for their time
 
 
@@ -277,7 +278,7 @@ class March:
             return  # published again: nothing to blend
         try:
             simulation.adopt(law, origin=origin)
-        except ValueError as error:
+        except UNFIT as error:
             self._report.event("law", f"law {law.name!r} refused: {error}", ERROR, differing=True)
         except SimulationStopped as error:
             self._fail(error)
@@ -292,7 +293,7 @@ class March:
             if len(simulation.shape.samples) >= MOST_AHEAD:
                 raise ValueError(f"at most {MOST_AHEAD} may lie ahead of the simulation")
             simulation.add_samples(**samples)
-        except ValueError as error:
+        except UNFIT as error:
             self._report.event("samples", f"curvature samples refused: {error}", ERROR)
 
     def _change(self, parameters):

@@ -13,6 +13,7 @@ import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from eel_gaits.messages import law_from_message
 from eel_gaits.node import answer_words, take_overrides, warn_of_unknown
+from eel_gaits.serving import serve_once
 from rclpy.clock import Clock, ClockType
 from rclpy.duration import Duration
 from rclpy.event_handler import SubscriptionEventCallbacks
@@ -163,7 +164,7 @@ def main(args=None) -> int:
     executor = SingleThreadedExecutor()
     executor.add_node(node)
     ending.start(node.march.run)
-    ending.start(lambda: spin(executor, ending))
+    ending.start(lambda: spin(executor, node, ending))
     done, error = ending.wait()
     node.march.stop()
     ending.over = True
@@ -181,7 +182,7 @@ def main(args=None) -> int:
     return leave_at_once(int(error is not None or node.march.given_up))
 
 
-def spin(executor, ending):
+def spin(executor, node, ending):
     """Serves callbacks until the process ends."""
     while not ending.over:
-        executor.spin_once()
+        serve_once(executor, node)

@@ -24,6 +24,7 @@ from rclpy.utilities import remove_ros_args
 
 from eel_gaits.messages import law_to_message
 from eel_gaits.registry import GAITS
+from eel_gaits.serving import leave_out, serve_once
 from eel_gaits.settings import Settings, Transition
 from eel_msgs.msg import CurvatureLaw
 
@@ -115,7 +116,10 @@ class GaitGenerator(Node):
             with ticks.handle:
                 taken = ticks.handle.take_message(ticks.msg_type, ticks.raw)
             if taken is not None:
-                ticks.callback(taken[0])
+                try:
+                    ticks.callback(taken[0])
+                except ValueError as error:  # a negative time
+                    leave_out(self, error, "a message on /clock")
 
     def _declare_numbers(self):
         for name, value, about in self._settings.quantities():
@@ -206,7 +210,7 @@ def main(args=None):
     executor = SingleThreadedExecutor()
     executor.add_node(node)
     while not signals:
-        executor.spin_once(timeout_sec=LOOK)
+        serve_once(executor, node, LOOK)
         node.look_at_clock()
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, signal.SIG_IGN)  # until the process is gone: a second one would spoil its exit status

@@ -12,6 +12,7 @@ from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from rclpy.serialization import deserialize_message
 
+from eel_viz.lifetime import leave_out
 from eel_viz.succession import Succession
 
 BATCH = 64  # messages of one topic before the next has its turn
@@ -50,7 +51,7 @@ class Inbox:
         return {tuple(info.endpoint_gid) for info in self._node.get_publishers_info_by_topic(topic)}
 
     def take(self) -> int:
-        """Show what has come, `BATCH` of a topic at most; returns how many.
+        """Show what has come, `BATCH` of a topic at most; returns how many. What cannot be shown is left out.
 
         Messages are taken as bytes: otherwise a message would be made even where none has come.
         """
@@ -62,7 +63,10 @@ class Inbox:
                     if taken is None:
                         break
                     data, about = taken
-                    successor = succession.changes(about["publication_sequence_number"], about["source_timestamp"])
-                    show(deserialize_message(data, subscription.msg_type), successor)
                     count += 1
+                    successor = succession.changes(about["publication_sequence_number"], about["source_timestamp"])
+                    try:
+                        show(deserialize_message(data, subscription.msg_type), successor)
+                    except Exception as error:
+                        leave_out(self._node, error, f"a message of {subscription.topic_name}")
         return count

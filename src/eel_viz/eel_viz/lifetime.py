@@ -13,6 +13,7 @@ from rclpy.signals import SignalHandlerOptions
 
 ATTEND = 0.1  # s between two calls of `attend`
 PAUSE = 0.1  # s between two calls of `work` that found nothing: what comes in bursts is shown for less
+SELDOM = 1.0  # s between two lines of log about messages that cannot be taken
 LAST_LOOK = 0.25  # s at most, at the end, for what has arrived and is not yet taken
 EMPTY = 0.005  # s that the executor waits for a message there; three times in vain, and there is none
 
@@ -54,9 +55,9 @@ def live(
                 if not attend(node):
                     break
                 if work is not None:
-                    executor.spin_once(timeout_sec=0.0)
+                    serve_once(executor, node, 0.0)
             if work is None:
-                executor.spin_once(timeout_sec=ATTEND)
+                serve_once(executor, node, ATTEND)
             elif not work(node):
                 time.sleep(PAUSE)
         if complete and not getattr(node, "failure", ""):
@@ -75,6 +76,20 @@ def live(
     return int(bool(failure))
 
 
+def serve_once(executor: SingleThreadedExecutor, node: Node, timeout: float) -> None:
+    """One turn of the executor, which waits `timeout` [s]; no message ends the node, of whatever callback."""
+    try:
+        executor.spin_once(timeout_sec=timeout)
+    except Exception as error:  # also of rclpy's own callback for /clock
+        leave_out(node, error)
+
+
+def leave_out(node: Node, error: Exception, what: str = "a message") -> None:
+    """Say, now and then, that `what` came to nothing."""
+    reason = " ".join(f"{type(error).__name__}: {error}".split())[:300]
+    node.get_logger().error(f"{what} cannot be taken and is left out: {reason}", throttle_duration_sec=SELDOM)
+
+
 def check_seconds(argument: str, value: float | None) -> None:
     """ValueError that names the argument unless its value [s] is positive, or None."""
     if value is not None and not value > 0.0:
@@ -89,6 +104,6 @@ def take_the_rest(executor: SingleThreadedExecutor, node: Node, work: Callable[[
         if work is not None:
             found = work(node)
         else:
-            executor.spin_once(timeout_sec=EMPTY)
+            serve_once(executor, node, EMPTY)
             found = time.monotonic() - began < EMPTY
         in_vain = 0 if found else in_vain + 1

@@ -103,8 +103,11 @@ LOAD_FIELDS = ("force_1", "force_2", "force_3", "resistive_1", "resistive_2", "r
 
 
 def stamp_of(message) -> int:
-    """header.stamp [ns]."""
-    return message.header.stamp.sec * 1_000_000_000 + message.header.stamp.nanosec
+    """header.stamp [ns], 0 or more."""
+    stamp = message.header.stamp
+    if stamp.sec < 0 or stamp.nanosec >= 1_000_000_000:
+        raise BadMessage("header.stamp", f"must be >= 0 s with nanosec < 1e9, got {stamp.sec} s and {stamp.nanosec} ns")
+    return stamp.sec * 1_000_000_000 + stamp.nanosec
 
 
 def read_pose(pose) -> Pose:

@@ -9,13 +9,14 @@ import time
 from collections import deque
 from collections.abc import Callable
 
-from eel_viz.destination import Destination, Say
+from eel_viz.destination import Destination, Say, forget_ended_streams
 from eel_viz.flow import Flow
 from eel_viz.loggers import Loggers
 from eel_viz.messages import Body, Status
 
 RETRY = 2.0  # s of wall time between two attempts at an absent viewer
 WALL_TIME = 10**17  # ns: later stamps are no simulation time
+MOST_RUNS, MINUTE = 10, 60.0  # recordings that may begin within so many seconds; each takes memory and time to end
 RESETS, SPAN = 3, 10.0  # so many resets within so many seconds, with several publishers: not a reset
 
 
@@ -77,6 +78,8 @@ class Runs:
         self._told_other: dict[str, tuple] = {}  # method: its arguments
         self._statuses: tuple[int, list[Status]] = (0, [])
         self._resets: deque[float] = deque(maxlen=RESETS)
+        self._begun: deque[float] = deque(maxlen=MOST_RUNS)  # s, when each of the last runs began
+        self._told_many = False
         self._tried = time.monotonic()
         self._warned = False
         self.lost = False  # a file that lacks a part of its run
@@ -96,10 +99,10 @@ class Runs:
         if not goes_on:
             if self._disorder(topic):
                 return []
-            number += 1
-            if number not in self._runs:
-                self._warn(f"{_reason(topic, last, stamp)}: a new recording begins")
-                self._begin(number)
+            if number + 1 in self._runs or self._may_begin(_reason(topic, last, stamp)):
+                number += 1
+            else:
+                goes_on = True
         self._place[topic] = (number, stamp)
         if not goes_on:
             self._close_before(min(place for place, _ in self._place.values()))
@@ -157,7 +160,24 @@ class Runs:
     def _newest(self) -> Run:
         return self._runs[max(self._runs)]
 
+    def _may_begin(self, reason: str) -> bool:
+        """Begin the next recording, unless too many have begun of late."""
+        now = time.monotonic()
+        if len(self._begun) == MOST_RUNS and now - self._begun[0] < MINUTE:
+            if not self._told_many:
+                self._told_many = True
+                self._warn(
+                    f"{reason}, after {MOST_RUNS} recordings within {MINUTE:g} s: what comes goes into the present one "
+                    "until that is over"
+                )
+            return False
+        self._told_many = False
+        self._warn(f"{reason}: a new recording begins")
+        self._begin(self._newest.number + 1)
+        return True
+
     def _begin(self, number: int) -> None:
+        self._begun.append(time.monotonic())
         run = Run(number)
         self._open_missing(run)
         self._runs[number] = run
@@ -181,8 +201,11 @@ class Runs:
                 getattr(loggers.other, method)(*values)
 
     def _close_before(self, number: int) -> None:
-        for old in [each for each in self._runs if each < number]:
-            self._runs.pop(old).close()
+        old = [each for each in self._runs if each < number]
+        for each in old:
+            self._runs.pop(each).close()
+        if old:
+            forget_ended_streams()
 
     def _disorder(self, topic: str) -> bool:
         """Whether stamps go back because several publishers send on `topic`, rather than by a reset."""
