@@ -104,3 +104,13 @@ def test_level_from_the_environment_must_be_built_and_run_here(copy):
 def test_module_of_another_architecture_is_refused(copy):
     copy.folder.joinpath("built.py").write_text("LEVELS = ()\nNATIVE_FEATURES = frozenset()\n")
     assert "eel_core was built for another processor than x86-64" in last_line(copy())
+
+
+@pytest.mark.parametrize("content", [None, b"", b"\x7fELF and no more"])
+def test_damaged_module_is_named_with_what_repairs_it(copy, content):
+    (module,) = copy.folder.glob("_core*.so")
+    module.unlink()
+    if content is not None:
+        module.write_bytes(content)
+    line = last_line(copy())
+    assert f"eel_core.{module.name.split('.')[0]} is missing or damaged" in line and "build eel_core again" in line

@@ -22,12 +22,20 @@ def suitable_levels(built: Collection[str], features: frozenset[str], native_fea
     return [level for level in candidates if level in built]
 
 
+def import_built(name: str) -> ModuleType:
+    """A compiled module that the build has listed."""
+    try:
+        return import_module(f"eel_core.{name}")
+    except ImportError as error:
+        raise ImportError(f"eel_core.{name} is missing or damaged ({error}): build eel_core again") from error
+
+
 def import_core() -> ModuleType:
     """The compiled module for this processor. ImportError in one line where there is none."""
     if not processor.is_x86_64():
         if LEVELS:
             raise ImportError(f"eel_core was built for x86-64, this processor is {os.uname().machine}: build it here")
-        return import_module("eel_core._core")
+        return import_built("_core")
     features = processor.features()
     suitable = suitable_levels(LEVELS, features, NATIVE_FEATURES)
     if not suitable:
@@ -39,4 +47,4 @@ def import_core() -> ModuleType:
     wanted = os.environ.get(CHOICE)
     if wanted and wanted not in suitable:
         raise ImportError(f"{CHOICE} must be one of {', '.join(suitable)} here, got {wanted!r}")
-    return import_module(f"eel_core._core_{wanted or suitable[0]}")
+    return import_built(f"_core_{wanted or suitable[0]}")

@@ -3,6 +3,10 @@
 
 #include <string_view>
 
+#ifndef EEL_CORE_FLAGS  // included by another build
+#define EEL_CORE_FLAGS ""
+#endif
+
 namespace eel_core {
 
 struct BuildInfo {
