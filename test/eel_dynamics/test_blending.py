@@ -5,7 +5,7 @@ import pytest
 from cases import SPLINE_KNOTS, random_law
 from library_state import Scene, Simulation, distance, simulate
 
-from eel_gaits import Law
+from eel_gaits import Law, falling, still, straight
 
 STEP = 1e-3
 X = np.array([0.0, 0.1, 0.35, 0.6, 1.0])
@@ -129,6 +129,71 @@ def test_samples_take_over_smoothly_and_rest_follows_when_they_stop():
         simulation.add_samples(*samples_of(controller, time, x))
     check_smooth(*record(simulation, 2.7))
     assert not simulation.resting
+
+
+def test_samples_take_over_from_a_law_that_lies_still():
+    """It stays in a plane, and its settings are for that: those of the samples are others, whatever their points."""
+    simulation, x = Simulation(law=still(), stations=X), np.linspace(0, 1, 11)
+    for k in range(20):
+        simulation.add_samples(*samples_of(law_of(7), 0.1 + 0.05 * k, x))
+    simulation.advance(0.9)
+    assert simulation.sampled and np.isfinite(simulation.observe().position).all()
+
+
+def test_the_grid_goes_back_when_fine_samples_have_passed():
+    """Two instants of 1001 points, then many of 11: each sample after them costs what it did before."""
+    law, controller = law_of(6), law_of(7)
+    simulation = Simulation(stations=X, default_transition=0.4)
+    simulation.adopt(law)
+    usual = len(simulation.swimmer.x)
+    for time, points in [(0.05, 1001), (0.1, 1001), *((0.1 + 0.05 * k, 11) for k in range(1, 20))]:
+        simulation.add_samples(*samples_of(controller, time, np.linspace(0, 1, points)))
+    assert len(simulation.swimmer.x) == usual  # the fine ones lie ahead
+    simulation.advance(0.07)
+    assert len(simulation.swimmer.x) > 5 * usual
+    smooth = record(simulation, 0.9)
+    assert len(simulation.swimmer.x) <= 1.5 * usual
+    check_smooth(*smooth)
+
+
+def test_the_grid_goes_back_when_a_law_of_many_waves_is_over():
+    simulation = Simulation(law=falling(), stations=X)
+    usual = len(simulation.swimmer.x)
+    simulation.advance(0.1)
+    simulation.adopt(straight(wavelength=0.05), transition=0.1)
+    simulation.advance(0.3)
+    assert len(simulation.swimmer.x) > 3 * usual
+    simulation.adopt(falling(), transition=0.1)
+    simulation.advance(0.5)
+    assert len(simulation.swimmer.x) == usual
+
+
+def test_a_reset_swims_as_the_first_time_although_samples_were_finer():
+    once = Simulation(law=falling(), stations=X)
+    once.advance(1.0)
+    simulation = Simulation(law=falling(), stations=X)
+    for time in (0.1, 0.2):
+        simulation.add_samples(*samples_of(law_of(7), time, np.linspace(0, 1, 201)))
+    simulation.advance(0.3)
+    simulation.reset()
+    simulation.advance(1.0)
+    np.testing.assert_allclose(simulation.observe().position, once.observe().position, rtol=0.0, atol=1e-5)
+
+
+def test_samples_are_refused_where_there_are_too_many():
+    simulation, law = Simulation(law=falling()), law_of(7)
+    with pytest.raises(ValueError, match="x must have at most 1601 points, got 20000"):
+        simulation.add_samples(1.0, *[np.zeros(20_000)] * 7)
+    few, many = samples_of(law, 0.0, np.linspace(0, 1, 5))[1:], samples_of(law, 0.0, np.linspace(0, 1, 1001))[1:]
+    for k in range(10_000):
+        simulation.add_samples(10.0 + 0.001 * k, *few)
+    with pytest.raises(ValueError, match="at most 10000, of 1000000 points, got 10001 of 50005"):
+        simulation.add_samples(30.0, *few)
+    simulation.reset()
+    for k in range(999):
+        simulation.add_samples(10.0 + 0.001 * k, *many)
+    with pytest.raises(ValueError, match="at most 10000, of 1000000 points, got 1000 of 1001000"):
+        simulation.add_samples(30.0, *many)
 
 
 def test_reset_swims_again_from_the_start():

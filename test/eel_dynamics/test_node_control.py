@@ -5,7 +5,9 @@ import time
 import numpy as np
 import pytest
 from eel_gaits.messages import law_to_message
+from rclpy.qos import QoSProfile
 from rosgraph_msgs.msg import Clock
+from std_srvs.srv import SetBool, Trigger
 from swim_client import LIMIT, is_finite, nanoseconds
 
 from eel_gaits import Law, Term, falling
@@ -72,6 +74,25 @@ def test_reset_begins_again_with_the_same_law(start, client):
     assert len(common) > 200 and max(common) > 2.0
     for t in common:
         assert first[t] == second[t], t
+
+
+@pytest.mark.fault("time", "300 resets at once", "all answered, in order; a pause behind them too")
+def test_many_resets_are_answered_in_order(start, client):
+    swim = client(topics=("head_pose",))
+    swim.laws.publish(law_to_message(falling()))
+    start("dynamics", "--ros-args")
+    swim.until_time(0.2)
+    deep = QoSProfile(depth=1000)
+    reset = swim.node.create_client(Trigger, "dynamics/reset", qos_profile=deep)
+    pause = swim.node.create_client(SetBool, "dynamics/pause", qos_profile=deep)
+    swim.until(lambda: reset.service_is_ready() and pause.service_is_ready(), "the services")
+    answered = []
+    asked = [reset.call_async(Trigger.Request()) for _ in range(300)]
+    for number, answer in enumerate(asked):
+        answer.add_done_callback(lambda done, number=number: answered.append((number, done.result().success)))
+    last = pause.call_async(SetBool.Request(data=True))
+    swim.until(lambda: len(answered) == 300 and last.done(), "all answers")
+    assert answered == [(number, True) for number in range(300)] and last.result().success
 
 
 def test_pace_follows_the_real_time_factor(start, client):

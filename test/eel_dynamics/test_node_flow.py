@@ -1,5 +1,6 @@
 """Who waits for whom: subscribers slow, stuck or late, controllers that drive and die, others on /clock."""
 
+import array
 import math
 import os
 import signal
@@ -320,6 +321,34 @@ def test_bad_samples_are_refused(start, client):
         line = [line for line in node.output().splitlines() if "[ERROR]" in line][-1]
         assert "samples" in line and all(word in line for word in words), line
     assert not np.any(swim.latest("curvature").yaw) and node.status is None
+
+
+@pytest.mark.fault("samples", "a sample of 20,000 points, or of a million", "refused: at most 1601")
+@pytest.mark.fault(
+    "samples", "20,000 samples an hour ahead", "at most 10,000 are kept, the others refused with the number"
+)
+def test_samples_of_too_many_points_and_too_many_of_them_are_refused(start, client):
+    swim = client(topics=("curvature",))
+    swim.laws.publish(law_to_message(falling()))
+    node = start("dynamics", "--ros-args")
+    swim.until_time(0.2, "curvature")
+    swim.until(lambda: swim.samples.get_subscription_count() == 1, "the node's subscription")
+    for points in (20_000, 1_000_000):
+        message, row = instant(100.0), array.array("d", bytes(8 * points))
+        for name in ("x", "pitch", "pitch_rate", "pitch_accel", "yaw", "yaw_rate", "yaw_accel"):
+            setattr(message, name, row)
+        swim.spin(1.1)  # errors of one kind are said once a second
+        swim.samples.publish(message)
+        said = f"curvature samples x must have at most 1601 points, got {points}"
+        swim.until(lambda said=said: said in node.output(), said)
+    for part in range(20):
+        swim.deliver([instant(3000.0 + 0.01 * k) for k in range(1000 * part, 1000 * part + 1000)])
+    swim.until(
+        lambda: "ahead of the simulation must be at most 10000, of 1000000 points, got 10001" in node.output(), "limit"
+    )
+    assert swim.reset().success
+    swim.until_time(0.5, "curvature")
+    swim.until(lambda: swim.diagnosis()[0] == 0, "good diagnostics")
 
 
 # /clock

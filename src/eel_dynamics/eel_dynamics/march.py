@@ -19,7 +19,7 @@ from .watch import Watch
 TICK = 0.05  # s of wall time between two messages on /clock while the simulation stands
 PATIENCE = 1.0  # s of wall time on the way to a sample, after which every order is urgent
 UNFIT = ValueError, ArithmeticError, MemoryError  # what laws and samples are refused for
-MOST_AHEAD = 10_000  # instants of a controller that wait for their time
+MOST_WAITING = 10_000  # orders
 
 
 class Order:
@@ -81,8 +81,12 @@ class March:
         self.order(lambda: self._adopt(law, origin), "law")
 
     def take_samples(self, samples: dict):
-        """Adds one instant of a law, the arguments of `Simulation.add_samples`."""
-        self.order(lambda: self._add_samples(samples))
+        """Adds one instant of a law, the arguments of `Simulation.add_samples`; none while too much waits."""
+        if len(self._orders) < MOST_WAITING:
+            self.order(lambda: self._add_samples(samples))
+        else:
+            text = f"curvature samples refused: at most {MOST_WAITING} wait for the next sample"
+            self._report.event("samples", text, ERROR)
 
     def reset(self) -> Order:
         """State and time to the start."""
@@ -290,8 +294,6 @@ class March:
     def _add_samples(self, samples: dict):
         simulation = self._simulation
         try:
-            if len(simulation.shape.samples) >= MOST_AHEAD:
-                raise ValueError(f"at most {MOST_AHEAD} may lie ahead of the simulation")
             simulation.add_samples(**samples)
         except UNFIT as error:
             self._report.event("samples", f"curvature samples refused: {error}", ERROR)

@@ -34,6 +34,7 @@ from .frames import QUATERNION, VECTOR, turn_quaternion, turn_vector
 from .parameters import limits
 from .records import outline
 from .scene import Scene
+from .simulation import check_points
 from .wire import Wire
 
 try:
@@ -205,7 +206,9 @@ def opened_law(data: bytes) -> tuple[str, Callable[[], CurvatureLaw]]:
 
 
 def samples_from_message(message: CurvatureSamples) -> dict[str, np.ndarray | float]:
-    """The arguments of `Simulation.add_samples`: time [s], x [m], curvatures and two time derivatives, section axes."""
+    """The arguments of `Simulation.add_samples`: time [s], x [m], curvatures and two time derivatives, section axes.
+    `ValueError` for too many points."""
+    check_points(len(message.x))  # before it waits for its turn
     names = ("x", "pitch", "pitch_rate", "pitch_accel", "yaw", "yaw_rate", "yaw_accel")
     return {"time": seconds_of(message.header.stamp)} | {name: np.array(getattr(message, name)) for name in names}
 

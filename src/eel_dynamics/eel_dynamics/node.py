@@ -48,6 +48,7 @@ NAME = "dynamics"
 ABOUT = "Simulates the swimmer that the laws on curvature_law bend, and publishes how it moves."
 LATCHED = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 LOSSLESS = QoSProfile(history=HistoryPolicy.KEEP_ALL)  # reliable, as the others are
+MANY_CALLS = QoSProfile(depth=1000)  # of a service: with ROS's own, calls beyond ten at once are lost without a word
 ATTENTION = 0.25  # s: how often the state is looked at, and who publishes /clock
 PROMPT = 1.0  # s: a service has answered by then
 HASTE = 0.2  # s: longest wait for acknowledgements after a signal
@@ -92,8 +93,8 @@ class DynamicsNode(Node):
                 event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),  # what one lacks the other has
             )
         self.create_subscription(CurvatureSamples, "curvature_samples", feed.hear_samples, LOSSLESS)
-        self.create_service(Trigger, "~/reset", self._reset)
-        self.create_service(SetBool, "~/pause", self._pause)
+        self.create_service(Trigger, "~/reset", self._reset, qos_profile=MANY_CALLS)
+        self.create_service(SetBool, "~/pause", self._pause, qos_profile=MANY_CALLS)
         clock = ClockWatch(self, lambda offered: self.march.order(lambda: self.outlets.offer_clock(offered)), report)
         clock.look(values.clock)
 

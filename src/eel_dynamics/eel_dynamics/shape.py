@@ -6,8 +6,11 @@ acceleration never jump. When a controller's samples run out, the shape comes to
 """
 
 import math
-from bisect import insort
+from bisect import bisect_left, bisect_right
+from collections.abc import Callable
 from functools import lru_cache
+from operator import attrgetter
+from typing import NamedTuple
 
 import numpy as np
 from eel_gaits.law import Law, amplitude_of
@@ -19,7 +22,18 @@ from .lanes import aligned
 from .packed import Packed
 from .waveforms import groups_of
 
+AHEAD = 100  # instants that a grid is chosen for, so that it does not change with every one
+TIME_OF = attrgetter("time")
 NONE, NO_NUMBER, NO_RAMP = np.zeros(0, dtype=np.int64), np.zeros(0), np.zeros((0, 3))
+
+
+class Instant(NamedTuple):
+    """Of a controller: curvature `values` (2, 3, n) [rad/m], pitch and yaw, value, rate and acceleration, at the points
+    x (n,) [m], at `time` [s]."""
+
+    time: float
+    x: np.ndarray
+    values: np.ndarray
 
 
 class Shape:
@@ -33,9 +47,8 @@ class Shape:
         self.default_transition = default_transition
         self.law = law
         self.origin = 0.0
-        self.samples: list[
-            tuple[float, np.ndarray]
-        ] = []  # (time, rows (2, 3, width)), from the start of the segment on
+        self.samples: list[Instant] = []  # from the start of the segment on
+        self.points_ahead = 0  # of all of them
         self.sampled = False
         self.resting = False
         self._blend: tuple[np.ndarray, float, float] | None = None
@@ -57,7 +70,6 @@ class Shape:
             self._source = self._source | {"rows": convert(self._source["rows"]), "tables": None}
         if self._blend is not None:
             self._blend = (convert(self._blend[0]), *self._blend[1:])
-        self.samples = [(time, convert(rows)) for time, rows in self.samples]
         self.tabulation, self._spline = tabulation, None
         self._follow(self._source)
 
@@ -70,58 +82,63 @@ class Shape:
             source = source | {"origin": origin}
         self._take_over(source, time, transition)
         self.law, self.origin = law, origin
-        self.samples, self.sampled, self.resting = [], False, False
+        self.forget_samples()
 
     # -- samples of a controller
 
-    def add(self, time: float, now: float, x, values):
-        """One instant, (time [s], values (2, 3, len(x)): pitch and yaw, value, rate and acceleration)."""
-        x, values = np.array(x, dtype=float), np.array(values, dtype=float)
-        if self._spline is None or not np.array_equal(self._spline[0], x):
-            matrix = self.tabulation.columns(natural_spline(x, np.eye(len(x)), self.tabulation.x))
-            self._spline = (x, matrix)
-        if self.sampled and len(self.samples) > 1 and time <= self.samples[1][0]:
-            ahead = f"the instant being approached ({self.samples[1][0]:.6f} s)"
+    def add(self, instant: Instant):
+        """One instant more. `ValueError` for one that comes too late, or twice."""
+        time, place = instant.time, bisect_left(self.samples, instant.time, key=TIME_OF)
+        if self.sampled and place < 2:
+            ahead = f"the instant being approached ({self.samples[1].time:.6f} s)"
             raise ValueError(f"curvature samples time must come after {ahead}, got {time:.6f} s")
-        if any(time == known for known, _ in self.samples):
+        if place < len(self.samples) and self.samples[place].time == time:
             raise ValueError(f"curvature samples time must be new, got {time:.6f} s twice")
-        insort(self.samples, (time, values @ self._spline[1]), key=lambda sample: sample[0])
+        self.samples.insert(place, instant)
+        self.points_ahead += len(instant.x)
 
     @property
     def until(self) -> float | None:
         """Last instant of a controller that drives or is about to [s], or None."""
-        return self.samples[-1][0] if self.samples else None
+        return self.samples[-1].time if self.samples else None
 
     def next_event(self, now: float) -> float:
         """Time [s] at which the source changes by itself, inf where it does not."""
         if self.sampled:
-            return self.samples[1][0]
-        later = [time for time, _ in self.samples if time > now]
-        return later[0] if len(later) > 1 else np.inf
+            return self.samples[1].time
+        later = bisect_right(self.samples, now, key=TIME_OF)
+        return self.samples[later].time if later + 1 < len(self.samples) else np.inf
 
-    def pass_event(self, now: float):
-        """Change the source as due at `now` [s]: to samples that bracket the time, to their next interval, or to
-        rest."""
+    def pass_event(self, now: float, prepare: Callable[[list[Instant]], None]):
+        """Change the source as due at `now` [s]: to samples that bracket the time, to their next interval, or to rest.
+        prepare(instants): is called before some drive that did not before, with them and those that follow, and may
+        `move`."""
         if self.sampled:
-            if now < self.samples[1][0]:
+            if now < self.samples[1].time:
                 return
-            self.samples.pop(0)
+            self._drop_first()
             if len(self.samples) > 1:
+                prepare(self.samples[:AHEAD])
                 self._follow(self._segment())
                 return
             value, _, _ = self.at(now)
             self._take_over(_constant(value), now, self.default_transition)
-            self.samples, self.sampled, self.resting = [], False, True
+            self.forget_samples()
+            self.resting = True
             return
-        while len(self.samples) > 1 and self.samples[1][0] <= now:
-            self.samples.pop(0)
-        if len(self.samples) > 1 and self.samples[0][0] <= now:
+        while len(self.samples) > 1 and self.samples[1].time <= now:
+            self._drop_first()
+        if len(self.samples) > 1 and self.samples[0].time <= now:
+            prepare(self.samples[:AHEAD])
             self._take_over(self._segment(), now, self.default_transition)
             self.sampled, self.resting = True, False
 
+    def _drop_first(self):
+        self.points_ahead -= len(self.samples.pop(0).x)
+
     def forget_samples(self):
         """Drop the controller's instants; the shape stays with what drives it."""
-        self.samples, self.sampled, self.resting = [], False, False
+        self.samples, self.points_ahead, self.sampled, self.resting = [], 0, False, False
 
     # -- rows
 
@@ -155,6 +172,11 @@ class Shape:
         """Speed [m/s] that the law gives to a body of `length` [m], of the order of; 0 for samples and at rest."""
         return speed_of(self._source["law"], length) if "law" in self._source else 0.0
 
+    @property
+    def blending(self) -> bool:
+        """What drove before dies out, or has come to rest: its finer waves are still there."""
+        return self._blend is not None or self.resting
+
     def end_blend(self, now: float):
         """Drop a blend that is over, so that it costs nothing."""
         if self._blend is not None and now >= self._blend[2]:
@@ -174,9 +196,16 @@ class Shape:
         self._follow(source)
 
     def _segment(self) -> dict:
-        (start, first), (end, second) = self.samples[0], self.samples[1]
-        rows = np.stack((first, second), axis=1).reshape(12, -1)
-        return {"rows": rows, "axis": np.repeat((0, 1), 6), "segment": (start, end)}
+        first, second = self.samples[:2]
+        rows = np.stack((self._tabulated(first), self._tabulated(second)), axis=1).reshape(12, -1)
+        return {"rows": rows, "axis": np.repeat((0, 1), 6), "segment": (first.time, second.time)}
+
+    def _tabulated(self, instant: Instant) -> np.ndarray:
+        """Rows (2, 3, width) of an instant."""
+        if self._spline is None or not np.array_equal(self._spline[0], instant.x):
+            matrix = natural_spline(instant.x, np.eye(len(instant.x)), self.tabulation.x)
+            self._spline = instant.x, self.tabulation.columns(matrix)
+        return instant.values @ self._spline[1]
 
     def _follow(self, source: dict):
         self._source = source

@@ -52,16 +52,26 @@ from .packed import Packed
 from .profiles import PROFILES, Profiles, no_profiles, profiles_of
 from .scene import Scene
 from .sections import Swimmer
-from .shape import Shape
+from .shape import Instant, Shape
 from .slices import Allowance, sliced
 from .snapshot import Snapshot
 from .start import Start, is_thrown, stays_in_plane, time_scale
 from .stopping import SimulationStopped, not_begun, remedy, stopped_by
 from .tables import Built, tabulated
-from .waveforms import check_law, knots_of_law
+from .waveforms import MOST_WAVES, check_law, knots_of_law
 
+POINTS_PER_WAVE = 8  # of a controller's samples
+MOST_POINTS = int(POINTS_PER_WAVE * MOST_WAVES) + 1  # of one
+MOST_AHEAD, MOST_POINTS_AHEAD = 10_000, 1_000_000  # of the simulation: 50 MB of samples
+MUCH_FINER = 1.5  # times the resolution that is needed: a grid that is changed for a coarser one
 ROWS_AT_ONCE = 8  # of a law, for which there is space
 NONE = np.zeros(0)
+
+
+def check_points(count: int):
+    """`ValueError` for an instant of a controller with more points along the body than any grid carries."""
+    if count > MOST_POINTS:
+        raise ValueError(f"curvature samples x must have at most {MOST_POINTS} points, got {count}")
 
 
 class Simulation:
@@ -265,6 +275,12 @@ class Simulation:
         Natural cubic splines in X; between instants the quintic that meets value, rate and acceleration at both. It
         takes over as soon as two instants bracket the present. `ValueError` names what does not fit.
         """
+        check_points(len(x))
+        if len(self.shape.samples) >= MOST_AHEAD or self.shape.points_ahead + len(x) > MOST_POINTS_AHEAD:
+            raise ValueError(
+                f"curvature samples ahead of the simulation must be at most {MOST_AHEAD}, of {MOST_POINTS_AHEAD} "
+                f"points, got {len(self.shape.samples) + 1} of {self.shape.points_ahead + len(x)}"
+            )
         x = checked_row("curvature samples x", x, None)
         if len(x) < 2 or np.any(np.diff(x) <= 0.0):
             raise ValueError(f"curvature samples x must rise over 2 points or more, got {len(x)} points")
@@ -281,10 +297,27 @@ class Simulation:
             raise ValueError(
                 f"curvature samples time must lie ahead of the simulation ({self.time:.6f} s), got {time} s"
             )
+        before = self.accuracy
         self._use_accuracy(False, self._waves, self._effort.at_least(USUAL))
-        self._refine((len(x) - 1) / 8.0)
-        self.shape.add(float(time), self.time, x, np.reshape(values, (2, 3, len(x))))
+        if self.accuracy is not before:  # and so is the step
+            self._refine(self._waves, self._built.knots)
+            self._restart()
+        self.shape.add(Instant(float(time), x, np.reshape(values, (2, 3, len(x)))))
         self.ready = True
+
+    def _prepare_for(self, instants: list[Instant]):
+        """Have a grid for `instants` of a controller, which is no finer than they need; in few sizes, for each is
+        kept."""
+        waves = max((len(each.x) - 1) / POINTS_PER_WAVE for each in instants)
+        self._fit(2.0 ** math.ceil(math.log2(max(1.0, waves))))
+
+    def _fit(self, waves: float, knots: tuple[float, ...] = ()):
+        """Have a grid that is fine enough for `waves`, and, once nothing finer is left, not much finer than that."""
+        wanted = Built(self.accuracy.points_per_length(waves), self.accuracy.kinks, knots)
+        if self._built.resolution > MUCH_FINER * wanted.resolution and not self.shape.blending:
+            self._change_grid(wanted)
+        else:
+            self._refine(waves, knots)
 
     def _refine(self, waves: float, knots: tuple[float, ...] = ()):
         """Have a grid that is fine enough for a shape of `waves` waves on the body, cut at its `knots` [m]; the head's
@@ -294,8 +327,12 @@ class Simulation:
         fine_enough = resolution <= built.resolution * (1.0 + 1e-9) and set(knots) <= set(built.knots)
         if fine_enough and self.accuracy.kinks == built.kinks:
             return
+        self._change_grid(Built(resolution, self.accuracy.kinks, knots))
+
+    def _change_grid(self, wanted: Built):
+        """Go on with the grid that is `wanted`; the head's motion stays as it is."""
         old, twist = self._table.grid, self._twist()
-        self._build(Built(resolution, self.accuracy.kinks, knots))
+        self._build(wanted)
         rows, first, _ = old.rows_at(self._table.tabulation.x, "value")
 
         def values(fields):
@@ -323,7 +360,7 @@ class Simulation:
             raise ValueError(f"time must be finite and >= the present {self.time} s, got {time!r}")
         self._started, time = True, float(time)
         while True:
-            self.shape.pass_event(self.time)
+            self.shape.pass_event(self.time, self._prepare_for)
             if self.shape.drive is not self.drive:
                 self._restart()
             event = self.shape.next_event(self.time)
@@ -334,6 +371,8 @@ class Simulation:
         self.shape.end_blend(self.time)
         if self.shape.drive is not self.drive:
             self._use_drive()
+            if not self.shape.sampled and self.shape.law is not None:
+                self._fit(*self._needs(self.shape.law))
         return True
 
     def _march_to(self, time: float, interrupted) -> bool:
@@ -508,6 +547,10 @@ class Simulation:
     def reset(self):
         """State and time to the start; the last law kept, with its own t = 0 at 0."""
         law = self.shape.law
+        waves, knots = (1.0, ()) if law is None else self._needs(law)
+        wanted = Built(self.accuracy.points_per_length(waves), self.accuracy.kinks, knots)
+        if wanted != self._built:  # finer for what is gone
+            self._build(wanted)
         self.shape = Shape(self._table.tabulation, self.shape.default_transition)
         self.time, self.ready, self._started = 0.0, False, False
         if law is None:
