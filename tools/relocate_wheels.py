@@ -2,6 +2,7 @@
 
 The wheels' CMake files name the Python of the machine that built them (/opt/python/cp3xx-cp3xx/...), which does not
 exist here; CMake then stops with "non-existent path". They are replaced by this interpreter's own include folders.
+One of them reads a list of files as ASCII, and loses those in a folder whose name is not: it is told that it is UTF-8.
 """
 
 import re
@@ -13,6 +14,7 @@ import numpy
 
 BUILDER_INCLUDE = re.compile(r"/opt/python/cp3\d+-cp3\d+/include/python3\.\d+")
 BUILDER_NUMPY = re.compile(r"/opt/python/cp3\d+-cp3\d+/lib/python3\.\d+/site-packages/numpy/_?core/include")
+LIST_OF_FILES = re.compile(r"(file\(STRINGS \S+ idl_tuples)\)")
 BUILDER_PREFIX = re.compile(r"/opt/python/cp3\d+-cp3\d+")
 
 
@@ -23,6 +25,7 @@ def main() -> None:
     for path in (prefix / "share").rglob("*.cmake"):
         text = path.read_text()
         fixed = BUILDER_INCLUDE.sub(include, BUILDER_NUMPY.sub(numpy.get_include(), text))
+        fixed = LIST_OF_FILES.sub(r"\1 ENCODING UTF-8)", fixed)
         if fixed != text:
             replace(path, fixed)
             changed += 1

@@ -80,10 +80,13 @@ class SwimClient:
         self.node.destroy_node()
         self.context.try_shutdown()
 
-    def listen(self, topic, kind, quality=LOSSLESS):
+    def listen(self, topic, kind, quality=LOSSLESS, name=None):
+        """Hears a topic; its messages are in `heard[name]`, by default the topic's."""
+        name = name or topic
+
         def keep(message):
-            self.heard[topic].append(message)
-            self.arrivals[topic].append(time.monotonic())
+            self.heard[name].append(message)
+            self.arrivals[name].append(time.monotonic())
 
         self._subscriptions.append(self.node.create_subscription(kind, topic, keep, quality))
 

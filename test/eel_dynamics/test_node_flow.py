@@ -10,6 +10,8 @@ import time
 import numpy as np
 import pytest
 from eel_gaits.messages import law_to_message
+from geometry_msgs.msg import PoseStamped
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rosgraph_msgs.msg import Clock
 from swim_client import LIMIT, LOSSLESS, SAMPLES, nanoseconds
 
@@ -57,6 +59,36 @@ def test_a_subscriber_that_is_slow_for_a_while_loses_nothing(start, client):
     stamps = [nanoseconds(message.header.stamp) for message in swim.heard["head_pose"]]
     assert stamps == [k * 1_000_000 for k in range(12001)]
     assert node.wait(LIMIT) == 0 and "stuck" not in node.output()
+
+
+@pytest.mark.fault(
+    "subscribers",
+    "50 subscribers of a topic, of which 10 want a quality of service that it does not have",
+    "a warning names the policy; those 10 get nothing, nobody waits for them; the others get what they asked for",
+)
+def test_fifty_subscribers_of_all_qualities(start, client):
+    swim = client(topics=())
+    qualities = {
+        "lossless": LOSSLESS,
+        "reliable": QoSProfile(depth=1000),
+        "best effort": QoSProfile(depth=1000, reliability=ReliabilityPolicy.BEST_EFFORT),
+        "shallow": QoSProfile(depth=1),
+        "latched": QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL),  # the samples are not
+    }
+    names = [f"{quality} {k}" for quality in qualities for k in range(10)]
+    for name in names:
+        swim.listen("head_pose", PoseStamped, qualities[name.rpartition(" ")[0]], name)
+    swim.laws.publish(law_to_message(falling()))
+    node = start("dynamics", *FLAT_OUT[:-1], "wait_for_subscribers:=40", "-p", "duration:=2", "-p", "rate:=100")
+    kept = [name for name in names if name.startswith(("lossless", "reliable"))]
+    swim.until(lambda: all(len(swim.heard[name]) >= 201 for name in kept), "201 samples in each of 20")
+    for name in kept:
+        assert [nanoseconds(message.header.stamp) for message in swim.heard[name]] == [k * 10**7 for k in range(201)]
+    for name in names:
+        assert bool(swim.heard[name]) != name.startswith("latched"), name
+    assert node.wait(LIMIT) == 0 and "stuck" not in node.output()
+    told = [line for line in node.output().splitlines() if "incompatible" in line and "head_pose" in line]
+    assert told and all("DURABILITY" in line for line in told), node.output()
 
 
 @pytest.mark.fault(

@@ -12,6 +12,7 @@ import time
 from pathlib import Path
 
 import made_up
+from eel_gaits.output_file import part_of
 from eel_viz.flow import leave
 from eel_viz.runs import Runs
 from eel_viz.settings import Settings
@@ -45,10 +46,10 @@ def main() -> None:
     began, told, now, k = time.monotonic(), 0.0, 0.0, 0
 
     def tell() -> None:
-        print(json.dumps([now, path.stat().st_size / 1e6, anonymous_memory(), said]), flush=True)
+        print(json.dumps([now, part_of(path).stat().st_size / 1e6, anonymous_memory(), said]), flush=True)
 
     def done() -> bool:
-        size, stuck = path.stat().st_size / 1e6, any(sign in line for sign in SIGNS for line in said)
+        size, stuck = part_of(path).stat().st_size / 1e6, any(sign in line for sign in SIGNS for line in said)
         return now >= NOTICED and size >= wanted and (stuck or size >= MOST * wanted)
 
     while not done():

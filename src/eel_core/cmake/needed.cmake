@@ -36,8 +36,8 @@ if(EEL_CORE_MODULE)
   if(NOT Python3_Development.Module_FOUND)
     message(FATAL_ERROR "missing: the C headers of ${Python3_EXECUTABLE}. On Debian or Ubuntu: sudo apt-get install python3-dev")
   endif()
-  # The interpreter's own pybind11 goes before the system's.
-  execute_process(COMMAND ${Python3_EXECUTABLE} -m pybind11 --cmakedir
+  # The interpreter's own pybind11 goes before the system's. (`--cmakedir` quotes a path with a space.)
+  execute_process(COMMAND ${Python3_EXECUTABLE} -c "import pybind11; print(pybind11.get_cmake_dir())"
     OUTPUT_VARIABLE pybind11_of_python OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
   find_package(pybind11 2.11 QUIET CONFIG HINTS "${pybind11_of_python}")
   if(NOT pybind11_FOUND)
