@@ -87,8 +87,15 @@ link_executables() {
     for executable in install/eel_*/lib/eel_*/*; do
         name="${executable##*/}"
         [ "$name" != echo ] || name=eel_echo
+        begin_with_sh "$executable"
         ln -s "../../$executable" "install/bin/$name"
     done
+}
+
+# Where the path has a space, setuptools begins an executable with `#!"/a path/python" -x`, which no system can run. These
+# lines run Python under sh, and are a text to Python.
+begin_with_sh() {
+    ! head -n 1 "$1" | grep -q '^#!"' || sed -i "1c #!/bin/sh\n'''exec' '$root/.venv/bin/python' \"\$0\" \"\$@\"\n' '''" "$1"
 }
 
 # Starts to compile what one swimmer's march takes; what batches take besides is compiled where it is first used.

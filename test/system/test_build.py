@@ -75,3 +75,22 @@ def test_other_architecture(machine, tmp_path):
     uname.chmod(0o755)
     line = machine()
     assert "x86-64 Linux" in line and "aarch64" in line
+
+
+@pytest.mark.fault("names", "a build in a folder whose path has a space and an umlaut", "the executables run there")
+def test_an_executable_in_a_path_with_a_space_runs(tmp_path):
+    root = tmp_path / "ein Bär"
+    (root / ".venv/bin").mkdir(parents=True)
+    (root / ".venv/bin/python").symlink_to(sys.executable)
+    script = root / "swim"
+    script.write_text(f'#!"{root}/.venv/bin/python" -x\nimport sys\nprint(sys.argv[1:])\n')  # as setuptools writes it
+    script.chmod(0o755)
+    function = f"source <(sed -n '/^begin_with_sh()/,/^}}/p' '{ROOT}/tools/build.sh')"
+    for _ in range(2):  # the second time changes nothing
+        subprocess.run(
+            ["bash", "-euc", f'{function}; begin_with_sh "$1"', "-", script],
+            env={**os.environ, "root": str(root)},
+            check=True,
+        )
+        done = subprocess.run([script, "a b"], capture_output=True, text=True, timeout=60)
+        assert done.stdout == "['a b']\n", done.stderr
