@@ -34,7 +34,7 @@ pictures: build   ## draw the pictures of the visualiser in docs/images
 robustness: build   ## write the table of faults in docs/robustness.md from the tests
 	@$(RUN) python tools/fault_table.py
 
-lint: build   ## rules, format, imports and spelling of the sources
+lint: build   ## rules, format, imports and spelling of the sources, Python and C++
 	@$(RUN) tools/lint.sh
 
 build:   ## the virtual environment, the five packages, the compiled kernels (PYTHON=... chooses the Python)

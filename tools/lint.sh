@@ -15,7 +15,7 @@ check() {   # NAME COMMAND...: the command's output is shown where it fails
 
 shopt -s nullglob
 sources=(src/eel_core/{src,test}/*.cpp)
-headers=(src/eel_core/include/eel_core/{,*/}*.hpp)
+headers=(src/eel_core/{src,include/eel_core,include/eel_core/*}/*.hpp)
 tidy() {
     (cd src/eel_core && cmake --preset lint) && printf '%s\0' "${sources[@]}" |
         xargs -0 -n 1 -P "$(nproc)" clang-tidy --quiet -p build/eel_core_lint

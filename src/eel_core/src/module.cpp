@@ -5,7 +5,8 @@
 
 namespace py = pybind11;
 
-PYBIND11_MODULE(EEL_CORE_MODULE, module) {
+PYBIND11_MODULE(EEL_CORE_MODULE, module)
+{
     // One name for all levels: what is pickled by one can be read by another.
     module.attr("__name__") = "eel_core._core";
 

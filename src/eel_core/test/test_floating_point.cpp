@@ -6,7 +6,8 @@
 
 #include "eel_core/build_info.hpp"
 
-TEST(FloatingPoint, NotANumberAndInfinityAreSeen) {
+TEST(FloatingPoint, NotANumberAndInfinityAreSeen)
+{
     volatile double zero = 0.0;
     const double not_a_number = zero / zero;
     const double infinity = 1.0 / zero;
@@ -16,19 +17,22 @@ TEST(FloatingPoint, NotANumberAndInfinityAreSeen) {
     EXPECT_FALSE(not_a_number == not_a_number);
 }
 
-TEST(FloatingPoint, SumsKeepTheirOrder) {
+TEST(FloatingPoint, SumsKeepTheirOrder)
+{
     volatile double large = 1e16;
     volatile double one = 1.0;
     const double a = large, b = one, c = -large;
     EXPECT_EQ((a + b) + c, 0.0);  // b is lost in a; reordered it would be 1
 }
 
-TEST(FloatingPoint, SubnormalNumbersStay) {
+TEST(FloatingPoint, SubnormalNumbersStay)
+{
     volatile double smallest = std::numeric_limits<double>::min();
     EXPECT_GT(smallest / 4.0, 0.0);
 }
 
-TEST(FloatingPoint, ProductAndSumAreOneRoundingWhereTheProcessorHasIt) {
+TEST(FloatingPoint, ProductAndSumAreOneRoundingWhereTheProcessorHasIt)
+{
     if (!eel_core::build_info().sanitizers.empty()) GTEST_SKIP() << "compiled without the optimisation that fuses them";
     volatile double near_one = 1.0 + 0x1p-30;
     volatile double rounded = near_one * near_one;

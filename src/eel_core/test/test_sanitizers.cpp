@@ -8,18 +8,21 @@
 #include "eel_core/build_info.hpp"
 
 class Sanitizers : public testing::Test {
-    void SetUp() override {
+    void SetUp() override
+    {
         if (eel_core::build_info().sanitizers.empty()) GTEST_SKIP() << "built without sanitizers";
     }
 };
 
-TEST_F(Sanitizers, ReportAReadBehindTheEndOfAnArray) {
+TEST_F(Sanitizers, ReportAReadBehindTheEndOfAnArray)
+{
     const auto values = std::make_unique<double[]>(4);
     volatile int behind = 4;
     EXPECT_DEATH(std::printf("%g", values[static_cast<std::size_t>(behind)]), "heap-buffer-overflow");
 }
 
-TEST_F(Sanitizers, ReportAnOverflowOfIntegers) {
+TEST_F(Sanitizers, ReportAnOverflowOfIntegers)
+{
     volatile int largest = std::numeric_limits<int>::max();
     EXPECT_DEATH(std::printf("%d", largest + 1), "signed integer overflow");
 }

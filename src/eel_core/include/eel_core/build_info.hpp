@@ -16,7 +16,8 @@ struct BuildInfo {
     std::string_view sanitizers;  // empty: none
 };
 
-constexpr std::string_view target_level() {
+constexpr std::string_view target_level()
+{
 #if defined(__AVX512F__) && defined(__AVX512BW__) && defined(__AVX512CD__) && defined(__AVX512DQ__) && \
     defined(__AVX512VL__)
     return "x86-64-v4";
@@ -33,7 +34,8 @@ constexpr std::string_view target_level() {
 #endif
 }
 
-constexpr std::string_view compiler_name() {
+constexpr std::string_view compiler_name()
+{
 #if defined(__clang__)
     return "Clang " __clang_version__;
 #elif defined(__GNUC__)
@@ -43,7 +45,8 @@ constexpr std::string_view compiler_name() {
 #endif
 }
 
-constexpr std::string_view active_sanitizers() {
+constexpr std::string_view active_sanitizers()
+{
 #if defined(__SANITIZE_ADDRESS__)  // GCC
     return "address,undefined";
 #elif defined(__has_feature)
