@@ -331,7 +331,11 @@ def test_succession_is_told_by_counts_pauses_and_who_is_there():
     assert not topic.changes(600, next(at))
     there.add("three")
     assert topic.changes(601, next(at) + 2 * 10**9)  # the count goes on by chance, after a while
-    assert not topic.changes(None, 3 * 10**9)
+    there.add("four")
+    topic.look()
+    there.remove("four")
+    assert topic.changes(1, 4 * 10**9)  # shown when its publisher has gone
+    assert not topic.changes(None, 4 * 10**9)
 
 
 def test_without_a_name_the_file_is_called_after_the_time(tmp_path, ears, monkeypatch):

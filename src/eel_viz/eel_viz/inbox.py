@@ -5,6 +5,7 @@ than showing them. Here a group that never lets the executor run leaves the mess
 keep all, until `take` fetches them.
 """
 
+from collections import deque
 from collections.abc import Callable
 
 from rclpy.callback_groups import CallbackGroup
@@ -15,7 +16,9 @@ from rclpy.serialization import deserialize_message
 from eel_viz.lifetime import leave_out
 from eel_viz.succession import Succession
 
-BATCH = 64  # messages of one topic before the next has its turn
+BATCH = 64  # messages of one subscription before the next has its turn
+PROCESS = 12  # bytes of an endpoint's identifier that its whole process has (RTPS: the GUID's prefix)
+REMEMBERED = 1024  # deliveries to subscriptions of one topic, of which one may be some batches behind the other
 
 
 class Untouched(CallbackGroup):
@@ -40,33 +43,47 @@ class Inbox:
         self._node, self._group = node, Untouched()
         self._subscriptions: list[tuple] = []
 
-    def listen(self, kind: type, topic: str, show: Callable[..., None], quality: QoSProfile) -> None:
+    def listen(self, kind: type, topic: str, show: Callable[..., None], *qualities: QoSProfile) -> None:
         """Messages of `kind` on `topic` go to `show(message, successor)`, from `take`; `successor`: whether it is the
-        first one of another publisher than before."""
-        made = self._node.create_subscription(kind, topic, show, quality, callback_group=self._group)
-        self._subscriptions.append((made, show, Succession(lambda: self._publishers(topic))))
+        first one of another publisher than before. There is a subscription for each of the `qualities`; a message that
+        several of them receive is shown once."""
+        delivered = deque(maxlen=REMEMBERED if len(qualities) > 1 else 0)
+        for quality in qualities:
+            made = self._node.create_subscription(kind, topic, show, quality, callback_group=self._group)
+            self._subscriptions.append((made, show, Succession(lambda: self._publishers(topic)), delivered))
 
     def _publishers(self, topic: str) -> set[tuple]:
-        """Their identifiers."""
-        return {tuple(info.endpoint_gid) for info in self._node.get_publishers_info_by_topic(topic)}
+        """The processes that publish on `topic`. A node that replaces one of its publishers remains the same."""
+        return {tuple(info.endpoint_gid[:PROCESS]) for info in self._node.get_publishers_info_by_topic(topic)}
+
+    def look(self) -> None:
+        """Now and then: remember who publishes, for the messages that are yet to be taken."""
+        for _, _, succession, _ in self._subscriptions:
+            succession.look()
 
     def take(self) -> int:
-        """Show what has come, `BATCH` of a topic at most; returns how many. What cannot be shown is left out.
+        """Show what has come, `BATCH` of a subscription at most; returns how many were taken. What cannot be
+        shown is left out.
 
         Messages are taken as bytes: otherwise a message would be made even where none has come.
         """
         count = 0
-        for subscription, show, succession in self._subscriptions:
+        for subscription, show, succession, delivered in self._subscriptions:
             with subscription.handle:  # else it could be destroyed meanwhile
                 for _ in range(BATCH):
                     taken = subscription.handle.take_message(subscription.msg_type, True)
                     if taken is None:
                         break
-                    data, about = taken
                     count += 1
-                    successor = succession.changes(about["publication_sequence_number"], about["source_timestamp"])
-                    try:
-                        show(deserialize_message(data, subscription.msg_type), successor)
-                    except Exception as error:
-                        leave_out(self._node, error, f"a message of {subscription.topic_name}")
+                    data, about = taken
+                    delivery = about["publication_sequence_number"], about["source_timestamp"]
+                    successor = succession.changes(*delivery)
+                    if successor:
+                        self.look()
+                    if delivery not in delivered:
+                        delivered.append(delivery)
+                        try:
+                            show(deserialize_message(data, subscription.msg_type), successor)
+                        except Exception as error:
+                            leave_out(self._node, error, f"a message of {subscription.topic_name}")
         return count

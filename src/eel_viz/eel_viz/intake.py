@@ -98,7 +98,7 @@ class Intake:
         self._runs.body(messages.read_body(message))
 
     def _law(self, message) -> None:
-        if message != self._last_law:  # latched and live subscriptions may both hear it
+        if message != self._last_law:  # the same law published again is no news
             self._last_law = message
             self._runs.law(message.name)
 

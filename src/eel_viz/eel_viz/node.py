@@ -11,6 +11,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseStamped, TwistStamped
 from nav_msgs.msg import Odometry
 from rclpy.node import Node
+from rclpy.qos import QoSProfile
 
 from eel_msgs.msg import Backbone, BodyGeometry, Curvature, CurvatureLaw, EnergyLedger, HydrodynamicLoad, InternalWrench
 from eel_viz.declaration import answer_words, declare_settings
@@ -26,6 +27,8 @@ from eel_viz.topics import SWIMMER
 NAME = "visualiser"
 ABOUT = "Shows and records every topic of a swimmer in Rerun."
 DEFAULTS = ["--ros-args", "-p", "use_sim_time:=true", "--"]  # what the user says comes after, and wins
+LATCHED, LIVE = keep_all(latched=True), keep_all()  # the first also hears what was published before, the second anybody
+LOOK = 0.5  # s between two looks at who publishes
 GONE = 1.0  # s without publishers and messages, after which `stop_with_publisher` ends the node
 
 SAMPLED = {
@@ -59,7 +62,7 @@ class Visualiser(Node):
         )
         self._inbox = Inbox(self)
         self._intake = Intake(runs, namespace=own, warn=self._warn)
-        self._last_message = time.monotonic()
+        self._last_message = self._looked = time.monotonic()
         self._present = False
         self._listen(own, self._intake)
         if self.settings.compare:
@@ -69,9 +72,12 @@ class Visualiser(Node):
     def attend(self) -> bool:
         """Now and then: look after the sinks; False once the swimmer has gone and the node is to follow."""
         self._intake.attend()
+        now = time.monotonic()
+        if now - self._looked > LOOK:
+            self._looked = now
+            self._inbox.look()
         if not self.settings.stop_with_publisher:
             return True
-        now = time.monotonic()
         if self.count_publishers(SWIMMER):
             self._present, self._last_message = True, now
         return not self._present or now - self._last_message < GONE
@@ -91,20 +97,19 @@ class Visualiser(Node):
 
     def _listen(self, space: str, intake: Intake) -> None:
         """Hear the swimmer in the namespace `space`."""
-        self._hear(space, intake, "body", BodyGeometry, latched=True)  # first, for the others need it
-        self._hear(space, intake, "curvature_law", CurvatureLaw, latched=True)
-        self._hear(space, intake, "curvature_law", CurvatureLaw)
+        self._hear(space, intake, "body", BodyGeometry, LATCHED)  # first, for the others need it
+        self._hear(space, intake, "curvature_law", CurvatureLaw, LATCHED, LIVE)
         for topic, kind in SAMPLED.items():
-            self._hear(space, intake, topic, kind)
-        self._hear("", intake, "diagnostics", DiagnosticArray)
+            self._hear(space, intake, topic, kind, LIVE)
+        self._hear("", intake, "diagnostics", DiagnosticArray, LIVE)
 
-    def _hear(self, space: str, intake: Intake, topic: str, kind: type, *, latched: bool = False) -> None:
+    def _hear(self, space: str, intake: Intake, topic: str, kind: type, *qualities: QoSProfile) -> None:
         def receive(message, successor):
             self._last_message = time.monotonic()
             self._present |= topic == SWIMMER  # a law alone is no swimmer
             intake.take(topic, message, successor=successor)
 
-        self._inbox.listen(kind, f"{space}/{topic}", receive, keep_all(latched=latched))
+        self._inbox.listen(kind, f"{space}/{topic}", receive, *qualities)
 
     def _say(self, text: str) -> None:
         self.get_logger().info(text)
