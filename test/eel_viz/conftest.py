@@ -31,6 +31,8 @@ def can_draw(tmp_path_factory):
         with viewer((640, 360)) as client:
             client.take_screenshot()
     except CannotRender as reason:
+        if "Vulkan" not in str(reason):
+            raise
         pytest.skip(f"no picture: {reason}")
 
 

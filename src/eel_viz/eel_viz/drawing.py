@@ -16,6 +16,7 @@ from eel_viz.entities import TIMELINE
 from eel_viz.viewer import CannotRender, native_viewer, viewer
 
 LOADING_LIMIT = 60.0  # s, until the recording is open
+LOOKS = 5  # in a row at a loaded recording: then it has no more timelines to come
 PICTURE_LIMIT = 90.0  # s, until two pictures are equal
 SIZE = (1920, 1080)  # pixels
 MAGIC = b"RRF"  # what recordings begin with, whatever their version
@@ -62,13 +63,15 @@ class Drawing:
 
     def _load(self) -> tuple[float, float]:
         self._client.open([str(self._path)])
-        limit = time.monotonic() + LOADING_LIMIT
+        limit, in_vain = time.monotonic() + LOADING_LIMIT, 0
         while True:
             state = self._client.get_state()
             times = [line for one in state.recordings for line in one.timelines if line.name == TIMELINE]
             if times and not state.loading:
                 return times[0].start / 1e9, times[0].end / 1e9
-            if time.monotonic() > limit or not state.loading:
+            loaded = bool(state.recordings) and not state.loading  # at first it has neither, and loads nothing yet
+            in_vain = in_vain + 1 if loaded else 0
+            if time.monotonic() > limit or in_vain == LOOKS:
                 raise ValueError(f"{self._path.name} is no recording of a swimmer, it has no timeline {TIMELINE}")
             time.sleep(0.1)
 
