@@ -22,12 +22,13 @@ from visualiser import cpu_time
 from eel_gaits import Law, Term
 
 STARTS, SECONDS, LAWS = 5, 10.0, 31
+FIRST_WORDS = {"dynamics": "waiting for a law", "gait_generator": "published on", "visualiser": "saving to"}
 SETTLED = 2.0  # s of simulated time, when all have found each other
 
 
 def nodes():
-    """Start of the dynamics node; CPU time of it and of the gait generator while they swim; how evenly samples are
-    published; and how soon a law that is published moves them."""
+    """Start of the dynamics node, and end of each node; CPU time of it and of the gait generator while they swim; how
+    evenly samples are published; and how soon a law that is published moves them."""
     with tempfile.TemporaryDirectory() as folder:
         yield from _measured(Path(folder), reserve_domain())
 
@@ -44,6 +45,13 @@ def _measured(folder: Path, domain):
     try:
         starts = [_seconds_to_start(start) for _ in range(STARTS)]
         yield "from its start to waiting for a law", statistics.median(starts), "s"
+        for executable, words in FIRST_WORDS.items():
+            ends = [_seconds_to_end(start, executable, words, folder) for _ in range(STARTS)]
+            yield (
+                f"{executable}, from SIGINT to its end",
+                statistics.median(ends),
+                f"s, median (greatest {max(ends):.2g})",
+            )
         os.environ.update(domain.environment())
         client = SwimClient(domain=domain.number)
         published = []
@@ -88,6 +96,15 @@ def _seconds_to_start(start) -> float:
     seconds = time.monotonic() - began
     node.end()
     return seconds
+
+
+def _seconds_to_end(start, executable: str, words: str, folder: Path) -> float:
+    settings = ("sink:=[save]", f"recording:={folder / 'run.rrd'}") if executable == "visualiser" else ()
+    node = start(executable, *settings)
+    node.wait_for_output(words)
+    began = time.monotonic()
+    assert node.interrupt() == 0, node.output()
+    return time.monotonic() - began
 
 
 def _spent(swimming) -> np.ndarray:

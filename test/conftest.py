@@ -15,15 +15,6 @@ sys.path.insert(0, str(ROOT / "tools"))
 from node_process import NodeProcess  # noqa: E402
 from ros_domain import reserve_domain  # noqa: E402
 
-REAL_PROCESSES = {"start", "start_for_module", "network", "fresh_domain"}  # fixtures of tests over real DDS
-
-
-def pytest_collection_modifyitems(items):
-    """A test of real processes that fails is tried once more (and shown as RERUN): the machine may have stood still."""
-    for item in items:
-        if REAL_PROCESSES & set(item.fixturenames):
-            item.add_marker(pytest.mark.flaky(reruns=1))
-
 
 @pytest.fixture(scope="session", autouse=True)
 def ros_domain(tmp_path_factory):

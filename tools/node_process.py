@@ -9,6 +9,7 @@ import time
 from pathlib import Path
 
 PR_SET_PDEATHSIG = 1  # linux/prctl.h: the signal that the child gets when its parent has died
+PROMPT = 4.0  # s: far above what a good end takes (under 1 s), below any wait for the network (5 s and more)
 MIDDLEWARE = "RTPS_TRANSPORT_SHM"  # Fast DDS: shared memory that is held by a process that does not answer
 
 

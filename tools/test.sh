@@ -13,7 +13,8 @@ stop() {
 }
 trap stop INT TERM
 begin() {   # NAME TESTS...: into out/test-NAME.log
-    python -m pytest -m "not soak" "${@:2}" > "out/test-$1.log" 2>&1 &
+    # a job in the background would ignore SIGINT, and so would pytest
+    env --default-signal=INT python -m pytest -m "not soak" "${@:2}" > "out/test-$1.log" 2>&1 &
     beside[$1]=$!
 }
 

@@ -2,7 +2,6 @@
 
 import math
 import signal
-import struct
 import time
 from pathlib import Path
 
@@ -14,8 +13,9 @@ from eel_viz.definitions import definition, message_class, type_hash
 from eel_viz.echo import as_yaml, picked
 from eel_viz.topics import GLOBAL, OWN
 from fake_swimmer import TOPICS, arrived, diagnostics, found, messages
+from node_process import PROMPT
 from rosbags.highlevel import AnyReader
-from rosbags.rosbag2 import Reader, ReaderError
+from rosbags.rosbag2 import Reader
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 SWIMMER = str(Path(__file__).with_name("fake_swimmer.py"))
@@ -36,7 +36,7 @@ def so_far(folder):
     """As `contents`, of a bag that is being recorded; nothing where it has changed while it was read."""
     try:
         return contents(folder)
-    except (ReaderError, ValueError, KeyError, IndexError, OSError, struct.error):
+    except Exception:  # rosbags then finds anything, a size beyond all memory too
         return {}
 
 
@@ -106,9 +106,7 @@ def test_types_that_are_not_installed_are_named():
             call("no_msgs/msg/None")
 
 
-@pytest.mark.fault(
-    "ending", "SIGINT or SIGTERM while `record` records", "exit within 1 s, status 0; the bag is complete"
-)
+@pytest.mark.fault("ending", "SIGINT or SIGTERM while `record` records", "prompt exit, status 0; the bag is complete")
 @pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_closes_the_bag_well(start, network, tmp_path, sent):
     recorder = start("record", "-o", str(tmp_path / "bag"))
@@ -118,7 +116,7 @@ def test_a_signal_closes_the_bag_well(start, network, tmp_path, sent):
     for k in range(20):
         publisher.publish(messages(made_up.Swimmer(5), k * 10**8)["head_pose"])
     arrived(publisher)
-    assert recorder.time_to_end(sent) < 1.0
+    assert recorder.time_to_end(sent) < PROMPT
     assert recorder.status == 0, recorder.output()
     assert "Traceback" not in recorder.output()
     assert len(contents(tmp_path / "bag")["/head_pose"]) == 20
