@@ -1,6 +1,7 @@
 """For all tests: every test session in a ROS domain of its own, and no process left behind."""
 
 import contextlib
+import json
 import os
 import resource
 import subprocess
@@ -14,6 +15,16 @@ sys.path.insert(0, str(ROOT / "tools"))
 
 from node_process import NodeProcess  # noqa: E402
 from ros_domain import reserve_domain  # noqa: E402
+
+STARTS_IN_TURN = """
+import contextlib, importlib, io, json, sys
+main = importlib.import_module(sys.argv[1]).main
+for words in json.loads(sys.argv[2]):
+    sys.argv = ["node", *words]
+    with contextlib.redirect_stderr(io.StringIO()) as said:
+        status = main()
+    print(json.dumps([status, said.getvalue()]), flush=True)
+"""
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -55,6 +66,21 @@ def starter(folder):
 def start(tmp_path):
     """start(executable, *arguments) -> NodeProcess; all of them are gone when the test ends."""
     yield from starter(tmp_path)
+
+
+@pytest.fixture
+def start_in_turn(start):
+    """start_in_turn(module, [words, ...]) -> [(status, what it said), ...]: the `main` of a node's module with one
+    command line after the other, each of which it refuses; in one process, as imports take most of a start."""
+
+    def start_all(module: str, lines: list[list[str]]) -> list[tuple[int, str]]:
+        process = start(sys.executable, "-c", STARTS_IN_TURN, module, json.dumps(lines))
+        assert process.wait(90.0) == 0, process.output()
+        answers = [tuple(json.loads(line)) for line in process.output().splitlines() if "compiling" not in line]
+        assert len(answers) == len(lines)
+        return answers
+
+    return start_all
 
 
 @pytest.fixture(scope="module")

@@ -176,22 +176,18 @@ def test_a_refused_set_says_why_and_changes_nothing(generator, client):
 
 
 @pytest.mark.fault("parameters", "a bad parameter of the gait generator", "one line, status 2")
-@pytest.mark.parametrize(
-    ("argument", "line"),
-    [
-        ("period:=-1", "gait_generator: period must be >= 0.001 s, got -1.0"),
-        ("period:=.inf", "gait_generator: period must be finite, got inf"),
-        ("period:=fast", "gait_generator: period must be a number, got 'fast'"),
-        ("gait:=swim", "gait_generator: unknown gait 'swim', must be one of"),
-        ("bend_full:=0", "gait_generator: bend_full must be > bend_start (1 s), got 0.0"),
-        ("transition:=[1.0]", "gait_generator: transition must be a number, got"),
-    ],
-)
-def test_a_bad_parameter_at_start_ends_it_with_one_line_and_status_2(start, argument, line):
-    process = start("gait_generator", "--ros-args", "-p", argument)
-    assert process.wait(90.0) == 2
-    assert process.output().startswith(line)
-    assert process.output().count("\n") == 1
+def test_bad_parameters_at_start_are_one_line_each_and_status_2(start_in_turn):
+    bad = {
+        "period:=-1": "gait_generator: period must be >= 0.001 s, got -1.0",
+        "period:=.inf": "gait_generator: period must be finite, got inf",
+        "period:=fast": "gait_generator: period must be a number, got 'fast'",
+        "gait:=swim": "gait_generator: unknown gait 'swim', must be one of",
+        "bend_full:=0": "gait_generator: bend_full must be > bend_start (1 s), got 0.0",
+        "transition:=[1.0]": "gait_generator: transition must be a number, got",
+    }
+    lines = [["--ros-args", "-p", argument] for argument in bad]
+    for line, (status, said) in zip(bad.values(), start_in_turn("eel_gaits.node", lines), strict=True):
+        assert status == 2 and said.startswith(line) and said.count("\n") == 1, said
 
 
 def test_a_bad_params_file_ends_it_with_status_2(start, tmp_path):

@@ -175,27 +175,21 @@ def test_bad_messages_are_said_once_each_and_the_rest_goes_on(start, network, tm
 
 
 @pytest.mark.fault("parameters", "a bad parameter of the visualiser", "one line, status 2")
-@pytest.mark.parametrize(
-    ("setting", "words"),
-    [
-        ("sink:=[floppy]", "sink must be some of spawn, connect, serve, save or auto, got 'floppy'"),
-        ("sink:=7", "sink must be a list of texts, got 7"),
-        ("rate:=0", "rate must be >= 0.1 Hz"),
-        ("rate:=0.0", "rate"),
-        ("rate:=often", "rate must be a number, got 'often'"),
-        ("port:=1", "port"),
-        ("compare:=/", "compare must be another namespace than the swimmer's own, got '/'"),
-        ("blueprint:=mine", "blueprint must be one of overview, torques, motion, compare, got 'mine'"),
-    ],
-)
-def test_what_cannot_be_is_refused_in_one_line_with_status_2(start, tmp_path, monkeypatch, setting, words):
+def test_what_cannot_be_is_refused_in_one_line_with_status_2(start_in_turn, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    given = [setting] if setting.startswith("sink") else ["sink:=[save]", setting]
-    node = start("visualiser", "--ros-args", *[word for one in given for word in ("-p", one)])
-    assert node.wait(90.0) == 2, node.output()
-    said = [line for line in node.output().splitlines() if line.strip()]
-    assert len(said) == 1, node.output()
-    assert words in said[0]
+    cannot_be = {
+        "sink:=[floppy]": "sink must be some of spawn, connect, serve, save or auto, got 'floppy'",
+        "sink:=7": "sink must be a list of texts, got 7",
+        "rate:=0": "rate must be >= 0.1 Hz",
+        "rate:=0.0": "rate",
+        "rate:=often": "rate must be a number, got 'often'",
+        "port:=1": "port",
+        "compare:=/": "compare must be another namespace than the swimmer's own, got '/'",
+        "blueprint:=mine": "blueprint must be one of overview, torques, motion, compare, got 'mine'",
+    }
+    lines = [["--ros-args", "-p", "sink:=[save]", "-p", setting] for setting in cannot_be]
+    for words, (status, said) in zip(cannot_be.values(), start_in_turn("eel_viz.node", lines), strict=True):
+        assert status == 2 and said.count("\n") == 1 and words in said, said
 
 
 @pytest.mark.fault("names", "words for the visualiser that are no ROS arguments", "one line, status 2; --help: a usage")
