@@ -35,11 +35,15 @@ BAD = {
     "a parameter of the dynamics node out of its bounds, of another type or unknown",
     "one line that names it, what it must be and what it got; status 2",
 )
-def test_bad_parameters_are_one_line_each_and_status_2(start_in_turn):
-    given = [["--ros-args", *(part for each in given for part in ("-p", each))] for given, _ in BAD.values()]
-    for (what, (_, words)), (status, said) in zip(BAD.items(), start_in_turn("eel_dynamics.node", given), strict=True):
-        assert status == 2 and said.startswith("dynamics: ") and said.count("\n") == 1, (what, said)
-        assert all(word in said for word in words), (what, said)
+@pytest.mark.parametrize("what", BAD)
+def test_bad_parameter_is_one_line_and_status_2(start, what):
+    given, words = BAD[what]
+    node = start("dynamics", "--ros-args", *(part for each in given for part in ("-p", each)))
+    assert node.wait(LIMIT) == 2, node.output()
+    lines = [line for line in node.output().splitlines() if line.strip() and "compiling" not in line]
+    assert len(lines) == 1 and lines[0].startswith("dynamics: ") and all(word in lines[0] for word in words), (
+        node.output()
+    )
 
 
 def body_file(tmp_path, rows):
@@ -51,18 +55,20 @@ def body_file(tmp_path, rows):
 @pytest.mark.fault(
     "parameters", "a body file with negative, unsorted or too few values", "one line that names the column; status 2"
 )
-def test_bad_body_files_are_one_line_each_and_status_2(start_in_turn, tmp_path):
-    bodies = {
-        "negative": ([(0, 0, 0), (0.3, -0.02, 0.03), (0.6, 0.02, 0.03), (1, 0.01, 0.01)], ("half_width", "-0.02")),
-        "unsorted": ([(0, 0, 0), (0.6, 0.02, 0.03), (0.3, 0.02, 0.03), (1, 0.01, 0.01)], ("x", "rise")),
-        "short": ([(0, 0, 0), (1, 0.01, 0.01)], ("x", "4 points")),
-    }
-    lines = []
-    for name, (rows, _) in bodies.items():
-        (tmp_path / name).mkdir()
-        lines.append(["--ros-args", "-p", f"body:={body_file(tmp_path / name, rows)}"])
-    for (_, words), (status, said) in zip(bodies.values(), start_in_turn("eel_dynamics.node", lines), strict=True):
-        assert status == 2 and said.count("\n") == 1 and all(word in said for word in words), said
+@pytest.mark.parametrize(
+    ("rows", "words"),
+    [
+        ([(0, 0, 0), (0.3, -0.02, 0.03), (0.6, 0.02, 0.03), (1, 0.01, 0.01)], ("half_width", "-0.02")),
+        ([(0, 0, 0), (0.6, 0.02, 0.03), (0.3, 0.02, 0.03), (1, 0.01, 0.01)], ("x", "rise")),
+        ([(0, 0, 0), (1, 0.01, 0.01)], ("x", "4 points")),
+    ],
+    ids=["negative", "unsorted", "too short"],
+)
+def test_bad_body_file_is_one_line_and_status_2(start, tmp_path, rows, words):
+    node = start("dynamics", "--ros-args", "-p", f"body:={body_file(tmp_path, rows)}")
+    assert node.wait(LIMIT) == 2, node.output()
+    lines = [line for line in node.output().splitlines() if line.strip() and "compiling" not in line]
+    assert len(lines) == 1 and all(word in lines[0] for word in words), node.output()
 
 
 @pytest.mark.fault("parameters", "a parameter file that is wrong", "one line, status 2, no traceback")
