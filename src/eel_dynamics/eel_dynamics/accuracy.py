@@ -16,6 +16,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+from eel_gaits.quantity import is_finite
+from eel_gaits.wording import shown
 
 from .effort import USUAL, Effort
 from .kinks import WATCHED
@@ -77,30 +79,36 @@ class Accuracy:
     def __post_init__(self):
         if self.step is not None or self.fixed is not None:
             object.__setattr__(self, "method", "classical")
-        if self.method not in ORDERS or (self.method == "classical" and self.step is None and self.fixed is None):
+        if (
+            not isinstance(self.method, str)
+            or self.method not in ORDERS
+            or (self.method == "classical" and self.step is None and self.fixed is None)
+        ):
             raise ValueError(
-                f"accuracy method must be adams, dormand_prince or (with a step) classical, got {self.method!r}"
+                f"accuracy method must be adams, dormand_prince or (with a step) classical, got {shown(self.method)}"
             )
         orders = ORDERS[self.method]
         if self.order is None:
             object.__setattr__(self, "order", 5 if 5 in orders else orders[0])
         if isinstance(self.order, bool) or self.order not in orders:
             possible = f"{orders[0]} to {orders[-1]}" if len(orders) > 1 else f"{orders[0]}"
-            raise ValueError(f"accuracy order of the method {self.method} must be {possible}, got {self.order!r}")
+            raise ValueError(f"accuracy order of the method {self.method} must be {possible}, got {shown(self.order)}")
         object.__setattr__(self, "order", int(self.order))
-        if not (np.isfinite(self.resolution) and 1.0 <= self.resolution <= 1000.0):
+        if not (is_finite(self.resolution) and 1.0 <= self.resolution <= 1000.0):
             raise ValueError(
-                f"accuracy resolution must lie in 1 to 1000 points per body length, got {self.resolution!r}"
+                f"accuracy resolution must lie in 1 to 1000 points per body length, got {shown(self.resolution)}"
             )
-        if self.kinks not in KINKS:
-            raise ValueError(f"accuracy kinks must be one of {', '.join(KINKS)}, got {self.kinks!r}")
-        if not (np.isfinite(self.tolerance) and self.tolerance > 0.0):
-            raise ValueError(f"accuracy tolerance must be > 0, got {self.tolerance!r}")
-        if self.step is not None and not (np.isfinite(self.step) and self.step > 0.0):
-            raise ValueError(f"accuracy step must be > 0 s, got {self.step!r}")
+        if not isinstance(self.kinks, str) or self.kinks not in KINKS:
+            raise ValueError(f"accuracy kinks must be one of {', '.join(KINKS)}, got {shown(self.kinks)}")
+        if not (is_finite(self.tolerance) and self.tolerance > 0.0):
+            raise ValueError(f"accuracy tolerance must be > 0, got {shown(self.tolerance)}")
+        if self.step is not None and not (is_finite(self.step) and self.step > 0.0):
+            raise ValueError(f"accuracy step must be > 0 s, got {shown(self.step)}")
         unknown = self.fixed == 0.0 and self.target is not None  # until the scene is known
-        if self.fixed is not None and (self.step is not None or not (unknown or 0.0 < self.fixed < np.inf)):
-            raise ValueError(f"accuracy fixed must be > 0 steps by period, and no step given, got {self.fixed!r}")
+        if self.fixed is not None and (
+            self.step is not None or not (unknown or (is_finite(self.fixed) and self.fixed > 0.0))
+        ):
+            raise ValueError(f"accuracy fixed must be > 0 steps by period, and no step given, got {shown(self.fixed)}")
 
     def points_per_length(self, waves: float) -> float:
         """Points per body length for a shape of `waves` waves on the body; one wave or less needs `resolution`."""
@@ -173,17 +181,17 @@ class Accuracy:
                 return replace(wanted, name=name, method="classical", order=4, fixed=0.0)
         try:
             target = np.nan if isinstance(value, bool) else float(value)
-        except (TypeError, ValueError):
+        except (TypeError, ValueError, OverflowError):
             target = np.nan
         if np.isnan(target):
             raise ValueError(
                 f"accuracy must be one of {', '.join(PRESETS)}, a target relative error, or a budget such as 'fastest "
-                f"within 5 ms per second' (a name or number may have ', {FIXED}' behind it), got {value!r}"
+                f"within 5 ms per second' (a name or number may have ', {FIXED}' behind it), got {shown(value)}"
             )
         if not FINEST <= target <= COARSEST:
             raise ValueError(
                 f"accuracy must be a target relative error from {FINEST:g} to {COARSEST:g} (double precision carries a "
-                f"run no further than that), got {value!r}"
+                f"run no further than that), got {shown(value)}"
             )
         return Accuracy(name=f"{target:g}", target=target, **ANY)
 

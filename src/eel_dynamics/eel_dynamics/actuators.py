@@ -8,6 +8,7 @@ against the part behind: their power per length is -C . dK/dt, C of eq. 26 of Bo
 from dataclasses import dataclass
 
 import numpy as np
+from eel_gaits.wording import shown
 
 from .analysis import area, power_density
 
@@ -41,6 +42,7 @@ class Motors:
         return {name: np.sqrt(np.mean(getattr(self, name) ** 2, axis=0)) for name in QUANTITIES}
 
 
+MOST = 1000  # motors per axis
 QUANTITIES = ("angle", "speed", "torque", "power")
 
 
@@ -92,8 +94,8 @@ def actuators_of(run, joints: int) -> Actuators:
     """
     from scipy.interpolate import CubicSpline
 
-    if isinstance(joints, bool) or not isinstance(joints, (int, np.integer)) or joints < 1:
-        raise ValueError(f"joints must be a whole number >= 1, got {joints!r}")
+    if isinstance(joints, bool) or not isinstance(joints, (int, np.integer)) or not 1 <= joints <= MOST:
+        raise ValueError(f"joints must be a whole number from 1 to {MOST}, got {shown(joints)}")
     if run.torque is None:
         raise ValueError("actuators needs a run with scene internal_wrench on")
     density = power_density(run)

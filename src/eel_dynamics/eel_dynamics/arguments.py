@@ -4,27 +4,22 @@ import math
 from functools import lru_cache
 
 import numpy as np
+from eel_gaits.quantity import is_finite, numbers
+from eel_gaits.wording import shown
 
 
 def checked_instance(name: str, value, kind: type):
     if not isinstance(value, kind):
-        raise ValueError(f"{name} must be a {kind.__name__}, got {value!r}")
+        raise ValueError(f"{name} must be a {kind.__name__}, got {shown(value)}")
     return value
 
 
 def checked_number(name: str, value, unit: str, *, zero: bool = False) -> float:
     """`value` as a finite float > 0, or >= 0 where `zero` may be."""
     if not is_finite(value) or value < 0.0 or (value == 0.0 and not zero):
-        raise ValueError(f"{name} must be finite and {'>=' if zero else '>'} 0 {unit}, got {value!r}")
+        rule = f"finite and {'>=' if zero else '>'} 0 {unit}".rstrip()
+        raise ValueError(f"{name} must be {rule}, got {shown(value)}")
     return float(value)
-
-
-def is_finite(value) -> bool:
-    """Whether `value` is one finite number; a text is none."""
-    try:
-        return math.isfinite(value) and not getattr(value, "ndim", 0)
-    except (TypeError, ValueError, OverflowError):
-        return False
 
 
 def checked_row(name: str, values, size: int | None) -> np.ndarray:
@@ -40,14 +35,9 @@ def _checked_tuple(name: str, values: tuple, size: int | None) -> np.ndarray:
 
 
 def _checked_row(name: str, values, size: int | None) -> np.ndarray:
-    try:
-        if np.iscomplexobj(values):
-            raise TypeError
-        array = np.array(values, dtype=float)
-    except (TypeError, ValueError):
-        raise ValueError(f"{name} must be real numbers, got {values!r}") from None
+    array = numbers(name, values)
     if array.ndim != 1 or (size is not None and len(array) != size):
-        raise ValueError(f"{name} must be {'a row of' if size is None else size} numbers, got {array.size}")
+        raise ValueError(f"{name} must be {'a row of' if size is None else size} numbers, got {shown(values)}")
     if not np.isfinite(array).all():
         index = np.flatnonzero(~np.isfinite(array))[0]
         raise ValueError(f"{name} must be finite, got {array[index]} at index {index}")
@@ -71,11 +61,11 @@ def equidistant(length: float, count: int) -> np.ndarray:
 def checked_stations(stations, length: float) -> np.ndarray:
     if isinstance(stations, (int, np.integer)) and not isinstance(stations, bool):
         if not 2 <= stations <= 100_000:
-            raise ValueError(f"stations must be 2 or more, or their X in m, got {stations!r}")
+            raise ValueError(f"stations must be 2 or more, or their X in m, got {shown(stations)}")
         return equidistant(length, int(stations)).copy()
     x = checked_row("stations", stations, None)
     if len(x) < 1 or np.any(np.diff(x) <= 0.0) or x[0] < 0.0 or x[-1] > length * (1 + 1e-12):
-        raise ValueError(f"stations must rise within 0 to {length} m, got {stations!r}")
+        raise ValueError(f"stations must rise within 0 to {length} m, got {shown(stations)}")
     return np.minimum(x, length)
 
 
@@ -83,15 +73,15 @@ def check_planar(position, orientation, twist):
     """`ValueError` unless the initial state lies in the plane z = const and stays there."""
     x, y, _, _ = orientation.tolist()
     if abs(x) > 1e-12 or abs(y) > 1e-12:
-        raise ValueError(f"orientation must be a turn about z in a planar scene, got {orientation.tolist()}")
+        raise ValueError(f"orientation must be a turn about z in a planar scene, got {shown(orientation.tolist())}")
     roll, pitch, _, _, _, heave = twist.tolist()
     if roll or pitch or heave:
         raise ValueError(
-            f"twist must lie in the plane of a planar scene (Omega_1 = Omega_2 = V_3 = 0), got {twist.tolist()}"
+            f"twist must lie in the plane of a planar scene (Omega_1 = Omega_2 = V_3 = 0), got {shown(twist.tolist())}"
         )
 
 
 def check_planar_law(law):
     """`ValueError` unless `law` bends the body in the plane."""
     if not law.in_plane:
-        raise ValueError(f"law {law.name!r} has a pitch term: a planar scene cannot bend out of its plane")
+        raise ValueError(f"law {shown(law.name)} has a pitch term: a planar scene cannot bend out of its plane")

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from eel_gaits.law import Law
+from eel_gaits.wording import shown
 
 from .abreast import MOST_ABREAST
 from .accuracy import Accuracy
@@ -35,6 +36,7 @@ from .stopping import SimulationStopped
 ALONG = "backbone", "section_orientation", "curvature", "curvature_rate", "torque", "force", "fluid_force"
 MOST_TOGETHER = 32  # swimmers of one call of the loops: the lock of Python is let go once for all of them, and
 # lanes stand empty at the end of it only
+MOST_THREADS = 1000
 PARTS_PER_THREAD = 4  # at least, so that none waits long for the others at the end
 
 
@@ -228,8 +230,8 @@ def _for_each(swim, count: int, threads: int | None, progress, lanes: int):
     lanes: how many can swim abreast."""
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
     threads = cores if threads is None else threads
-    if isinstance(threads, bool) or not isinstance(threads, (int, np.integer)) or threads < 1:
-        raise ValueError(f"threads must be a whole number >= 1, got {threads!r}")
+    if isinstance(threads, bool) or not isinstance(threads, (int, np.integer)) or not 1 <= threads <= MOST_THREADS:
+        raise ValueError(f"threads must be a whole number from 1 to {MOST_THREADS}, got {shown(threads)}")
     some = _size_of_parts(count, threads, lanes)
     parts = [range(1), *(range(k, min(k + some, count)) for k in range(1, count, some))]
 

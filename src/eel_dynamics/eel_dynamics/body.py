@@ -4,12 +4,15 @@ A section at X has the half-height a(X) along E3 (its major axis on the paper's 
 X runs from 0 at the nose to the length at the tail. The nose is pointed, a(0) = b(0) = 0: it sheds no wake.
 """
 
+import os
 import warnings
 from functools import cache, cached_property, lru_cache
 from pathlib import Path
 
 import numpy as np
+from eel_gaits.wording import shown
 
+from .arguments import checked_instance, checked_number, checked_row
 from .body_file import columns_of
 from .profile import ArrayProfile, FunctionProfile
 
@@ -49,35 +52,35 @@ class Body:
         name: str = "body",
     ):
         if x is not None:
-            x = _array("x", x)
+            x = checked_row("body x", x, None)
             if len(x) < 4 or np.any(np.diff(x) <= 0.0) or x[0] != 0.0:
                 raise ValueError(
                     f"body x must rise from 0 over 4 points or more, got {len(x)} points from {x[:1]} to {x[-1:]}"
                 )
             length = x[-1] if length is None else length
-            if abs(x[-1] - _positive("length", length, "m")) > 1e-9 * x[-1]:
+            if abs(x[-1] - checked_number("body length", length, "m")) > 1e-9 * x[-1]:
                 raise ValueError(f"body x must end at the length {length} m, got {x[-1]}")
         elif length is None:
             raise ValueError("body length must be given, in m, where half_width and half_height are functions")
-        self.length = float(x[-1]) if x is not None else _positive("length", length, "m")
-        self.density = _positive("density", density, "kg/m^3")
-        self.name = str(name)
+        self.length = float(x[-1]) if x is not None else checked_number("body length", length, "m")
+        self.density = checked_number("body density", density, "kg/m^3")
+        self.name = checked_instance("body name", name, str)
         self.kinks = self._checked_kinks(kinks)
         self.panel_ends = (*(self.kinks or (PANEL_OF_NOSE * self.length,)), self.length)
         bounds = (0.0, *self.panel_ends)
         kind = (
             FunctionProfile
             if x is None
-            else (lambda name, values, bounds: ArrayProfile(name, x, _array(name, values), bounds))
+            else (lambda name, values, bounds: ArrayProfile(name, x, checked_row(f"body {name}", values, None), bounds))
         )
         self._half_width = kind("half_width", half_width, bounds)
         self._half_height = kind("half_height", half_height, bounds)
         self.nose = self._checked_nose(nose)
-        self.nose_added_mass = _positive("nose_added_mass", nose_added_mass, "", zero=True)
-        self.nose_drag = _positive("nose_drag", nose_drag, "", zero=True)
-        self.roll_drag = _positive("roll_drag", roll_drag, "", zero=True)
-        self.lateral_drag = _positive("lateral_drag", lateral_drag, "", zero=True)
-        self.vertical_drag = _positive("vertical_drag", vertical_drag, "", zero=True)
+        self.nose_added_mass = checked_number("body nose_added_mass", nose_added_mass, "", zero=True)
+        self.nose_drag = checked_number("body nose_drag", nose_drag, "", zero=True)
+        self.roll_drag = checked_number("body roll_drag", roll_drag, "", zero=True)
+        self.lateral_drag = checked_number("body lateral_drag", lateral_drag, "", zero=True)
+        self.vertical_drag = checked_number("body vertical_drag", vertical_drag, "", zero=True)
 
     def half_width(self, x) -> np.ndarray:
         """b(X) [m] along E2 at `x` [m]."""
@@ -150,10 +153,13 @@ class Body:
         )
 
     @staticmethod
-    @lru_cache(maxsize=64)
     def kern2006(length: float = 1.0) -> "Body":
         """The anguilliform swimmer of Kern and Koumoutsakos, J. Exp. Biol. 209 (2006): volume 0.0059326 length^3."""
-        length = _positive("length", length, "m")
+        return Body._kern2006(checked_number("body length", length, "m"))
+
+    @staticmethod
+    @lru_cache(maxsize=64)
+    def _kern2006(length: float) -> "Body":
         head, width_tail, tail, middle, height = 0.04, 0.01, 0.95, 0.51, 0.08
 
         def half_width(x):
@@ -178,12 +184,14 @@ class Body:
     def named(name: str) -> "Body":
         """A body of the library by its name: boyer2010, kern2006."""
         if name not in NAMED:
-            raise ValueError(f"body must be one of {', '.join(NAMED)} or a file, got {name!r}")
+            raise ValueError(f"body must be one of {', '.join(NAMED)} or a file, got {shown(name)}")
         return getattr(Body, name)()
 
     @staticmethod
     def from_file(path) -> "Body":
         """A body from columns x, half_width, half_height [m] of a .csv (with a header line) or .npz file."""
+        if not isinstance(path, (str, os.PathLike)):
+            raise ValueError(f"body file must be a path, got {shown(path)}")
         path = Path(path)
         body = Body(**columns_of(path), name=path.stem)
         if body.length > LONGEST:
@@ -191,53 +199,19 @@ class Body:
         return body
 
     def _checked_kinks(self, kinks) -> tuple[float, ...]:
-        values = _array("kinks", kinks)
+        values = checked_row("body kinks", kinks, None)
         if np.any(np.diff(values) <= 0.0) or np.any(values <= 0.0) or np.any(values >= self.length):
-            raise ValueError(f"body kinks must rise inside (0, {self.length}) m, got {tuple(values.tolist())}")
+            raise ValueError(f"body kinks must rise inside (0, {self.length}) m, got {shown(values.tolist())}")
         return tuple(values.tolist())
 
     def _checked_nose(self, nose) -> tuple[float, float, float]:
         if nose is None:
             end = self.panel_ends[0]
             return float(self.half_height(end)), float(self.half_width(end)), float(end)
-        values = _array("nose", nose)
+        values = checked_row("body nose", nose, None)
         if values.shape != (3,) or np.any(values < 0.0):
-            raise ValueError(f"body nose must be three lengths (a_o, b_o, c_o) >= 0 m, got {nose!r}")
+            raise ValueError(f"body nose must be three lengths (a_o, b_o, c_o) >= 0 m, got {shown(nose)}")
         return tuple(values.tolist())
 
 
 NAMED = ("boyer2010", "kern2006")
-
-
-def _positive(name: str, value, unit: str, zero: bool = False) -> float:
-    try:
-        number = float(value)
-    except (TypeError, ValueError):
-        number = np.nan
-    if not np.isfinite(number) or number < 0.0 or (number == 0.0 and not zero):
-        raise ValueError(
-            f"body {name} must be finite and {'>=' if zero else '>'} 0 {unit}".rstrip() + f", got {value!r}"
-        )
-    return number
-
-
-def _array(name: str, values) -> np.ndarray:
-    """`values` as a row of finite floats; `ValueError` in one line for others, complex ones too."""
-    try:
-        if np.iscomplexobj(values):
-            raise TypeError
-        array = np.array(values, dtype=float)
-    except (TypeError, ValueError):
-        raise ValueError(f"body {name} must be real numbers, got {_shown(values)}") from None
-    if array.ndim != 1:
-        raise ValueError(f"body {name} must be a row of numbers, got an array of shape {array.shape}")
-    if not np.all(np.isfinite(array)):
-        worst = np.flatnonzero(~np.isfinite(array))[0]
-        raise ValueError(f"body {name} must be finite, got {array[worst]} at index {worst}")
-    return array
-
-
-def _shown(value) -> str:
-    """`value` in one short line."""
-    text = " ".join(repr(value).split())
-    return text if len(text) <= 80 else f"{text[:80]}..."

@@ -6,9 +6,9 @@ from pathlib import Path
 from zipfile import BadZipFile
 
 import numpy as np
+from eel_gaits.wording import one_line, shown
 
 COLUMNS = ("x", "half_width", "half_height")
-SHOWN = 40  # characters of a cell that is no number
 
 
 def columns_of(path: Path) -> dict[str, np.ndarray]:
@@ -18,10 +18,12 @@ def columns_of(path: Path) -> dict[str, np.ndarray]:
             raise ValueError("it is no regular file")
         found = _archive(path) if path.suffix == ".npz" else _table(path)
     except (OSError, ValueError, csv.Error) as error:
-        raise ValueError(f"body file {path} cannot be read: {error}") from None
+        raise ValueError(f"body file {shown(str(path))} cannot be read: {one_line(error)}") from None
     missing = [name for name in COLUMNS if name not in found]
     if missing:
-        raise ValueError(f"body file {path} must have columns {', '.join(COLUMNS)}; {', '.join(missing)} missing")
+        raise ValueError(
+            f"body file {shown(str(path))} must have columns {', '.join(COLUMNS)}; {', '.join(missing)} missing"
+        )
     return {name: found[name] for name in COLUMNS}
 
 
@@ -54,5 +56,4 @@ def _number(name: str, cell: str) -> float:
     try:
         return float(cell)
     except ValueError:
-        shown = cell if len(cell) <= SHOWN else f"{cell[:SHOWN]}..."
-        raise ValueError(f"{name} must be a number, got {shown!r}") from None
+        raise ValueError(f"{name} must be a number, got {shown(cell)}") from None

@@ -1,6 +1,7 @@
 """What bounds the steps of a run: the accuracy, the shape's and the motion's times, the body."""
 
 from eel_gaits.law import Law
+from eel_gaits.wording import shown
 
 from .accuracy import Accuracy
 from .integrator import Control
@@ -34,7 +35,7 @@ def check_cost(law: Law, most_evaluations: float):
     needed = 1.0 / (LONGEST_STEP * shortest)
     if needed > most_evaluations:
         raise ValueError(
-            f"law {law.name!r} has a period of {shortest:g} s, which takes {needed:.3g} evaluations per simulated "
+            f"law {shown(law.name)} has a period of {shortest:g} s, which takes {needed:.3g} evaluations per simulated "
             f"second or more: most_evaluations is {most_evaluations:.3g}"
         )
 

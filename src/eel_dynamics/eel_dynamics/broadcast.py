@@ -4,6 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 from eel_gaits.law import Law
+from eel_gaits.quantity import numbers
+from eel_gaits.wording import shown
 
 from .accuracy import Accuracy
 from .arguments import check_planar, check_planar_law, checked_instance, checked_number, checked_quaternion, checked_row
@@ -88,15 +90,12 @@ def _several(name: str, values, kind: type) -> list:
     try:
         values = list(values)
     except TypeError:
-        raise ValueError(f"{name} must be a {kind.__name__} or a sequence of them, got {values!r}") from None
+        raise ValueError(f"{name} must be a {kind.__name__} or a sequence of them, got {shown(values)}") from None
     return [checked_instance(f"{name}[{index}]", value, kind) for index, value in enumerate(values)]
 
 
 def _rows(name: str, values, check) -> list[np.ndarray]:
-    try:
-        array = np.array(values, dtype=float)
-    except (TypeError, ValueError):
-        raise ValueError(f"{name} must be one row of numbers for all or one for each, got {values!r}") from None
+    array = numbers(name, values)
     if array.ndim == 1:
         return [check(name, array)]
     return [check(f"{name}[{index}]", row) for index, row in enumerate(np.atleast_1d(array))]

@@ -9,6 +9,8 @@ import time
 from dataclasses import dataclass, replace
 from functools import cache
 
+from eel_gaits.wording import shown
+
 from .accuracy import Accuracy, key_of, table
 from .effort import USUAL, Effort
 from .scene import Scene
@@ -36,7 +38,8 @@ class Budget:
             seconds = 0.0
         if not 0.0 < seconds < float("inf"):
             raise ValueError(
-                f"accuracy must give its budget as in 'fastest within 5 ms per second' (us, ms or s; > 0), got {text!r}"
+                "accuracy must give its budget as in 'fastest within 5 ms per second' (us, ms or s; > 0), "
+                f"got {shown(text)}"
             )
         return Budget(text.strip(), seconds)
 
@@ -52,7 +55,7 @@ class Budget:
             best = row["target"]
         if best is None:
             raise ValueError(
-                f"accuracy {self.name!r} cannot be met on this machine in this scene: the coarsest run takes "
+                f"accuracy {shown(self.name)} cannot be met on this machine in this scene: the coarsest run takes "
                 f"{1e3 * fastest:.3g} ms per second"
             )
         key = key_of(scene, plane)

@@ -6,6 +6,8 @@ A worker that is lost takes nothing with it but time: its work is given to the o
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
+from eel_gaits.wording import shown
+
 EXTRA = "dask", "distributed", "xarray"
 
 
@@ -40,7 +42,7 @@ def connected(scheduler=None, workers: int | None = None):
     try:
         client = Client(scheduler, timeout=10)
     except (OSError, TimeoutError, ValueError) as error:
-        raise ValueError(f"scheduler cannot be reached at {scheduler!r}: {error}") from None
+        raise ValueError(f"scheduler cannot be reached at {shown(scheduler)}: {error}") from None
     with client:
         yield client
 

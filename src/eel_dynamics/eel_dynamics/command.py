@@ -5,7 +5,6 @@ simulate falling --duration 20 --periods 4 --actuators 8
 simulate straight --set wavelength=0.8 --scene friction=laminar --accuracy 1e-6 --out run.npz
 """
 
-import argparse
 import csv
 import sys
 import time
@@ -14,10 +13,13 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
+from eel_gaits.command_line import Parser, complain
 from eel_gaits.output_file import NotWritten, check_output, replacing
 from eel_gaits.registry import GAITS, gait
+from eel_gaits.wording import shown
 
 from .accuracy import PRESETS
+from .actuators import MOST as MOST_JOINTS
 from .body import NAMED, Body
 from .bounds import MOST_EVALUATIONS
 from .ending import leave_on_interrupt
@@ -26,7 +28,6 @@ from .run import Run, simulate
 from .scene import Scene
 from .stopping import SimulationStopped
 
-MOST_ACTUATORS = 1000  # joints that --actuators prints a line or two of, each
 ARRAYS = [
     "time",
     "position",
@@ -60,13 +61,13 @@ def main(arguments: list[str] | None = None) -> int:
         with one_line_warnings("simulate"):
             return _swim(options, _checked_out(options.out))
     except NotWritten as error:
-        print(f"simulate: {error}", file=sys.stderr)
+        complain("simulate", error)
         return 1
     except (ValueError, OSError) as error:
-        print(f"simulate: {error}", file=sys.stderr)
+        complain("simulate", error)
         return 2
     except MemoryError as error:
-        print(f"simulate: the run does not fit into memory: {error}", file=sys.stderr)
+        complain("simulate", f"the run does not fit into memory: {error}")
         return 2
 
 
@@ -93,7 +94,7 @@ def _swim(options, out: Path | None) -> int:
             progress=Progress(options.duration),
         )
     except SimulationStopped as stopped:
-        print(f"simulate: {stopped}", file=sys.stderr)
+        complain("simulate", stopped)
         if out is not None and len(stopped.run.time):
             _write(stopped.run, out)
         return 3
@@ -121,9 +122,9 @@ class Progress:
             print(f"simulate: at {reached:.3g} s of {self._duration:g} s, about {left:.3g} s to go", file=sys.stderr)
 
 
-def _parser() -> argparse.ArgumentParser:
+def _parser() -> Parser:
     scene = ", ".join(item.name for item in fields(Scene))
-    parser = argparse.ArgumentParser(prog="simulate", description="Swim a gait offline and print the summary.")
+    parser = Parser(prog="simulate", description="Swim a gait offline and print the summary.")
     parser.add_argument("gait", nargs="?", default="falling", help=f"one of {', '.join(sorted(GAITS))} (falling)")
     parser.add_argument(
         "--set", action="append", default=[], metavar="NAME=VALUE", help="a number of the gait; may be repeated"
@@ -168,7 +169,7 @@ def _parser() -> argparse.ArgumentParser:
 def _pairs(option: str, texts: list[str]) -> list[tuple[str, str]]:
     for text in texts:
         if "=" not in text:
-            raise ValueError(f"{option} must be NAME=VALUE, got {text!r}")
+            raise ValueError(f"{option} must be NAME=VALUE, got {shown(text)}")
     check_names(texts)
     return [tuple(text.split("=", 1)) for text in texts]
 
@@ -183,8 +184,8 @@ def check_names(texts: list[str]):
 
 def _check_actuators(options, scene: Scene):
     """`ValueError` for what `Run.actuators` would refuse, before the swim."""
-    if not 1 <= options.actuators <= MOST_ACTUATORS:
-        raise ValueError(f"--actuators must be 1 to {MOST_ACTUATORS}, got {options.actuators}")
+    if not 1 <= options.actuators <= MOST_JOINTS:
+        raise ValueError(f"--actuators must be 1 to {MOST_JOINTS}, got {shown(options.actuators)}")
     if not scene.internal_wrench:
         raise ValueError("--actuators needs --scene internal_wrench=on, got off")
     if options.stations < 4:
@@ -195,18 +196,18 @@ def _number(name: str, text: str):
     try:
         values = tuple(float(part) for part in text.split(","))
     except ValueError:
-        raise ValueError(f"{name} must be a number, or several with commas, got {text!r}") from None
+        raise ValueError(f"{name} must be a number, or several with commas, got {shown(text)}") from None
     return values[0] if len(values) == 1 else values
 
 
 def _scene_value(name: str, text: str):
     kinds = {item.name: item for item in fields(Scene)}
     if name not in kinds:
-        raise ValueError(f"scene has no field {name!r}, it has: {', '.join(kinds)}")
+        raise ValueError(f"scene has no field {shown(name)}, it has: {', '.join(kinds)}")
     if isinstance(kinds[name].default, bool):
         words = {"true": True, "on": True, "1": True, "false": False, "off": False, "0": False}
         if text.lower() not in words:
-            raise ValueError(f"scene {name} must be true or false, got {text!r}")
+            raise ValueError(f"scene {name} must be true or false, got {shown(text)}")
         return words[text.lower()]
     return text if "choices" in kinds[name].metadata else _number(f"scene {name}", text)
 
@@ -216,12 +217,12 @@ def _checked_out(out: str | None) -> Path | None:
         return None
     path = Path(out)
     if path.suffix not in (".npz", ".csv", ".rrd"):
-        raise ValueError(f"--out must end in .npz, .csv or .rrd, got {out!r}")
+        raise ValueError(f"--out must end in .npz, .csv or .rrd, got {shown(out)}")
     if path.suffix == ".rrd" and find_spec("eel_viz") is None:
         raise ValueError("--out .rrd needs the package eel_viz, with rerun-sdk, which is not installed")
     check_output("--out", path)
     if path.exists():
-        print(f"simulate: {path} exists and will be overwritten", file=sys.stderr)
+        complain("simulate", f"{path} exists and will be overwritten")
     return path
 
 

@@ -10,6 +10,8 @@ import threading
 import time
 from collections import deque
 
+from eel_gaits.wording import shown
+
 from .accounts import Accounts
 from .pacing import Bell, Pace
 from .report import ERROR
@@ -283,13 +285,13 @@ class March:
         try:
             simulation.adopt(law, origin=origin)
         except UNFIT as error:
-            self._report.event("law", f"law {law.name!r} refused: {error}", ERROR, differing=True)
+            self._report.event("law", f"law {shown(law.name)} refused: {error}", ERROR, differing=True)
         except SimulationStopped as error:
             self._fail(error)
         else:
             self._origin = origin
             self._report.end("resting")
-            self._report.note("law taken on", f"law {law.name!r} taken on at t = {simulation.time:g} s")
+            self._report.note("law taken on", f"law {shown(law.name)} taken on at t = {simulation.time:g} s")
 
     def _add_samples(self, samples: dict):
         simulation = self._simulation

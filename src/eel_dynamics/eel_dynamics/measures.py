@@ -1,6 +1,7 @@
 """What a sweep keeps of each run: one number per measure, with its unit and its definition."""
 
 import numpy as np
+from eel_gaits.wording import shown
 
 from .run import Run
 
@@ -72,14 +73,14 @@ def measures_of(run: Run) -> dict[str, float]:
 def checked_point(found: dict) -> dict:
     """What is kept of a point, as plain numbers. `ValueError` that names the measure that is none."""
     if not isinstance(found.get("error"), str):
-        raise ValueError(f"'error' must be the point's own, a text, and no measure, got {found.get('error')!r}")
+        raise ValueError(f"'error' must be the point's own, a text, and no measure, got {shown(found.get('error'))}")
     point = {}
     for name, value in found.items():
         number = value.item() if hasattr(value, "item") and np.ndim(value) == 0 else value
         if not isinstance(name, str) or name == "stopped":
-            raise ValueError(f"measure must have a name other than 'stopped', got {name!r}")
+            raise ValueError(f"measure must have a name other than 'stopped', got {shown(name)}")
         if name != "error" and not isinstance(number, (bool, int, float)):
-            raise ValueError(f"measure {name!r} must be a real number, got {value!r}")
+            raise ValueError(f"measure {shown(name)} must be a real number, got {shown(value)}")
         point[name] = number
     return point
 

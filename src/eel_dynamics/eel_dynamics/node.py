@@ -11,6 +11,7 @@ from dataclasses import fields
 
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
+from eel_gaits.command_line import complain
 from eel_gaits.messages import law_from_message
 from eel_gaits.node import answer_words, take_overrides, warn_of_unknown
 from eel_gaits.serving import serve_once
@@ -159,7 +160,7 @@ def main(args=None) -> int:
         with one_line_warnings(NAME):
             node = DynamicsNode()
     except (ValueError, RuntimeError, ParameterException, NameValidationException) as error:
-        sys.stderr.write(f"{NAME}: {' '.join(str(error).split())}\n")
+        complain(NAME, error)
         rclpy.try_shutdown()
         return 2
     executor = SingleThreadedExecutor()

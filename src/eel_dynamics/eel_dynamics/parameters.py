@@ -7,6 +7,9 @@ gave. Poses and velocities are in ROS (REP-103) frames: world `odom`, head `base
 import math
 from dataclasses import MISSING, Field, dataclass, field, fields
 
+from eel_gaits.quantity import is_finite
+from eel_gaits.wording import shown
+
 from .bounds import MOST_EVALUATIONS
 
 
@@ -82,7 +85,8 @@ class DynamicsParameters:
         norm = math.sqrt(math.fsum(value * value for value in self.initial_orientation))
         if abs(norm - 1.0) > 1e-3:
             raise ValueError(
-                f"initial_orientation must be a unit quaternion, got {list(self.initial_orientation)} of norm {norm:g}"
+                f"initial_orientation must be a unit quaternion, got {shown(list(self.initial_orientation))} of norm "
+                f"{norm:g}"
             )
         object.__setattr__(self, "initial_orientation", tuple(value / norm for value in self.initial_orientation))
 
@@ -105,25 +109,25 @@ def checked(item: Field, value, name: str):
     default = item.default
     if isinstance(default, bool):
         if not isinstance(value, bool):
-            raise ValueError(f"{name} must be true or false, got {value!r}")
+            raise ValueError(f"{name} must be true or false, got {shown(value)}")
     elif isinstance(default, str):
-        if item.metadata.get("number") and isinstance(value, (int, float)) and not isinstance(value, bool):
+        if item.metadata.get("number") and is_finite(value) and not isinstance(value, bool):
             return float(value)
         if not isinstance(value, str):
             raise ValueError(
-                f"{name} must be a text{' or a number' if item.metadata.get('number') else ''}, got {_shown(value)}"
+                f"{name} must be a text{' or a number' if item.metadata.get('number') else ''}, got {shown(value)}"
             )
         if value not in item.metadata.get("choices", (value,)):
-            raise ValueError(f"{name} must be one of {', '.join(item.metadata['choices'])}, got {value!r}")
+            raise ValueError(f"{name} must be one of {', '.join(item.metadata['choices'])}, got {shown(value)}")
     elif isinstance(default, tuple):
         return _checked_vector(default, value, name)
     elif isinstance(default, int):
         if isinstance(value, bool) or not isinstance(value, int):
-            raise ValueError(f"{name} must be an integer, got {_shown(value)}")
+            raise ValueError(f"{name} must be an integer, got {shown(value)}")
         _check_bounds(item, value, name)
     else:
-        if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
-            raise ValueError(f"{name} must be a finite number, got {_shown(value)}")
+        if isinstance(value, bool) or not isinstance(value, (int, float)) or not is_finite(value):
+            raise ValueError(f"{name} must be a finite number, got {shown(value)}")
         value = float(value)
         if default is None and value == 0.0:
             return None
@@ -150,17 +154,14 @@ def limits(metadata) -> str:
 def _check_bounds(item: Field, value, name: str):
     low, high = item.metadata.get("minimum", -math.inf), item.metadata.get("maximum", math.inf)
     if not low <= value <= high or (item.metadata.get("exclusive") and value == low):
-        raise ValueError(f"{name} must be {limits(item.metadata)}, got {value:g}")
+        told = shown(value) if isinstance(value, int) else f"{value:g}"
+        raise ValueError(f"{name} must be {limits(item.metadata)}, got {told}")
 
 
 def _checked_vector(default: tuple, value, name: str) -> tuple:
     numbers = value if isinstance(value, (list, tuple)) or hasattr(value, "typecode") else ()
     if any(isinstance(number, (bool, str)) or not isinstance(number, (int, float)) for number in numbers):
         numbers = ()
-    if len(numbers) != len(default) or not all(math.isfinite(number) for number in numbers):
-        raise ValueError(f"{name} must be {len(default)} finite numbers, got {_shown(value)}")
+    if len(numbers) != len(default) or not all(is_finite(number) for number in numbers):
+        raise ValueError(f"{name} must be {len(default)} finite numbers, got {shown(value)}")
     return tuple(float(number) for number in numbers)
-
-
-def _shown(value) -> str:
-    return repr(list(value) if hasattr(value, "typecode") else value)

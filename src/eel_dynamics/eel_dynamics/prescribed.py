@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from eel_gaits.law import Law
+from eel_gaits.quantity import is_finite
+from eel_gaits.wording import shown
 
 from .accuracy import Accuracy
 from .arguments import checked_row
@@ -56,8 +58,8 @@ def hydrodynamic_wrench(
     fit.
     """
     twist, twist_rate = checked_row("twist", twist, 6), checked_row("twist_rate", twist_rate, 6)
-    if not np.isfinite(time):
-        raise ValueError(f"time must be finite, got {time!r} s")
+    if not is_finite(time):
+        raise ValueError(f"time must be finite, got {shown(time)} s")
     swimmer = Simulation(body=body, scene=scene, accuracy=FINE, stations=2)
     swimmer.adopt(law)
     drive, fields, balance, water = swimmer.drive, swimmer.fields, swimmer.balance, swimmer.swimmer

@@ -7,6 +7,7 @@ from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
+from eel_gaits.wording import shown
 from numpy.polynomial import chebyshev
 
 DEGREE = 48  # of the polynomial through the square on each panel, for its derivative
@@ -17,7 +18,7 @@ class FunctionProfile:
 
     def __init__(self, name: str, function, bounds):
         if not callable(function):
-            raise ValueError(f"body {name} must be a function of X, or an array with x=, got {function!r}")
+            raise ValueError(f"body {name} must be a function of X, or an array with x=, got {shown(function)}")
         self.name = name
         self.given = self._function = function
         self._bounds = np.array(bounds)

@@ -9,6 +9,7 @@ from functools import cached_property, partial
 
 import numpy as np
 from eel_gaits.law import Law
+from eel_gaits.wording import shown
 
 from .accuracy import Accuracy
 from .actuators import Actuators, actuators_of
@@ -234,7 +235,7 @@ def _verified(run: Run) -> Run:
     enough."""
     target = run.accuracy.target
     if target is None:
-        raise ValueError(f"verify needs an accuracy that is a target, got {run.accuracy.name!r}")
+        raise ValueError(f"verify needs an accuracy that is a target, got {shown(run.accuracy.name)}")
     for _ in range(MOST_REFINEMENTS):
         if run.error_estimate.worst <= target:
             return run

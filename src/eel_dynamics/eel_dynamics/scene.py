@@ -13,6 +13,9 @@ theory is gone. It tells how much of a motion the wake makes; it is no model of 
 from dataclasses import dataclass, field, fields
 
 import numpy as np
+from eel_gaits.wording import shown
+
+from .arguments import checked_number, checked_row
 
 FRICTION = ("printed", "laminar", "blended", "none")
 PERIMETER = ("ellipse", "printed")
@@ -78,36 +81,17 @@ class Scene:
             value = getattr(self, item.name)
             if item.type is bool or item.type == "bool":
                 if not isinstance(value, (bool, np.bool_)):
-                    raise ValueError(f"scene {item.name} must be True or False, got {value!r}")
+                    raise ValueError(f"scene {item.name} must be True or False, got {shown(value)}")
             elif "choices" in item.metadata:
-                if value not in item.metadata["choices"]:
+                if not isinstance(value, str) or value not in item.metadata["choices"]:
                     raise ValueError(
-                        f"scene {item.name} must be one of {', '.join(item.metadata['choices'])}, got {value!r}"
+                        f"scene {item.name} must be one of {', '.join(item.metadata['choices'])}, got {shown(value)}"
                     )
             elif item.name == "current":
-                object.__setattr__(self, "current", _vector("scene current", value))
+                object.__setattr__(self, "current", tuple(checked_row("scene current", value, 3).tolist()))
             elif not (item.name == "density" and value is None):
-                object.__setattr__(self, item.name, _number(item, value))
+                zero = not item.metadata.get("exclusive")
+                number = checked_number(f"scene {item.name}", value, item.metadata["unit"], zero=zero)
+                object.__setattr__(self, item.name, number)
         if self.planar and self.current[2] != 0.0:
-            raise ValueError(f"scene current must lie in the plane z = 0 of a planar scene, got {self.current}")
-
-
-def _number(item, value) -> float:
-    relation = ">" if item.metadata.get("exclusive") else ">="
-    try:
-        number = float(value)
-    except (TypeError, ValueError):
-        number = np.nan
-    if not np.isfinite(number) or number < 0.0 or (relation == ">" and number == 0.0):
-        raise ValueError(f"scene {item.name} must be finite and {relation} 0 {item.metadata['unit']}, got {value!r}")
-    return number
-
-
-def _vector(name: str, value) -> tuple[float, float, float]:
-    try:
-        vector = np.array(value, dtype=float)
-    except (TypeError, ValueError):
-        vector = np.empty(0)
-    if vector.shape != (3,) or not np.all(np.isfinite(vector)):
-        raise ValueError(f"{name} must be three finite numbers, got {value!r}")
-    return tuple(vector.tolist())
+            raise ValueError(f"scene current must lie in the plane z = 0 of a planar scene, got {shown(self.current)}")

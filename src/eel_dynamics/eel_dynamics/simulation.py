@@ -7,6 +7,8 @@ from functools import cached_property
 
 import numpy as np
 from eel_gaits.law import Law
+from eel_gaits.quantity import is_finite
+from eel_gaits.wording import shown
 
 from .accuracy import Accuracy
 from .arguments import (
@@ -17,7 +19,6 @@ from .arguments import (
     checked_quaternion,
     checked_row,
     checked_stations,
-    is_finite,
 )
 from .body import Body
 from .bounds import FIRST_STEP, MOST_EVALUATIONS, check_cost, control_of, evaluations_of
@@ -112,10 +113,10 @@ class Simulation:
         )
         if self.scene.planar:
             check_planar(*start)
-        if not (np.isfinite(default_transition) and default_transition > 0.0):
-            raise ValueError(f"default_transition must be finite and > 0 s, got {default_transition!r}")
-        if not horizon >= 0.0:
-            raise ValueError(f"horizon must be >= 0 s, got {horizon!r}")
+        if not (is_finite(default_transition) and default_transition > 0.0):
+            raise ValueError(f"default_transition must be finite and > 0 s, got {shown(default_transition)}")
+        if not (horizon == math.inf or is_finite(horizon)) or horizon < 0.0:
+            raise ValueError(f"horizon must be >= 0 s, got {shown(horizon)}")
         self._default_transition, self._horizon, self._built = float(default_transition), float(horizon), None
         self._most_evaluations = checked_number("most_evaluations", most_evaluations, "per simulated second")
         self._going_on = GoingOn()
@@ -210,11 +211,11 @@ class Simulation:
         own, or the default. `ValueError` for a law that the scene does not allow.
         """
         needs = self._needs(law)
-        if not np.isfinite(origin):
-            raise ValueError(f"law origin must be finite, got {origin!r} s")
+        if not is_finite(origin):
+            raise ValueError(f"law origin must be finite, got {shown(origin)} s")
         blend = transition or law.transition or self.shape.default_transition
-        if not (np.isfinite(blend) and blend > 0.0):
-            raise ValueError(f"transition must be finite and > 0 s, got {transition!r}")
+        if not (is_finite(blend) and blend > 0.0):
+            raise ValueError(f"transition must be finite and > 0 s, got {shown(transition)}")
         first = not self._started
         plane, waves, effort, further = self._plane, self._waves, self._effort, self._effort_of(law)
         before = copy(self.shape), self._table, self._built
@@ -293,9 +294,9 @@ class Simulation:
         ]
         if self.scene.planar and any(np.any(row) for row in values[:3]):
             raise ValueError("curvature samples pitch must be 0 in a planar scene")
-        if not np.isfinite(time) or time <= self.time:
+        if not is_finite(time) or time <= self.time:
             raise ValueError(
-                f"curvature samples time must lie ahead of the simulation ({self.time:.6f} s), got {time} s"
+                f"curvature samples time must lie ahead of the simulation ({self.time:.6f} s), got {shown(time)} s"
             )
         before = self.accuracy
         self._use_accuracy(False, self._waves, self._effort.at_least(USUAL))
@@ -357,7 +358,7 @@ class Simulation:
         if not self.ready:
             raise RuntimeError("no law has been adopted")
         if not is_finite(time) or time < self.time:
-            raise ValueError(f"time must be finite and >= the present {self.time} s, got {time!r}")
+            raise ValueError(f"time must be finite and >= the present {self.time} s, got {shown(time)}")
         self._started, time = True, float(time)
         while True:
             self.shape.pass_event(self.time, self._prepare_for)

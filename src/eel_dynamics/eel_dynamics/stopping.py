@@ -2,6 +2,7 @@
 
 import numpy as np
 from eel_gaits.law import Law
+from eel_gaits.wording import shown
 
 from .accuracy import Accuracy
 from .integrator import NOT_FINITE, SINGULAR, TOO_MANY_STEPS, Control
@@ -45,4 +46,4 @@ def remedy(accuracy: Accuracy) -> str:
 
 def not_begun(law: Law, stopped: SimulationStopped) -> ValueError:
     """That a swim by `law` cannot begin, for what `stopped` it."""
-    return ValueError(f"law {law.name!r} cannot be begun: {stopped.quantity}")
+    return ValueError(f"law {shown(law.name)} cannot be begun: {stopped.quantity}")

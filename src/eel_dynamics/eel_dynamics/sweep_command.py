@@ -4,13 +4,14 @@ sweep straight --vary period=0.5:2:16 --vary scene.friction=printed,laminar --ou
 sweep straight --vary body=boyer2010,kern2006 --vary wavelength=0.6:1.2:7 --scheduler tcp://host:8786 --out waves.nc
 """
 
-import argparse
 import sys
 import time
 
 import numpy as np
+from eel_gaits.command_line import Parser, complain
 from eel_gaits.output_file import NotWritten
 from eel_gaits.registry import GAITS
+from eel_gaits.wording import shown
 
 from .accuracy import PRESETS
 from .body import NAMED, Body
@@ -47,19 +48,19 @@ def _sweep(options) -> int:
             overwrite=options.overwrite,
         )
     except NotWritten as error:
-        print(f"sweep: {error}", file=sys.stderr)
+        complain("sweep", error)
         return 1
     except (ValueError, ImportError, OSError) as error:
-        print(f"sweep: {error}", file=sys.stderr)
+        complain("sweep", error)
         return 2
     except MemoryError as error:
-        print(f"sweep: it does not fit into memory: {error}", file=sys.stderr)
+        complain("sweep", f"it does not fit into memory: {error}")
         return 2
     except RuntimeError as error:
-        print(f"sweep: {error}", file=sys.stderr)
+        complain("sweep", error)
         return 4
     except KeyboardInterrupt:
-        print("sweep: interrupted; the same command goes on from here", file=sys.stderr)
+        complain("sweep", "interrupted; the same command goes on from here")
         return 130
     points = int(np.prod([len(values) for values in grid.values()]))
     print(f"points                      {points}, of which {int(data.stopped.sum())} stopped")
@@ -73,8 +74,8 @@ def _sweep(options) -> int:
     return 0
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+def _parser() -> Parser:
+    parser = Parser(
         prog="sweep",
         description="Swim every combination of parameters, and keep what each run amounts to in a NetCDF file. Called "
         "again after an end that was not planned, it goes on where it was.",
@@ -106,22 +107,22 @@ def _parser() -> argparse.ArgumentParser:
 def _one(text: str) -> tuple:
     name, values = _axis(text)
     if len(values) != 1:
-        raise ValueError(f"--set must have one value, got {text!r}: --vary takes several")
+        raise ValueError(f"--set must have one value, got {shown(text)}: --vary takes several")
     return name, values[0]
 
 
 def _axis(text: str) -> tuple[str, list]:
     name, equals, values = text.partition("=")
     if not equals or not name or not values:
-        raise ValueError(f"a parameter must be NAME=VALUES, got {text!r}")
+        raise ValueError(f"a parameter must be NAME=VALUES, got {shown(text)}")
     bounds = values.split(":")
     if len(bounds) == 3:
         try:
             start, end, count = float(bounds[0]), float(bounds[1]), int(bounds[2])
         except ValueError:
-            raise ValueError(f"{name} must be start:end:count, got {values!r}") from None
+            raise ValueError(f"{name} must be start:end:count, got {shown(values)}") from None
         if count < 1:
-            raise ValueError(f"{name} must be start:end:count, count >= 1, got {values!r}")
+            raise ValueError(f"{name} must be start:end:count, count >= 1, got {shown(values)}")
         check_points(name, count)
         return name, np.linspace(start, end, count).tolist()
     return name, [_value(part) for part in values.split(",")]

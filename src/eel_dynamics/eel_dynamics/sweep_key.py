@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+from eel_gaits.wording import shown
 
 import eel_gaits
 
@@ -48,7 +49,7 @@ def _content_of_function(argument: str, function) -> bytes:
         content = tokenize(function, ensure_deterministic=True)
     except TokenizationError:
         raise ValueError(
-            f"{argument} must be a function that worker processes can be given, got {function!r}"
+            f"{argument} must be a function that worker processes can be given, got {shown(function)}"
         ) from None
     home = sys.modules.get(getattr(function, "__module__", None) or "")
     if home is not None and home.__name__ != "__main__" and getattr(home, "__file__", None):

@@ -9,6 +9,7 @@ import warnings
 from pathlib import Path
 
 from eel_gaits.output_file import check_output, replacing
+from eel_gaits.wording import shown
 
 from .measures import checked_point
 
@@ -29,7 +30,7 @@ class Parts:
         if out is None:
             return
         if self.out.suffix != ".nc":
-            raise ValueError(f"out must end in .nc, got {str(out)!r}")
+            raise ValueError(f"out must end in .nc, got {shown(str(out))}")
         check_output("out", self.out)
         if self.folder.exists() and self._key_of_folder() not in (None, key):
             if not overwrite:
@@ -96,7 +97,7 @@ class Parts:
         points = {}
         for index, point in found.items():
             if not index.isdecimal() or not int(index) < self._count or not isinstance(point, dict):
-                raise ValueError(f"it holds no point of this sweep at {index!r}")
+                raise ValueError(f"it holds no point of this sweep at {shown(index)}")
             points[int(index)] = checked_point(
                 {name: math.nan if value is None else value for name, value in point.items()}
             )

@@ -18,6 +18,7 @@ from typing import NamedTuple
 import numpy as np
 from eel_gaits.law import Law
 from eel_gaits.registry import find
+from eel_gaits.wording import one_line, shown
 
 from .accuracy import Accuracy
 from .batch import simulate_batch
@@ -118,7 +119,8 @@ def sweep(
     if failures:
         raise RuntimeError(
             f"{len(points) - len(done)} of {len(points)} points could not be computed, the first at {failures[0][0]}: "
-            f"{failures[0][1]!r}; " + (f"the others are kept in {parts.folder}" if out else "nothing was kept")
+            f"{one_line(repr(failures[0][1]))}; "
+            + (f"the others are kept in {parts.folder}" if out else "nothing was kept")
         )
     data = _dataset(xarray, names, axes, points, done, key, duration, sample_period, gait)
     parts.finish(data)
@@ -150,17 +152,17 @@ def _threads_of(client) -> int:
 
 def _checked_grid(grid) -> tuple[list[str], list[list]]:
     if not isinstance(grid, dict) or not grid:
-        raise ValueError(f"grid must be a dict of parameters and their values, got {grid!r}")
+        raise ValueError(f"grid must be a dict of parameters and their values, got {shown(grid)}")
     axes = []
     for name, values in grid.items():
         if isinstance(values, (str, bytes)) or not np.iterable(values):
-            raise ValueError(f"grid {name!r} must have a sequence of values, got {values!r}")
+            raise ValueError(f"grid {shown(name)} must have a sequence of values, got {shown(values)}")
         if hasattr(values, "__len__"):
-            check_points(f"grid {name!r}", len(values))
+            check_points(f"grid {shown(name)}", len(values))
         values = [value.item() if isinstance(value, np.generic) else value for value in values]
         labels = [_label(value) for value in values]
         if not values or len(set(labels)) < len(labels):
-            raise ValueError(f"grid {name!r} must have one value or more, none twice, got {labels}")
+            raise ValueError(f"grid {shown(name)} must have one value or more, none twice, got {shown(labels)}")
         axes.append(values)
     check_points("grid", math.prod(len(values) for values in axes))
     return list(grid), axes
@@ -171,7 +173,7 @@ def _check_count(name: str, value):
     if value is None:
         return
     if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < 1:
-        raise ValueError(f"{name} must be a whole number >= 1, got {value!r}")
+        raise ValueError(f"{name} must be a whole number >= 1, got {shown(value)}")
 
 
 def check_points(name: str, count: int):
@@ -188,7 +190,10 @@ def _label(value):
 
 
 def _point(index: int, values: dict, gait, numbers: dict, base: Point) -> Point:
-    at = ", ".join(f"{name}={_label(value)}" for name, value in values.items())
+    at = ", ".join(
+        f"{name}={value.name if isinstance(value, (Body, Accuracy)) else shown(value)}"
+        for name, value in values.items()
+    )
     try:
         body, scene, accuracy, own = base.body, {}, base.accuracy, dict(numbers)
         for name, value in values.items():
@@ -203,7 +208,7 @@ def _point(index: int, values: dict, gait, numbers: dict, base: Point) -> Point:
         known = [item.name for item in fields(Scene)]
         for name in scene:
             if name not in known:
-                raise ValueError(f"scene has no field {name!r}, it has: {', '.join(known)}")
+                raise ValueError(f"scene has no field {shown(name)}, it has: {', '.join(known)}")
         law = (find(gait) if isinstance(gait, str) else gait)(**own)
         return Point(index, law, body, replace(base.scene, **scene), accuracy)
     except (ValueError, TypeError) as error:

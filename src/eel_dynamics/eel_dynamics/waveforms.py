@@ -4,6 +4,7 @@ from functools import lru_cache
 
 import numpy as np
 from eel_gaits.law import Law, Term, amplitude_of
+from eel_gaits.wording import shown
 
 from .drive import AXES
 
@@ -73,13 +74,14 @@ def check_law(law: Law, length: float) -> float:
         waves = waves_of_law(law, length)
     if not waves <= MOST_WAVES:
         raise ValueError(
-            f"law {law.name!r} bends the body into {waves:.3g} waves or turns: at most {MOST_WAVES:g} can be resolved"
+            f"law {shown(law.name)} bends the body into {waves:.3g} waves or turns: at most {MOST_WAVES:g} can be "
+            "resolved"
         )
     for ramp in (ramp for term in law.terms for ramp in term.envelope):
         least = SHORTEST_RAMP * max(1.0, abs(ramp.end))
         if ramp.end - ramp.start < least:
             raise ValueError(
-                f"law {law.name!r} has a ramp at {ramp.start:g} s of {ramp.end - ramp.start:.3g} s: at least "
+                f"law {shown(law.name)} has a ramp at {ramp.start:g} s of {ramp.end - ramp.start:.3g} s: at least "
                 f"{least:.3g} s can be resolved"
             )
     return waves

@@ -9,6 +9,7 @@ from functools import cached_property
 
 import numpy as np
 from eel_gaits.law import Law, Term
+from eel_gaits.wording import shown
 
 LONGEST_COMMON = 12  # of the strongest wave's periods, after which the whole gait must repeat
 FEWEST_SAMPLES = 8  # in a period
@@ -40,14 +41,16 @@ def common_period(law: Law, x, time) -> float:
     every other term's too. `ValueError` for a law without period, or where that multiple is above 12."""
     first = strongest(law, x, time)
     if first is None:
-        raise ValueError(f"law {law.name!r} has no periodic term: it has no period to average over")
+        raise ValueError(f"law {shown(law.name)} has no periodic term: it has no period to average over")
     periods = {first.period} | {term.period for term in law.terms if term.period and strength(term, x, time) > 0.0}
     for multiple in range(1, LONGEST_COMMON + 1):
         ratios = [multiple * first.period / period for period in periods]
         if all(abs(ratio - round(ratio)) < 1e-9 * ratio and round(ratio) for ratio in ratios):
             return multiple * first.period
     listed = ", ".join(f"{period:g}" for period in sorted(periods))
-    raise ValueError(f"law {law.name!r} does not repeat within {LONGEST_COMMON} periods: it has periods {listed} s")
+    raise ValueError(
+        f"law {shown(law.name)} does not repeat within {LONGEST_COMMON} periods: it has periods {listed} s"
+    )
 
 
 class Window:
@@ -68,7 +71,9 @@ class Window:
         if periods is None:
             periods = (whole + 1) // 2
         if isinstance(periods, bool) or not isinstance(periods, (int, np.integer)) or not 1 <= periods <= whole:
-            raise ValueError(f"periods must be a whole number from 1 to {whole}, those of the run, got {periods!r}")
+            raise ValueError(
+                f"periods must be a whole number from 1 to {whole}, those of the run, got {shown(periods)}"
+            )
         if np.max(np.diff(time)) > self.wave.period / FEWEST_SAMPLES * (1.0 + 1e-9):
             raise ValueError(
                 f"run must have {FEWEST_SAMPLES} samples or more in a period of {self.wave.period:g} s, "

@@ -16,8 +16,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from eel_gaits.quantity import number
+from eel_gaits.quantity import number, numbers
 from eel_gaits.spline import natural_spline
+from eel_gaits.wording import shown
 
 AXES = {"pitch": 1, "yaw": 2}  # name of the axis: its column in a curvature array
 MAXIMUM_TERMS = 1000
@@ -79,7 +80,7 @@ class Term:
 
     def __post_init__(self):
         if not isinstance(self.axis, str) or self.axis not in AXES:
-            raise ValueError(f"axis must be one of {', '.join(AXES)}, got {self.axis!r}")
+            raise ValueError(f"axis must be one of {', '.join(AXES)}, got {shown(self.axis)}")
         for field in ("amplitude", "knots"):
             object.__setattr__(self, field, _numbers(field, getattr(self, field)))
         for field in ("wavelength", "period", "phase"):
@@ -100,10 +101,10 @@ class Term:
                 f"amplitude must have one value per knot ({len(self.knots)}), got {len(self.amplitude)} values"
             )
         if not np.all(np.diff(self.knots) > 0.0):
-            raise ValueError(f"knots must be strictly increasing [m], got {list(self.knots)}")
+            raise ValueError(f"knots must be strictly increasing [m], got {shown(list(self.knots))}")
         with np.errstate(all="ignore"):
             if not np.all(np.isfinite(self.amplitude_at(self.knots))):
-                raise ValueError(f"knots must lie far enough apart for a finite spline, got {list(self.knots)}")
+                raise ValueError(f"knots must lie far enough apart for a finite spline, got {shown(list(self.knots))}")
 
     def _check_wave(self):
         if self.period < 0.0:
@@ -114,7 +115,7 @@ class Term:
             raise ValueError(f"wavelength must be 0 or long enough for a finite wave number, got {self.wavelength}")
         for ramp in self.envelope:
             if not isinstance(ramp, Ramp):
-                raise ValueError(f"envelope must hold Ramps, got {ramp!r}")
+                raise ValueError(f"envelope must hold Ramps, got {shown(ramp)}")
 
     @property
     def wave_number(self):
@@ -172,7 +173,7 @@ class Law:
             raise ValueError(f"terms must be at most {MAXIMUM_TERMS}, got {len(terms)}")
         for index, term in enumerate(terms):
             if not isinstance(term, Term):
-                raise ValueError(f"terms[{index}] must be a Term, got {term!r}")
+                raise ValueError(f"terms[{index}] must be a Term, got {shown(term)}")
         transition = number("transition", transition)
         if transition < 0.0:
             raise ValueError(f"transition must be >= 0 s, got {transition}")
@@ -206,7 +207,10 @@ class Law:
             value [rad/m], rate [rad/m/s], acceleration [rad/m/s^2], each of shape (M, 3), section axes: column 0 is
             zero, 1 is pitch (K2), 2 is yaw (K3).
         """
-        x = np.atleast_1d(np.asarray(x, dtype=float))
+        x = np.atleast_1d(numbers("x", x))
+        if not np.all(np.isfinite(x)):
+            raise ValueError(f"x must be finite, got {shown(x)}")
+        time = number("time", time)
         total = np.zeros((3, x.size, 3))
         for term in self.terms:
             total[:, :, AXES[term.axis]] += term.curvature(time, x)
@@ -228,14 +232,15 @@ def _row(name, kind, values):
     try:
         values = tuple(values)
     except TypeError:
-        raise ValueError(f"{name} must be a row of {kind}, got {values!r}") from None
+        raise ValueError(f"{name} must be a row of {kind}, got {shown(values)}") from None
     if len(values) > MAXIMUM_VALUES:
         raise ValueError(f"{name} must have at most {MAXIMUM_VALUES} {kind}, got {len(values)}")
     return values
 
 
 def _name(value):
-    text = str(value)
-    if len(text) > MAXIMUM_NAME:
-        raise ValueError(f"name must have at most {MAXIMUM_NAME} characters, got {len(text)}")
-    return text
+    if not isinstance(value, str):
+        raise ValueError(f"name must be a text, got {shown(value)}")
+    if len(value) > MAXIMUM_NAME:
+        raise ValueError(f"name must have at most {MAXIMUM_NAME} characters, got {len(value)}")
+    return str(value)

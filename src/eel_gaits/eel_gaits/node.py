@@ -22,10 +22,12 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import remove_ros_args
 
+from eel_gaits.command_line import complain, write_on_any_terminal
 from eel_gaits.messages import law_to_message
 from eel_gaits.registry import GAITS
 from eel_gaits.serving import leave_out, serve_once
 from eel_gaits.settings import Settings, Transition
+from eel_gaits.wording import shown
 from eel_msgs.msg import CurvatureLaw
 
 NAME = "gait_generator"
@@ -45,12 +47,13 @@ def answer_words(name, about, parameters, words):
     if not rest:
         return None
     if not {"-h", "--help"} & set(rest):
-        sys.stderr.write(f"{name}: unknown argument {rest[0]!r} (parameters come after --ros-args as -p NAME:=VALUE)\n")
+        complain(name, f"unknown argument {shown(rest[0])} (parameters come after --ros-args as -p NAME:=VALUE)")
         return 2
     lines = [f"usage: {name} [--ros-args -p NAME:=VALUE ...]", "", about, "", "parameters:"]
     for key, description, default in parameters:
-        shown = str(default).lower() if isinstance(default, bool) else "empty" if default == "" else default
-        lines.append(f"  {key:<24}  {description} (default {shown})")
+        told = str(default).lower() if isinstance(default, bool) else "empty" if default == "" else default
+        lines.append(f"  {key:<24}  {description} (default {told})")
+    write_on_any_terminal()
     sys.stdout.write("\n".join([*lines, ""]))
     return 0
 
@@ -175,7 +178,7 @@ class GaitGenerator(Node):
         self._publisher.publish(law_to_message(self._settings.law(), stamp=self._stamp))
         began = self._stamp.sec + 1e-9 * self._stamp.nanosec
         self.get_logger().info(
-            f"gait {self._settings.gait!r}, t = 0 at {began:.3f} s, published on {self._publisher.topic_name}"
+            f"gait {shown(self._settings.gait)}, t = 0 at {began:.3f} s, published on {self._publisher.topic_name}"
         )
 
 
@@ -204,7 +207,7 @@ def main(args=None):
         rclpy.init(args=DEFAULTS + words, signal_handler_options=SignalHandlerOptions.NO)
         node = GaitGenerator()
     except (ValueError, RuntimeError, ParameterException, NameValidationException) as error:
-        sys.stderr.write(f"{NAME}: {' '.join(str(error).split())}\n")
+        complain(NAME, error)
         rclpy.try_shutdown()
         return 2
     executor = SingleThreadedExecutor()

@@ -12,6 +12,8 @@ import stat
 from collections.abc import Iterator
 from pathlib import Path
 
+from eel_gaits.wording import shown
+
 BEGINNINGS = {".npz": b"PK", ".nc": b"CDF", ".png": b"\x89PNG", ".rrd": b"RRF", ".svg": b"<?xml"}
 KINDS = {stat.S_IFLNK: "a symbolic link", stat.S_IFDIR: "a folder", stat.S_IFIFO: "a FIFO", stat.S_IFSOCK: "a socket"}
 
@@ -29,7 +31,7 @@ class Draft:
     def __init__(self, name: str | os.PathLike[str]) -> None:
         self.name = Path(name)
         if not self.name.parent.is_dir():
-            raise FileNotFoundError(errno.ENOENT, f"there is no folder {str(self.name.parent)!r}")
+            raise FileNotFoundError(errno.ENOENT, f"there is no folder {shown(str(self.name.parent))}")
         other = _other_content(self.name)
         if other:
             raise FileExistsError(errno.EEXIST, f"it is {other}")
@@ -75,7 +77,7 @@ def check_output(argument: str, name: str | os.PathLike[str]) -> None:
     """`ValueError` that names the `argument` where the output `name` cannot be written."""
     problem = obstacle(name)
     if problem:
-        raise ValueError(f"{argument} {os.fspath(name)!r} cannot be written: {problem}")
+        raise ValueError(f"{argument} {shown(os.fspath(name))} cannot be written: {problem}")
 
 
 @contextlib.contextmanager
@@ -91,7 +93,7 @@ def replacing(name: str | os.PathLike[str]) -> Iterator[Path]:
             yield draft.path
             draft.complete()
         except OSError as error:
-            raise NotWritten(f"{os.fspath(name)!r} cannot be written: {error.strerror or error}") from error
+            raise NotWritten(f"{shown(os.fspath(name))} cannot be written: {error.strerror or error}") from error
         undo.pop_all()
 
 

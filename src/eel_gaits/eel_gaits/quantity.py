@@ -7,11 +7,23 @@ A parameter set is a frozen, keyword-only dataclass that derives from `Quantitie
 import math
 from dataclasses import dataclass, field, fields
 
+import numpy as np
+
+from eel_gaits.wording import shown
+
 
 def quantity(default, *, unit, description, minimum, maximum):
     """A dataclass field that carries its own unit, description and inclusive bounds as metadata."""
     metadata = {"unit": unit, "description": description, "minimum": minimum, "maximum": maximum}
     return field(default=default, metadata=metadata)
+
+
+def is_finite(value) -> bool:
+    """Whether `value` is one finite number; a text is none."""
+    try:
+        return math.isfinite(value) and not getattr(value, "ndim", 0)
+    except (TypeError, ValueError, OverflowError):
+        return False
 
 
 def number(name, value):
@@ -21,10 +33,20 @@ def number(name, value):
             raise TypeError
         result = float(value)
     except (TypeError, ValueError, OverflowError):
-        raise ValueError(f"{name} must be a number, got {value!r}") from None
+        raise ValueError(f"{name} must be a number, got {shown(value)}") from None
     if not math.isfinite(result):
         raise ValueError(f"{name} must be finite, got {result}")
     return result
+
+
+def numbers(name, values):
+    """`values` as a new array of floats, of any shape; ValueError that names it where they are none, or complex."""
+    try:
+        if np.iscomplexobj(values):
+            raise TypeError
+        return np.array(values, dtype=float)
+    except (TypeError, ValueError, OverflowError):
+        raise ValueError(f"{name} must be real numbers, got {shown(values)}") from None
 
 
 @dataclass(frozen=True, kw_only=True)

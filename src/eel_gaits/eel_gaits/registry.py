@@ -8,6 +8,7 @@ import functools
 import inspect
 
 from eel_gaits.law import Law
+from eel_gaits.wording import shown
 
 GAITS = {}  # name of the gait: its function, whose attribute `numbers` is the class of its numbers
 
@@ -20,7 +21,7 @@ def gait(name, *, transition=0.0, **numbers):
 def find(name):
     """The function of the gait called `name`."""
     if not isinstance(name, str) or name not in GAITS:
-        raise ValueError(f"unknown gait {name!r}, must be one of {', '.join(sorted(GAITS))}")
+        raise ValueError(f"unknown gait {shown(name)}, must be one of {', '.join(sorted(GAITS))}")
     return GAITS[name]
 
 
@@ -36,7 +37,7 @@ def register(numbers_class):
             unknown = [key for key in numbers if key not in own_names]
             if unknown:
                 raise ValueError(
-                    f"gait {name!r} has no number {unknown[0]!r}, it has: {', '.join(own_names) or 'none'}"
+                    f"gait {shown(name)} has no number {shown(unknown[0])}, it has: {', '.join(own_names) or 'none'}"
                 )
             return Law(*terms_of(numbers_class(**numbers)), name=name, transition=transition)
 

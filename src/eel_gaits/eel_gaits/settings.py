@@ -9,6 +9,7 @@ from types import MappingProxyType
 
 from eel_gaits.quantity import Quantities, quantity
 from eel_gaits.registry import GAITS, find
+from eel_gaits.wording import shown
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,7 +59,7 @@ class Settings:
         own_names = ["transition", *(entry.name for entry in fields(find(gait).numbers))]
         for name in changes:
             if name not in own_names:
-                raise ValueError(f"gait {gait!r} has no parameter {name!r}, it has: {', '.join(own_names)}")
+                raise ValueError(f"gait {shown(gait)} has no parameter {shown(name)}, it has: {', '.join(own_names)}")
         return Settings(gait=gait, chosen={**self.chosen, **changes})
 
     def groups(self):

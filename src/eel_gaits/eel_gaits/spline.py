@@ -11,6 +11,9 @@ knots. Its second derivatives M_i at the knots ("moments") solve the tridiagonal
 
 import numpy as np
 
+from eel_gaits.quantity import numbers
+from eel_gaits.wording import shown
+
 
 def natural_spline(knots, values, x):
     """Evaluate the natural cubic splines through (knots, values) at x.
@@ -26,11 +29,11 @@ def natural_spline(knots, values, x):
     Returns:
         [unit of the values], shape (..., m).
     """
-    knots, values, x = (np.asarray(array, dtype=float) for array in (knots, values, x))
+    knots, values, x = numbers("knots", knots), numbers("values", values), numbers("x", x)
     if knots.ndim != 1 or knots.size < 2:
         raise ValueError(f"knots must be a row of at least 2 numbers, got shape {knots.shape}")
     if not np.all(np.isfinite(knots)) or not np.all(np.diff(knots) > 0.0):
-        raise ValueError(f"knots must be finite and strictly increasing, got {knots.tolist()}")
+        raise ValueError(f"knots must be finite and strictly increasing, got {shown(knots.tolist())}")
     if values.ndim < 1 or values.shape[-1] != knots.size:
         raise ValueError(f"values must have {knots.size} entries per row, one for each knot, got shape {values.shape}")
 

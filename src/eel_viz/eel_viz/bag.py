@@ -13,6 +13,7 @@ import tempfile
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
+from eel_gaits.wording import shown
 from rosbags.interfaces import MessageDefinitionFormat
 from rosbags.rosbag2 import Reader
 from rosbags.typesys import Stores, TypesysError, get_types_from_idl, get_types_from_msg, get_typestore
@@ -50,7 +51,7 @@ class Bag:
         self.damage = ""
         self.topics: dict[str, Topic] = {}
         if not self._path.exists():
-            raise ValueError(f"bag {str(path)!r} does not exist")
+            raise ValueError(f"bag {shown(str(path))} does not exist")
         try:
             self._open()
             self.topics = self._topics()
@@ -87,7 +88,7 @@ class Bag:
                 except StopIteration:
                     break
                 except Exception as error:
-                    raise DamagedBag(f"bag {str(self._path)!r} is damaged: {_line(error)}") from error
+                    raise DamagedBag(f"bag {shown(str(self._path))} is damaged: {_line(error)}") from error
                 try:
                     message = self._store.deserialize_cdr(raw, connection.msgtype)
                 except Exception as error:  # rosbags' own, struct.error, ValueError of numpy or of text
@@ -108,9 +109,9 @@ class Bag:
         files = [each for each in files if each.suffix in SUFFIXES]
         if not files:
             raise ValueError(
-                f"bag {str(self._path)!r} cannot be read: {self.damage}, no .mcap or .db3 file"
+                f"bag {shown(str(self._path))} cannot be read: {self.damage}, no .mcap or .db3 file"
                 if self._path.is_dir()
-                else f"{str(self._path)!r} is no bag: {self.damage}"
+                else f"{shown(str(self._path))} is no bag: {self.damage}"
             )
         for each in files:
             try:
@@ -118,7 +119,7 @@ class Bag:
             except Exception as error:
                 self.damage = f"{each.name}: {_line(error)}"
         if not any(reader.connections for reader in self._readers):
-            raise ValueError(f"bag {str(self._path)!r} cannot be read: {self.damage}")
+            raise ValueError(f"bag {shown(str(self._path))} cannot be read: {self.damage}")
 
     def _topics(self) -> dict[str, Topic]:
         found: dict[str, Topic] = {}
@@ -144,7 +145,7 @@ class Bag:
             try:
                 text = definition(topic.type)
             except ValueError as error:
-                raise ValueError(f"bag {str(self._path)!r} does not define its types, and {error}") from error
+                raise ValueError(f"bag {shown(str(self._path))} does not define its types, and {error}") from error
         try:
             if topic.idl:
                 separator = "=" * 80 + "\n"
@@ -156,7 +157,7 @@ class Bag:
             self._store.register({name: value for name, value in found.items() if name not in self._store.fielddefs})
         except TypesysError as error:
             raise ValueError(
-                f"bag {str(self._path)!r} defines {topic.type} in a way not understood: {_line(error)}"
+                f"bag {shown(str(self._path))} defines {topic.type} in a way not understood: {_line(error)}"
             ) from error
 
 

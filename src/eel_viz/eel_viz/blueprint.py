@@ -5,6 +5,7 @@ another run laid over this one; a recording carries all as tabs, the one asked f
 """
 
 import rerun.blueprint as rrb
+from eel_gaits.wording import shown
 from rerun.blueprint.archetypes import EntityBehavior
 
 from eel_viz import camera, colours, entities, heat_map, profile_plot
@@ -27,7 +28,7 @@ def arrangement(
     """All arrangements, `first` in front; `live` follows the newest data, else the cursor stands at the start;
     `compare`: there is another run to compare with; `frames`: the axes of head and tail are shown."""
     if first not in BLUEPRINTS:
-        raise ValueError(f"blueprint must be one of {', '.join(BLUEPRINTS)}, got {first!r}")
+        raise ValueError(f"blueprint must be one of {', '.join(BLUEPRINTS)}, got {shown(first)}")
     tabs = {
         name: make(frames=frames) for name, make in (("overview", overview), ("torques", torques), ("motion", motion))
     }

@@ -3,6 +3,8 @@
 import sys
 from dataclasses import fields
 
+from eel_gaits.command_line import complain, write_on_any_terminal
+from eel_gaits.wording import shown
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from rclpy.node import Node
 from rclpy.utilities import remove_ros_args
@@ -39,13 +41,14 @@ def answer_words(name: str, about: str, words: list[str]) -> int | None:
     if not rest:
         return None
     if not {"-h", "--help"} & set(rest):
-        sys.stderr.write(f"{name}: unknown argument {rest[0]!r} (parameters come after --ros-args as -p NAME:=VALUE)\n")
+        complain(name, f"unknown argument {shown(rest[0])} (parameters come after --ros-args as -p NAME:=VALUE)")
         return 2
     lines = [f"usage: {name} [--ros-args -p NAME:=VALUE ...]", "", about, "", "parameters:"]
     for item in fields(Settings):
         default = list(item.default) if isinstance(item.default, tuple) else item.default
-        shown = str(default).lower() if isinstance(default, bool) else "empty" if default == "" else default
-        lines.append(f"  {item.name:<20}  {_description(item)} (default {shown})")
+        told = str(default).lower() if isinstance(default, bool) else "empty" if default == "" else default
+        lines.append(f"  {item.name:<20}  {_description(item)} (default {told})")
+    write_on_any_terminal()
     sys.stdout.write("\n".join([*lines, ""]))
     return 0
 

@@ -10,6 +10,7 @@ import pathlib
 import re
 
 from ament_index_python.packages import PackageNotFoundError, get_package_share_directory
+from eel_gaits.wording import shown
 
 _SEPARATOR = "=" * 80
 _FIELD = re.compile(r"^\s*([A-Za-z][\w/]*)(?:<=\d+)?(?:\[[^\]]*\])?\s+[A-Za-z]\w*")
@@ -24,7 +25,7 @@ def message_class(name: str) -> type:
     try:
         return getattr(importlib.import_module(f"{package}.msg"), kind)
     except (ImportError, AttributeError, ValueError) as error:
-        raise ValueError(f"message type {name!r} is not installed here") from error
+        raise ValueError(f"message type {shown(name)} is not installed here") from error
 
 
 def definition(name: str) -> str:
@@ -75,4 +76,4 @@ def _file(name: str, suffix: str) -> pathlib.Path:
     try:
         return pathlib.Path(get_package_share_directory(package)) / "msg" / f"{kind}.{suffix}"
     except (PackageNotFoundError, ValueError) as error:
-        raise ValueError(f"message type {name!r} is not installed here") from error
+        raise ValueError(f"message type {shown(name)} is not installed here") from error

@@ -12,6 +12,8 @@ import tempfile
 import time
 from collections.abc import Iterator
 
+from eel_gaits.wording import shown
+
 from eel_viz.entities import TIMELINE
 from eel_viz.viewer import CannotRender, native_viewer, viewer
 
@@ -56,7 +58,9 @@ class Drawing:
         tabs = {boxes.get(path.strip("/"), {}).get("display_name"): path for path in root.get("contents", [])}
         tabs.pop(None, None)
         if name not in tabs:
-            raise ValueError(f"blueprint must be one of {', '.join(tabs) or 'none'} ({self._path.name}), got {name!r}")
+            raise ValueError(
+                f"blueprint must be one of {', '.join(tabs) or 'none'} ({self._path.name}), got {shown(name)}"
+            )
         root["active_tab"] = tabs[name]
         self._client.set_blueprint(blueprint, of="recording")
         self._last = b""
@@ -106,16 +110,16 @@ def drawn(recording: str | os.PathLike[str], *, size: tuple[int, int] = SIZE, bl
 def _readable(path: pathlib.Path, stack: contextlib.ExitStack) -> pathlib.Path:
     """`path`, or where a recording that was cut short lies repaired."""
     if not path.is_file():
-        raise ValueError(f"recording must be a file, got {str(path)!r}")
+        raise ValueError(f"recording must be a file, got {shown(str(path))}")
     with path.open("rb") as file:
         if file.read(len(MAGIC)) != MAGIC:
-            raise ValueError(f"{str(path)!r} is no Rerun recording")
+            raise ValueError(f"{shown(str(path))} is no Rerun recording")
     if _verified(path):
         return path
     repaired = pathlib.Path(stack.enter_context(tempfile.TemporaryDirectory())) / path.name
     subprocess.run([native_viewer(), "rrd", "optimize", str(path), "-o", str(repaired)], capture_output=True)
     if not repaired.is_file() or not _verified(repaired):
-        raise ValueError(f"{str(path)!r} is damaged beyond reading")
+        raise ValueError(f"{shown(str(path))} is damaged beyond reading")
     return repaired
 
 

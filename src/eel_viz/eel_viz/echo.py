@@ -7,6 +7,8 @@ import time
 
 import numpy as np
 import yaml
+from eel_gaits.command_line import Parser
+from eel_gaits.wording import shown
 from rclpy.node import Node
 from rclpy.utilities import remove_ros_args
 
@@ -77,7 +79,7 @@ def picked(message, field: str | None):
         try:
             value = value[int(name)] if name.lstrip("-").isdigit() else getattr(value, name)
         except (AttributeError, IndexError, TypeError) as error:
-            raise ValueError(f"field {'.'.join(path)!r} is not in {type(message).__name__}") from error
+            raise ValueError(f"field {shown('.'.join(path))} is not in {type(message).__name__}") from error
     return value
 
 
@@ -103,7 +105,7 @@ def _plain(value, short: int | None):
 def main(arguments: list[str] | None = None) -> int:
     """Command line; status 0, 1 if no message came or it has not the field, 2 if it cannot begin."""
     words = sys.argv if arguments is None else [NAME, *arguments]
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog=NAME,
         description="Print the messages of a topic as YAML, as ros2 topic echo does. It waits for a publisher, and "
         "takes its type and quality of service.",

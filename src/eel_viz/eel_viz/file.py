@@ -7,6 +7,7 @@ import time
 
 import rerun as rr
 from eel_gaits.output_file import Draft, NotWritten
+from eel_gaits.wording import shown
 
 from eel_viz.destination import Destination, Say
 from eel_viz.flow import why_not_written
@@ -64,7 +65,7 @@ class File(Destination):
             reason = why_not_written(draft.path)
             draft.discard()
             if not self._keep:
-                raise NotWritten(f"recording {str(draft.name)!r} cannot be written: {reason}") from None
+                raise NotWritten(f"recording {shown(str(draft.name))} cannot be written: {reason}") from None
             self._refuse(run, draft.name, reason)
             return None
         if stream is not None:
@@ -93,11 +94,11 @@ class File(Destination):
         path, reason = draft.path, reason or why_not_written(draft.path)
         if not self._keep:
             self.drop()
-            raise NotWritten(f"recording {str(draft.name)!r} cannot be written: {reason}")
+            raise NotWritten(f"recording {shown(str(draft.name))} cannot be written: {reason}")
         self._incomplete = True
         size = cut_to_whole_messages(path) if path.exists() else 0
         self.warn(
-            f"recording {str(path)!r} cannot be written any more: {reason}; it ends here, and what there is "
+            f"recording {shown(str(path))} cannot be written any more: {reason}; it ends here, and what there is "
             f"({size / 1e6:.1f} MB) can be opened"
         )
 
@@ -129,7 +130,7 @@ class File(Destination):
 
     def _refuse(self, run: int, path: pathlib.Path, reason: str) -> None:
         """Raise, or say that nothing is saved: at once for each run, and then as a reminder."""
-        problem = f"recording {str(path)!r} cannot be written: {reason}"
+        problem = f"recording {shown(str(path))} cannot be written: {reason}"
         if self._patient_from is None or run < self._patient_from:
             raise ValueError(problem)
         self._incomplete = True

@@ -6,6 +6,7 @@ import shutil
 import subprocess
 
 from eel_gaits.output_file import replacing
+from eel_gaits.wording import shown
 
 ANIMATIONS = (".gif", ".webp")
 FRAME = "frame_%05d.png"
@@ -24,7 +25,7 @@ def film(folder: str | os.PathLike[str], count: int, output: str | os.PathLike[s
     """
     path = pathlib.Path(output)
     if path.suffix not in FILMS:
-        raise ValueError(f"film must end in one of {', '.join(FILMS)}, got {str(output)!r}")
+        raise ValueError(f"film must end in one of {', '.join(FILMS)}, got {shown(str(output))}")
     program = ffmpeg()
     if path.suffix not in ANIMATIONS and program is None:
         raise ValueError(f"ffmpeg is not installed, which {path.suffix} needs; {' and '.join(ANIMATIONS)} do without")

@@ -12,6 +12,7 @@ import pathlib
 from io import BytesIO
 from typing import ClassVar
 
+from eel_gaits.wording import shown
 from rosbags.rosbag2 import StoragePlugin, Writer, WriterError
 from rosbags.rosbag2.enums import CompressionMode
 from rosbags.rosbag2.storage_mcap import McapWriter
@@ -70,7 +71,7 @@ class GrowingBag(Writer):
             self.save()
         except (WriterError, OSError) as error:
             reason = error.strerror if isinstance(error, OSError) and error.strerror else error
-            raise ValueError(f"bag {str(folder)!r} cannot be made: {reason}") from error
+            raise ValueError(f"bag {shown(str(folder))} cannot be made: {reason}") from error
 
     def save(self) -> None:
         """Make the folder a whole bag of all messages so far. `OSError` if there is no room: it is what it was."""

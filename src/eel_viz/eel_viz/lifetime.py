@@ -1,11 +1,11 @@
 """How a ROS process of this package lives and ends: SIGINT and SIGTERM end it well, with status 0 and no traceback."""
 
 import signal
-import sys
 import time
 from collections.abc import Callable
 
 import rclpy
+from eel_gaits.command_line import complain
 from rclpy.exceptions import NameValidationException, ParameterException
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
@@ -41,7 +41,7 @@ def live(
         rclpy.init(args=arguments, signal_handler_options=SignalHandlerOptions.NO)
         node = make()
     except (ValueError, RuntimeError, OSError, ParameterException, NameValidationException) as error:
-        sys.stderr.write(f"{name}: {' '.join(str(error).split())}\n")
+        complain(name, error)
         rclpy.try_shutdown()
         return 2
     executor = SingleThreadedExecutor()
@@ -72,7 +72,7 @@ def live(
             signal.signal(number, signal.SIG_IGN)  # until the process is gone: one more would spoil its exit status
     failure = getattr(node, "failure", "")
     if failure:
-        sys.stderr.write(f"{name}: {failure}\n")
+        complain(name, failure)
     return int(bool(failure))
 
 

@@ -9,6 +9,7 @@ from functools import lru_cache
 from math import isfinite
 
 import numpy as np
+from eel_gaits.wording import shown
 
 UNIT_TOLERANCE = 1e-6  # of a quaternion's norm
 
@@ -143,7 +144,7 @@ def read_body(message) -> Body:
             raise BadMessage(name, f"has negative values, the least is {values.min():g} m")
     for name, value in (("length", message.length), ("mass", message.mass)):
         if not 0.0 < value < np.inf:
-            raise BadMessage(name, f"must be > 0 and finite, got {value!r}")
+            raise BadMessage(name, f"must be > 0 and finite, got {shown(value)}")
     return Body(length=message.length, mass=message.mass, x=x, half_width=half_width, half_height=half_height)
 
 
@@ -171,7 +172,7 @@ def read_energy(message) -> dict[str, float]:
     values = {name: getattr(message, name) for name in ENERGY_FIELDS}
     for name, value in values.items():
         if not np.isfinite(value):
-            raise BadMessage(name, f"is {value!r}")
+            raise BadMessage(name, f"is {shown(value)}")
     return values
 
 

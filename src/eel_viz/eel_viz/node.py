@@ -8,6 +8,8 @@ import sys
 import time
 
 from diagnostic_msgs.msg import DiagnosticArray
+from eel_gaits.command_line import complain
+from eel_gaits.wording import shown
 from geometry_msgs.msg import PoseStamped, TwistStamped
 from nav_msgs.msg import Odometry
 from rclpy.node import Node
@@ -53,7 +55,7 @@ class Visualiser(Node):
         other = f"/{self.settings.compare.strip('/')}".rstrip("/")  # empty: the swimmer without a namespace
         told = other or "/"
         if self.settings.compare and other == own:
-            raise ValueError(f"compare must be another namespace than the swimmer's own, got {told!r}")
+            raise ValueError(f"compare must be another namespace than the swimmer's own, got {shown(told)}")
         self._runs = runs = Runs(
             destinations(self.settings, self._say, self._warn, live=True),
             name=own.strip("/") or "eel",
@@ -125,7 +127,7 @@ def main(arguments: list[str] | None = None) -> int:
     try:
         status = answer_words(NAME, ABOUT, given)
     except RuntimeError as error:  # of rcl's parser
-        sys.stderr.write(f"{NAME}: {' '.join(str(error).split())}\n")
+        complain(NAME, error)
         status = 2
     if status is not None:
         return status

@@ -11,6 +11,7 @@ import os
 from dataclasses import dataclass
 
 import numpy as np
+from eel_gaits.wording import shown
 
 from eel_viz.entities import TIMELINE
 from eel_viz.frames import HEAD, whole
@@ -57,7 +58,7 @@ def read(path: str | os.PathLike[str], entity: str, *, static: bool = False) -> 
                     found.setdefault(name.rpartition(":")[2], []).append((stamp, row))
                     stamps.add(stamp)
     if not stamps:
-        raise ValueError(f"recording {str(path)!r} has nothing at {entity!r}")
+        raise ValueError(f"recording {shown(str(path))} has nothing at {shown(entity)}")
     ordered = {name: sorted(rows, key=lambda row: row[0]) for name, rows in found.items()}
     return Columns(
         stamps=np.array(sorted(stamps), dtype=np.int64),

@@ -10,6 +10,7 @@ import sys
 import time
 from collections import Counter
 
+from eel_gaits.command_line import Parser
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from rclpy.utilities import remove_ros_args
@@ -162,7 +163,7 @@ def main(arguments: list[str] | None = None) -> int:
     """Command line; status 0 after SIGINT, SIGTERM or the end that was asked for, 1 if it had to stop (disk full), 2 if
     it cannot begin."""
     words = sys.argv if arguments is None else [NAME, *arguments]
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog=NAME,
         description="Record topics to a rosbag2 folder (MCAP), readable by ros2 bag and rosbags: all messages, as they "
         "come, with the quality of service that their publishers offer.",

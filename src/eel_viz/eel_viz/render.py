@@ -14,7 +14,9 @@ import sys
 import tempfile
 from collections.abc import Callable, Sequence
 
+from eel_gaits.command_line import Parser, complain
 from eel_gaits.output_file import NotWritten, check_output, replacing
+from eel_gaits.wording import shown
 
 from eel_viz.drawing import SIZE, Drawing, drawn
 from eel_viz.film import ANIMATIONS, FILMS, FRAME, ffmpeg, film
@@ -73,9 +75,9 @@ def frames(
     return written
 
 
-def parser() -> argparse.ArgumentParser:
+def parser() -> Parser:
     """What the command line takes."""
-    made = argparse.ArgumentParser(
+    made = Parser(
         prog=NAME,
         description="Draw a Rerun recording to a PNG, to many, or to a film, without a display.",
         epilog="Needs a Vulkan driver; Mesa's software driver will do (apt-get install --no-install-recommends "
@@ -122,17 +124,17 @@ def main(arguments: list[str] | None = None) -> int:
     try:
         width, height = (int(number) for number in chosen.size.split("x"))
     except ValueError:
-        made.error(f"--size must look like 1920x1080, got {chosen.size!r}")
+        made.error(f"--size must look like 1920x1080, got {shown(chosen.size)}")
     try:
         _draw(chosen, pathlib.Path(output), (width, height))
     except (CannotRender, ConnectionError) as reason:
-        _say(f"{NAME}: no picture: {' '.join(str(reason).split())}\n")
+        complain(NAME, f"no picture: {reason}")
         return 3
     except NotWritten as reason:
         _say(f"{NAME}: {reason}\n")
         return 1
     except (ValueError, OSError) as reason:
-        _say(f"{NAME}: {reason}\n")
+        complain(NAME, reason)
         return 2
     except KeyboardInterrupt:
         _say(f"\n{NAME}: interrupted\n")
@@ -148,7 +150,7 @@ def _draw(chosen: argparse.Namespace, output: pathlib.Path, size: tuple[int, int
     if alone and output.suffix not in ANIMATIONS and ffmpeg() is None:
         raise ValueError(f"ffmpeg is not installed, which {output.suffix} needs; {' and '.join(ANIMATIONS)} do without")
     if not many and output.suffix != ".png":
-        raise ValueError(f"a picture must end in .png, got {str(output)!r}; --fps N makes many in a folder")
+        raise ValueError(f"a picture must end in .png, got {shown(str(output))}; --fps N makes many in a folder")
     _check_writable(output, folder=many and not alone)
     if not many:
         render(chosen.recording, output, at=chosen.at, size=size, blueprint=chosen.blueprint)
@@ -187,7 +189,7 @@ def _check_writable(output: pathlib.Path, *, folder: bool) -> None:
     where = output if output.exists() else output.parent
     if not where.is_dir() or not os.access(where, os.W_OK):
         raise ValueError(
-            f"output {str(output)!r} cannot be written: {str(where)!r} is no folder that can be written to"
+            f"output {shown(str(output))} cannot be written: {shown(str(where))} is no folder that can be written to"
         )
 
 

@@ -6,7 +6,6 @@ Messages take the very way that the visualiser's take (`intake`), in the order i
 it goes. A reset in the bag begins a second file, as it does live.
 """
 
-import argparse
 import contextlib
 import os
 import sys
@@ -15,7 +14,9 @@ from collections.abc import Iterator
 from dataclasses import fields
 from types import SimpleNamespace
 
+from eel_gaits.command_line import Parser, complain
 from eel_gaits.output_file import NotWritten
+from eel_gaits.wording import shown
 
 from eel_viz.abreast import show
 from eel_viz.bag import Bag, DamagedBag
@@ -93,7 +94,7 @@ class Source:
         if namespace is not None:
             wanted = "/" + namespace.strip("/") if namespace.strip("/") else ""
             if wanted not in spaces:
-                raise ValueError(f"no swimmer in namespace {namespace!r} of the bag; there is: {named or 'none'}")
+                raise ValueError(f"no swimmer in namespace {shown(namespace)} of the bag; there is: {named or 'none'}")
             return wanted
         if len(spaces) > 1:
             raise ValueError(f"the bag has swimmers in several namespaces, choose one with --namespace: {named}")
@@ -144,9 +145,9 @@ def name_of(bag: str | os.PathLike[str], *besides: str | os.PathLike[str]) -> st
     return os.fspath(bag).strip("/") if same else name
 
 
-def parser() -> argparse.ArgumentParser:
+def parser() -> Parser:
     """What the command line takes."""
-    made = argparse.ArgumentParser(
+    made = Parser(
         prog=NAME,
         description="Turn a rosbag2 folder (or one of its .mcap or .db3 files) into a Rerun recording, without ROS "
         "running: the same that the visualiser shows of these messages. Split bags and those compressed with zstd are "
@@ -173,8 +174,8 @@ def parser() -> argparse.ArgumentParser:
             unit = f" [{about['unit']}]" if about["unit"] else ""
             bounds = "" if kind is str else f"; {limits(about)}"
             text = f"{about['description']}{unit} (default {item.default}{bounds})".replace("%", "%%")
-            option, shown = "--" + item.name.replace("_", "-"), "TEXT" if kind is str else "X"
-            made.add_argument(option, type=kind, default=item.default, help=text, metavar=shown)
+            option, letter = "--" + item.name.replace("_", "-"), "TEXT" if kind is str else "X"
+            made.add_argument(option, type=kind, default=item.default, help=text, metavar=letter)
     return made
 
 
@@ -186,7 +187,7 @@ def main(arguments: list[str] | None = None) -> int:
     other = chosen.compare if chosen.compare.strip("/") and os.path.exists(chosen.compare) else None
 
     def warn(text: str) -> None:
-        sys.stderr.write(f"{NAME}: {text}\n")
+        complain(NAME, text)
 
     began = time.monotonic()
     try:
@@ -201,7 +202,7 @@ def main(arguments: list[str] | None = None) -> int:
         warn(str(error))
         return 1
     except (ValueError, OSError) as error:
-        warn(" ".join(str(error).split()))
+        warn(error)
         return 2
     except KeyboardInterrupt:
         warn("interrupted: the recording ends there")

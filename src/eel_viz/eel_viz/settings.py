@@ -1,7 +1,10 @@
 """What the user can set, each once, with unit, default, bounds and description; the node's parameters come from it."""
 
-import math
+import ipaddress
 from dataclasses import dataclass, field, fields
+
+from eel_gaits.quantity import is_finite
+from eel_gaits.wording import shown
 
 
 def setting(default, description: str, *, unit: str = "", minimum: float | None = None, maximum: float | None = None):
@@ -31,7 +34,12 @@ class Settings:
         "in the working folder",
     )
     viewer: str = setting("rerun+http://127.0.0.1:9876/proxy", "address of the viewer to connect to")
-    port: int = setting(9877, "port of the served data (gRPC), on this machine alone", minimum=1024, maximum=65535)
+    address: str = setting(
+        "127.0.0.1",
+        "where data and web viewer are served: 127.0.0.1 for this machine alone; 0.0.0.0 for every network that it is "
+        "in, where anybody can read them and send data to the viewers",
+    )
+    port: int = setting(9877, "port of the served data (gRPC)", minimum=1024, maximum=65535)
     web_port: int = setting(9090, "port of the served web viewer", minimum=1024, maximum=65535)
     blueprint: str = setting("overview", "arrangement shown first: overview, torques, motion or compare")
     compare: str = setting(
@@ -75,13 +83,18 @@ class Settings:
             raise ValueError(f"sink must name at least one of {', '.join(SINKS)}, got none")
         for name in self.sink:
             if name not in ("auto", *SINKS):
-                raise ValueError(f"sink must be some of {', '.join(SINKS)} or auto, got {name!r}")
+                raise ValueError(f"sink must be some of {', '.join(SINKS)} or auto, got {shown(name)}")
         if self.recording and not self.recording.endswith(".rrd"):
-            raise ValueError(f"recording must end in .rrd, got {self.recording!r}")
+            raise ValueError(f"recording must end in .rrd, got {shown(self.recording)}")
         if self.blueprint not in BLUEPRINTS:
-            raise ValueError(f"blueprint must be one of {', '.join(BLUEPRINTS)}, got {self.blueprint!r}")
+            raise ValueError(f"blueprint must be one of {', '.join(BLUEPRINTS)}, got {shown(self.blueprint)}")
         if self.blueprint == "compare" and not self.compare:
             raise ValueError("compare must be the other swimmer's namespace for the blueprint compare, got none")
+
+        try:
+            ipaddress.IPv4Address(self.address)
+        except ValueError:
+            raise ValueError(f"address must be an IPv4 address such as 127.0.0.1, got {shown(self.address)}") from None
 
     @classmethod
     def from_values(cls, values: dict) -> "Settings":
@@ -96,21 +109,24 @@ def _checked(item, value):
     default, name = item.default, item.name
     if isinstance(default, bool):
         if not isinstance(value, bool):
-            raise ValueError(f"{name} must be true or false, got {value!r}")
+            raise ValueError(f"{name} must be true or false, got {shown(value)}")
     elif isinstance(default, str):
         if not isinstance(value, str):
-            raise ValueError(f"{name} must be a text, got {value!r}")
+            raise ValueError(f"{name} must be a text, got {shown(value)}")
     elif isinstance(default, tuple):
         words = value.split(",") if isinstance(value, str) else value
         if not isinstance(words, (list, tuple)) or not all(isinstance(word, str) for word in words):
-            raise ValueError(f"{name} must be a list of texts, got {value!r}")
+            raise ValueError(f"{name} must be a list of texts, got {shown(value)}")
         return tuple(word.strip() for word in words)
     elif isinstance(value, bool) or not isinstance(value, int if isinstance(default, int) else (int, float)):
-        raise ValueError(f"{name} must be {'an integer' if isinstance(default, int) else 'a number'}, got {value!r}")
+        raise ValueError(
+            f"{name} must be {'an integer' if isinstance(default, int) else 'a number'}, got {shown(value)}"
+        )
     else:
+        told = shown(value) if isinstance(value, int) else f"{value:g}"
         low, high = item.metadata["minimum"], item.metadata["maximum"]
-        if not math.isfinite(value) or (low is not None and value < low) or (high is not None and value > high):
-            raise ValueError(f"{name} must be {limits(item.metadata)}, got {value:g}")
+        if not is_finite(value) or (low is not None and value < low) or (high is not None and value > high):
+            raise ValueError(f"{name} must be {limits(item.metadata)}, got {told}")
         return type(default)(value)
     return value
 

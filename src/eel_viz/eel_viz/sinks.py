@@ -5,21 +5,23 @@ viewer is there, memory is bounded, and an open viewer moves on to the new run. 
 would block for ever in the end; so the viewer's port is probed first.
 """
 
+import ipaddress
+import socket
 import threading
 from urllib.parse import urlsplit
 
 import rerun as rr
+from eel_gaits.wording import shown
 
 from eel_viz.destination import APPLICATION, Destination, Say, close_stream
 from eel_viz.file import File
 from eel_viz.flow import abandon
 from eel_viz.loggers import Rates
 from eel_viz.settings import Settings
-from eel_viz.viewer import display, free_port, listening, open_window
+from eel_viz.viewer import display, end_process, free_port, listening, open_window, serve_to_browsers
 
 LIVE_TICK = 0.16  # s: a viewer shall move smoothly
 ANSWER_LIMIT = 1.0  # s, until a viewer that listens answers
-HOST = "127.0.0.1"
 
 
 class Served(Destination):
@@ -29,23 +31,38 @@ class Served(Destination):
         super().__init__(
             settings, Rates(numbers=settings.rate, drawings=settings.rate, tick=LIVE_TICK), say, warn, live=True
         )
-        port = settings.port
+        port, self._web_viewer = settings.port, None
+        address = ipaddress.IPv4Address(settings.address)
+        self._here = "127.0.0.1" if address.is_unspecified else settings.address
+        self._name = socket.gethostname() if address.is_unspecified else settings.address
         if listening(port):  # the server would only log it
             port = free_port()
             warn(f"port {settings.port} is in use, taking {port}")
-        server = rr.GrpcServerSink(bind_ip=HOST, port=port, server_memory_limit=settings.memory_limit)
-        self.uri = server.uri
+        # The page of the web viewer may ask for the data: on this machine the server allows that by itself.
+        pages = None if address.is_loopback else [f"http://*:{settings.web_port}"]
+        server = rr.GrpcServerSink(
+            bind_ip=settings.address,
+            port=port,
+            server_memory_limit=settings.memory_limit,
+            cors_allow_origin=pages,
+        )
+        self.uri = f"rerun+http://{self._here}:{port}/proxy"
         self._host = rr.RecordingStream(APPLICATION, send_properties=False)
         self._host.set_sinks(server)
         self._host.send_recording_name("(server)")  # a viewer lists it beside the runs
-        say(f"serving at {self.uri}; to look at it, now or later: rerun {self.uri}")
+        self._shown_uri = f"rerun+http://{self._name}:{port}/proxy"
+        say(f"serving on {address}; to look at it, now or later: rerun {self._shown_uri}")
+        if not address.is_loopback:
+            warn(f"anybody who reaches {self._name} can read what is served, and add to it (address is {address})")
 
     def _sink(self, run: int) -> rr.GrpcSink:
         return rr.GrpcSink(self.uri)
 
     def close(self) -> None:
-        """End the server, after the runs' streams."""
+        """End the servers, after the runs' streams."""
         close_stream(self._host)
+        if self._web_viewer is not None:
+            end_process(self._web_viewer)
 
     def show_in_window(self) -> None:
         """Open a viewer on this machine's display; it stays when this process ends."""
@@ -60,8 +77,8 @@ class Served(Destination):
         if listening(port):
             port = free_port()
             self.warn(f"port {self.settings.web_port} is in use, taking {port}")
-        rr.serve_web_viewer(web_port=port, open_browser=False, connect_to=self.uri)
-        self.say(f"look at it in a browser: http://{HOST}:{port}/?url={self.uri}")
+        self._web_viewer = serve_to_browsers(self.settings.address, self._here, port, self.uri)
+        self.say(f"look at it in a browser: http://{self._name}:{port}/?url={self._shown_uri}")
 
 
 class Connected(Destination):
@@ -73,7 +90,7 @@ class Connected(Destination):
         )
         address = urlsplit(settings.viewer)
         if address.hostname is None or address.port is None:
-            raise ValueError(f"viewer must look like rerun+http://127.0.0.1:9876/proxy, got {settings.viewer!r}")
+            raise ValueError(f"viewer must look like rerun+http://127.0.0.1:9876/proxy, got {shown(settings.viewer)}")
         self._address = (address.hostname, address.port)
         self._missed = False
         self._attempts: list[threading.Thread] = []  # that have had no answer

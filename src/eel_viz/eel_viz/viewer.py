@@ -9,12 +9,16 @@ import os
 import pathlib
 import socket
 import subprocess
+import sys
 import tempfile
 import threading
 import time
 from collections.abc import Iterator
 from typing import IO
 
+# Has Linux end the process when the thread that started it has gone (PR_SET_PDEATHSIG, SIGTERM), killed or not.
+DIE_WITH_PARENT = "import ctypes, os, sys; ctypes.CDLL(None).prctl(1, 15); os.execv(sys.argv[1], sys.argv[1:])"
+DRIVER = "it needs a Vulkan driver: apt-get install --no-install-recommends mesa-vulkan-drivers"
 START_LIMIT = 60.0  # s, until the viewer listens
 END_LIMIT = 5.0  # s, until it has ended
 
@@ -44,12 +48,7 @@ def viewer(size: tuple[int, int] = (1920, 1080)) -> Iterator:
                 raise _ended(process, said) from lost
             raise
         finally:
-            process.terminate()
-            try:
-                process.wait(timeout=END_LIMIT)
-            except subprocess.TimeoutExpired:
-                process.kill()
-                process.wait()
+            end_process(process)
 
 
 def open_window(what: str) -> None:
@@ -63,6 +62,37 @@ def open_window(what: str) -> None:
         stderr=subprocess.DEVNULL,
     )
     threading.Thread(target=process.wait, daemon=True).start()  # closed, it leaves nothing behind
+
+
+def serve_to_browsers(address: str, here: str, port: int, uri: str) -> subprocess.Popen:
+    """Serve the web viewer on `port` of `address` (this machine reaches it at `here`), for the data at `uri`; the
+    process ends with this one.
+
+    `rerun.serve_web_viewer` would listen on every network that the machine is in.
+    """
+    command = [native_viewer(), "--serve-web", "--bind", address, "--web-viewer-port", str(port)]
+    command += ["--port", str(free_port()), uri]
+    with tempfile.TemporaryFile() as said:
+        process = subprocess.Popen(
+            [sys.executable, "-I", "-S", "-c", DIE_WITH_PARENT, *command],
+            env={**os.environ, "RERUN_APP_ONLY": "true"},
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=said,
+            start_new_session=True,  # Ctrl-C is for the parent, which ends it
+        )
+        _await_listening(process, port, said, host=here, remedy=f"it was to listen on port {port} of {address}")
+    return process
+
+
+def end_process(process: subprocess.Popen) -> None:
+    """End a viewer, and wait until it has ended."""
+    process.terminate()
+    try:
+        process.wait(timeout=END_LIMIT)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()
 
 
 def display() -> bool:
@@ -92,22 +122,23 @@ def listening(port: int, host: str = "127.0.0.1") -> bool:
         return probe.connect_ex((host, port)) == 0
 
 
-def _await_listening(process: subprocess.Popen, port: int, said: IO[bytes]) -> None:
+def _await_listening(
+    process: subprocess.Popen, port: int, said: IO[bytes], *, host: str = "127.0.0.1", remedy: str = DRIVER
+) -> None:
     limit = time.monotonic() + START_LIMIT
-    while not listening(port):
+    while not listening(port, host):
         if process.poll() is not None:
-            raise _ended(process, said)
+            raise _ended(process, said, remedy)
         if time.monotonic() > limit:
             raise CannotRender(f"the viewer did not start within {START_LIMIT:g} s")
         time.sleep(0.05)
 
 
-def _ended(process: subprocess.Popen, said: IO[bytes]) -> CannotRender:
+def _ended(process: subprocess.Popen, said: IO[bytes], remedy: str = DRIVER) -> CannotRender:
     """Why the viewer has ended by itself, with the package that is missing most often."""
     said.seek(0)
     lines = said.read().decode(errors="replace").splitlines()
-    reason = next((line for line in lines if "graphics" in line or "render" in line.lower()), "")
+    reason = next((line for line in lines if "graphics" in line or "render" in line.lower()), "".join(lines[-1:]))
     return CannotRender(
-        f"the viewer ended with status {process.returncode} ({reason.strip() or 'no reason given'}); it needs "
-        "a Vulkan driver: apt-get install --no-install-recommends mesa-vulkan-drivers"
+        f"the viewer ended with status {process.returncode} ({reason.strip() or 'no reason given'}); {remedy}"
     )

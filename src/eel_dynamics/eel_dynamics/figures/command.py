@@ -4,10 +4,9 @@ figures                       # into docs/figures
 figures --out out/figures --format png
 """
 
-import argparse
-import sys
 from pathlib import Path
 
+from eel_gaits.command_line import Parser, complain
 from eel_gaits.output_file import NotWritten, replacing
 
 from eel_gaits import straight
@@ -43,7 +42,7 @@ def main(arguments: list[str] | None = None) -> int:
     try:
         import matplotlib  # noqa: F401
     except ImportError:
-        print("figures: matplotlib is missing; install it with: python -m pip install matplotlib", file=sys.stderr)
+        complain("figures", "matplotlib is missing; install it with: python -m pip install matplotlib")
         return 2
     folder = Path(options.out)
     try:
@@ -64,7 +63,7 @@ def main(arguments: list[str] | None = None) -> int:
             draft.write_text(page(readings, control, comparison, errors), encoding="utf-8")
         print(folder / "README.md")
     except (ValueError, OSError) as error:
-        print(f"figures: {error}", file=sys.stderr)
+        complain("figures", error)
         return 1 if isinstance(error, NotWritten) else 2
     return 0
 
@@ -104,8 +103,8 @@ def drawings_of(readings, errors) -> dict:
     }
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+def _parser() -> Parser:
+    parser = Parser(
         prog="figures",
         description="Draw the paper's figures and more from runs of the falling gait, and write the page that explains "
         "them; half a minute.",

@@ -5,11 +5,11 @@ stability --study drift         # one of them: maps, condition, drift, plane
 stability --page docs/robustness.md --out docs/images
 """
 
-import argparse
-import sys
 from pathlib import Path
 
+from eel_gaits.command_line import Parser, complain
 from eel_gaits.output_file import NotWritten, check_output, replacing
+from eel_gaits.wording import shown
 
 from ..ending import leave_on_interrupt
 
@@ -29,7 +29,7 @@ def main(arguments: list[str] | None = None) -> int:
         from ..figures.style import SETTINGS
         from .studies import STUDIES as found
     except ImportError:
-        print("stability: matplotlib is missing; install it with: python -m pip install matplotlib", file=sys.stderr)
+        complain("stability", "matplotlib is missing; install it with: python -m pip install matplotlib")
         return 2
     try:
         if options.points < 2:
@@ -55,7 +55,7 @@ def main(arguments: list[str] | None = None) -> int:
                 with replacing(page) as draft:
                     draft.write_text(text, encoding="utf-8")
     except (ValueError, OSError) as error:
-        print(f"stability: {error}", file=sys.stderr)
+        complain("stability", error)
         return 1 if isinstance(error, NotWritten) else 2
     return 0
 
@@ -82,12 +82,12 @@ def _around(page: str, name: str) -> tuple[str, str, str, str]:
     before, begin, rest = page.partition(first)
     _, end, after = rest.partition(last)
     if not begin or not end:
-        raise ValueError(f"the page must have the lines {first!r} and {last!r}")
+        raise ValueError(f"the page must have the lines {shown(first)} and {shown(last)}")
     return before, first, last, after
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+def _parser() -> Parser:
+    parser = Parser(
         prog="stability",
         description="Drive the simulator to the extremes: maps of where a swim is accurate, inaccurate, or stops, the "
         "condition of the inertia, drift over 100,000 periods, growth out of a plane.",

@@ -7,12 +7,13 @@ tradeoff --delivered
 tradeoff --calibrate
 """
 
-import argparse
 import sys
 from pathlib import Path
 
+from eel_gaits.command_line import Parser, complain
 from eel_gaits.output_file import NotWritten, check_output, replacing
 from eel_gaits.registry import GAITS, gait
+from eel_gaits.wording import shown
 
 from ..body import NAMED, Body
 from ..command import check_names
@@ -51,7 +52,7 @@ def main(arguments: list[str] | None = None) -> int:
         for path in _write_all(options, found):
             print(f"written to {path}")
     except (ValueError, OSError, ImportError) as error:
-        print(f"tradeoff: {error}", file=sys.stderr)
+        complain("tradeoff", error)
         return 1 if isinstance(error, NotWritten) else 2
     return 0
 
@@ -64,7 +65,7 @@ def _calibrate() -> int:
     try:
         calibrate(TABLE_FILE, say=_say)
     except OSError as error:
-        print(f"tradeoff: {error}", file=sys.stderr)
+        complain("tradeoff", error)
         return 2
     print(f"written to {TABLE_FILE}")
     return 0
@@ -149,11 +150,11 @@ def _number(text: str) -> tuple[str, float]:
     try:
         return name, float(value)
     except ValueError:
-        raise ValueError(f"--set must be NAME=NUMBER, got {text!r}") from None
+        raise ValueError(f"--set must be NAME=NUMBER, got {shown(text)}") from None
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+def _parser() -> Parser:
+    parser = Parser(
         prog="tradeoff",
         description="Measure error and cost of many settings for a gait, mark the Pareto front, and compare with the "
         "error of models that leave physics out. Takes about a minute per gait.",

@@ -1,0 +1,39 @@
+"""How messages show what somebody gave: in one line, short, on any terminal."""
+
+import re
+import reprlib
+
+LONGEST = 80  # characters shown of a value
+LONGEST_LINE = 1000  # of a whole message
+_LONG_WORD = re.compile(rf"\S{{{LONGEST + 1},}}")
+_brief = reprlib.Repr()
+_brief.maxstring = _brief.maxother = LONGEST
+_brief.maxlevel = 3
+_brief.maxlist = _brief.maxtuple = 8
+
+
+def shown(value) -> str:
+    """`value` as Python writes it, in one line of at most `LONGEST` characters; the middle of a longer one is left
+    out."""
+    if hasattr(value, "typecode"):  # an array of a ROS message
+        value = list(value[:LONGEST])
+    try:
+        text = _brief.repr(value)
+    except ValueError:  # an int of thousands of digits, which Python does not write
+        text = f"an int of {value.bit_length()} bits" if isinstance(value, int) else type(value).__name__
+    return _shortened(" ".join(text.split()))
+
+
+def one_line(error) -> str:
+    """The text of `error` in one line; the middle of long words, and of a long line, is left out."""
+    if isinstance(error, OSError) and error.filename is not None:
+        error = f"{error.strerror}: {shown(error.filename)}"
+    line = _LONG_WORD.sub(lambda word: _shortened(word[0]), " ".join(str(error).split()))
+    return _shortened(line, LONGEST_LINE)
+
+
+def _shortened(text: str, longest: int = LONGEST) -> str:
+    if len(text) <= longest:
+        return text
+    half = (longest - 3) // 2
+    return f"{text[:half]}...{text[-half:]}"

@@ -1,0 +1,74 @@
+"""What the commands and nodes say, whatever they are given and wherever they say it: one line, and no traceback."""
+
+import os
+import subprocess
+
+import pytest
+
+LONG = "lang und breit " * 6000  # 90 kB: a single argument can have 128 kB
+GIVEN = {  # each with an argument that does not fit, as long as can be
+    "simulate gait": ["simulate", LONG],
+    "simulate number": ["simulate", "--duration", LONG],
+    "simulate digits": ["simulate", "--stations", "9" * 100_000],
+    "simulate scene": ["simulate", "--scene", LONG + "=1"],
+    "simulate body": ["simulate", "--body", LONG],
+    "simulate out": ["simulate", "--out", LONG + ".npz"],
+    "sweep": ["sweep", "--vary", LONG + "=1", "--out", "sweep.nc"],
+    "tradeoff": ["tradeoff", LONG],
+    "stability": ["stability", "--study", LONG],
+    "figures": ["figures", LONG],
+    "replay": ["replay", LONG],
+    "render": ["render", LONG, "-o", "picture.png"],
+    "record": ["record", "-o", "bag", "--duration", LONG],
+    "eel_echo": ["eel_echo", LONG],
+    "gait_generator": ["gait_generator", LONG],
+    "gait": ["gait_generator", "--ros-args", "-p", f"gait:={'x' * 90_000}"],
+    "dynamics": ["dynamics", "--ros-args", "-p", f"body:={'x' * 90_000}"],
+    "dynamics of a number": ["dynamics", "--ros-args", "-p", f"rate:={'x' * 90_000}"],
+    "visualiser": ["visualiser", "--ros-args", "-p", f"sink:={'x' * 90_000}"],
+}
+
+
+def said_by(words, tmp_path, **environment):
+    return subprocess.run(
+        words,
+        cwd=tmp_path,
+        env={**os.environ, **environment},
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        timeout=120,
+    )
+
+
+@pytest.mark.fault(
+    "parameters",
+    "an argument or a parameter of 90 kB that does not fit, of any command or node",
+    "status 2, and one line of at most 1,000 characters that names it",
+)
+@pytest.mark.parametrize("what", GIVEN)
+def test_a_long_argument_is_refused_in_one_line(what, tmp_path):
+    done = said_by(GIVEN[what], tmp_path)
+    (line,) = done.stderr.decode().splitlines()
+    assert done.returncode == 2 and line.startswith(GIVEN[what][0]) and len(line) < 1100, (done.returncode, line[:2000])
+    assert not done.stdout and not list(tmp_path.iterdir())
+
+
+@pytest.mark.fault(
+    "names",
+    "names with characters that the terminal's encoding lacks (PYTHONIOENCODING=ascii)",
+    "written as escapes; nothing ends",
+)
+@pytest.mark.parametrize("encoding", ["ascii:strict", "latin-1"])
+def test_a_terminal_without_the_characters_breaks_nothing(encoding, tmp_path):
+    out = tmp_path / "Ærø – δοκιμή.csv"
+    done = said_by(["simulate", "--duration", "0.1", "--out", str(out)], tmp_path, PYTHONIOENCODING=encoding)
+    assert done.returncode == 0 and out.exists(), done.stderr.decode()
+    assert b"written to" in done.stdout and b"\\u03b4" in done.stdout
+    done = said_by(["simulate", "δοκιμή"], tmp_path, PYTHONIOENCODING=encoding)
+    assert done.returncode == 2 and len(done.stderr.splitlines()) == 1 and b"\\u03b4" in done.stderr
+
+
+@pytest.mark.parametrize("name", ["simulate", "render", "gait_generator", "visualiser"])
+def test_help_on_a_terminal_of_ascii(name, tmp_path):
+    done = said_by([name, "--help"], tmp_path, PYTHONIOENCODING="ascii:strict")
+    assert done.returncode == 0 and done.stdout.startswith(b"usage: ") and not done.stderr
