@@ -31,11 +31,12 @@ with (ROOT / "pyproject.toml").open("rb") as settings:
 OPTIONAL = {"tf2_msgs", "dask", "distributed", "xarray", "eel_viz"}  # used where it is installed
 FROM_REQUIREMENTS = {
     "rerun",
+    "rerun_bindings",
     "rosbags",
     "mcap",
     "pyarrow",
     "zstandard",
-}  # no rosdep key: requirements.txt brings them (pyarrow with rerun, zstandard with mcap)
+}  # no rosdep key: requirements.txt brings them (pyarrow and rerun_bindings with rerun, zstandard with mcap)
 
 
 def imported_modules(package: str) -> set[str]:
