@@ -1,7 +1,7 @@
 # The two commands are `make demo` and `make test`; each does all the set-up itself, inside this folder.
 SHELL := /bin/bash
 .DEFAULT_GOAL := help
-.PHONY: pictures help demo test sanitize aarch64 validation build bench lint soak robustness clean
+.PHONY: quotes pictures help demo test sanitize aarch64 validation build bench lint soak robustness clean
 RUN := tools/run.sh
 
 help:   ## this list

@@ -25,6 +25,7 @@ check "rules (ruff)" ruff check .
 check "format (ruff)" ruff format --check .
 check "imports (import-linter)" lint-imports --no-cache --no-logo
 check "spelling (codespell)" codespell -D- -Dtools/british.txt
+check "quoted figures (make quotes)" python tools/quoted_figures.py --check
 check "C++ format (clang-format)" clang-format --dry-run -Werror "${sources[@]}" "${headers[@]}"
 check "C++ rules (clang-tidy)" tidy
 [ ${#failed[@]} = 0 ] || { printf '[lint] failed:'; printf ' %s;' "${failed[@]}"; echo; exit 1; }

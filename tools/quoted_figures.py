@@ -1,0 +1,172 @@
+"""Writes the figures that README.md and docs quote: `make quotes`; `--check` says which are stale.
+
+They stand between two marker lines and come from the newest report in benchmarks/reports that has them (the output of
+`make bench`), or from docs/validation.md (`make validation`). These pages quote no other measured figure but what
+another command writes between markers of its own.
+"""
+
+import re
+import sys
+from collections.abc import Callable
+
+from reports import ROOT, Report
+
+VALIDATION = ROOT / "docs" / "validation.md"
+WRITTEN_WHOLE = ("docs/validation.md", "docs/tradeoff.md", "docs/figures/README.md")  # by commands of their own
+MARKED = re.compile(r"<!-- ([a-z]+): written by `(.*?)`.*? -->\n(.*?)<!-- end of \1 -->", re.DOTALL)
+MEASURED = re.compile(  # what looks like a figure that somebody has measured
+    r"\d (?:[un]s|evaluations|times (?:real time|more|cheaper|as fast))\b|\d\.\d+e-\d|[2-9]e-\d|factor of \d"
+    r"|% of (?:a|one) core",
+)
+
+
+def link(report: Report, folder: str = "") -> str:
+    """Markdown, from a page that lies so deep."""
+    return f"[{report.path.stem}]({folder}benchmarks/reports/{report.path.name})"
+
+
+TARGETS = {
+    "0.01": "1e-2 (`draft`)",
+    "0.001": "1e-3",
+    "0.0001": "1e-4 (`standard`)",
+    "1e-06": "1e-6 (`fine`)",
+}
+ALL = "ledger, wrench, 201 samples"
+
+
+def speed() -> str:
+    """README: error against cost of the falling gait, and what other programs take for it."""
+    falling, evaluation, scheme, peers = map(Report, ("falling", "evaluation", "paper_scheme", "peers"))
+    lines = [
+        f"| target | error, motion alone | evaluations | times real time | error, {ALL} | evaluations "
+        "| times real time |",
+        "|---" * 7 + "|",
+    ]
+    for target, label in TARGETS.items():
+        cells = [label]
+        for case in ("motion alone", ALL):
+            told = falling.rest(f"{case}, target {target}")
+            pace, error, count = re.fullmatch(r"(\S+) times real time, error (\S+), (\d+) evaluations", told).groups()
+            cells += [error, count, f"{float(f'{float(pace):.2g}'):,.0f}"]
+        lines.append(f"| {' | '.join(cells)} |")
+
+    def span(ratios: list[float]) -> str:
+        return f"{min(ratios):,.0f} to {max(ratios):,.0f} times as long"
+
+    lines += [
+        "",
+        f"Errors are of the head's position at the end, by its path; friction is laminar ({link(falling)}).",
+        f"One evaluation of the head's dynamics takes {evaluation.value('24 nodes'):.2g} us at 24 nodes ({link(evaluation)}).",
+        "At equal error the paper's own scheme in the same language takes",
+        f"{span(scheme.ratios('motion alone'))} for the motion alone ({link(scheme)}). On the same gait, at equal",
+        "error against their own answers and with less physics of the water, MuJoCo (10 links) takes",
+        f"{span(peers.ratios('10 links'))}, PyElastica",
+        f"{span(peers.ratios('[0-9]+ elements'))} ({link(peers)}).",
+    ]
+    return "\n".join(lines)
+
+
+ACTUATORS = " of the actuators' work"
+CHECKS = {  # what README says: the lines of docs/validation.md whose worst it is, and what it is relative to
+    "accelerations, wrench, loads against a second code, written from kinetic energy alone, other direction of "
+    "integration; no drag": (r"(head's acceleration|internal torque and force|shape in space).* without drag", ""),
+    "head's path over 10 s against that code with DOP853, laminar friction, accuracy reference": (
+        ".*laminar friction, accuracy reference.*",
+        " of the path",
+    ),
+    "closure of the internal wrench at the nose": ("(torque|force) left over at the nose, any swimmer", ""),
+    "energy ledger, falling gait, accuracy standard": ("residual that the live node publishes.*", ACTUATORS),
+    "energy ledger, the worst of seven scenes": ("residual, .* accuracy standard.*", ACTUATORS),
+    "Lighthill's eq. (1) in the plane": ("rate of the water's momentum.*|flux and pressure.*|resultant.*", ""),
+    "Munk's moment, coasting, Euler's top in closed form": ("Munk's moment.*|coasting.*|Euler's top.*", ""),
+}
+MASS = "mass of the paper's robot"
+
+
+def trust() -> str:
+    """README: what the checks of the mechanics measure, the worst of each kind."""
+    rows = [line.split(" | ") for line in VALIDATION.read_text(encoding="utf-8").splitlines() if line.count(" | ") == 4]
+    measured = {row[0].removeprefix("| "): row[1] for row in rows}
+    lines = ["| check | difference |", "|---|---|"]
+    for check, (pattern, scale) in CHECKS.items():
+        found = [float(value.split()[0]) for what, value in measured.items() if re.fullmatch(pattern, what)]
+        if not found:
+            raise ValueError(f"docs/validation.md has no line like {pattern!r}: make validation")
+        lines.append(f"| {check} | {max(found):.1e}{scale} |")
+    return "\n".join([*lines, f"| {MASS} (printed: 1.94 kg) | {measured[MASS]} |"])
+
+
+def integrators() -> str:
+    """docs/integrators.md: evaluations by method and target."""
+    report = Report("integrators")
+    table = [re.split(r" {2,}", line) for line in report.lines if not line.startswith("order seen")]
+    head, *rows = table
+    lines = [f"From {link(report, '../')}.", "", f"| {' | '.join(head)} |", "|---" * len(head) + "|"]
+    return "\n".join([*lines, *(f"| {' | '.join(row)} |" for row in rows)])
+
+
+def orders() -> str:
+    """docs/integrators.md: the orders that are seen."""
+    report = Report("integrators")
+    head = "| what is not smooth | order | error at 20 and 80 per second |"
+    lines = [f"From {link(report, '../')}.", "", head, "|---|---|---|"]
+    for line in report.lines:
+        if found := re.fullmatch(r"order seen, (.*?) {2,}(\S+) errors (\S+) to (\S+) m", line):
+            lines.append(f"| {found[1]} | {found[2]} | {found[3]} m, {found[4]} m |")
+    return "\n".join(lines)
+
+
+BLOCKS: dict[str, dict[str, Callable[[], str]]] = {
+    "README.md": {"trust": trust, "speed": speed},
+    "docs/integrators.md": {"integrators": integrators, "orders": orders},
+}
+
+
+def with_figures(page: str, blocks: dict[str, Callable[[], str]]) -> str:
+    """The page's text with what the figures are now between their marker lines."""
+    for name, write in blocks.items():
+        begin, end = f"<!-- {name}: written by `make quotes` -->\n", f"\n<!-- end of {name} -->"
+        before, found, rest = page.partition(begin)
+        _, ends, after = rest.partition(end)
+        if not found or not ends:
+            raise ValueError(f"the page must have the lines {begin.strip()} and {end.strip()}")
+        page = f"{before}{begin}{write()}{end}{after}"
+    return page
+
+
+def quoted_by_hand(page: str) -> list[str]:
+    """Lines that quote a figure and stand outside all markers."""
+    outside = MARKED.sub(lambda block: "\n" * block[0].count("\n"), page)
+    return [f"{number}: {line}" for number, line in enumerate(outside.splitlines(), 1) if MEASURED.search(line)]
+
+
+def complaints() -> list[str]:
+    """What is wrong on any page, a line each."""
+    found = []
+    for name, blocks in BLOCKS.items():
+        page = (ROOT / name).read_text(encoding="utf-8")
+        if with_figures(page, blocks) != page:
+            found.append(f"{name}: a figure is stale, `make quotes` writes it")
+    for path in (ROOT / "README.md", *sorted((ROOT / "docs").glob("**/*.md"))):
+        if str(path.relative_to(ROOT)) not in WRITTEN_WHOLE:
+            lines = quoted_by_hand(path.read_text(encoding="utf-8"))
+            found += [f"{path.relative_to(ROOT)}:{line} (a figure that no command writes)" for line in lines]
+    return found
+
+
+def main(words: list[str]) -> int:
+    """Write the figures; with --check say what is wrong, status 1 if anything is."""
+    if words == ["--check"]:
+        found = complaints()
+        for line in found:
+            print(line)
+        return 1 if found else 0
+    for name, blocks in BLOCKS.items():
+        path = ROOT / name
+        path.write_text(with_figures(path.read_text(encoding="utf-8"), blocks), encoding="utf-8")
+        print(f"{name}: {', '.join(blocks)}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
