@@ -34,7 +34,10 @@ pictures: build   ## draw the pictures of the visualiser in docs/images
 robustness: build   ## write the table of faults in docs/robustness.md from the tests
 	@$(RUN) python tools/fault_table.py
 
-lint: build   ## rules, format, imports and spelling of the sources, Python and C++
+quotes: build   ## write the figures that README.md and docs quote, from the newest reports
+	@$(RUN) python tools/quoted_figures.py
+
+lint: build   ## rules, format, imports, spelling and quoted figures, Python and C++
 	@$(RUN) tools/lint.sh
 
 build:   ## the virtual environment, the five packages, the compiled kernels (PYTHON=... chooses the Python)

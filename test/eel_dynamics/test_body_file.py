@@ -34,7 +34,7 @@ def test_a_byte_order_mark_is_no_part_of_the_first_name(tmp_path):
         (GOOD.replace("0.02", "0.02+1j", 1), "line 3: half_width must be a number, got '0.02+1j'"),
         (GOOD.replace("0.02", '"0.02', 1), "line 5: unexpected end of data"),
         (GOOD.replace("0.02", "9" * 200_000, 1), "line 3: field larger than field limit"),
-        (GOOD.replace("0.02", "x" * 100_000, 1), f"line 3: half_width must be a number, got '{'x' * 40}...'"),
+        (GOOD.replace("0.02", "x" * 100_000, 1), f"line 3: half_width must be a number, got '{'x' * 37}"),
         (GOOD.replace("0.02,", "", 1), "line 3: its rows are not as long as its header"),
         (GOOD.replace("half_width", "width"), "must have columns x, half_width, half_height; half_width missing"),
         ("x,half_width,half_height\n", "body x must rise from 0 over 4 points or more, got 0 points"),
@@ -61,7 +61,7 @@ def test_complex_columns_of_an_archive_are_refused(tmp_path):
 
 def test_a_fifo_is_refused_at_once(tmp_path):
     os.mkfifo(tmp_path / "fish.csv")
-    with pytest.raises(ValueError, match=r"fish\.csv cannot be read: it is no regular file"):
+    with pytest.raises(ValueError, match=r"fish\.csv' cannot be read: it is no regular file"):
         Body.from_file(tmp_path / "fish.csv")
 
 
