@@ -11,14 +11,13 @@ from dataclasses import fields
 
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
-from eel_gaits.command_line import complain
 from eel_gaits.messages import law_from_message
 from eel_gaits.node import answer_words, take_overrides, warn_of_unknown
 from eel_gaits.serving import serve_once
+from eel_gaits.starting import CANNOT_START, tell_no_start
 from rclpy.clock import Clock, ClockType
 from rclpy.duration import Duration
 from rclpy.event_handler import SubscriptionEventCallbacks
-from rclpy.exceptions import NameValidationException, ParameterException
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.logging import get_logger
@@ -159,8 +158,8 @@ def main(args=None) -> int:
             return 0
         with one_line_warnings(NAME):
             node = DynamicsNode()
-    except (ValueError, RuntimeError, ParameterException, NameValidationException) as error:
-        complain(NAME, error)
+    except CANNOT_START as error:
+        tell_no_start(NAME, error)
         rclpy.try_shutdown()
         return 2
     executor = SingleThreadedExecutor()

@@ -14,7 +14,6 @@ from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor, SetParam
 from rclpy.callback_groups import CallbackGroup
 from rclpy.clock import JumpThreshold
 from rclpy.duration import Duration
-from rclpy.exceptions import NameValidationException, ParameterException
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
@@ -27,6 +26,7 @@ from eel_gaits.messages import law_to_message
 from eel_gaits.registry import GAITS
 from eel_gaits.serving import leave_out, serve_once
 from eel_gaits.settings import Settings, Transition
+from eel_gaits.starting import CANNOT_START, tell_no_start
 from eel_gaits.wording import shown
 from eel_msgs.msg import CurvatureLaw
 
@@ -206,8 +206,8 @@ def main(args=None):
             return status
         rclpy.init(args=DEFAULTS + words, signal_handler_options=SignalHandlerOptions.NO)
         node = GaitGenerator()
-    except (ValueError, RuntimeError, ParameterException, NameValidationException) as error:
-        complain(NAME, error)
+    except CANNOT_START as error:
+        tell_no_start(NAME, error)
         rclpy.try_shutdown()
         return 2
     executor = SingleThreadedExecutor()

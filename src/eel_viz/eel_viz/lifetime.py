@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import rclpy
 from eel_gaits.command_line import complain
-from rclpy.exceptions import NameValidationException, ParameterException
+from eel_gaits.starting import CANNOT_START, tell_no_start
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
@@ -40,8 +40,8 @@ def live(
     try:
         rclpy.init(args=arguments, signal_handler_options=SignalHandlerOptions.NO)
         node = make()
-    except (ValueError, RuntimeError, OSError, ParameterException, NameValidationException) as error:
-        complain(name, error)
+    except CANNOT_START as error:
+        tell_no_start(name, error)
         rclpy.try_shutdown()
         return 2
     executor = SingleThreadedExecutor()
