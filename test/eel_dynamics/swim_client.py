@@ -65,7 +65,7 @@ class SwimClient:
         self.executor.add_node(self.node)
         self.heard = defaultdict(list)
         self.arrivals = defaultdict(list)  # s, steady clock
-        self._subscriptions = []
+        self._subscriptions, self._services = [], {}
         for topic in topics:
             self.listen(topic, SAMPLES[topic])
         self.listen("body", BodyGeometry, LATCHED)
@@ -90,7 +90,7 @@ class SwimClient:
 
         self._subscriptions.append(self.node.create_subscription(kind, topic, keep, quality))
 
-    def _turn(self):
+    def turn(self):
         """Serves what has come. The executor takes one message of a topic at a time, and is slower at that than a node
         without a pace: the others that are there are taken in one go."""
         self.executor.spin_once(timeout_sec=0.02)
@@ -105,14 +105,14 @@ class SwimClient:
     def spin(self, seconds):
         end = time.monotonic() + seconds
         while time.monotonic() < end:
-            self._turn()
+            self.turn()
 
     def until(self, condition, what, limit=LIMIT):
         """Spins until the condition holds; AssertionError, with what was awaited, after `limit`."""
         deadline = time.monotonic() + limit
         while not condition():
             assert time.monotonic() < deadline, f"no {what} within {limit} s"
-            self._turn()
+            self.turn()
 
     def latest(self, topic):
         self.until(lambda: self.heard[topic], f"message on {topic}")
@@ -126,14 +126,16 @@ class SwimClient:
         )
 
     def call(self, kind, name, **request):
-        service = self.node.create_client(kind, name)
-        try:
-            self.until(service.service_is_ready, f"service {name}")
-            answer = service.call_async(kind.Request(**request))
-            self.until(answer.done, f"answer from {name}")
-            return answer.result()
-        finally:
-            self.node.destroy_client(service)
+        return self._call_often(1, kind, name, **request)
+
+    def _call_often(self, count, kind, name, **request):
+        """The answer to the last of `count` calls that are on their way together; a service's history holds ten."""
+        if name not in self._services:
+            self._services[name] = self.node.create_client(kind, name)
+        self.until(self._services[name].service_is_ready, f"service {name}")
+        answers = [self._services[name].call_async(kind.Request(**request)) for _ in range(count)]
+        self.until(lambda: all(answer.done() for answer in answers), f"answer from {name}")
+        return answers[-1].result()
 
     def reset(self):
         return self.call(Trigger, "dynamics/reset")
@@ -153,13 +155,13 @@ class SwimClient:
         return nanoseconds(self.heard[topic][-1].header.stamp) / 1e9
 
     def deliver(self, messages):
-        """Publishes samples of a controller, and waits until the node has them and had the time to look at them."""
+        """Publishes samples of a controller, and waits until the node has taken them: between two answers to questions
+        its executor takes one of them."""
         for message in messages:
             self.samples.publish(message)
         assert self.samples.wait_for_all_acked(Duration(seconds=LIMIT)), "the samples did not arrive"
-        self.get("rate")  # a question that it answers in between, and once more after them
-        self.spin(0.3)
-        self.get("rate")
+        for _ in range(len(messages) // 8 + 1):
+            self._call_often(8, GetParameters, "dynamics/get_parameters", names=["rate"])
 
     def set(self, **values):
         parameters = [Parameter(name, value=value).to_parameter_msg() for name, value in values.items()]

@@ -4,11 +4,11 @@ import signal
 import time
 from dataclasses import fields
 
-import psutil
 import pytest
 from eel_dynamics.parameters import DynamicsParameters
 from eel_dynamics.scene import Scene
 from eel_gaits.messages import law_to_message
+from node_process import PROMPT
 from swim_client import LIMIT
 
 from eel_gaits import falling
@@ -35,15 +35,11 @@ BAD = {
     "a parameter of the dynamics node out of its bounds, of another type or unknown",
     "one line that names it, what it must be and what it got; status 2",
 )
-@pytest.mark.parametrize("what", BAD)
-def test_bad_parameter_is_one_line_and_status_2(start, what):
-    given, words = BAD[what]
-    node = start("dynamics", "--ros-args", *(part for each in given for part in ("-p", each)))
-    assert node.wait(LIMIT) == 2, node.output()
-    lines = [line for line in node.output().splitlines() if line.strip() and "compiling" not in line]
-    assert len(lines) == 1 and lines[0].startswith("dynamics: ") and all(word in lines[0] for word in words), (
-        node.output()
-    )
+def test_bad_parameters_are_one_line_each_and_status_2(start_in_turn):
+    given = [["--ros-args", *(part for each in given for part in ("-p", each))] for given, _ in BAD.values()]
+    for (what, (_, words)), (status, said) in zip(BAD.items(), start_in_turn("eel_dynamics.node", given), strict=True):
+        assert status == 2 and said.startswith("dynamics: ") and said.count("\n") == 1, (what, said)
+        assert all(word in said for word in words), (what, said)
 
 
 def body_file(tmp_path, rows):
@@ -55,20 +51,18 @@ def body_file(tmp_path, rows):
 @pytest.mark.fault(
     "parameters", "a body file with negative, unsorted or too few values", "one line that names the column; status 2"
 )
-@pytest.mark.parametrize(
-    ("rows", "words"),
-    [
-        ([(0, 0, 0), (0.3, -0.02, 0.03), (0.6, 0.02, 0.03), (1, 0.01, 0.01)], ("half_width", "-0.02")),
-        ([(0, 0, 0), (0.6, 0.02, 0.03), (0.3, 0.02, 0.03), (1, 0.01, 0.01)], ("x", "rise")),
-        ([(0, 0, 0), (1, 0.01, 0.01)], ("x", "4 points")),
-    ],
-    ids=["negative", "unsorted", "too short"],
-)
-def test_bad_body_file_is_one_line_and_status_2(start, tmp_path, rows, words):
-    node = start("dynamics", "--ros-args", "-p", f"body:={body_file(tmp_path, rows)}")
-    assert node.wait(LIMIT) == 2, node.output()
-    lines = [line for line in node.output().splitlines() if line.strip() and "compiling" not in line]
-    assert len(lines) == 1 and all(word in lines[0] for word in words), node.output()
+def test_bad_body_files_are_one_line_each_and_status_2(start_in_turn, tmp_path):
+    bodies = {
+        "negative": ([(0, 0, 0), (0.3, -0.02, 0.03), (0.6, 0.02, 0.03), (1, 0.01, 0.01)], ("half_width", "-0.02")),
+        "unsorted": ([(0, 0, 0), (0.6, 0.02, 0.03), (0.3, 0.02, 0.03), (1, 0.01, 0.01)], ("x", "rise")),
+        "short": ([(0, 0, 0), (1, 0.01, 0.01)], ("x", "4 points")),
+    }
+    lines = []
+    for name, (rows, _) in bodies.items():
+        (tmp_path / name).mkdir()
+        lines.append(["--ros-args", "-p", f"body:={body_file(tmp_path / name, rows)}"])
+    for (_, words), (status, said) in zip(bodies.values(), start_in_turn("eel_dynamics.node", lines), strict=True):
+        assert status == 2 and said.count("\n") == 1 and all(word in said for word in words), said
 
 
 @pytest.mark.fault("parameters", "a parameter file that is wrong", "one line, status 2, no traceback")
@@ -141,50 +135,29 @@ def test_body_from_a_file_and_numbers_of_every_kind(start, client, tmp_path):
     assert swim.latest("body").length == 1.2
 
 
-ATTEMPTS = 3  # a machine that stands still may delay one of them; a node that is slow is slow in all
-
-
-def least_time_to_end(begin, sent) -> float:
-    """Seconds from the signal to a good end of the node that `begin()` starts: the least of the attempts, as many as it
-    takes to be below one, up to three. What the machine was busy with others does not count."""
-    times = []
-    while min(times, default=1.0) >= 1.0 and len(times) < ATTEMPTS:
-        node = begin()
-        times.append(node.time_to_end(sent))
-        assert node.status == 0, node.output()
-        assert "Traceback" not in node.output()
-    return min(times)
-
-
 @pytest.mark.fault(
-    "ending", "SIGINT or SIGTERM in mid-run, at real time and as fast as it goes", "exit within 1 s, status 0"
+    "ending", "SIGINT or SIGTERM in mid-run, at real time and as fast as it goes", "prompt exit, status 0"
 )
 @pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
 @pytest.mark.parametrize("factor", [1, 0])
-def test_signal_ends_a_run_within_a_second(start, client, sent, factor):
-    def begin():
-        swim = client(topics=("head_pose",))
-        swim.laws.publish(law_to_message(falling()))
-        node = start("dynamics", "--ros-args", "-p", f"real_time_factor:={factor}")
-        swim.until_time(0.3)
-        return node
-
-    assert least_time_to_end(begin, sent) < 1.0
+def test_signal_ends_a_run_promptly(start, client, sent, factor):
+    swim = client(topics=("head_pose",))
+    swim.laws.publish(law_to_message(falling()))
+    node = start("dynamics", "--ros-args", "-p", f"real_time_factor:={factor}")
+    swim.until_time(0.3)
+    assert node.time_to_end(sent) < PROMPT
+    assert node.status == 0 and "Traceback" not in node.output(), node.output()
 
 
-@pytest.mark.fault("ending", "SIGINT or SIGTERM while the physics is being compiled", "exit within 1 s, status 0")
+@pytest.mark.fault("ending", "SIGINT or SIGTERM while the physics is being compiled", "prompt exit, status 0")
 @pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
 def test_signal_ends_a_first_compilation(start, monkeypatch, tmp_path, sent):
-    caches = iter(range(ATTEMPTS))
-
-    def begin():
-        monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / f"cache{next(caches)}"))
-        node = start("dynamics")
-        node.wait_for_output("compiling", LIMIT)
-        time.sleep(2.0)
-        return node
-
-    assert least_time_to_end(begin, sent) < 1.0
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "cache"))
+    node = start("dynamics")
+    node.wait_for_output("compiling", LIMIT)
+    time.sleep(2.0)  # into the compilation, which says nothing until it is over
+    assert node.time_to_end(sent) < PROMPT
+    assert node.status == 0 and "Traceback" not in node.output(), node.output()
 
 
 @pytest.mark.fault("ending", "two signals at once", "status 0, no traceback")
@@ -194,14 +167,3 @@ def test_two_signals_are_as_good_as_one(start):
     node.process.send_signal(signal.SIGINT)
     node.process.send_signal(signal.SIGTERM)
     assert node.wait(LIMIT) == 0 and "Traceback" not in node.output()
-
-
-def test_first_publication_is_soon(start):
-    """With everything compiled: the processor's time that the process takes until it waits for a law. How long a user
-    waits is in the benchmark `start`."""
-    for _ in range(2):  # the first one compiles, if need be
-        node = start("dynamics")
-        node.wait_for_output("waiting for a law", LIMIT)
-        spent = psutil.Process(node.process.pid).cpu_times()
-        assert node.interrupt() == 0
-    assert spent.user + spent.system < 5.0  # 1.5 s on a machine of one's own
