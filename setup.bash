@@ -54,7 +54,6 @@ _eel_setup() {
     export ROS_DISTRO=jazzy ROS_VERSION=2 ROS_PYTHON_VERSION=3
     # The ROS wheels restart every Python once to set LD_LIBRARY_PATH, unless this says that it is set.
     export _ROS_WHEELS_BOOTSTRAP_COMPLETE=1
-    export NUMBA_CACHE_DIR="$root/build/numba_cache"
 }
 
 if _eel_setup "$_eel_root"; then

@@ -2,24 +2,19 @@
 
 MuJoCo (a chain of ellipsoids with its fluid model) and PyElastica (a Cosserat rod with its slender-body drag) swim the
 falling gait. Their physics is another, so each is held against its own converged answer, and costs are compared where
-the library has no greater error against its own. `.venv-peers` is made on the first call; a peer that cannot be
-installed is skipped.
+the library has no greater error against its own. A peer that cannot be installed is skipped.
 """
 
-import json
-import subprocess
-import sys
-import tempfile
 from pathlib import Path
 from statistics import median
 
 import numpy as np
 from measuring import times_in_turn
+from peer_processes import environment, measured
 
 from eel_dynamics import Body, Scene, Simulation, simulate
 from eel_gaits import falling
 
-ROOT = Path(__file__).resolve().parents[1]
 REPEATS = 3
 BATCH = 8  # swimmers side by side
 LINKS = {10: 2.5e-4, 20: 2.5e-4}  # MuJoCo: links, s of the finest step
@@ -75,32 +70,6 @@ class Ours:
         raise ValueError(f"no target reaches an error of {error:.1e}")
 
 
-def environment(name: str) -> Path | None:
-    """Python of the peer's own environment, made on the first call; None where it cannot be installed."""
-    folder, pins = ROOT / ".venv-peers" / name, Path(__file__).parent / "peers" / f"{name}.txt"
-    python, stamp = folder / "bin" / "python", folder / "pins.txt"
-    if stamp.is_file() and stamp.read_text() == pins.read_text():
-        return python
-    try:
-        subprocess.run([sys.executable, "-m", "venv", folder], check=True, capture_output=True)
-        (folder.parent / "COLCON_IGNORE").touch()
-        subprocess.run([python, "-m", "pip", "install", "--quiet", "-r", pins], check=True, capture_output=True)
-    except (OSError, subprocess.CalledProcessError):
-        return None
-    stamp.write_text(pins.read_text())
-    return python
-
-
-def _measured(python: Path, script: str, **task) -> dict:
-    """What `script` of the folder `peers` says about the `task`."""
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "task.npz"
-        np.savez(path, **task)
-        command = [python, Path(__file__).parent / "peers" / script, path]
-        done = subprocess.run(command, check=True, cwd=folder, capture_output=True, text=True, timeout=900)
-    return json.loads(done.stdout.splitlines()[-1])
-
-
 def _lines(name, results: dict, ours: Ours, duration: float):
     """Lines of one model: `results` by step, the finest last."""
     *coarser, finest = results
@@ -121,7 +90,7 @@ def _mujoco(python: Path, ours: Ours, duration: float = 10.0):
         for step in (*LINK_STEPS, finest):
             angles = _joint_angles(ours, links, step, duration)
             middle = (np.arange(links) + 0.5) * ours.body.length / links
-            results[step] = _measured(
+            results[step] = measured(
                 python,
                 "mujoco_chain.py",
                 length=ours.body.length,
@@ -175,7 +144,7 @@ def _elastica(python: Path, ours: Ours, duration: float = 5.0):
         for step in (*ELEMENT_STEPS, finest):
             steps = round(duration / step)
             shapes, weights = _separated(ours.law, x * ours.body.length, np.arange(2 * steps + 2) * 0.5 * step)
-            results[step] = _measured(
+            results[step] = measured(
                 python,
                 "elastica_rod.py",
                 length=ours.body.length,

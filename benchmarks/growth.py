@@ -20,7 +20,7 @@ def growth():
     law, swims, nodes, evaluations = falling(), {}, {}, {}
     for resolution in RESOLUTIONS:
         accuracy = Accuracy(name="bench", resolution=resolution, step=0.01)
-        nodes[resolution] = len(Simulation(accuracy=accuracy).swimmer.x)
+        nodes[resolution] = len(Simulation(accuracy=accuracy).grid.x)
         for duration in (1.0, 5.0):
             swim = partial(simulate, law, duration, scene=LEAN, accuracy=accuracy, sample_period=duration)
             swims[resolution, duration] = swim

@@ -5,12 +5,12 @@ to 8, the classical method on the rotation group (Munthe-Kaas: steps by the expo
 and Bashforth (one evaluation a step), with a corrector (PEC one, PECE two); and the library's own, with adaptive steps.
 """
 
+from collections.abc import Callable
+
 import numpy as np
-from eel_dynamics.fields import Kinks
-from eel_dynamics.rates import rate_of_state
-from numba import njit
 from tableaus import adams_weights, tableaus
 
+import eel_core
 from eel_dynamics import Accuracy, Scene, Simulation, simulate
 from eel_gaits import falling
 
@@ -21,121 +21,115 @@ MOST = 20_000  # evaluations of a run of the study
 LEAN = {"ledger": False, "internal_wrench": False}
 EXACT = Accuracy(name="exact", resolution=60.0, tolerance=1e-13)
 PE, PECE, PEC = 0, 1, 2
-_COMPILE = {"error_model": "numpy", "cache": True}
+STILL = np.zeros(3)  # m/s, the current
+TURN = slice(3, 7)  # of the state: x y z w, world from head
+
+UNSTABLE = np.errstate(over="ignore", invalid="ignore")  # what a method blows up to is an infinite error
+Rate = Callable[[float, np.ndarray], np.ndarray]  # of the state (13,), at a time [s] and a state
 
 
-@njit(**_COMPILE)
-def _unit(y):
-    size = np.sqrt(y[3] ** 2 + y[4] ** 2 + y[5] ** 2 + y[6] ** 2)
-    for k in range(3, 7):
-        y[k] /= size
+def _make_unit(y: np.ndarray):
+    y[TURN] /= np.sqrt(y[TURN] @ y[TURN])
 
 
-@njit(**_COMPILE)
-def _turned(y, u, result):
-    """Orientation of `y` turned by the vector `u` [rad] in its own axes, into `result`."""
-    angle = np.sqrt(u[0] ** 2 + u[1] ** 2 + u[2] ** 2)
-    s, w = (0.5 * np.sinc(0.5 * angle / np.pi)), np.cos(0.5 * angle)
-    a, b, c = s * u[0], s * u[1], s * u[2]
-    x, v, z, q = y[3], y[4], y[5], y[6]
-    result[3] = q * a + x * w + v * c - z * b
-    result[4] = q * b - x * c + v * w + z * a
-    result[5] = q * c + x * b - v * a + z * w
-    result[6] = q * w - x * a - v * b - z * c
+def _product(p: np.ndarray, q: np.ndarray) -> np.ndarray:
+    """Product of two quaternions x y z w."""
+    (a, b, c, d), (x, y, z, w) = p, q
+    return np.array(
+        [
+            d * x + a * w + b * z - c * y,
+            d * y - a * z + b * w + c * x,
+            d * z + a * y - b * x + c * w,
+            d * w - a * x - b * y - c * z,
+        ]
+    )
 
 
-@njit(**_COMPILE)
-def _runge_kutta(swimmer, drive, fields, step, y, start, h, count, a, b, c, group):
-    stages, none = len(b), np.zeros(3)
-    k, trial, turn, w = np.zeros((stages, 13)), np.zeros(13), np.zeros((stages, 3)), np.zeros(3)
+def _turned(orientation: np.ndarray, u: np.ndarray) -> np.ndarray:
+    """`orientation` turned by the vector `u` [rad] in its own axes."""
+    angle = np.sqrt(u @ u)
+    return _product(orientation, np.array([*(0.5 * np.sinc(0.5 * angle / np.pi) * u), np.cos(0.5 * angle)]))
+
+
+def _angular_velocity(orientation: np.ndarray, rate: np.ndarray) -> np.ndarray:
+    """Angular velocity (3,) [rad/s], head's axes, of an `orientation` that changes with `rate`."""
+    x, y, z, w = orientation
+    return 2.0 * _product(np.array([-x, -y, -z, w]), rate)[:3]
+
+
+def _runge_kutta(rate: Rate, y, start, h, count, tableau, group=False):
+    """Advances `y` by `count` steps of `h` [s]. group: the orientation takes its steps on the rotation group."""
+    _, a, b, c = tableau
+    stages = len(b)
+    weights = np.vstack((a, b))
+    k, turn = np.zeros((stages, 13)), np.zeros((stages, 3))
     for m in range(count):
         for i in range(stages + 1):
-            weights = a[i] if i < stages else b
-            for q in range(13):
-                total = 0.0
-                for j in range(min(i, stages)):
-                    total += weights[j] * k[j, q]
-                trial[q] = y[q] + h * total
+            trial = y + h * (weights[i, :i] @ k[:i])
             if group:
-                for q in range(3):
-                    w[q] = 0.0
-                    for j in range(min(i, stages)):
-                        w[q] += h * weights[j] * turn[j, q]
-                _turned(y, w, trial)
+                w = h * (weights[i, :i] @ turn[:i])
+                trial[TURN] = _turned(y[TURN], w)
             if i == stages:
                 break
-            rate_of_state(swimmer, drive, fields, none, start + (m + c[i]) * h, trial, step, k[i])
-            if group:  # inverse of the exponential's derivative: 1 + ad/2 + ad^2/12, rates in the body's axes
-                omega = step.twist[:3]
+            k[i] = rate(start + (m + c[i]) * h, trial)
+            if group:  # inverse of the exponential's derivative: 1 + ad/2 + ad^2/12, rates in the head's axes
+                omega = _angular_velocity(trial[TURN], k[i, TURN])
                 first = np.cross(w, omega)
                 turn[i] = omega + 0.5 * first + np.cross(w, first) / 12.0
         y[:] = trial
-        _unit(y)
+        _make_unit(y)
 
 
-@njit(**_COMPILE)
-def _rate(swimmer, drive, fields, step, y, time, rate):
-    rate_of_state(swimmer, drive, fields, np.zeros(3), time, y, step, rate)
-
-
-@njit(**_COMPILE)
-def _adams(swimmer, drive, fields, step, y, start, h, count, predictor, corrector, mode, rates):
-    order, none, trial, new = len(predictor), np.zeros(3), np.zeros(13), np.zeros(13)
-    head = order - 1
+def _adams(rate: Rate, y, start, h, count, predictor, corrector, mode, rates):
+    """Advances `y` by `count` steps of `h` [s]; `rates` (order, 13) are those at the last instants, newest first."""
     for m in range(count):
-        time, following = start + (m + 1) * h, (head + 1) % order
-        for q in range(13):
-            total = 0.0
-            for j in range(order):
-                total += predictor[j] * rates[(head - j) % order, q]
-            trial[q] = y[q] + h * total
-        _unit(trial)
-        rate_of_state(swimmer, drive, fields, none, time, trial, step, new)
+        time = start + (m + 1) * h
+        trial = y + h * (predictor @ rates)
+        _make_unit(trial)
+        new = rate(time, trial)
         if mode == PE:
             y[:] = trial
         else:
-            for q in range(13):
-                total = corrector[0] * new[q]
-                for j in range(order - 1):
-                    total += corrector[j + 1] * rates[(head - j) % order, q]
-                y[q] += h * total
-            _unit(y)
+            y += h * (corrector[0] * new + corrector[1:] @ rates[:-1])
+            _make_unit(y)
             if mode == PECE:
-                rate_of_state(swimmer, drive, fields, none, time, y, step, new)
-        rates[following] = new
-        head = following
+                new = rate(time, y)
+        rates = np.vstack((new, rates[:-1]))
 
 
-def _begin(scene, located=True):
-    simulation = Simulation(accuracy=Accuracy(name="study", resolution=RESOLUTION), scene=scene, law=falling())
-    fields = simulation.fields
-    if not located:  # no room to note kinks: the drag is summed over the nodes as it is
-        fields = fields._replace(kinks=Kinks(*(array[:0] if name != "number" else array for name, array in
-                                               zip(Kinks._fields, fields.kinks, strict=True))))  # fmt: skip
-    return (simulation.swimmer, simulation.drive, fields, simulation.step), simulation.state.copy()
+def _begin(scene, kinks="all") -> tuple[Rate, np.ndarray]:
+    """The rate of a swimmer's state, and the state that it starts from. Kinks of the drag that are not located are
+    summed over the nodes as they are."""
+    accuracy = Accuracy(name="study", resolution=RESOLUTION, kinks=kinks)
+    simulation = Simulation(accuracy=accuracy, scene=scene, law=falling())
+    instant, drive = eel_core.Instant(simulation.table.core), simulation.drive
+
+    def rate(time, y):
+        return np.array(instant.rate(drive, STILL, time, y))
+
+    return rate, simulation.state
 
 
-def runge_kutta(tableau, per_second, scene, group=False, located=True) -> tuple[np.ndarray, int]:
+@UNSTABLE
+def runge_kutta(tableau, per_second, scene, group=False, kinks="all") -> tuple[np.ndarray, int]:
     """The state (13,) after the run, and its evaluations."""
-    _, a, b, c = tableau
-    parts, y = _begin(scene, located)
+    rate, y = _begin(scene, kinks)
     count = round(DURATION * per_second)
-    _runge_kutta(*parts, y, 0.0, 1.0 / per_second, count, a, b, c, group)
-    return y, count * len(b)
+    _runge_kutta(rate, y, 0.0, 1.0 / per_second, count, tableau, group)
+    return y, count * len(tableau[2])
 
 
+@UNSTABLE
 def adams(order, mode, per_second, scene) -> tuple[np.ndarray, int]:
     """As `runge_kutta`; begun by the classical method with half the step."""
-    parts, y = _begin(scene)
+    rate, y = _begin(scene)
     h, count = 1.0 / per_second, round(DURATION * per_second)
-    _, a, b, c = tableaus()["classical"]
-    rates = np.zeros((order, 13))
-    _rate(*parts, y, 0.0, rates[0])
+    rates = [rate(0.0, y)]
     for m in range(1, order):
-        _runge_kutta(*parts, y, (m - 1) * h, 0.5 * h, 2, a, b, c, False)
-        _rate(*parts, y, m * h, rates[m])
+        _runge_kutta(rate, y, (m - 1) * h, 0.5 * h, 2, tableaus()["classical"])
+        rates.insert(0, rate(m * h, y))
     predictor, corrector = adams_weights(-np.arange(order)), adams_weights(1.0 - np.arange(order))
-    _adams(*parts, y, (order - 1) * h, h, count - order + 1, predictor, corrector, mode, rates)
+    _adams(rate, y, (order - 1) * h, h, count - order + 1, predictor, corrector, mode, np.array(rates))
     return y, (count - order + 1) * (2 if mode == PECE else 1) + 9 * (order - 1)
 
 
@@ -196,16 +190,16 @@ def integrators():
 def _orders():
     """Orders that Dormand and Prince's method shows, from 20 to 80 steps a second, by what is not smooth."""
     tableau = tableaus()["Dormand-Prince"]
-    for name, friction, resistive, located in (
-        ("no drag", "laminar", False, True),
-        ("laminar friction, kinks located", "laminar", True, True),
-        ("laminar friction, kinks ignored", "laminar", True, False),
-        ("printed friction, jump located", "printed", True, True),
-        ("printed friction, jump ignored", "printed", True, False),
+    for name, friction, resistive, kinks in (
+        ("no drag", "laminar", False, "all"),
+        ("laminar friction, kinks located", "laminar", True, "all"),
+        ("laminar friction, kinks ignored", "laminar", True, "none"),
+        ("printed friction, jump located", "printed", True, "all"),
+        ("printed friction, jump ignored", "printed", True, "none"),
     ):
         scene = Scene(friction=friction, resistive=resistive, **LEAN)
-        exact = runge_kutta(tableau, 640, scene, located=located)[0][:3]
-        found = [np.linalg.norm(runge_kutta(tableau, n, scene, located=located)[0][:3] - exact) for n in (20, 40, 80)]
+        exact = runge_kutta(tableau, 640, scene, kinks=kinks)[0][:3]
+        found = [np.linalg.norm(runge_kutta(tableau, n, scene, kinks=kinks)[0][:3] - exact) for n in (20, 40, 80)]
         yield (
             f"order seen, {name}",
             float(np.log2(found[0] / found[2]) / 2.0),

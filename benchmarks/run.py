@@ -12,7 +12,6 @@ import time
 from functools import partial
 
 import numpy as np
-from abreast import abreast
 from against_paper_scheme import paper_scheme
 from against_peers import peers
 from batch import batch
@@ -21,7 +20,7 @@ from growth import growth
 from integrators import integrators
 from measuring import median_ratio, times_in_turn
 from nodes import nodes
-from switches import evaluate, plane, switches
+from switches import COUNT, evaluations, plane, switches
 from ticks import ticks
 from visualiser import visualiser
 
@@ -47,14 +46,10 @@ def evaluation():
     """One evaluation of the head's dynamics (momentum form, three dimensions, all loads), against the number of
     nodes."""
     for resolution in (8.0, 13.0, 36.0, 80.0, 180.0):
-        swimmer = Simulation(body=BODY, accuracy=Accuracy(name="bench", resolution=resolution))
-        swimmer.adopt(falling())
+        swimmer = Simulation(body=BODY, law=falling(), accuracy=Accuracy(name="bench", resolution=resolution))
         swimmer.advance(2.3)
-        nodes, count, dy = len(swimmer.swimmer.x), 2000, np.zeros(13)
-        state, step = swimmer.observe(), swimmer.step
-        arguments = swimmer.swimmer, swimmer.drive, swimmer.fields, np.zeros(3), state.time, swimmer.state, step, dy
-        times = times_in_turn({"one": lambda: evaluate(count, *arguments)})["one"]  # noqa: B023
-        yield f"{nodes:4d} nodes", statistics.median(times) / count * 1e6, "us per evaluation (CPU)"
+        times = times_in_turn({"one": evaluations(swimmer)})["one"]
+        yield f"{len(swimmer.grid.x):4d} nodes", statistics.median(times) / COUNT * 1e6, "us per evaluation (CPU)"
 
 
 def falling_gait():
@@ -79,15 +74,14 @@ def falling_gait():
 def wrench():
     """One sample at 51 stations, preset standard: motion and powers, the internal wrench besides, the water's load
     besides; and an evaluation of the head's dynamics on the same nodes."""
-    swimmer, count, dy = Simulation(body=BODY, law=falling()), 2000, np.zeros(13)
+    swimmer = Simulation(body=BODY, law=falling())
     swimmer.advance(2.3)
-    arguments = swimmer.swimmer, swimmer.drive, swimmer.fields, np.zeros(3), 2.3, swimmer.state, swimmer.step, dy
-    instants = np.full(count, 2.3)
+    instants = np.full(COUNT, 2.3)
     asked = {"motion, powers": (False, False), "and the internal wrench": (True, False), "and the load": (True, True)}
     cases = {name: partial(swimmer.record, instants, *wanted) for name, wanted in asked.items()}
-    times = times_in_turn({"an evaluation": lambda: evaluate(count, *arguments)} | cases)
+    times = times_in_turn({"an evaluation": evaluations(swimmer)} | cases)
     for name, values in times.items():
-        yield name, statistics.median(values) / count * 1e6, "us (CPU)"
+        yield name, statistics.median(values) / COUNT * 1e6, "us (CPU)"
     for name in cases:
         yield f"{name}, by evaluations", median_ratio(times[name], times["an evaluation"]), "evaluations"
     before, after = times["motion, powers"], times["and the internal wrench"]
@@ -96,7 +90,7 @@ def wrench():
 
 
 def start():
-    """A fresh process with a warm cache: import of the library, and the first step and sample."""
+    """A fresh process: import of the library, and the first step and sample."""
     code = (
         "import time; a = time.perf_counter(); from eel_dynamics import simulate; from eel_gaits import falling; "
         "b = time.perf_counter(); simulate(falling(), 0.05); print(b - a, time.perf_counter() - b)"
@@ -119,12 +113,10 @@ FIGURES = {
     "growth": growth,
     "integrators": integrators,
     "batch": batch,
-    "abreast": abreast,
-    "paper_scheme": paper_scheme,
     "visualiser": visualiser,
     "nodes": nodes,
 }
-OPTIONAL = {"peers": peers}  # on request: installs other people's simulators
+OPTIONAL = {"peers": peers, "paper_scheme": paper_scheme}  # on request: they install other people's packages
 
 
 def main(names: list[str]) -> int:

@@ -2,11 +2,10 @@
 
 Order 2: midpoint. 3: Bogacki and Shampine, Appl. Math. Lett. 2 (1989). 4: classical. 5: Dormand and Prince, J. Comp.
 Appl. Math. 6 (1980). 6: Butcher, J. Austral. Math. Soc. 4 (1964). 7: Fehlberg, NASA TR R-287 (1968). 8: Prince and
-Dormand's DOP853 (Hairer, Norsett and Wanner, section II.5), read from scipy.
+Dormand's DOP853 (Hairer, Norsett and Wanner, section II.5). Those of orders 5 and 8 are read from scipy.
 """
 
 import numpy as np
-from eel_dynamics.methods import dormand_prince
 
 
 def _tableau(order, rows, weights):
@@ -19,14 +18,14 @@ def _tableau(order, rows, weights):
 
 def tableaus() -> dict:
     """The methods by name."""
+    from scipy.integrate import RK45
     from scipy.integrate._ivp import dop853_coefficients as dop853
 
-    pair = dormand_prince()
     return {
         "midpoint": _tableau(2, [[1 / 2]], [0, 1]),
         "Bogacki-Shampine": _tableau(3, [[1 / 2], [0, 3 / 4]], [2 / 9, 1 / 3, 4 / 9]),
         "classical": _tableau(4, [[1 / 2], [0, 1 / 2], [0, 0, 1]], [1 / 6, 1 / 3, 1 / 3, 1 / 6]),
-        "Dormand-Prince": (5, pair.a[:6, :6].copy(), pair.a[6, :6].copy(), pair.c[:6].copy()),
+        "Dormand-Prince": (5, np.pad(RK45.A, ((0, 0), (0, 1))), RK45.B.copy(), RK45.C.copy()),
         "Butcher": _tableau(
             6,
             [

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Brings this folder to the state that the sources ask for: virtual environment, colcon build, compiled kernels.
-# Each of the three has a stamp with the hash of what it was made from and the folder's own path, so that a second call
+# Brings this folder to the state that the sources ask for: virtual environment, colcon build.
+# Each has a stamp with the hash of what it was made from and the folder's own path, so that a second call
 # is quick, and an interrupted set-up, a moved folder or a changed source is put right.
 # PYTHON=/path/to/python chooses the interpreter. Nothing is installed outside this folder.
 set -euo pipefail
@@ -98,32 +98,5 @@ begin_with_sh() {
     ! head -n 1 "$1" | grep -q '^#!"' || sed -i "1c #!/bin/sh\n'''exec' '$root/.venv/bin/python' \"\$0\" \"\$@\"\n' '''" "$1"
 }
 
-# Starts to compile what one swimmer's march takes; what batches take besides is compiled where it is first used.
-# It runs beside colcon, so from the sources, by the path that they have afterwards: numba keeps things by that path.
-begin_kernels() {
-    local package
-    kernels_key="$(sha256sum src/eel_dynamics/eel_dynamics/*.py | key_of "$(cat .venv/stamp)")"
-    kernels=""
-    stamped build/numba_cache/stamp "$kernels_key" && return
-    say "compiling the kernels, a minute or so where their sources have changed (numba, cached in build/numba_cache)"
-    for package in eel_dynamics eel_gaits; do
-        mkdir -p build/numba_cache "build/$package"
-        ln -sfn "$root/src/$package/$package" "build/$package/$package"
-    done
-    PYTHONPATH="$root/build/eel_dynamics:$root/build/eel_gaits" NUMBA_CACHE_DIR="$root/build/numba_cache" \
-        .venv/bin/python -c "from eel_dynamics import Simulation; Simulation().warm_up()" 9>&- &
-    kernels=$!
-    trap 'kill "$kernels" 2> /dev/null' EXIT
-}
-
-await_kernels() {
-    [ -n "$kernels" ] || return 0
-    wait "$kernels"
-    trap - EXIT
-    printf '%s' "$kernels_key" > build/numba_cache/stamp
-}
-
 make_environment
-begin_kernels
 build_packages
-await_kernels

@@ -28,7 +28,7 @@ from eel_msgs.msg import (
     InternalWrench,
 )
 
-LIMIT = 90.0  # s; discovery was seen to take 2.75 s, a first compilation takes most of a minute
+LIMIT = 90.0  # s; discovery was seen to take 2.75 s on a machine at rest, and this is for busy ones
 MOST_AT_ONCE = 1000  # messages of a topic
 LOSSLESS = QoSProfile(history=HistoryPolicy.KEEP_ALL)
 LATCHED = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)

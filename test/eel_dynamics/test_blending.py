@@ -145,27 +145,27 @@ def test_the_grid_goes_back_when_fine_samples_have_passed():
     law, controller = law_of(6), law_of(7)
     simulation = Simulation(stations=X, default_transition=0.4)
     simulation.adopt(law)
-    usual = len(simulation.swimmer.x)
+    usual = len(simulation.grid.x)
     for time, points in [(0.05, 1001), (0.1, 1001), *((0.1 + 0.05 * k, 11) for k in range(1, 20))]:
         simulation.add_samples(*samples_of(controller, time, np.linspace(0, 1, points)))
-    assert len(simulation.swimmer.x) == usual  # the fine ones lie ahead
+    assert len(simulation.grid.x) == usual  # the fine ones lie ahead
     simulation.advance(0.07)
-    assert len(simulation.swimmer.x) > 5 * usual
+    assert len(simulation.grid.x) > 5 * usual
     smooth = record(simulation, 0.9)
-    assert len(simulation.swimmer.x) <= 1.5 * usual
+    assert len(simulation.grid.x) <= 1.5 * usual
     check_smooth(*smooth)
 
 
 def test_the_grid_goes_back_when_a_law_of_many_waves_is_over():
     simulation = Simulation(law=falling(), stations=X)
-    usual = len(simulation.swimmer.x)
+    usual = len(simulation.grid.x)
     simulation.advance(0.1)
     simulation.adopt(straight(wavelength=0.05), transition=0.1)
     simulation.advance(0.3)
-    assert len(simulation.swimmer.x) > 3 * usual
+    assert len(simulation.grid.x) > 3 * usual
     simulation.adopt(falling(), transition=0.1)
     simulation.advance(0.5)
-    assert len(simulation.swimmer.x) == usual
+    assert len(simulation.grid.x) == usual
 
 
 def test_a_reset_swims_as_the_first_time_although_samples_were_finer():

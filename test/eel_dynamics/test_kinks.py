@@ -1,83 +1,49 @@
-"""The drag's kinks along the body: where they are found, and which of them, by the accuracy."""
+"""The drag's kinks along the body: which of them are integrated exactly, by the accuracy. How they are found is tested
+in eel_core."""
 
 import numpy as np
 import pytest
-from eel_dynamics.kinks import HEIGHT, RATIO, ROLL, SIDE, ZERO, zero_between
-from numba import njit
 
+import eel_core
 from eel_dynamics import Accuracy, Scene, Simulation, simulate
-from eel_gaits import falling, straight
+from eel_gaits import falling
 
-SWIMMER = Simulation(accuracy=Accuracy(name="panels", resolution=13.0), law=straight()).swimmer
-PANEL = int(SWIMMER.first[np.argmax(SWIMMER.count[: len(SWIMMER.x)])])  # the first node of the widest
-NODES = int(SWIMMER.count[PANEL])
-FRACTION = SWIMMER.fraction[PANEL : PANEL + NODES]
+KINDS = np.array(["friction", "lateral", "vertical", "roll"])
 
 
-@njit(error_model="numpy")
-def place(swimmer, values, begin, count, node, before):
-    return zero_between(swimmer, values, ZERO, np.uintp(begin), count, np.uintp(node), before, True)
-
-
-def zero_of(function, before=None) -> float:
-    """Where the search finds the zero of a `function` of the panel's fraction; `before`: its value at the panel's
-    start."""
-    values = np.zeros((1, len(SWIMMER.fraction)))
-    values[0, PANEL : PANEL + NODES] = function(FRACTION)
-    signs = function(FRACTION) > 0.0
-    known = function(0.0) if before is None else before
-    node = int(np.argmax(signs != (known > 0.0)))
-    return place(SWIMMER, values, PANEL, NODES, PANEL + node, known if node == 0 else values[0, PANEL + node - 1])
-
-
-@pytest.mark.parametrize("zero", [1e-9, 0.003, 0.2, 0.5, 0.77, 0.999, 1.0 - 1e-9])
-@pytest.mark.parametrize(
-    "shape",
-    [
-        lambda s: s,
-        lambda s: -s * (1.0 + s),
-        lambda s: np.expm1(3.0 * s),
-        lambda s: s**3 + 1e-3 * s,
-        lambda s: np.tanh(4.0 * s),
-    ],
-    ids=["linear", "square", "exponential", "cubic", "steep"],
-)
-def test_zero_of_the_panels_polynomial(shape, zero):
-    polynomial = np.polynomial.Polynomial.fit(FRACTION, shape(FRACTION - zero), NODES - 1)
-    found = zero_of(lambda s: shape(s - zero))
-    assert abs(polynomial(found)) < 1e-11
-    if shape(1.0) == 1.0:
-        assert found == pytest.approx(zero, abs=1e-12)
-
-
-def test_zero_before_the_panel_counts_as_its_start():
-    assert zero_of(lambda s: 0.3 + s, before=-1e-6) == 0.0
-
-
-def kinds(friction: str, kinks: str) -> set[int]:
-    accuracy = Accuracy(name="some", resolution=13.0, kinks=kinks, tolerance=1e-4)
-    swimmer, found = Simulation(scene=Scene(friction=friction), accuracy=accuracy, law=falling()), set()
+def drag_powers(friction: str, kinks: str) -> np.ndarray:
+    """Powers (T, 4) [W] of the four kinds of drag along the body, at some instants of one swim."""
+    scene, law = Scene(friction=friction), falling()
+    swimmer = Simulation(scene=scene, law=law, accuracy=Accuracy(name="some", resolution=13.0, tolerance=1e-4))
+    other = Simulation(scene=scene, law=law, accuracy=Accuracy(name="some", resolution=13.0, kinks=kinks))
+    instant, powers = eel_core.Instant(other.table.core), []
     for time in np.arange(2.0, 4.0, 0.1):
         swimmer.advance(time)
-        swimmer.observe()
-        steps = swimmer.fields.kinks
-        found |= set(steps.kind[: steps.number[0]].tolist())
-    return found
+        powers.append(instant.drag_powers(other.drive, time, swimmer.observe().twist))
+    return np.array(powers)
 
 
 @pytest.mark.parametrize("friction", ["printed", "laminar"])
-def test_accuracy_says_which_are_looked_for(friction):
-    smooth, jump = {int(SIDE), int(HEIGHT), int(ROLL)}, {int(RATIO)} if friction == "printed" else set()
-    assert kinds(friction, "all") == smooth | jump
-    assert kinds(friction, "jumps") == jump
-    assert kinds(friction, "none") == set()
+def test_accuracy_says_which_are_integrated_exactly(friction):
+    summed = drag_powers(friction, "none")
+
+    def exact(kinks: str) -> set[str]:
+        """Kinds of drag that differ from their sum over the nodes as they are."""
+        differ = ~np.isclose(drag_powers(friction, kinks), summed, rtol=1e-12, atol=0.0).all(axis=0)
+        return set(KINDS[differ])
+
+    smooth, jump = {"lateral", "vertical", "roll"}, {"friction"} if friction == "printed" else set()
+    assert exact("all") == smooth | jump
+    assert exact("jumps") == jump
+    assert exact("none") == set()
 
 
 def test_what_is_not_looked_for_costs_accuracy():
-    exact = simulate(falling(), 3.0, accuracy=1e-7)
+    exact = simulate(falling(), 3.0, accuracy=1e-8)
     error = {}
     for kinks in ("all", "jumps", "none"):
-        run = simulate(falling(), 3.0, accuracy=Accuracy(name=kinks, resolution=30.0, kinks=kinks, tolerance=1e-8))
+        fine_in_time = Accuracy(name=kinks, resolution=30.0, kinks=kinks, tolerance=1e-10)
+        run = simulate(falling(), 3.0, accuracy=fine_in_time)
         error[kinks] = np.linalg.norm(run.position[-1] - exact.position[-1])
     assert error["all"] < 0.1 * error["jumps"] < 0.1 * error["none"]
 

@@ -1,7 +1,6 @@
-"""How the dynamics node starts and ends: parameters that do not fit, signals at any moment, a cold cache."""
+"""How the dynamics node starts and ends: parameters that do not fit, signals at any moment."""
 
 import signal
-import time
 from dataclasses import fields
 
 import pytest
@@ -145,17 +144,6 @@ def test_signal_ends_a_run_promptly(start, client, sent, factor):
     swim.laws.publish(law_to_message(falling()))
     node = start("dynamics", "--ros-args", "-p", f"real_time_factor:={factor}")
     swim.until_time(0.3)
-    assert node.time_to_end(sent) < PROMPT
-    assert node.status == 0 and "Traceback" not in node.output(), node.output()
-
-
-@pytest.mark.fault("ending", "SIGINT or SIGTERM while the physics is being compiled", "prompt exit, status 0")
-@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
-def test_signal_ends_a_first_compilation(start, monkeypatch, tmp_path, sent):
-    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "cache"))
-    node = start("dynamics")
-    node.wait_for_output("compiling", LIMIT)
-    time.sleep(2.0)  # into the compilation, which says nothing until it is over
     assert node.time_to_end(sent) < PROMPT
     assert node.status == 0 and "Traceback" not in node.output(), node.output()
 

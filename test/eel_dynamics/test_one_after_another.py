@@ -1,4 +1,4 @@
-"""Runs of the same body, scene and accuracy swim in what was made for the first: nothing of one is in the next."""
+"""Runs one after another, of which some share tables of body, scene and law: nothing of one is in the next."""
 
 import threading
 
@@ -26,7 +26,7 @@ SWIMS = (
 
 
 def fresh(**arguments):
-    """The run in a thread of its own, in which nobody has swum."""
+    """The run in a thread of its own."""
     found = []
     thread = threading.Thread(target=lambda: found.append(simulate(**arguments)))
     thread.start()

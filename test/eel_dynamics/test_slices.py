@@ -19,8 +19,7 @@ def quick(period, name="quick"):
 
 def step_by_step(monkeypatch):
     """Slices of one step."""
-    monkeypatch.setattr("eel_dynamics.slices.SLICE", 1)
-    monkeypatch.setattr("eel_dynamics.slices.LEAST_SLICE", 1)
+    monkeypatch.setattr("eel_dynamics.simulation.SLICE", 1)
 
 
 @pytest.mark.parametrize("accuracy", ["draft", "standard", 1e-6])
@@ -29,8 +28,7 @@ def test_slices_do_not_change_a_digit(monkeypatch, accuracy, scene):
     law = straight() if scene.planar else falling()
     runs = []
     for size in (1, 10**9):
-        monkeypatch.setattr("eel_dynamics.slices.SLICE", size)
-        monkeypatch.setattr("eel_dynamics.run._crew._members", {})
+        monkeypatch.setattr("eel_dynamics.simulation.SLICE", size)
         runs.append(simulate(law, 3.0, accuracy=accuracy, scene=scene, load=True, stations=7))
     cut, whole = runs
     assert (cut.steps, cut.evaluations) == (whole.steps, whole.evaluations)

@@ -1,7 +1,7 @@
 """A long run of the three nodes as fast as they go, every topic heard, and the memory that each process takes.
 
-Memory is what a process has for itself in RAM, without what is mapped from files (Linux's `RssAnon`): compiled loops
-and libraries come and go with the machine's own needs.
+Memory is what a process has for itself in RAM, without what is mapped from files (Linux's `RssAnon`): the pages
+of libraries come and go with the machine's own needs.
 """
 
 import csv

@@ -19,7 +19,6 @@ EXECUTABLES = {
 }
 ROSDEP_KEY = {
     "numpy": "python3-numpy",
-    "numba": "python3-numba",
     "scipy": "python3-scipy",
     "matplotlib": "python3-matplotlib",
     "yaml": "python3-yaml",

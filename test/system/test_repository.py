@@ -76,7 +76,7 @@ def test_colcon_looks_only_at_the_packages():
 
 def test_every_peer_of_the_benchmarks_is_pinned():
     files = sorted((ROOT / "benchmarks" / "peers").glob("*.txt"))
-    assert [path.stem for path in files] == ["mujoco", "pyelastica"]
+    assert [path.stem for path in files] == ["mujoco", "numba", "pyelastica"]
     for path in files:
         lines = path.read_text().splitlines()
         assert any(line.startswith(f"{path.stem}==") for line in lines)

@@ -15,7 +15,7 @@ OUT = Path(__file__).parents[2] / "out"
 HOUR, MINUTE = 3600.0, 60.0  # s of simulation
 FILLED = 0.5  # of the hour, by which every history is as full as it gets
 GROWTH = 0.01  # of the median, what the memory may vary by afterwards
-MOST = 600.0  # MB of any node: histories of 5,000 samples on both sides, compiled loops, Rerun
+MOST = 600.0  # MB of any node: histories of 5,000 samples on both sides, libraries, Rerun
 
 
 @pytest.mark.fault(

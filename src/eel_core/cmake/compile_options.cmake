@@ -8,7 +8,8 @@ set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 
 # A product and a sum may become one rounding; sums keep their order, and NaN and infinity are seen: no -ffast-math.
-set(eel_core_compile_options -ffp-contract=fast)
+# Nobody looks at errno or at floating-point traps after arithmetic.
+set(eel_core_compile_options -ffp-contract=fast -fno-math-errno -fno-trapping-math)
 set(eel_core_link_options "")
 if(EEL_CORE_SANITIZE)
   set(sanitizers -fsanitize=address,undefined -fno-sanitize-recover=all)

@@ -9,6 +9,28 @@ from eel_core.levels import import_core
 
 _core = sys.modules["eel_core._core"] = import_core()
 
-from eel_core._core import build_info  # noqa: E402
+from eel_core._core import (  # noqa: E402
+    STATUSES,
+    Instant,
+    Law,
+    LawTables,
+    March,
+    PlanarInstant,
+    StepBounds,
+    Swimmer,
+    build_info,
+    layout,
+)
 
-__all__ = ["build_info"]
+__all__ = [
+    "STATUSES",
+    "Instant",
+    "Law",
+    "LawTables",
+    "March",
+    "PlanarInstant",
+    "StepBounds",
+    "Swimmer",
+    "build_info",
+    "layout",
+]

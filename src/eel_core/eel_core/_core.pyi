@@ -1,4 +1,276 @@
-"""The compiled module, whichever level of the processor it is for."""
+"""The compiled module, whichever level of the processor it is for.
+
+Arrays are contiguous and of doubles, unless another type is named; they go through the buffer protocol. SI units and
+radians. The state (13,) of a swimmer is the head's position [m], its orientation (x y z w, world from head), and the
+angular and linear momentum [N m s, N s] of body and water about the head; all of them in the world's axes. A twist (6,)
+is (Omega, V) [rad/s, m/s] of the head in its own axes, relative to the water unless it says otherwise. A wrench (6,) is
+(torque, force) [N m, N] about the head, in its axes. T instants, M stations, n nodes, m rows of a law.
+"""
+
+from collections.abc import Sequence
+from typing import Protocol
+
+from typing_extensions import Buffer
+
+STATUSES: tuple[str, ...]
+"""Names of the numbers by which a march tells how it ended: "marched", "not_finite", "step_too_small", "singular",
+"too_many_steps", "unfinished"."""
 
 def build_info() -> dict[str, str]:
     """How this module was compiled: level, compiler, flags, sanitizers, pybind11."""
+
+def layout(samples: int, stations: int, wrench: bool, load: bool) -> dict[str, tuple[int, int, int, bool]]:
+    """Where each quantity of so many samples lies in one array of numbers.
+
+    By its name: (begin, instants, numbers, along the body). A quantity takes instants * numbers of the array from begin
+    on, or instants * stations * numbers where it is given along the body, the last index running fastest. One that is
+    not asked for has no instants. wrench: the internal wrench; load: what the water does along the body.
+    """
+
+class _Points(Protocol):
+    """Rows that integrate from the start of a panel to each of some points."""
+
+    matrix: Buffer  # (points, p_max) [m]
+    first: Buffer  # (points,) unsigned 64 bits, first node of the point's panel
+    count: Buffer  # (points,) unsigned 64 bits, nodes of that panel
+    fraction: Buffer  # (points,) of the panel, in its own variable
+
+class _Grid(_Points, Protocol):
+    """n nodes along the body, a multiple of 8; the points are the nodes."""
+
+    weight: Buffer  # (n,) [m], of the integral over the body
+    barycentric: Buffer  # (n,) weights of the interpolation within the node's panel
+    series: Buffer  # (p_max, n) [m], coefficients of Legendre polynomials, whose integrals give rows anywhere
+
+class _Sections(Protocol):
+    """Section data at some points, (points,) each; eq. (37) and section 7.2.1."""
+
+    mass: Buffer  # [kg/m], of the body
+    added2: Buffer  # [kg/m], added mass along E2
+    added3: Buffer  # [kg/m], along E3
+    inertia1: Buffer  # [kg m], of body and water about E1
+    inertia2: Buffer  # [kg m], about E2
+    inertia3: Buffer  # [kg m], about E3
+    added_roll: Buffer  # [kg m], of the water about E1
+    drag2: Buffer  # [kg/m^2], 1/2 rho_f k2
+    drag3: Buffer  # [kg/m^2], 1/2 rho_f k3
+    drag_roll: Buffer  # [kg], 1/2 rho_f k4
+    laminar: Buffer  # friction force per length = -laminar |V1|^(1/2) V1
+    turbulent: Buffer  # friction force per length = -turbulent (Re/8e4)^(4/5) V1
+    reynolds: Buffer  # [s/m], Re/8e4 per |V1|
+
+class _Stations(Protocol):
+    """M places along the body where profiles are given."""
+
+    sections: _Sections
+    points: _Points
+    nodes_before: Buffer  # (M,) unsigned 64 bits, how many nodes lie at or before the station
+    added2_slope: Buffer  # (M,) [kg/m^2], derivative of added2 by X
+    added3_slope: Buffer  # (M,) [kg/m^2]
+    added_roll_slope: Buffer  # (M,) [kg]
+
+class Swimmer:
+    """Body and water on a grid, and which physics is on. It is copied from Python and never changes."""
+
+    def __init__(
+        self,
+        grid: _Grid,
+        sections: _Sections,
+        stations: _Stations,
+        *,
+        friction: str,
+        resistive: bool,
+        first_watched: int,
+        wake: bool,
+        nose_mass: float,
+        nose_drag: float,
+        distributed_pressure: bool,
+    ) -> None:
+        """sections: at the nodes. friction: "printed", "laminar" or "blended". resistive: drag along the body.
+        first_watched: first of the speeds (0 V1, 1 V2, 2 V3, 3 Omega1, 4 Re/8e4 - 1) whose changes of sign within a
+        panel are integrated exactly; 5 for none. nose_mass: m_o [kg]; nose_drag: 1/2 rho_f k_o [kg/m].
+        distributed_pressure: along the body in place of at the tail. `ValueError` names what does not fit."""
+
+class LawTables:
+    """The m rows of a curvature law, each a field of X for one axis, on the nodes and stations of a swimmer."""
+
+    def __init__(
+        self,
+        axis: Sequence[int],
+        node: Buffer,
+        angle: Buffer,
+        moments: Buffer,
+        station: Buffer,
+        station_moments: Buffer,
+    ) -> None:
+        """axis: of each row, 0 pitch, 1 yaw. node (m, n) [rad/m]: the rows at the nodes; angle (m, n) [rad]: their
+        integral from the nose; moments (m, 3, n) [rad]: Magnus moments over the interval that ends at each node.
+        station (m, M), station_moments (m, 3, M): the same at the stations, from the node before each."""
+
+class Law:
+    """The curvature K(t, X): the sum of rows times factors of time, with two time derivatives."""
+
+    def __init__(
+        self,
+        tables: LawTables,
+        origin: float,
+        waves: list[tuple[float, Sequence[tuple[float, float, float]] | None, int, int]],
+        segment: tuple[int, float, float] | None,
+        blend: tuple[int, float, float] | None,
+    ) -> None:
+        """origin [s]: simulation time of the law's own t = 0. waves: (period [s], ramps, row of the sine, row of the
+        cosine); period 0: constant in time; ramps (start [s], end [s], delta), or None for an envelope of 1. segment:
+        (first of its twelve rows, start [s], end [s]) of a quintic between two instants of a controller: for each axis
+        value, rate and acceleration at both. blend: (first of its six rows, start [s], end [s]) of a difference that
+        dies out. `ValueError` for a row that the tables do not have."""
+
+    def factors(self, time: float) -> list[list[float]]:
+        """Factors of the rows at a time [s] of the simulation, their rates and accelerations: (3, m)."""
+
+class StepBounds:
+    """What bounds the steps of a march."""
+
+    def __init__(
+        self,
+        *,
+        tolerance: float,
+        longest: float,
+        smallest: float,
+        length: float,
+        momentum_floor: float,
+        part_of_span: float,
+        most_steps: float,
+        spare_steps: float,
+    ) -> None: ...
+    @property
+    def tolerance(self) -> float:
+        """Relative error of a step."""
+    @property
+    def longest(self) -> float:
+        """[s]; the step itself, where the method has fixed steps."""
+    @property
+    def smallest(self) -> float:
+        """[s]."""
+    @property
+    def length(self) -> float:
+        """[m], the scale of positions."""
+    @property
+    def momentum_floor(self) -> float:
+        """[kg m/s], below which momentum counts as none."""
+    @property
+    def part_of_span(self) -> float:
+        """Part of the time between two breakpoints that a step may take."""
+    @property
+    def most_steps(self) -> float:
+        """Steps per simulated second."""
+    @property
+    def spare_steps(self) -> float:
+        """Steps beyond these, to be spent at any time."""
+
+class March:
+    """A swimmer on its way. Its law comes first (`follow`), then the start; one thread at a time may call it.
+
+    Python's lock is free while it marches. `RuntimeError` where it follows no law on its grid yet, or another thread is
+    in it.
+    """
+
+    def __init__(self, swimmer: Swimmer, method: str, order: int, planar: bool) -> None:
+        """method: "adams" (orders 1 to 6), "dormand_prince" or "classical". planar: three degrees of freedom."""
+
+    def change(self, swimmer: Swimmer, method: str, order: int, planar: bool) -> None:
+        """Goes on with another grid or method. The state keeps its momentum; a law on the new grid must follow."""
+
+    def follow(
+        self, law: Law, breakpoints: Sequence[float], bounds: StepBounds, ledger: bool, current: Buffer, smoothly: bool
+    ) -> None:
+        """What drives the body from now on. breakpoints: ascending times [s] at which a derivative of the shape jumps.
+        ledger: the works are integrated too. current (3,) [m/s]: of the water, world. smoothly: the motion goes on as
+        before, so that the next step need not begin anew. `ValueError` for a law on another grid."""
+
+    def start(self, position: Buffer, orientation: Buffer, twist: Buffer) -> float:
+        """Stands at time 0 at a position (3,) [m] with an orientation (4,) (x y z w, world from head) and the head's
+        twist (6,). The kinetic energy [J] of body and water."""
+
+    def set_twist(self, twist: Buffer) -> float:
+        """Gives the present state the momentum of the twist (6,). The kinetic energy [J] of body and water."""
+
+    def twist(self) -> list[float]:
+        """Twist (6,) in the present state. `ValueError` where the inertia is not positive definite."""
+
+    def set_slice(self, nodes: int) -> None:
+        """How many nodes are evaluated before a march comes back unfinished."""
+
+    def advance(self, time: float) -> int:
+        """Marches to a time [s]; the number of a status. "unfinished" comes at the end of a step, when a slice has been
+        evaluated: call again. At the others but "marched" the state stays the last good one."""
+
+    def record(
+        self, times: Buffer, first: int, whole: Buffer, works: Buffer, wrench: bool, load: bool
+    ) -> tuple[int, int]:
+        """Marches through the times (T,) [s] from number `first` on and observes each. whole: writable, as `layout`
+        has it; works (T, 4) [J]: writable, of actuators, wake, nose and drag since the start. How many of the instants
+        are complete, and the number of a status; as in `advance`."""
+
+    def observe(self, whole: Buffer, wrench: bool, load: bool) -> bool:
+        """Writes what the present shows into `whole`, as `layout` has it for one sample. False where the inertia is not
+        positive definite."""
+
+    @property
+    def memory(self) -> int:
+        """Bytes that an evaluation reads and writes."""
+    @property
+    def time(self) -> float:
+        """[s]."""
+    @property
+    def state(self) -> list[float]:
+        """(13,)."""
+    @property
+    def works(self) -> list[float]:
+        """(4,) [J] of actuators, wake, nose and drag since the start."""
+    @property
+    def counts(self) -> tuple[int, int, int]:
+        """Steps, rejected steps and evaluations of the head's dynamics so far."""
+
+class PlanarInstant:
+    """Single instants of a motion in the plane: three degrees of freedom (yaw, along, across)."""
+
+    def __init__(self, swimmer: Swimmer) -> None: ...
+    def rate(self, law: Law, current: Buffer, time: float, state: Buffer) -> list[float] | None:
+        """Rate (13,) of a state (13,) at a time [s], in a current (3,) [m/s], world. None where the inertia is not
+        positive definite."""
+
+    def repeat_rate(self, law: Law, time: float, state: Buffer, count: int) -> None:
+        """Finds the rate of a state (13,) `count` times, in still water, without Python's lock: for benchmarks."""
+
+    def powers(self, law: Law) -> list[float]:
+        """Powers (4,) [W] of actuators, wake, nose and drag in the motion whose rate was found last."""
+
+    def inertia(self, law: Law, time: float) -> list[list[float]]:
+        """Inertia (3, 3) of body, water and nose about the head, in its axes, rotation first, as the law bends the body
+        at a time [s]."""
+
+class Instant:
+    """Single instants of a motion in space."""
+
+    def __init__(self, swimmer: Swimmer) -> None: ...
+    def rate(self, law: Law, current: Buffer, time: float, state: Buffer) -> list[float] | None:
+        """As in `PlanarInstant`."""
+
+    def repeat_rate(self, law: Law, time: float, state: Buffer, count: int) -> None:
+        """As in `PlanarInstant`."""
+
+    def powers(self, law: Law) -> list[float]:
+        """As in `PlanarInstant`."""
+
+    def inertia(self, law: Law, time: float) -> list[list[float]]:
+        """As in `PlanarInstant`, (6, 6)."""
+
+    def loads(self, law: Law, time: float, twist: Buffer) -> tuple[list[float], list[float]]:
+        """Wrenches (6,) of the wake and of the drag along the body, for a twist (6,) of the head at a time [s]."""
+
+    def drag_powers(self, law: Law, time: float, twist: Buffer) -> list[float]:
+        """Powers (4,) [W] on the body of the axial friction, the lateral, the vertical and the roll drag."""
+
+    def momentum_taken(self, law: Law, time: float, twist: Buffer, acceleration: Buffer) -> list[float]:
+        """Rate (6,) of the momentum along the body, [N m, N] about the head in its axes, for a twist (6,) and a true
+        acceleration (6,) [rad/s^2, m/s^2] of the head, its axes."""

@@ -1,27 +1,373 @@
 // The Python module. EEL_CORE_MODULE is its name: one for each level of the processor.
 #include <pybind11/pybind11.h>
 
+#include <atomic>
+
 #include "eel_core/build_info.hpp"
+#include "eel_core/instant.hpp"
+#include "from_python.hpp"
 
 namespace py = pybind11;
+using namespace eel_core;
+
+namespace {
+
+template <class S>
+py::list list_of(const S& numbers)
+{
+    py::list result;
+    for (const double number : numbers) result.append(number);
+    return result;
+}
+
+py::dict build_info_as_dict()
+{
+    const BuildInfo info = build_info();
+    py::dict result;
+    result["level"] = info.level;
+    result["compiler"] = info.compiler;
+    result["flags"] = info.flags;
+    result["sanitizers"] = info.sanitizers;
+    result["pybind11"] = PYBIND11_TOSTRING(PYBIND11_VERSION_MAJOR) "." PYBIND11_TOSTRING(PYBIND11_VERSION_MINOR);
+    return result;
+}
+
+// Where the quantities of samples lie in one array: name -> (begin, instants, numbers of an instant).
+py::dict layout(std::size_t samples, std::size_t stations, bool wrench, bool load)
+{
+    static constexpr const char* names[Profiles::quantities] = {
+        "position", "orientation", "twist",       "head_acceleration",   "center_of_mass", "kinetic",
+        "powers",   "closure",     "backbone",    "section_orientation", "curvature",      "curvature_rate",
+        "torque",   "force",       "fluid_force", "resistive_force",     "tail_force",     "nose_force"};
+    const Profiles profiles(samples, stations, wrench, load);
+    py::dict result;
+    for (std::size_t q = 0; q < Profiles::quantities; ++q)
+        result[names[q]] =
+            py::make_tuple(profiles.begin[q], profiles.instants(q), Profiles::width_of[q], profiles.along_body(q));
+    return result;
+}
+
+Wave wave_from(const py::tuple& wave)
+{
+    Wave result{
+        wave[0].cast<double>(), !wave[1].is_none(), {}, wave[2].cast<std::size_t>(), wave[3].cast<std::size_t>()};
+    if (result.enveloped)
+        for (const py::handle ramp : wave[1]) {
+            const auto [start, end, delta] = ramp.cast<std::tuple<double, double, double>>();
+            result.ramps.push_back({start, end, delta});
+        }
+    return result;
+}
+
+Quintic quintic_from(const py::object& quintic)
+{
+    if (quintic.is_none()) return {};
+    const auto [row, start, end] = quintic.cast<std::tuple<std::size_t, double, double>>();
+    return {row, start, end};
+}
+
+std::shared_ptr<const Law> law_from(std::shared_ptr<const LawTables> tables, double origin, const py::list& waves,
+                                    const py::object& segment, const py::object& blend)
+{
+    auto law = std::make_shared<Law>();
+    law->tables = std::move(tables), law->origin = origin;
+    for (const py::handle wave : waves) law->waves.push_back(wave_from(wave.cast<py::tuple>()));
+    law->segment = quintic_from(segment), law->blend = quintic_from(blend);
+    const std::size_t rows = law->tables->rows();
+    const auto check = [&](std::size_t last) {
+        if (last >= rows)
+            throw py::value_error("law has " + std::to_string(rows) + " rows, and wants row " + std::to_string(last));
+    };
+    for (const Wave& wave : law->waves) check(wave.sine), check(wave.cosine);
+    if (law->segment.row != Quintic::none) check(law->segment.row + 11);
+    if (law->blend.row != Quintic::none) check(law->blend.row + 5);
+    return law;
+}
+
+py::list factors_at(const Law& law, double time)
+{
+    std::vector<Jet> factor(law.tables->rows());
+    law.set_factors(time, factor);
+    py::list result;
+    for (std::size_t derivative = 0; derivative < 3; ++derivative) {
+        py::list row;
+        for (const Jet& jet : factor) row.append(jet[derivative]);
+        result.append(row);
+    }
+    return result;
+}
+
+void check_fits(const Law& law, const Swimmer& swimmer)
+{
+    const LawTables& t = *law.tables;
+    const std::size_t rows = t.rows(), nodes = swimmer.grid.blocks, stations = blocks_of(swimmer.stations);
+    const auto fits = [&](const auto& table, std::size_t blocks) {
+        return table.lanes.size() == rows * blocks && (rows == 0 || table.blocks == blocks);
+    };
+    if (!(fits(t.node, nodes) && fits(t.angle, nodes) && fits(t.moments, nodes) && fits(t.station, stations) &&
+          fits(t.station_moments, stations)))
+        throw py::value_error("law must be tabulated on the nodes and stations of the swimmer");
+}
+
+// A march that Python holds: one thread at a time, without Python's lock.
+class PyMarch {
+  public:
+    PyMarch(std::shared_ptr<const Swimmer> swimmer, const std::string& method, std::size_t order, bool planar)
+        : march_(std::move(swimmer), Method::of(method, order), planar)
+    {
+    }
+
+    void change(std::shared_ptr<const Swimmer> swimmer, const std::string& method, std::size_t order, bool planar)
+    {
+        const InUse in_use(*this);
+        has_law_ = false;
+        march_.change(std::move(swimmer), Method::of(method, order), planar);
+    }
+    void follow(const std::shared_ptr<const Law>& law, std::vector<double> breakpoints, const StepBounds& bounds,
+                bool ledger, const py::object& current, bool smoothly)
+    {
+        check_fits(*law, march_.swimmer());
+        const InUse in_use(*this);
+        smoothly &= has_law_;
+        has_law_ = true;
+        march_.follow({*law, std::move(breakpoints), bounds, ledger, vector_from(current, "current")}, smoothly);
+    }
+    double start(const py::object& position, const py::object& orientation, const py::object& twist)
+    {
+        const auto q = row_from<4>(orientation, "orientation");
+        const Driven in_use(*this);
+        return march_.start(vector_from(position, "position"), {q[0], q[1], q[2], q[3]}, twist_from(twist, "twist"));
+    }
+    double set_twist(const py::object& twist)
+    {
+        const Driven in_use(*this);
+        return march_.set_twist(twist_from(twist, "twist"));
+    }
+    py::list twist()
+    {
+        const Driven in_use(*this);
+        return list_of(components_of(march_.twist()));
+    }
+    int advance(double time)
+    {
+        const Driven in_use(*this);
+        const py::gil_scoped_release unlocked;
+        return static_cast<int>(march_.advance(time));
+    }
+    py::tuple record(const py::object& times, std::size_t first, const py::object& whole, const py::object& works,
+                     bool wrench, bool load)
+    {
+        const Numbers instants(times, "times"), into(whole, "whole", true), works_into(works, "works", true);
+        const Profiles profiles(instants.size(), march_.swimmer().stations, wrench, load);
+        into.check_size(profiles.begin[Profiles::quantities], "whole");
+        works_into.check_size(4 * instants.size(), "works");
+        const Driven in_use(*this);
+        std::size_t done = 0;
+        Status status = Status::marched;
+        {
+            const py::gil_scoped_release unlocked;
+            status = march_.record(instants.span(), first, profiles, into.data(), works_into.data(), done);
+        }
+        return py::make_tuple(done, static_cast<int>(status));
+    }
+    bool observe(const py::object& whole, bool wrench, bool load)
+    {
+        const Numbers into(whole, "whole", true);
+        const Profiles profiles(1, march_.swimmer().stations, wrench, load);
+        into.check_size(profiles.begin[Profiles::quantities], "whole");
+        const Driven in_use(*this);
+        const py::gil_scoped_release unlocked;
+        return march_.observe(Observer(march_.swimmer(), profiles, into.data()), 0);
+    }
+    void set_slice(std::int64_t nodes)
+    {
+        const InUse in_use(*this);
+        march_.set_slice(nodes);
+    }
+    std::size_t memory()
+    {
+        const Driven in_use(*this);
+        return march_.memory();
+    }
+    double time() const { return march_.time(); }
+    py::list state() const { return list_of(std::span(march_.state()).first(state_size)); }
+    py::list works() const { return list_of(march_.works()); }
+    py::tuple counts() const
+    {
+        const Counts counts = march_.counts();
+        return py::make_tuple(counts.steps, counts.rejected, counts.evaluations);
+    }
+
+  private:
+    class InUse {
+      public:
+        explicit InUse(PyMarch& march) : march_(march)
+        {
+            if (march_.in_use_.exchange(true)) throw std::runtime_error("this march is under way in another thread");
+        }
+        ~InUse() { march_.in_use_ = false; }
+        InUse(const InUse&) = delete;
+        InUse& operator=(const InUse&) = delete;
+
+      private:
+        PyMarch& march_;
+    };
+
+    struct Driven : InUse {
+        explicit Driven(PyMarch& march) : InUse(march)
+        {
+            if (!march.has_law_) throw std::runtime_error("this march follows no law on its grid yet");
+        }
+    };
+
+    March march_;
+    bool has_law_ = false;  // on the present grid
+    std::atomic<bool> in_use_{false};
+};
+
+template <class M>
+py::object rate_of(Instant<M>& instant, const Law& law, const py::object& current, double time, const py::object& state)
+{
+    State rate{};
+    if (!instant.rate(law, vector_from(current, "current"), time, state_from(state), rate)) return py::none();
+    return list_of(std::span(rate).first(state_size));
+}
+
+template <class M>
+py::list inertia_of(Instant<M>& instant, const Law& law, double time)
+{
+    const auto inertia = instant.inertia(law, time);
+    py::list rows;
+    for (std::size_t i = 0; i < M::freedoms; ++i) {
+        py::list row;
+        for (std::size_t j = 0; j < M::freedoms; ++j)
+            row.append(inertia.lower[j <= i ? inertia.at(i, j) : inertia.at(j, i)]);
+        rows.append(row);
+    }
+    return rows;
+}
+
+// Evaluates the rate again and again, for benchmarks.
+template <class M>
+void repeat_rate(Instant<M>& instant, const Law& law, double time, const py::object& state, std::size_t count)
+{
+    const State y = state_from(state);
+    State rate{};
+    const py::gil_scoped_release unlocked;
+    for (std::size_t k = 0; k < count; ++k) instant.rate(law, {0.0, 0.0, 0.0}, time, y, rate);
+}
+
+template <class M>
+py::class_<Instant<M>> bind_instant(py::module_& module, const char* name, const char* doc)
+{
+    return py::class_<Instant<M>>(module, name, doc)
+        .def(py::init<std::shared_ptr<const Swimmer>>(), py::arg("swimmer"))
+        .def("rate", &rate_of<M>, py::arg("law"), py::arg("current"), py::arg("time"), py::arg("state"))
+        .def("repeat_rate", &repeat_rate<M>, py::arg("law"), py::arg("time"), py::arg("state"), py::arg("count"))
+        .def(
+            "powers", [](Instant<M>& instant, const Law& law) { return list_of(instant.powers(law)); }, py::arg("law"))
+        .def("inertia", &inertia_of<M>, py::arg("law"), py::arg("time"));
+}
+
+}  // namespace
 
 PYBIND11_MODULE(EEL_CORE_MODULE, module)
 {
     // One name for all levels: what is pickled by one can be read by another.
     module.attr("__name__") = "eel_core._core";
+    module.def("build_info", &build_info_as_dict,
+               "How this module was compiled: level, compiler, flags, sanitizers, pybind11.");
+    module.def("layout", &layout, py::arg("samples"), py::arg("stations"), py::arg("wrench"), py::arg("load"));
+    module.attr("STATUSES") =
+        py::make_tuple("marched", "not_finite", "step_too_small", "singular", "too_many_steps", "unfinished");
 
-    module.def(
-        "build_info",
-        [] {
-            const eel_core::BuildInfo info = eel_core::build_info();
-            py::dict result;
-            result["level"] = info.level;
-            result["compiler"] = info.compiler;
-            result["flags"] = info.flags;
-            result["sanitizers"] = info.sanitizers;
-            result["pybind11"] =
-                PYBIND11_TOSTRING(PYBIND11_VERSION_MAJOR) "." PYBIND11_TOSTRING(PYBIND11_VERSION_MINOR);
-            return result;
-        },
-        "How this module was compiled: level, compiler, flags, sanitizers, pybind11.");
+    py::class_<Swimmer, std::shared_ptr<Swimmer>>(module, "Swimmer")
+        .def(py::init([](const py::object& grid, const py::object& sections, const py::object& stations,
+                         const std::string& friction, bool resistive, std::size_t first_watched, bool wake,
+                         double nose_mass, double nose_drag, bool distributed_pressure) {
+                 return std::const_pointer_cast<Swimmer>(swimmer_from(grid, sections, stations, friction, resistive,
+                                                                      first_watched, wake, nose_mass, nose_drag,
+                                                                      distributed_pressure));
+             }),
+             py::arg("grid"), py::arg("sections"), py::arg("stations"), py::kw_only(), py::arg("friction"),
+             py::arg("resistive"), py::arg("first_watched"), py::arg("wake"), py::arg("nose_mass"),
+             py::arg("nose_drag"), py::arg("distributed_pressure"));
+
+    py::class_<LawTables, std::shared_ptr<LawTables>>(module, "LawTables")
+        .def(py::init([](const std::vector<std::size_t>& axis, const py::object& node, const py::object& angle,
+                         const py::object& moments, const py::object& station, const py::object& station_moments) {
+                 return std::const_pointer_cast<LawTables>(
+                     tables_from(axis, node, angle, moments, station, station_moments));
+             }),
+             py::arg("axis"), py::arg("node"), py::arg("angle"), py::arg("moments"), py::arg("station"),
+             py::arg("station_moments"));
+
+    py::class_<Law, std::shared_ptr<Law>>(module, "Law")
+        .def(py::init([](std::shared_ptr<LawTables> tables, double origin, const py::list& waves,
+                         const py::object& segment, const py::object& blend) {
+                 return std::const_pointer_cast<Law>(law_from(std::move(tables), origin, waves, segment, blend));
+             }),
+             py::arg("tables"), py::arg("origin"), py::arg("waves"), py::arg("segment"), py::arg("blend"))
+        .def("factors", &factors_at, py::arg("time"));
+
+    py::class_<StepBounds>(module, "StepBounds")
+        .def(py::init([](double tolerance, double longest, double smallest, double length, double momentum_floor,
+                         double part_of_span, double most_steps, double spare_steps) {
+                 return StepBounds{tolerance,      longest,      smallest,   length,
+                                   momentum_floor, part_of_span, most_steps, spare_steps};
+             }),
+             py::kw_only(), py::arg("tolerance"), py::arg("longest"), py::arg("smallest"), py::arg("length"),
+             py::arg("momentum_floor"), py::arg("part_of_span"), py::arg("most_steps"), py::arg("spare_steps"))
+        .def_readonly("tolerance", &StepBounds::tolerance)
+        .def_readonly("longest", &StepBounds::longest)
+        .def_readonly("smallest", &StepBounds::smallest)
+        .def_readonly("length", &StepBounds::length)
+        .def_readonly("momentum_floor", &StepBounds::momentum_floor)
+        .def_readonly("part_of_span", &StepBounds::part_of_span)
+        .def_readonly("most_steps", &StepBounds::most_steps)
+        .def_readonly("spare_steps", &StepBounds::spare_steps);
+
+    py::class_<PyMarch>(module, "March")
+        .def(py::init<std::shared_ptr<Swimmer>, const std::string&, std::size_t, bool>(), py::arg("swimmer"),
+             py::arg("method"), py::arg("order"), py::arg("planar"))
+        .def("change", &PyMarch::change, py::arg("swimmer"), py::arg("method"), py::arg("order"), py::arg("planar"))
+        .def("follow", &PyMarch::follow, py::arg("law"), py::arg("breakpoints"), py::arg("bounds"), py::arg("ledger"),
+             py::arg("current"), py::arg("smoothly"))
+        .def("start", &PyMarch::start, py::arg("position"), py::arg("orientation"), py::arg("twist"))
+        .def("set_twist", &PyMarch::set_twist, py::arg("twist"))
+        .def("twist", &PyMarch::twist)
+        .def("set_slice", &PyMarch::set_slice, py::arg("nodes"))
+        .def("advance", &PyMarch::advance, py::arg("time"))
+        .def("record", &PyMarch::record, py::arg("times"), py::arg("first"), py::arg("whole"), py::arg("works"),
+             py::arg("wrench"), py::arg("load"))
+        .def("observe", &PyMarch::observe, py::arg("whole"), py::arg("wrench"), py::arg("load"))
+        .def_property_readonly("memory", &PyMarch::memory)
+        .def_property_readonly("time", &PyMarch::time)
+        .def_property_readonly("state", &PyMarch::state)
+        .def_property_readonly("works", &PyMarch::works)
+        .def_property_readonly("counts", &PyMarch::counts);
+
+    bind_instant<Plane>(module, "PlanarInstant", "Single instants in the plane.");
+    bind_instant<Space>(module, "Instant", "Single instants in space.")
+        .def(
+            "loads",
+            [](Instant<Space>& instant, const Law& law, double time, const py::object& twist) {
+                const auto [tail, drag] = instant.loads(law, time, twist_from(twist, "twist"));
+                return py::make_tuple(list_of(components_of(tail)), list_of(components_of(drag)));
+            },
+            py::arg("law"), py::arg("time"), py::arg("twist"))
+        .def(
+            "drag_powers",
+            [](Instant<Space>& instant, const Law& law, double time, const py::object& twist) {
+                return list_of(instant.drag_powers(law, time, twist_from(twist, "twist")));
+            },
+            py::arg("law"), py::arg("time"), py::arg("twist"))
+        .def(
+            "momentum_taken",
+            [](Instant<Space>& instant, const Law& law, double time, const py::object& twist,
+               const py::object& acceleration) {
+                return list_of(components_of(instant.momentum_taken(law, time, twist_from(twist, "twist"),
+                                                                    twist_from(acceleration, "acceleration"))));
+            },
+            py::arg("law"), py::arg("time"), py::arg("twist"), py::arg("acceleration"));
 }

@@ -20,7 +20,7 @@ from eel_gaits.quantity import is_finite
 from eel_gaits.wording import shown
 
 from .effort import USUAL, Effort
-from .kinks import WATCHED
+from .sections import WATCHED
 
 
 class Key(NamedTuple):

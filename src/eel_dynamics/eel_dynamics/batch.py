@@ -5,8 +5,8 @@
     batch.stopped, batch.error            # which could not go on, and why; the others are not touched by it
     batch[7]                              # a Run, of the samples that it has
 
-The loops run in threads without Python's lock, as many as there are cores; bodies, scenes and stations that come more
-than once are tabulated once. Of the same body, scene and accuracy several swim abreast, where they can (`abreast`).
+The mechanics run in threads without Python's lock, as many as there are cores; bodies, scenes and stations that come
+more than once are tabulated once.
 """
 
 import os
@@ -18,26 +18,19 @@ import numpy as np
 from eel_gaits.law import Law
 from eel_gaits.wording import shown
 
-from .abreast import MOST_ABREAST
 from .accuracy import Accuracy
 from .arguments import checked_stations
 from .body import Body
 from .broadcast import swimmers_of
 from .energy import EnergyLedger
-from .guard import failure_of
-from .integrator import MARCHED
-from .leg import COUNT, ENERGY, PLACE, REACHED, STATUS, ReadyLeg
-from .member import Crew, Member, swim_together
-from .profiles import Profiles, profiles_of, row_of
+from .profiles import Profiles, profiles_of
 from .run import Run, check_memory, checked_times, run_of
 from .scene import Scene
+from .simulation import Simulation
 from .stopping import SimulationStopped
 
 ALONG = "backbone", "section_orientation", "curvature", "curvature_rate", "torque", "force", "fluid_force"
-MOST_TOGETHER = 32  # swimmers of one call of the loops: the lock of Python is let go once for all of them, and
-# lanes stand empty at the end of it only
 MOST_THREADS = 1000
-PARTS_PER_THREAD = 4  # at least, so that none waits long for the others at the end
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,9 +123,9 @@ def simulate_batch(
     how many per body, or their X [m], for the profiles along the body; None: no profiles, the motion and the energies
     alone. threads: None for one per core that this process may use. progress(done, B): called now and then.
 
-    Each swimmer is the `simulate` of its arguments, not verified: to the last bit with the ledger, else to round-off
-    and with the same steps. One that cannot begin or go on keeps the samples until then, with a `SimulationStopped` in
-    `error`; the others do not notice. `ValueError` names an argument that does not fit, with the number of the swimmer.
+    Each swimmer is the `simulate` of its arguments, not verified, to the last bit. One that cannot begin or go on keeps
+    the samples until then, with a `SimulationStopped` in `error`; the others do not notice. `ValueError` names an
+    argument that does not fit, with the number of the swimmer.
     """
     times = checked_times(duration, sample_period)
     accuracy = accuracy.tolist() if isinstance(accuracy, np.ndarray) else accuracy
@@ -141,54 +134,27 @@ def simulate_batch(
     x_of = {length: checked_stations(along, length) for length in dict.fromkeys(each.body.length for each in members)}
     x = [x_of[each.body.length] for each in members]
     wrench = [each.scene.internal_wrench and stations is not None for each in members]
-    load = bool(load) and stations is not None
-    count = len(x)
+    count, load = len(x), bool(load) and stations is not None
     out = _space(count, len(times), len(x[0]), any(wrench), load)
-    works, places = np.zeros((count, len(times), 4)), np.zeros((count, PLACE))
-    rows, floors = row_of(out, any(wrench), load), np.full(count, np.inf)
-    settings, errors, crew = [each.accuracy for each in members], [None] * count, Crew()
+    works, start = np.zeros((count, len(times), 4)), np.zeros(count)
+    samples, steps, evaluations = np.zeros((3, count), dtype=int)
+    settings, errors = [each.accuracy for each in members], [None] * count
 
-    def ready(index: int) -> ReadyLeg | None:
-        where = places[index], times, works[index], rows[index]
+    def swim(index: int):
         try:
-            member = crew.member(members[index], x[index])
-            leg = member.leg_of(members[index], *where, wrench=wrench[index], load=load)
-        except (SimulationStopped, ValueError) as error:
-            errors[index] = _stopped_at_start(error)
-            return None
-        settings[index], floors[index] = member.accuracy, member.energy_floor
-        return leg
-
-    def swim(indices: range):
-        part = slice(indices.start, indices.stop)
-        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):  # what is not finite stops a swimmer
-            swim_together([leg for leg in map(ready, indices) if leg is not None])
-            finite = np.isfinite(out.whole[part].sum(axis=1) + works[part].sum(axis=(1, 2)))
-        for index in indices:
-            if errors[index] is None and not (finite[index - part.start] and is_sound(index)):
-                swim_again(index)
-
-    def is_sound(index: int) -> bool:
-        if places[index, STATUS] != MARCHED:
-            return False
-        if np.isinf(floors[index]):
-            return True
-        return not failure_of(_of_one(out, index), works[index], len(times), places[index, ENERGY], floors[index])
-
-    def swim_again(index: int):
-        """One that stopped: alone, for what stopped it."""
-        crew.dismiss(members[index], x[index])
-        try:
-            member = Member(members[index], x[index])
+            simulation = Simulation(stations=x[index], **members[index]._asdict())
         except (SimulationStopped, ValueError) as error:
             errors[index] = _stopped_at_start(error)
             return
-        one = _of_one(out, index, wrench[index])
-        done, errors[index] = member.swim_into(times, one, works[index], wrench=wrench[index], load=load)
-        places[index, ENERGY:] = member.kinetic_at_start, *member.evaluations, done, MARCHED
+        one = profiles_of(len(times), len(x[index]), wrench[index], load) if any(wrench) > wrench[index] else None
+        into = _of_one(out, index) if one is None else one
+        samples[index], errors[index] = simulation.record_into(times, into, works[index], wrench[index], load)
+        if one is not None:
+            _copy(one, out, index)
+        settings[index], start[index] = simulation.accuracy, simulation.kinetic_at_start
+        steps[index], _, evaluations[index] = simulation.evaluations
 
-    _for_each(swim, count, threads, progress, 1 if all(each.scene.ledger for each in members) else MOST_ABREAST)
-    start, (samples, steps, evaluations) = places[:, ENERGY], places[:, [REACHED, COUNT, COUNT + 2]].T.astype(int)
+    _for_each(swim, count, threads, progress)
     for index in np.flatnonzero(samples < len(times)):
         for array in (*_of_one(out, index)[:-1], works[index]):
             array[samples[index] :] = 0.0
@@ -225,42 +191,20 @@ def _batch_of(members, settings, times, samples, errors, counts, x, out, works, 
     )
 
 
-def _for_each(swim, count: int, threads: int | None, progress, lanes: int):
-    """`swim(range)` for all of `count`, some at a time, in `threads` threads; the first, which may compile, alone.
-    lanes: how many can swim abreast."""
+def _for_each(swim, count: int, threads: int | None, progress):
+    """`swim(index)` for all of `count`, in `threads` threads."""
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
     threads = cores if threads is None else threads
     if isinstance(threads, bool) or not isinstance(threads, (int, np.integer)) or not 1 <= threads <= MOST_THREADS:
         raise ValueError(f"threads must be a whole number from 1 to {MOST_THREADS}, got {shown(threads)}")
-    some = _size_of_parts(count, threads, lanes)
-    parts = [range(1), *(range(k, min(k + some, count)) for k in range(1, count, some))]
-
-    def tell(part: range):
-        if progress is not None:
-            progress(part.stop, count)
-
-    swim(parts[0])
-    tell(parts[0])
-    if threads == 1:
-        for part in parts[1:]:
-            swim(part)
-            tell(part)
-        return
     with ThreadPoolExecutor(threads, thread_name_prefix="swimmer") as pool:
         try:
-            for part, _ in zip(parts[1:], pool.map(swim, parts[1:]), strict=True):
-                tell(part)
+            for done, _ in enumerate(pool.map(swim, range(count)), start=1):
+                if progress is not None:
+                    progress(done, count)
         except BaseException:
             pool.shutdown(cancel_futures=True)
             raise
-
-
-def _size_of_parts(count: int, threads: int, lanes: int) -> int:
-    """How many of `count` swimmers go into the loops at a time: whole `lanes` of them, but work for every thread."""
-    most = min(MOST_TOGETHER, count // (PARTS_PER_THREAD * threads))
-    if most >= lanes:
-        return most - most % lanes
-    return max(1, min(lanes, -(-(count - 1) // threads)))
 
 
 def _stopped_at_start(error: Exception) -> SimulationStopped:
@@ -275,6 +219,11 @@ def _space(count: int, samples: int, stations: int, wrench: bool, load: bool) ->
     return profiles_of(samples, stations, wrench, load, (count,))
 
 
-def _of_one(out: Profiles, index: int, wrench: bool = True) -> Profiles:
-    one = Profiles(*(array[index] for array in out))
-    return one if wrench else one._replace(torque=one.torque[:0], force=one.force[:0])
+def _of_one(out: Profiles, index: int) -> Profiles:
+    return Profiles(*(array[index] for array in out))
+
+
+def _copy(one: Profiles, out: Profiles, index: int):
+    """The profiles that `one` has, which was not asked for all of them, into those of a batch."""
+    for there, here in zip(one[:-1], out[:-1], strict=True):
+        here[index, : len(there)] = there

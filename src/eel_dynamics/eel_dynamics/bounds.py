@@ -3,9 +3,9 @@
 from eel_gaits.law import Law
 from eel_gaits.wording import shown
 
+import eel_core
+
 from .accuracy import Accuracy
-from .integrator import Control
-from .methods import Method
 from .scene import Scene
 from .shape import Shape
 from .tables import Table
@@ -19,12 +19,9 @@ SLOWEST = 1e-3  # body lengths per time scale, below which the head counts as at
 PART_OF_SPEED = 0.5  # of the speed that the shape gives the body: momenta below need not be exact to the last digit
 PART_OF_SPAN = 0.25  # between two breakpoints of the shape, that a step may take
 PART_OF_RAMP = 0.125  # the same for the ledger: of what a sudden ramp puts in, most comes back, and little may be left
-FIRST_STEP = 0.02  # of the longest
 
 
-def evaluations_of(method: Method) -> int:
-    """Evaluations of the head's dynamics in a step of `method`: its last is the first of the next step."""
-    return 1 if method.adams else len(method.c) - 1
+EVALUATIONS = {"adams": 1, "dormand_prince": 6, "classical": 4}  # in a step: its last is the first of the next
 
 
 def check_cost(law: Law, most_evaluations: float):
@@ -40,32 +37,29 @@ def check_cost(law: Law, most_evaluations: float):
         )
 
 
-def control_of(
+def bounds_of(
     *,
     accuracy: Accuracy,
-    method: Method,
     scene: Scene,
     shape: Shape,
     table: Table,
     length: float,
     scale: float,
     most_evaluations: float,
-) -> Control:
+) -> eel_core.StepBounds:
     """The bounds for a body of `length` [m], tabulated in `table`, whose motion at the start has the time `scale` [s]
     and which is driven by `shape`; `most_evaluations` by simulated second."""
     scale = min(shape.time_scale, scale)
     longest = LONGEST_STEP * min(scale, 10.0)
     fixed = accuracy.step or (accuracy.fixed and min(scale, 1.0) / accuracy.fixed)
     slowest = max(SLOWEST * length / min(scale, 10.0), PART_OF_SPEED * shape.speed(length))
-    return Control(
+    return eel_core.StepBounds(
         tolerance=accuracy.tolerance,
-        step=fixed or longest,
+        longest=fixed or longest,
         smallest=1e-11 * min(scale, 1.0),
         length=length,
         momentum_floor=table.mass * slowest,
-        part_of_span=PART_OF_RAMP if scene.ledger and shape.drive.segment < 0 else PART_OF_SPAN,
-        most_steps=most_evaluations / evaluations_of(method),
+        part_of_span=PART_OF_RAMP if scene.ledger and not shape.between_samples else PART_OF_SPAN,
+        most_steps=most_evaluations / EVALUATIONS[accuracy.method],
         spare_steps=max(LEAST_SPARE, SPARE_STEPS * min(1.0, SPARE_POINTS / len(table.grid.x))),
-        ledger=bool(scene.ledger),
-        planar=bool(scene.planar),
     )

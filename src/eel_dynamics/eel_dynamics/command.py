@@ -100,7 +100,7 @@ def _swim(options, out: Path | None) -> int:
         return 3
     seconds = time.perf_counter() - start
     print(run.summary(options.periods))
-    print(f"wall time           {seconds:.3f} s, loading or compiling the loops included")
+    print(f"wall time           {seconds:.3f} s, set-up included")
     if options.actuators is not None:
         print(run.actuators(options.actuators).table())
     if out is not None:

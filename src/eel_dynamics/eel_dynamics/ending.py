@@ -40,19 +40,13 @@ class Ending:
 
         threading.Thread(target=run, daemon=True).start()
 
-    def comes_within(self, seconds: float) -> bool:
-        """Waits for the end, at most so long; whether it has come."""
-        try:
-            self._declared.put(self._declared.get(timeout=seconds))
-        except queue.Empty:
-            return False
-        return True
-
     def wait(self) -> tuple[bool, Exception | None]:
         """Waits for the end: (whether a worker has done its work, the error of one that has failed)."""
-        while not self.comes_within(POLL):
-            pass
-        return self._declared.get()
+        while True:
+            try:
+                return self._declared.get(timeout=POLL)
+            except queue.Empty:
+                continue
 
     def join(self, seconds: float) -> bool:
         """Waits for all threads, at most so long; whether they have ended."""
@@ -64,14 +58,13 @@ class Ending:
 
 
 def leave_at_once(status: int):
-    """Ends the process without the interpreter's tidying up, which takes half a second of unloading compiled loops, and
-    although some thread may still be at work."""
+    """Ends the process without the interpreter's tidying up, although some thread may still be at work."""
     sys.stdout.flush()
     sys.stderr.flush()
     os._exit(status)
 
 
 def leave_on_interrupt():
-    """For tools that keep nothing of what is half done: Ctrl-C ends the process at once, compiled loops included, which
+    """For tools that keep nothing of what is half done: Ctrl-C ends the process at once, also in compiled code, which
     Python's own handler waits for."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)

@@ -7,27 +7,26 @@ digits of an acceleration in double precision, and counts as singular.
 
 import numpy as np
 
-from .lanes import aligned
-
 MOST = 1e12
 PART = 0.25  # of a singular direction, from which a degree of freedom is named
 FREEDOMS = "roll", "pitch", "yaw", "surge", "sway", "heave"
 PLANE = 2, 3, 4
 
 
-def straight_inertia(swimmer, length: float) -> np.ndarray:
-    """(6, 6) [kg] about the head, rotation first, of a tabulated `swimmer` of `length` [m]."""
-    x, weight = aligned(swimmer.x / length), swimmer.weight
+def straight_inertia(grid, sections, nose_mass: float, length: float) -> np.ndarray:
+    """(6, 6) [kg] about the head, rotation first, of a body of `length` [m] by the `sections` (`SectionTable`) at the
+    nodes of `grid`; nose_mass: m_o [kg]."""
+    x, weight = grid.x / length, grid.weight
     roll, pitch, yaw = (
-        float(weight @ each) / length**2 for each in (swimmer.inertia1, swimmer.inertia2, swimmer.inertia3)
+        float(weight @ each) / length**2 for each in (sections.inertia1, sections.inertia2, sections.inertia3)
     )
-    along2, along3 = swimmer.mass + swimmer.added2, swimmer.mass + swimmer.added3
+    along2, along3 = sections.mass + sections.added2, sections.mass + sections.added3
     matrix = np.diag(
         [
             roll,
             pitch + weight @ (along3 * x * x),
             yaw + weight @ (along2 * x * x),
-            weight @ swimmer.mass + swimmer.nose_mass,
+            weight @ sections.mass + nose_mass,
             weight @ along2,
             weight @ along3,
         ]
@@ -43,10 +42,10 @@ def condition_of(matrix: np.ndarray) -> float:
     return float(value[-1] / value[0]) if value[0] > 0.0 else np.inf
 
 
-def check_inertia(swimmer, length: float, planar: bool):
-    """`ValueError` that names the degrees of freedom in which `swimmer` has no inertia."""
+def check_inertia(grid, sections, nose_mass: float, length: float, planar: bool):
+    """`ValueError` that names the degrees of freedom in which a body has no inertia; as `straight_inertia` has it."""
     free = list(PLANE) if planar else list(range(6))
-    matrix = straight_inertia(swimmer, length)[np.ix_(free, free)]
+    matrix = straight_inertia(grid, sections, nose_mass, length)[np.ix_(free, free)]
     if not np.isfinite(matrix).all():
         raise ValueError("body is too large or too dense for numbers: its inertia is not finite")
     value, direction = np.linalg.eigh(matrix)

@@ -20,7 +20,6 @@ from rclpy.duration import Duration
 from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.impl.implementation_singleton import rclpy_implementation
-from rclpy.logging import get_logger
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
 from rclpy.signals import SignalHandlerOptions
@@ -30,7 +29,6 @@ from eel_msgs.msg import BodyGeometry, CurvatureLaw, CurvatureSamples
 
 from .assembly import simulation_of
 from .clock_right import ClockWatch
-from .compilation import ensure
 from .declaration import Declaration
 from .ending import Ending, leave_at_once
 from .feed import LawFeed
@@ -154,8 +152,6 @@ def main(args=None) -> int:
         if status is not None:
             return status
         rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
-        if not ensure(get_logger(NAME).info, ending.comes_within):
-            return 0
         with one_line_warnings(NAME):
             node = DynamicsNode()
     except CANNOT_START as error:

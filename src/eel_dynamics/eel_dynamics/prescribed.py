@@ -7,14 +7,14 @@ from eel_gaits.law import Law
 from eel_gaits.quantity import is_finite
 from eel_gaits.wording import shown
 
+import eel_core
+
 from .accuracy import Accuracy
 from .arguments import checked_row
 from .body import Body
-from .drive import combine, factors
-from .kernel import add_head_twist, configure, find_loads
 from .scene import Scene
+from .sections import core_swimmer, nose_of
 from .simulation import Simulation
-from .wrench import add_head_acceleration, gather, section_densities, shape_accelerations
 
 FINE = Accuracy(name="prescribed", resolution=100.0)
 
@@ -60,24 +60,16 @@ def hydrodynamic_wrench(
     twist, twist_rate = checked_row("twist", twist, 6), checked_row("twist_rate", twist_rate, 6)
     if not is_finite(time):
         raise ValueError(f"time must be finite, got {shown(time)} s")
-    swimmer = Simulation(body=body, scene=scene, accuracy=FINE, stations=2)
-    swimmer.adopt(law)
-    drive, fields, balance, water = swimmer.drive, swimmer.fields, swimmer.balance, swimmer.swimmer
-    factors(drive, float(time), fields.factor)
-    combine(drive.axis, drive.node, fields.factor[2], water.blocks, fields.accel)
-    configure(water, drive, fields)
-    relative = twist.copy()
-    relative[3:] -= swimmer.scene.current
-    add_head_twist(water, fields, relative)
-    shape_accelerations(water, fields, balance)
-    balance.head[:3] = twist_rate[:3]
-    balance.head[3:] = twist_rate[3:] + np.cross(twist[:3], twist[3:])
-    add_head_acceleration(water, fields, balance)
-    none = np.zeros_like(water.mass)
-    alone = water._replace(mass=none, inertia1=water.added_roll, inertia2=none, inertia3=none)
-    inertia, nose = np.zeros(6), np.zeros(6)
-    section_densities(alone, fields, balance)
-    gather(alone, balance.density, inertia)
-    find_loads(water, fields, relative)
-    nose[3] = -water.nose_mass * balance.head[3] - water.nose_drag * relative[3] * abs(relative[3])
-    return HydrodynamicWrench(inertia=-inertia, wake=fields.tail.copy(), resistive=fields.drag.copy(), nose=nose)
+    simulation = Simulation(body=body, scene=scene, accuracy=FINE, stations=2, law=law)
+    scene, table, time = simulation.scene, simulation.table, float(time)
+    relative, acceleration = twist.copy(), twist_rate.copy()
+    relative[3:] -= scene.current
+    acceleration[3:] += np.cross(twist[:3], twist[3:])
+    arguments = scene, table.grid, table.sections.of_water(), simulation.x, simulation.accuracy.kinks
+    water = eel_core.Instant(core_swimmer(simulation.body, *arguments))
+    inertia = np.array(water.momentum_taken(simulation.drive, time, relative, acceleration))
+    wake, resistive = np.array(eel_core.Instant(table.core).loads(simulation.drive, time, relative))
+    nose_mass, nose_drag = nose_of(simulation.body, scene)
+    nose = np.zeros(6)
+    nose[3] = -nose_mass * acceleration[3] - nose_drag * relative[3] * abs(relative[3])
+    return HydrodynamicWrench(inertia=-inertia, wake=wake, resistive=resistive, nose=nose)

@@ -17,8 +17,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import legendre
 
-from .lanes import WIDTH, aligned
-
 
 @dataclass(frozen=True, kw_only=True)
 class Panel:
@@ -48,20 +46,13 @@ class Panel:
         return np.sqrt(part) if self.graded else part
 
 
-class Blocks(NamedTuple):
-    """The integral of f from the nose to eight points at once: that to the node before `source`, and the sum over the
-    `sources` nodes (an even number, the last with zeros) from there on of f times their row of `columns` (., 8) [m],
-    from `start` on. The last block goes on with its last point.
+class PanelPoints(NamedTuple):
+    """M points along the body, each within the panel of its own: rows that integrate up to it."""
 
-    place: of each point, the index of the first node of its panel and the panel's variable added: it rises along the
-    body.
-    """
-
-    columns: np.ndarray  # (., 8)
-    start: np.ndarray  # (blocks,) unsigned, as the next two
-    source: np.ndarray
-    sources: np.ndarray
-    place: np.ndarray  # (n,)
+    matrix: np.ndarray  # (M, p_max) m: the integral from the panel's start is sum_j matrix[i, j] f[first[i] + j]
+    first: np.ndarray  # (M,) unsigned, first node of the panel
+    count: np.ndarray  # (M,) unsigned, nodes of the panel
+    fraction: np.ndarray  # (M,) of the panel, in its own variable
 
 
 @dataclass(frozen=True)
@@ -108,33 +99,9 @@ class Grid:
         previous = np.concatenate(([0.0], x[:-1]))
         return Grid(panels, x, weight, previous, first, count, matrix, fractions, barycentric, series)
 
-    def blocks(self, x=None) -> "Blocks":
-        """What integrates from the nose to eight points at once: to the nodes, or to X = `x` (M,) [m], ascending."""
-        if x is None:
-            rows, first, count, fraction = self.matrix, self.first, self.count, self.fraction
-        else:
-            (rows, first, count), fraction = self.rows_at(x, "integral"), self.fraction_at(x)
-        first, count = first.astype(int), count.astype(int)
-        start, source, sources, columns = [0], [], [], []
-        for block in range(0, len(rows), WIDTH):
-            here = range(block, min(block + WIDTH, len(rows)))
-            begin, end = first[block], first[here[-1]] + count[here[-1]]
-            part = np.zeros((end - begin + (end - begin) % 2, WIDTH))
-            for lane in range(WIDTH):
-                i = min(block + lane, here[-1])
-                part[: first[i] - begin, lane] = self.weight[begin : first[i]]
-                part[first[i] - begin : first[i] - begin + count[i], lane] = rows[i, : count[i]]
-            start.append(start[-1] + len(part))
-            source.append(begin)
-            sources.append(len(part))
-            columns.append(part)
-        return Blocks(
-            columns=aligned(np.concatenate(columns), WIDTH),
-            start=np.array(start[:-1], dtype=np.uintp),
-            source=np.array(source, dtype=np.uintp),
-            sources=np.array(sources, dtype=np.uintp),
-            place=aligned(first + fraction),
-        )
+    def points_at(self, x) -> PanelPoints:
+        """The points at X = `x` (M,) [m], ascending."""
+        return PanelPoints(*self.rows_at(x, "integral"), self.fraction_at(x))
 
     def panel_at(self, x) -> np.ndarray:
         """Index of the panel that holds X = `x` (M,) [m]; a kink belongs to the panel that it ends."""

@@ -22,18 +22,16 @@ from .energy import EnergyLedger
 from .errors import Errors, errors, refined, stable_step
 from .foresight import Foresight
 from .limits import warnings_of
-from .member import Crew
-from .profiles import Profiles, places_of
+from .profiles import Profiles, size_of
 from .records import records
 from .scene import Scene
+from .simulation import Simulation
 from .stopping import SimulationStopped
 from .summary import describe
 
 MOST_REFINEMENTS = 3  # of a run whose error is above its target
 MOST_SAMPLES = 10_000_000  # of a run: their motion alone takes gigabytes
 MOST_MEMORY = 0.8  # of the machine's, that the samples may fill
-MOST_SWIMMERS = 8  # bodies in scenes at accuracies, that a thread keeps for the next run of the same
-_crew = Crew(MOST_SWIMMERS)
 _searching = ContextVar("searching", default=False)  # for a stable step
 
 
@@ -197,31 +195,26 @@ def simulate(
     swimmer = Swimmer.of(law, body, scene, accuracy, position, orientation, twist, duration, most_evaluations)
     x, wrench = checked_stations(stations, swimmer.body.length), swimmer.scene.internal_wrench
     check_memory(1, len(times), len(x), wrench, bool(load))
-    member = _crew.member(swimmer, x)
+    simulation = Simulation(stations=x, **swimmer._asdict())
     foresight = Foresight(swimmer.horizon, progress)
-    try:
-        out, works, done, stopped = member.record_of(swimmer, times, wrench, bool(load), foresight.look)
-    except KeyboardInterrupt:
-        _crew.dismiss(swimmer, x)
-        raise
-    steps, _, evaluations = member.evaluations
+    out, works, done, stopped = simulation.record(times, wrench, bool(load), foresight.look)
+    steps, _, evaluations = simulation.evaluations
     run = run_of(
         law=law,
         body=swimmer.body,
         scene=swimmer.scene,
-        accuracy=member.accuracy,
+        accuracy=simulation.accuracy,
         x=x,
         times=times[:done],
         out=out,
         works=works[:done],
-        kinetic_at_start=member.kinetic_at_start,
+        kinetic_at_start=simulation.kinetic_at_start,
         wrench=wrench,
         load=load,
         steps=steps,
         evaluations=evaluations,
     )
     if stopped is not None:
-        _crew.dismiss(swimmer, x)
         stopped.run = run
         if run.accuracy.step is not None and not _searching.get():
             stopped = _with_stable_step(stopped, again, run.accuracy)
@@ -278,7 +271,7 @@ def checked_times(duration, sample_period) -> np.ndarray:
 
 def check_memory(swimmers: int, samples: int, stations: int, wrench: bool, load: bool):
     """`ValueError` where the profiles of so many would not fit into memory."""
-    needed = 8.0 * swimmers * places_of(samples, stations, wrench, load)[-1][1]
+    needed = 8.0 * swimmers * size_of(samples, stations, wrench, load)
     there = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") * MOST_MEMORY
     if needed > there:
         raise ValueError(

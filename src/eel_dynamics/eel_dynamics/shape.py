@@ -16,15 +16,15 @@ import numpy as np
 from eel_gaits.law import Law, amplitude_of
 from eel_gaits.spline import natural_spline
 
-from .drive import AXES, TABLES, TIMES, Drive, Tables, Tabulation, Times, factors
+import eel_core
+
 from .effort import speed_of
-from .lanes import aligned
-from .packed import Packed
+from .tabulated_law import AXES, Tabulation
 from .waveforms import groups_of
 
 AHEAD = 100  # instants that a grid is chosen for, so that it does not change with every one
 TIME_OF = attrgetter("time")
-NONE, NO_NUMBER, NO_RAMP = np.zeros(0, dtype=np.int64), np.zeros(0), np.zeros((0, 3))
+NO_NUMBER, NO_RAMP = np.zeros(0), np.zeros((0, 3))
 
 
 class Instant(NamedTuple):
@@ -54,8 +54,7 @@ class Shape:
         self._blend: tuple[np.ndarray, float, float] | None = None
         self._spline: tuple[np.ndarray, np.ndarray] | None = None
         self._source: dict = {}
-        self.drive: Drive = None
-        self.packed: tuple[Packed, Packed] = ()  # of the drive: `Tables`, `Times`
+        self.drive: eel_core.Law = None  # for the compiled mechanics
         self._follow(_straight(tabulation) if law is None else _law_rows(law, tabulation))
 
     def move(self, tabulation: Tabulation, values_at_nodes):
@@ -144,29 +143,35 @@ class Shape:
 
     def at(self, time: float) -> np.ndarray:
         """Tabulated value, rate and acceleration (3, 2, width) at `time` [s]."""
-        factor = np.zeros((3, len(self.drive.axis)))
-        factors(self.drive, time, factor)
+        factor = np.array(self.drive.factors(time))
         result = np.zeros((3, 2, self.tabulation.width))
         for axis in range(2):
-            mine = self.drive.axis == axis
+            mine = self._axis == axis
             result[:, axis] = factor[:, mine] @ self._rows[mine]
         return result
 
     def breakpoints(self) -> np.ndarray:
         """Times [s] at which a derivative of the shape jumps, ascending."""
-        drive = self.drive
-        if drive.blend < 0 and "ends" in self._source:
-            return drive.origin + self._source["ends"]
-        times = {drive.origin + time for ramp in drive.ramps[:, :2].tolist() for time in ramp}
-        times |= {drive.blend_end} if drive.blend >= 0 else set()
-        times |= {drive.segment_start, drive.segment_end} if drive.segment >= 0 else set()
+        source, origin = self._source, self._source.get("origin", 0.0)
+        if self._blend is None and "ends" in source:
+            return origin + source["ends"]
+        times = {origin + time for *ends, _ in source.get("ramps", NO_RAMP).tolist() for time in ends}
+        times |= {self._blend[2]} if self._blend is not None else set()
+        times |= set(source.get("segment", ()))
         return np.array(sorted(times), dtype=float)
+
+    @property
+    def between_samples(self) -> bool:
+        """Whether the shape is a quintic between two samples of a controller."""
+        return "segment" in self._source
 
     @property
     def time_scale(self) -> float:
         """Shortest period [s] of the law; inf where it has none. Ramps, blends and samples begin and end on steps
         anyway."""
-        return min((period for period in self.drive.period.tolist() if period > 0.0), default=math.inf)
+        return min(
+            (period for period in self._source.get("period", NO_NUMBER).tolist() if period > 0.0), default=math.inf
+        )
 
     def speed(self, length: float) -> float:
         """Speed [m/s] that the law gives to a body of `length` [m], of the order of; 0 for samples and at rest."""
@@ -209,61 +214,30 @@ class Shape:
 
     def _follow(self, source: dict):
         self._source = source
-        rows, axis = source["rows"], source["axis"]
-        start, end = source.get("segment", (0.0, 0.0))
-        blend, blend_start, blend_end = -1, 0.0, 0.0
+        rows, axis, blend = source["rows"], np.asarray(source["axis"]), None
         if self._blend is not None:
-            blend = len(rows)
-            difference, blend_start, blend_end = self._blend
+            difference, start, end = self._blend
+            blend = len(rows), start, end
             rows, axis = np.concatenate((rows, difference)), np.concatenate((axis, np.repeat((0, 1), 3)))
-        self._rows = rows
+        self._rows, self._axis = rows, axis
         tables = source.get("tables") if self._blend is None else None
         if tables is None:
-            tables = _tables(self.tabulation, rows, axis, source.get("sine", NONE), source.get("cosine", NONE))
-        times = Times(
-            origin=float(source.get("origin", 0.0)),
-            period=source.get("period", NO_NUMBER),
-            ramp_first=source.get("ramp_first", NONE),
-            ramp_count=source.get("ramp_count", NONE),
-            ramps=source.get("ramps", NO_RAMP),
-            segment=0 if "segment" in source else -1,
-            segment_start=float(start),
-            segment_end=float(end),
-            blend=blend,
-            blend_start=float(blend_start),
-            blend_end=float(blend_end),
-        )
-        self.drive = Drive(*tables.value, *times)
-        self.packed = tables, TIMES.packed(times)
-
-
-def _tables(tabulation: Tabulation, rows: np.ndarray, axis, sine, cosine) -> Packed:
-    """`Tables` of tabulated `rows` (m, width)."""
-    node, bend, station, station_bend = tabulation.split(rows)
-    angle = aligned(np.cumsum(bend[:, 0], axis=1), bend.shape[-1])
-    axis = np.asarray(axis, dtype=np.int64)
-    return TABLES.packed(Tables(axis, node, angle, bend, station, station_bend, sine, cosine))
+            tables = self.tabulation.law_tables(rows, axis)
+        segment = (0, *source["segment"]) if "segment" in source else None
+        self.drive = eel_core.Law(tables, float(source.get("origin", 0.0)), source.get("waves", []), segment, blend)
 
 
 @lru_cache(maxsize=256)
 def _straight(tabulation: Tabulation) -> dict:
     """The straight shape at rest."""
     source = _constant(np.zeros((2, tabulation.width)))
-    return source | {"tables": _tables(tabulation, *(source[name] for name in ("rows", "axis", "sine", "cosine")))}
+    return source | {"tables": tabulation.law_tables(source["rows"], source["axis"])}
 
 
 def _constant(value: np.ndarray) -> dict:
     """A shape that stands still: value (2, width)."""
-    return {
-        "rows": np.array(value),
-        "origin": 0.0,
-        "axis": np.arange(2),
-        "sine": np.arange(2),
-        "cosine": np.full(2, -1),
-        "period": np.zeros(2),
-        "ramp_first": np.zeros(2, dtype=np.int64),
-        "ramp_count": np.full(2, -1),
-    }
+    waves = [(0.0, None, axis, axis) for axis in range(2)]
+    return {"rows": np.array(value), "origin": 0.0, "axis": np.arange(2), "waves": waves}
 
 
 @lru_cache(maxsize=1024)
@@ -275,14 +249,13 @@ def _pattern(groups: tuple, tabulation: Tabulation) -> dict:
         amplitude = [amplitude_of(*of, tabulation.x) for *of, _, _ in waveforms]
         sine.append(len(rows))
         rows.append(sum(a * np.sin(b) for a, b in zip(amplitude, angle, strict=True)))
-        cosine.append(len(rows) if moving else -1)
+        cosine.append(len(rows) if moving else sine[-1])
         if moving:
             rows.append(sum(a * np.cos(b) for a, b in zip(amplitude, angle, strict=True)))
         axis += [AXES[name]] * (2 if moving else 1)
     table = tabulation.columns(np.array(rows))
-    axis, sine, cosine = (np.array(each, dtype=np.int64) for each in (axis, sine, cosine))
-    tables = _tables(tabulation, table, axis, sine, cosine)
-    return {"rows": table, "tables": tables, "axis": axis, "sine": sine, "cosine": cosine}
+    tables = tabulation.law_tables(table, axis)
+    return {"rows": table, "tables": tables, "axis": np.array(axis), "sine": sine, "cosine": cosine}
 
 
 @lru_cache(maxsize=1024)
@@ -292,19 +265,20 @@ def _law_rows(law: Law, tabulation: Tabulation) -> dict:
     groups = groups_of(law)
     if not groups:
         return _straight(tabulation)
-    first, count, ramps = [], [], []
-    for _, _, envelope in groups:
-        first.append(len(ramps))
-        count.append(len(envelope) if envelope else -1)
-        ramps += [(ramp.start, ramp.end, ramp.delta) for ramp in envelope]
     pattern = _pattern(tuple((key[0], key[1] > 0.0, tuple(terms)) for key, terms in groups.items()), tabulation)
+    ramps = [[(ramp.start, ramp.end, ramp.delta) for ramp in envelope] for _, _, envelope in groups]
+    waves = [
+        (period, envelope or None, sine, cosine)
+        for (_, period, _), envelope, sine, cosine in zip(
+            groups, ramps, pattern["sine"], pattern["cosine"], strict=True
+        )
+    ]
+    every = [ramp for envelope in ramps for ramp in envelope]
     return pattern | {
         "law": law,
-        "pattern": pattern,
         "origin": 0.0,
+        "waves": waves,
         "period": np.array([period for _, period, _ in groups]),
-        "ramp_first": np.array(first, dtype=np.int64),
-        "ramp_count": np.array(count, dtype=np.int64),
-        "ramps": np.array(ramps, dtype=float).reshape(-1, 3),
-        "ends": np.array(sorted({time for *ends, _ in ramps for time in ends}), dtype=float),
+        "ramps": np.array(every, dtype=float).reshape(-1, 3),
+        "ends": np.array(sorted({time for *ends, _ in every for time in ends}), dtype=float),
     }

@@ -3,12 +3,13 @@
 import math
 from collections.abc import Callable
 from copy import copy
-from functools import cached_property
 
 import numpy as np
 from eel_gaits.law import Law
 from eel_gaits.quantity import is_finite
 from eel_gaits.wording import shown
+
+import eel_core
 
 from .accuracy import Accuracy
 from .arguments import (
@@ -21,40 +22,13 @@ from .arguments import (
     checked_stations,
 )
 from .body import Body
-from .bounds import FIRST_STEP, MOST_EVALUATIONS, check_cost, control_of, evaluations_of
+from .bounds import MOST_EVALUATIONS, bounds_of, check_cost
 from .effort import USUAL, Effort, effort_of
 from .energy import EnergyLedger
 from .guard import failure_of
-from .integrator import CONTROL, MARCHED, SINGULAR, TOO_MANY_STEPS
-from .leg import (
-    AGAIN,
-    COUNT,
-    CURRENT,
-    ENERGY,
-    FIRST,
-    GO_ON,
-    MOVED,
-    ORDER,
-    PLACE,
-    REACHED,
-    STATUS,
-    STILL,
-    TWIST,
-    GoingOn,
-    Order,
-    ReadyLeg,
-    Y,
-    scratch_layout,
-    step_layout,
-    swim,
-)
-from .methods import method_of
-from .packed import Packed
-from .profiles import PROFILES, Profiles, no_profiles, profiles_of
+from .profiles import Profiles, profiles_of
 from .scene import Scene
-from .sections import Swimmer
 from .shape import Instant, Shape
-from .slices import Allowance, sliced
 from .snapshot import Snapshot
 from .start import Start, is_thrown, stays_in_plane, time_scale
 from .stopping import SimulationStopped, not_begun, remedy, stopped_by
@@ -65,8 +39,8 @@ POINTS_PER_WAVE = 8  # of a controller's samples
 MOST_POINTS = int(POINTS_PER_WAVE * MOST_WAVES) + 1  # of one
 MOST_AHEAD, MOST_POINTS_AHEAD = 10_000, 1_000_000  # of the simulation: 50 MB of samples
 MUCH_FINER = 1.5  # times the resolution that is needed: a grid that is changed for a coarser one
-ROWS_AT_ONCE = 8  # of a law, for which there is space
-NONE = np.zeros(0)
+SLICE = 40_000  # nodes evaluated, after which a march comes back to be asked to go on: some 2 ms
+MARCHED, SINGULAR, UNFINISHED = (eel_core.STATUSES.index(name) for name in ("marched", "singular", "unfinished"))
 
 
 def check_points(count: int):
@@ -105,7 +79,8 @@ class Simulation:
         self._wanted = Accuracy.of(accuracy)
         self.x = checked_stations(stations, self.body.length)
         self._current = np.array(self.scene.current)
-        self._distributed = self.scene.tail_pressure == "distributed"
+        self._march = self.accuracy = None
+        self._marches_anew = False  # other settings are to be taken
         start = Start(
             checked_row("position", position, 3),
             checked_quaternion("orientation", orientation),
@@ -119,7 +94,6 @@ class Simulation:
             raise ValueError(f"horizon must be >= 0 s, got {shown(horizon)}")
         self._default_transition, self._horizon, self._built = float(default_transition), float(horizon), None
         self._most_evaluations = checked_number("most_evaluations", most_evaluations, "per simulated second")
-        self._going_on = GoingOn()
         self._begin(law, start)
 
     def _begin(self, law: Law | None, start: Start):
@@ -148,39 +122,23 @@ class Simulation:
 
     def _build(self, wanted: Built):
         """Have body and scene tabulated on the grid that is `wanted`."""
-        table = tabulated(self.body, self.scene, wanted, self.x.tobytes())
-        self._table, self._built = table, wanted
-        self._scratch, self._rows = None, 0
-
-    @cached_property
-    def _out(self) -> Packed:
-        """Space for one instant, `Profiles`."""
-        return PROFILES.packed(profiles_of(1, len(self.x)))
+        self._table, self._built = tabulated(self.body, self.scene, wanted, self.x.tobytes()), wanted
+        self._marches_anew = True
 
     @property
     def state(self) -> np.ndarray:
-        """(13,) as the integrator has it: position, orientation, momentum."""
-        return self._place[Y:TWIST]
+        """(13,) position, orientation, momentum about the head, in the world's axes."""
+        return np.array(self._march.state)
 
     @property
-    def swimmer(self) -> Swimmer:
-        """What the loops know of the body and the scene."""
-        return self._table.swimmer.value
+    def grid(self):
+        """The nodes along the body (`quadrature.Grid`)."""
+        return self._table.grid
 
     @property
-    def fields(self):
-        """Work space of the loops, `fields.Fields`."""
-        return self._scratch.views.fields
-
-    @property
-    def balance(self):
-        """Work space of the loops, `wrench.Balance`."""
-        return self._scratch.views.balance
-
-    @property
-    def step(self):
-        """The step in time that the state is in, `integrator.Step`."""
-        return self._step.views
+    def table(self):
+        """Body and scene on the grid (`tables.Table`)."""
+        return self._table
 
     # -- what drives the body
 
@@ -229,12 +187,12 @@ class Simulation:
                 with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is reported below
                     self._take_initial_state()
             except SimulationStopped as stopped:
-                (self.shape, self._table, self._built), self._scratch = before, None
+                self.shape, self._table, self._built = before
                 self._use_accuracy(plane, waves, effort)
                 self._take_initial_state()
                 raise not_begun(law, stopped) from None
         else:
-            self._restart()
+            self._follow_shape()
         self.ready = True
 
     def _effort_of(self, law: Law | None) -> Effort:
@@ -247,18 +205,13 @@ class Simulation:
     def _use_accuracy(self, plane: bool, waves: float, effort: Effort):
         """Take the settings for a motion that stays in a `plane`, or for any, of a shape of up to so many `waves`, and
         for such `effort`; the march so far counts on."""
-        accuracy, before = self._wanted.in_scene(self.scene, plane, effort), getattr(self, "_step", None)
+        accuracy = self._wanted.in_scene(self.scene, plane, effort)
         self._plane, self._waves, self._effort = plane, waves, effort
         if self._thrown:
             accuracy = accuracy.of_violence()
         accuracy = accuracy.for_waves(waves)
-        if before is not None and (accuracy is self.accuracy or accuracy == self.accuracy):
-            return
-        self.accuracy, self._method = accuracy, method_of(accuracy.method, accuracy.order)
-        method = self._method.value
-        self._step = step_layout(len(method.c), max(method.adams, 1)).space()
-        for name in ("time", "count", "scale", "budget") if before is not None else ():
-            self._step.view(name)[:] = before.view(name)
+        if accuracy != self.accuracy:
+            self.accuracy, self._marches_anew = accuracy, True
 
     def _needs(self, law: Law) -> tuple[float, tuple[float, ...]]:
         """Waves on the body, and knots [m] of the splines of `law`, that the grid has to carry. `ValueError` for one
@@ -302,7 +255,7 @@ class Simulation:
         self._use_accuracy(False, self._waves, self._effort.at_least(USUAL))
         if self.accuracy is not before:  # and so is the step
             self._refine(self._waves, self._built.knots)
-            self._restart()
+            self._follow_shape()
         self.shape.add(Instant(float(time), x, np.reshape(values, (2, 3, len(x)))))
         self.ready = True
 
@@ -343,8 +296,8 @@ class Simulation:
             )
 
         self.shape.move(self._table.tabulation, values)
-        self._use_drive()
-        self._begin_with(twist, first=False)
+        self._follow_shape()
+        self._march.set_twist(twist)
 
     # -- march
 
@@ -362,8 +315,8 @@ class Simulation:
         self._started, time = True, float(time)
         while True:
             self.shape.pass_event(self.time, self._prepare_for)
-            if self.shape.drive is not self.drive:
-                self._restart()
+            if self._marches_anew or self.shape.drive is not self.drive:
+                self._follow_shape()
             event = self.shape.next_event(self.time)
             if not self._march_to(min(time, event), interrupted):
                 return False
@@ -371,48 +324,33 @@ class Simulation:
                 break
         self.shape.end_blend(self.time)
         if self.shape.drive is not self.drive:
-            self._use_drive()
+            self._follow_shape(smoothly=True)
             if not self.shape.sampled and self.shape.law is not None:
                 self._fit(*self._needs(self.shape.law))
         return True
 
     def _march_to(self, time: float, interrupted) -> bool:
-        while (status := self._go_on(time)) != MARCHED:
-            if status != TOO_MANY_STEPS or not self._may_go_on():
-                self._restart()
-                raise self._stopped(status)
+        while (status := self._march.advance(time)) == UNFINISHED:
             if interrupted is not None and interrupted():
-                self.time = self._reached
-                self._go_on(self.time)
+                self.time = self._march.time
                 return False
-        self.time = time
-        return True
-
-    @property
-    def _reached(self) -> float:
-        """Time [s] at the end of the step under way."""
-        start, length, _ = self._step.view("time").tolist()
-        return start + length
-
-    def _may_go_on(self) -> bool:
-        """After a slice: whether the march may take another."""
-        steps, rejected, _ = self.evaluations
-        if not self._allowance.covers(self._control.value, self._reached, steps + rejected):
-            return False
-        self._step.view("budget")[0] = self._slice.value.spare_steps
+        self.time = self._march.time
+        if status != MARCHED:
+            raise self._stopped(status)
         return True
 
     def _stopped(self, status: int) -> SimulationStopped:
-        return stopped_by(status, self.time, self._control.value, self.accuracy)
+        return stopped_by(status, self.time, self._bounds, self.accuracy)
 
     # -- observe
 
     def observe(self, wrench: bool = True, load: bool = True) -> Snapshot:
         """What the present instant shows; `wrench` and `load` ask for the internal wrench and the water's load along
         the body."""
-        wrench = wrench and self.scene.internal_wrench
-        self._look(wrench, load)
-        out, ledger = self._out.value, self.scene.ledger
+        wrench, load = bool(wrench and self.scene.internal_wrench), bool(load)
+        out, ledger, works = profiles_of(1, len(self.x), wrench, load), self.scene.ledger, self.works
+        if not self._march.observe(out.whole, wrench, load):
+            raise self._stopped(SINGULAR)
         return Snapshot(
             time=self.time,
             position=out.position[0],
@@ -431,50 +369,36 @@ class Simulation:
             resistive_force=out.resistive_force[0] if load else None,
             tail_force=out.tail_force[0] if load else None,
             nose_force=out.nose_force[0] if load else None,
-            energy=EnergyLedger.of(out.kinetic[0], out.powers[0], self._works[0].copy(), self.kinetic_at_start)
-            if ledger
-            else None,
+            energy=EnergyLedger.of(out.kinetic[0], out.powers[0], works, self.kinetic_at_start) if ledger else None,
             closure_torque=float(out.closure[0, 0]) if wrench else None,
             closure_force=float(out.closure[0, 1]) if wrench else None,
-            actuator_work=float(self._works[0, 0]) if ledger else None,
+            actuator_work=float(works[0]) if ledger else None,
             whole=out.whole,
         )
 
+    @property
+    def works(self) -> np.ndarray:
+        """(4,) J of actuators, wake, nose and drag since the start."""
+        return np.array(self._march.works)
+
     def record(
-        self, times: np.ndarray, wrench: bool, load: bool
+        self, times: np.ndarray, wrench: bool, load: bool, look: Callable[[float], None] | None = None
     ) -> tuple[Profiles, np.ndarray, int, SimulationStopped | None]:
         """March through `times` (T,) [s] under the law in force, observing each: the profiles, the works (T, 4) [J] of
-        actuators, wake, nose and drag, how many instants were reached, and what stopped it, if anything did."""
-        times = np.array(times, dtype=float)
+        actuators, wake, nose and drag, how many instants are good, and what stopped it, if anything did; look(time
+        [s]) is called every few milliseconds. Behind a bad instant it must be reset."""
         out, works = profiles_of(len(times), len(self.x), wrench, load), np.zeros((len(times), 4))
-        done, stopped = self._swim_through(times, works, out, wrench, load)
-        if done:
-            self._works[0] = works[done - 1]
-        return out, works, done, stopped
+        return out, works, *self.record_into(np.array(times, dtype=float), out, works, wrench, load, look)
 
-    def _swim_through(self, times, works, out, wrench, load) -> tuple[int, SimulationStopped | None]:
-        """March through `times` (T,) [s] into `out` and `works` (T, 4) [J]: how many samples are good, and what stopped
-        it. One who goes on behind a bad sample must reset."""
-        self._swim_slices(times, works, out, GO_ON, wrench, load)
-        return self._outcome(times, works, out)
-
-    def _swim_slices(self, times, works, out: Profiles, begin: int, wrench: bool, load: bool, look=None):
-        """Swim through `times`, a slice after the other; look(time [s]) is called between two of them."""
-        done = 0
-        while True:
-            rest = PROFILES.row(Profiles(*(array[done:] for array in out[:-1]), out.whole))
-            self._swim(times[done:], works[done:], rest, begin=begin, wrench=wrench, load=load)
-            done += int(self._place[REACHED])
-            if self._place[STATUS] != TOO_MANY_STEPS or not self._may_go_on():
-                break
-            begin = GO_ON
-            if look is not None:
-                look(self._reached)
-        self._place[REACHED] = done
-
-    def _outcome(self, times, works, out) -> tuple[int, SimulationStopped | None]:
-        """Of the march that has just been: how many samples are good, and what stopped it."""
-        status, done = self._place[STATUS], int(self._place[REACHED])
+    def record_into(
+        self, times, out: Profiles, works, wrench: bool, load: bool, look=None
+    ) -> tuple[int, SimulationStopped | None]:
+        """As `record`, into the space of `out` and `works`."""
+        self._started, done, status = True, 0, UNFINISHED
+        while status == UNFINISHED:
+            done, status = self._march.record(times, done, out.whole, works, bool(wrench), bool(load))
+            if look is not None and status == UNFINISHED:
+                look(self._march.time)
         failure = failure_of(out, works, done, self.kinetic_at_start, self.energy_floor)
         if failure:
             done, quantity, value = failure
@@ -488,60 +412,17 @@ class Simulation:
     def energy_floor(self) -> float:
         """As `failure_of` has it: where steps are chosen by their error, that is what watches."""
         watched = self.scene.ledger and self.accuracy.method == "classical"
-        return self._control.value.momentum_floor**2 / self._table.mass if watched else np.inf
-
-    def _look(self, wrench: bool, load: bool):
-        """Fill the one instant of `_out` with the present."""
-        if self._go_on(self.time, True, wrench, load) != MARCHED:
-            raise self._stopped(SINGULAR)
-
-    def _go_on(self, time: float, look: bool = False, wrench: bool = False, load: bool = False) -> float:
-        """March to `time` [s], and there, if it is to `look`, fill the one instant of `_out`. Returns a status."""
-        parts = (
-            *(self._table, self._drive, self._scratch, self._step, self._method, self._slice),
-            *(self._place, self._works, self._breakpoints),
-        )
-        times, out = self._going_on.times, self._out.row if look else None
-        times[0] = time
-        swim(
-            self._going_on.rows(
-                *(parts, (look, wrench, load)),
-                lambda: self._leg(self._place, times, self._works, out, wrench=wrench, load=load),
-            )
-        )
-        return self._place[STATUS]
-
-    def _swim(self, times, works, out: np.ndarray | None = None, **wanted) -> float:
-        """Swim a leg, as `_leg` has it. Returns its status."""
-        leg = self._leg(self._place, times, works, out, **wanted)
-        swim(leg.row[None])
-        return self._place[STATUS]
-
-    def _leg(self, place, times, works, out=None, *, control=None, begin=GO_ON, wrench=False, load=False) -> ReadyLeg:
-        """A leg from the present on, of `Order`'s meanings; `out`: the row of the profiles, if someone looks;
-        `control`: for more than a slice."""
-        order = Order(
-            place=place,
-            breakpoints=self._breakpoints,
-            distributed=self._distributed,
-            begin=begin,
-            time=self.time,
-            first_step=FIRST_STEP * self._control.value.step,
-            look=out is not None,
-            wrench=wrench,
-            load=load,
-            times=times,
-            works=works,
-        )
-        table, march = (self._table.swimmer, self._table.stations), (self._step, self._method, control or self._slice)
-        parts = *table, *self._drive, self._scratch, *march
-        rows = [part.row for part in parts]
-        return ReadyLeg(np.concatenate((*rows, no_profiles() if out is None else out, ORDER.row(order))), order, *parts)
+        return self._bounds.momentum_floor**2 / self._table.mass if watched else np.inf
 
     @property
     def evaluations(self) -> tuple[int, int, int]:
         """Steps, rejected steps and evaluations of the head's dynamics so far."""
-        return tuple(int(count) for count in self._place[COUNT:REACHED])
+        return self._march.counts
+
+    @property
+    def memory(self) -> int:
+        """Bytes that an evaluation reads and writes."""
+        return self._march.memory
 
     # -- states
 
@@ -559,29 +440,15 @@ class Simulation:
         else:
             self.adopt(law)
 
-    def warm_up(self):
-        """Compile (or load) every loop, on the first call in a process: march a moment and observe it, then go on with
-        a law that needs another grid."""
-        from eel_gaits import straight
-
-        trial = Simulation(self.body, self.scene, self.accuracy, self.x)
-        trial.adopt(straight())
-        trial.advance(1e-3)
-        trial.observe()
-        trial.adopt(straight(wavelength=0.4 * self.body.length))
-        trial.advance(2e-3)
-
-    def _use_drive(self):
-        self.drive, self._drive = self.shape.drive, self.shape.packed
-        rows = ROWS_AT_ONCE * -(-len(self.drive.axis) // ROWS_AT_ONCE)
-        if self._scratch is None or rows > self._rows:
-            nodes, widest = self._table.grid.matrix.shape
-            self._scratch, self._rows = scratch_layout(nodes, widest, rows, len(self.x)).space(), rows
-        self._breakpoints = self.shape.breakpoints()
-        method = self._method.value
-        control = control_of(
-            accuracy=self.accuracy,
-            method=method,
+    def _follow_shape(self, smoothly: bool = False):
+        """March on with the shape, grid and settings of the present; the next step begins anew, unless the motion goes
+        on `smoothly`."""
+        self.drive, accuracy = self.shape.drive, self.accuracy
+        if self._marches_anew:
+            self._march.change(self._table.core, accuracy.method, accuracy.order, bool(self.scene.planar))
+            self._marches_anew = False
+        self._bounds = bounds_of(
+            accuracy=accuracy,
             scene=self.scene,
             shape=self.shape,
             table=self._table,
@@ -589,39 +456,30 @@ class Simulation:
             scale=self._motion_scale,
             most_evaluations=self._most_evaluations,
         )
-        self._control = CONTROL.packed(control)
-        self._slice = CONTROL.packed(sliced(control, len(self._table.grid.x), evaluations_of(method)))
+        breakpoints, ledger = self.shape.breakpoints().tolist(), bool(self.scene.ledger)
+        self._march.follow(self.drive, breakpoints, self._bounds, ledger, self._current, smoothly)
 
-    def _restart(self):
-        """Let the next step begin at the present state, with what drives the body now."""
-        self._use_drive()
-        self._swim(NONE, self._works, begin=AGAIN)
+    def _twist(self) -> np.ndarray:
+        """Twist (6,) of the head relative to the water, in its axes, of the present state."""
+        try:
+            return np.array(self._march.twist())
+        except ValueError:
+            raise self._stopped(SINGULAR) from None
 
     def _take_initial_state(self):
         self._stand()
         self._set_off()
 
     def _stand(self):
-        """State and works of the start, but for the momentum."""
-        self._place, self._works, self._allowance = np.zeros(PLACE), np.zeros((1, 4)), Allowance()
-        self._place[CURRENT:ENERGY] = self._current
-        self.state[:3], self.state[3:7] = self._start[:2]
-        self._use_drive()
+        """A march of its own from the start on, but for the momentum."""
+        accuracy = self.accuracy
+        self._march = eel_core.March(self._table.core, accuracy.method, accuracy.order, bool(self.scene.planar))
+        self._march.set_slice(SLICE)
+        self._marches_anew = False
+        self._follow_shape()
 
     def _set_off(self):
-        self.kinetic_at_start = self._begin_with(self._relative, first=True)
+        position, orientation, _ = self._start
+        self.kinetic_at_start = self._march.start(position, orientation, self._relative)
         if not np.isfinite(self.kinetic_at_start):
             raise SimulationStopped(self.time, "kinetic energy", self.kinetic_at_start, "start slower")
-
-    def _twist(self) -> np.ndarray:
-        """Twist (6,) of the head relative to the water, in its axes, of the present state."""
-        if self._swim(NONE, self._works, begin=STILL) != MARCHED:
-            raise self._stopped(SINGULAR)
-        return self._place[TWIST:CURRENT].copy()
-
-    def _begin_with(self, twist: np.ndarray, *, first: bool) -> float:
-        """Give the present state the momentum of the head's `twist` (6,) relative to the water, and let the next step,
-        or the `first`, begin there. Returns its kinetic energy [J]."""
-        self._place[TWIST:CURRENT] = twist
-        self._swim(NONE, self._works, begin=FIRST if first else MOVED)
-        return float(self._place[ENERGY])

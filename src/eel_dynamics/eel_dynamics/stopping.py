@@ -4,8 +4,9 @@ import numpy as np
 from eel_gaits.law import Law
 from eel_gaits.wording import shown
 
+import eel_core
+
 from .accuracy import Accuracy
-from .integrator import NOT_FINITE, SINGULAR, TOO_MANY_STEPS, Control
 
 
 class SimulationStopped(RuntimeError):
@@ -17,22 +18,22 @@ class SimulationStopped(RuntimeError):
         self.diverged = False  # the steps were too long
 
 
-def stopped_by(status: int, time: float, control: Control, accuracy: Accuracy) -> SimulationStopped:
-    """What the `status` of a march at an `accuracy`, that stopped at `time` [s] with steps bounded by `control`, says
+def stopped_by(status: int, time: float, bounds: eel_core.StepBounds, accuracy: Accuracy) -> SimulationStopped:
+    """What the `status` of a march at an `accuracy`, that stopped at `time` [s] with steps within `bounds`, says
     in words."""
-    if status == SINGULAR:
+    if eel_core.STATUSES[status] == "singular":
         quantity, value = "inertia of body and water is not positive definite", np.nan
         return SimulationStopped(time, quantity, value, "check the body's section data")
-    if status == NOT_FINITE:
+    if eel_core.STATUSES[status] == "not_finite":
         stopped = SimulationStopped(time, "momentum is not finite", np.nan, remedy(accuracy))
         stopped.diverged = True
         return stopped
-    if status == TOO_MANY_STEPS:
+    if eel_core.STATUSES[status] == "too_many_steps":
         quantity = "more steps per simulated second than most_evaluations allows"
         hint = "take a coarser accuracy, a slower or gentler law, or raise most_evaluations"
-        return SimulationStopped(time, quantity, control.most_steps, hint)
+        return SimulationStopped(time, quantity, bounds.most_steps, hint)
     quantity = "step for the wanted accuracy is too small"
-    return SimulationStopped(time, quantity, control.smallest, "take a coarser accuracy, or a slower law")
+    return SimulationStopped(time, quantity, bounds.smallest, "take a coarser accuracy, or a slower law")
 
 
 def remedy(accuracy: Accuracy) -> str:

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 from eel_gaits.wording import shown
 
+import eel_core
 import eel_gaits
 
 from .body import Body
@@ -16,7 +17,8 @@ PACKAGES = (Path(eel_gaits.__file__).parent, Path(__file__).parent)
 
 
 def key_of(points, duration, sample_period, stations, measure) -> str:
-    """The key: of the points, the run's arguments, the measure's code and closure, and the sources of this software."""
+    """The key: of the points, the run's arguments, the measure's code and closure, and this software, its compiled core
+    included."""
     content = hashlib.sha256(repr((duration, sample_period)).encode())
     content.update(np.asarray(stations, dtype=float).tobytes())
     content.update(_sources())
@@ -35,6 +37,7 @@ def _sources() -> bytes:
     for package in PACKAGES:
         for path in sorted(package.rglob("*.py")):
             content.update(path.name.encode() + path.read_bytes())
+    content.update(Path(eel_core._core.__file__).read_bytes())
     return content.digest()
 
 

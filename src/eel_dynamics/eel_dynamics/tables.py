@@ -5,13 +5,14 @@ from typing import NamedTuple
 
 import numpy as np
 
+import eel_core
+
 from .body import Body
-from .drive import Tabulation
 from .inertia import check_inertia
-from .packed import Packed
 from .quadrature import Grid
 from .scene import Scene
-from .sections import STATIONS, SWIMMER, panels_of, stations_of, swimmer_of
+from .sections import SectionTable, core_swimmer, nose_of, panels_of, sections_of
+from .tabulated_law import Tabulation
 
 
 class Built(NamedTuple):
@@ -26,8 +27,8 @@ class Table(NamedTuple):
     """A body in a scene on a grid; the same for every run of the same."""
 
     grid: Grid
-    swimmer: Packed
-    stations: Packed
+    sections: SectionTable  # at the nodes
+    core: eel_core.Swimmer  # all of it, for the compiled mechanics
     mass: float  # kg, of the body
     tabulation: Tabulation
 
@@ -36,12 +37,12 @@ class Table(NamedTuple):
 def tabulated(body: Body, scene: Scene, built: Built, stations: bytes) -> Table:
     """Tabulate `body` in `scene` on the grid that is to be `built`, and at the X of the `stations` (the bytes of their
     array)."""
-    x = np.frombuffer(stations).copy()  # that can be written to, as elsewhere: the loops are compiled for such
+    x = np.frombuffer(stations)
     grid = Grid.of(panels_of(body, built.resolution, built.knots, scene.internal_wrench or scene.ledger))
-    here = stations_of(body, scene, grid, x)
-    base = np.where(here.node >= 0, grid.x[here.node], 0.0)
-    swimmer = swimmer_of(body, scene, grid, built.kinks)
-    check_inertia(swimmer, body.length, scene.planar)
-    mass = float(swimmer.weight @ swimmer.mass)
+    sections = sections_of(body, scene, grid.x)
+    check_inertia(grid, sections, nose_of(body, scene)[0], body.length, scene.planar)
+    nodes_before = np.searchsorted(grid.x, x, side="right")
+    base = np.where(nodes_before > 0, grid.x[nodes_before - 1], 0.0)
+    core = core_swimmer(body, scene, grid, sections, x, built.kinks)
     tabulation = Tabulation(grid.x, grid.previous, x, base)
-    return Table(grid, SWIMMER.packed(swimmer), STATIONS.packed(here), mass, tabulation)
+    return Table(grid, sections, core, float(grid.weight @ sections.mass), tabulation)

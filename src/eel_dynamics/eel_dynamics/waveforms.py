@@ -6,7 +6,7 @@ import numpy as np
 from eel_gaits.law import Law, Term, amplitude_of
 from eel_gaits.wording import shown
 
-from .drive import AXES
+from .tabulated_law import AXES
 
 PART_OF_PEAK = 0.75  # of the turns where all terms bend the body most
 TURN_POINTS = 64  # along the body, for the angle that a law bends it by

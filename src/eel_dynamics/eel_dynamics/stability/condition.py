@@ -8,13 +8,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+import eel_core
 from eel_gaits import falling, straight
 
 from ..body import Body
 from ..inertia import MOST, condition_of, straight_inertia
-from ..leg import set_in_motion
 from ..run import simulate
 from ..scene import Scene
+from ..sections import nose_of
 from ..simulation import Simulation, SimulationStopped
 from .maps import spindle
 
@@ -64,8 +65,9 @@ def maps_of(points: int = 13) -> tuple[Conditions, ...]:
 
 def of_straight(body: Body, ratio: float) -> float:
     """Condition for the straight `body` of `ratio` times the water's density."""
-    swimmer = Simulation(body, _water(ratio), "draft", [0.0]).swimmer
-    return condition_of(straight_inertia(swimmer, body.length))
+    scene = _water(ratio)
+    table = Simulation(body, scene, "draft", [0.0]).table
+    return condition_of(straight_inertia(table.grid, table.sections, nose_of(body, scene)[0], body.length))
 
 
 def of_bent(size: float, ratio: float) -> float:
@@ -77,10 +79,7 @@ def of_bent(size: float, ratio: float) -> float:
 
 def inertia_at(swimmer: Simulation, time: float) -> np.ndarray:
     """Matrix (6, 6) of inertia about the head, in its axes, of the shape at `time` [s]; body of 1 m."""
-    fields = swimmer.fields
-    set_in_motion(swimmer.swimmer, swimmer.drive, fields, time, np.zeros(6), swimmer.state.copy())
-    lower = np.tril(fields.inertia)
-    return lower + np.tril(lower, -1).T
+    return np.array(eel_core.Instant(swimmer.table.core).inertia(swimmer.drive, time))
 
 
 def needles() -> str:

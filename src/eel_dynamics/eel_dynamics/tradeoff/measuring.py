@@ -130,7 +130,7 @@ def measure(
                 microseconds=1e6 * statistics.median(marching[accuracy]) / max(1, run.evaluations),
                 seconds=seconds,
                 times_real_time=duration / seconds,
-                memory=memory_of(swimmer),
+                memory=swimmer.memory,
                 run=run,
             )
         )
@@ -148,17 +148,7 @@ def front(rows: list, error: Callable, cost: Callable) -> list:
 
 
 def nodes_of(swimmer: Simulation) -> int:
-    return len(swimmer.swimmer.x)
-
-
-def memory_of(swimmer: Simulation) -> int:
-    """Bytes of the arrays that the march reads and writes: body, law, work space, state."""
-    return sum(
-        value.nbytes
-        for group in (swimmer.swimmer, swimmer.drive, swimmer.fields, swimmer.step)
-        for value in group
-        if isinstance(value, np.ndarray)
-    )
+    return len(swimmer.grid.x)
 
 
 def _ready(law: Law, body: Body, scene: Scene, accuracy: Accuracy) -> Simulation:

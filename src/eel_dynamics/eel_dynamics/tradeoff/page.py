@@ -6,7 +6,8 @@ from pathlib import Path
 
 from eel_gaits.output_file import replacing
 
-from .. import compiled
+import eel_core
+
 from .delivered import FAR, Trial, delivered_table, exceeding, farthest, scatter_line
 from .models import Model
 from .settings import CHECK, REFERENCE
@@ -95,7 +96,7 @@ def machine() -> str:
         processor = next(line.split(":")[1].strip() for line in lines if line.startswith("model name"))
     except (OSError, StopIteration):
         pass
-    return f" on one core ({processor}), {date.today()}, with the compiled loops `{compiled.STAMP[:8]}`"
+    return f" on one core ({processor}), {date.today()}, the mechanics compiled for {eel_core.build_info()['level']}"
 
 
 __all__ = ["Model", "reference_line", "write_page"]

@@ -1,0 +1,41 @@
+"""Scripts of the folder `peers`, each run by a Python of its own with pinned packages.
+
+The environments lie in `.venv-peers` and are made on the first call.
+"""
+
+import json
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[1]
+
+
+def environment(name: str) -> Path | None:
+    """Python of the environment that `peers/NAME.txt` pins, made on the first call; None where it cannot be
+    installed."""
+    folder, pins = ROOT / ".venv-peers" / name, Path(__file__).parent / "peers" / f"{name}.txt"
+    python, stamp = folder / "bin" / "python", folder / "pins.txt"
+    if stamp.is_file() and stamp.read_text() == pins.read_text():
+        return python
+    try:
+        subprocess.run([sys.executable, "-m", "venv", folder], check=True, capture_output=True)
+        (folder.parent / "COLCON_IGNORE").touch()
+        subprocess.run([python, "-m", "pip", "install", "--quiet", "-r", pins], check=True, capture_output=True)
+    except (OSError, subprocess.CalledProcessError):
+        return None
+    stamp.write_text(pins.read_text())
+    return python
+
+
+def measured(python: Path, script: str, **task) -> dict:
+    """What `script` of the folder `peers` says about the `task`."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "task.npz"
+        np.savez(path, **task)
+        command = [python, Path(__file__).parent / "peers" / script, path]
+        done = subprocess.run(command, check=True, cwd=folder, capture_output=True, text=True, timeout=900)
+    return json.loads(done.stdout.splitlines()[-1])

@@ -1,0 +1,58 @@
+// SECTION 7.1: the algorithm of one instant, from the shape and the head's state to the rates of both, and to the
+// internal wrench.
+#pragma once
+
+#include "eel_core/drag_kinks.hpp"
+#include "eel_core/head_dynamics.hpp"
+#include "eel_core/internal_wrench.hpp"
+
+namespace eel_core {
+
+// Loads on the body from its true velocities: wake, eq. (60), and drag, section 7.2.1.
+template <class M>
+void find_loads(const Swimmer& swimmer, Workspace<M>& work)
+{
+    set_tail_load(swimmer, work);
+    work.drag = {}, work.drag_power = 0.0, work.kink_count = 0;
+    if (!swimmer.resistive) return;
+    set_speeds(swimmer, work);
+    set_load_weights(swimmer, work);
+    find_kinks(swimmer, work);
+    integrate_resistive_load(swimmer, work);
+}
+
+// Shape, twist of the head and loads in state y at `time` [s]. False where the inertia is not positive definite.
+template <class M>
+bool find_motion(const Swimmer& swimmer, const Law& law, double time, const State& y, Workspace<M>& work)
+{
+    configure(swimmer, law, time, work);  // eq. (25)
+    work.momentum = momentum_in_head(y, head_frame(y, M()));
+    if (!find_twist(swimmer, work)) return false;  // section 6
+    add_head_motion(swimmer, work.twist, work.position, work.omega, work.velocity);
+    find_loads(swimmer, work);
+    return true;
+}
+
+// Rate of state y at `time` [s]: eq. (27). `current` [m/s]: of the water.
+template <class M>
+bool rate_of_state(const Swimmer& swimmer, const Law& law, const Vector3<double>& current, double time, const State& y,
+                   Workspace<M>& work, State& rate)
+{
+    if (!find_motion(swimmer, law, time, y, work)) return false;
+    const auto head = head_frame(y, M());
+    put_velocity(work.twist, head, current, y, rate);
+    put_momentum(momentum_rate(swimmer, work), head, rate);
+    return true;
+}
+
+// Powers [W] of actuators, wake, nose and drag, in the motion that `work` holds: eq. (60) in accelerations, eq. (50).
+template <class M>
+Powers find_powers(const Swimmer& swimmer, const Law& law, Workspace<M>& work)
+{
+    find_accelerations(swimmer, law, work);
+    integrate_balance(swimmer, work);
+    return {actuator_power(swimmer, work), work.tail_speed * work.tail_energy, work.nose_force * work.twist.linear.x,
+            work.drag_power};
+}
+
+}  // namespace eel_core

@@ -1,0 +1,154 @@
+// Drag of the water along the body, section 7.2.1:
+//
+//     n = -1/2 rho_f (k1 V1|V1|, k2 V2|V2|, k3 V3|V3|)        c1 = -1/2 rho_f k4 Omega1|Omega1|
+//
+// Where a speed changes its sign within a panel, the load has a kink there; `drag_kinks` integrates it exactly.
+#pragma once
+
+#include "eel_core/workspace.hpp"
+
+namespace eel_core {
+
+// Signs of the loads; times weights [m] of an integral, where the loads are integrated.
+template <Number T>
+struct LoadSigns {
+    T laminar;  // 1: the friction by the laminar law always opposes V1
+    T excess;   // part of the turbulent law in the friction
+    T lateral, vertical, roll;
+};
+
+// Axial friction of sections, per length and V1 [kg/m/s].
+struct AxialFriction {
+    Lanes laminar;           // by the laminar law
+    Lanes excess;            // what the turbulent law adds
+    Lanes turbulent_part;    // how much of the excess there is, 0 to 1
+    Lanes above_transition;  // Re / 8e4 - 1
+};
+
+// Part of the turbulent law for the Reynolds number over 8e4: f_r(ln Re; ln 4e4, ln 1.6e5), eq. (64).
+inline double blended_part(double ratio)
+{
+    if (ratio <= 0.5) return 0.0;
+    if (ratio >= 2.0) return 1.0;
+    const double part = std::log(2.0 * ratio) / std::log(4.0), turn = 2.0 * std::numbers::pi;
+    return part - std::sin(turn * part) / turn;
+}
+
+inline AxialFriction axial_friction(const DragSection<Lanes>& section, Friction law, Lanes v1)
+{
+    const Lanes speed = size(v1), laminar = section.laminar * root(speed);
+    if (law == Friction::laminar) return {laminar, 0.0, 0.0, -1.0};
+    const Lanes ratio = speed * section.reynolds;
+    const Lanes turbulent = section.turbulent * ratio * inverse_fifth_root(ratio + 1e-30);
+    Lanes part = select(ratio > Lanes(1.0), 1.0, 0.0);
+    if (law == Friction::blended) {
+        std::array<double, width> parts;
+        for (std::size_t lane = 0; lane < width; ++lane) parts[lane] = blended_part(ratio[lane]);
+        part = Lanes::load(parts.data());
+    }
+    return {laminar, turbulent - laminar, part, ratio - 1.0};
+}
+
+// THE resistive load, in section axes: per length, or integrated over the length that the signs are weighed by.
+inline Wrench<Space, Lanes> resistive_load(const DragSection<Lanes>& section, Lanes laminar, Lanes excess,
+                                           const LoadSigns<Lanes>& sign, const Vector3<Lanes>& v, Lanes roll)
+{
+    return {{-(sign.roll * section.drag_roll * roll * roll), 0.0, 0.0},
+            {-((sign.laminar * laminar + sign.excess * excess) * v.x), -(sign.lateral * section.drag2 * v.y * v.y),
+             -(sign.vertical * section.drag3 * v.z * v.z)}};
+}
+inline Wrench<Plane, Lanes> resistive_load(const DragSection<Lanes>& section, Lanes laminar, Lanes excess,
+                                           const LoadSigns<Lanes>& sign, const Vector2<Lanes>& v, Lanes)
+{
+    return {0.0,
+            {-((sign.laminar * laminar + sign.excess * excess) * v.x), -(sign.lateral * section.drag2 * v.y * v.y)}};
+}
+
+// Speeds of the sections from a node on that `set_speeds` has found.
+inline Vector3<Lanes> speeds_from(const Workspace<Space>& work, std::size_t node)
+{
+    return {work.speed[axial].from(node), work.speed[lateral].from(node), work.speed[vertical].from(node)};
+}
+inline Vector2<Lanes> speeds_from(const Workspace<Plane>& work, std::size_t node)
+{
+    return {work.speed[axial].from(node), work.speed[lateral].from(node)};
+}
+
+inline Lanes roll_from(const Workspace<Space>& work, std::size_t node) { return work.speed[roll].from(node); }
+inline Lanes roll_from(const Workspace<Plane>&, std::size_t) { return 0.0; }
+
+// The load per length with the signs that the speeds have at the node.
+template <class M>
+Wrench<M, Lanes> local_resistive_load(const DragSection<Lanes>& section, Lanes laminar, Lanes excess, Lanes part,
+                                      const Vector<M, Lanes>& v, Lanes roll)
+{
+    LoadSigns<Lanes> sign{1.0, part, with_sign_of(1.0, v.y), 0.0, with_sign_of(1.0, roll)};
+    if constexpr (!M::planar) sign.vertical = with_sign_of(1.0, v.z);
+    return resistive_load(section, laminar, excess, sign, v, roll);
+}
+
+// V and Omega1 of the sections from their true velocities.
+template <class M>
+void set_speeds(const Swimmer& swimmer, Workspace<M>& work)
+{
+    for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
+        const auto frame = work.frame[k];
+        const auto v = frame.local(work.velocity[k]);
+        work.speed[axial].store(k, v.x);
+        work.speed[lateral].store(k, v.y);
+        if constexpr (!M::planar) {
+            work.speed[vertical].store(k, v.z);
+            work.speed[roll].store(k, dot(frame.axis1, work.omega[k]));
+        }
+    }
+}
+
+// Friction of the nodes, and integration weights with the signs of the loads, as if no sign changed within a panel.
+template <class M>
+void set_load_weights(const Swimmer& swimmer, Workspace<M>& work)
+{
+    for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
+        const Lanes weight = swimmer.grid.weight[k];
+        const AxialFriction friction = axial_friction(swimmer.sections.drag(k), swimmer.friction, work.speed[axial][k]);
+        work.friction_laminar.store(k, friction.laminar);
+        work.friction_excess.store(k, friction.excess);
+        work.turbulent_part.store(k, friction.turbulent_part);
+        work.speed[above_transition].store(k, friction.above_transition);
+        work.load_weight[0].store(k, weight * friction.turbulent_part);
+        for (const Speed speed : {lateral, vertical, roll})
+            if (!M::planar || speed == lateral)
+                work.load_weight[speed].store(k, with_sign_of(weight, work.speed[speed][k]));
+    }
+}
+
+inline Lanes roll_torque(const Wrench<Space, Lanes>& load) { return load.angular.x; }
+inline Lanes roll_torque(const Wrench<Plane, Lanes>&) { return 0.0; }
+
+// The integration weights, with the signs of the loads, of a block.
+template <class M>
+LoadSigns<Lanes> load_weights(const Swimmer& swimmer, const Workspace<M>& work, std::size_t k)
+{
+    LoadSigns<Lanes> sign{swimmer.grid.weight[k], work.load_weight[0][k], work.load_weight[lateral][k], 0.0, 0.0};
+    if constexpr (!M::planar) sign.vertical = work.load_weight[vertical][k], sign.roll = work.load_weight[roll][k];
+    return sign;
+}
+
+// Wrench of the drag along the body about the head, and its power, by the weights.
+template <class M>
+void integrate_resistive_load(const Swimmer& swimmer, Workspace<M>& work)
+{
+    Wrench<M, Lanes> wrench{};
+    Lanes power(0.0);
+    for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
+        const auto v = speeds_from(work, width * k);
+        const Lanes turning = roll_from(work, width * k);
+        const auto load = resistive_load(swimmer.sections.drag(k), work.friction_laminar[k], work.friction_excess[k],
+                                         load_weights(swimmer, work, k), v, turning);
+        power += dot(load.linear, v) + roll_torque(load) * turning;
+        wrench += about_head<M>(work.frame[k], work.position[k], load);
+    }
+    work.drag = total_of(wrench);
+    work.drag_power = total(power);
+}
+
+}  // namespace eel_core

@@ -1,0 +1,249 @@
+// Where the drag along the body is not smooth at an instant, and its integrals there.
+//
+// V|V| has a kink where V changes its sign, and the printed friction law a jump where Re = 8e4; within a panel either
+// would cost the quadrature its order. Each such load is s(X) G(X) with G smooth and s a staircase, so
+//
+//     integral of s G = s_0 integral of G + sum_j jump_j (integral of G from X_j to the end),
+//
+// and the integrals to X_j come from the polynomial through the panel's nodes, as all others do.
+#pragma once
+
+#include "eel_core/drag.hpp"
+
+namespace eel_core {
+
+// A speed that changes its sign within this part of the tail's speed moves loads by the square of that: round-off.
+inline constexpr double noise_of_speeds = 1e-7;
+
+// Value and derivative, at the fraction `t` of a panel, of the polynomial through the values of its nodes: the
+// barycentric formula (Berrut and Trefethen, SIAM Review 46 (2004), eqs. 4.2 and 9.4).
+inline std::array<double, 2> value_and_slope(const Grid& grid, const Row& values, std::size_t first, std::size_t count,
+                                             double t)
+{
+    const auto term = [&](std::size_t k, Lanes& part, Lanes& apart, Lanes& value) {
+        const Mask inside = Mask::below(count - k);
+        apart = t - select(inside, grid.fraction.from(first + k), 2.0);
+        part = select(inside, grid.barycentric.from(first + k), 0.0) / apart;
+        value = select(inside, values.from(first + k), 0.0);
+    };
+    Lanes above(0.0), under(0.0), rise(0.0), part, apart, value;
+    for (std::size_t k = 0; k < count; k += width) {
+        term(k, part, apart, value);
+        above += part * value;
+        under += part;
+    }
+    const double whole = total(under), here = total(above) / whole;
+    for (std::size_t k = 0; k < count; k += width) {
+        term(k, part, apart, value);
+        rise += part * (here - value) / apart;
+    }
+    return {here, total(rise) / whole};
+}
+
+// Fraction of the panel at which the values are zero, between node i and the one before it, which has the value
+// `before`.
+//
+// That of the quadratic through these two and a third node of the panel: an error e moves the load of V|V| by e^3. If
+// it has to be `exact`, that of the polynomial through all nodes, by Newton's method within a bracket.
+inline double zero_between(const Grid& grid, const Row& values, std::size_t i, double before, bool exact)
+{
+    const std::size_t first = grid.first[i], count = grid.count[i];
+    const double* const v = values.row(0);
+    const double* const fraction = grid.fraction.row(0);
+    const double* const by_step = grid.by_step.row(0);
+    const double* const by_two = grid.by_two.row(0);
+    double start = i > first ? fraction[i - 1] : 0.0, end = fraction[i];
+    const double f = before, g = v[i], slope = (g - f) * by_step[i];
+    const double bend = i + 1 < first + count ? ((v[i + 1] - g) * by_step[i + 1] - slope) * by_two[i]
+                                              : (slope - (f - v[i - 2]) * by_step[i - 1]) * by_two[i - 1];
+    // f + b s + bend s^2 with s from the start on, in the form that does not cancel, where it goes as f and g do
+    const double b = slope - bend * (end - start), steep = std::sqrt(std::max(b * b - 4.0 * bend * f, 0.0));
+    double t = start - 2.0 * f / (b + (g > f ? steep : -steep));
+    if (!(start < t && t < end)) t = std::min(std::max(start - f / slope, start), end);
+    if (!exact) return t;
+
+    bool start_is_node = i > first;  // else the panel's polynomial may have its zero before the panel
+    double step_before_last = end - start, last_step = end - start;
+    for (int k = 0; k < 40; ++k) {
+        const auto [value, rise] = value_and_slope(grid, values, first, count, t);
+        if ((value > 0.0) != (g > 0.0))
+            start = t;
+        else if (t > start)
+            end = t;
+        else
+            break;
+        double step = -value / rise;
+        if (std::abs(step) < 1e-6) return std::min(std::max(t + step, start), end);  // the rest goes with its square
+        if (t + step <= start && !start_is_node)
+            step = start - t, start_is_node = true;
+        else if (!(start < t + step && t + step < end) || std::abs(step) > 0.5 * std::abs(step_before_last))
+            step = 0.5 * (start + end) - t;
+        step_before_last = last_step, last_step = step, t += step;
+    }
+    return t;
+}
+
+// Weights [m] of the nodes of a panel for the integral from its start to its fraction `t`: by Legendre polynomials.
+inline void set_weights_upto(const Grid& grid, std::size_t first, std::size_t count, double t,
+                             std::vector<double>& integral, std::vector<double>& weights)
+{
+    integral[0] = t;  // of each polynomial from the panel's start
+    const double z = 2.0 * t - 1.0;
+    double low = 1.0, middle = z;
+    for (std::size_t m = 1; m < count; ++m) {
+        const Grid::Legendre& degree = grid.recurrence[m];
+        const double high = degree.upper * z * middle - degree.lower * low;
+        integral[m] = degree.integral * (high - low);
+        low = middle, middle = high;
+    }
+    integral[count] = 0.0;  // for an even number of terms
+    for (std::size_t k = 0; k < count; k += width) {
+        Lanes even(0.0), odd(0.0);  // two sums, so that each waits less for its last term
+        for (std::size_t m = 0; m < count; m += 2) {
+            even += integral[m] * grid.legendre[m].from(first + k);
+            odd += integral[m + 1] * grid.legendre[m + 1].from(first + k);
+        }
+        (even + odd).store(weights.data() + k);
+    }
+}
+
+// Notes the kink where `speed` changes its sign before node i, and has the load's weights integrate it. A change below
+// `noise` is round-off.
+template <class M>
+void add_kink(const Swimmer& swimmer, Speed speed, std::size_t i, double at_nose, double noise, Workspace<M>& work)
+{
+    const Grid& grid = swimmer.grid;
+    const Row& values = work.speed[speed];
+    const double value = values.node(i), before = i > 0 ? values.node(i - 1) : at_nose;
+    if (!(std::abs(value - before) > noise) || work.kink_count == work.most_kinks) return;
+    const bool of_friction = speed == above_transition;
+    const std::size_t first = grid.first[i], count = grid.count[i];
+    Kink& kink = work.kinks[work.kink_count++];
+    kink.speed = speed;
+    kink.first = first;
+    kink.fraction = zero_between(grid, values, i, before, of_friction && swimmer.first_watched <= lateral);
+    kink.jump = (of_friction ? 1.0 : 2.0) * (value >= 0.0 ? 1.0 : -1.0);
+    set_weights_upto(grid, first, count, kink.fraction, work.legendre_integral, kink.weights);
+    Row& weight = work.load_weight[of_friction ? std::size_t{0} : speed];
+    for (std::size_t k = 0; k < count; k += width) {
+        const std::size_t node = first + k;
+        const Lanes passed = select(Mask::below(i > node ? i - node : 0), grid.weight.from(node), 0.0);
+        const Lanes upto_kink = select(Mask::below(count - k), Lanes::load(kink.weights.data() + k), 0.0);
+        weight.store_from(node, weight.from(node) + kink.jump * (passed - upto_kink));
+    }
+}
+
+// Signs of a block of values by their bits, where some values are round-off: these have the sign of the value before.
+struct CarriedSign {
+    bool negative, known;  // of the last value so far
+
+    unsigned carry(unsigned negative_bits, unsigned known_bits)
+    {
+        if (!known) {
+            if (known_bits == 0) return negative = false, 0;
+            negative = (negative_bits & known_bits & (~known_bits + 1)) != 0;  // that of the first that is known
+            known = true;
+        }
+        unsigned result = 0;
+        bool carried = negative;
+        for (unsigned lane = 0; lane < width; ++lane) {
+            if (known_bits >> lane & 1u) carried = (negative_bits >> lane & 1u) != 0;
+            result |= (carried ? 1u : 0u) << lane;
+        }
+        return result;
+    }
+};
+
+// Finds where a speed, `at_nose` at X = 0, changes its sign along the body.
+template <class M>
+void find_kinks_of(const Swimmer& swimmer, Speed speed, double at_nose, double noise, Workspace<M>& work)
+{
+    if (speed < swimmer.first_watched) return;
+    constexpr unsigned all = (1u << width) - 1u;
+    CarriedSign sign{at_nose<-noise, std::abs(at_nose)> noise};
+    for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
+        const Lanes values = work.speed[speed][k];
+        unsigned negative = (values < Lanes(-noise)).bits();
+        const unsigned known = negative | (values > Lanes(noise)).bits();
+        if (!sign.known || known != all) negative = sign.carry(negative, known);
+        const std::size_t here = std::min(width, swimmer.grid.nodes - std::min(swimmer.grid.nodes, width * k));
+        unsigned changes = (negative ^ (negative << 1u | (sign.negative ? 1u : 0u))) & ((1u << here) - 1u);
+        sign.negative = (negative >> (width - 1) & 1u) != 0;
+        for (; changes != 0; changes &= changes - 1)
+            add_kink(swimmer, speed, width * k + static_cast<std::size_t>(std::countr_zero(changes)), at_nose, noise,
+                     work);
+    }
+}
+
+template <class M>
+void find_kinks(const Swimmer& swimmer, Workspace<M>& work)
+{
+    work.kink_count = 0;
+    const std::size_t tail = swimmer.grid.nodes - 1;
+    double at_tail = std::abs(work.speed[axial].node(tail)) + std::abs(work.speed[lateral].node(tail));
+    if constexpr (M::planar) {
+        find_kinks_of(swimmer, lateral, work.twist.linear.y, noise_of_speeds * at_tail, work);
+    } else {
+        at_tail += std::abs(work.speed[vertical].node(tail));
+        const auto omega = work.omega.node(tail);
+        const double spin = std::abs(omega.x) + std::abs(omega.y) + std::abs(omega.z);
+        find_kinks_of(swimmer, lateral, work.twist.linear.y, noise_of_speeds * at_tail, work);
+        find_kinks_of(swimmer, vertical, work.twist.linear.z, noise_of_speeds * at_tail, work);
+        find_kinks_of(swimmer, roll, work.twist.angular.x, noise_of_speeds * spin, work);
+    }
+    if (swimmer.friction == Friction::printed) find_kinks_of(swimmer, above_transition, -1.0, 0.0, work);
+}
+
+// Adds to integrals from the nose of the balance's density, at the points of `from_nose`, what its kinks change. The
+// density holds the resistance (minus the load) with the signs at the nodes. `known_have_kinks`: the integrals at the
+// nodes, which those at the points go on from, have them already.
+template <class M>
+void add_kinks(const Swimmer& swimmer, const FromNose& from_nose, bool known_have_kinks, Workspace<M>& work,
+               Field<Wrench<M, double>>& upto)
+{
+    const Grid& grid = swimmer.grid;
+    for (std::size_t j = 0; j < work.kink_count; ++j) {
+        const Kink& kink = work.kinks[j];
+        const std::size_t first = kink.first, count = grid.count[first];
+        const auto jump = [&](Speed speed) { return Lanes(kink.speed == speed ? kink.jump : 0.0); };
+        const LoadSigns<Lanes> sign{0.0, jump(above_transition), jump(lateral), jump(vertical), jump(roll)};
+        Wrench<M, Lanes> to_kink{}, to_node{};  // integrals over the panel up to the kink, and by the nodes before it
+        for (std::size_t k = 0; k < count; k += width) {
+            const std::size_t node = first + k;
+            const auto load =
+                resistive_load(swimmer.sections.drag_from(node), work.friction_laminar.from(node),
+                               work.friction_excess.from(node), sign, speeds_from(work, node), roll_from(work, node));
+            const auto density = -about_head<M>(work.frame.from(node), work.position.from(node), load);
+            work.kink_density.store_from(k, density);
+            const Mask inside = Mask::below(count - k), ahead = grid.fraction.from(node) < Lanes(kink.fraction);
+            to_kink += select(inside, Lanes::load(kink.weights.data() + k), 0.0) * density;
+            to_node += select(inside, select(ahead, grid.weight.from(node), 0.0), 0.0) * density;
+        }
+        const Wrench<M, double> before = total_of(to_kink), change = total_of(to_node) - before;
+        for (std::size_t s = 0; s < from_nose.stretches().size(); ++s) {
+            const FromNose::Stretch& stretch = from_nose.stretches()[s];
+            const bool behind_panel = stretch.begin >= first + count;
+            if (stretch.end <= first || (behind_panel && known_have_kinks)) continue;
+            for (std::size_t part = 0; part < FromNose::parts; ++part) {
+                const std::size_t k = FromNose::parts * s + part;
+                auto here = upto[k];
+                if (behind_panel) {
+                    upto.store(k, here + change);
+                    continue;
+                }
+                const Mask behind = from_nose.place()[k] >= Lanes(static_cast<double>(first) + kink.fraction);
+                const FromNose::Column* const column = from_nose.columns(stretch) + (first - stretch.begin);
+                here = here - select(behind, 1.0, 0.0) * before;
+                for (std::size_t node = 0; node < count; ++node) {
+                    const Lanes weight = column[node][part];
+                    const bool ahead = grid.fraction.node(first + node) < kink.fraction;
+                    here += (ahead ? select(behind, weight, 0.0) : select(behind, 0.0, -weight)) *
+                            work.kink_density.node(node);
+                }
+                upto.store(k, here);
+            }
+        }
+    }
+}
+
+}  // namespace eel_core

@@ -1,0 +1,142 @@
+// Nodes along the body, in panels between its kinks, and the integral from the nose to each of them.
+#pragma once
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+#include "eel_core/field.hpp"
+
+namespace eel_core {
+
+// Rows that integrate over the panel of each of n points: from its panel's start to the point, the integral of f is
+// sum_j rows[i, j] f[first[i] + j] over the panel's count[i] nodes.
+struct PanelRows {
+    std::span<const double> rows;  // (n, widest) [m]
+    std::span<const std::uint64_t> first, count;
+    std::span<const double> fraction;  // (n,) of the panel, in its own variable
+};
+
+// The integral from the nose to n points: THE integral along the body, of every quantity.
+//
+// For each stretch of `filled` points: the integral to the node before the stretch's first panel is known, and the rest
+// is a sum over the nodes of its panels, with one weight for each point: for each node a column of weights.
+class FromNose {
+  public:
+    static constexpr std::size_t parts = filled / width;  // blocks of points in a stretch
+    using Column = std::array<Lanes, parts>;
+    struct Stretch {
+        std::size_t begin, end;  // nodes
+        std::size_t column;      // the first of `columns`
+    };
+
+    FromNose() = default;
+    FromNose(const PanelRows& points, std::span<const double> node_weight)
+    {
+        const std::size_t n = points.first.size(), widest = n > 0 ? points.rows.size() / n : 0;
+        place_ = Row(blocks_of(n));
+        for (std::size_t i = 0; i < n; ++i)
+            place_.row(0)[i] = static_cast<double>(points.first[i]) + points.fraction[i];
+        for (std::size_t start = 0; start < n; start += filled) {
+            const std::size_t last = std::min(start + filled, n) - 1;
+            const std::size_t begin = points.first[start], end = points.first[last] + points.count[last];
+            stretches_.push_back({begin, end, columns_.size()});
+            for (std::size_t node = begin; node < end; ++node) {
+                std::array<double, filled> weights{};
+                for (std::size_t point = 0; point < filled; ++point) {
+                    const std::size_t i = std::min(start + point, last), first = points.first[i];
+                    if (node < first) weights[point] = node_weight[node];
+                    if (first <= node && node < first + points.count[i])
+                        weights[point] = points.rows[i * widest + node - first];
+                }
+                Column column;
+                for (std::size_t part = 0; part < parts; ++part) column[part] = Lanes::load(&weights[part * width]);
+                columns_.push_back(column);
+            }
+        }
+    }
+
+    std::size_t bytes() const { return columns_.size() * sizeof(Column) + place_.bytes(); }
+    std::span<const Stretch> stretches() const { return stretches_; }
+    const Column* columns(const Stretch& stretch) const { return columns_.data() + stretch.column; }
+    // Of each point: the index of the first node of its panel, plus its fraction of the panel; it rises along the body.
+    const Row& place() const { return place_; }
+
+    // `result` at the points, from components of `integrand` at the nodes, those from `first_row` on; `known` is the
+    // integral at the nodes (the result itself, where these are the points), and `at_nose` the value that it starts
+    // from.
+    template <class Value, class Source>
+    void integrate(const Field<Source>& integrand, std::size_t first_row, const Value& at_nose,
+                   const Field<Value>& known, Field<Value>& result) const
+    {
+        using Block = typename Field<Value>::Block;
+        constexpr std::size_t count = Components<Block>::count;
+        const std::size_t stride = integrand.stride();
+        for (std::size_t s = 0; s < stretches_.size(); ++s) {
+            const Stretch& stretch = stretches_[s];
+            const Column* column = columns(stretch);
+            const double* f = integrand.row(first_row) + stretch.begin;
+            std::array<std::array<Lanes, parts>, count> sum;
+            const Value before = stretch.begin > 0 ? known.node(stretch.begin - 1) : at_nose;
+            Components<Value>::each(before, [&](std::size_t c, double value) { sum[c].fill(Lanes(value)); });
+            for (std::size_t node = stretch.begin; node < stretch.end; ++node, ++f, ++column)
+                for (std::size_t c = 0; c < count; ++c)
+                    for (std::size_t part = 0; part < parts; ++part) sum[c][part] += f[c * stride] * (*column)[part];
+            for (std::size_t part = 0; part < parts; ++part)
+                result.store(parts * s + part, Components<Block>::make([&](std::size_t c) { return sum[c][part]; }));
+        }
+    }
+
+    // The integral from the nose, at the nodes, from zero on.
+    template <class Value, class Source>
+    void integrate(const Field<Source>& integrand, Field<Value>& result, std::size_t first_row = 0) const
+    {
+        integrate(integrand, first_row, Components<Value>::make([](std::size_t) { return 0.0; }), result, result);
+    }
+
+  private:
+    std::vector<Stretch> stretches_;
+    std::vector<Column> columns_;
+    Row place_;
+};
+
+// The n nodes. A multiple of `filled` leaves no lanes empty; those that are empty have no weight.
+struct Grid {
+    std::size_t nodes = 0, blocks = 0, widest = 0;  // widest: nodes of the largest panel
+    Row weight;                                     // [m], of the integral over the body
+    std::vector<std::size_t> first, count;          // first node of the node's panel, and its number of nodes
+    FromNose from_nose;
+
+    // What finds and integrates up to a place within a panel (`drag_kinks`):
+    Row fraction;         // of the node's panel, in its own variable
+    Row by_step, by_two;  // one by the fraction since the node before; between the nodes before and behind
+    Row barycentric;      // weights of the interpolation within the panel
+    struct Legendre {
+        double upper, lower;  // P_(m+1) = upper z P_m - lower P_(m-1)
+        double integral;      // of P_m from the start: integral (P_(m+1) - P_(m-1)), by the panel's fraction
+    };
+    std::vector<Legendre> recurrence;  // by the degree m
+    std::vector<Row> legendre;  // [m], one more than the widest panel's nodes: coefficients of Legendre polynomials,
+                                // whose integrals give rows as `PanelRows`
+
+    // Sets what follows from `fraction`, `first` and `count`.
+    void set_steps()
+    {
+        by_step = by_two = Row(blocks);
+        const double* const at = fraction.row(0);
+        for (std::size_t i = 0; i < nodes; ++i) {
+            const double before = i > first[i] ? at[i - 1] : 0.0;
+            const double behind = i + 1 < first[i] + count[i] ? at[i + 1] : 2.0;
+            by_step.row(0)[i] = 1.0 / (at[i] - before);
+            by_two.row(0)[i] = 1.0 / (behind - before);
+        }
+        recurrence.clear();
+        for (std::size_t m = 0; m <= widest; ++m) {
+            const double degree = static_cast<double>(m);
+            recurrence.push_back(
+                {(2.0 * degree + 1.0) / (degree + 1.0), degree / (degree + 1.0), 0.5 / (2.0 * degree + 1.0)});
+        }
+    }
+};
+
+}  // namespace eel_core

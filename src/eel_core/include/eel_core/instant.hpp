@@ -1,0 +1,81 @@
+// Single instants, for studies and tests: rates, loads and inertia for a given state or motion of the head.
+#pragma once
+
+#include <memory>
+
+#include "eel_core/algorithm.hpp"
+
+namespace eel_core {
+
+template <class M>
+class Instant {
+  public:
+    explicit Instant(std::shared_ptr<const Swimmer> swimmer) : swimmer_(std::move(swimmer)), work_(*swimmer_) {}
+
+    // Rate of the state; false where the inertia is not positive definite.
+    bool rate(const Law& law, const Vector3<double>& current, double time, const State& y, State& rate)
+    {
+        return rate_of_state(*swimmer_, law, current, time, y, work_, rate);
+    }
+
+    // Powers of actuators, wake, nose and drag in the motion that `rate` has found last.
+    Powers powers(const Law& law) { return find_powers(*swimmer_, law, work_); }
+
+    // Inertia of the body about the head, nose included, as the law bends it.
+    Factored<M::freedoms> inertia(const Law& law, double time)
+    {
+        configure(*swimmer_, law, time, work_);
+        inertia_and_momentum(*swimmer_, work_);
+        return work_.inertia;
+    }
+
+    // Wrenches of wake and drag on the body for a given twist of the head.
+    std::array<Wrench<M, double>, 2> loads(const Law& law, double time, const Twist<M, double>& twist)
+    {
+        move(law, time, twist);
+        return {work_.tail, work_.drag};
+    }
+
+    // Powers of the axial friction, the lateral and vertical drag, and the roll drag, for a given twist.
+    std::array<double, 4> drag_powers(const Law& law, double time, const Twist<M, double>& twist)
+    {
+        move(law, time, twist);
+        std::array<Lanes, 4> sum;
+        sum.fill(Lanes(0.0));
+        for (std::size_t k = 0; swimmer_->resistive && k < swimmer_->grid.blocks; ++k) {
+            const auto v = speeds_from(work_, width * k);
+            const Lanes turning = roll_from(work_, width * k);
+            const auto load = resistive_load(swimmer_->sections.drag(k), work_.friction_laminar[k],
+                                             work_.friction_excess[k], load_weights(*swimmer_, work_, k), v, turning);
+            sum[0] += load.linear.x * v.x;
+            sum[1] += load.linear.y * v.y;
+            if constexpr (!M::planar) sum[2] += load.linear.z * v.z;
+            sum[3] += roll_torque(load) * turning;
+        }
+        return {total(sum[0]), total(sum[1]), total(sum[2]), total(sum[3])};
+    }
+
+    // Rate of the momentum along the body for a given twist and acceleration of the head.
+    Wrench<M, double> momentum_taken(const Law& law, double time, const Twist<M, double>& twist,
+                                     const Twist<M, double>& acceleration)
+    {
+        move(law, time, twist);
+        find_shape_accelerations(*swimmer_, law, work_);
+        add_head_motion(*swimmer_, acceleration, work_.position, work_.alpha, work_.acceleration);
+        return set_inertial_density(*swimmer_, work_);
+    }
+
+  private:
+    void move(const Law& law, double time, const Twist<M, double>& twist)
+    {
+        configure(*swimmer_, law, time, work_);
+        work_.twist = twist;
+        add_head_motion(*swimmer_, twist, work_.position, work_.omega, work_.velocity);
+        find_loads(*swimmer_, work_);
+    }
+
+    std::shared_ptr<const Swimmer> swimmer_;
+    Workspace<M> work_;
+};
+
+}  // namespace eel_core

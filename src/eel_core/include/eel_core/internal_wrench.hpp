@@ -1,0 +1,152 @@
+// The internal wrench, eq. (50), from the balance of the part of the body behind each section; and the accelerations
+// that it needs, eq. (60).
+//
+//     alpha' = R Kddot + omega x R Kdot        acc' = alpha x t1 + omega x (omega x t1)
+//
+// Both are linear in the head's acceleration. The balance of the whole body gives that; the balance of the part behind
+// a section gives the wrench there.
+#pragma once
+
+#include "eel_core/drag_kinks.hpp"
+#include "eel_core/loads.hpp"
+#include "eel_core/momentum.hpp"
+
+namespace eel_core {
+
+using Powers = std::array<double, 4>;  // [W], of actuators, wake, nose and drag
+
+// alpha' of the sections of a block.
+inline Vector3<Lanes> turning_gain(const Law& law, const Workspace<Space>& work, std::size_t k)
+{
+    const auto frame = work.frame[k];
+    return turning(frame, law.combine_both(law.tables->node, work.factor, 2, k)) +
+           cross(work.omega[k], turning(frame, work.curvature_rate[k]));
+}
+// acc' of the sections of a block.
+template <class M>
+Vector<M, Lanes> moving_gain(const Workspace<M>& work, std::size_t k)
+{
+    const auto t1 = work.frame[k].t1();
+    const auto omega = work.omega[k];
+    return cross(work.alpha[k], t1) + cross(omega, cross(omega, t1));
+}
+
+// `alpha` where the head has no acceleration.
+inline void set_turning_acceleration(const Swimmer& swimmer, const Law& law, Workspace<Space>& work)
+{
+    for (std::size_t k = 0; k < swimmer.grid.blocks; ++k)
+        work.integrand.store(k, {turning_gain(law, work, k), Vector3<Lanes>{}});
+    swimmer.grid.from_nose.integrate(work.integrand, work.alpha);
+}
+inline void set_turning_acceleration(const Swimmer& swimmer, const Law& law, Workspace<Plane>& work)
+{
+    for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
+        work.alpha.store(k, law.combine(law.tables->angle, Law::yaw, work.factor, 2, k)[0]);
+        work.curvature_rate.store(k, {0.0, law.combine(law.tables->node, Law::yaw, work.factor, 1, k)[0]});
+    }
+}
+
+// What the motion of the sections takes, per length, about the head, into `density`; returns its integral over the
+// body.
+//
+//     f_N = M Vdot + Omega x M V      f_C = J Omegadot + Omega x J Omega + V x M V
+template <class M>
+Wrench<M, double> set_inertial_density(const Swimmer& swimmer, Workspace<M>& work)
+{
+    Wrench<M, Lanes> sum{};
+    for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
+        const Section<Lanes> section = swimmer.sections[k];
+        const auto frame = work.frame[k];
+        const Turn<M, Lanes> omega = frame.local(work.omega[k]), omega_rate = frame.local(work.alpha[k]);
+        const Vector<M, Lanes> v = frame.local(work.velocity[k]);
+        const Vector<M, Lanes> v_rate = frame.local(work.acceleration[k]) - cross(omega, v);
+        const Vector<M, Lanes> momentum = section.linear_momentum(v);
+        const Wrench<M, Lanes> taken{
+            section.angular_momentum(omega_rate) + cross(omega, section.angular_momentum(omega)) + cross(v, momentum),
+            section.linear_momentum(v_rate) + cross(omega, momentum)};
+        const auto density = about_head<M>(frame, work.position[k], taken);
+        work.density.store(k, density);
+        sum += swimmer.grid.weight[k] * density;
+    }
+    return total_of(sum);
+}
+
+// Adds the resistance, minus the drag, with the signs at the nodes.
+template <class M>
+void add_resistance(const Swimmer& swimmer, Workspace<M>& work)
+{
+    for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
+        const auto load =
+            local_resistive_load<M>(swimmer.sections.drag(k), work.friction_laminar[k], work.friction_excess[k],
+                                    work.turbulent_part[k], speeds_from(work, width * k), roll_from(work, width * k));
+        work.density.store(k, work.density[k] - about_head<M>(work.frame[k], work.position[k], load));
+    }
+}
+
+// Accelerations of the sections where the head has none.
+template <class M>
+void find_shape_accelerations(const Swimmer& swimmer, const Law& law, Workspace<M>& work)
+{
+    set_turning_acceleration(swimmer, law, work);
+    for (std::size_t k = 0; k < swimmer.grid.blocks; ++k)
+        work.integrand.store(k, {work.alpha[k], moving_gain(work, k)});
+    swimmer.grid.from_nose.integrate(work.integrand, work.acceleration, Components<Turn<M, Lanes>>::count);
+}
+
+// Acceleration of the head and of the sections, and the density of the balance: eq. (60) in accelerations. `work` holds
+// the true velocities, the loads that go with them and the factored inertia.
+template <class M>
+void find_accelerations(const Swimmer& swimmer, const Law& law, Workspace<M>& work)
+{
+    find_shape_accelerations(swimmer, law, work);
+    const double drag_of_nose = nose_drag(swimmer, work.twist.linear.x);
+    auto left = work.tail + work.drag - set_inertial_density(swimmer, work);
+    left.linear.x += drag_of_nose;
+    auto head = components_of(left);
+    work.inertia.solve(head);
+    work.head_acceleration = Components<Twist<M, double>>::make([&](std::size_t k) { return head[k]; });
+
+    add_head_motion(swimmer, work.head_acceleration, work.position, work.alpha, work.acceleration);
+    work.balance = set_inertial_density(swimmer, work) - work.drag;
+    if (swimmer.resistive) add_resistance(swimmer, work);
+    work.nose_force = drag_of_nose - swimmer.nose_mass * work.head_acceleration.linear.x;
+}
+
+// Integral of the density from the nose to the nodes.
+template <class M>
+void integrate_balance(const Swimmer& swimmer, Workspace<M>& work)
+{
+    swimmer.grid.from_nose.integrate(work.density, work.upto);
+    add_kinks(swimmer, swimmer.grid.from_nose, false, work, work.upto);
+}
+
+// THE WRENCH BEHIND A SECTION, w_tail - integral from X to the tail of the density, about the section and in its axes;
+// from the integral `upto` X. The tail's momentum flux through the section is still in it.
+template <class M>
+Wrench<M, Lanes> wrench_behind(const Workspace<M>& work, const Wrench<M, Lanes>& upto, const Frame<M, Lanes>& frame,
+                               const Vector<M, Lanes>& position)
+{
+    const auto at_head = upto + (work.tail - work.balance);
+    return {frame.local(at_head.angular - cross(position, at_head.linear)), frame.local(at_head.linear)};
+}
+
+// Bending torque times the rate of bending, of a block.
+inline Lanes bending_power(const Vector3<Lanes>& torque, const Vector2<Lanes>& rate)
+{
+    return torque.y * rate.x + torque.z * rate.y;
+}
+inline Lanes bending_power(Lanes torque, const Vector2<Lanes>& rate) { return torque * rate.y; }
+
+// - integral of C . Kdot over the body [W].
+template <class M>
+double actuator_power(const Swimmer& swimmer, const Workspace<M>& work)
+{
+    Lanes power(0.0);
+    for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
+        const auto wrench = wrench_behind<M>(work, work.upto[k], work.frame[k], work.position[k]);
+        power -= swimmer.grid.weight[k] * bending_power(wrench.angular, work.curvature_rate[k]);
+    }
+    return total(power);
+}
+
+}  // namespace eel_core

@@ -1,0 +1,75 @@
+// Configuration of the body and velocities due to its change of shape: eq. (25), the first loop of section 7.1.
+//
+//     R' = R hat(K)      omega' = R Kdot      r' = t1      v' = omega x t1
+//
+// in the axes of the head, about the head: R = 1, r = omega = v = 0 at the nose.
+#pragma once
+
+#include "eel_core/workspace.hpp"
+
+namespace eel_core {
+
+// R (0, K2, K3): the turning of sections by their bending, in the axes of the head.
+template <Number T>
+Vector3<T> turning(const Frame3<T>& frame, const Vector2<T>& bending)
+{
+    return bending.x * frame.axis2 + bending.y * frame.axis3;
+}
+
+// Axes of the sections and, in space, their angular velocities. Sets `factor`, which holds until the next instant.
+inline void orient_sections(const Swimmer& swimmer, const Law& law, Workspace<Space>& work)
+{
+    Quaternion<Lanes> before{0.0, 0.0, 0.0, 1.0};
+    for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
+        const auto pitch = law.combine(law.tables->moments, Law::pitch, work.factor, 0, k);
+        const auto yaw = law.combine(law.tables->moments, Law::yaw, work.factor, 0, k);
+        const Quaternion<Lanes> interval = magnus({pitch[0], yaw[0]}, {pitch[1], yaw[1]}, {pitch[2], yaw[2]});
+        const Quaternion<Lanes> q = before * successive_products(interval);
+        before = {last(q.x), last(q.y), last(q.z), last(q.w)};
+        const Frame3<Lanes> frame = q.frame();
+        const Vector2<Lanes> rate = law.combine_both(law.tables->node, work.factor, 1, k);
+        work.quaternion.store(k, q);
+        work.frame.store(k, frame);
+        work.curvature_rate.store(k, rate);
+        work.integrand.store(k, {turning(frame, rate), frame.t1()});
+    }
+    swimmer.grid.from_nose.integrate(work.integrand, work.omega);
+}
+
+// In the plane the angle of a section is the integral of K3, tabulated with the law.
+inline void orient_sections(const Swimmer& swimmer, const Law& law, Workspace<Plane>& work)
+{
+    for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
+        const auto [s, c] = sine_and_cosine(law.combine(law.tables->angle, Law::yaw, work.factor, 0, k)[0]);
+        work.frame.store(k, {c, s});
+        work.omega.store(k, law.combine(law.tables->angle, Law::yaw, work.factor, 1, k)[0]);
+    }
+}
+
+template <class M>
+void configure(const Swimmer& swimmer, const Law& law, double time, Workspace<M>& work)
+{
+    work.factor.resize(law.tables->rows());
+    law.set_factors(time, work.factor);
+    orient_sections(swimmer, law, work);
+    for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
+        const auto t1 = work.frame[k].t1();
+        work.integrand.store(k, {work.omega[k], cross(work.omega[k], t1)});
+    }
+    constexpr std::size_t linear = Components<Turn<M, Lanes>>::count;  // row of the linear part
+    swimmer.grid.from_nose.integrate(work.frame, work.position);
+    swimmer.grid.from_nose.integrate(work.integrand, work.velocity, linear);
+}
+
+// Adds a motion of the head to fields along the body that were found without it: a, and b + a x r.
+template <class M>
+void add_head_motion(const Swimmer& swimmer, const Spatial<M, double>& head, const auto& position, auto& turning,
+                     auto& moving)
+{
+    for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
+        turning.store(k, head.angular + turning[k]);
+        moving.store(k, head.linear + cross(head.angular, position[k]) + moving[k]);
+    }
+}
+
+}  // namespace eel_core

@@ -1,0 +1,115 @@
+// Inertia and momentum of body and water about the head, and the twist that goes with a momentum: section 6.
+//
+//     momentum = I_o twist + momentum of the change of shape
+#pragma once
+
+#include "eel_core/kinematics.hpp"
+
+namespace eel_core {
+
+// I_o in three parts: angular momentum by Omega, by V (column by column), linear momentum by V.
+template <class M, Number T>
+struct Inertia;
+
+template <Number T>
+struct Inertia<Space, T> {
+    Symmetric3<T> angular;
+    Vector3<T> by_v1, by_v2, by_v3;
+    Symmetric3<T> linear;
+
+    // Of one section with mass matrix A and inertia matrix about the head's axes, at r: r x A, and r x A x r^T.
+    static Inertia of(const Symmetric3<T>& turning, const Symmetric3<T>& a, const Vector3<T>& r)
+    {
+        const Vector3<T> c1 = cross(r, Vector3<T>{a.xx, a.xy, a.xz}), c2 = cross(r, Vector3<T>{a.xy, a.yy, a.yz}),
+                         c3 = cross(r, Vector3<T>{a.xz, a.yz, a.zz});
+        return {{turning.xx + (r.y * c3.x - r.z * c2.x), turning.xy + (r.y * c3.y - r.z * c2.y),
+                 turning.xz + (r.y * c3.z - r.z * c2.z), turning.yy + (r.z * c1.y - r.x * c3.y),
+                 turning.yz + (r.z * c1.z - r.x * c3.z), turning.zz + (r.x * c2.z - r.y * c1.z)},
+                c1,
+                c2,
+                c3,
+                a};
+    }
+    Inertia& operator+=(const Inertia& o)
+    {
+        return angular += o.angular, by_v1 += o.by_v1, by_v2 += o.by_v2, by_v3 += o.by_v3, linear += o.linear, *this;
+    }
+    // Of the whole body, with the nose's m_o, which goes with V1.
+    Factored<6> whole(double nose_mass) const
+    {
+        const auto &w = angular, &v = linear;
+        const auto &a = by_v1, &b = by_v2, &c = by_v3;
+        return {{total(w.xx), total(w.xy), total(w.yy), total(w.xz),
+                 total(w.yz), total(w.zz),                                        //
+                 total(a.x),  total(a.y),  total(a.z),  total(v.xx) + nose_mass,  //
+                 total(b.x),  total(b.y),  total(b.z),  total(v.xy),
+                 total(v.yy),  //
+                 total(c.x),  total(c.y),  total(c.z),  total(v.xz),
+                 total(v.yz), total(v.zz)}};
+    }
+};
+
+template <Number T>
+struct Inertia<Plane, T> {
+    T angular, by_v1, by_v2;
+    Symmetric2<T> linear;
+
+    static Inertia of(T turning, const Symmetric2<T>& a, const Vector2<T>& r)
+    {
+        const T c1 = cross(r, Vector2<T>{a.xx, a.xy}), c2 = cross(r, Vector2<T>{a.xy, a.yy});
+        return {turning + (r.x * c2 - r.y * c1), c1, c2, a};
+    }
+    Inertia& operator+=(const Inertia& o)
+    {
+        return angular += o.angular, by_v1 += o.by_v1, by_v2 += o.by_v2, linear += o.linear, *this;
+    }
+    Factored<3> whole(double nose_mass) const
+    {
+        return {{total(angular), total(by_v1), total(linear.xx) + nose_mass, total(by_v2), total(linear.xy),
+                 total(linear.yy)}};
+    }
+};
+
+// Sets the inertia of a configured body; returns the momentum that its velocities carry, without the nose's.
+template <class M>
+Momentum<M, double> inertia_and_momentum(const Swimmer& swimmer, Workspace<M>& work)
+{
+    Inertia<M, Lanes> inertia{};
+    Momentum<M, Lanes> momentum{};
+    for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
+        const auto section = swimmer.sections[k].weighed(swimmer.grid.weight[k]);
+        const auto frame = work.frame[k];
+        const auto position = work.position[k];
+        const auto mass = section.mass_matrix(frame);
+        const auto turning = section.inertia_matrix(frame);
+        inertia += Inertia<M, Lanes>::of(turning, mass, position);
+        const auto linear = mass * work.velocity[k];
+        momentum += {turning * work.omega[k] + cross(position, linear), linear};
+    }
+    work.inertia = inertia.whole(swimmer.nose_mass);
+    return total_of(momentum);
+}
+
+// Sets the head's twist from `work.momentum` in a configured body, and leaves the inertia factored. False where the
+// inertia is not positive definite.
+template <class M>
+bool find_twist(const Swimmer& swimmer, Workspace<M>& work)
+{
+    const Momentum<M, double> shape = inertia_and_momentum(swimmer, work);
+    const bool definite = work.inertia.factor();
+    auto solution = components_of(work.momentum - shape);
+    work.inertia.solve(solution);
+    work.twist = Components<Twist<M, double>>::make([&](std::size_t k) { return solution[k]; });
+    return definite;
+}
+
+// The momentum that goes with the twist of the head, in a configured body.
+template <class M>
+Momentum<M, double> momentum_of(const Swimmer& swimmer, const Twist<M, double>& twist, Workspace<M>& work)
+{
+    const Momentum<M, double> shape = inertia_and_momentum(swimmer, work);
+    const auto moved = work.inertia.times(components_of(twist));
+    return shape + Components<Momentum<M, double>>::make([&](std::size_t k) { return moved[k]; });
+}
+
+}  // namespace eel_core

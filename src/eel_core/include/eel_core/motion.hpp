@@ -1,0 +1,274 @@
+// The two motions: in space, and in the plane that is spanned by axes 1 and 2, where rotations are angles about axis 3.
+//
+// Vectors have three components in space and two in the plane; what turns (angular velocity, torque, angular momentum)
+// is a vector in space and a number in the plane. Every formula of the mechanics is written once over both.
+#pragma once
+
+#include "eel_core/numbers.hpp"
+
+namespace eel_core {
+
+// Components of a compound, one after the other: what `Field` and sums over lanes need to know of it.
+template <class T>
+struct Components;
+template <Number T>
+struct Components<T> {
+    static constexpr std::size_t count = 1;
+    template <Number B>
+    using With = B;  // the same compound of another number
+    template <class Make>
+    static T make(Make component, std::size_t first = 0)
+    {
+        return component(first);
+    }
+    template <class Take>
+    static void each(const T& value, Take take, std::size_t first = 0)
+    {
+        take(first, value);
+    }
+};
+
+template <Number T>
+struct Vector2 {
+    T x, y;
+    Vector2& operator+=(const Vector2& other) { return x += other.x, y += other.y, *this; }
+};
+
+template <Number T>
+struct Vector3 {
+    T x, y, z;
+    Vector3& operator+=(const Vector3& other) { return x += other.x, y += other.y, z += other.z, *this; }
+};
+
+// clang-format off
+template <Number T> struct Components<Vector2<T>> {
+    static constexpr std::size_t count = 2;
+    template <Number B> using With = Vector2<B>;
+    template <class Make> static Vector2<T> make(Make component, std::size_t first = 0) { return {component(first), component(first + 1)}; }
+    template <class Take> static void each(const Vector2<T>& v, Take take, std::size_t first = 0) { take(first, v.x), take(first + 1, v.y); }
+};
+template <Number T> struct Components<Vector3<T>> {
+    static constexpr std::size_t count = 3;
+    template <Number B> using With = Vector3<B>;
+    template <class Make> static Vector3<T> make(Make component, std::size_t first = 0) { return {component(first), component(first + 1), component(first + 2)}; }
+    template <class Take> static void each(const Vector3<T>& v, Take take, std::size_t first = 0) { take(first, v.x), take(first + 1, v.y), take(first + 2, v.z); }
+};
+
+template <Number A, Number B> auto operator+(Vector2<A> a, Vector2<B> b) { return Vector2{a.x + b.x, a.y + b.y}; }
+template <Number A, Number B> auto operator+(Vector3<A> a, Vector3<B> b) { return Vector3{a.x + b.x, a.y + b.y, a.z + b.z}; }
+template <Number A, Number B> auto operator-(Vector2<A> a, Vector2<B> b) { return Vector2{a.x - b.x, a.y - b.y}; }
+template <Number A, Number B> auto operator-(Vector3<A> a, Vector3<B> b) { return Vector3{a.x - b.x, a.y - b.y, a.z - b.z}; }
+template <Number A> auto operator-(Vector2<A> a) { return Vector2{-a.x, -a.y}; }
+template <Number A> auto operator-(Vector3<A> a) { return Vector3{-a.x, -a.y, -a.z}; }
+template <Number A, Number B> auto operator*(A a, Vector2<B> b) { return Vector2{a * b.x, a * b.y}; }
+template <Number A, Number B> auto operator*(A a, Vector3<B> b) { return Vector3{a * b.x, a * b.y, a * b.z}; }
+
+template <Number A, Number B> auto dot(A a, B b) { return a * b; }
+template <Number A, Number B> auto dot(Vector2<A> a, Vector2<B> b) { return a.x * b.x + a.y * b.y; }
+template <Number A, Number B> auto dot(Vector3<A> a, Vector3<B> b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
+template <Number A, Number B> auto cross(Vector3<A> a, Vector3<B> b)
+{
+    return Vector3{a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+template <Number A, Number B> auto cross(Vector2<A> a, Vector2<B> b) { return a.x * b.y - a.y * b.x; }
+template <Number A, Number B> auto cross(A turning, Vector2<B> b) { return Vector2{-turning * b.y, turning * b.x}; }
+template <Number A, Number B> auto cross(A, B) { return decltype(A() * B())(0.0); }  // both along axis 3
+// clang-format on
+
+// Axes of a section, or of the head, in those of its parent: t1, t2, t3 are the columns of a rotation.
+template <Number T>
+struct Frame3 {
+    Vector3<T> axis1, axis2, axis3;
+
+    Vector3<T> t1() const { return axis1; }
+    template <Number B>
+    auto local(Vector3<B> v) const  // components in these axes of a vector given in the parent's
+    {
+        return Vector3{dot(axis1, v), dot(axis2, v), dot(axis3, v)};
+    }
+    template <Number B>
+    auto parent(Vector3<B> v) const  // the inverse
+    {
+        return v.x * axis1 + v.y * axis2 + v.z * axis3;
+    }
+};
+
+template <Number T>
+struct Frame2 {
+    T cosine, sine;
+
+    Vector2<T> t1() const { return {cosine, sine}; }
+    template <Number B>
+    auto local(Vector2<B> v) const
+    {
+        return Vector2{cosine * v.x + sine * v.y, cosine * v.y - sine * v.x};
+    }
+    template <Number B>
+    auto parent(Vector2<B> v) const
+    {
+        return Vector2{cosine * v.x - sine * v.y, sine * v.x + cosine * v.y};
+    }
+    template <Number B>
+    B local(B turning) const
+    {
+        return turning;
+    }
+    template <Number B>
+    B parent(B turning) const
+    {
+        return turning;
+    }
+};
+
+// clang-format off
+template <Number T> struct Components<Frame3<T>> {
+    static constexpr std::size_t count = 9;
+    template <Number B> using With = Frame3<B>;
+    using V = Components<Vector3<T>>;
+    template <class Make> static Frame3<T> make(Make component, std::size_t first = 0) { return {V::make(component, first), V::make(component, first + 3), V::make(component, first + 6)}; }
+    template <class Take> static void each(const Frame3<T>& f, Take take, std::size_t first = 0) { V::each(f.axis1, take, first), V::each(f.axis2, take, first + 3), V::each(f.axis3, take, first + 6); }
+};
+template <Number T> struct Components<Frame2<T>> {
+    static constexpr std::size_t count = 2;
+    template <Number B> using With = Frame2<B>;
+    template <class Make> static Frame2<T> make(Make component, std::size_t first = 0) { return {component(first), component(first + 1)}; }
+    template <class Take> static void each(const Frame2<T>& f, Take take, std::size_t first = 0) { take(first, f.cosine), take(first + 1, f.sine); }
+};
+// clang-format on
+
+// Symmetric matrices.
+template <Number T>
+struct Symmetric2 {
+    T xx, xy, yy;
+    Symmetric2& operator+=(const Symmetric2& o) { return xx += o.xx, xy += o.xy, yy += o.yy, *this; }
+};
+template <Number T>
+struct Symmetric3 {
+    T xx, xy, xz, yy, yz, zz;
+    Symmetric3& operator+=(const Symmetric3& o)
+    {
+        return xx += o.xx, xy += o.xy, xz += o.xz, yy += o.yy, yz += o.yz, zz += o.zz, *this;
+    }
+};
+template <Number T>
+Vector2<T> operator*(const Symmetric2<T>& a, const Vector2<T>& v)
+{
+    return {a.xx * v.x + a.xy * v.y, a.xy * v.x + a.yy * v.y};
+}
+template <Number T>
+Vector3<T> operator*(const Symmetric3<T>& a, const Vector3<T>& v)
+{
+    return {a.xx * v.x + a.xy * v.y + a.xz * v.z, a.xy * v.x + a.yy * v.y + a.yz * v.z,
+            a.xz * v.x + a.yz * v.y + a.zz * v.z};
+}
+
+struct Space {
+    template <Number T>
+    using Vector = Vector3<T>;
+    template <Number T>
+    using Turn = Vector3<T>;
+    template <Number T>
+    using Frame = Frame3<T>;
+    static constexpr bool planar = false;
+    static constexpr std::size_t freedoms = 6;
+};
+
+struct Plane {
+    template <Number T>
+    using Vector = Vector2<T>;
+    template <Number T>
+    using Turn = T;
+    template <Number T>
+    using Frame = Frame2<T>;
+    static constexpr bool planar = true;
+    static constexpr std::size_t freedoms = 3;
+};
+
+template <class M, Number T>
+using Vector = typename M::template Vector<T>;
+template <class M, Number T>
+using Turn = typename M::template Turn<T>;
+template <class M, Number T>
+using Frame = typename M::template Frame<T>;
+
+// An angular and a linear part. About the head and in its axes, unless said.
+template <class M, Number T>
+struct Spatial {
+    Turn<M, T> angular;
+    Vector<M, T> linear;
+
+    Spatial& operator+=(const Spatial& other) { return angular += other.angular, linear += other.linear, *this; }
+    template <Number B>
+    friend auto operator+(const Spatial& a, const Spatial<M, B>& b)
+    {
+        return Spatial<M, decltype(T() + B())>{a.angular + b.angular, a.linear + b.linear};
+    }
+    template <Number B>
+    friend auto operator-(const Spatial& a, const Spatial<M, B>& b)
+    {
+        return Spatial<M, decltype(T() - B())>{a.angular - b.angular, a.linear - b.linear};
+    }
+    friend Spatial operator-(const Spatial& a) { return {-a.angular, -a.linear}; }
+    template <Number B>
+    friend auto operator*(B factor, const Spatial& a)
+    {
+        return Spatial<M, decltype(B() * T())>{factor * a.angular, factor * a.linear};
+    }
+};
+template <class M, Number T>
+using Twist = Spatial<M, T>;  // Omega [rad/s], V [m/s]; or its rate
+template <class M, Number T>
+using Wrench = Spatial<M, T>;  // torque [N m], force [N]; or per length
+template <class M, Number T>
+using Momentum = Spatial<M, T>;  // [kg m^2/s], [kg m/s]
+
+template <class M, Number T>
+struct Components<Spatial<M, T>> {
+    using Angular = Components<Turn<M, T>>;
+    using Linear = Components<Vector<M, T>>;
+    static constexpr std::size_t count = Angular::count + Linear::count;
+    template <Number B>
+    using With = Spatial<M, B>;
+    template <class Make>
+    static Spatial<M, T> make(Make component, std::size_t first = 0)
+    {
+        return {Angular::make(component, first), Linear::make(component, first + Angular::count)};
+    }
+    template <class Take>
+    static void each(const Spatial<M, T>& s, Take take, std::size_t first = 0)
+    {
+        Angular::each(s.angular, take, first), Linear::each(s.linear, take, first + Angular::count);
+    }
+};
+
+// The wrench about the head of a section at `position` with such axes, from its torque and force in its own axes: Ad*.
+template <class M>
+auto about_head(const auto& frame, const auto& position, const auto& in_section)
+{
+    const auto force = frame.parent(in_section.linear);
+    return Wrench<M, decltype(force.x)>{frame.parent(in_section.angular) + cross(position, force), force};
+}
+
+template <class S, Number B>
+using With = typename Components<S>::template With<B>;
+
+// Sum of the lanes of each component.
+template <class S>
+With<S, double> total_of(const S& value)
+{
+    std::array<double, Components<S>::count> sums;
+    Components<S>::each(value, [&](std::size_t k, Lanes lanes) { sums[k] = total(lanes); });
+    return Components<With<S, double>>::make([&](std::size_t k) { return sums[k]; });
+}
+
+// Components of `value` by their number.
+template <class S>
+auto components_of(const S& value)
+{
+    std::array<double, Components<S>::count> result;
+    Components<S>::each(value, [&](std::size_t k, double component) { result[k] = component; });
+    return result;
+}
+
+}  // namespace eel_core

@@ -1,0 +1,259 @@
+// Numbers of the mechanics: a double, or `Lanes`, the doubles of neighbouring nodes side by side.
+//
+// Every formula is a template over the number, so that it serves the head (a double) and the nodes along the body
+// (lanes). Arithmetic is that of each lane by itself; a double beside lanes counts for all of them.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <new>
+#include <utility>
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
+
+namespace eel_core {
+
+#if defined(__AVX512F__)
+inline constexpr std::size_t width = 8;  // lanes: the doubles of one register
+#elif defined(__AVX__)
+inline constexpr std::size_t width = 4;
+#else
+inline constexpr std::size_t width = 2;
+#endif
+inline constexpr std::size_t filled =
+    8;  // nodes are filled up to a multiple of this on every machine: one grid for all
+
+class Mask;
+
+class Lanes {
+  public:
+    using Native = double __attribute__((vector_size(width * sizeof(double))));
+    using Bits = std::int64_t __attribute__((vector_size(width * sizeof(double))));
+
+    Lanes() = default;
+    Lanes(double value)  // NOLINT(google-explicit-constructor): a double counts for all lanes
+        : Lanes(value, std::make_index_sequence<width>())
+    {
+    }
+    explicit Lanes(Native native) : native_(native) {}
+
+    // From and to neighbouring doubles, which need not be aligned.
+    static Lanes load(const double* from) { return Lanes(Native(*reinterpret_cast<const Unaligned*>(from))); }
+    void store(double* to) const { *reinterpret_cast<Unaligned*>(to) = native_; }
+
+    double operator[](std::size_t lane) const { return native_[lane]; }
+    Native native() const { return native_; }
+
+    Lanes operator-() const { return Lanes(-native_); }
+    Lanes& operator+=(Lanes other) { return native_ += other.native_, *this; }
+    Lanes& operator-=(Lanes other) { return native_ -= other.native_, *this; }
+    Lanes& operator*=(Lanes other) { return native_ *= other.native_, *this; }
+    friend Lanes operator+(Lanes a, Lanes b) { return Lanes(a.native_ + b.native_); }
+    friend Lanes operator-(Lanes a, Lanes b) { return Lanes(a.native_ - b.native_); }
+    friend Lanes operator*(Lanes a, Lanes b) { return Lanes(a.native_ * b.native_); }
+    friend Lanes operator/(Lanes a, Lanes b) { return Lanes(a.native_ / b.native_); }
+    friend Mask operator<(Lanes a, Lanes b);
+    friend Mask operator>(Lanes a, Lanes b);
+    friend Mask operator>=(Lanes a, Lanes b);
+
+  private:
+    using Unaligned = double __attribute__((vector_size(width * sizeof(double)), aligned(alignof(double))));
+
+    template <std::size_t... Lane>
+    Lanes(double value, std::index_sequence<Lane...>) : native_{(static_cast<void>(Lane), value)...}
+    {
+    }
+
+    Native native_;
+};
+
+// Of each lane, whether something holds.
+class Mask {
+  public:
+    explicit Mask(Lanes::Bits native) : native_(native) {}
+
+    // As the bits of a whole number, the first lane lowest.
+    unsigned bits() const
+    {
+#if defined(__AVX512F__)
+        return static_cast<unsigned>(_mm512_movepi64_mask(reinterpret_cast<__m512i>(native_)));
+#elif defined(__AVX__)
+        return static_cast<unsigned>(_mm256_movemask_pd(reinterpret_cast<__m256d>(native_)));
+#else
+        unsigned result = 0;
+        for (std::size_t lane = 0; lane < width; ++lane) result |= native_[lane] != 0 ? 1u << lane : 0u;
+        return result;
+#endif
+    }
+    bool any() const { return bits() != 0; }
+
+    // The lanes whose number, from 0 on, is below `count`.
+    static Mask below(std::size_t count)
+    {
+        Lanes::Bits number, limit;
+        for (std::size_t lane = 0; lane < width; ++lane) {
+            number[lane] = static_cast<std::int64_t>(lane);
+            limit[lane] = static_cast<std::int64_t>(count);
+        }
+        return Mask(number < limit);
+    }
+
+    friend Lanes select(Mask mask, Lanes yes, Lanes no);
+
+  private:
+    Lanes::Bits native_;
+};
+
+inline Mask operator<(Lanes a, Lanes b) { return Mask(a.native_ < b.native_); }
+inline Mask operator>(Lanes a, Lanes b) { return Mask(a.native_ > b.native_); }
+inline Mask operator>=(Lanes a, Lanes b) { return Mask(a.native_ >= b.native_); }
+
+// Allocates doubles such that a block of lanes lies within one line of the cache.
+template <class T>
+struct Aligned {
+    using value_type = T;
+    static constexpr std::align_val_t line{64};
+
+    Aligned() = default;
+    template <class B>
+    Aligned(const Aligned<B>&)
+    {
+    }  // NOLINT(google-explicit-constructor): as allocators are
+    T* allocate(std::size_t count) { return static_cast<T*>(::operator new(count * sizeof(T), line)); }
+    void deallocate(T* memory, std::size_t) { ::operator delete(memory, line); }
+    friend bool operator==(const Aligned&, const Aligned&) { return true; }
+};
+
+template <class T>
+concept Number = std::same_as<T, double> || std::same_as<T, Lanes>;
+
+// -- choices
+
+inline Lanes select(Mask mask, Lanes yes, Lanes no) { return Lanes(mask.native_ ? yes.native() : no.native()); }
+inline double select(bool condition, double yes, double no) { return condition ? yes : no; }
+
+// The size of `value` with the sign of `sign`.
+inline double with_sign_of(double value, double sign) { return std::copysign(value, sign); }
+inline Lanes with_sign_of(Lanes value, Lanes sign)
+{
+    const Lanes::Bits negative = std::bit_cast<Lanes::Bits>(Lanes(-0.0).native());
+    const auto v = std::bit_cast<Lanes::Bits>(value.native()), s = std::bit_cast<Lanes::Bits>(sign.native());
+    return Lanes(std::bit_cast<Lanes::Native>((v & ~negative) | (s & negative)));
+}
+
+// -- functions
+
+inline double size(double value) { return std::abs(value); }
+inline Lanes size(Lanes value) { return with_sign_of(value, Lanes(1.0)); }
+
+inline double root(double value) { return std::sqrt(value); }
+inline Lanes root(Lanes value)
+{
+#if defined(__AVX512F__)
+    return Lanes(_mm512_sqrt_pd(value.native()));
+#elif defined(__AVX__)
+    return Lanes(_mm256_sqrt_pd(value.native()));
+#else
+    Lanes::Native result;
+    for (std::size_t lane = 0; lane < width; ++lane) result[lane] = std::sqrt(value[lane]);
+    return Lanes(result);
+#endif
+}
+
+inline double round_down(double value) { return std::floor(value); }
+inline Lanes round_down(Lanes value)
+{
+#if defined(__AVX512F__)
+    return Lanes(_mm512_roundscale_pd(value.native(), _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC));
+#elif defined(__AVX__)
+    return Lanes(_mm256_floor_pd(value.native()));
+#else
+    Lanes::Native result;
+    for (std::size_t lane = 0; lane < width; ++lane) result[lane] = std::floor(value[lane]);
+    return Lanes(result);
+#endif
+}
+
+// Sum of the lanes.
+inline double total(double value) { return value; }
+inline double total(Lanes value)
+{
+    if constexpr (width == 2) return value[0] + value[1];
+    if constexpr (width == 4) return (value[0] + value[2]) + (value[1] + value[3]);
+    if constexpr (width == 8)
+        return ((value[0] + value[4]) + (value[2] + value[6])) + ((value[1] + value[5]) + (value[3] + value[7]));
+}
+
+inline double last(Lanes value) { return value[width - 1]; }
+
+// The lanes moved towards the last by `Steps`; the first ones are the `filling`.
+template <std::size_t Steps>
+Lanes moved(Lanes value, double filling)
+{
+    return [&]<std::size_t... Lane>(std::index_sequence<Lane...>) {
+        return Lanes(
+            __builtin_shufflevector(value.native(), Lanes(filling).native(), (Lane < Steps ? width : Lane - Steps)...));
+    }(std::make_index_sequence<width>());
+}
+
+// -- functions to round-off, without branches
+
+// sin(x)/x and cos(x) of z = x^2 up to 0.62, so of x up to a quarter of pi: Taylor's series.
+template <Number T>
+std::array<T, 2> sine_and_cosine_series(T z)
+{
+    T s = T(-1.0 / 1307674368000.0) * z + 1.0 / 6227020800.0;
+    T c = (T(1.0 / 20922789888000.0) * z - 1.0 / 87178291200.0) * z + 1.0 / 479001600.0;
+    s = s * z - 1.0 / 39916800.0, c = c * z - 1.0 / 3628800.0;
+    s = s * z + 1.0 / 362880.0, c = c * z + 1.0 / 40320.0;
+    s = s * z - 1.0 / 5040.0, c = c * z - 1.0 / 720.0;
+    s = s * z + 1.0 / 120.0, c = c * z + 1.0 / 24.0;
+    s = s * z - 1.0 / 6.0, c = c * z - 0.5;
+    return {1.0 + z * s, 1.0 + z * c};
+}
+
+// Sine and cosine of an angle [rad] below 1e5.
+template <Number T>
+std::array<T, 2> sine_and_cosine(T angle)
+{
+    constexpr double quarter_turn = 1.5707963267341256, its_rest = 6.077100506506192e-11;  // pi/2 in two parts
+    const T quarters = round_down(angle * 0.6366197723675814 + 0.5);
+    const T x = (angle - quarters * quarter_turn) - quarters * its_rest;
+    auto [s, c] = sine_and_cosine_series(x * x);
+    s = s * x;
+    const T odd = quarters - 2.0 * round_down(0.5 * quarters);  // 1: a quarter turn to go
+    const T sign = 1.0 - 2.0 * (round_down(0.5 * quarters) - 2.0 * round_down(0.25 * quarters));  // -1: half a turn
+    return {sign * (s + odd * (c - s)), sign * (c - odd * (c + s))};
+}
+
+// x^(-1/5) of positive numbers: a fifth of the exponent, within 4 per cent, then two steps of order 4 by the binomial
+// series of (1 - e)^(-1/5) with e = 1 - x y^5.
+template <Number T>
+T inverse_fifth_root(T x)
+{
+    constexpr double offset = 1.2 * (1023.0 - 0.045) * 4503599627370496.0;  // of the exponent's bits
+    T y;
+    if constexpr (std::same_as<T, double>) {
+        const auto number = static_cast<double>(std::bit_cast<std::int64_t>(x));
+        y = std::bit_cast<double>(static_cast<std::int64_t>(offset - 0.2 * number));
+    } else {
+        Lanes::Native guess;
+        for (std::size_t lane = 0; lane < width; ++lane) {
+            const auto number = static_cast<double>(std::bit_cast<std::int64_t>(x[lane]));
+            guess[lane] = std::bit_cast<double>(static_cast<std::int64_t>(offset - 0.2 * number));
+        }
+        y = Lanes(guess);
+    }
+    for (int step = 0; step < 2; ++step) {
+        const T square = y * y, e = 1.0 - x * (square * square * y);
+        y += y * e * (0.2 + e * (0.12 + e * 0.088));
+    }
+    return y;
+}
+
+}  // namespace eel_core

@@ -1,0 +1,235 @@
+// What an instant shows: pose, velocities, energies, and profiles along the body at the stations.
+//
+// The fields go on from the nodes to the stations by the integrals that made them, so a profile is as exact as the run.
+#pragma once
+
+#include "eel_core/algorithm.hpp"
+#include "eel_core/profiles.hpp"
+
+namespace eel_core {
+
+// Work space at the stations.
+struct StationWork {
+    explicit StationWork(const Swimmer& swimmer)
+    {
+        const std::size_t n = blocks_of(swimmer.stations);
+        frame = Field<Frame3<double>>(n), curvature = Field<Vector2<double>>(n), base = Field<Quaternion<double>>(n);
+        position = omega = velocity = alpha = acceleration = Field<Vector3<double>>(n);
+        upto = Field<Wrench<Space, double>>(n);
+        for (std::size_t i = 0; i < swimmer.stations; ++i) base.row(3)[i] = 1.0;
+    }
+
+    Field<Frame3<double>> frame;
+    Field<Quaternion<double>> base;  // of the node before
+    Field<Vector2<double>> curvature;
+    Field<Vector3<double>> position, omega, velocity, alpha, acceleration;
+    Field<Wrench<Space, double>> upto;  // integral of the balance's density from the nose
+};
+
+// Puts components of a block of stations, of which there are `stations`, into rows (stations, Components of the value).
+template <class Block>
+void put(const Block& value, std::size_t block, std::size_t stations, double* rows)
+{
+    constexpr std::size_t count = Components<Block>::count;
+    const std::size_t first = width * block, lanes = first < stations ? std::min(width, stations - first) : 0;
+    Components<Block>::each(value, [&](std::size_t c, Lanes component) {
+        for (std::size_t lane = 0; lane < lanes; ++lane) rows[count * (first + lane) + c] = component[lane];
+    });
+}
+
+// Kinetic energy of the body, and of the water without the nose's [J], from true velocities.
+inline std::array<double, 2> kinetic_energies(const Swimmer& swimmer, const Workspace<Space>& work)
+{
+    Lanes body(0.0), water(0.0);
+    for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
+        const Section<Lanes> section = swimmer.sections[k];
+        const Frame3<Lanes> frame = work.frame[k];
+        const Vector3<Lanes> v = frame.local(work.velocity[k]), omega = frame.local(work.omega[k]);
+        body += swimmer.grid.weight[k] * section.body_energy(v, omega);
+        water += swimmer.grid.weight[k] * section.water_energy(v, omega);
+    }
+    return {total(body), total(water)};
+}
+
+inline void put(const Vector3<double>& v, double* to) { to[0] = v.x, to[1] = v.y, to[2] = v.z; }
+
+class Observer {
+  public:
+    Observer(const Swimmer& swimmer, const Profiles& profiles, double* whole)
+        : swimmer_(swimmer), profiles_(profiles), whole_(whole)
+    {
+    }
+
+    // Fills the `sample` with what state y at `time` [s] shows. False where the inertia is not positive definite.
+    bool observe(const Law& law, const Vector3<double>& current, double time, const State& y, std::size_t sample,
+                 Workspace<Space>& work, StationWork& here) const
+    {
+        if (!find_motion(swimmer_, law, time, y, work)) return false;
+        const Powers powers = find_powers(swimmer_, law, work);
+        std::copy(powers.begin(), powers.end(), at(Profiles::powers, sample));
+        show_head(y, current, sample, work);
+        show_energies_and_closure(sample, work);
+        place_stations(law, y, sample, work, here);
+        if (profiles_.wrench || profiles_.load) find_velocities(work, here);
+        if (profiles_.wrench) show_internal_wrench(sample, work, here);
+        if (profiles_.load) {
+            find_accelerations_there(law, work, here);
+            show_loads(sample, work, here);
+        }
+        return true;
+    }
+
+  private:
+    double* at(Profiles::Quantity quantity, std::size_t sample) const { return profiles_.at(whole_, quantity, sample); }
+    std::size_t blocks() const { return blocks_of(swimmer_.stations); }
+
+    void show_head(const State& y, const Vector3<double>& current, std::size_t sample,
+                   const Workspace<Space>& work) const
+    {
+        const Frame3<double> head = head_frame(y, Space());
+        std::copy_n(y.begin(), 3, at(Profiles::position, sample));
+        std::copy_n(y.begin() + 3, 4, at(Profiles::orientation, sample));
+        double* const twist = at(Profiles::twist, sample);
+        put(work.twist.angular, twist), put(work.twist.linear + head.local(current), twist + 3);
+        double* const acceleration = at(Profiles::head_acceleration, sample);
+        put(work.head_acceleration.angular, acceleration), put(work.head_acceleration.linear, acceleration + 3);
+
+        Vector3<Lanes> moment{};
+        Lanes mass(0.0);
+        for (std::size_t k = 0; k < swimmer_.grid.blocks; ++k) {
+            const Lanes part = swimmer_.grid.weight[k] * swimmer_.sections[k].mass;
+            mass += part, moment += part * work.position[k];
+        }
+        const Vector3<double> center = head.parent((1.0 / total(mass)) * total_of(moment));
+        put(Vector3{y[0], y[1], y[2]} + center, at(Profiles::center_of_mass, sample));
+    }
+
+    void show_energies_and_closure(std::size_t sample, const Workspace<Space>& work) const
+    {
+        const auto energies = kinetic_energies(swimmer_, work);
+        std::copy(energies.begin(), energies.end(), at(Profiles::kinetic, sample));
+
+        const auto left = plus_axial<Space>(work.tail - work.balance, work.nose_force);
+        double* const closure = at(Profiles::closure, sample);
+        closure[0] = std::sqrt(dot(left.angular, left.angular)), closure[1] = std::sqrt(dot(left.linear, left.linear));
+    }
+
+    // Backbone, orientation and curvature.
+    void place_stations(const Law& law, const State& y, std::size_t sample, const Workspace<Space>& work,
+                        StationWork& here) const
+    {
+        const Frame3<double> head = head_frame(y, Space());
+        const Quaternion<Lanes> head_turn{y[3], y[4], y[5], y[6]};
+        const Vector3<double> nose{y[0], y[1], y[2]};
+        swimmer_.to_station.integrate(work.frame, 0, Vector3<double>{}, work.position, here.position);
+        for (std::size_t i = 0; i < swimmer_.stations; ++i)
+            if (const std::size_t nodes = swimmer_.nodes_before[i]; nodes > 0)
+                Components<Quaternion<double>>::each(work.quaternion.node(nodes - 1),
+                                                     [&](std::size_t c, double value) { here.base.row(c)[i] = value; });
+        for (std::size_t k = 0; k < blocks(); ++k) {
+            const Vector2<Lanes> curvature = law.combine_both(law.tables->station, work.factor, 0, k);
+            const Vector2<Lanes> rate = law.combine_both(law.tables->station, work.factor, 1, k);
+            const auto pitch = law.combine(law.tables->station_moments, Law::pitch, work.factor, 0, k);
+            const auto yaw = law.combine(law.tables->station_moments, Law::yaw, work.factor, 0, k);
+            const Quaternion<Lanes> turn =
+                here.base[k] * magnus({pitch[0], yaw[0]}, {pitch[1], yaw[1]}, {pitch[2], yaw[2]});
+            here.frame.store(k, turn.frame());
+            here.curvature.store(k, curvature);
+            show(Profiles::backbone, sample, k, nose + head.parent(here.position[k]));
+            show(Profiles::section_orientation, sample, k, head_turn * turn);
+            show(Profiles::curvature, sample, k, Vector3<Lanes>{0.0, curvature.x, curvature.y});
+            show(Profiles::curvature_rate, sample, k, Vector3<Lanes>{0.0, rate.x, rate.y});
+        }
+    }
+
+    // True velocities at the stations, relative to the water.
+    void find_velocities(Workspace<Space>& work, StationWork& here) const
+    {
+        for (std::size_t k = 0; k < swimmer_.grid.blocks; ++k) {
+            const Frame3<Lanes> frame = work.frame[k];
+            work.integrand.store(k, {turning(frame, work.curvature_rate[k]), cross(work.omega[k], frame.t1())});
+        }
+        swimmer_.to_station.integrate(work.integrand, 0, work.twist.angular, work.omega, here.omega);
+        swimmer_.to_station.integrate(work.integrand, 3, work.twist.linear, work.velocity, here.velocity);
+    }
+
+    void find_accelerations_there(const Law& law, Workspace<Space>& work, StationWork& here) const
+    {
+        for (std::size_t k = 0; k < swimmer_.grid.blocks; ++k)
+            work.integrand.store(k, {turning_gain(law, work, k), moving_gain(work, k)});
+        const Twist<Space, double>& head = work.head_acceleration;
+        swimmer_.to_station.integrate(work.integrand, 0, head.angular, work.alpha, here.alpha);
+        swimmer_.to_station.integrate(work.integrand, 3, head.linear, work.acceleration, here.acceleration);
+    }
+
+    // Eq. (50), (51): the wrench behind each station less the momentum of the water that is swept past it.
+    void show_internal_wrench(std::size_t sample, Workspace<Space>& work, StationWork& here) const
+    {
+        swimmer_.to_station.integrate(work.density, 0, Wrench<Space, double>{}, work.upto, here.upto);
+        add_kinks(swimmer_, swimmer_.to_station, true, work, here.upto);
+        for (std::size_t k = 0; k < blocks(); ++k) {
+            const Section<Lanes> section = swimmer_.at_station[k].weighed(swimmer_.wake);
+            const Frame3<Lanes> frame = here.frame[k];
+            const Vector3<Lanes> v = frame.local(here.velocity[k]), omega = frame.local(here.omega[k]);
+            auto wrench = wrench_behind<Space>(work, here.upto[k], frame, here.position[k]) -
+                          momentum_flux<Space, Lanes>(section, v, omega);
+            if (swimmer_.distributed_pressure)
+                wrench = plus_axial<Space, Lanes>(wrench, section.water_energy(v, omega));
+            show(Profiles::torque, sample, k, wrench.angular);
+            show(Profiles::force, sample, k, wrench.linear);
+        }
+    }
+
+    // The water's force per length: the rate at which a strip's water gives up momentum p = M_f V, of which V1 p is
+    // swept past the section, - (d/dt + Omega x) p + (d/dX + K x) V1 p; and the drag.
+    void show_loads(std::size_t sample, const Workspace<Space>& work, const StationWork& here) const
+    {
+        for (std::size_t k = 0; k < blocks(); ++k) {
+            const Section<Lanes> section = swimmer_.at_station[k];
+            const Frame3<Lanes> frame = here.frame[k];
+            const Vector3<Lanes> v = frame.local(here.velocity[k]), omega = frame.local(here.omega[k]),
+                                 e1{1.0, 0.0, 0.0};
+            const Vector3<Lanes> v_rate = frame.local(here.acceleration[k]) - cross(omega, v);
+            const Vector2<Lanes> bending = here.curvature[k];
+            const Vector3<Lanes> curvature{0.0, bending.x, bending.y};
+            const Vector3<Lanes> v_slope = cross(omega, e1) - cross(curvature, v);  // V'
+            const Section<Lanes> slope{0.0, swimmer_.added2_slope[k],    swimmer_.added3_slope[k], 0.0, 0.0,
+                                       0.0, swimmer_.added_roll_slope[k]};
+            const Vector3<Lanes> p = section.water_momentum(v);
+            const Vector3<Lanes> p_slope = slope.water_momentum(v) + section.water_momentum(v_slope);
+            Vector3<Lanes> force = -(section.water_momentum(v_rate) + cross(omega, p));
+            if (swimmer_.wake > 0.0)
+                force += Lanes(swimmer_.wake) * (v_slope.x * p + v.x * (p_slope + cross(curvature, p)));
+            if (swimmer_.distributed_pressure && swimmer_.wake > 0.0) {  // - d/dX (T_f t1)
+                const Lanes roll_slope = -cross(curvature, omega).x;     // of Omega1
+                const Lanes energy_slope =
+                    slope.water_energy(v, omega) + dot(p, v_slope) + section.added_roll * omega.x * roll_slope;
+                force += -energy_slope * e1 - section.water_energy(v, omega) * cross(curvature, e1);
+            }
+            Vector3<Lanes> resistive{};
+            if (swimmer_.resistive) {
+                const DragSection<Lanes> drag = swimmer_.at_station.drag(k);
+                const AxialFriction friction = axial_friction(drag, swimmer_.friction, v.x);
+                resistive = local_resistive_load<Space>(drag, friction.laminar, friction.excess,
+                                                        friction.turbulent_part, v, omega.x)
+                                .linear;
+            }
+            show(Profiles::resistive_force, sample, k, resistive);
+            show(Profiles::fluid_force, sample, k, force + resistive);
+        }
+        at(Profiles::tail_force, sample)[0] = swimmer_.distributed_pressure ? 0.0 : -work.tail_energy;
+        at(Profiles::nose_force, sample)[0] = work.nose_force;
+    }
+
+    template <class Block>
+    void show(Profiles::Quantity quantity, std::size_t sample, std::size_t block, const Block& value) const
+    {
+        put(value, block, swimmer_.stations, at(quantity, sample));
+    }
+
+    const Swimmer& swimmer_;
+    const Profiles& profiles_;
+    double* whole_;
+};
+
+}  // namespace eel_core

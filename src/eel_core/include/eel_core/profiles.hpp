@@ -1,0 +1,59 @@
+// Where the numbers of samples lie: T instants, M stations, one block of doubles for each quantity, all in one array.
+#pragma once
+
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace eel_core {
+
+struct Profiles {
+    enum Quantity : std::size_t {
+        position,             // (T, 3) m, head, world
+        orientation,          // (T, 4) x y z w, world from head
+        twist,                // (T, 6) rad/s, m/s, over ground, axes of the head
+        head_acceleration,    // (T, 6) rad/s^2, m/s^2, true acceleration of the head, its axes
+        center_of_mass,       // (T, 3) m, world
+        kinetic,              // (T, 2) J, body and water
+        powers,               // (T, 4) W, actuators, wake, nose, drag
+        closure,              // (T, 2) N m, N: what is left of the internal wrench at the nose
+        backbone,             // (T, M, 3) m, world
+        section_orientation,  // (T, M, 4) x y z w, world from section
+        curvature,            // (T, M, 3) rad/m
+        curvature_rate,       // (T, M, 3) rad/m/s
+        torque,               // (T, M, 3) N m, section axes; as `force` where the wrench is asked for
+        force,                // (T, M, 3) N
+        fluid_force,      // (T, M, 3) N/m, of the water on the body, section axes; as the next three where the load is
+        resistive_force,  // (T, M, 3) N/m, its resistive part
+        tail_force,       // (T, 3) N, axes of the tail's section
+        nose_force,       // (T, 3) N, axes of the nose's section
+        quantities
+    };
+    static constexpr std::size_t width_of[quantities] = {3, 4, 6, 6, 3, 2, 4, 2, 3, 4, 3, 3, 3, 3, 3, 3, 3, 3};
+
+    std::size_t samples, stations;
+    bool wrench, load;
+    std::size_t begin[quantities + 1];  // of each quantity in the array; the last: its size
+
+    Profiles(std::size_t instants_wanted, std::size_t points, bool wrench_wanted, bool load_wanted)
+        : samples(instants_wanted), stations(points), wrench(wrench_wanted), load(load_wanted)
+    {
+        begin[0] = 0;
+        for (std::size_t q = 0; q < quantities; ++q) begin[q + 1] = begin[q] + instants(q) * numbers(q);
+    }
+
+    bool along_body(std::size_t q) const { return backbone <= q && q <= resistive_force; }
+    std::size_t instants(std::size_t q) const
+    {
+        if (q == torque || q == force) return wrench ? samples : 0;
+        if (q == fluid_force || q == resistive_force) return load ? samples : 0;
+        return samples;
+    }
+    // Of one instant.
+    std::size_t numbers(std::size_t q) const { return width_of[q] * (along_body(q) ? stations : 1); }
+
+    double* at(double* whole, Quantity q, std::size_t sample) const { return whole + begin[q] + sample * numbers(q); }
+};
+
+}  // namespace eel_core

@@ -1,0 +1,119 @@
+// Data of the elliptic sections of body and water, and what they say of momentum and energy: eq. (37), section 7.2.1.
+//
+// Half-axes a along axis 3, b along axis 2. Body: m = rho_b pi a b, J2 = rho_b pi a^3 b / 4, J3 = rho_b pi a b^3 / 4,
+// J1 = J2 + J3. Water: M_f = rho_f pi diag(0, a^2, b^2) (the printed eq. (37) has a and b exchanged), J_f1 = rho_f
+// (pi/8) (a^2 - b^2)^2.
+#pragma once
+
+#include "eel_core/field.hpp"
+
+namespace eel_core {
+
+// One section, or those of a block. SI units, per length of the body.
+template <Number T>
+struct Section {
+    T mass;                          // [kg/m], of the body
+    T added2, added3;                // [kg/m], of the water along axes 2 and 3
+    T inertia1, inertia2, inertia3;  // [kg m], of body and water
+    T added_roll;                    // [kg m], of the water about axis 1
+
+    // Momentum of body and water, (M V; J Omega).
+    template <Number B>
+    Vector3<T> linear_momentum(const Vector3<B>& v) const
+    {
+        return {mass * v.x, (mass + added2) * v.y, (mass + added3) * v.z};
+    }
+    template <Number B>
+    Vector2<T> linear_momentum(const Vector2<B>& v) const
+    {
+        return {mass * v.x, (mass + added2) * v.y};
+    }
+    template <Number B>
+    Vector3<T> angular_momentum(const Vector3<B>& omega) const
+    {
+        return {inertia1 * omega.x, inertia2 * omega.y, inertia3 * omega.z};
+    }
+    T angular_momentum(T omega3) const { return inertia3 * omega3; }
+
+    // Momentum of the water alone, (M_f V; J_f1 Omega1 E1).
+    Vector3<T> water_momentum(const Vector3<T>& v) const { return {T(0.0), added2 * v.y, added3 * v.z}; }
+    Vector2<T> water_momentum(const Vector2<T>& v) const { return {T(0.0), added2 * v.y}; }
+    Vector3<T> water_roll(const Vector3<T>& omega) const { return {added_roll * omega.x, T(0.0), T(0.0)}; }
+    T water_roll(T) const { return T(0.0); }
+
+    // T_f, the kinetic energy of the water [J/m].
+    template <class V, class W>
+    T water_energy(const V& v, const W& omega) const
+    {
+        return 0.5 * (dot(v, water_momentum(v)) + dot(omega, water_roll(omega)));
+    }
+
+    // Kinetic energy of the body alone [J/m].
+    T body_energy(const Vector3<T>& v, const Vector3<T>& omega) const
+    {
+        return 0.5 * (mass * dot(v, v) + (inertia1 - added_roll) * omega.x * omega.x + inertia2 * omega.y * omega.y +
+                      inertia3 * omega.z * omega.z);
+    }
+
+    // Mass M along the axes of the head, and inertia J about them: M = m + m2 t2 t2^T + m3 t3 t3^T, J likewise.
+    Symmetric3<T> mass_matrix(const Frame3<T>& frame) const { return matrix(frame, mass, added2, added3); }
+    Symmetric2<T> mass_matrix(const Frame2<T>& frame) const
+    {
+        const T c = frame.cosine, s = frame.sine;
+        return {mass + added2 * s * s, -(added2 * s * c), mass + added2 * c * c};
+    }
+    Symmetric3<T> inertia_matrix(const Frame3<T>& frame) const
+    {
+        return matrix(frame, inertia1, inertia2 - inertia1, inertia3 - inertia1);
+    }
+    T inertia_matrix(const Frame2<T>&) const { return inertia3; }
+
+    // All of it, times a weight [m].
+    Section weighed(T weight) const
+    {
+        return {weight * mass,     weight * added2,   weight * added3,    weight * inertia1,
+                weight * inertia2, weight * inertia3, weight * added_roll};
+    }
+
+  private:
+    static Symmetric3<T> matrix(const Frame3<T>& frame, T all, T more2, T more3)
+    {
+        const Vector3<T>&b = frame.axis2, &c = frame.axis3;
+        const Vector3<T> f = more2 * b, g = more3 * c;
+        return {all + f.x * b.x + g.x * c.x, f.x * b.y + g.x * c.y, f.x * b.z + g.x * c.z,
+                all + f.y * b.y + g.y * c.y, f.y * b.z + g.y * c.z, all + f.z * b.z + g.z * c.z};
+    }
+};
+
+// Resistive coefficients of a section: n = -1/2 rho_f (k1 V1|V1|, k2 V2|V2|, k3 V3|V3|), c1 = -1/2 rho_f k4
+// Omega1|Omega1|.
+template <Number T>
+struct DragSection {
+    T drag2, drag3;        // [kg/m^2], 1/2 rho_f k2 and k3
+    T drag_roll;           // [kg], 1/2 rho_f k4
+    T laminar, turbulent;  // friction per V1: laminar |V1|^(1/2), turbulent (|V1|/transition)^(4/5)
+    T reynolds;            // [s/m], Re / 8e4 per |V1|
+};
+
+// The sections at the nodes, or at the stations.
+struct Sections {
+    Row mass, added2, added3, inertia1, inertia2, inertia3, added_roll;
+    Row drag2, drag3, drag_roll, laminar, turbulent, reynolds;
+
+    Section<Lanes> operator[](std::size_t k) const
+    {
+        return {mass[k], added2[k], added3[k], inertia1[k], inertia2[k], inertia3[k], added_roll[k]};
+    }
+    Section<double> node(std::size_t i) const
+    {
+        return {mass.node(i),     added2.node(i),   added3.node(i),    inertia1.node(i),
+                inertia2.node(i), inertia3.node(i), added_roll.node(i)};
+    }
+    DragSection<Lanes> drag(std::size_t k) const { return drag_from(width * k); }
+    DragSection<Lanes> drag_from(std::size_t i) const
+    {
+        return {drag2.from(i), drag3.from(i), drag_roll.from(i), laminar.from(i), turbulent.from(i), reynolds.from(i)};
+    }
+};
+
+}  // namespace eel_core

@@ -1,0 +1,66 @@
+// Symmetric positive definite systems of three or six equations: L D L^T.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+namespace eel_core {
+
+// A symmetric matrix by its lower triangle, row by row; its factors once factored: L below the diagonal, 1/D on it.
+template <std::size_t N>
+class Factored {
+  public:
+    static constexpr std::size_t at(std::size_t i, std::size_t j) { return i * (i + 1) / 2 + j; }
+
+    std::array<double, N*(N + 1) / 2> lower{};
+
+    // The product of the symmetric matrix, before it is factored, with a vector.
+    std::array<double, N> times(const std::array<double, N>& x) const
+    {
+        std::array<double, N> result{};
+        for (std::size_t i = 0; i < N; ++i)
+            for (std::size_t j = 0; j < N; ++j) result[i] += lower[j <= i ? at(i, j) : at(j, i)] * x[j];
+        return result;
+    }
+
+    // Factors the matrix in place. False where it is not positive definite.
+    bool factor()
+    {
+        bool definite = true;
+#pragma GCC unroll 6
+        for (std::size_t k = 0; k < N; ++k) {
+            const double inverse = 1.0 / lower[at(k, k)];
+            definite &= inverse > 0.0 && inverse < std::numeric_limits<double>::infinity();
+#pragma GCC unroll 6
+            for (std::size_t i = N - 1; i > k; --i) {
+                const double part = lower[at(i, k)] * inverse;
+#pragma GCC unroll 6
+                for (std::size_t j = k + 1; j <= i; ++j) lower[at(i, j)] -= part * lower[at(j, k)];
+            }
+#pragma GCC unroll 6
+            for (std::size_t i = k + 1; i < N; ++i) lower[at(i, k)] *= inverse;
+            lower[at(k, k)] = inverse;
+        }
+        return definite;
+    }
+
+    // The solution for the right side `x`, by the factors.
+    void solve(std::array<double, N>& x) const
+    {
+#pragma GCC unroll 6
+        for (std::size_t i = 1; i < N; ++i)
+#pragma GCC unroll 6
+            for (std::size_t j = 0; j < i; ++j) x[i] -= lower[at(i, j)] * x[j];
+#pragma GCC unroll 6
+        for (std::size_t k = 0; k < N; ++k) {
+            const std::size_t i = N - 1 - k;
+            x[i] *= lower[at(i, i)];
+#pragma GCC unroll 6
+            for (std::size_t j = i + 1; j < N; ++j) x[i] -= lower[at(j, i)] * x[j];
+        }
+    }
+};
+
+}  // namespace eel_core

@@ -1,0 +1,98 @@
+// How long the next step may be: by the error of the last one, and by what lies ahead.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "eel_core/head_dynamics.hpp"
+#include "eel_core/steppers/method.hpp"
+
+namespace eel_core {
+
+// What bounds the steps of a march.
+struct StepBounds {
+    double tolerance;       // relative error per step
+    double longest;         // [s]; the step itself, where it is fixed
+    double smallest;        // [s]
+    double length;          // [m], scale of positions
+    double momentum_floor;  // [kg m/s], below which momentum counts as none
+    double part_of_span;    // of the time between two breakpoints, that a step may take
+    double most_steps;      // per second of motion
+    double spare_steps;     // beyond these, to be spent at any time
+};
+
+// Sum of the squares of some entries.
+inline double square_of(const State& values, std::size_t first, std::size_t last)
+{
+    double square = 0.0;
+    for (std::size_t k = first; k < last; ++k) square += values[k] * values[k];
+    return square;
+}
+
+// Squares of the greatest angular and linear momentum of a march so far.
+struct MomentumScale {
+    double angular = 0.0, linear = 0.0;
+
+    void include(const State& y)
+    {
+        angular = std::max(angular, square_of(y, 7, 10));
+        linear = std::max(linear, square_of(y, 10, 13));
+    }
+};
+
+// Error of a step over the tolerance: of the position by the body's length, of the orientation by one, of the momenta
+// by their greatest size; the worst of the four. `defect`: error by the step's length; `end`: state at the step's end.
+inline double error_by_tolerance(const StepBounds& bounds, MomentumScale scale, const State& end, const State& defect,
+                                 double length)
+{
+    const double body = bounds.length * bounds.length;
+    scale.include(end);
+    const double linear = std::max(scale.linear, bounds.momentum_floor * bounds.momentum_floor);
+    const double angular = std::max(scale.angular, linear * body);
+    const double worst = std::max({square_of(defect, 0, 3) / body, square_of(defect, 3, 7),
+                                   square_of(defect, 7, 10) / angular, square_of(defect, 10, 13) / linear});
+    return std::sqrt(worst) * length / bounds.tolerance;
+}
+
+// A growth of the step in whole parts of 32, no greater. It comes from an estimate of the error, whose last digits
+// differ from processor to processor: they must not be handed on to all later steps.
+inline double in_parts(double growth) { return std::floor(32.0 * growth) / 32.0; }
+
+// How many times longer a step may be whose error goes with the power `order` of its length.
+inline double growth_of(double error, double order)
+{
+    return error < 1e-4 ? 5.0 : std::min(5.0, 0.9 * std::pow(error, -1.0 / order));
+}
+inline double shrinking_of(double error, double order)
+{
+    return in_parts(std::max(0.2, 0.9 * std::pow(error, -1.0 / order)));
+}
+
+// Times at which a derivative of the shape jumps, ascending: the last one up to a time, and the next one.
+struct Span {
+    double before = -std::numeric_limits<double>::infinity(), next = std::numeric_limits<double>::infinity();
+
+    Span(const std::vector<double>& breakpoints, double time)
+    {
+        const auto behind = std::upper_bound(breakpoints.begin(), breakpoints.end(), time);
+        if (behind != breakpoints.end()) next = *behind;
+        if (behind != breakpoints.begin()) before = *(behind - 1);
+    }
+};
+
+// Length [s] of the next step from `start`: as proposed, or such that steps end on the next breakpoint without a sliver
+// before it; at most a part of the span, for the works are integrals of what goes on there.
+inline double fitted_length(const Method& method, const StepBounds& bounds, double proposed, double start,
+                            const Span& span, double tiny)
+{
+    const double left = span.next - start;
+    if (!method.adaptive) return left < 1e100 ? left / std::ceil(left / bounds.longest - 1e-9) : bounds.longest;
+    const double length = std::min({bounds.longest, proposed, bounds.part_of_span * (span.next - span.before)});
+    if (method.adams > 0 && left < 8.0 * length) return left / std::ceil(left / length - 1e-9);  // equal steps
+    if (length > left - tiny) return left;
+    return length > 0.5 * left ? std::min(length, 0.5 * left) : length;
+}
+
+}  // namespace eel_core

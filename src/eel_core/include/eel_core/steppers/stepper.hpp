@@ -1,0 +1,255 @@
+// Steps of the head in time, in the momentum form, with dense output.
+//
+// Steps end at the breakpoints of the shape, where its derivatives jump. The state between steps comes from the
+// method's dense output, so that the steps do not depend on when the run is sampled.
+#pragma once
+
+#include "eel_core/algorithm.hpp"
+#include "eel_core/steppers/adams.hpp"
+#include "eel_core/steppers/ledger.hpp"
+#include "eel_core/steppers/method.hpp"
+#include "eel_core/steppers/step_control.hpp"
+
+namespace eel_core {
+
+enum class Status { marched, not_finite, step_too_small, singular, too_many_steps, unfinished };
+
+// Nodes that may still be evaluated before a march comes back unfinished, to be asked to go on: some milliseconds.
+struct Slice {
+    std::int64_t left = 40'000;
+
+    bool used_up() const { return left <= 0; }
+    void spend(std::size_t nodes) { left -= static_cast<std::int64_t>(nodes); }
+};
+
+// What is fixed while a march goes on undisturbed.
+struct MarchSettings {
+    Law law;
+    std::vector<double> breakpoints;  // [s], ascending
+    StepBounds bounds;
+    bool ledger = true;                      // integrate the works
+    Vector3<double> current{0.0, 0.0, 0.0};  // [m/s], of the water, in the world's axes
+};
+
+struct Counts {
+    std::int64_t steps = 0, rejected = 0, evaluations = 0;
+};
+
+// The step that the present lies in, and what the next ones need to know.
+template <class M>
+class Stepper {
+  public:
+    Stepper(const Swimmer& swimmer, const Method& method)
+        : swimmer_(&swimmer), method_(method), adams_(std::max<std::size_t>(method.adams, 1)), work_(swimmer)
+    {
+    }
+
+    Workspace<M>& work() { return work_; }
+    const Workspace<M>& work() const { return work_; }
+    const Method& method() const { return method_; }
+    const Counts& counts() const { return counts_; }
+    double end_time() const { return start_ + length_; }
+
+    // Forgets what was before the first of all steps.
+    void forget(const State& y, double spare_steps)
+    {
+        scale_ = {}, counts_ = {}, budget_ = spare_steps, proposed_ = 0.0;
+        scale_.include(y);
+    }
+
+    // Goes on as `other` would, which takes steps of another swimmer or by another method.
+    template <class Other>
+    void take_over(const Stepper<Other>& other)
+    {
+        scale_ = other.scale_, counts_ = other.counts_, budget_ = other.budget_, proposed_ = other.proposed_;
+    }
+
+    // Lets the next step begin at `time` [s] in state y. `first_length` [s]: of the first of all steps.
+    void begin(double time, const State& y, const Works& works, double first_length)
+    {
+        end_ = y, works_ = works;
+        start_ = time, length_ = 0.0, anew_ = true;
+        if (proposed_ == 0.0) proposed_ = first_length;
+    }
+
+    // Marches until the step holds the time `until` [s].
+    Status march(const MarchSettings& settings, double until, Slice& slice)
+    {
+        const double tiny = 1e-12 * std::max(1.0, std::abs(until));
+        while (end_time() < until - tiny) {
+            if (budget_ < 0.0) return Status::too_many_steps;
+            if (slice.used_up()) return Status::unfinished;
+            const std::int64_t before = counts_.evaluations - (settings.ledger ? evaluations_of_powers : 0);
+            const Status status = take_step(settings, tiny);
+            if (status != Status::marched) return status;
+            slice.spend(static_cast<std::size_t>(counts_.evaluations - before) * swimmer_->grid.nodes);
+        }
+        return Status::marched;
+    }
+
+    // State and works at `time` [s] within the step.
+    void state_at(double time, bool ledger, State& y, Works& works) const
+    {
+        double theta = 1.0;
+        if (std::abs(end_time() - time) <= 1e-12 * std::max(1.0, std::abs(time))) {
+            y = end_;
+        } else {
+            theta = std::clamp((time - start_) / length_, 0.0, 1.0);
+            y = interpolated(theta);
+        }
+        if (ledger) works = powers_.works_upto(works_, length_, theta);
+    }
+
+  private:
+    template <class>
+    friend class Stepper;
+
+    static void normalise(State& y)
+    {
+        const double length = std::sqrt(square_of(y, 3, 7));
+        for (std::size_t k = 3; k < 7; ++k) y[k] /= length;
+    }
+
+    State interpolated(double theta) const
+    {
+        State result = begin_, sum{};
+        for (std::size_t i = 0; i < method_.stages; ++i) {
+            const auto& d = method_.dense[i];
+            add_scaled(theta * (d[0] + theta * (d[1] + theta * (d[2] + theta * d[3]))), rate_[i], sum);
+        }
+        add_scaled(length_, sum, result);
+        normalise(result);
+        return result;
+    }
+
+    bool evaluate(const MarchSettings& settings, double time, const State& y, State& rate)
+    {
+        ++counts_.evaluations;
+        return rate_of_state(*swimmer_, settings.law, settings.current, time, y, work_, rate);
+    }
+
+    // Tries a step of `length` [s] into `trial_`; `error`: over the tolerance.
+    Status attempt(const MarchSettings& settings, double start, double length, double& error)
+    {
+        const std::size_t last = method_.stages - 1;
+        error = std::numeric_limits<double>::infinity();
+        if (begin_anew_) {
+            if (!evaluate(settings, start, end_, rate_[0])) return Status::singular;
+            adams_.begin(rate_[0]);
+            begin_anew_ = false;
+        }
+        for (std::size_t stage = method_.adams > 0 ? last : 1; stage <= last; ++stage) {
+            if (method_.adams > 0) {
+                trial_ = adams_.step(length, end_);
+            } else {
+                trial_ = end_;
+                for (std::size_t j = 0; j < stage; ++j) add_scaled(length * method_.a[stage][j], rate_[j], trial_);
+            }
+            if (stage == last) normalise(trial_);
+            if (!evaluate(settings, start + method_.c[stage] * length, trial_, rate_[stage])) return Status::singular;
+        }
+        State defect{};
+        if (method_.adams > 0) {
+            for (std::size_t k = 0; k < state_space; ++k) rate_[1][k] = (trial_[k] - end_[k]) / length;
+            defect = adams_.defect(adams_.terms(), rate_[last]);
+        } else {
+            for (std::size_t i = 0; i <= last; ++i) add_scaled(method_.error[i], rate_[i], defect);
+        }
+        double sum = 0.0;
+        for (std::size_t k = 0; k < state_space; ++k) sum += std::abs(trial_[k]) + std::abs(rate_[last][k]);
+        if (!(sum < 1e300)) return Status::not_finite;  // NaN too
+        error = method_.adaptive ? error_by_tolerance(settings.bounds, scale_, trial_, defect, length) : 0.0;
+        return Status::marched;
+    }
+
+    Status take_step(const MarchSettings& settings, double tiny)
+    {
+        const StepBounds& bounds = settings.bounds;
+        const double start = end_time();
+        const Span span(settings.breakpoints, start + tiny);
+        const bool first_of_span = anew_;
+        begin_anew_ = anew_;
+        if (!anew_) rate_[0] = rate_[method_.stages - 1];  // the last rate of a step is the first of the next
+        double proposed = proposed_, length = fitted_length(method_, bounds, proposed, start, span, tiny), error = 0.0;
+        const double accepted =
+            method_.adams > 0 ? 4.0 : 1.0;  // Adams' next step is the shorter: cheaper than to repeat
+        for (;;) {
+            const Status status = attempt(settings, start, length, error);
+            if (status == Status::marched && error <= accepted) break;
+            ++counts_.rejected, budget_ -= 1.0;
+            length *= status != Status::marched ? 0.1 : shrinking_of(error, method_.order);
+            proposed = length;
+            if (!method_.adaptive || length < bounds.smallest) {
+                anew_ = true;
+                return status == Status::marched ? Status::step_too_small : status;
+            }
+        }
+        const double grown = length * in_parts(growth(bounds, length, error));
+        if (method_.adams > 0) adams_.accept(length, rate_[method_.stages - 1]);
+        proposed_ = std::min(bounds.longest, length >= proposed ? grown : std::max(proposed, grown));
+        if (std::abs(start + length - span.next) <= tiny) length = span.next - start;
+        accept(settings, start, length);
+        return settings.ledger ? find_step_powers(settings, first_of_span) : Status::marched;
+    }
+
+    // How many times longer the next step may be.
+    double growth(const StepBounds& bounds, double length, double error)
+    {
+        if (method_.adams == 0) return growth_of(error, method_.order);
+        const bool steps_are_short = length <= Adams::is_short * bounds.longest;
+        const auto promised = [&](std::size_t terms) {
+            const State defect = adams_.defect(terms, rate_[method_.stages - 1]);
+            return growth_of(error_by_tolerance(bounds, scale_, trial_, defect, length),
+                             static_cast<double>(terms + 1));
+        };
+        const double here = growth_of(error, static_cast<double>(adams_.order() + 1));
+        const double below = steps_are_short && adams_.may_fall() ? promised(adams_.terms() - 1) : 0.0;
+        const double above = steps_are_short && adams_.may_rise() ? promised(adams_.terms() + 1) : 0.0;
+        return adams_.choose_order(steps_are_short, here, below, above);
+    }
+
+    void accept(const MarchSettings& settings, double start, double length)
+    {
+        if (settings.ledger) {
+            works_ = powers_.works_upto(works_, length_, 1.0);
+            powers_.at[0] = powers_.at[3];
+        }
+        begin_ = end_, end_ = trial_;
+        start_ = start, length_ = length, anew_ = false;
+        ++counts_.steps;
+        budget_ = std::min(settings.bounds.spare_steps, budget_ + settings.bounds.most_steps * length) - 1.0;
+        scale_.include(end_);
+    }
+
+    Status find_step_powers(const MarchSettings& settings, bool at_start_too)
+    {
+        for (std::size_t j = 4; j-- > (at_start_too ? 0u : 1u);) {
+            if (j < 3) {  // the step's end was evaluated last
+                const double time = start_ + lobatto[j] * length_;
+                if (!find_motion(*swimmer_, settings.law, time, interpolated(lobatto[j]), work_))
+                    return Status::singular;
+            }
+            powers_.at[j] = find_powers(*swimmer_, settings.law, work_);
+        }
+        return Status::marched;
+    }
+
+    static constexpr std::int64_t evaluations_of_powers = 4;  // that the powers of a step cost as much as
+
+    const Swimmer* swimmer_;
+    Method method_;
+    Adams adams_;
+    Workspace<M> work_;
+    double start_ = 0.0, length_ = 0.0, proposed_ = 0.0;  // [s]
+    State begin_{}, end_{}, trial_{};
+    std::array<State, Method::most_stages> rate_{};
+    Works works_{};  // at the start of the step
+    StepPowers powers_;
+    MomentumScale scale_;
+    Counts counts_;
+    double budget_ = 0.0;  // steps that may still be tried before the next are earned by motion
+    bool anew_ = true;     // the rate and powers at the start of the next step are not known
+    bool begin_anew_ = true;
+};
+
+}  // namespace eel_core

@@ -1,0 +1,33 @@
+// What a run never writes: body and water at the nodes and stations, and which physics is on.
+#pragma once
+
+#include "eel_core/grid.hpp"
+#include "eel_core/section.hpp"
+
+namespace eel_core {
+
+enum class Friction { printed, laminar, blended };
+
+// Speeds of the sections that the drag goes with, and whose changes of sign are kinks of it.
+enum Speed : std::size_t { axial = 0, lateral = 1, vertical = 2, roll = 3, above_transition = 4, speeds = 5 };
+
+struct Swimmer {
+    Grid grid;
+    Sections sections;
+    Friction friction = Friction::printed;
+    bool resistive = true;                // drag along the body
+    std::size_t first_watched = lateral;  // first of `Speed` whose changes of sign are integrated exactly
+    double wake = 1.0;                    // 0 where no water is swept past the sections
+    double nose_mass = 0.0;               // [kg], m_o
+    double nose_drag = 0.0;               // [kg/m], 1/2 rho_f k_o
+    bool distributed_pressure = false;    // -d/dX(T_f t1) along the body in place of -T_f t1 at the tail
+
+    // Where profiles are given:
+    std::size_t stations = 0;
+    Sections at_station;
+    Row added2_slope, added3_slope, added_roll_slope;  // derivatives by X
+    std::vector<std::size_t> nodes_before;             // how many nodes lie at or before the station
+    FromNose to_station;
+};
+
+}  // namespace eel_core

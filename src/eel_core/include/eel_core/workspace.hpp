@@ -1,0 +1,93 @@
+// One evaluation's work space: nothing in it is kept from one instant to the next.
+#pragma once
+
+#include <cmath>
+
+#include "eel_core/law.hpp"
+#include "eel_core/rotation.hpp"
+#include "eel_core/solve.hpp"
+#include "eel_core/swimmer.hpp"
+
+namespace eel_core {
+
+// A jump of a load along the body, where a speed changes its sign within a panel (`drag_kinks`).
+struct Kink {
+    Speed speed;
+    std::size_t first;            // first node of the panel
+    double fraction;              // of the panel
+    double jump;                  // of the load's sign: 2 or -2; 1 or -1 of the friction law
+    std::vector<double> weights;  // [m], of the panel's nodes, for the integral from its start to the kink
+};
+
+template <class M>
+struct Workspace {
+    explicit Workspace(const Swimmer& swimmer)
+    {
+        const std::size_t n = swimmer.grid.blocks;
+        frame = Field<Frame<M, double>>(n), quaternion = Field<Quaternion<double>>(n),
+        position = Field<Vector<M, double>>(n);
+        omega = Field<Turn<M, double>>(n), velocity = Field<Vector<M, double>>(n),
+        curvature_rate = Field<Vector2<double>>(n);
+        alpha = Field<Turn<M, double>>(n), acceleration = Field<Vector<M, double>>(n);
+        integrand = Field<Wrench<M, double>>(n), density = Field<Wrench<M, double>>(n),
+        upto = Field<Wrench<M, double>>(n);
+        friction_laminar = friction_excess = turbulent_part = Row(n);
+        for (Row& row : speed) row = Row(n);
+        for (Row& row : load_weight) row = Row(n);
+        legendre_integral.resize(swimmer.grid.widest + 1);
+        kink_density = Field<Wrench<M, double>>(blocks_of(swimmer.grid.widest));
+        for (Kink& kink : kinks) kink.weights.resize(swimmer.grid.widest + width);
+    }
+
+    std::vector<Jet> factor;  // of the law's rows
+
+    // Along the body, in the axes of the head, about the head:
+    Field<Frame<M, double>> frame;         // t1, t2, t3 of the sections
+    Field<Quaternion<double>> quaternion;  // the same, in space alone
+    Field<Vector<M, double>> position;     // r [m]
+    Field<Turn<M, double>> omega;  // [rad/s], due to the change of shape; with the head's motion once that is known
+    Field<Vector<M, double>> velocity;      // [m/s], likewise
+    Field<Vector2<double>> curvature_rate;  // Kdot [rad/m/s], pitch and yaw
+    Field<Wrench<M, double>> integrand;
+    Field<Turn<M, double>> alpha;           // [rad/s^2]
+    Field<Vector<M, double>> acceleration;  // [m/s^2]
+    Field<Wrench<M, double>>
+        density;                    // of the balance: what the motion takes, less the loads, per length, about the head
+    Field<Wrench<M, double>> upto;  // its integral from the nose
+
+    // Drag, in section axes:
+    std::array<Row, speeds> speed;          // see `Speed`
+    Row friction_laminar, friction_excess;  // [kg/m/s], friction per V1 by the laminar law, and what turbulence adds
+    Row turbulent_part;                     // of the friction, 0 to 1
+    std::array<Row, 4> load_weight;         // [m], integration weights of the loads with their signs; 0: of the excess
+    static constexpr std::size_t most_kinks = 24;  // beyond, signs change too often to be integrated apart
+    std::array<Kink, most_kinks> kinks;
+    std::size_t kink_count = 0;
+    std::vector<double> legendre_integral;  // of the polynomials of a panel, up to a kink
+    Field<Wrench<M, double>> kink_density;  // of the balance, at the nodes of a kink's panel: what jumps
+
+    // Of the whole body:
+    Factored<M::freedoms> inertia;
+    Twist<M, double> twist;        // of the head, relative to the water
+    Momentum<M, double> momentum;  // of body, water and nose
+    Wrench<M, double> tail, drag;  // on the body
+    double drag_power = 0.0;       // [W]
+    double tail_speed = 0.0;       // V1 at the tail [m/s]
+    double tail_energy = 0.0;      // T_f there [J/m]
+    Twist<M, double> head_acceleration;
+    Wrench<M, double> balance;  // integral over the body of the density, as the head equation has it
+    double nose_force = 0.0;    // [N], along t1(0)
+
+    std::size_t bytes() const
+    {
+        std::size_t sum = frame.bytes() + quaternion.bytes() + position.bytes() + omega.bytes() + velocity.bytes() +
+                          curvature_rate.bytes() + integrand.bytes() + alpha.bytes() + acceleration.bytes() +
+                          density.bytes() + upto.bytes() + friction_laminar.bytes() + friction_excess.bytes() +
+                          turbulent_part.bytes() + kink_density.bytes();
+        for (const Row& row : speed) sum += row.bytes();
+        for (const Row& row : load_weight) sum += row.bytes();
+        return sum + sizeof(*this);
+    }
+};
+
+}  // namespace eel_core

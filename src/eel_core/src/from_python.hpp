@@ -1,0 +1,203 @@
+// What Python hands over: arrays and tables as objects with arrays for attributes, copied into the structs of the core.
+#pragma once
+
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <memory>
+#include <string>
+
+#include "eel_core/march.hpp"
+
+namespace eel_core {
+
+namespace py = pybind11;
+
+// A contiguous array of numbers of type T, which Python keeps alive as long as this lives.
+template <class T>
+class Array {
+  public:
+    Array(const py::handle& object, const std::string& name, bool writable = false)
+        : info_(py::cast<py::buffer>(object).request(writable))
+    {
+        std::size_t step = sizeof(T);
+        for (std::size_t axis = info_.shape.size(); axis-- > 0; step *= length(axis))
+            if (length(axis) > 1 && static_cast<std::size_t>(info_.strides[axis]) != step)
+                throw py::value_error(name + " must be contiguous");
+        if (!is_of_type())
+            throw py::value_error(name + " must hold numbers of " + std::to_string(8 * sizeof(T)) + " bits like '" +
+                                  py::format_descriptor<T>::format() + "', got '" + info_.format + "'");
+    }
+
+    std::size_t length(std::size_t axis) const { return static_cast<std::size_t>(info_.shape.at(axis)); }
+    std::size_t size() const { return static_cast<std::size_t>(info_.size); }
+    T* data() const { return static_cast<T*>(info_.ptr); }
+    std::span<const T> span() const { return {data(), size()}; }
+    void check_size(std::size_t wanted, const std::string& name) const
+    {
+        if (size() != wanted)
+            throw py::value_error(name + " must have " + std::to_string(wanted) + " numbers, got " +
+                                  std::to_string(size()));
+    }
+
+  private:
+    bool is_of_type() const  // 'l' and 'q', 'L' and 'Q' are the same numbers
+    {
+        const char kind = info_.format.empty() ? '?' : info_.format.back();
+        const bool fits = static_cast<std::size_t>(info_.itemsize) == sizeof(T);
+        if (std::is_floating_point_v<T>) return fits && kind == 'd';
+        return fits && (std::is_signed_v<T> ? kind == 'l' || kind == 'q' : kind == 'L' || kind == 'Q');
+    }
+
+    py::buffer_info info_;
+};
+
+using Numbers = Array<double>;
+
+template <class T>
+Array<T> array_of(const py::handle& object, const char* name)
+{
+    return Array<T>(object.attr(name), name);
+}
+
+template <std::size_t N>
+std::array<double, N> row_from(const py::handle& object, const std::string& name)
+{
+    const Numbers numbers(object, name);
+    numbers.check_size(N, name);
+    std::array<double, N> result;
+    std::copy_n(numbers.data(), N, result.begin());
+    return result;
+}
+inline Vector3<double> vector_from(const py::handle& object, const std::string& name)
+{
+    const auto v = row_from<3>(object, name);
+    return {v[0], v[1], v[2]};
+}
+inline Twist<Space, double> twist_from(const py::handle& object, const std::string& name)
+{
+    const auto v = row_from<6>(object, name);
+    return {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
+}
+inline State state_from(const py::handle& object)
+{
+    const auto v = row_from<state_size>(object, "state");
+    State y{};
+    std::copy(v.begin(), v.end(), y.begin());
+    return y;
+}
+
+// One number for each of n points.
+inline Row points(const py::handle& object, const char* name, std::size_t n)
+{
+    const Numbers numbers = array_of<double>(object, name);
+    numbers.check_size(n, name);
+    Row row(blocks_of(n));
+    std::copy_n(numbers.data(), n, row.row(0));
+    return row;
+}
+
+inline Sections sections_from(const py::handle& s, std::size_t n)
+{
+    return {points(s, "mass", n),     points(s, "added2", n),    points(s, "added3", n),     points(s, "inertia1", n),
+            points(s, "inertia2", n), points(s, "inertia3", n),  points(s, "added_roll", n), points(s, "drag2", n),
+            points(s, "drag3", n),    points(s, "drag_roll", n), points(s, "laminar", n),    points(s, "turbulent", n),
+            points(s, "reynolds", n)};
+}
+
+inline FromNose from_nose(const py::handle& points, const Row& weight, std::size_t nodes)
+{
+    const auto rows = array_of<double>(points, "matrix"), fraction = array_of<double>(points, "fraction");
+    const auto first = array_of<std::uint64_t>(points, "first"), count = array_of<std::uint64_t>(points, "count");
+    return FromNose({rows.span(), first.span(), count.span(), fraction.span()}, {weight.row(0), nodes});
+}
+
+inline Grid grid_from(const py::handle& g)
+{
+    Grid grid;
+    const auto first = array_of<std::uint64_t>(g, "first"), count = array_of<std::uint64_t>(g, "count");
+    const auto series = array_of<double>(g, "series");
+    const std::size_t n = first.size();
+    if (n == 0) throw py::value_error("grid must have nodes, got none");
+    grid.nodes = n, grid.blocks = blocks_of(n), grid.widest = array_of<double>(g, "matrix").length(1);
+    grid.first.assign(first.span().begin(), first.span().end());
+    grid.count.assign(count.span().begin(), count.span().end());
+    grid.weight = points(g, "weight", n);
+    grid.from_nose = from_nose(g, grid.weight, n);
+    grid.fraction = points(g, "fraction", n);
+    grid.barycentric = points(g, "barycentric", n);
+    grid.set_steps();
+    for (std::size_t degree = 0; degree <= grid.widest; ++degree) {
+        Row row(grid.blocks);
+        if (degree < grid.widest) std::copy_n(series.data() + degree * n, n, row.row(0));
+        grid.legendre.push_back(row);
+    }
+    return grid;
+}
+
+inline std::shared_ptr<const Swimmer> swimmer_from(const py::object& grid, const py::object& sections,
+                                                   const py::object& stations, const std::string& friction,
+                                                   bool resistive, std::size_t first_watched, bool wake,
+                                                   double nose_mass, double nose_drag, bool distributed_pressure)
+{
+    auto swimmer = std::make_shared<Swimmer>();
+    swimmer->grid = grid_from(grid);
+    const std::size_t n = swimmer->grid.nodes;
+    swimmer->sections = sections_from(sections, n);
+    if (friction == "printed")
+        swimmer->friction = Friction::printed;
+    else if (friction == "laminar")
+        swimmer->friction = Friction::laminar;
+    else if (friction == "blended")
+        swimmer->friction = Friction::blended;
+    else
+        throw py::value_error("friction must be 'printed', 'laminar' or 'blended', got '" + friction + "'");
+    swimmer->resistive = resistive, swimmer->first_watched = first_watched, swimmer->wake = wake ? 1.0 : 0.0;
+    swimmer->nose_mass = nose_mass, swimmer->nose_drag = nose_drag,
+    swimmer->distributed_pressure = distributed_pressure;
+
+    const auto before = array_of<std::uint64_t>(stations, "nodes_before");
+    const std::size_t m = swimmer->stations = before.size();
+    swimmer->nodes_before.assign(before.span().begin(), before.span().end());
+    swimmer->at_station = sections_from(stations.attr("sections"), m);
+    swimmer->added2_slope = points(stations, "added2_slope", m);
+    swimmer->added3_slope = points(stations, "added3_slope", m);
+    swimmer->added_roll_slope = points(stations, "added_roll_slope", m);
+    swimmer->to_station = from_nose(stations.attr("points"), swimmer->grid.weight, n);
+    return swimmer;
+}
+
+// Rows (m, points) or (m, 3, points).
+template <std::size_t Parts>
+RowTable<Parts> table_from(const py::handle& object, const char* name, std::size_t rows)
+{
+    const Numbers numbers(object, name);
+    const std::size_t n = rows > 0 ? numbers.size() / (rows * Parts) : 0;
+    RowTable<Parts> table{blocks_of(n), {}};
+    table.lanes.resize(rows * table.blocks);
+    for (std::size_t row = 0; row < rows; ++row)
+        for (std::size_t block = 0; block < table.blocks; ++block)
+            for (std::size_t part = 0; part < Parts; ++part) {
+                std::array<double, width> lanes{};
+                for (std::size_t lane = 0; lane < width && width * block + lane < n; ++lane)
+                    lanes[lane] = numbers.data()[(row * Parts + part) * n + width * block + lane];
+                table.lanes[row * table.blocks + block][part] = Lanes::load(lanes.data());
+            }
+    return table;
+}
+
+inline std::shared_ptr<const LawTables> tables_from(const std::vector<std::size_t>& axis, const py::object& node,
+                                                    const py::object& angle, const py::object& moments,
+                                                    const py::object& station, const py::object& station_moments)
+{
+    auto tables = std::make_shared<LawTables>();
+    for (std::size_t row = 0; row < axis.size(); ++row) tables->rows_of[axis[row] == 0 ? 0 : 1].push_back(row);
+    tables->node = table_from<1>(node, "node", axis.size());
+    tables->angle = table_from<1>(angle, "angle", axis.size());
+    tables->moments = table_from<3>(moments, "moments", axis.size());
+    tables->station = table_from<1>(station, "station", axis.size());
+    tables->station_moments = table_from<3>(station_moments, "station_moments", axis.size());
+    return tables;
+}
+
+}  // namespace eel_core
