@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "eel_core/drag_kinks.hpp"
 
@@ -68,27 +69,30 @@ struct Panel {
     }
 };
 
-const Panel panels[] = {{two_panels(9, 7), 0}, {two_panels(5, 11), 5}, {two_panels(16, 8), 16}};
+std::vector<Panel> panels() { return {{two_panels(9, 7), 0}, {two_panels(5, 11), 5}, {two_panels(16, 8), 16}}; }
 
 struct Shape {
     const char* name;
     Function of;
 };
-const Shape shapes[] = {
-    {"linear", [](double s) { return s; }},
-    {"square", [](double s) { return -s * (1.0 + s); }},
-    {"exponential", [](double s) { return std::expm1(3.0 * s); }},
-    {"cubic", [](double s) { return s * s * s + 1e-3 * s; }},
-    {"steep", [](double s) { return std::tanh(4.0 * s); }},
-};
+std::vector<Shape> shapes()
+{
+    return {
+        {"linear", [](double s) { return s; }},
+        {"square", [](double s) { return -s * (1.0 + s); }},
+        {"exponential", [](double s) { return std::expm1(3.0 * s); }},
+        {"cubic", [](double s) { return s * s * s + 1e-3 * s; }},
+        {"steep", [](double s) { return std::tanh(4.0 * s); }},
+    };
+}
 const double zeros[] = {1e-9, 0.003, 0.2, 0.5, 0.77, 0.999, 1.0 - 1e-9};
 
 }  // namespace
 
 TEST(DragKinks, ExactSearchFindsTheZeroOfThePanelsPolynomial)
 {
-    for (const Panel& panel : panels)
-        for (const Shape& shape : shapes)
+    for (const Panel& panel : panels())
+        for (const Shape& shape : shapes())
             for (const double zero : zeros) {
                 const Function moved = [&](double s) { return shape.of(s - zero); };
                 const double found = panel.zero_of(moved);
@@ -104,14 +108,14 @@ TEST(DragKinks, ExactSearchFindsTheZeroOfThePanelsPolynomial)
 
 TEST(DragKinks, ExactSearchFindsTheZeroOfALine)
 {
-    for (const Panel& panel : panels)
+    for (const Panel& panel : panels())
         for (const double zero : zeros)
             EXPECT_NEAR(panel.zero_of([&](double s) { return s - zero; }), zero, 1e-12) << panel.count() << " nodes";
 }
 
 TEST(DragKinks, QuadraticThroughThreeNodesFindsTheZeroOfAParabola)
 {
-    for (const Panel& panel : panels)
+    for (const Panel& panel : panels())
         for (const double zero : {0.003, 0.2, 0.5, 0.77, 0.999}) {
             const Function parabola = [&](double s) { return (s - zero) * (1.0 + s); };
             EXPECT_NEAR(panel.zero_of(parabola, parabola(0.0), false), zero, 1e-12) << panel.count() << " nodes";
@@ -120,12 +124,12 @@ TEST(DragKinks, QuadraticThroughThreeNodesFindsTheZeroOfAParabola)
 
 TEST(DragKinks, ZeroBeforeThePanelCountsAsItsStart)
 {
-    for (const Panel& panel : panels) EXPECT_EQ(panel.zero_of([](double s) { return 0.3 + s; }, -1e-6), 0.0);
+    for (const Panel& panel : panels()) EXPECT_EQ(panel.zero_of([](double s) { return 0.3 + s; }, -1e-6), 0.0);
 }
 
 TEST(DragKinks, PanelsPolynomialHasValueAndSlopeOfAPolynomialOfItsDegree)
 {
-    for (const Panel& panel : panels) {
+    for (const Panel& panel : panels()) {
         const Row values = panel.values_of([](double s) { return 1.0 - 2.0 * s + 3.0 * s * s * s; });
         for (const double t : {0.01, 0.3, 0.6, 0.98}) {
             const auto [value, slope] = value_and_slope(panel.grid, values, panel.first, panel.count(), t);
