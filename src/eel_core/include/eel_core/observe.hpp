@@ -100,8 +100,8 @@ class Observer {
             const Lanes part = swimmer_.grid.weight[k] * swimmer_.sections[k].mass;
             mass += part, moment += part * work.position[k];
         }
-        const Vector3<double> center = head.parent((1.0 / total(mass)) * total_of(moment));
-        put(Vector3{y[0], y[1], y[2]} + center, at(Profiles::center_of_mass, sample));
+        const Vector3<double> centre = head.parent((1.0 / total(mass)) * total_of(moment));
+        put(Vector3{y[0], y[1], y[2]} + centre, at(Profiles::center_of_mass, sample));
     }
 
     void show_energies_and_closure(std::size_t sample, const Workspace<Space>& work) const
