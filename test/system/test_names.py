@@ -5,6 +5,7 @@ import re
 
 import pytest
 from eel_gaits.messages import law_to_message
+from eel_gaits.wording import shown
 from eel_viz.reading import read
 from swim_client import LIMIT, SwimClient
 
@@ -48,7 +49,7 @@ def test_names_are_only_names(start, fresh_domain, tmp_path, monkeypatch):
     swim = SwimClient(domain=fresh_domain, topics=("curvature",))
     for name in NAMES:
         swim.laws.publish(law_to_message(Law(Term(amplitude=(0.1,), envelope=(Ramp(0.0, 1.0, 1.0),)), name=name)))
-        swim.until(lambda name=name: f"law {name!r} taken on" in dynamics.output(), f"law {name!r}")
+        swim.until(lambda name=name: f"law {shown(name)} taken on" in dynamics.output(), f"law {name!r}")
     swim.until(lambda: swim.heard["/diagnostics"] and swim.diagnosis()[2]["law"] == NAMES[-1], "the last name")
     swim.laws.publish(CurvatureLaw(name=TOO_LONG))
     swim.until(lambda: "name must have at most 200 characters, got 1000000" in dynamics.output(), "the refusal")
@@ -60,10 +61,10 @@ def test_names_are_only_names(start, fresh_domain, tmp_path, monkeypatch):
         assert max(map(len, node.output().splitlines())) < 1000
 
     assert files_in(tmp_path) - before - {"visualiser-0.txt", "dynamics-1.txt"} == {os.path.join("a/b/c", "run.rrd")}
-    shown = [row[0] for row in read("run.rrd", entities.LOG)["text"]]
+    logged = [row[0] for row in read("run.rrd", entities.LOG)["text"]]
     for name in NAMES:
-        assert f"law {name!r} published"[:80] in {text[:80] for text in shown}, name
-    assert max(map(len, shown)) < 1000
+        assert f"law {name!r} published"[:80] in {text[:80] for text in logged}, name
+    assert max(map(len, logged)) < 1000
     told = [row[0] for row in read("run.rrd", entities.RUN)["text"]]
     assert told and max(map(len, told)) < 2000
     bare = [re.sub(r"\\.", "", text) for text in told]  # without what is escaped
