@@ -46,8 +46,6 @@ struct Components<Quaternion<T>> {
     }
 };
 
-inline Quaternion<Lanes> spread(const Quaternion<double>& q) { return {q.x, q.y, q.z, q.w}; }
-
 // The quaternion of a rotation by a vector [rad], however large.
 inline Quaternion<double> rotation_by(const Vector3<double>& vector)
 {
