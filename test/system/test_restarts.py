@@ -41,13 +41,18 @@ def times(recording) -> np.ndarray:
         return np.zeros(0)
 
 
-def has_all(recording) -> bool:
-    """Whether samples, body and law are in the file: they come in any order, the latched ones up to seconds late."""
+def missing(recording) -> list[str]:
+    """What is not in the file yet: samples, body and law come in any order, the latched ones up to seconds late."""
     try:
         logged = [list(row) for row in read(so_far(recording), entities.LOG)["text"]]
-        return times(recording).size > 0 and ["law 'falling' published"] in logged and bool(masses(recording).size)
-    except ValueError:
-        return False
+        found = {
+            "samples": times(recording).size > 0,
+            "law": ["law 'falling' published"] in logged,
+            "body": masses(recording).size > 0,
+        }
+    except ValueError as error:
+        return [str(error)]
+    return [name for name, there in found.items() if not there]
 
 
 def masses(recording) -> np.ndarray:
@@ -91,8 +96,8 @@ def test_nodes_die_and_come_back(start, fresh_domain, tmp_path):
 
     def recorded(name):
         deadline = time.monotonic() + LIMIT
-        while not so_far(tmp_path / name).exists() or not has_all(tmp_path / name):
-            assert time.monotonic() < deadline, f"samples, body and law not in {name}"
+        while not so_far(tmp_path / name).exists() or missing(tmp_path / name):
+            assert time.monotonic() < deadline, f"not in {name}: {missing(tmp_path / name)}"
             swim.spin(0.3)
 
     gait = start("gait_generator")
@@ -139,7 +144,7 @@ def test_nodes_die_and_come_back(start, fresh_domain, tmp_path):
     runs = [times(tmp_path / name) for name in ("second.rrd", "second-2.rrd", "second-3.rrd", "late.rrd")]
     assert runs[0][0] > 2.0 and runs[1][0] < 0.3 and runs[2][0] < 2.0 and runs[3][0] > 0.1
     for name in ("second.rrd", "second-3.rrd", "late.rrd"):
-        assert masses(tmp_path / name).size == 1 and has_all(tmp_path / name), name
+        assert masses(tmp_path / name).size == 1 and not missing(tmp_path / name), name
 
 
 @pytest.mark.fault(

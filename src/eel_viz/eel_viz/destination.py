@@ -6,7 +6,6 @@ from collections.abc import Callable
 
 import rerun as rr
 import rerun.blueprint as rrb
-import rerun_bindings
 
 from eel_viz.blueprint import arrangement
 from eel_viz.loggers import Rates
@@ -88,8 +87,3 @@ def close_stream(stream: rr.RecordingStream) -> None:
     with contextlib.suppress(RuntimeError):  # the viewer has gone; a file is complete all the same
         stream.flush(timeout_sec=CLOSING_LIMIT)
     stream.disconnect()
-
-
-def forget_ended_streams() -> None:
-    """Give back the memory of streams that nobody holds any more: rerun keeps megabytes of each."""
-    rerun_bindings.flush_and_cleanup_orphaned_recordings()

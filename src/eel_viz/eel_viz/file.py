@@ -10,12 +10,13 @@ from eel_gaits.output_file import Draft, NotWritten
 from eel_gaits.wording import shown
 
 from eel_viz.destination import Destination, Say
-from eel_viz.flow import why_not_written
+from eel_viz.flow import obstacle_to_growth, why_not_written
 from eel_viz.frames import cut_to_whole_messages, is_complete
 from eel_viz.loggers import Rates
 from eel_viz.settings import Settings
 
 FILE_TICK = 0.6  # s: a process that is killed loses no more; each batch of an entity costs its file some 700 bytes
+ROOM = 2**18  # bytes that must be free at the start: rerun writes 170 kB at once, and may wait for ever where that fails
 REMINDER = 30.0  # s between two times at which it is said that nothing is saved
 
 
@@ -61,12 +62,7 @@ class File(Destination):
         try:
             stream = super().open(run, name)
         except RuntimeError:  # the sink's first bytes found no room
-            draft = self._drafts.pop(run)
-            reason = why_not_written(draft.path)
-            draft.discard()
-            if not self._keep:
-                raise NotWritten(f"recording {shown(str(draft.name))} cannot be written: {reason}") from None
-            self._refuse(run, draft.name, reason)
+            self._give_up(run, why_not_written(self._drafts[run].path))
             return None
         if stream is not None:
             self._streams[run] = stream
@@ -77,22 +73,25 @@ class File(Destination):
         super().end(stream)
         if self._dropped:
             return
-        draft = self._draft_of(stream)
+        draft = self._without(stream)
         if self.settings.index and not is_complete(draft.path):
-            self.break_off(stream)
+            self._keep_what_there_is(draft, why_not_written(draft.path))
             return
         try:
             draft.complete()
         except OSError as error:
-            self.break_off(stream, error.strerror or str(error))
+            self._keep_what_there_is(draft, error.strerror or str(error))
 
-    def break_off(self, stream: rr.RecordingStream, reason: str = "") -> None:
+    def break_off(self, stream: rr.RecordingStream) -> None:
         """The stream's file cannot be written any more: keep what there is of a run that cannot be had again."""
-        if self._dropped:
-            return
-        draft = self._draft_of(stream)
-        path, reason = draft.path, reason or why_not_written(draft.path)
+        if not self._dropped:
+            draft = self._without(stream)
+            self._keep_what_there_is(draft, why_not_written(draft.path))
+
+    def _keep_what_there_is(self, draft: Draft, reason: str) -> None:
+        path = draft.path
         if not self._keep:
+            draft.discard()
             self.drop()
             raise NotWritten(f"recording {shown(str(draft.name))} cannot be written: {reason}")
         self._incomplete = True
@@ -109,8 +108,11 @@ class File(Destination):
             if self._dropped:
                 draft.discard()
 
-    def _draft_of(self, stream: rr.RecordingStream) -> Draft:
-        return next(self._drafts[run] for run, each in self._streams.items() if each is stream)
+    def _without(self, stream: rr.RecordingStream) -> Draft:
+        """The stream's draft; neither is held any longer."""
+        run = next(run for run, each in self._streams.items() if each is stream)
+        del self._streams[run]
+        return self._drafts.pop(run)
 
     def _batches(self) -> rr.ChunkBatcherConfig:
         return rr.ChunkBatcherConfig(flush_tick=FILE_TICK)
@@ -122,11 +124,23 @@ class File(Destination):
         except OSError as error:
             self._refuse(run, path, error.strerror or str(error))
             return None
+        self._drafts[run] = draft
+        problem = obstacle_to_growth(draft.path, ROOM)
+        if problem:
+            self._give_up(run, problem)
+            return None
         if path.exists():
             self.warn(f"{path} is there already and is replaced by the new recording when that is complete")
         self.say(f"saving to {path}; until it is complete, to {draft.path.name}")
-        self._drafts[run] = draft
         return rr.FileSink(str(draft.path), write_footer=self.settings.index)
+
+    def _give_up(self, run: int, reason: str) -> None:
+        """The run's draft has no room: remove it, and raise or say why."""
+        draft = self._drafts.pop(run)
+        draft.discard()
+        if not self._keep:
+            raise NotWritten(f"recording {shown(str(draft.name))} cannot be written: {reason}")
+        self._refuse(run, draft.name, reason)
 
     def _refuse(self, run: int, path: pathlib.Path, reason: str) -> None:
         """Raise, or say that nothing is saved: at once for each run, and then as a reminder."""

@@ -96,16 +96,23 @@ class Flow:
         self._destination.break_off(self._stream)
 
 
-def why_not_written(path: pathlib.Path) -> str:
-    """The reason, found by trying; what was tried is taken back."""
+def obstacle_to_growth(path: pathlib.Path, size: int) -> str:
+    """Why the file cannot take `size` more bytes, found by trying; empty if it can. What was tried is taken back."""
     try:
-        size = path.stat().st_size
-        with path.open("ab", buffering=0) as file:
-            written = file.write(bytes(65536))
-            file.truncate(size)
+        before = path.stat().st_size
+        with path.open("r+b") as file:
+            try:
+                os.posix_fallocate(file.fileno(), before, size)
+            finally:
+                file.truncate(before)
     except OSError as error:
         return error.strerror or str(error)
-    return "the disk is full" if written < 65536 else "an earlier attempt failed"
+    return ""
+
+
+def why_not_written(path: pathlib.Path) -> str:
+    """The reason why the file could not be written a moment ago."""
+    return obstacle_to_growth(path, 65536) or "an earlier attempt failed"
 
 
 def abandon(blocked: rr.RecordingStream | threading.Thread) -> None:

@@ -9,7 +9,7 @@ import time
 from collections import deque
 from collections.abc import Callable
 
-from eel_viz.destination import Destination, Say, forget_ended_streams
+from eel_viz.destination import Destination, Say
 from eel_viz.flow import Flow
 from eel_viz.loggers import Loggers
 from eel_viz.messages import Body, Status
@@ -201,11 +201,8 @@ class Runs:
                 getattr(loggers.other, method)(*values)
 
     def _close_before(self, number: int) -> None:
-        old = [each for each in self._runs if each < number]
-        for each in old:
+        for each in [each for each in self._runs if each < number]:
             self._runs.pop(each).close()
-        if old:
-            forget_ended_streams()
 
     def _disorder(self, topic: str) -> bool:
         """Whether stamps go back because several publishers send on `topic`, rather than by a reset."""
