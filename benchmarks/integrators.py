@@ -102,10 +102,10 @@ def _begin(scene, kinks="all") -> tuple[Rate, np.ndarray]:
     summed over the nodes as they are."""
     accuracy = Accuracy(name="study", resolution=RESOLUTION, kinks=kinks)
     simulation = Simulation(accuracy=accuracy, scene=scene, law=falling())
-    instant, drive = eel_core.Instant(simulation.table.core), simulation.drive
+    instant, law = eel_core.Instant(simulation.discretisation.swimmer), simulation.tabulated_law
 
     def rate(time, y):
-        return np.array(instant.rate(drive, STILL, time, y))
+        return np.array(instant.rate(law, STILL, time, y))
 
     return rate, simulation.state
 

@@ -19,8 +19,8 @@ LEAN = {"ledger": False, "internal_wrench": False}
 def evaluations(simulation: Simulation) -> Callable[[], None]:
     """Evaluates the head's dynamics COUNT times in the simulation's present state, and in its scene's dimensions."""
     kind = eel_core.PlanarInstant if simulation.scene.planar else eel_core.Instant
-    instant = kind(simulation.table.core)
-    return partial(instant.repeat_rate, simulation.drive, simulation.time, simulation.state, COUNT)
+    instant = kind(simulation.discretisation.swimmer)
+    return partial(instant.repeat_rate, simulation.tabulated_law, simulation.time, simulation.state, COUNT)
 
 
 def plane():

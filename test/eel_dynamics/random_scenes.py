@@ -88,8 +88,8 @@ def anywhere(count, seed):
             friction=str(rng.choice(["printed", "laminar", "blended", "none"])),
             added_mass=str(rng.choice(["corrected", "printed"])),
         )
-        thrown = index % 3 == 0
-        twist = np.r_[rng.normal(size=3) * between(1e-3, 100.0), rng.normal(size=3) * between(1e-3, 50.0)] * thrown
+        fast = index % 3 == 0
+        twist = np.r_[rng.normal(size=3) * between(1e-3, 100.0), rng.normal(size=3) * between(1e-3, 50.0)] * fast
         law = Law(*(wave(axis, body.length, period) for axis in axes))
         return law, body, scene, settings(period), twist * (0, 0, 1, 1, 1, 0) if planar else twist
 
@@ -121,9 +121,9 @@ def robots_anywhere(count, seed):
             friction=str(rng.choice(["printed", "laminar", "blended", "none"])),
             added_mass=str(rng.choice(["corrected", "printed"])),
         )
-        thrown = index % 3 == 0
+        fast = index % 3 == 0
         twist = np.r_[rng.normal(size=3) * between(1e-3, 100.0), rng.normal(size=3) * between(1e-3, 50.0)]
-        return law, scene, twist * thrown
+        return law, scene, twist * fast
 
     laws, scenes, twists = zip(*(swimmer(index) for index in range(count)), strict=True)
     return {"laws": laws, "scenes": scenes, "twists": np.array(twists)}

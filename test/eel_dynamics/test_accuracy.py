@@ -12,7 +12,7 @@ import pytest
 from eel_dynamics.accuracy import table
 from eel_dynamics.budget import Budget
 from eel_dynamics.calibration import REFERENCE, Case, cases, random_law, swim
-from eel_dynamics.errors import errors
+from eel_dynamics.error_estimate import relative_errors
 from eel_dynamics.tradeoff.delivered import CLOSE, FAR, trials_of
 from eel_gaits.law import Law, Term
 
@@ -73,7 +73,7 @@ def test_fixed_steps_deliver_the_target_too(name, target):
     run = swim(case, f"{target:g}, fixed steps")
     assert run.accuracy.method == "classical"
     assert run.evaluations == pytest.approx(4 * run.steps, rel=0.02)
-    assert errors(run, swim(case, REFERENCE)).worst <= target
+    assert relative_errors(run, swim(case, REFERENCE)).worst <= target
 
 
 def test_a_law_that_leaves_the_plane_gets_settings_for_it():
@@ -88,8 +88,8 @@ def test_a_law_that_leaves_the_plane_gets_settings_for_it():
     assert swimmer.accuracy == other.accuracy and swimmer.evaluations[0] == steps
     swimmer.advance(1.0)
     assert swimmer.evaluations[0] > steps and np.all(np.isfinite(swimmer.state))
-    thrown = swimming(law=flat, twist=(0.0, 0.1, 0.0, 0.0, 0.0, 0.0))
-    assert thrown.accuracy == other.accuracy
+    moving = swimming(law=flat, twist=(0.0, 0.1, 0.0, 0.0, 0.0, 0.0))
+    assert moving.accuracy == other.accuracy
 
 
 def test_a_target_beyond_the_table_says_what_is_possible():

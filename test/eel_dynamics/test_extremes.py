@@ -5,8 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from draws import few, numbers
-from eel_dynamics.errors import errors
-from eel_dynamics.guard import failure_of
+from eel_dynamics.error_estimate import relative_errors
+from eel_dynamics.sample_check import first_bad_sample
 from hypothesis import given
 from hypothesis import strategies as st
 from random_scenes import fixed, pointed
@@ -19,8 +19,8 @@ from eel_gaits import Law, Ramp, Term, falling, helix, still, straight
 def test_steps_are_counted_over_the_run_however_often_it_is_sampled(ledger, monkeypatch):
     """A run of 40 steps to spare and 20 per simulated second, which needs more, is stopped at the same place by 3 as by
     3,000 samples."""
-    monkeypatch.setattr("eel_dynamics.bounds.SPARE_STEPS", 40.0)
-    monkeypatch.setattr("eel_dynamics.bounds.LEAST_SPARE", 40.0)
+    monkeypatch.setattr("eel_dynamics.step_bounds.SPARE_STEPS", 40.0)
+    monkeypatch.setattr("eel_dynamics.step_bounds.LEAST_SPARE", 40.0)
     stopped = []
     for period in (1.0, 0.1, 0.001):
         with pytest.raises(
@@ -43,7 +43,7 @@ def test_steps_are_counted_over_the_run_however_often_it_is_sampled(ledger, monk
     st.tuples(*[numbers(-300.0, 300.0)] * 3, *[numbers(-100.0, 100.0)] * 3),
 )
 def test_only_the_documented_exception(gait, period, step, viscosity, twist):
-    """Fixed steps of any length, thrown in at any speed."""
+    """Fixed steps of any length, initial velocities of any size."""
     try:
         run = simulate(
             gait(period=period), 1.0, accuracy=fixed(step), scene=Scene(viscosity=viscosity), twist=twist, stations=5
@@ -65,7 +65,7 @@ def test_a_fixed_step_that_is_too_long_is_told(step):
 
 @pytest.mark.parametrize("speed, told", [(1.0, "energy from nowhere"), (20.0, "momentum is not finite")])
 def test_fixed_steps_of_a_target_that_do_not_do_are_told(speed, told):
-    """The number of them was measured with gaits from rest: it does not hold one who is thrown in, and spins."""
+    """The number of them was measured with gaits from rest: it does not hold for a large initial velocity and spin."""
     with pytest.raises(SimulationStopped, match=f"{told}.*take the accuracy without fixed steps"):
         simulate(straight(), 1.0, accuracy="draft, fixed steps", twist=(0.0, 0.0, speed, 0.0, speed, 0.0))
 
@@ -82,10 +82,10 @@ def test_what_is_not_finite_is_found_with_its_sample():
     arrays["position"][3, 1] = np.nan
     whole = np.concatenate([array.ravel() for array in arrays.values()])
     out, works = SimpleNamespace(_asdict=lambda: arrays | {"whole": whole}, whole=whole, **arrays), np.zeros((5, 4))
-    sample, quantity, value = failure_of(out, works, 5, 2.0, np.inf)
+    sample, quantity, value = first_bad_sample(out, works, 5, 2.0, np.inf)
     assert (sample, quantity) == (3, "position is not finite") and np.isnan(value)
-    assert failure_of(out, works, 3, 2.0, 0.0) is None
-    sample, quantity, value = failure_of(out, works, 5, 0.5, 0.0)
+    assert first_bad_sample(out, works, 3, 2.0, 0.0) is None
+    sample, quantity, value = first_bad_sample(out, works, 5, 0.5, 0.0)
     assert (sample, value) == (0, pytest.approx(1.5 / 2.0)) and "energy from nowhere" in quantity
 
 
@@ -173,7 +173,7 @@ def test_a_light_body_in_strong_drag_does_not_collapse_the_steps():
     assert np.abs(run.energy.residual).max() < 1e-2 * np.abs(run.energy.actuator_work).max()
 
 
-def test_one_who_is_thrown_in_keeps_the_target_without_a_ledger_too():
+def test_a_large_initial_velocity_keeps_the_target_without_a_ledger_too():
     """The errors of Adams' steps add up in a spin: the pair of Dormand and Prince takes over."""
     spins = [(2.0, 15.0), (-100.0, 60.0), (-10.0, 600.0), (-100.0, 0.1)]  # m/s, rad/s
     twists = np.array([[*np.full(3, spin / np.sqrt(3.0)), speed, 0.0, 0.0] for speed, spin in spins])
@@ -224,7 +224,9 @@ def test_splines_of_many_knots_keep_the_target(knots, seed):
     amplitude = tuple(5.0 * np.random.default_rng(seed).standard_normal(knots))
     term = Term(amplitude=amplitude, knots=tuple(np.linspace(0.0, 1.0, knots)), period=1.0, envelope=(Ramp(0, 1, 1),))
     run = simulate(Law(term), 5.0, accuracy=1e-4)
-    found = errors(run, simulate(Law(term), 5.0, accuracy=Accuracy(name="fine", resolution=900.0, tolerance=1e-11)))
+    found = relative_errors(
+        run, simulate(Law(term), 5.0, accuracy=Accuracy(name="fine", resolution=900.0, tolerance=1e-11))
+    )
     assert found.worst < 1e-4
 
 

@@ -38,7 +38,7 @@ def comparison():
 def errors():
     """Of one evaluation as measured; in time made up, for the drawing and the page."""
     steps = np.array([0.01, 0.02, 0.04])
-    made_up = {drag: orders.Errors(steps, steps**4, 3.0 * steps**4) for drag in (False, True)}
+    made_up = {drag: orders.ConvergenceErrors(steps, steps**4, 3.0 * steps**4) for drag in (False, True)}
     return {"in_space": {drag: orders.in_space(drag) for drag in (False, True)}, "in_time": made_up}
 
 
@@ -140,7 +140,7 @@ def test_measured_orders(errors):
     assert smooth.order("motion", fine) < -5.5 and smooth.order("torque", fine) < -5.5  # the Magnus series has order 6
     assert kinked.motion[-1] < 1e-11  # the kinks of V|V| are located
     steps = np.array([0.01, 0.02, 0.04])
-    assert orders.Errors(steps, 7.0 * steps**3, steps**5).order("motion") == pytest.approx(3.0)
+    assert orders.ConvergenceErrors(steps, 7.0 * steps**3, steps**5).order("motion") == pytest.approx(3.0)
 
 
 def test_order_in_time_is_that_of_the_method():

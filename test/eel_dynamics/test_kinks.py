@@ -16,10 +16,10 @@ def drag_powers(friction: str, kinks: str) -> np.ndarray:
     scene, law = Scene(friction=friction), falling()
     swimmer = Simulation(scene=scene, law=law, accuracy=Accuracy(name="some", resolution=13.0, tolerance=1e-4))
     other = Simulation(scene=scene, law=law, accuracy=Accuracy(name="some", resolution=13.0, kinks=kinks))
-    instant, powers = eel_core.Instant(other.table.core), []
+    instant, powers = eel_core.Instant(other.discretisation.swimmer), []
     for time in np.arange(2.0, 4.0, 0.1):
         swimmer.advance(time)
-        powers.append(instant.drag_powers(other.drive, time, swimmer.observe().twist))
+        powers.append(instant.drag_powers(other.tabulated_law, time, swimmer.observe().twist))
     return np.array(powers)
 
 

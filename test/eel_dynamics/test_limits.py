@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from eel_dynamics.limits import Limits, cross_axes
+from eel_dynamics.model_limits import ModelLimits, cross_axes
 from eel_dynamics.watch import Watch
 from eel_gaits.law import Law, Term
 
@@ -42,7 +42,7 @@ def test_a_still_swimmer_has_nothing_to_be_warned_of():
 def test_a_bend_is_held_against_the_half_axis_that_lies_in_its_plane(axis, half):
     widest = float(np.max(half(np.linspace(0.0, 1.0, 51))))
     for share, found in ((0.98, False), (1.02, True)):
-        warnings = Limits(ROBOT, Scene(), np.linspace(0.0, 1.0, 51)).of_bending(
+        warnings = ModelLimits(ROBOT, Scene(), np.linspace(0.0, 1.0, 51)).of_bending(
             np.array([2.0]), np.full((1, 51, 1), share / widest) * (np.array([0.0, axis == "pitch", axis == "yaw"]))
         )
         assert bool(warnings) == found
@@ -75,7 +75,7 @@ def circle(x, turns, rise=0.0):
 def test_the_body_touches_itself_where_it_closes_a_ring(turns, rise, touches):
     """In a ring of more than a turn nose and tail meet; a helix that rises by more than its height passes over."""
     x = np.linspace(0.0, 1.0, 101)
-    text = Limits(ROBOT, Scene(), x).of_contact(np.array([3.0]), *circle(x, turns, rise))
+    text = ModelLimits(ROBOT, Scene(), x).of_contact(np.array([3.0]), *circle(x, turns, rise))
     assert bool(text) == touches
     assert not touches or ("overlap at t = 3 s" in text and "touches itself" in text)
 

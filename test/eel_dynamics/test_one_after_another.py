@@ -16,7 +16,7 @@ SWIMS = (
     {"law": straight(), "duration": 1.0, "stations": 7},
     {"law": straight(), "duration": 1.0, "stations": [0.0, 0.3]},
     {"law": helix(), "duration": 1.0, "position": (1.0, 2.0, 3.0), "twist": (0.0, 0.0, 1.0, -0.5, 0.0, 0.1)},
-    {"law": straight(), "duration": 0.5, "twist": (40.0, -30.0, 20.0, 9.0, -8.0, 7.0)},  # thrown: other settings
+    {"law": straight(), "duration": 0.5, "twist": (40.0, -30.0, 20.0, 9.0, -8.0, 7.0)},  # fast: other settings
     {"law": SHORT_WAVES, "duration": 0.5},  # another grid
     {"law": turning(), "duration": 1.0, "load": True},
     {"law": turning(), "duration": 1.0, "scene": Scene(friction="laminar", current=(0.1, 0.0, 0.0))},

@@ -95,9 +95,9 @@ def test_the_limit_can_be_raised_and_lowered():
 
 
 def test_what_costs_more_on_the_way_stops_with_what_to_change(monkeypatch):
-    """One who is thrown in at a speed that takes a million steps per simulated second."""
-    monkeypatch.setattr("eel_dynamics.bounds.SPARE_STEPS", 500.0)
-    monkeypatch.setattr("eel_dynamics.bounds.LEAST_SPARE", 500.0)
+    """An initial velocity that takes a million steps per simulated second."""
+    monkeypatch.setattr("eel_dynamics.step_bounds.SPARE_STEPS", 500.0)
+    monkeypatch.setattr("eel_dynamics.step_bounds.LEAST_SPARE", 500.0)
     with pytest.raises(SimulationStopped, match=r"coarser accuracy, .* or raise most_evaluations") as caught:
         simulate(straight(), 1.0, twist=(0.0, 0.0, 1e5, 0.0, 0.0, 0.0), sample_period=1e-4)
     assert caught.value.run.time[-1] == caught.value.time < 0.1

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from eel_dynamics.inertia import condition_of, straight_inertia
-from eel_dynamics.sections import nose_of
+from eel_dynamics.section_data import nose_of
 from eel_dynamics.stability import command, condition, drift, plane
 from eel_dynamics.stability.explicit import inertias, treat
 from eel_dynamics.stability.maps import ACCURATE, INACCURATE, STOPPED, maps_of, measure
@@ -65,7 +65,7 @@ def test_a_push_out_of_the_plane_grows_by_the_model_not_by_its_numbers():
 def test_the_condition_of_the_matrix_is_that_of_the_inertia_that_is_solved():
     swimmer = Simulation(Body.boyer2010(), Scene(), 1e-4, law=falling())
     at_rest = condition.inertia_at(swimmer, 0.0)  # the gait starts from the straight shape
-    table, nose_mass = swimmer.table, nose_of(swimmer.body, swimmer.scene)[0]
+    table, nose_mass = swimmer.discretisation, nose_of(swimmer.body, swimmer.scene)[0]
     straight = straight_inertia(table.grid, table.sections, nose_mass, 1.0)
     assert at_rest == pytest.approx(straight, rel=1e-9, abs=1e-12)
     bent = condition.inertia_at(swimmer, 5.0)

@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from eel_dynamics.errors import Errors
+from eel_dynamics.error_estimate import ErrorEstimate
 from eel_dynamics.tradeoff import measuring, models, table
 from eel_dynamics.tradeoff.command import main
 from eel_dynamics.tradeoff.delivered import Trial, scatter_of
@@ -153,9 +153,9 @@ def test_scatter_is_about_the_mean_of_each_target(next_luck):
     for name, decades in zip("abcd", luck, strict=True):
         case = SimpleNamespace(name=name, scene=scene, plane=False)
         for target, below in ((1e-3, 2.0 + decades), (1e-4, 1.0 + next_luck * decades)):
-            error = Errors(target / 10.0**below, None)
+            error = ErrorEstimate(target / 10.0**below, None)
             trials.append(Trial(case, target, error, error, coarse=1.0))
-        trials.append(Trial(case, 1e-2, Errors(1e-9, None), error, coarse=1e-3))  # waived: does not count
+        trials.append(Trial(case, 1e-2, ErrorEstimate(1e-9, None), error, coarse=1e-3))  # waived: does not count
     found = scatter_of(trials)
     both = np.concatenate((luck, next_luck * luck))
     assert found.decades == pytest.approx(np.sqrt(np.sum(both**2) / 6.0))

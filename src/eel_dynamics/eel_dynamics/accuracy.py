@@ -5,8 +5,8 @@ and of the torque field by its own maximum. What delivers it was measured, and s
 `calibration.calibrate` writes: apart for scenes with drag and without (free motion in space is sensitive: errors grow),
 with a friction law that has a turbulent part (the printed one jumps) and without, for runs with the internal wrench or
 the ledger and without, and for motions that stay in a plane (smoother: they need fewer steps) and others. It holds for
-a swim of usual effort: one that is harder takes the settings of a finer target, one that is easier those of a coarser
-(`effort`).
+a swim of nominal difficulty (`difficulty.py`); a harder one takes the settings of a finer target, an easier one those
+of a coarser target.
 """
 
 import csv
@@ -19,8 +19,8 @@ import numpy as np
 from eel_gaits.quantity import is_finite
 from eel_gaits.wording import shown
 
-from .effort import USUAL, Effort
-from .sections import WATCHED
+from .difficulty import NOMINAL, Difficulty
+from .section_data import WATCHED
 
 
 class Key(NamedTuple):
@@ -46,7 +46,7 @@ LOOSEST_TOLERANCE = 1e-4  # of the pair, and of what an estimate compares with: 
 # and a light body that the water stops has steps by it alone
 LOOSEST = {"adams": 1e-2, "dormand_prince": LOOSEST_TOLERANCE}
 LOOSENED = 0.8  # power of what may be more than a row's target, that its tolerance grows with: errors may grow faster
-LEAST_EASED = 3e-8  # target: beyond, errors are of the places of kinks and of round-off, which gentle swims have too
+LEAST_SCALED = 3e-8  # target: beyond, errors are of the places of kinks and of round-off, which gentle swims have too
 MORE_POINTS, MORE_STEPS = 0.2, 0.25  # powers that points and fixed steps grow with beyond the finest row
 BEST = {"resolution": 200.0, "tolerance": 1e-11}  # of the preset reference, where its target cannot be promised
 ANY = {"resolution": 30.0}  # until the scene is known
@@ -114,14 +114,14 @@ class Accuracy:
         """Points per body length for a shape of `waves` waves on the body; one wave or less needs `resolution`."""
         return min(1000.0, (self.resolution + SPARED) * max(1.0, waves) ** WAVES_POWER - SPARED)
 
-    def in_scene(self, scene, plane: bool = False, effort: Effort = USUAL) -> "Accuracy":
-        """The settings that deliver the target in `scene` for a swim of such `effort`, for a motion that stays in a
-        `plane` or for any; the same where they were given one by one."""
+    def in_scene(self, scene, plane: bool = False, difficulty: Difficulty = NOMINAL) -> "Accuracy":
+        """The settings that deliver the target in `scene` for a swim of such `difficulty`, for a motion that stays in
+        a `plane` or for any; the same where they were given one by one."""
         if self.target is None:
             return self
         key = key_of(scene, plane)
-        ease = effort.ease(key.drag, key.torque, key.plane)
-        return _from_target(self.name, self.target, key, self.fixed is not None, ease)
+        target_scale = difficulty.target_scale(key.drag, key.torque, key.plane)
+        return _from_target(self.name, self.target, key, self.fixed is not None, target_scale)
 
     def for_waves(self, waves: float) -> "Accuracy":
         """The same target for a shape of `waves` waves on the body, where those are more than the laws of the table
@@ -130,9 +130,9 @@ class Accuracy:
             return self
         return replace(self, tolerance=self.tolerance * max(BENT_LEAST, (BENT / waves) ** BENT_POWER))
 
-    def of_violence(self) -> "Accuracy":
-        """The same target for one who is thrown in: the table was measured with gaits that start from rest, and the
-        errors of Adams' steps add up to ten times more in some turns of a spin. The pair's do not."""
+    def for_fast_start(self) -> "Accuracy":
+        """The same target for a large initial velocity. The table was measured with gaits that start from rest. In a
+        fast spin the errors of Adams' steps add up to ten times more; those of the embedded pair do not."""
         if self.target is None:
             return self
         exact = replace(self, kinks="all")
@@ -226,7 +226,7 @@ def table() -> dict[Key, tuple[dict, ...]]:
 
 
 @cache
-def _from_target(name: str, target: float, key: Key, fixed: bool, ease: float) -> Accuracy:
+def _from_target(name: str, target: float, key: Key, fixed: bool, target_scale: float) -> Accuracy:
     rows = [row for row in table()[key] if not fixed or row["fixed"] is not None]
     if rows[-1]["target"] > target * (1.0 + 1e-9):
         if name == "reference":
@@ -236,14 +236,14 @@ def _from_target(name: str, target: float, key: Key, fixed: bool, ease: float) -
         raise ValueError(
             f"accuracy {name} cannot be had {drag}: the finest that was measured to be delivered is {finest:g}"
         )
-    ease = min(ease, 1.0) if target < LEAST_EASED else ease
-    fitting = [row for row in rows if row["target"] <= target * ease * (1.0 + 1e-9)]
+    target_scale = min(target_scale, 1.0) if target < LEAST_SCALED else target_scale
+    fitting = [row for row in rows if row["target"] <= target * target_scale * (1.0 + 1e-9)]
     row = fitting[0] if fitting else rows[-1]
     coarser = rows[max(0, len(rows) - len(fitting) - 1)]
-    return _eased(row, coarser, target * ease / row["target"], fixed, name=name, target=target)
+    return _scaled(row, coarser, target * target_scale / row["target"], fixed, name=name, target=target)
 
 
-def _eased(row: dict, coarser: dict, by: float, fixed: bool, **named) -> Accuracy:
+def _scaled(row: dict, coarser: dict, by: float, fixed: bool, **named) -> Accuracy:
     """The settings of a `row` of the table for `by` times its target, no looser than those of the `coarser` row; finer
     ones, of the finest row, if that is less than 1."""
     resolution = min(1000.0, row["resolution"] * max(1.0, by**-MORE_POINTS))

@@ -11,8 +11,8 @@ from functools import cached_property
 
 import numpy as np
 
+from .averaging_window import AveragingWindow
 from .friction_power import drag_powers
-from .window import Window
 
 GRAVITY = 9.80665  # m/s^2, standard
 AT_REST = 1e-9  # of the body's length in a period: slower is round-off, and no motion
@@ -23,7 +23,7 @@ class Analysis:
     definition; None: undefined. Speeds and paths are over the water, powers into body and water. SI units."""
 
     def __init__(self, run, periods: int | None = None):
-        self.run, self.window = run, Window(run, periods)
+        self.run, self.window = run, AveragingWindow(run, periods)
 
     # -- motion
 

@@ -4,8 +4,8 @@ import math
 from dataclasses import replace
 from pathlib import Path
 
+from .axes import turn_quaternion, turn_vector
 from .body import Body
-from .frames import turn_quaternion, turn_vector
 from .parameters import DynamicsParameters
 from .scene import Scene
 from .simulation import Simulation

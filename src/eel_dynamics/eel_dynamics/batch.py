@@ -23,7 +23,7 @@ from .arguments import checked_stations
 from .body import Body
 from .broadcast import swimmers_of
 from .energy import EnergyLedger
-from .profiles import Profiles, profiles_of
+from .observations import Observations, empty_observations
 from .run import Run, check_memory, checked_times, run_of
 from .scene import Scene
 from .simulation import Simulation
@@ -146,7 +146,9 @@ def simulate_batch(
         except (SimulationStopped, ValueError) as error:
             errors[index] = _stopped_at_start(error)
             return
-        one = profiles_of(len(times), len(x[index]), wrench[index], load) if any(wrench) > wrench[index] else None
+        one = (
+            empty_observations(len(times), len(x[index]), wrench[index], load) if any(wrench) > wrench[index] else None
+        )
         into = _of_one(out, index) if one is None else one
         samples[index], errors[index] = simulation.record_into(times, into, works[index], wrench[index], load)
         if one is not None:
@@ -213,17 +215,17 @@ def _stopped_at_start(error: Exception) -> SimulationStopped:
     return SimulationStopped(0.0, str(error), np.nan, "take a gentler law, or start slower")
 
 
-def _space(count: int, samples: int, stations: int, wrench: bool, load: bool) -> Profiles:
-    """Profiles with a first axis for the swimmers. `ValueError` where they would not fit into memory."""
+def _space(count: int, samples: int, stations: int, wrench: bool, load: bool) -> Observations:
+    """Space for observations with a first axis for the swimmers. `ValueError` where they would not fit into memory."""
     check_memory(count, samples, stations, wrench, load)
-    return profiles_of(samples, stations, wrench, load, (count,))
+    return empty_observations(samples, stations, wrench, load, (count,))
 
 
-def _of_one(out: Profiles, index: int) -> Profiles:
-    return Profiles(*(array[index] for array in out))
+def _of_one(out: Observations, index: int) -> Observations:
+    return Observations(*(array[index] for array in out))
 
 
-def _copy(one: Profiles, out: Profiles, index: int):
+def _copy(one: Observations, out: Observations, index: int):
     """The profiles that `one` has, which was not asked for all of them, into those of a batch."""
     for there, here in zip(one[:-1], out[:-1], strict=True):
         here[index, : len(there)] = there

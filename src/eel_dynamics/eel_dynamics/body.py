@@ -14,7 +14,9 @@ from eel_gaits.wording import shown
 
 from .arguments import checked_instance, checked_number, checked_row
 from .body_file import columns_of
-from .profile import ArrayProfile, FunctionProfile
+from .half_axis import ArrayHalfAxis, FunctionHalfAxis
+from .panels import panels_of
+from .quadrature import Grid
 
 PANEL_OF_NOSE = 0.05  # of the length, where a body names no kinks
 LONGEST = 100.0  # m, of a body from a file; one that is longer may be in mm
@@ -69,9 +71,11 @@ class Body:
         self.panel_ends = (*(self.kinks or (PANEL_OF_NOSE * self.length,)), self.length)
         bounds = (0.0, *self.panel_ends)
         kind = (
-            FunctionProfile
+            FunctionHalfAxis
             if x is None
-            else (lambda name, values, bounds: ArrayProfile(name, x, checked_row(f"body {name}", values, None), bounds))
+            else (
+                lambda name, values, bounds: ArrayHalfAxis(name, x, checked_row(f"body {name}", values, None), bounds)
+            )
         )
         self._half_width = kind("half_width", half_width, bounds)
         self._half_height = kind("half_height", half_height, bounds)
@@ -114,9 +118,6 @@ class Body:
     @property
     def volume(self) -> float:
         """Integral of pi a b dX [m^3]."""
-        from .quadrature import Grid
-        from .sections import panels_of
-
         grid = Grid.of(panels_of(self, resolution=40))
         return float(np.sum(grid.weight * np.pi * self.half_width(grid.x) * self.half_height(grid.x)))
 

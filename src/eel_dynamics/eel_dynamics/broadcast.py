@@ -10,9 +10,9 @@ from eel_gaits.wording import shown
 from .accuracy import Accuracy
 from .arguments import check_planar, check_planar_law, checked_instance, checked_number, checked_quaternion, checked_row
 from .body import Body
-from .bounds import MOST_EVALUATIONS
+from .initial_state import InitialState
 from .scene import Scene
-from .start import Start
+from .step_bounds import MOST_EVALUATIONS
 
 
 class Swimmer(NamedTuple):
@@ -45,13 +45,13 @@ class Swimmer(NamedTuple):
             checked_number("most_evaluations", most_evaluations, "per simulated second"),
         )
         if swimmer.scene.planar:
-            check_planar(*swimmer.start)
+            check_planar(*swimmer.initial_state)
         return swimmer
 
     @property
-    def start(self) -> Start:
+    def initial_state(self) -> InitialState:
         """The head at t = 0."""
-        return Start(self.position, self.orientation, self.twist)
+        return InitialState(self.position, self.orientation, self.twist)
 
 
 def swimmers_of(laws, bodies, scenes, accuracy, positions, orientations, twists, duration) -> list[Swimmer]:
@@ -103,7 +103,7 @@ def _rows(name: str, values, check) -> list[np.ndarray]:
 
 def _check_planar(index: int, swimmer: Swimmer):
     try:
-        check_planar(*swimmer.start)
+        check_planar(*swimmer.initial_state)
         check_planar_law(swimmer.law)
     except ValueError as error:
         raise ValueError(f"swimmer {index}: {error}") from None

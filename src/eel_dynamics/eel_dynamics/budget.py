@@ -12,7 +12,7 @@ from functools import cache
 from eel_gaits.wording import shown
 
 from .accuracy import Accuracy, key_of, table
-from .effort import USUAL, Effort
+from .difficulty import NOMINAL, Difficulty
 from .scene import Scene
 
 UNITS = {"us": 1e-6, "ms": 1e-3, "s": 1.0}
@@ -43,9 +43,9 @@ class Budget:
             )
         return Budget(text.strip(), seconds)
 
-    def in_scene(self, scene: Scene, plane: bool = False, effort: Effort = USUAL) -> Accuracy:
+    def in_scene(self, scene: Scene, plane: bool = False, difficulty: Difficulty = NOMINAL) -> Accuracy:
         """The finest settings of the table that keep within the budget in `scene`, for a motion that stays in a `plane`
-        or for any, with the target that they deliver in a swim of such `effort`. `ValueError` where none does."""
+        or for any, with the target that they deliver in a swim of such `difficulty`. `ValueError` where none does."""
         best, fastest = None, None
         for row in table()[key_of(scene)]:
             seconds = seconds_per_second(scene, row["target"])
@@ -59,8 +59,8 @@ class Budget:
                 f"{1e3 * fastest:.3g} ms per second"
             )
         key = key_of(scene, plane)
-        ease = effort.ease(key.drag, key.torque, key.plane)
-        return replace(Accuracy.of(best).in_scene(scene, plane), name=self.name, target=best / ease)
+        target_scale = difficulty.target_scale(key.drag, key.torque, key.plane)
+        return replace(Accuracy.of(best).in_scene(scene, plane), name=self.name, target=best / target_scale)
 
 
 @cache

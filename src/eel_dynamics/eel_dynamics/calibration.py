@@ -1,12 +1,12 @@
 """Calibration of the targets of accuracy: what settings deliver which error, measured over gaits, bodies and scenes.
 
 Every case is swum once with far more points and far smaller steps than any setting has; the error of a setting is the
-greater of the head's position at the end and of the torque (`errors`). Points along the body and steps in time are
+greater of the head's position at the end and of the torque (`relative_errors`). Points along the body and steps in time are
 varied apart, since their errors add. For each target the table gets the cheapest settings whose worst error over all
 cases stays below it, also when all cases swim with them as they are: apart for cases that stay in a plane and others.
-Errors are taken by the difficulty of the swim (`effort`), as targets are when their settings are looked up. What is
-cheap is counted in evaluations of the head's dynamics; for runs with torque those of the ledger count too, a number per
-step that is measured here. The kinks of the drag are looked for where that is cheaper than further points and further
+Errors are relative to the difficulty of the swim (`difficulty.py`), as targets are when their settings are looked up.
+The cost is counted in evaluations of the head's dynamics; for runs with torque those of the ledger count too, a number
+per step that is measured here. The kinks of the drag are looked for where that is cheaper than further points and further
 steps (without it the drag is less smooth in time, too). What comes of it is fitted to many more laws (`fitting`).
 """
 
@@ -27,12 +27,12 @@ from eel_gaits import falling, gait
 
 from .accuracy import ANY, CHOSEN, FIELDS, FINEST, KINKS, LOOSEST_TOLERANCE, TABLE_FILE, TURBULENT, Accuracy
 from .body import Body
-from .effort import effort_of
-from .errors import errors
+from .difficulty import difficulty_of
+from .error_estimate import relative_errors
 from .fitting import Fitting
+from .panels import panels_of
 from .run import Run, simulate
 from .scene import Scene
-from .sections import panels_of
 from .simulation import Simulation
 from .stopping import SimulationStopped
 
@@ -84,10 +84,10 @@ class Case:
         """The motion stays in a plane."""
         return self.law.in_plane
 
-    def difficulty(self, torque: bool) -> float:
+    def error_scale(self, torque: bool) -> float:
         """What errors of position, or with `torque` of either, are taken by."""
-        effort = effort_of(self.law, self.body.length, self.duration)
-        return effort.difficulty(self.scene.resistive, torque, self.plane)
+        difficulty = difficulty_of(self.law, self.body.length, self.duration)
+        return difficulty.error_scale(self.scene.resistive, torque, self.plane)
 
 
 def random_law(seed: int, length: float, planar: bool = False) -> Law:
@@ -221,7 +221,7 @@ def _fitting(many: list[tuple[Case, Run]], torque: bool, pool: ThreadPoolExecuto
     def error(swimmer: tuple[Case, Run], setting: Accuracy) -> float:
         case, reference = swimmer
         found = _of(case if torque else _without_torque(case), reference, setting)
-        return max(found[: 2 if torque else 1]) / case.difficulty(torque)
+        return max(found[: 2 if torque else 1]) / case.error_scale(torque)
 
     grids = tuple(dict.fromkeys(_filled(each, torque) for each in RESOLUTIONS))
     free = not (many[0][0].scene.resistive or many[0][0].plane)
@@ -259,7 +259,7 @@ def ledger_of_a_step(turns: int = TURNS) -> float:
 
 
 @dataclass(frozen=True)
-class Errors:
+class MeasuredErrors:
     """Of one case: errors of position and torque, and for the steps in time what they cost."""
 
     case: Case
@@ -269,7 +269,7 @@ class Errors:
     time: np.ndarray  # (methods, tolerances, 4): errors, evaluations, steps
 
 
-def _measure(case: Case, say) -> Errors:
+def _measure(case: Case, say) -> MeasuredErrors:
     reference = swim(case, REFERENCE)
     setting = Accuracy(name="calibration", resolution=DENSE, tolerance=EXACT)
     space = _in_space(case, reference, setting, 2)
@@ -284,7 +284,7 @@ def _measure(case: Case, say) -> Errors:
         for method, order in METHODS
     ]
     say(f"{case.name}: measured")
-    return Errors(case, reference, space, alone, np.array(time))
+    return MeasuredErrors(case, reference, space, alone, np.array(time))
 
 
 def _in_space(case: Case, reference: Run, setting: Accuracy, counted: int) -> np.ndarray:
@@ -304,7 +304,7 @@ def _of(case: Case, reference: Run, accuracy: Accuracy) -> tuple[float, float, f
         run = swim(case, accuracy)
     except SimulationStopped:
         return (np.inf,) * 4
-    found = errors(run, run if reference is None else reference)
+    found = relative_errors(run, run if reference is None else reference)
     return found.position, found.torque, run.evaluations, run.steps
 
 
@@ -312,10 +312,10 @@ def _without_torque(case: Case) -> Case:
     return replace(case, scene=replace(case.scene, internal_wrench=False))
 
 
-def _rows(found: list[Errors], torque: bool, ledger: float, fitting: Fitting, price: Callable):
+def _rows(found: list[MeasuredErrors], torque: bool, ledger: float, fitting: Fitting, price: Callable):
     """The rows of a table; `ledger`: evaluations that a step costs besides its own."""
     counted = slice(0, 2 if torque else 1)
-    by = [each.case.difficulty(torque) for each in found]
+    by = [each.case.error_scale(torque) for each in found]
     space = np.max(
         [(each.space if torque else each.alone) / hard for each, hard in zip(found, by, strict=True)], axis=(0, 3)
     )
@@ -395,16 +395,18 @@ def _price(many: list[tuple[Case, Run]], torque: bool, ledger: float, pool: Thre
     return price
 
 
-def _swum(found: list[Errors], torque: bool, setting: Accuracy, ledger: float) -> tuple[float, float]:
+def _swum(found: list[MeasuredErrors], torque: bool, setting: Accuracy, ledger: float) -> tuple[float, float]:
     """The greatest error of all cases, as they are with a `setting`, and what they cost."""
     lean = [each.case if torque else _without_torque(each.case) for each in found]
     swum = [_of(case, each.reference, setting) for case, each in zip(lean, found, strict=True)]
     counted = 2 if torque else 1
-    worst = max(max(each[:counted]) / case.difficulty(torque) for each, case in zip(swum, lean, strict=True))
+    worst = max(max(each[:counted]) / case.error_scale(torque) for each, case in zip(swum, lean, strict=True))
     return worst, float(np.mean([evaluations + ledger * steps for *_, evaluations, steps in swum]))
 
 
-def _cheapest(found: list[Errors], torque: bool, allowed: float, ledger: float, settings: list[Accuracy]) -> Accuracy:
+def _cheapest(
+    found: list[MeasuredErrors], torque: bool, allowed: float, ledger: float, settings: list[Accuracy]
+) -> Accuracy:
     """The cheapest of the `settings` with which the errors of all cases stay below what is `allowed`; the last of them,
     with all kinks, where none does."""
     good = []

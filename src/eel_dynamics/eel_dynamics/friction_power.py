@@ -4,7 +4,7 @@ import numpy as np
 
 import eel_core
 
-from .frames import matrix_of
+from .axes import matrix_of
 from .simulation import Simulation
 
 
@@ -16,9 +16,9 @@ def drag_powers(run) -> np.ndarray:
     sum is the ledger's `drag_power`.
     """
     simulation = Simulation(body=run.body, scene=run.scene, accuracy=run.accuracy.as_it_is(), stations=2, law=run.law)
-    instant, powers = eel_core.Instant(simulation.table.core), np.zeros((len(run.time), 4))
+    instant, powers = eel_core.Instant(simulation.discretisation.swimmer), np.zeros((len(run.time), 4))
     for sample, time in enumerate(run.time):
         relative = run.twist[sample].copy()
         relative[3:] -= matrix_of(run.orientation[sample]).T @ run.scene.current
-        powers[sample] = instant.drag_powers(simulation.drive, float(time), relative)
+        powers[sample] = instant.drag_powers(simulation.tabulated_law, float(time), relative)
     return powers

@@ -14,7 +14,7 @@ PLANE = 2, 3, 4
 
 
 def straight_inertia(grid, sections, nose_mass: float, length: float) -> np.ndarray:
-    """(6, 6) [kg] about the head, rotation first, of a body of `length` [m] by the `sections` (`SectionTable`) at the
+    """(6, 6) [kg] about the head, rotation first, of a body of `length` [m] by the `sections` (`SectionData`) at the
     nodes of `grid`; nose_mass: m_o [kg]."""
     x, weight = grid.x / length, grid.weight
     roll, pitch, yaw = (

@@ -30,7 +30,7 @@ from eel_msgs.msg import (
     InternalWrench,
 )
 
-from .frames import QUATERNION, VECTOR, turn_quaternion, turn_vector
+from .axes import QUATERNION, VECTOR, turn_quaternion, turn_vector
 from .parameters import limits
 from .records import outline
 from .scene import Scene

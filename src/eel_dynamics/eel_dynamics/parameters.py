@@ -10,7 +10,7 @@ from dataclasses import MISSING, Field, dataclass, field, fields
 from eel_gaits.quantity import is_finite
 from eel_gaits.wording import shown
 
-from .bounds import MOST_EVALUATIONS
+from .step_bounds import MOST_EVALUATIONS
 
 
 def _parameter(default, description, unit="", **bounds):

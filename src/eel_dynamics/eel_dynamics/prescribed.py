@@ -13,7 +13,7 @@ from .accuracy import Accuracy
 from .arguments import checked_row
 from .body import Body
 from .scene import Scene
-from .sections import core_swimmer, nose_of
+from .section_data import core_swimmer, nose_of
 from .simulation import Simulation
 
 FINE = Accuracy(name="prescribed", resolution=100.0)
@@ -61,14 +61,14 @@ def hydrodynamic_wrench(
     if not is_finite(time):
         raise ValueError(f"time must be finite, got {shown(time)} s")
     simulation = Simulation(body=body, scene=scene, accuracy=FINE, stations=2, law=law)
-    scene, table, time = simulation.scene, simulation.table, float(time)
+    scene, here, time = simulation.scene, simulation.discretisation, float(time)
     relative, acceleration = twist.copy(), twist_rate.copy()
     relative[3:] -= scene.current
     acceleration[3:] += np.cross(twist[:3], twist[3:])
-    arguments = scene, table.grid, table.sections.of_water(), simulation.x, simulation.accuracy.kinks
+    arguments = scene, here.grid, here.sections.of_water(), simulation.x, simulation.accuracy.kinks
     water = eel_core.Instant(core_swimmer(simulation.body, *arguments))
-    inertia = np.array(water.momentum_taken(simulation.drive, time, relative, acceleration))
-    wake, resistive = np.array(eel_core.Instant(table.core).loads(simulation.drive, time, relative))
+    inertia = np.array(water.momentum_taken(simulation.tabulated_law, time, relative, acceleration))
+    wake, resistive = np.array(eel_core.Instant(here.swimmer).loads(simulation.tabulated_law, time, relative))
     nose_mass, nose_drag = nose_of(simulation.body, scene)
     nose = np.zeros(6)
     nose[3] = -nose_mass * acceleration[3] - nose_drag * relative[3] * abs(relative[3])

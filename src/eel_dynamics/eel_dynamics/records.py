@@ -9,7 +9,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from .frames import turn_quaternion, turn_vector
+from .axes import turn_quaternion, turn_vector
 
 SECOND = 1_000_000_000  # ns
 AXES = (1, 2, 3)

@@ -16,16 +16,16 @@ from .actuators import Actuators, actuators_of
 from .analysis import Analysis
 from .arguments import checked_number, checked_stations
 from .body import Body
-from .bounds import MOST_EVALUATIONS
 from .broadcast import Swimmer
 from .energy import EnergyLedger
-from .errors import Errors, errors, refined, stable_step
+from .error_estimate import ErrorEstimate, refined, relative_errors, stable_step
 from .foresight import Foresight
-from .limits import warnings_of
-from .profiles import Profiles, size_of
+from .model_limits import warnings_of
+from .observations import Observations, size_of
 from .records import records
 from .scene import Scene
 from .simulation import Simulation
+from .step_bounds import MOST_EVALUATIONS
 from .stopping import SimulationStopped
 from .summary import describe
 
@@ -138,9 +138,9 @@ class Run:
         return refined(self)
 
     @property
-    def error_estimate(self) -> Errors:
+    def error_estimate(self) -> ErrorEstimate:
         """Estimate of the run's errors (as the targets of accuracy have them), from the finer run."""
-        return errors(self, self.refined)
+        return relative_errors(self, self.refined)
 
     @property
     def body_mass(self) -> float:
@@ -283,9 +283,9 @@ def check_memory(swimmers: int, samples: int, stations: int, wrench: bool, load:
 def run_of(
     *, law, body, scene, accuracy, x, times, out, works, kinetic_at_start, wrench, load, steps, evaluations
 ) -> Run:
-    """The `Run` of samples `out` (a `Profiles`) and `works`, of which those at `times` were reached."""
+    """The `Run` of samples `out` (`Observations`) and `works`, of which those at `times` were reached."""
     if len(times) < len(out.position):
-        out = Profiles(*(array[: len(times)] for array in out[:-1]), out.whole)
+        out = Observations(*(array[: len(times)] for array in out[:-1]), out.whole)
     energy = EnergyLedger.of(out.kinetic, out.powers, works, kinetic_at_start) if scene.ledger else None
     return Run(
         law=law,

@@ -22,18 +22,18 @@ from .arguments import (
     checked_stations,
 )
 from .body import Body
-from .bounds import MOST_EVALUATIONS, bounds_of, check_cost
-from .effort import USUAL, Effort, effort_of
+from .difficulty import NOMINAL, Difficulty, difficulty_of
+from .discretisation import GridSettings, discretise
 from .energy import EnergyLedger
-from .guard import failure_of
-from .profiles import Profiles, profiles_of
+from .initial_state import InitialState, starts_fast, stays_in_plane, time_scale
+from .law_follower import Instant, LawFollower
+from .law_waves import MOST_WAVES, check_law, knots_of_law
+from .observations import Observations, empty_observations
+from .sample_check import first_bad_sample
 from .scene import Scene
-from .shape import Instant, Shape
 from .snapshot import Snapshot
-from .start import Start, is_thrown, stays_in_plane, time_scale
+from .step_bounds import MOST_EVALUATIONS, check_cost, step_bounds_of
 from .stopping import SimulationStopped, not_begun, remedy, stopped_by
-from .tables import Built, tabulated
-from .waveforms import MOST_WAVES, check_law, knots_of_law
 
 POINTS_PER_WAVE = 8  # of a controller's samples
 MOST_POINTS = int(POINTS_PER_WAVE * MOST_WAVES) + 1  # of one
@@ -81,7 +81,7 @@ class Simulation:
         self._current = np.array(self.scene.current)
         self._march = self.accuracy = None
         self._marches_anew = False  # other settings are to be taken
-        start = Start(
+        start = InitialState(
             checked_row("position", position, 3),
             checked_quaternion("orientation", orientation),
             checked_row("twist", twist, 6),
@@ -96,7 +96,7 @@ class Simulation:
         self._most_evaluations = checked_number("most_evaluations", most_evaluations, "per simulated second")
         self._begin(law, start)
 
-    def _begin(self, law: Law | None, start: Start):
+    def _begin(self, law: Law | None, start: InitialState):
         """Stand at the `start`, and follow `law`, if there is one."""
         with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is reported
             self._prepare(law, start)
@@ -105,24 +105,24 @@ class Simulation:
             except SimulationStopped as stopped:
                 raise stopped if law is None else not_begun(law, stopped) from None
 
-    def _prepare(self, law: Law | None, start: Start):
+    def _prepare(self, law: Law | None, start: InitialState):
         """All of `_begin` but the momentum that the motion starts with."""
         self._start, self._relative = start, start.in_water(self._current)
         self._motion_scale = time_scale(self._relative, self.body.length)
-        self._thrown = is_thrown(law, self._motion_scale)
+        self._thrown = starts_fast(law, self._motion_scale)
         waves, knots = (1.0, ()) if law is None else self._needs(law)
         self._moving = bool(self._relative.any())
         self._use_accuracy(stays_in_plane(law, self._relative) and not self._thrown, waves, self._effort_of(law))
-        wanted = Built(self.accuracy.points_per_length(waves), self.accuracy.kinks, knots)
+        wanted = GridSettings(self.accuracy.points_per_length(waves), self.accuracy.kinks, knots)
         if wanted != self._built:
             self._build(wanted)
-        self.shape = Shape(self._table.tabulation, self._default_transition, law)
+        self.shape = LawFollower(self._table.tabulation, self._default_transition, law)
         self.ready, self._started, self.time = law is not None, False, 0.0
         self._stand()
 
-    def _build(self, wanted: Built):
+    def _build(self, wanted: GridSettings):
         """Have body and scene tabulated on the grid that is `wanted`."""
-        self._table, self._built = tabulated(self.body, self.scene, wanted, self.x.tobytes()), wanted
+        self._table, self._built = discretise(self.body, self.scene, wanted, self.x.tobytes()), wanted
         self._marches_anew = True
 
     @property
@@ -136,8 +136,8 @@ class Simulation:
         return self._table.grid
 
     @property
-    def table(self):
-        """Body and scene on the grid (`tables.Table`)."""
+    def discretisation(self):
+        """Body and scene on the grid (`discretisation.Discretisation`)."""
         return self._table
 
     # -- what drives the body
@@ -175,9 +175,9 @@ class Simulation:
         if not (is_finite(blend) and blend > 0.0):
             raise ValueError(f"transition must be finite and > 0 s, got {shown(transition)}")
         first = not self._started
-        plane, waves, effort, further = self._plane, self._waves, self._effort, self._effort_of(law)
+        plane, waves, difficulty, further = self._plane, self._waves, self._effort, self._effort_of(law)
         before = copy(self.shape), self._table, self._built
-        both = (needs[0], further) if first else (max(waves, needs[0]), effort.at_least(further))
+        both = (needs[0], further) if first else (max(waves, needs[0]), difficulty.at_least(further))
         self._use_accuracy(plane and law.in_plane, *both)
         self._waves, self._effort = needs[0], further  # a law after the next needs no care for the present one
         self._refine(*needs)
@@ -188,27 +188,27 @@ class Simulation:
                     self._take_initial_state()
             except SimulationStopped as stopped:
                 self.shape, self._table, self._built = before
-                self._use_accuracy(plane, waves, effort)
+                self._use_accuracy(plane, waves, difficulty)
                 self._take_initial_state()
                 raise not_begun(law, stopped) from None
         else:
             self._follow_shape()
         self.ready = True
 
-    def _effort_of(self, law: Law | None) -> Effort:
+    def _effort_of(self, law: Law | None) -> Difficulty:
         """What `law` has the body do until the horizon; the usual where it is not known, or the body moves already."""
         if law is None:
-            return USUAL
-        effort = effort_of(law, self.body.length, self._horizon)
-        return effort.at_least(USUAL) if self._moving else effort
+            return NOMINAL
+        difficulty = difficulty_of(law, self.body.length, self._horizon)
+        return difficulty.at_least(NOMINAL) if self._moving else difficulty
 
-    def _use_accuracy(self, plane: bool, waves: float, effort: Effort):
+    def _use_accuracy(self, plane: bool, waves: float, difficulty: Difficulty):
         """Take the settings for a motion that stays in a `plane`, or for any, of a shape of up to so many `waves`, and
-        for such `effort`; the march so far counts on."""
-        accuracy = self._wanted.in_scene(self.scene, plane, effort)
-        self._plane, self._waves, self._effort = plane, waves, effort
+        for such `difficulty`; the march so far counts on."""
+        accuracy = self._wanted.in_scene(self.scene, plane, difficulty)
+        self._plane, self._waves, self._effort = plane, waves, difficulty
         if self._thrown:
-            accuracy = accuracy.of_violence()
+            accuracy = accuracy.for_fast_start()
         accuracy = accuracy.for_waves(waves)
         if accuracy != self.accuracy:
             self.accuracy, self._marches_anew = accuracy, True
@@ -252,7 +252,7 @@ class Simulation:
                 f"curvature samples time must lie ahead of the simulation ({self.time:.6f} s), got {shown(time)} s"
             )
         before = self.accuracy
-        self._use_accuracy(False, self._waves, self._effort.at_least(USUAL))
+        self._use_accuracy(False, self._waves, self._effort.at_least(NOMINAL))
         if self.accuracy is not before:  # and so is the step
             self._refine(self._waves, self._built.knots)
             self._follow_shape()
@@ -267,7 +267,7 @@ class Simulation:
 
     def _fit(self, waves: float, knots: tuple[float, ...] = ()):
         """Have a grid that is fine enough for `waves`, and, once nothing finer is left, not much finer than that."""
-        wanted = Built(self.accuracy.points_per_length(waves), self.accuracy.kinks, knots)
+        wanted = GridSettings(self.accuracy.points_per_length(waves), self.accuracy.kinks, knots)
         if self._built.resolution > MUCH_FINER * wanted.resolution and not self.shape.blending:
             self._change_grid(wanted)
         else:
@@ -281,9 +281,9 @@ class Simulation:
         fine_enough = resolution <= built.resolution * (1.0 + 1e-9) and set(knots) <= set(built.knots)
         if fine_enough and self.accuracy.kinks == built.kinks:
             return
-        self._change_grid(Built(resolution, self.accuracy.kinks, knots))
+        self._change_grid(GridSettings(resolution, self.accuracy.kinks, knots))
 
-    def _change_grid(self, wanted: Built):
+    def _change_grid(self, wanted: GridSettings):
         """Go on with the grid that is `wanted`; the head's motion stays as it is."""
         old, twist = self._table.grid, self._twist()
         self._build(wanted)
@@ -315,7 +315,7 @@ class Simulation:
         self._started, time = True, float(time)
         while True:
             self.shape.pass_event(self.time, self._prepare_for)
-            if self._marches_anew or self.shape.drive is not self.drive:
+            if self._marches_anew or self.shape.tabulated_law is not self.tabulated_law:
                 self._follow_shape()
             event = self.shape.next_event(self.time)
             if not self._march_to(min(time, event), interrupted):
@@ -323,7 +323,7 @@ class Simulation:
             if time <= event:
                 break
         self.shape.end_blend(self.time)
-        if self.shape.drive is not self.drive:
+        if self.shape.tabulated_law is not self.tabulated_law:
             self._follow_shape(smoothly=True)
             if not self.shape.sampled and self.shape.law is not None:
                 self._fit(*self._needs(self.shape.law))
@@ -348,7 +348,7 @@ class Simulation:
         """What the present instant shows; `wrench` and `load` ask for the internal wrench and the water's load along
         the body."""
         wrench, load = bool(wrench and self.scene.internal_wrench), bool(load)
-        out, ledger, works = profiles_of(1, len(self.x), wrench, load), self.scene.ledger, self.works
+        out, ledger, works = empty_observations(1, len(self.x), wrench, load), self.scene.ledger, self.works
         if not self._march.observe(out.whole, wrench, load):
             raise self._stopped(SINGULAR)
         return Snapshot(
@@ -383,15 +383,15 @@ class Simulation:
 
     def record(
         self, times: np.ndarray, wrench: bool, load: bool, look: Callable[[float], None] | None = None
-    ) -> tuple[Profiles, np.ndarray, int, SimulationStopped | None]:
+    ) -> tuple[Observations, np.ndarray, int, SimulationStopped | None]:
         """March through `times` (T,) [s] under the law in force, observing each: the profiles, the works (T, 4) [J] of
         actuators, wake, nose and drag, how many instants are good, and what stopped it, if anything did; look(time
         [s]) is called every few milliseconds. Behind a bad instant it must be reset."""
-        out, works = profiles_of(len(times), len(self.x), wrench, load), np.zeros((len(times), 4))
+        out, works = empty_observations(len(times), len(self.x), wrench, load), np.zeros((len(times), 4))
         return out, works, *self.record_into(np.array(times, dtype=float), out, works, wrench, load, look)
 
     def record_into(
-        self, times, out: Profiles, works, wrench: bool, load: bool, look=None
+        self, times, out: Observations, works, wrench: bool, load: bool, look=None
     ) -> tuple[int, SimulationStopped | None]:
         """As `record`, into the space of `out` and `works`."""
         self._started, done, status = True, 0, UNFINISHED
@@ -399,7 +399,7 @@ class Simulation:
             done, status = self._march.record(times, done, out.whole, works, bool(wrench), bool(load))
             if look is not None and status == UNFINISHED:
                 look(self._march.time)
-        failure = failure_of(out, works, done, self.kinetic_at_start, self.energy_floor)
+        failure = first_bad_sample(out, works, done, self.kinetic_at_start, self.energy_floor)
         if failure:
             done, quantity, value = failure
         if done:
@@ -410,7 +410,7 @@ class Simulation:
 
     @property
     def energy_floor(self) -> float:
-        """As `failure_of` has it: where steps are chosen by their error, that is what watches."""
+        """As `first_bad_sample` has it: where steps are chosen by their error, that is what watches."""
         watched = self.scene.ledger and self.accuracy.method == "classical"
         return self._bounds.momentum_floor**2 / self._table.mass if watched else np.inf
 
@@ -430,10 +430,10 @@ class Simulation:
         """State and time to the start; the last law kept, with its own t = 0 at 0."""
         law = self.shape.law
         waves, knots = (1.0, ()) if law is None else self._needs(law)
-        wanted = Built(self.accuracy.points_per_length(waves), self.accuracy.kinks, knots)
+        wanted = GridSettings(self.accuracy.points_per_length(waves), self.accuracy.kinks, knots)
         if wanted != self._built:  # finer for what is gone
             self._build(wanted)
-        self.shape = Shape(self._table.tabulation, self.shape.default_transition)
+        self.shape = LawFollower(self._table.tabulation, self.shape.default_transition)
         self.time, self.ready, self._started = 0.0, False, False
         if law is None:
             self._take_initial_state()
@@ -443,11 +443,11 @@ class Simulation:
     def _follow_shape(self, smoothly: bool = False):
         """March on with the shape, grid and settings of the present; the next step begins anew, unless the motion goes
         on `smoothly`."""
-        self.drive, accuracy = self.shape.drive, self.accuracy
+        self.tabulated_law, accuracy = self.shape.tabulated_law, self.accuracy
         if self._marches_anew:
-            self._march.change(self._table.core, accuracy.method, accuracy.order, bool(self.scene.planar))
+            self._march.change(self._table.swimmer, accuracy.method, accuracy.order, bool(self.scene.planar))
             self._marches_anew = False
-        self._bounds = bounds_of(
+        self._bounds = step_bounds_of(
             accuracy=accuracy,
             scene=self.scene,
             shape=self.shape,
@@ -457,7 +457,7 @@ class Simulation:
             most_evaluations=self._most_evaluations,
         )
         breakpoints, ledger = self.shape.breakpoints().tolist(), bool(self.scene.ledger)
-        self._march.follow(self.drive, breakpoints, self._bounds, ledger, self._current, smoothly)
+        self._march.follow(self.tabulated_law, breakpoints, self._bounds, ledger, self._current, smoothly)
 
     def _twist(self) -> np.ndarray:
         """Twist (6,) of the head relative to the water, in its axes, of the present state."""
@@ -473,7 +473,7 @@ class Simulation:
     def _stand(self):
         """A march of its own from the start on, but for the momentum."""
         accuracy = self.accuracy
-        self._march = eel_core.March(self._table.core, accuracy.method, accuracy.order, bool(self.scene.planar))
+        self._march = eel_core.March(self._table.swimmer, accuracy.method, accuracy.order, bool(self.scene.planar))
         self._march.set_slice(SLICE)
         self._marches_anew = False
         self._follow_shape()

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .limits import Limits
+from .model_limits import ModelLimits
 
 SETTLING = 5.0  # s: a swimmer that starts from rest is slow at first
 
@@ -11,7 +11,7 @@ class Watch:
     """Looks at snapshots of a `simulation` and has the `report` say what lies beyond the model."""
 
     def __init__(self, simulation, report):
-        self._limits = Limits(simulation.body, simulation.scene, simulation.x)
+        self._limits = ModelLimits(simulation.body, simulation.scene, simulation.x)
         self._current = np.array(simulation.scene.current)
         self._report, self._said = report, set()
         self.restart()

@@ -4,7 +4,7 @@ from itertools import product
 
 import numpy as np
 
-from .orders import Errors
+from .orders import ConvergenceErrors
 from .style import BLACK, BLUE, GREEN, ORANGE, PURPLE, mark_pitch, plain
 
 PERIOD = 1.0  # s, of the falling gait
@@ -112,7 +112,7 @@ def draw_ledger(figure, run):
     mark_pitch((power, work))
 
 
-def draw_convergence(figure, space: dict[bool, Errors], time: dict[bool, Errors]):
+def draw_convergence(figure, space: dict[bool, ConvergenceErrors], time: dict[bool, ConvergenceErrors]):
     """Errors against nodes and against the step, without (False) and with (True) drag of cross flow and roll."""
     by_nodes, by_step = figure.subplots(1, 2)
     for axes, errors in ((by_nodes, space), (by_step, time)):

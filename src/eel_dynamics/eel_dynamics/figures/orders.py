@@ -30,7 +30,7 @@ ROUND_OFF = 1e-12  # error, below which the last digits rule: how far it falls t
 
 
 @dataclass(frozen=True)
-class Errors:
+class ConvergenceErrors:
     """Relative errors against points per body length, or against the step [s]."""
 
     against: np.ndarray  # (n,)
@@ -59,7 +59,7 @@ def body_of(cross_flow: bool) -> Body:
     )
 
 
-def in_space(cross_flow: bool) -> Errors:
+def in_space(cross_flow: bool) -> ConvergenceErrors:
     """One evaluation of the falling gait at t = 7.3 s, against one with 400 points per body length."""
     body = body_of(cross_flow)
 
@@ -79,7 +79,7 @@ def in_space(cross_flow: bool) -> Errors:
     return _errors(NODES, [evaluated(resolution) for resolution in NODES], exact)
 
 
-def in_time(cross_flow: bool, duration: float = 2.5) -> Errors:
+def in_time(cross_flow: bool, duration: float = 2.5) -> ConvergenceErrors:
     """The falling gait to 2.5 s in equal steps of the classical Runge-Kutta method, against steps of 1 ms."""
     body = body_of(cross_flow)
 
@@ -100,10 +100,10 @@ def in_time(cross_flow: bool, duration: float = 2.5) -> Errors:
     return _errors(STEPS, [swum(step) for step in STEPS], exact)
 
 
-def _errors(against, values, exact) -> Errors:
+def _errors(against, values, exact) -> ConvergenceErrors:
     def relative(index):
         return np.array(
             [np.max(np.abs(value[index] - exact[index])) / np.max(np.abs(exact[index])) for value in values]
         )
 
-    return Errors(np.array(against), relative(0), relative(1))
+    return ConvergenceErrors(np.array(against), relative(0), relative(1))

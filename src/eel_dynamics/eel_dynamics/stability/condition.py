@@ -15,7 +15,7 @@ from ..body import Body
 from ..inertia import MOST, condition_of, straight_inertia
 from ..run import simulate
 from ..scene import Scene
-from ..sections import nose_of
+from ..section_data import nose_of
 from ..simulation import Simulation, SimulationStopped
 from .maps import spindle
 
@@ -66,8 +66,8 @@ def maps_of(points: int = 13) -> tuple[Conditions, ...]:
 def of_straight(body: Body, ratio: float) -> float:
     """Condition for the straight `body` of `ratio` times the water's density."""
     scene = _water(ratio)
-    table = Simulation(body, scene, "draft", [0.0]).table
-    return condition_of(straight_inertia(table.grid, table.sections, nose_of(body, scene)[0], body.length))
+    here = Simulation(body, scene, "draft", [0.0]).discretisation
+    return condition_of(straight_inertia(here.grid, here.sections, nose_of(body, scene)[0], body.length))
 
 
 def of_bent(size: float, ratio: float) -> float:
@@ -79,7 +79,7 @@ def of_bent(size: float, ratio: float) -> float:
 
 def inertia_at(swimmer: Simulation, time: float) -> np.ndarray:
     """Matrix (6, 6) of inertia about the head, in its axes, of the shape at `time` [s]; body of 1 m."""
-    return np.array(eel_core.Instant(swimmer.table.core).inertia(swimmer.drive, time))
+    return np.array(eel_core.Instant(swimmer.discretisation.swimmer).inertia(swimmer.tabulated_law, time))
 
 
 def needles() -> str:

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..body import Body
+from ..panels import panels_of
 from ..quadrature import Grid
-from ..sections import panels_of
 
 STEPS = 20
 

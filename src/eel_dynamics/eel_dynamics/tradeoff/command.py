@@ -17,7 +17,7 @@ from eel_gaits.wording import shown
 
 from ..body import NAMED, Body
 from ..command import check_names
-from ..effort import effort_of
+from ..difficulty import difficulty_of
 from ..ending import leave_on_interrupt
 from ..scene import Scene
 from . import measuring, models
@@ -99,7 +99,7 @@ def _measure_all(options) -> list[tuple]:
     for law in laws:
         fixed = {"duration": options.duration, "body": body, "scene": Scene(), "say": _say}
         _say(f"gait {law.name}")
-        rows = settings(fixed["scene"], options.quick, law.in_plane, effort_of(law, body.length, options.duration))
+        rows = settings(fixed["scene"], options.quick, law.in_plane, difficulty_of(law, body.length, options.duration))
         trade = measuring.measure(law, rows, repeats=options.repeats, **fixed)
         found.append((trade, models.compare(law, trade.reference, **fixed)))
     return found

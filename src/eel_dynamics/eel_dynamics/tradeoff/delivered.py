@@ -1,7 +1,7 @@
 """What the targets deliver: the error of runs by their target, and what they estimate it to be by what it is.
 
 Over the gaits of the library and random laws that the calibration has not seen, on both bodies, in the scenes of the
-calibration. Errors as in `errors`, against a run with far more points and far smaller steps.
+calibration. ErrorEstimate as in `errors`, against a run with far more points and far smaller steps.
 """
 
 from collections.abc import Callable
@@ -12,7 +12,7 @@ import numpy as np
 
 from ..accuracy import Accuracy, key_of, table
 from ..calibration import REFERENCE, Case, cases, swim
-from ..errors import Errors, errors
+from ..error_estimate import ErrorEstimate, relative_errors
 from .table import laid_out
 
 TARGETS = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9)  # each a tenth of the one before
@@ -41,8 +41,8 @@ class Trial:
 
     case: Case
     target: float
-    error: Errors
-    estimate: Errors
+    error: ErrorEstimate
+    estimate: ErrorEstimate
     coarse: float
 
     @property
@@ -73,11 +73,11 @@ def trials_of(case: Case, targets=TARGETS, reference=None) -> list[Trial]:
     rows = table()[key_of(case.scene, case.plane)]
     reference = reference or swim(case, REFERENCE)
     coarsest = Accuracy.of(rows[0]["target"]).in_scene(case.scene, case.plane).as_it_is()
-    coarse = errors(swim(case, coarsest), reference).worst
+    coarse = relative_errors(swim(case, coarsest), reference).worst
     found = []
     for target in (each for each in targets if each >= rows[-1]["target"]):
         run = swim(case, target)
-        found.append(Trial(case, target, errors(run, reference), run.error_estimate, coarse))
+        found.append(Trial(case, target, relative_errors(run, reference), run.error_estimate, coarse))
     return found
 
 

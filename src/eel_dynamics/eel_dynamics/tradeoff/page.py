@@ -39,7 +39,7 @@ Each target of 1e-2 to 1e-9 that the table of accuracy has, on {cases} cases: th
 that the calibration has not seen, both bodies, laminar and printed friction and no drag. Error: the greater of the
 head's position and the torque, or of the position where no torque was asked for. Gaits swim for 10 s (4 s without
 drag), random laws of a fifth of the usual bends to twice these and 0.4 to 2.5 times the usual pace for 3 to 16 s at
-that pace. The settings are the table's for a swim that is as hard (`effort.py`). What is left is luck: errors of many
+that pace. The settings are the table's for a swim as hard (`difficulty.py`). What is left is luck: errors of many
 steps and panels cancel more or less, and the place where a swim ends is one of many where its error could be read.
 Nearly all swims are to keep within their target, so many get more than they asked for, and no table can have all of
 them within 30 below it. Nor could a pilot run: the luck at ten times the target tells little of that at the target, and

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from ..accuracy import PRESETS, Accuracy
-from ..effort import USUAL, Effort
+from ..difficulty import NOMINAL, Difficulty
 from ..scene import Scene
 
 RESOLUTIONS = (6.0, 8.0, 11.0, 16.0, 24.0, 36.0, 60.0, 110.0)  # points per body length
@@ -20,9 +20,11 @@ METHODS = {  # name in `Accuracy`: in words
 }
 
 
-def settings(scene: Scene, quick: bool = False, plane: bool = False, effort: Effort = USUAL) -> list[Accuracy]:
+def settings(
+    scene: Scene, quick: bool = False, plane: bool = False, difficulty: Difficulty = NOMINAL
+) -> list[Accuracy]:
     """Every combination of points and steps, and the presets as they are in `scene`, for a motion that stays in a
-    `plane` or for any and takes such `effort`; `quick`: every third of both, for a look."""
+    `plane` or for any, of such `difficulty`; `quick`: every third of both, for a look."""
     part = slice(None, None, 3) if quick else slice(None)
     rows = []
     for resolution in RESOLUTIONS[part]:
@@ -38,5 +40,5 @@ def settings(scene: Scene, quick: bool = False, plane: bool = False, effort: Eff
         for step in STEPS[part]:
             rows.append(Accuracy(name=f"{nodes}, step {step:g} s", resolution=resolution, step=step))
     # The presets without their target, which would have them take other settings where the wrench is off, for timing.
-    presets = [Accuracy.of(name).in_scene(scene, plane, effort) for name in PRESETS]
+    presets = [Accuracy.of(name).in_scene(scene, plane, difficulty) for name in PRESETS]
     return rows + [each.as_it_is() for each in presets]

@@ -28,7 +28,7 @@ AT_REST = 1e-9  # of the body's length, over the whole time: round-off
 AT_ONCE = 64  # instants whose pairs of sections are looked at together
 
 
-class Limits:
+class ModelLimits:
     """The limits of `body` in `scene`, looked at from its stations x (M,) [m]."""
 
     def __init__(self, body, scene, x):
@@ -133,7 +133,7 @@ class Limits:
 def warnings_of(run) -> tuple[str, ...]:
     """What of the model's limits a `Run` went over, a line each; speed and tail over its later half, in whole periods
     where the gait has them."""
-    limits = Limits(run.body, run.scene, run.x)
+    limits = ModelLimits(run.body, run.scene, run.x)
     later, speed = _later_half(run)
     most = OPEN if run.accuracy.target is not None else OPEN_OF_SETTINGS
     found = [

@@ -6,9 +6,9 @@ from eel_gaits.wording import shown
 import eel_core
 
 from .accuracy import Accuracy
+from .discretisation import Discretisation
+from .law_follower import LawFollower
 from .scene import Scene
-from .shape import Shape
-from .tables import Table
 
 LONGEST_STEP = 0.1  # of the shortest time over which the shape changes: works are integrals of what goes on within it
 MOST_EVALUATIONS = 500_000.0  # by simulated second: seconds of wall time; the most exact runs need a tenth of it
@@ -37,12 +37,12 @@ def check_cost(law: Law, most_evaluations: float):
         )
 
 
-def bounds_of(
+def step_bounds_of(
     *,
     accuracy: Accuracy,
     scene: Scene,
-    shape: Shape,
-    table: Table,
+    shape: LawFollower,
+    table: Discretisation,
     length: float,
     scale: float,
     most_evaluations: float,

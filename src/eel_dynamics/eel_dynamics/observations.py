@@ -8,7 +8,7 @@ import numpy as np
 import eel_core
 
 
-class Profiles(NamedTuple):
+class Observations(NamedTuple):
     """Samples: T instants, M stations. Library axes, SI units. All are views of `whole`."""
 
     position: np.ndarray  # (T, 3) m, head, world
@@ -32,14 +32,14 @@ class Profiles(NamedTuple):
     whole: np.ndarray  # (.,) all of these, one behind the other
 
 
-def profiles_of(
+def empty_observations(
     samples: int, stations: int, wrench: bool = True, load: bool = True, swimmers: tuple[int, ...] = ()
-) -> Profiles:
+) -> Observations:
     """Space for `samples` instants at `stations` stations; the profiles that are not asked for have no instants.
     swimmers: (B,) for so many of them, a first axis."""
     places = _places(samples, stations, bool(wrench), bool(load))
     whole = np.zeros((*swimmers, places[-1][1]))
-    return Profiles(*(whole[..., begin:end].reshape(*swimmers, *shape) for begin, end, shape in places), whole)
+    return Observations(*(whole[..., begin:end].reshape(*swimmers, *shape) for begin, end, shape in places), whole)
 
 
 def size_of(samples: int, stations: int, wrench: bool, load: bool) -> int:
@@ -52,7 +52,7 @@ def _places(samples: int, stations: int, wrench: bool, load: bool) -> tuple[tupl
     """Begin, end and shape of each of the profiles in the whole."""
     layout = eel_core.layout(samples, stations, wrench, load)
     places = []
-    for name in Profiles._fields[:-1]:
+    for name in Observations._fields[:-1]:
         begin, instants, numbers, along_body = layout[name]
         shape = (instants, stations, numbers) if along_body else (instants, numbers)
         places.append((begin, begin + int(np.prod(shape)), shape))

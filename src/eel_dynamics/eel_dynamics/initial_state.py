@@ -1,4 +1,4 @@
-"""How a swim begins: where the head is and how it moves, and what follows from that for the run."""
+"""The initial state of the head, and what its velocity means for the run."""
 
 import math
 from typing import NamedTuple
@@ -6,12 +6,12 @@ from typing import NamedTuple
 import numpy as np
 from eel_gaits.law import Law
 
-from .frames import matrix_of
+from .axes import matrix_of
 
-THROWN = 0.2  # periods, in which one who starts faster than a swimmer goes by its length, or turns by one
+FAST_START = 0.2  # periods of the law: a head that covers a body length, or turns by 1 rad, in less starts fast
 
 
-class Start(NamedTuple):
+class InitialState(NamedTuple):
     """The head at t = 0."""
 
     position: np.ndarray  # (3,) m, world
@@ -27,21 +27,21 @@ class Start(NamedTuple):
 
 
 def time_scale(twist: np.ndarray, length: float) -> float:
-    """Time [s] in which a `twist` (6,) takes a body by its `length` [m], or turns it by one."""
+    """Time [s] in which a `twist` (6,) carries a body over its `length` [m], or turns it by 1 rad."""
     a, b, c, u, v, w = twist.tolist()
     speed, spin = math.hypot(u, v, w), math.hypot(a, b, c)
     return min(length / speed if speed else np.inf, 1.0 / spin if spin else np.inf)
 
 
-def is_thrown(law: Law | None, scale: float) -> bool:
-    """Whether one whose motion has the time `scale` [s] starts much faster than `law` swims."""
+def starts_fast(law: Law | None, scale: float) -> bool:
+    """Whether an initial velocity of the time `scale` [s] is large compared with the swimming speed of `law`."""
     periods = [term.period for term in law.terms if term.period] if isinstance(law, Law) else []
-    return scale < THROWN * min(periods, default=1.0)
+    return scale < FAST_START * min(periods, default=1.0)
 
 
 def stays_in_plane(law: Law | None, relative: np.ndarray) -> bool:
-    """Whether a swim stays in the plane of the head's axes 1 and 2: the law bends in yaw alone, and the head, of the
-    twist `relative` to the water, does not move out of it."""
+    """Whether a swim stays in the plane of the head's axes 1 and 2: the law bends in yaw alone, and the head's twist
+    `relative` to the water lies in the plane."""
     if law is None or not law.in_plane:
         return False
     return not (relative[0] or relative[1] or relative[5])

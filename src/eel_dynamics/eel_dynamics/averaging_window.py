@@ -53,7 +53,7 @@ def common_period(law: Law, x, time) -> float:
     )
 
 
-class Window:
+class AveragingWindow:
     """The last `periods` whole periods of `run` (None: as many as make up the later half of the run, at least one).
 
     run, periods; period [s]: after which the gait repeats; start, end [s]; wave: the strongest wave (yaw, else pitch).
@@ -84,7 +84,7 @@ class Window:
         self.inside = (time >= self.start - 1e-9 * self.period) & (time <= self.end)
 
     def __repr__(self) -> str:
-        return f"Window({self.periods} periods of {self.period:g} s, {self.start:g} to {self.end:g} s)"
+        return f"AveragingWindow({self.periods} periods of {self.period:g} s, {self.start:g} to {self.end:g} s)"
 
     @property
     def duration(self) -> float:

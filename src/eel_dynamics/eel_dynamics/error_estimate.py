@@ -20,7 +20,7 @@ HALVINGS = 8  # of a step that was too long, until the search for a stable one i
 
 
 @dataclass(frozen=True)
-class Errors:
+class ErrorEstimate:
     """Relative errors; `torque` None where there is none."""
 
     position: float
@@ -32,15 +32,15 @@ class Errors:
         return max(self.position, self.torque or 0.0)
 
 
-def errors(run, reference) -> Errors:
+def relative_errors(run, reference) -> ErrorEstimate:
     """The errors of `run` against a run `reference` of the same, with the same samples and stations."""
     scale = max(reference.path_length, reference.body.length)
     position = float(np.linalg.norm(run.position[-1] - reference.position[-1])) / scale
     if run.torque is None or reference.torque is None:
-        return Errors(position, None)
+        return ErrorEstimate(position, None)
     size = np.linalg.norm(reference.torque, axis=2).max()
     difference = np.linalg.norm(run.torque - reference.torque, axis=2).max()
-    return Errors(position, float(difference / size) if size > 0.0 else 0.0)
+    return ErrorEstimate(position, float(difference / size) if size > 0.0 else 0.0)
 
 
 def refined(run):

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from eel_dynamics.accuracy import Key, key_of, table
 from eel_dynamics.calibration import REFERENCE, Case, swim, varied
-from eel_dynamics.effort import EASIEST, HARDEST, USUAL, Effort, effort_of, speed_of
-from eel_dynamics.errors import errors
+from eel_dynamics.difficulty import EASIEST, HARDEST, NOMINAL, Difficulty, difficulty_of, speed_of
+from eel_dynamics.error_estimate import relative_errors
 from eel_gaits.law import Law, Ramp, Term
 
 from eel_dynamics import Accuracy, Body, Scene, Simulation, simulate, simulate_batch
@@ -34,32 +34,32 @@ def test_the_speed_of_a_shape_is_that_of_its_sections(terms):
     velocity = moved(law, LENGTH, np.linspace(0.0, 0.7, 200, endpoint=False))
     expected = math.sqrt((velocity**2).sum(axis=2).mean())
     assert speed_of(law, LENGTH) == pytest.approx(expected, rel=0.03)
-    effort = effort_of(law, LENGTH, 7.0)
-    assert effort.stroke == pytest.approx(expected * 0.7 / LENGTH, rel=0.03)
-    assert effort.way == pytest.approx(10.0 * effort.stroke)
+    difficulty = difficulty_of(law, LENGTH, 7.0)
+    assert difficulty.stroke_rms == pytest.approx(expected * 0.7 / LENGTH, rel=0.03)
+    assert difficulty.path_rms == pytest.approx(10.0 * difficulty.stroke_rms)
 
 
 def test_terms_that_go_together_add_up_and_others_do_not():
     opposite = replace(WAVE, phase=WAVE.phase + math.pi)
-    assert effort_of(Law(WAVE, opposite), LENGTH, 1.0).stroke < 1e-12
+    assert difficulty_of(Law(WAVE, opposite), LENGTH, 1.0).stroke_rms < 1e-12
     apart = replace(opposite, envelope=(Ramp(0.0, 1.0, 1.0),))
-    assert effort_of(Law(WAVE, apart), LENGTH, 1.0).stroke == pytest.approx(
-        math.sqrt(2.0) * effort_of(Law(WAVE), LENGTH, 1.0).stroke
+    assert difficulty_of(Law(WAVE, apart), LENGTH, 1.0).stroke_rms == pytest.approx(
+        math.sqrt(2.0) * difficulty_of(Law(WAVE), LENGTH, 1.0).stroke_rms
     )
 
 
 def test_a_bend_is_a_way_once():
     bend = Law(Term(amplitude=(1.0,), phase=math.pi / 2.0, envelope=(Ramp(0.0, 2.0, 0.5), Ramp(3.0, 5.0, 0.5))))
-    short, long = effort_of(bend, LENGTH, 1.0), effort_of(bend, LENGTH, 100.0)
-    assert short.way == pytest.approx(0.5 * long.way) and long.way == pytest.approx(long.stroke)
+    short, long = difficulty_of(bend, LENGTH, 1.0), difficulty_of(bend, LENGTH, 100.0)
+    assert short.path_rms == pytest.approx(0.5 * long.path_rms) and long.path_rms == pytest.approx(long.stroke_rms)
     half = Law(Term(amplitude=(1.0,), phase=math.pi / 2.0, envelope=(Ramp(0.0, 2.0, 0.5),)))
-    assert long.stroke == pytest.approx(2.0 * effort_of(half, LENGTH, 100.0).stroke)  # the ramps' sum
-    assert effort_of(Law(Term(amplitude=(1.0,), phase=1.0)), LENGTH, 10.0) == Effort(0.0, 0.0)  # bent from the start
+    assert long.stroke_rms == pytest.approx(2.0 * difficulty_of(half, LENGTH, 100.0).stroke_rms)  # the ramps' sum
+    assert difficulty_of(Law(Term(amplitude=(1.0,), phase=1.0)), LENGTH, 10.0) == Difficulty(0.0, 0.0)  # always bent
 
 
 def test_beyond_sixty_periods_a_swim_gets_no_harder():
-    minute, hour = (effort_of(Law(WAVE), LENGTH, 0.7 * periods) for periods in (60.0, 3600.0))
-    assert hour == minute and minute.way == pytest.approx(60.0 * minute.stroke)
+    minute, hour = (difficulty_of(Law(WAVE), LENGTH, 0.7 * periods) for periods in (60.0, 3600.0))
+    assert hour == minute and minute.path_rms == pytest.approx(60.0 * minute.stroke_rms)
 
 
 def test_scales_that_do_not_matter():
@@ -69,21 +69,22 @@ def test_scales_that_do_not_matter():
         replace(WAVE, amplitude=(0.2, 0.05, 0.0375), wavelength=1.8),
         Term(axis="pitch", amplitude=(0.25,), period=1.1, envelope=(Ramp(0.2, 0.9, 1.0),)),
     )
-    expected = effort_of(law, LENGTH, 5.0)
-    assert effort_of(large, 2.0 * LENGTH, 5.0) == pytest.approx(expected)
-    assert effort_of(varied(law, 1.0, 3.0), LENGTH, 5.0 / 3.0) == pytest.approx(expected)
-    assert effort_of(varied(law, 2.0, 1.0), LENGTH, 5.0).stroke == pytest.approx(2.0 * expected.stroke)
+    expected = difficulty_of(law, LENGTH, 5.0)
+    assert difficulty_of(large, 2.0 * LENGTH, 5.0) == pytest.approx(expected)
+    assert difficulty_of(varied(law, 1.0, 3.0), LENGTH, 5.0 / 3.0) == pytest.approx(expected)
+    assert difficulty_of(varied(law, 2.0, 1.0), LENGTH, 5.0).stroke_rms == pytest.approx(2.0 * expected.stroke_rms)
 
 
 @pytest.mark.parametrize("key", list(table()))
 def test_what_is_harder_never_gets_looser_settings(key):
     key = Key(*key)
     gradually = [10.0**power for power in np.linspace(-3.0, 3.0, 61)]
-    eases = [Effort(USUAL.stroke * by, USUAL.way * by).ease(key.drag, key.torque, key.plane) for by in gradually]
-    assert eases == sorted(eases, reverse=True) and eases[0] <= 1.0 / EASIEST * 1.001
-    assert USUAL.ease(key.drag, key.torque, key.plane) == 1.0
-    for wild in (Effort(math.inf, math.inf), Effort(math.nan, math.nan)):
-        assert 0.5 / HARDEST < wild.ease(key.drag, key.torque, key.plane) <= 1.0 / HARDEST
+    harder = [Difficulty(NOMINAL.stroke_rms * by, NOMINAL.path_rms * by) for by in gradually]
+    scales = [each.target_scale(key.drag, key.torque, key.plane) for each in harder]
+    assert scales == sorted(scales, reverse=True) and scales[0] <= 1.0 / EASIEST * 1.001
+    assert NOMINAL.target_scale(key.drag, key.torque, key.plane) == 1.0
+    for wild in (Difficulty(math.inf, math.inf), Difficulty(math.nan, math.nan)):
+        assert 0.5 / HARDEST < wild.target_scale(key.drag, key.torque, key.plane) <= 1.0 / HARDEST
 
 
 def test_settings_between_the_rows_of_the_table_and_beyond_them():
@@ -93,14 +94,14 @@ def test_settings_between_the_rows_of_the_table_and_beyond_them():
     assert (at.resolution, at.tolerance) == (rows[1e-5]["resolution"], rows[1e-5]["tolerance"])
     assert between.resolution == at.resolution and between.tolerance == pytest.approx(2.0**0.8 * at.tolerance)
     finest = min(rows)
-    hard = Effort(USUAL.stroke, 100.0 * USUAL.way)
-    plain, harder = (Accuracy.of(finest).in_scene(ALONE, False, effort) for effort in (USUAL, hard))
+    hard = Difficulty(NOMINAL.stroke_rms, 100.0 * NOMINAL.path_rms)
+    plain, harder = (Accuracy.of(finest).in_scene(ALONE, False, difficulty) for difficulty in (NOMINAL, hard))
     assert harder.tolerance < plain.tolerance and harder.resolution > plain.resolution
     fixed = Accuracy.of("1e-4, fixed steps")
     assert fixed.in_scene(ALONE, False, hard).fixed > fixed.in_scene(ALONE).fixed
 
 
-def test_who_moves_or_is_led_gets_the_settings_of_the_usual_swim():
+def test_initial_velocity_or_samples_take_the_settings_of_a_nominal_swim():
     gentle = varied(straight(), 0.05, 1.0)
     usual = Accuracy.of(1e-4).in_scene(ALONE, plane=True)
     still = Simulation(scene=ALONE, accuracy=1e-4, law=gentle)
@@ -125,11 +126,11 @@ def test_the_horizon_is_the_duration_of_a_run():
             at(horizon=wrong)
 
 
-def test_who_swims_for_nobody_knows_how_long_gets_settings_that_hold_for_ever():
+def test_without_a_horizon_the_settings_hold_for_any_duration():
     endless = Simulation(scene=ALONE, accuracy=1e-4, law=falling())
     assert endless.accuracy == simulate(falling(), 1e3, scene=ALONE, accuracy=1e-4, sample_period=1e3).accuracy
     bend = Law(Term(axis="yaw", amplitude=(0.5,), envelope=(Ramp(0.2, 0.9, 1.0),)))
-    assert effort_of(bend, LENGTH, math.inf) == effort_of(bend, LENGTH, 1e6)
+    assert difficulty_of(bend, LENGTH, math.inf) == difficulty_of(bend, LENGTH, 1e6)
 
 
 def test_a_batch_of_gentle_and_violent_laws_swims_as_each_alone():
@@ -145,13 +146,13 @@ def test_a_batch_of_gentle_and_violent_laws_swims_as_each_alone():
 @pytest.mark.parametrize("friction", ["laminar", "printed"])
 @pytest.mark.parametrize("name", ["straight", "turning", "falling", "kern_fast"])
 def test_long_swims_deliver_their_target_too(name, friction):
-    """A minute: before settings went with the effort, some missed by a factor three and more."""
+    """A minute: before settings went with the difficulty, some missed by a factor three and more."""
     body = Body.kern2006() if "kern" in name else Body.boyer2010()
     scene = replace(ALONE, friction=friction)
     case = Case(name=name, law=gait(name), body=body, scene=scene, duration=60.0)
     reference = swim(case, replace(REFERENCE, resolution=150.0, tolerance=1e-11))
     for target in (1e-2, 1e-3, 1e-5):
-        assert errors(swim(case, target), reference).worst <= target, target
+        assert relative_errors(swim(case, target), reference).worst <= target, target
 
 
 @pytest.mark.parametrize("bends, pace, seconds", [(0.1, 1.0, 10.0), (1.5, 2.0, 6.0), (0.3, 0.4, 25.0)])
@@ -162,5 +163,5 @@ def test_gentle_and_violent_swims_deliver_their_target_and_not_far_more(bends, p
         )
         reference = swim(case, replace(REFERENCE, resolution=150.0, tolerance=1e-11))
         for target in (1e-3, 1e-5):
-            error = errors(swim(case, target), reference).worst
+            error = relative_errors(swim(case, target), reference).worst
             assert target / 300.0 <= error <= target, (name, target, error)

@@ -18,9 +18,9 @@ from eel_gaits.spline import natural_spline
 
 import eel_core
 
-from .effort import speed_of
+from .difficulty import speed_of
+from .law_waves import groups_of
 from .tabulated_law import AXES, Tabulation
-from .waveforms import groups_of
 
 AHEAD = 100  # instants that a grid is chosen for, so that it does not change with every one
 TIME_OF = attrgetter("time")
@@ -36,7 +36,7 @@ class Instant(NamedTuple):
     values: np.ndarray
 
 
-class Shape:
+class LawFollower:
     """The present source of curvature, its blend, and the tabulated `drive` of both for the loops.
 
     `default_transition` [s] holds where a law gives none, and for samples. law: the first; without one it is straight.
@@ -54,7 +54,7 @@ class Shape:
         self._blend: tuple[np.ndarray, float, float] | None = None
         self._spline: tuple[np.ndarray, np.ndarray] | None = None
         self._source: dict = {}
-        self.drive: eel_core.Law = None  # for the compiled mechanics
+        self.tabulated_law: eel_core.Law = None  # for the compiled mechanics
         self._follow(_straight(tabulation) if law is None else _law_rows(law, tabulation))
 
     def move(self, tabulation: Tabulation, values_at_nodes):
@@ -143,7 +143,7 @@ class Shape:
 
     def at(self, time: float) -> np.ndarray:
         """Tabulated value, rate and acceleration (3, 2, width) at `time` [s]."""
-        factor = np.array(self.drive.factors(time))
+        factor = np.array(self.tabulated_law.factors(time))
         result = np.zeros((3, 2, self.tabulation.width))
         for axis in range(2):
             mine = self._axis == axis
@@ -224,7 +224,9 @@ class Shape:
         if tables is None:
             tables = self.tabulation.law_tables(rows, axis)
         segment = (0, *source["segment"]) if "segment" in source else None
-        self.drive = eel_core.Law(tables, float(source.get("origin", 0.0)), source.get("waves", []), segment, blend)
+        self.tabulated_law = eel_core.Law(
+            tables, float(source.get("origin", 0.0)), source.get("waves", []), segment, blend
+        )
 
 
 @lru_cache(maxsize=256)

@@ -1,5 +1,4 @@
-"""What the loops need of the body and the scene, tabulated once: section data at the nodes (model of sections 3.3, 4.2,
-7.2.1).
+"""Section data of the body and the water at the nodes and the stations (sections 3.3, 4.2 and 7.2.1 of the paper).
 
 Half-axes a along E3, b along E2. Body: m_b = rho_b pi a b, J2 = rho_b pi a^3 b/4, J3 = rho_b pi a b^3/4, J1 = J2 + J3.
 Water: J_f1 = rho_f pi/8 (a^2 - b^2)^2, M_f = rho_f pi diag(0, a^2, b^2) (eq. 37 with its semi-axes exchanged: the added
@@ -7,9 +6,6 @@ mass for motion along an axis of an ellipse goes with the square of the other ha
 paper).
 """
 
-import math
-from dataclasses import replace
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -17,53 +13,12 @@ import numpy as np
 import eel_core
 
 from .body import Body
-from .quadrature import Grid, Panel, PanelPoints
+from .quadrature import Grid, PanelPoints
 from .scene import Scene
 
-FILLED = 8  # nodes, of whose multiples there are always as many: what any processor takes at once
-WIDEST_PANEL = 24  # points; a longer panel is cut into equal parts
-CLOSEST = 1e-3  # lengths between a kink of the body and a knot of a law that still gets a panel
 WATCHED = {"all": 1, "jumps": 4, "none": 5}  # first of the speeds (V1, V2, V3, Omega1, Re/8e4 - 1) whose changes of
 # sign within a panel are integrated exactly
 TRANSITION = 8.0e4  # Reynolds number at which the printed friction law jumps from laminar to turbulent
-
-
-def panels_of(body: Body, resolution: float, knots: tuple[float, ...] = (), wrench: bool = True) -> tuple[Panel, ...]:
-    """Panels between the kinks of `body` and the `knots` [m] of a law's splines, with about `resolution` points per
-    length of the body, and three to spare each; where the internal `wrench` is wanted more in the first, in which the
-    body and its loads go like roots of X (they weigh little there), and in the last where they do so at the tail.
-
-    Processors take up to eight nodes at once: these are filled, by points for the panels that would have them next.
-    """
-    least = CLOSEST * body.length
-    kinks = np.array([0.0, *body.panel_ends])
-    inner = [knot for knot in knots if np.min(np.abs(kinks - knot)) > least and kinks[1] < knot < body.length]
-    panels, start = [], 0.0
-    for end in sorted({*body.panel_ends, *inner}):
-        points = 3 + nearest(resolution * (end - start) / body.length)
-        graded = "start" if start == 0.0 else "end" if end == body.length and body.pointed_tail else ""
-        if graded:
-            points = 1 + (max(points, 3 + nearest(math.sqrt(resolution))) if wrench else points)
-        parts = -(-points // WIDEST_PANEL) if start > 0.0 else 1
-        edges = np.linspace(start, end, parts + 1).tolist()
-        for left, right in pairwise(edges):
-            kind = graded if right == end else ""
-            panels.append(Panel(start=left, end=right, points=-(-points // parts), graded=kind))
-        start = end
-    for _ in range(-sum(panel.points for panel in panels) % FILLED):
-        index = min(range(len(panels)), key=lambda k: (round(_next_resolution(panels[k], body.length), 6), k))
-        panels[index] = replace(panels[index], points=panels[index].points + 1)
-    return tuple(panels)
-
-
-def _next_resolution(panel: Panel, length: float) -> float:
-    """The resolution at which `panel` of a body of `length` [m] would have a further point."""
-    return (panel.points - 2.5 - (1 if panel.graded else 0)) * length / (panel.end - panel.start)
-
-
-def nearest(count: float) -> int:
-    """The nearest whole number, halves upwards: the last bit of `count` differs between versions of numpy."""
-    return math.floor(count + 0.5 + 1e-9)
 
 
 def added_masses(body: Body, scene: Scene, a_squared, b_squared):
@@ -73,7 +28,7 @@ def added_masses(body: Body, scene: Scene, a_squared, b_squared):
     return rho * np.pi * along2, rho * np.pi * along3, rho * np.pi / 8.0 * (a_squared - b_squared) ** 2
 
 
-class SectionTable(NamedTuple):
+class SectionData(NamedTuple):
     """Section data at n points, (n,) each, SI units."""
 
     mass: np.ndarray  # kg/m, of the body
@@ -90,16 +45,16 @@ class SectionTable(NamedTuple):
     turbulent: np.ndarray  # friction force per length = -turbulent (Re/8e4)^(4/5) V1
     reynolds: np.ndarray  # s/m, Re/8e4 per |V1|
 
-    def of_water(self) -> "SectionTable":
+    def of_water(self) -> "SectionData":
         """The same without the body: its mass and inertia are zero."""
         none = np.zeros_like(self.mass)
         return self._replace(mass=none, inertia1=self.added_roll, inertia2=none, inertia3=none)
 
 
-class StationTable(NamedTuple):
+class StationData(NamedTuple):
     """Where profiles are given, M stations."""
 
-    sections: SectionTable
+    sections: SectionData
     points: PanelPoints
     nodes_before: np.ndarray  # (M,) unsigned, how many nodes lie at or before the station
     added2_slope: np.ndarray  # (M,) kg/m^2, derivative of `added2` by X
@@ -115,7 +70,7 @@ def nose_of(body: Body, scene: Scene) -> tuple[float, float]:
     return float(reactive * area * body.nose_added_mass * body.nose[2]), float(resistive * area * body.nose_drag)
 
 
-def core_swimmer(body: Body, scene: Scene, grid: Grid, sections: SectionTable, x, kinks: str) -> eel_core.Swimmer:
+def core_swimmer(body: Body, scene: Scene, grid: Grid, sections: SectionData, x, kinks: str) -> eel_core.Swimmer:
     """`body` in `scene` for the compiled mechanics: the `sections` at the nodes of `grid`, and stations at `x` (M,)
     [m]; `kinks`: which of the drag's are integrated exactly (`Accuracy`)."""
     nose_mass, nose_drag = nose_of(body, scene)
@@ -133,12 +88,12 @@ def core_swimmer(body: Body, scene: Scene, grid: Grid, sections: SectionTable, x
     )
 
 
-def stations_of(body: Body, scene: Scene, grid: Grid, x: np.ndarray) -> StationTable:
+def stations_of(body: Body, scene: Scene, grid: Grid, x: np.ndarray) -> StationData:
     """Tabulate `body` in `scene` at the stations `x` (M,) [m]."""
     a_squared, b_squared, a_slope, b_slope = body.squares(x)
     slope2, slope3, _ = added_masses(body, scene, a_slope, b_slope)
     rho = scene.fluid_density if scene.reactive else 0.0
-    return StationTable(
+    return StationData(
         sections=sections_of(body, scene, x),
         points=grid.points_at(x),
         nodes_before=np.searchsorted(grid.x, x, side="right").astype(np.uint64),
@@ -148,7 +103,7 @@ def stations_of(body: Body, scene: Scene, grid: Grid, x: np.ndarray) -> StationT
     )
 
 
-def sections_of(body: Body, scene: Scene, x: np.ndarray) -> SectionTable:
+def sections_of(body: Body, scene: Scene, x: np.ndarray) -> SectionData:
     """Section data of `body` in `scene` at `x` (n,) [m]."""
     a, b = body.half_height(x), body.half_width(x)
     density = body.density if scene.density is None else scene.density
@@ -164,7 +119,7 @@ def sections_of(body: Body, scene: Scene, x: np.ndarray) -> SectionTable:
     transition = TRANSITION * scene.viscosity / behind  # m/s, |V1| at which Re = 8e4
     with np.errstate(divide="ignore"):
         reynolds = np.where(transition > 0.0, 1.0 / transition, 0.0)
-    table = SectionTable(
+    table = SectionData(
         mass=density * area,
         added2=added2,
         added3=added3,
@@ -179,4 +134,4 @@ def sections_of(body: Body, scene: Scene, x: np.ndarray) -> SectionTable:
         turbulent=rubbed * perimeter * 0.059 * (scene.viscosity / behind) * TRANSITION**0.8,
         reynolds=reynolds,
     )
-    return SectionTable(*(np.ascontiguousarray(row, dtype=float) for row in table))
+    return SectionData(*(np.ascontiguousarray(row, dtype=float) for row in table))

@@ -13,7 +13,7 @@ from numpy.polynomial import chebyshev
 DEGREE = 48  # of the polynomial through the square on each panel, for its derivative
 
 
-class FunctionProfile:
+class FunctionHalfAxis:
     """A half-axis given as a function of X [m]; smooth between the `bounds` (0, kinks, length) [m]."""
 
     def __init__(self, name: str, function, bounds):
@@ -65,7 +65,7 @@ class FunctionProfile:
         _check_shape(self.name, x, values, length)
 
 
-class ArrayProfile:
+class ArrayHalfAxis:
     """A half-axis given at points: a monotone cubic through its squares (Fritsch and Butland), apart between kinks."""
 
     def __init__(self, name: str, x: np.ndarray, values: np.ndarray, bounds):

@@ -1,4 +1,4 @@
-"""The last look at what was marched, before it is handed out: all of it is finite, and its energy ledger closes.
+"""Checks the samples of a run before they are returned: all are finite, and the energy ledger closes.
 
 A step of fixed length that is too long does not fail by itself: the motion grows, and every number looks like one. The
 ledger (eq. 60 times the head's twist) knows: what the kinetic energy gained beyond the powers' integral came from
@@ -13,8 +13,8 @@ import numpy as np
 OPEN = 0.2  # share of the energy; at twice the longest useful step of the robot's gaits it is 0.03, then grows at once
 
 
-def failure_of(out, works: np.ndarray, done: int, start: float, floor: float) -> tuple[int, str, float] | None:
-    """The first of the `done` samples of `out` (a `Profiles`) and `works` (T, 4) [J] that cannot be handed out: its
+def first_bad_sample(out, works: np.ndarray, done: int, start: float, floor: float) -> tuple[int, str, float] | None:
+    """The first of the `done` samples of `out` (`Observations`) and `works` (T, 4) [J] that cannot be handed out: its
     index, the quantity and its value. start: kinetic energy at the start [J]; floor: energy that counts as none [J],
     infinite: the ledger is not looked at. None: all are good."""
     with np.errstate(over="ignore", invalid="ignore"):
@@ -49,4 +49,4 @@ def _open(kinetic: np.ndarray, works: np.ndarray, start: float, floor: float):
     return sample, "energy from nowhere, as a share of all that passed", float(residual[sample] / passed[sample])
 
 
-__all__ = ["failure_of"]
+__all__ = ["first_bad_sample"]
