@@ -8,7 +8,7 @@ is (Omega, V) [rad/s, m/s] of the head in its own axes, relative to the water un
 """
 
 from collections.abc import Sequence
-from typing import Protocol
+from typing import Protocol, Self
 
 from typing_extensions import Buffer
 
@@ -69,7 +69,13 @@ class _Stations(Protocol):
     added3_slope: Buffer  # (M,) [kg/m^2]
     added_roll_slope: Buffer  # (M,) [kg]
 
-class Swimmer:
+class _Shared:
+    """Never changes: copies are the object itself."""
+
+    def __copy__(self) -> Self: ...
+    def __deepcopy__(self, memo: dict) -> Self: ...
+
+class Swimmer(_Shared):
     """Body and water on a grid, and which physics is on. It is copied from Python and never changes."""
 
     def __init__(
@@ -91,7 +97,7 @@ class Swimmer:
         panel are integrated exactly; 5 for none. nose_mass: m_o [kg]; nose_drag: 1/2 rho_f k_o [kg/m].
         distributed_pressure: along the body in place of at the tail. `ValueError` names what does not fit."""
 
-class LawTables:
+class LawTables(_Shared):
     """The m rows of a curvature law, each a field of X for one axis, on the nodes and stations of a swimmer."""
 
     def __init__(
@@ -107,7 +113,7 @@ class LawTables:
         integral from the nose; moments (m, 3, n) [rad]: Magnus moments over the interval that ends at each node.
         station (m, M), station_moments (m, 3, M): the same at the stations, from the node before each."""
 
-class Law:
+class Law(_Shared):
     """The curvature K(t, X): the sum of rows times factors of time, with two time derivatives."""
 
     def __init__(
@@ -127,7 +133,7 @@ class Law:
     def factors(self, time: float) -> list[list[float]]:
         """Factors of the rows at a time [s] of the simulation, their rates and accelerations: (3, m)."""
 
-class StepBounds:
+class StepBounds(_Shared):
     """What bounds the steps of a march."""
 
     def __init__(
@@ -176,6 +182,12 @@ class March:
 
     def __init__(self, swimmer: Swimmer, method: str, order: int, planar: bool) -> None:
         """method: "adams" (orders 1 to 6), "dormand_prince" or "classical". planar: three degrees of freedom."""
+
+    def __copy__(self) -> Self:
+        """A march of its own in the same state; it shares the swimmer and the law."""
+
+    def __deepcopy__(self, memo: dict) -> Self:
+        """As `copy.copy`."""
 
     def change(self, swimmer: Swimmer, method: str, order: int, planar: bool) -> None:
         """Goes on with another grid or method. The state keeps its momentum; a law on the new grid must follow."""

@@ -117,6 +117,12 @@ class PyMarch {
     {
     }
 
+    // A march of its own, in the same state.
+    std::unique_ptr<PyMarch> copy()
+    {
+        const InUse in_use(*this);
+        return std::unique_ptr<PyMarch>(new PyMarch(march_, has_law_));
+    }
     void change(std::shared_ptr<const Swimmer> swimmer, const std::string& method, std::size_t order, bool planar)
     {
         const InUse in_use(*this);
@@ -220,10 +226,20 @@ class PyMarch {
         }
     };
 
+    PyMarch(const March& march, bool has_law) : march_(march), has_law_(has_law) {}
+
     March march_;
     bool has_law_ = false;  // on the present grid
     std::atomic<bool> in_use_{false};
 };
+
+// Lets copies in Python share the object, which never changes.
+template <class Class>
+void share_in_copies(Class& bound)
+{
+    bound.def("__copy__", [](const py::object& self) { return self; })
+        .def("__deepcopy__", [](const py::object& self, const py::dict&) { return self; }, py::arg("memo"));
+}
 
 template <class M>
 py::object rate_of(Instant<M>& instant, const Law& law, const py::object& current, double time, const py::object& state)
@@ -281,36 +297,42 @@ PYBIND11_MODULE(EEL_CORE_MODULE, module)
     module.attr("STATUSES") =
         py::make_tuple("marched", "not_finite", "step_too_small", "singular", "too_many_steps", "unfinished");
 
-    py::class_<Swimmer, std::shared_ptr<Swimmer>>(module, "Swimmer")
-        .def(py::init([](const py::object& grid, const py::object& sections, const py::object& stations,
-                         const std::string& friction, bool resistive, std::size_t first_watched, bool wake,
-                         double nose_mass, double nose_drag, bool distributed_pressure) {
-                 return std::const_pointer_cast<Swimmer>(swimmer_from(grid, sections, stations, friction, resistive,
-                                                                      first_watched, wake, nose_mass, nose_drag,
-                                                                      distributed_pressure));
-             }),
-             py::arg("grid"), py::arg("sections"), py::arg("stations"), py::kw_only(), py::arg("friction"),
-             py::arg("resistive"), py::arg("first_watched"), py::arg("wake"), py::arg("nose_mass"),
-             py::arg("nose_drag"), py::arg("distributed_pressure"));
+    auto swimmer = py::class_<Swimmer, std::shared_ptr<Swimmer>>(module, "Swimmer");
+    share_in_copies(swimmer);
+    swimmer.def(py::init([](const py::object& grid, const py::object& sections, const py::object& stations,
+                            const std::string& friction, bool resistive, std::size_t first_watched, bool wake,
+                            double nose_mass, double nose_drag, bool distributed_pressure) {
+                    return std::const_pointer_cast<Swimmer>(swimmer_from(grid, sections, stations, friction, resistive,
+                                                                         first_watched, wake, nose_mass, nose_drag,
+                                                                         distributed_pressure));
+                }),
+                py::arg("grid"), py::arg("sections"), py::arg("stations"), py::kw_only(), py::arg("friction"),
+                py::arg("resistive"), py::arg("first_watched"), py::arg("wake"), py::arg("nose_mass"),
+                py::arg("nose_drag"), py::arg("distributed_pressure"));
 
-    py::class_<LawTables, std::shared_ptr<LawTables>>(module, "LawTables")
-        .def(py::init([](const std::vector<std::size_t>& axis, const py::object& node, const py::object& angle,
-                         const py::object& moments, const py::object& station, const py::object& station_moments) {
-                 return std::const_pointer_cast<LawTables>(
-                     tables_from(axis, node, angle, moments, station, station_moments));
-             }),
-             py::arg("axis"), py::arg("node"), py::arg("angle"), py::arg("moments"), py::arg("station"),
-             py::arg("station_moments"));
+    auto law_tables = py::class_<LawTables, std::shared_ptr<LawTables>>(module, "LawTables");
+    share_in_copies(law_tables);
+    law_tables.def(
+        py::init([](const std::vector<std::size_t>& axis, const py::object& node, const py::object& angle,
+                    const py::object& moments, const py::object& station, const py::object& station_moments) {
+            return std::const_pointer_cast<LawTables>(
+                tables_from(axis, node, angle, moments, station, station_moments));
+        }),
+        py::arg("axis"), py::arg("node"), py::arg("angle"), py::arg("moments"), py::arg("station"),
+        py::arg("station_moments"));
 
-    py::class_<Law, std::shared_ptr<Law>>(module, "Law")
-        .def(py::init([](std::shared_ptr<LawTables> tables, double origin, const py::list& waves,
-                         const py::object& segment, const py::object& blend) {
-                 return std::const_pointer_cast<Law>(law_from(std::move(tables), origin, waves, segment, blend));
-             }),
-             py::arg("tables"), py::arg("origin"), py::arg("waves"), py::arg("segment"), py::arg("blend"))
+    auto law = py::class_<Law, std::shared_ptr<Law>>(module, "Law");
+    share_in_copies(law);
+    law.def(py::init([](std::shared_ptr<LawTables> tables, double origin, const py::list& waves,
+                        const py::object& segment, const py::object& blend) {
+                return std::const_pointer_cast<Law>(law_from(std::move(tables), origin, waves, segment, blend));
+            }),
+            py::arg("tables"), py::arg("origin"), py::arg("waves"), py::arg("segment"), py::arg("blend"))
         .def("factors", &factors_at, py::arg("time"));
 
-    py::class_<StepBounds>(module, "StepBounds")
+    auto bounds = py::class_<StepBounds>(module, "StepBounds");
+    share_in_copies(bounds);
+    bounds
         .def(py::init([](double tolerance, double longest, double smallest, double length, double momentum_floor,
                          double part_of_span, double most_steps, double spare_steps) {
                  return StepBounds{tolerance,      longest,      smallest,   length,
@@ -330,6 +352,9 @@ PYBIND11_MODULE(EEL_CORE_MODULE, module)
     py::class_<PyMarch>(module, "March")
         .def(py::init<std::shared_ptr<Swimmer>, const std::string&, std::size_t, bool>(), py::arg("swimmer"),
              py::arg("method"), py::arg("order"), py::arg("planar"))
+        .def("__copy__", &PyMarch::copy)
+        .def(
+            "__deepcopy__", [](PyMarch& march, const py::dict&) { return march.copy(); }, py::arg("memo"))
         .def("change", &PyMarch::change, py::arg("swimmer"), py::arg("method"), py::arg("order"), py::arg("planar"))
         .def("follow", &PyMarch::follow, py::arg("law"), py::arg("breakpoints"), py::arg("bounds"), py::arg("ledger"),
              py::arg("current"), py::arg("smoothly"))

@@ -1,13 +1,14 @@
 """Calibration of the targets of accuracy: what settings deliver which error, measured over gaits, bodies and scenes.
 
 Every case is swum once with far more points and far smaller steps than any setting has; the error of a setting is the
-greater of the head's position at the end and of the torque (`relative_errors`). Points along the body and steps in time are
-varied apart, since their errors add. For each target the table gets the cheapest settings whose worst error over all
-cases stays below it, also when all cases swim with them as they are: apart for cases that stay in a plane and others.
-Errors are relative to the difficulty of the swim (`difficulty.py`), as targets are when their settings are looked up.
-The cost is counted in evaluations of the head's dynamics; for runs with torque those of the ledger count too, a number
-per step that is measured here. The kinks of the drag are looked for where that is cheaper than further points and further
-steps (without it the drag is less smooth in time, too). What comes of it is fitted to many more laws (`fitting`).
+greater of the head's position at the end and of the torque (`relative_errors`). Points along the body and steps in
+time are varied apart, since their errors add. For each target the table gets the cheapest settings whose worst error
+over all cases stays below it, also when all cases swim with them as they are: apart for cases that stay in a plane and
+others. Errors are relative to the difficulty of the swim (`difficulty.py`), as targets are when their settings are
+looked up. The cost is counted in evaluations of the head's dynamics; for runs with torque those of the ledger count
+too, a number per step that is measured here. The kinks of the drag are looked for where that is cheaper than further
+points and further steps (without it the drag is less smooth in time, too). What comes of it is fitted to many more laws
+(`fitting`).
 """
 
 import csv

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <variant>
 
 #include "eel_core/observe.hpp"
@@ -9,6 +10,7 @@
 
 namespace eel_core {
 
+// A copy goes on by itself: state, steps and work space are its own; swimmer and law, which never change, are shared.
 class March {
   public:
     March(std::shared_ptr<const Swimmer> swimmer, const Method& method, bool planar)
@@ -155,7 +157,7 @@ class March {
     Workspace<Space>& workspace()
     {
         if (auto* const stepper = std::get_if<Stepper<Space>>(&stepper_)) return stepper->work();
-        if (!observing_) observing_ = std::make_unique<Workspace<Space>>(*swimmer_);
+        if (!observing_) observing_.emplace(*swimmer_);
         return *observing_;
     }
 
@@ -165,7 +167,7 @@ class March {
     MarchSettings settings_;
     Steppers stepper_;
     StationWork here_;
-    std::unique_ptr<Workspace<Space>> observing_;
+    std::optional<Workspace<Space>> observing_;
     std::int64_t slice_ = Slice{}.left;
     double time_ = 0.0;  // [s]
     State state_{};
