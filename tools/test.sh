@@ -4,6 +4,8 @@
 set -uo pipefail
 if [ $# -gt 0 ]; then exec python -m pytest -m "not soak" "$@"; fi
 
+# A test that hangs where Python's own time-out cannot reach, in compiled code, ends its pytest with all threads' stacks.
+pytest=(python -m pytest -m "not soak" -o faulthandler_timeout=420 -o faulthandler_exit_on_timeout=true)
 mkdir -p out
 declare -A beside
 stop() {
@@ -14,7 +16,7 @@ stop() {
 trap stop INT TERM
 begin() {   # NAME TESTS...: into out/test-NAME.log
     # a job in the background would ignore SIGINT, and so would pytest
-    env --default-signal=INT python -m pytest -m "not soak" "${@:2}" > "out/test-$1.log" 2>&1 &
+    env --default-signal=INT "${pytest[@]}" "${@:2}" > "out/test-$1.log" 2>&1 &
     beside[$1]=$!
 }
 
@@ -25,7 +27,7 @@ tools/core_tests.sh tests > out/test-core.log 2>&1 &
 beside[core]=$!
 begin system test/system test/eel_gaits test/eel_core
 echo "[test] mechanics here; the dynamics node, test/eel_viz, test/system with test/eel_gaits and test/eel_core, and the C++ tests beside, shown when done"
-python -m pytest -m "not soak" test/eel_dynamics "${nodes[@]/#/--ignore=}"
+"${pytest[@]}" test/eel_dynamics "${nodes[@]/#/--ignore=}"
 status=$?
 for name in core nodes viz system; do
     wait "${beside[$name]}" || status=1

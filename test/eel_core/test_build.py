@@ -53,19 +53,17 @@ def test_no_such_level(configure):
     assert 'EEL_CORE_LEVELS must be of v2;v3;v4;native, got "v2;v5"' in configure("-DEEL_CORE_LEVELS=v2;v5")
 
 
-@pytest.mark.timeout(900)  # compiles three modules
+@pytest.mark.timeout(400)  # compiles two modules
 def test_pip_installs_it_without_ros(tmp_path):
     """With a module for each level; the one for this processor is imported."""
     environment = {name: os.environ[name] for name in ("PATH", "HOME", "LD_LIBRARY_PATH") if name in os.environ}
     environment["_ROS_WHEELS_BOOTSTRAP_COMPLETE"] = "1"
     install = [sys.executable, "-m", "pip", "install", "--no-build-isolation", "--no-deps", "--no-index"]
-    options = ["--target", tmp_path, "-C", "cmake.build-type=Debug", "-C", "cmake.define.EEL_CORE_LEVELS=v2;v3;v4"]
+    options = ["--target", tmp_path, "-C", "cmake.build-type=Debug", "-C", "cmake.define.EEL_CORE_LEVELS=v2;v3"]
     options += ["-C", f"build-dir={tmp_path}/build"]
-    done = subprocess.run([*install, *options, SOURCE], env=environment, capture_output=True, text=True, timeout=800)
+    done = subprocess.run([*install, *options, SOURCE], env=environment, capture_output=True, text=True, timeout=380)
     assert done.returncode == 0, done.stdout + done.stderr
-    assert {path.name.split(".")[0] for path in (tmp_path / "eel_core").glob("_core_*")} == {
-        f"_core_v{n}" for n in (2, 3, 4)
-    }
+    assert {path.name.split(".")[0] for path in (tmp_path / "eel_core").glob("_core_*")} == {"_core_v2", "_core_v3"}
 
     show = f"import sys; sys.path.insert(0, {str(tmp_path)!r}); import eel_core; print(eel_core.build_info()['level'])"
     for level in ("", "v2"):

@@ -179,6 +179,9 @@ def test_first_sample_waits_for_the_subscribers_asked_for(start, client):
 # controllers
 
 
+ROWS = "pitch", "pitch_rate", "pitch_accel", "yaw", "yaw_rate", "yaw_accel"
+
+
 def instant(t, amplitude=1.0, period=1.0):
     """K3 = amplitude (1 + X) sin(2 pi t / period) at time t, with two derivatives."""
     x, w = np.linspace(0.0, 1.0, 11), 2.0 * math.pi / period
@@ -359,7 +362,9 @@ def test_bad_samples_are_refused(start, client):
 
 @pytest.mark.fault("samples", "a sample of 20,000 points, or of a million", "refused: at most 1601")
 @pytest.mark.fault(
-    "samples", "11,000 samples an hour ahead", "at most 10,000 are kept, the others refused with the number"
+    "samples",
+    "630 samples of 1601 points, an hour ahead",
+    "samples of at most 1,000,000 points are kept, the others refused with the number",
 )
 def test_samples_of_too_many_points_and_too_many_of_them_are_refused(start, client):
     swim = client(topics=("curvature",))
@@ -369,17 +374,19 @@ def test_samples_of_too_many_points_and_too_many_of_them_are_refused(start, clie
     swim.until(lambda: swim.samples.get_subscription_count() == 1, "the node's subscription")
     for points in (20_000, 1_000_000):
         message, row = instant(100.0), array.array("d", bytes(8 * points))
-        for name in ("x", "pitch", "pitch_rate", "pitch_accel", "yaw", "yaw_rate", "yaw_accel"):
+        for name in ("x", *ROWS):
             setattr(message, name, row)
         swim.spin(1.1)  # errors of one kind are said once a second
         swim.samples.publish(message)
         said = f"curvature samples x must have at most 1601 points, got {points}"
         swim.until(lambda said=said: said in node.output(), said)
-    for part in range(11):
-        swim.deliver([instant(3000.0 + 0.01 * k) for k in range(1000 * part, 1000 * part + 1000)])
-    swim.until(
-        lambda: "ahead of the simulation must be at most 10000, of 1000000 points, got 10001" in node.output(), "limit"
-    )
+    x = np.linspace(0.0, 1.0, 1601)
+    rows = {name: array.array("d", bytes(8 * 1601)) for name in ROWS}
+    swim.deliver([CurvatureSamples(header=instant(2000.0 + k).header, x=x.tolist(), **rows) for k in range(600)])
+    assert "ahead of the simulation" not in node.output()
+    swim.deliver([CurvatureSamples(header=instant(2900.0 + k).header, x=x.tolist(), **rows) for k in range(30)])
+    limit = "ahead of the simulation must be at most 10000, of 1000000 points, got 625 of 1000625"
+    swim.until(lambda: limit in node.output(), "limit")
     assert swim.reset().success
     swim.until_time(0.5, "curvature")
     swim.until(lambda: swim.diagnosis()[0] == 0, "good diagnostics")

@@ -81,6 +81,7 @@ def test_a_server_that_never_reads(mute, show, tmp_path):
     "a viewer of served data stopped by SIGSTOP",
     "said 2 s after its buffers, some 60 MB, are full; it misses what comes, memory is bounded, the file complete",
 )
+@pytest.mark.soak
 def test_a_viewer_of_served_data_that_is_stopped(show, tmp_path):
     port = free_port()
     process = show("serve", port, 130.0)

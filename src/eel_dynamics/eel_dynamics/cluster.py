@@ -3,6 +3,7 @@
 A worker that is lost takes nothing with it but time: its work is given to the others.
 """
 
+import multiprocessing
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
@@ -26,13 +27,16 @@ def needed() -> dict:
 @contextmanager
 def connected(scheduler=None, workers: int | None = None):
     """A Dask client: of the `scheduler` at an address ("tcp://host:8786") or given as client or cluster; None: of a
-    cluster of `workers` processes on this machine (one per core), which ends with the context."""
+    cluster of `workers` processes on this machine (one per core), which ends with the context.
+
+    `OSError` where this machine gives processes no semaphores: a container without /dev/shm."""
     from distributed import Client, LocalCluster
 
     if isinstance(scheduler, Client):
         yield scheduler
         return
     if scheduler is None:
+        _check_semaphores()
         with (
             LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address="127.0.0.1:0") as cluster,
             Client(cluster) as client,
@@ -45,6 +49,13 @@ def connected(scheduler=None, workers: int | None = None):
         raise ValueError(f"scheduler cannot be reached at {shown(scheduler)}: {error}") from None
     with client:
         yield client
+
+
+def _check_semaphores():
+    try:
+        multiprocessing.Lock()
+    except OSError as error:
+        raise OSError(f"the processes of a sweep need semaphores in /dev/shm ({error}); mount it, or name a scheduler") from None
 
 
 def spread(client, task: Callable, chunks: list, *settings) -> Iterator[tuple]:
