@@ -18,9 +18,7 @@ GROWTH = 0.01  # of the median, what the memory may vary by afterwards
 MOST = 600.0  # MB of any node: histories of 5,000 samples on both sides, libraries, Rerun
 
 
-@pytest.mark.fault(
-    "load", "twenty seconds as fast as it goes, every topic heard", "no sample lost, memory bounded"
-)
+@pytest.mark.fault("load", "twenty seconds as fast as it goes, every topic heard", "no sample lost, memory bounded")
 @pytest.mark.timeout(400)
 def test_twenty_seconds(start, fresh_domain):
     result = soak(start, SHORT, limit=300.0)

@@ -55,7 +55,9 @@ def _check_semaphores():
     try:
         multiprocessing.Lock()
     except OSError as error:
-        raise OSError(f"the processes of a sweep need semaphores in /dev/shm ({error}); mount it, or name a scheduler") from None
+        raise OSError(
+            f"the processes of a sweep need semaphores in /dev/shm ({error}); mount it, or name a scheduler"
+        ) from None
 
 
 def spread(client, task: Callable, chunks: list, *settings) -> Iterator[tuple]:

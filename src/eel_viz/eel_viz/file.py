@@ -16,9 +16,7 @@ from eel_viz.loggers import Rates
 from eel_viz.settings import Settings
 
 FILE_TICK = 0.6  # s: a process that is killed loses no more; each batch of an entity costs its file some 700 bytes
-ROOM = (
-    2**18
-)  # bytes that must be free at the start: rerun writes 170 kB at once, and may wait for ever where that fails
+ROOM = 2**18  # bytes that must be free: rerun writes 170 kB at once, and may wait for ever where that fails
 REMINDER = 30.0  # s between two times at which it is said that nothing is saved
 
 
