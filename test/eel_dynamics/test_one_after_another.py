@@ -1,6 +1,7 @@
 """Runs one after another, of which some share tables of body, scene and law: nothing of one is in the next."""
 
 import threading
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -50,6 +51,16 @@ def test_a_run_does_not_know_of_those_before(order):
     for arguments in (*SWIMS[order], *SWIMS[order]):
         arguments = arguments if "body" not in arguments else arguments | {"body": body}
         assert_same(simulate(**arguments), fresh(**arguments))
+
+
+def test_runs_in_eight_threads_are_those_of_one():
+    alone = [simulate(**arguments) for arguments in SWIMS]
+    together = SWIMS * 3
+    with ThreadPoolExecutor(8) as pool:
+        runs = list(pool.map(lambda arguments: simulate(**arguments), together))
+    assert len(runs) == len(together)
+    for index, run in enumerate(runs):
+        assert_same(run, alone[index % len(alone)])
 
 
 def test_a_run_keeps_its_own_arrays():

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from eel_dynamics.command import main
 
-from eel_dynamics import Scene, Simulation, SimulationStopped, simulate
+import eel_core
+from eel_dynamics import Scene, Simulation, SimulationStopped, simulate, simulate_batch
 from eel_gaits import Law, Ramp, Term, falling, straight
 
 
@@ -17,9 +18,21 @@ def quick(period, name="quick"):
     return Law(Term(amplitude=(5.0, 1.0), wavelength=1.0, period=period), name=name)
 
 
+def slices_of(monkeypatch, nodes):
+    """Marches come back to Python after so many `nodes`, at the end of a step."""
+    made = eel_core.March
+
+    def march(*arguments):
+        result = made(*arguments)
+        result.set_slice(nodes)
+        return result
+
+    monkeypatch.setattr(eel_core, "March", march)
+
+
 def step_by_step(monkeypatch):
     """Slices of one step."""
-    monkeypatch.setattr("eel_dynamics.simulation.SLICE", 1)
+    slices_of(monkeypatch, 1)
 
 
 @pytest.mark.parametrize("accuracy", ["draft", "standard", 1e-6])
@@ -28,8 +41,9 @@ def test_slices_do_not_change_a_digit(monkeypatch, accuracy, scene):
     law = straight() if scene.planar else falling()
     runs = []
     for size in (1, 10**9):
-        monkeypatch.setattr("eel_dynamics.simulation.SLICE", size)
-        runs.append(simulate(law, 3.0, accuracy=accuracy, scene=scene, load=True, stations=7))
+        with monkeypatch.context() as patch:
+            slices_of(patch, size)
+            runs.append(simulate(law, 3.0, accuracy=accuracy, scene=scene, load=True, stations=7))
     cut, whole = runs
     assert (cut.steps, cut.evaluations) == (whole.steps, whole.evaluations)
     for name in ("position", "orientation", "twist", "head_acceleration", "backbone", "fluid_force"):
@@ -92,6 +106,20 @@ def test_the_limit_can_be_raised_and_lowered():
     for bad in (0.0, -1.0, math.nan, "many"):
         with pytest.raises(ValueError, match="most_evaluations must be"):
             simulate(falling(), 1.0, most_evaluations=bad)
+        with pytest.raises(ValueError, match="most_evaluations must be"):
+            simulate_batch(falling(), 1.0, most_evaluations=bad)
+
+
+def test_a_batch_takes_the_limit_as_a_single_run_does():
+    laws, times = [quick(1e-5), straight()], {"duration": 1e-4, "sample_period": 1e-5}
+    refused = simulate_batch(laws, **times)
+    assert "most_evaluations is 5e+05" in str(refused.error[0]) and refused.error[1] is None
+    batch, run = (
+        simulate_batch(laws, **times, most_evaluations=1e8),
+        simulate(laws[0], **times, most_evaluations=1e8),
+    )
+    assert not batch.stopped.any()
+    np.testing.assert_array_equal(batch.position[0], run.position)
 
 
 def test_what_costs_more_on_the_way_stops_with_what_to_change(monkeypatch):

@@ -24,6 +24,11 @@ distributed = pytest.importorskip("distributed")
 SHORT = {"duration": 1.2, "accuracy": 1e-2, "stations": 11}
 
 
+def final_time(run):
+    """A measure that needs no whole period."""
+    return {"final_time": float(run.time[-1])}
+
+
 @pytest.fixture(scope="module")
 def client():
     """Two worker processes, which are started again when they die."""
@@ -53,6 +58,20 @@ def test_labelled_and_equal_to_single_runs(client, tmp_path):
     assert not out.with_name("periods.nc.parts").exists()
     # what is complete is not swum again
     assert sweep(grid, scheduler="tcp://127.0.0.1:1", out=out, **SHORT).head_x.equals(data.head_x)
+
+
+def test_the_limit_of_evaluations_can_be_raised_and_lowered(client, tmp_path):
+    grid, out = {"period": [0.8]}, tmp_path / "sweep.nc"
+    lowered = sweep(grid, scheduler=client, out=out, most_evaluations=5.0, **SHORT)
+    assert "most_evaluations is 5" in str(lowered.error.values[0])
+    with pytest.raises(ValueError, match="not of this sweep"):  # other results, so another sweep
+        sweep(grid, scheduler=client, out=out, **SHORT)
+    with pytest.raises(ValueError, match="most_evaluations must be"):
+        sweep(grid, scheduler=client, most_evaluations=0.0, **SHORT)
+    quick = {"duration": 1e-4, "sample_period": 1e-5, "accuracy": 1e-2, "stations": 5, "measure": final_time}
+    assert sweep({"period": [1e-5]}, scheduler=client, **quick).stopped.all()
+    raised = sweep({"period": [1e-5]}, scheduler=client, most_evaluations=1e8, **quick)
+    assert not raised.stopped.any() and float(raised.final_time[0]) == pytest.approx(1e-4)
 
 
 def test_a_lost_worker_costs_time_only(client):

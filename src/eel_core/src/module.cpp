@@ -321,13 +321,14 @@ PYBIND11_MODULE(EEL_CORE_MODULE, module)
         py::arg("axis"), py::arg("node"), py::arg("angle"), py::arg("moments"), py::arg("station"),
         py::arg("station_moments"));
 
-    auto law = py::class_<Law, std::shared_ptr<Law>>(module, "Law");
-    share_in_copies(law);
-    law.def(py::init([](std::shared_ptr<LawTables> tables, double origin, const py::list& waves,
-                        const py::object& segment, const py::object& blend) {
-                return std::const_pointer_cast<Law>(law_from(std::move(tables), origin, waves, segment, blend));
-            }),
-            py::arg("tables"), py::arg("origin"), py::arg("waves"), py::arg("segment"), py::arg("blend"))
+    auto curvature_law = py::class_<Law, std::shared_ptr<Law>>(module, "Law");
+    share_in_copies(curvature_law);
+    curvature_law
+        .def(py::init([](std::shared_ptr<LawTables> tables, double origin, const py::list& waves,
+                         const py::object& segment, const py::object& blend) {
+                 return std::const_pointer_cast<Law>(law_from(std::move(tables), origin, waves, segment, blend));
+             }),
+             py::arg("tables"), py::arg("origin"), py::arg("waves"), py::arg("segment"), py::arg("blend"))
         .def("factors", &factors_at, py::arg("time"));
 
     auto bounds = py::class_<StepBounds>(module, "StepBounds");

@@ -27,6 +27,7 @@ from .observations import Observations, empty_observations
 from .run import Run, check_memory, checked_times, run_of
 from .scene import Scene
 from .simulation import Simulation
+from .step_bounds import MOST_EVALUATIONS
 from .stopping import SimulationStopped
 
 ALONG = "backbone", "section_orientation", "curvature", "curvature_rate", "torque", "force", "fluid_force"
@@ -115,6 +116,7 @@ def simulate_batch(
     load: bool = False,
     threads: int | None = None,
     progress: Callable[[int, int], None] | None = None,
+    most_evaluations: float = MOST_EVALUATIONS,
 ) -> Batch:
     """Swim B swimmers for `duration` [s] each and sample all every `sample_period` [s], from t = 0 on.
 
@@ -122,6 +124,7 @@ def simulate_batch(
     one row for all, or (B, .). Every sequence has the same length B; one of length 1 counts as one for all. stations:
     how many per body, or their X [m], for the profiles along the body; None: no profiles, the motion and the energies
     alone. threads: None for one per core that this process may use. progress(done, B): called now and then.
+    most_evaluations: of each, as in `simulate`.
 
     Each swimmer is the `simulate` of its arguments, not verified, to the last bit. One that cannot begin or go on keeps
     the samples until then, with a `SimulationStopped` in `error`; the others do not notice. `ValueError` names an
@@ -129,7 +132,7 @@ def simulate_batch(
     """
     times = checked_times(duration, sample_period)
     accuracy = accuracy.tolist() if isinstance(accuracy, np.ndarray) else accuracy
-    members = swimmers_of(laws, bodies, scenes, accuracy, positions, orientations, twists, duration)
+    members = swimmers_of(laws, bodies, scenes, accuracy, positions, orientations, twists, duration, most_evaluations)
     along = [0.0] if stations is None else stations
     x_of = {length: checked_stations(along, length) for length in dict.fromkeys(each.body.length for each in members)}
     x = [x_of[each.body.length] for each in members]

@@ -1,4 +1,4 @@
-"""What swimmers are and how they begin: of one, or the arguments of a batch, one for all or one for each."""
+"""Swimmers and their initial states: of one run, or of a batch with arguments for all or for each."""
 
 from typing import NamedTuple
 
@@ -16,7 +16,7 @@ from .step_bounds import MOST_EVALUATIONS
 
 
 class Swimmer(NamedTuple):
-    """What a swimmer is, and how it begins."""
+    """A swimmer, its law and its initial state."""
 
     law: Law
     body: Body
@@ -54,10 +54,12 @@ class Swimmer(NamedTuple):
         return InitialState(self.position, self.orientation, self.twist)
 
 
-def swimmers_of(laws, bodies, scenes, accuracy, positions, orientations, twists, duration) -> list[Swimmer]:
-    """B swimmers, for a `duration` [s]. Each other argument is one for all, or a sequence of B (rows of an array (B, .)
-    for the last three of them); a sequence of length 1 counts as one for all. `ValueError` names what does not fit, and
-    the swimmer's number."""
+def swimmers_of(
+    laws, bodies, scenes, accuracy, positions, orientations, twists, duration, most_evaluations=MOST_EVALUATIONS
+) -> list[Swimmer]:
+    """B swimmers, for a `duration` [s], with `most_evaluations` by simulated second. Each other argument is one for
+    all, or a sequence of B (rows of an array (B, .) for the last three of them); a sequence of length 1 counts as one
+    for all. `ValueError` names what does not fit, and the swimmer's number."""
     columns = _broadcast(
         laws=_several("laws", laws, Law),
         bodies=_several("bodies", Body.boyer2010() if bodies is None else bodies, Body),
@@ -67,7 +69,8 @@ def swimmers_of(laws, bodies, scenes, accuracy, positions, orientations, twists,
         orientations=_rows("orientations", orientations, checked_quaternion),
         twists=_rows("twists", twists, lambda name, row: checked_row(name, row, 6)),
     )
-    swimmers = [Swimmer(*row, float(duration)) for row in zip(*columns, strict=True)]
+    most_evaluations = checked_number("most_evaluations", most_evaluations, "per simulated second")
+    swimmers = [Swimmer(*row, float(duration), most_evaluations) for row in zip(*columns, strict=True)]
     for index, swimmer in enumerate(swimmers):
         if swimmer.scene.planar:
             _check_planar(index, swimmer)

@@ -7,6 +7,7 @@ import numpy as np
 
 import eel_core
 
+from .accuracy import Accuracy
 from .body import Body
 from .inertia import check_inertia
 from .panels import panels_of
@@ -23,6 +24,17 @@ class GridSettings(NamedTuple):
     kinks: str
     knots: tuple[float, ...]
 
+    @staticmethod
+    def of(accuracy: Accuracy, waves: float, knots: tuple[float, ...]) -> "GridSettings":
+        """Of a grid that an `accuracy` needs for `waves` on the body and the `knots` [m] of a law."""
+        return GridSettings(accuracy.points_per_length(waves), accuracy.kinks, knots)
+
+    def at_least(self, other: "GridSettings") -> "GridSettings":
+        """These, where they are fine enough for `other`; else those of `other`, and no coarser than these."""
+        resolution = max(self.resolution, other.resolution)
+        fine_enough = resolution <= self.resolution * (1.0 + 1e-9) and set(other.knots) <= set(self.knots)
+        return self if fine_enough and self.kinks == other.kinks else other._replace(resolution=resolution)
+
 
 class Discretisation(NamedTuple):
     """A body in a scene on a grid. It never changes."""
@@ -32,6 +44,9 @@ class Discretisation(NamedTuple):
     swimmer: eel_core.Swimmer  # all of it, for the compiled mechanics
     mass: float  # kg, of the body
     tabulation: Tabulation
+
+    def __deepcopy__(self, memo: dict) -> "Discretisation":
+        return self
 
 
 @lru_cache(maxsize=256)

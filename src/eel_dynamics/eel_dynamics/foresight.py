@@ -32,7 +32,7 @@ class Foresight:
             warnings.warn(
                 f"this swim of {self._duration:g} s is going to take {_minutes(took + left)}: it has come to "
                 f"{reached:.3g} s in {took:.0f} s; a coarser accuracy, a slower law or a shorter duration takes less",
-                stacklevel=5,
+                stacklevel=6,
             )
 
 

@@ -1,4 +1,4 @@
-"""What a law is along the body: its terms' waveforms, the waves that they bend it into, the knots of their splines."""
+"""A law along the body: the waveforms of its terms, the waves that they bend it into, the knots of their splines."""
 
 from functools import lru_cache
 
@@ -6,8 +6,7 @@ import numpy as np
 from eel_gaits.law import Law, Term, amplitude_of
 from eel_gaits.wording import shown
 
-from .tabulated_law import AXES
-
+AXES = {"pitch": 0, "yaw": 1}
 PART_OF_PEAK = 0.75  # of the turns where all terms bend the body most
 TURN_POINTS = 64  # along the body, for the angle that a law bends it by
 MOST_KNOTS = 8  # of laws whose panels are cut at them

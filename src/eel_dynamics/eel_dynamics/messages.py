@@ -31,10 +31,10 @@ from eel_msgs.msg import (
 )
 
 from .axes import QUATERNION, VECTOR, turn_quaternion, turn_vector
+from .curvature_samples import check_points
 from .parameters import limits
 from .records import outline
 from .scene import Scene
-from .simulation import check_points
 from .wire import Wire
 
 try:

@@ -1,4 +1,4 @@
-"""What bounds the steps of a run: the accuracy, the shape's and the motion's times, the body."""
+"""Bounds of the steps in time: from the accuracy, the times of law and initial velocity, and the body."""
 
 from eel_gaits.law import Law
 from eel_gaits.wording import shown
@@ -41,25 +41,25 @@ def step_bounds_of(
     *,
     accuracy: Accuracy,
     scene: Scene,
-    shape: LawFollower,
-    table: Discretisation,
+    follower: LawFollower,
+    discretisation: Discretisation,
     length: float,
     scale: float,
     most_evaluations: float,
 ) -> eel_core.StepBounds:
-    """The bounds for a body of `length` [m], tabulated in `table`, whose motion at the start has the time `scale` [s]
-    and which is driven by `shape`; `most_evaluations` by simulated second."""
-    scale = min(shape.time_scale, scale)
+    """The bounds for a body of `length` [m] on its `discretisation`, whose initial velocity has the time `scale` [s],
+    under the law of the `follower`; `most_evaluations` by simulated second."""
+    scale = min(follower.time_scale, scale)
     longest = LONGEST_STEP * min(scale, 10.0)
     fixed = accuracy.step or (accuracy.fixed and min(scale, 1.0) / accuracy.fixed)
-    slowest = max(SLOWEST * length / min(scale, 10.0), PART_OF_SPEED * shape.speed(length))
+    slowest = max(SLOWEST * length / min(scale, 10.0), PART_OF_SPEED * follower.speed(length))
     return eel_core.StepBounds(
         tolerance=accuracy.tolerance,
         longest=fixed or longest,
         smallest=1e-11 * min(scale, 1.0),
         length=length,
-        momentum_floor=table.mass * slowest,
-        part_of_span=PART_OF_RAMP if scene.ledger and not shape.between_samples else PART_OF_SPAN,
+        momentum_floor=discretisation.mass * slowest,
+        part_of_span=PART_OF_RAMP if scene.ledger and not follower.between_samples else PART_OF_SPAN,
         most_steps=most_evaluations / EVALUATIONS[accuracy.method],
-        spare_steps=max(LEAST_SPARE, SPARE_STEPS * min(1.0, SPARE_POINTS / len(table.grid.x))),
+        spare_steps=max(LEAST_SPARE, SPARE_STEPS * min(1.0, SPARE_POINTS / len(discretisation.grid.x))),
     )

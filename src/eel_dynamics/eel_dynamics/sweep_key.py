@@ -12,14 +12,15 @@ import eel_core
 import eel_gaits
 
 from .body import Body
+from .step_bounds import MOST_EVALUATIONS
 
 PACKAGES = (Path(eel_gaits.__file__).parent, Path(__file__).parent)
 
 
-def key_of(points, duration, sample_period, stations, measure) -> str:
+def key_of(points, duration, sample_period, stations, measure, most_evaluations=MOST_EVALUATIONS) -> str:
     """The key: of the points, the run's arguments, the measure's code and closure, and this software, its compiled core
     included."""
-    content = hashlib.sha256(repr((duration, sample_period)).encode())
+    content = hashlib.sha256(repr((duration, sample_period, most_evaluations)).encode())
     content.update(np.asarray(stations, dtype=float).tobytes())
     content.update(_sources())
     content.update(_content_of_function("measure", measure))

@@ -21,12 +21,14 @@ from eel_gaits.registry import find
 from eel_gaits.wording import one_line, shown
 
 from .accuracy import Accuracy
+from .arguments import checked_number
 from .batch import simulate_batch
 from .body import Body
 from .cluster import connected, needed, spread
 from .measures import checked_point, described, measures_of
 from .run import checked_times
 from .scene import Scene
+from .step_bounds import MOST_EVALUATIONS
 from .sweep_key import key_of
 from .sweep_parts import Parts
 
@@ -62,16 +64,17 @@ def sweep(
     chunk: int | None = None,
     progress: Callable[[int, int], None] | None = None,
     overwrite: bool = False,
+    most_evaluations: float = MOST_EVALUATIONS,
 ):
     """Swim every combination of the values in `grid` and return an `xarray.Dataset` over its parameters.
 
     grid: name: values. A name is a number of the gait ("period"), "scene." and a field of `Scene`, "body" (`Body`s or
     names of the library), or "accuracy". gait: its name, or a function of `numbers` and the grid's that returns a law.
-    numbers: of the gait, the same for all points. duration, body, scene, accuracy, sample_period, stations: as in
-    `simulate`. measure: run -> {name: number}; by default those of `measures`, over the later half of the run. out: .nc
-    file to keep the result in; parts of it lie in `out`.parts until it is complete. scheduler: address of a Dask
-    scheduler, client or cluster; None: `workers` processes on this machine. chunk: points per task. progress(done,
-    points). A point that stops has NaN, `stopped` and its `error`.
+    numbers: of the gait, the same for all points. duration, body, scene, accuracy, sample_period, stations,
+    most_evaluations: as in `simulate`. measure: run -> {name: number}; by default those of `measures`, over the later
+    half of the run. out: .nc file to keep the result in; parts of it lie in `out`.parts until it is complete.
+    scheduler: address of a Dask scheduler, client or cluster; None: `workers` processes on this machine. chunk: points
+    per task. progress(done, points). A point that stops has NaN, `stopped` and its `error`.
 
     overwrite: replace what `out` and its parts hold of another sweep. `ValueError` names the point or the measure that
     does not fit; `OSError`: the output cannot be written to its end; `RuntimeError`: points could not be computed, with
@@ -80,6 +83,7 @@ def sweep(
     xarray = needed()["xarray"]
     names, axes = _checked_grid(grid)
     checked_times(duration, sample_period)
+    limit = checked_number("most_evaluations", most_evaluations, "per simulated second")
     _check_count("workers", workers)
     _check_count("chunk", chunk)
     base = Point(
@@ -93,7 +97,7 @@ def sweep(
         _point(index, dict(zip(names, values, strict=True)), gait, numbers or {}, base)
         for index, values in enumerate(itertools.product(*axes))
     ]
-    key = key_of(points, duration, sample_period, stations, measure)
+    key = key_of(points, duration, sample_period, stations, measure, limit)
     parts = Parts(out, key, len(points), overwrite)
     complete = parts.complete()
     if complete is not None:
@@ -107,7 +111,8 @@ def sweep(
         with connected(scheduler, workers) as client:
             size = chunk or min(LONGEST_CHUNK, max(1, math.ceil(len(left) / (8 * max(1, _threads_of(client))))))
             chunks = [left[start : start + size] for start in range(0, len(left), size)]
-            for swum, result, error in spread(client, swim_points, chunks, duration, sample_period, stations, measure):
+            how = duration, sample_period, stations, measure, limit
+            for swum, result, error in spread(client, swim_points, chunks, *how):
                 if error is not None:
                     failures.append((swum[0].index, error))
                     continue
@@ -127,7 +132,7 @@ def sweep(
     return data
 
 
-def swim_points(points: list[Point], duration, sample_period, stations, measure) -> dict[int, dict]:
+def swim_points(points: list[Point], duration, sample_period, stations, measure, most_evaluations) -> dict[int, dict]:
     """What a worker does: swim the points, and measure each. Index: measures, and "error", empty where it went well."""
     batch = simulate_batch(
         [point.law for point in points],
@@ -138,6 +143,7 @@ def swim_points(points: list[Point], duration, sample_period, stations, measure)
         sample_period=sample_period,
         stations=stations,
         threads=1,
+        most_evaluations=most_evaluations,
     )
     result = {}
     for place, point in enumerate(points):
