@@ -43,18 +43,20 @@ class LawDrivenMarch:
 
     # -- law, accuracy and grid
 
-    def adopt(self, law: Law, origin: float, transition: float, accuracy: Accuracy):
-        """Follow `law`, whose own t = 0 lies at `origin` [s], from now on with the settings of an `accuracy`; blend
-        over `transition` [s]."""
-        self.refine(accuracy, self._setup.shape_needs(law))
+    def adopt(self, law: Law, origin: float, transition: float, needs: MotionNeeds, last: MotionNeeds):
+        """Follow `law`, whose own t = 0 lies at `origin` [s], from now on; blend over `transition` [s]. The settings
+        are for its `needs` and those of the `last` law."""
+        accuracy = self._setup.accuracy_for(needs.in_blend(last))
+        self.refine(accuracy, needs.shape)
         self.follower.adopt(law, origin=origin, time=self.time, transition=transition)
         self.follow(accuracy)
 
-    def add_sample(self, sample: CurvatureSample, accuracy: Accuracy, waves: float):
-        """One sample of a controller more; from now on with the settings of an `accuracy`, for so many `waves` on the
-        body. `ValueError` for a sample that comes too late, or twice."""
+    def add_sample(self, sample: CurvatureSample, needs: MotionNeeds):
+        """One sample of a controller more; the settings are for the `needs`. `ValueError` for a sample that comes too
+        late, or twice."""
+        accuracy = self._setup.accuracy_for(needs)
         if accuracy != self.accuracy:
-            self.refine(accuracy, ShapeNeeds(waves, self.settings.knots))
+            self.refine(accuracy, ShapeNeeds(needs.shape.waves, self.settings.knots))
             self.follow(accuracy)
         self.follower.add(sample)
 
@@ -221,7 +223,7 @@ def march_from_start(
     """A march from the initial state under `law` with the settings that its `needs` ask for, on the `grid` or a finer
     one. `ValueError` where the law cannot be begun."""
     accuracy = setup.accuracy_for(needs)
-    wanted = GridSettings.of(accuracy, *setup.shape_needs(law))
+    wanted = GridSettings.of(accuracy, *needs.shape)
     settings = wanted if grid is None else grid.at_least(wanted)
     try:
         with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is reported

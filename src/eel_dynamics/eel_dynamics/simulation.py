@@ -122,13 +122,12 @@ class Simulation:
         The first law, before the start, needs no blend; a later one takes over during `transition` [s], or the law's
         own, or the default. `ValueError` for a law that the scene does not allow.
         """
-        self._setup.shape_needs(law)
+        needs = self._setup.motion_needs(law, self._needs.plane)
         if not is_finite(origin):
             raise ValueError(f"law origin must be finite, got {shown(origin)} s")
         blend = self._setup.transition_to(law, transition)
-        needs = self._setup.motion_needs(law, self._needs.plane)
         if self._started:
-            self._march.adopt(law, float(origin), blend, self._setup.accuracy_for(needs.in_blend(self._needs)))
+            self._march.adopt(law, float(origin), blend, needs, self._needs)
         else:
             self._march = march_from_start(self._setup, needs, law, float(origin), self._march.settings)
         self._needs, self.ready = needs, True
@@ -146,7 +145,7 @@ class Simulation:
         length, planar = self.body.length, self.scene.planar
         sample = CurvatureSample.checked(time, x, rows, length=length, planar=planar, now=self.time)
         self._needs = self._needs.with_samples()
-        self._march.add_sample(sample, self._setup.accuracy_for(self._needs), self._needs.waves)
+        self._march.add_sample(sample, self._needs)
         self.ready = True
 
     # -- march
@@ -168,8 +167,8 @@ class Simulation:
     def reset(self):
         """State and time to the start; the last law kept, with its own t = 0 at 0."""
         law, setup = self.law, self._setup
-        grid = GridSettings.of(self.accuracy, *setup.shape_needs(law))  # the present one may be finer, for samples
         self._needs = setup.motion_needs(law, self._needs.plane)
+        grid = GridSettings.of(self.accuracy, *self._needs.shape)  # it may be finer than needed, for samples
         self._march = march_from_start(setup, self._needs, law, grid=grid)
         self.ready, self._started = law is not None, False
 

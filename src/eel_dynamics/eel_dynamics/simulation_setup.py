@@ -40,16 +40,17 @@ class MotionNeeds(NamedTuple):
     """What a swim needs of the accuracy's settings."""
 
     plane: bool  # the motion stays in a plane
-    waves: float  # on the body
+    shape: ShapeNeeds
     difficulty: Difficulty
 
     def in_blend(self, last: "MotionNeeds") -> "MotionNeeds":
         """These, while the `last` law's motion dies out; the law after this one need not care for the last."""
-        return MotionNeeds(self.plane, max(last.waves, self.waves), last.difficulty.at_least(self.difficulty))
+        shape = self.shape._replace(waves=max(last.shape.waves, self.shape.waves))
+        return MotionNeeds(self.plane, shape, last.difficulty.at_least(self.difficulty))
 
     def with_samples(self) -> "MotionNeeds":
         """These, where a controller may lead the body anywhere."""
-        return MotionNeeds(False, self.waves, self.difficulty.at_least(NOMINAL))
+        return MotionNeeds(False, self.shape, self.difficulty.at_least(NOMINAL))
 
 
 @dataclass(frozen=True)
@@ -136,14 +137,14 @@ class SimulationSetup:
 
     def first_needs(self) -> MotionNeeds:
         """What a swim by the first law, from the initial state on, needs."""
-        waves = self.shape_needs(self.law).waves
+        shape = self.shape_needs(self.law)
         plane = stays_in_plane(self.law, self.initial_twist) and not self.starts_fast
-        return MotionNeeds(plane, waves, self._difficulty(self.law))
+        return MotionNeeds(plane, shape, self._difficulty(self.law))
 
     def motion_needs(self, law: Law | None, plane: bool) -> MotionNeeds:
-        """What a swim by `law` needs whose head moved in a `plane`, or not, before."""
-        plane = plane and law is not None and law.in_plane
-        return MotionNeeds(plane, self.shape_needs(law).waves, self._difficulty(law))
+        """What a swim by `law` needs whose head moved in a `plane`, or not, before. `ValueError` as `shape_needs`."""
+        shape = self.shape_needs(law)
+        return MotionNeeds(plane and law is not None and law.in_plane, shape, self._difficulty(law))
 
     def transition_to(self, law: Law, transition: float | None) -> float:
         """Time [s] of the blend to `law`: `transition`, the law's own, or the default."""
@@ -165,7 +166,7 @@ class SimulationSetup:
         accuracy = self.accuracy.in_scene(self.scene, needs.plane, needs.difficulty)
         if self.starts_fast:
             accuracy = accuracy.for_fast_start()
-        return accuracy.for_waves(needs.waves)
+        return accuracy.for_waves(needs.shape.waves)
 
     def discretise(self, settings: GridSettings) -> Discretisation:
         """Body, scene and stations on a grid of such `settings`."""
