@@ -1,4 +1,4 @@
-"""Random scenes: each finishes with a ledger that closes, or says why not; nothing hangs. Ten times more in the soak."""
+"""Random scenes: each finishes with a ledger that closes, or says why not; nothing hangs. The soak has more of them."""
 
 from dataclasses import replace
 

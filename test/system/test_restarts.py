@@ -14,7 +14,7 @@ from swim_client import LIMIT, SwimClient, nanoseconds
 from eel_gaits import falling, straight
 from eel_viz import entities
 
-SLOWLY = ("-p", "real_time_factor:=2", "-p", "wait_for_subscribers:=1")
+SLOWLY = ("-p", "real_time_factor:=2", "-p", "rate:=25", "-p", "wait_for_subscribers:=1")
 
 
 def seconds(message) -> float:
