@@ -16,17 +16,12 @@ from eel_dynamics.sweep_key import key_of
 from eel_dynamics.sweeps import Point
 
 from eel_dynamics import Accuracy, Body, Scene, simulate, sweep, sweep_command
-from eel_gaits import straight
+from eel_gaits import Law, Term, straight
 
 xarray = pytest.importorskip("xarray")
 distributed = pytest.importorskip("distributed")
 
 SHORT = {"duration": 1.2, "accuracy": 1e-2, "stations": 11}
-
-
-def final_time(run):
-    """A measure that needs no whole period."""
-    return {"final_time": float(run.time[-1])}
 
 
 @pytest.fixture(scope="module")
@@ -61,6 +56,9 @@ def test_labelled_and_equal_to_single_runs(client, tmp_path):
 
 
 def test_the_limit_of_evaluations_can_be_raised_and_lowered(client, tmp_path):
+    def final_time(run):  # by value to the workers, which do not know this file
+        return {"final_time": float(run.time[-1])}
+
     grid, out = {"period": [0.8]}, tmp_path / "sweep.nc"
     lowered = sweep(grid, scheduler=client, out=out, most_evaluations=5.0, **SHORT)
     assert "most_evaluations is 5" in str(lowered.error.values[0])
@@ -68,9 +66,14 @@ def test_the_limit_of_evaluations_can_be_raised_and_lowered(client, tmp_path):
         sweep(grid, scheduler=client, out=out, **SHORT)
     with pytest.raises(ValueError, match="most_evaluations must be"):
         sweep(grid, scheduler=client, most_evaluations=0.0, **SHORT)
-    quick = {"duration": 1e-4, "sample_period": 1e-5, "accuracy": 1e-2, "stations": 5, "measure": final_time}
-    assert sweep({"period": [1e-5]}, scheduler=client, **quick).stopped.all()
-    raised = sweep({"period": [1e-5]}, scheduler=client, most_evaluations=1e8, **quick)
+
+    def quick(period):
+        return Law(Term(amplitude=(5.0, 1.0), wavelength=1.0, period=period), name="quick")
+
+    short = {"duration": 1e-4, "sample_period": 1e-5, "accuracy": 1e-2, "stations": 5}
+    sudden = {"grid": {"period": [1e-5]}, "gait": quick, "measure": final_time, "scheduler": client, **short}
+    assert sweep(**sudden).stopped.all()
+    raised = sweep(**sudden, most_evaluations=1e8)
     assert not raised.stopped.any() and float(raised.final_time[0]) == pytest.approx(1e-4)
 
 
