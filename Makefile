@@ -40,7 +40,7 @@ quotes: build   ## write the figures that README.md and docs quote, from the new
 lint: build   ## rules, format, imports, spelling and quoted figures, Python and C++
 	@$(RUN) tools/lint.sh
 
-build:   ## the virtual environment and the five packages (PYTHON=... chooses the Python)
+build:   ## the virtual environment and the six packages (PYTHON=... chooses the Python)
 	@PYTHON="$(PYTHON)" tools/build.sh
 
 clean:   ## remove what build made; out/ stays

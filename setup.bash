@@ -38,7 +38,7 @@ _eel_setup() {
 
     local prefixes=() modules=()
     local libraries=("$root/install/eel_msgs/lib" "$root/.venv/lib" "$root/.venv/$site"/ros_*.libs)
-    for package in eel_viz eel_dynamics eel_gaits; do
+    for package in eel_viz eel_dynamics eel_gaits eel_ros; do
         prefixes+=("$root/install/$package")
         modules+=("$root/build/$package" "$root/install/$package/$site")
     done

@@ -4,7 +4,7 @@ setup(
     name="eel_dynamics",
     version="0.1.0",
     packages=find_packages(),
-    package_data={"eel_dynamics": ["fastdds.xml", "accuracy_table.csv"]},
+    package_data={"eel_dynamics": ["accuracy_table.csv"]},
     data_files=[
         ("share/ament_index/resource_index/packages", ["resource/eel_dynamics"]),
         ("share/eel_dynamics", ["package.xml"]),
@@ -18,7 +18,7 @@ setup(
     license="Apache-2.0",
     entry_points={
         "console_scripts": [
-            "dynamics = eel_dynamics.node:main",
+            "dynamics = eel_dynamics.ros.node:main",
             "simulate = eel_dynamics.command:main",
             "figures = eel_dynamics.figures.command:main",
             "sweep = eel_dynamics.sweep_command:main",

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
+from eel_dynamics.limits_monitor import LimitsMonitor
 from eel_dynamics.model_limits import ModelLimits, cross_axes
-from eel_dynamics.watch import Watch
 from eel_gaits.law import Law, Term
 
 from eel_dynamics import Body, Scene, simulate
@@ -139,12 +139,12 @@ def test_the_node_says_each_once_and_keeps_it_until_a_reset():
     from eel_dynamics import Simulation
 
     swimmer, report = Simulation(twist=(0.0, 0.0, 0.0, 0.5, 0.1, 0.0)), Lines()
-    watch = Watch(swimmer, report)
+    monitor = LimitsMonitor(swimmer, report)
     swimmer.adopt(bent("yaw", 8.0))
     for sample in range(20):
         swimmer.advance(0.01 * sample)
-        watch.add(swimmer.observe(), look=sample % 5 == 4)
+        monitor.add(swimmer.observe(), look=sample % 5 == 4)
     assert sorted(report.logged) == ["contact", "tail"]
     assert set(report.lasting) == {"contact", "tail"}
-    watch.restart()
+    monitor.restart()
     assert not report.lasting

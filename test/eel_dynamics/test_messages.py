@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from eel_dynamics.assembly import simulation_of
-from eel_dynamics.messages import Sample, body_message, diagnostic_array, samples_from_message
-from eel_dynamics.parameters import DynamicsParameters
-from eel_dynamics.wire import Wire
+from eel_dynamics.ros.messages import Sample, body_message, diagnostic_array, samples_from_message
+from eel_dynamics.ros.parameters import DynamicsParameters
+from eel_dynamics.ros.serialised_message import SerialisedMessage
+from eel_dynamics.ros.simulation_from_parameters import simulation_from_parameters
 from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import Odometry, Path
 from rclpy.serialization import deserialize_message, serialize_message
@@ -153,7 +153,7 @@ def test_start_is_given_in_ros_frames_and_published_back():
         initial_linear_velocity=(0.4, 0.1, -0.2),
         initial_angular_velocity=(0.3, -0.5, 0.7),
     )
-    simulation = simulation_of(values, Scene(current=(0.5, 0.25, 0.0)))
+    simulation = simulation_from_parameters(values, Scene(current=(0.5, 0.25, 0.0)))
     assert simulation.scene.current == (-0.5, -0.25, 0.0)
     snapshot = simulation.observe()
     assert snapshot.twist[3] == pytest.approx(-0.4)  # library: forward is V1 < 0
@@ -216,7 +216,7 @@ def test_serialised_message_changes_as_its_fields_do():
     """Each number and the time at its own place, beside texts that move them off their multiples of eight."""
     message = Odometry(child_frame_id="a")
     message.header.frame_id = "world"
-    wire = Wire(message)
+    wire = SerialisedMessage(message)
     values = np.random.default_rng(1).normal(size=(4, 4))
     pose, twist = message.pose.pose, message.twist.twist
     for target, names, path, row in (
@@ -234,4 +234,4 @@ def test_serialised_message_changes_as_its_fields_do():
 
 def test_a_message_whose_places_are_not_sure_is_refused():
     with pytest.raises(RuntimeError, match="Path is not serialised as it was expected"):
-        Wire(Path(poses=[PoseStamped()]))  # has two times
+        SerialisedMessage(Path(poses=[PoseStamped()]))  # has two times

@@ -1,17 +1,18 @@
-"""The parts of the dynamics node without ROS: parameters, pace, the right to /clock, reports, laws as heard."""
+"""The parts of the dynamics node that need no ROS process: parameters, pace, /clock, reports, laws, run loop."""
 
 import math
 from dataclasses import fields
 from types import SimpleNamespace
 
 import pytest
-from eel_dynamics.clock_right import ClockRight
-from eel_dynamics.feed import LawFeed
-from eel_dynamics.march import March as MarchOfANode
-from eel_dynamics.pacing import Pace
-from eel_dynamics.parameters import DynamicsParameters, checked, default_of, from_values
-from eel_dynamics.publishers import Patience, Publishers
-from eel_dynamics.report import ERROR, OK, WARN, Report
+from eel_dynamics.ros.clock_arbiter import ClockArbiter
+from eel_dynamics.ros.diagnostics import ERROR, OK, WARN, Report
+from eel_dynamics.ros.law_feed import LawFeed
+from eel_dynamics.ros.pacing import Pace
+from eel_dynamics.ros.parameters import DynamicsParameters, checked, from_values
+from eel_dynamics.ros.publishers import Patience, Publishers
+from eel_dynamics.ros.run_loop import RunLoop
+from eel_ros.parameters import default_of
 
 from eel_dynamics import Scene, Simulation
 from eel_gaits import Law, falling
@@ -130,7 +131,7 @@ def test_no_pace_is_never_late():
 
 def race(first_age, own, other, leaves):
     """Who publishes in the end, of two that meet; `leaves`: whether the other follows the same rules."""
-    ours, theirs = ClockRight(), ClockRight()
+    ours, theirs = ClockArbiter(), ClockArbiter()
     now, ours_on, theirs_on = 0.0, ours.judge(0.0, (), set()), False
     while now < 40.0:
         now += 0.25
@@ -161,7 +162,7 @@ def test_a_publisher_that_never_leaves_gets_the_clock(own, age):
 
 
 def test_the_clock_comes_back_when_the_other_is_gone():
-    right = ClockRight()
+    right = ClockArbiter()
     assert not right.judge(0.0, (), {(1,)})
     assert right.judge(1.0, (), set())
 
@@ -218,7 +219,7 @@ def test_patience_is_one_account_for_all_topics():
 # laws as heard
 
 
-class March:
+class FakeRun:
     def __init__(self, time=0.0):
         self.time, self.laws = time, []
 
@@ -230,11 +231,11 @@ def message(name="wave", sec=0, nanosec=0):
     return SimpleNamespace(name=name, header=SimpleNamespace(stamp=SimpleNamespace(sec=sec, nanosec=nanosec)))
 
 
-def feed(march, log, law_of=lambda message: Law(name=message.name)):
+def feed(run, log, law_of=lambda message: Law(name=message.name)):
     def opened(message):
         return message.name, lambda: message
 
-    return LawFeed(march, Report(log), opened=opened, law_of=law_of, samples_of=None)
+    return LawFeed(run, Report(log), opened=opened, law_of=law_of, samples_of=None)
 
 
 def info(number):
@@ -242,17 +243,17 @@ def info(number):
 
 
 def test_a_law_delivered_twice_is_taken_once():
-    march = March()
-    heard = feed(march, Log())
+    run = FakeRun()
+    heard = feed(run, Log())
     for number, name in ((1, "a"), (2, "b"), (1, "a"), (2, "b"), (3, "a")):
         heard.hear_law(message(name), info(number))
-    assert [law.name for law, _ in march.laws] == ["a", "b", "a"]
+    assert [law.name for law, _ in run.laws] == ["a", "b", "a"]
 
 
 def test_origin_is_the_stamp():
-    march = March()
-    feed(march, Log()).hear_law(message(sec=3, nanosec=500_000_000), info(1))
-    assert march.laws[0][1] == 3.5
+    run = FakeRun()
+    feed(run, Log()).hear_law(message(sec=3, nanosec=500_000_000), info(1))
+    assert run.laws[0][1] == 3.5
 
 
 @pytest.mark.parametrize(
@@ -265,27 +266,27 @@ def test_origin_is_the_stamp():
     ],
 )
 def test_bad_stamp_is_refused(stamp, words):
-    march, log = March(time=10.0), Log()
-    feed(march, log).hear_law(message(**stamp), info(1))
-    assert not march.laws
+    run, log = FakeRun(time=10.0), Log()
+    feed(run, log).hear_law(message(**stamp), info(1))
+    assert not run.laws
     ((level, text),) = log.lines
     assert level == "error" and all(word in text for word in words), text
 
 
 def test_stamp_up_to_an_hour_ahead_is_taken():
-    march = March(time=10.0)
-    feed(march, Log()).hear_law(message(sec=3609), info(1))
-    assert march.laws[0][1] == 3609.0
+    run = FakeRun(time=10.0)
+    feed(run, Log()).hear_law(message(sec=3609), info(1))
+    assert run.laws[0][1] == 3609.0
 
 
 def test_bad_law_is_one_error_that_names_the_field():
     def refuse(message):
         raise ValueError("terms[0].period must be >= 0 s, got -1.0")
 
-    march, log = March(), Log()
-    heard = feed(march, log, refuse)
+    run, log = FakeRun(), Log()
+    heard = feed(run, log, refuse)
     heard.hear_law(message("jump"), info(1))
-    assert not march.laws
+    assert not run.laws
     assert log.lines == [("error", "law 'jump' refused: terms[0].period must be >= 0 s, got -1.0")]
 
 
@@ -297,7 +298,7 @@ def test_bad_law_is_one_error_that_names_the_field():
 )
 def test_a_subscriber_that_comes_after_the_snapshot_was_taken(monkeypatch):
     """Nobody hears when it is asked what to compute; somebody does when it is published."""
-    monkeypatch.setattr("eel_dynamics.publishers.LOOK", 0.0)
+    monkeypatch.setattr("eel_dynamics.ros.publishers.LOOK", 0.0)
     heard, audience = [], {"internal_wrench": 0, "hydrodynamic_load": 0, "energy": 0}
     sample = SimpleNamespace(
         kinds=dict.fromkeys(audience, str),
@@ -323,7 +324,7 @@ def test_a_subscriber_that_comes_after_the_snapshot_was_taken(monkeypatch):
 
 def test_who_was_given_up_does_not_cost_the_others_the_end_of_a_run(monkeypatch):
     """Its topic gets a short farewell; on the others a backlog is waited for as long as without it."""
-    monkeypatch.setattr("eel_dynamics.publishers.FAREWELL", 0.0)
+    monkeypatch.setattr("eel_dynamics.ros.publishers.FAREWELL", 0.0)
     asked = []
 
     def received(publisher, seconds):
@@ -340,24 +341,22 @@ def test_who_was_given_up_does_not_cost_the_others_the_end_of_a_run(monkeypatch)
     assert asked == ["head_pose"] * 20 + ["backbone"]
 
 
-# the march
+# the run loop
 
 
-@pytest.mark.parametrize(
-    ("wanted", "done_at"), [(lambda march: march.reset(), 0.0), (lambda march: march.order(int), 0.25)]
-)
-def test_an_order_knows_when_it_was_done(wanted, done_at):
-    """However many samples the march has made by the time that who gave it looks: it may be thousands."""
-    orders, stamps = [], []
+@pytest.mark.parametrize(("wanted", "done_at"), [(lambda run: run.reset(), 0.0), (lambda run: run.request(int), 0.25)])
+def test_a_request_knows_when_it_was_carried_out(wanted, done_at):
+    """However many samples the run has published before the other thread looks: it may be thousands."""
+    requests, stamps = [], []
 
     def publish(snapshot, nanoseconds):
         stamps.append(nanoseconds)
-        if nanoseconds == 250_000_000 and not orders:
-            orders.append(wanted(march))
+        if nanoseconds == 250_000_000 and not requests:
+            requests.append(wanted(run))
 
     publishers = SimpleNamespace(wanted_parts=dict, publish=publish, tick=lambda nanoseconds: None)
     simulation = Simulation(law=falling(), accuracy=1e-2)
-    march = MarchOfANode(simulation, DynamicsParameters(real_time_factor=0.0, duration=1.0), publishers, Report(Log()))
-    march.run()
-    assert stamps[-1] == 10**9 and march.time == 1.0
-    assert orders[0].done.is_set() and orders[0].time == done_at
+    run = RunLoop(simulation, DynamicsParameters(real_time_factor=0.0, duration=1.0), publishers, Report(Log()))
+    run.run()
+    assert stamps[-1] == 10**9 and run.time == 1.0
+    assert requests[0].done.is_set() and requests[0].time == done_at

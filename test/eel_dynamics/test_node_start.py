@@ -4,7 +4,7 @@ import signal
 from dataclasses import fields
 
 import pytest
-from eel_dynamics.parameters import DynamicsParameters
+from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.scene import Scene
 from eel_gaits.messages import law_to_message
 from node_process import PROMPT
@@ -36,7 +36,9 @@ BAD = {
 )
 def test_bad_parameters_are_one_line_each_and_status_2(start_in_turn):
     given = [["--ros-args", *(part for each in given for part in ("-p", each))] for given, _ in BAD.values()]
-    for (what, (_, words)), (status, said) in zip(BAD.items(), start_in_turn("eel_dynamics.node", given), strict=True):
+    for (what, (_, words)), (status, said) in zip(
+        BAD.items(), start_in_turn("eel_dynamics.ros.node", given), strict=True
+    ):
         assert status == 2 and said.startswith("dynamics: ") and said.count("\n") == 1, (what, said)
         assert all(word in said for word in words), (what, said)
 
@@ -60,7 +62,7 @@ def test_bad_body_files_are_one_line_each_and_status_2(start_in_turn, tmp_path):
     for name, (rows, _) in bodies.items():
         (tmp_path / name).mkdir()
         lines.append(["--ros-args", "-p", f"body:={body_file(tmp_path / name, rows)}"])
-    for (_, words), (status, said) in zip(bodies.values(), start_in_turn("eel_dynamics.node", lines), strict=True):
+    for (_, words), (status, said) in zip(bodies.values(), start_in_turn("eel_dynamics.ros.node", lines), strict=True):
         assert status == 2 and said.count("\n") == 1 and all(word in said for word in words), said
 
 

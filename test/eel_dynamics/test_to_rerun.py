@@ -8,8 +8,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from eel_dynamics.command import main
-from eel_dynamics.messages import Sample, body_message, diagnostic_array
 from eel_dynamics.records import records
+from eel_dynamics.ros.messages import Sample, body_message, diagnostic_array
 from rclpy.serialization import deserialize_message
 
 from eel_dynamics import Scene, simulate

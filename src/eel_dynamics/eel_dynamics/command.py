@@ -21,7 +21,7 @@ from eel_gaits.wording import shown
 from .accuracy import PRESETS
 from .actuators import MOST as MOST_JOINTS
 from .body import NAMED, Body
-from .ending import leave_on_interrupt
+from .interrupt import leave_on_interrupt
 from .one_line_warnings import one_line_warnings
 from .run import Run, simulate
 from .scene import Scene

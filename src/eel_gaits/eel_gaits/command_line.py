@@ -23,6 +23,12 @@ def complain(program: str, error):
     sys.stderr.write(f"{program}: {one_line(error)}\n")
 
 
+def check_seconds(argument: str, value: float | None):
+    """ValueError that names the argument unless its value [s] is positive, or None."""
+    if value is not None and not value > 0.0:
+        raise ValueError(f"{argument} must be > 0 s, got {value:g}")
+
+
 def write_on_any_terminal():
     """Have stdout write characters that its encoding lacks as escapes, as stderr does, instead of failing."""
     if hasattr(sys.stdout, "reconfigure"):

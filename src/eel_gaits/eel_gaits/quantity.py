@@ -18,6 +18,16 @@ def quantity(default, *, unit, description, minimum, maximum):
     return field(default=default, metadata=metadata)
 
 
+def limits(metadata) -> str:
+    """The bounds in a field's metadata in words, such as "> 0 Hz and <= 1000 Hz"; empty without bounds.
+
+    Metadata: minimum, maximum (each may be absent or None), exclusive (the minimum itself is refused), unit.
+    """
+    unit = f" {metadata['unit']}" if metadata.get("unit") else ""
+    bounds = ((">" if metadata.get("exclusive") else ">=", metadata.get("minimum")), ("<=", metadata.get("maximum")))
+    return " and ".join(f"{sign} {bound:g}{unit}" for sign, bound in bounds if bound is not None)
+
+
 def is_finite(value) -> bool:
     """Whether `value` is one finite number; a text is none."""
     try:

@@ -69,12 +69,10 @@ class Settings:
             for kind in (Transition, find(self.gait).numbers)
         )
 
-    def quantities(self):
-        """Yield (name, value, metadata) of each number that can be set with this gait."""
-        for group in self.groups():
-            for entry in fields(group):
-                yield entry.name, getattr(group, entry.name), entry.metadata
+    def numbers(self):
+        """The value of each number that can be set with this gait, by name."""
+        return {entry.name: getattr(group, entry.name) for group in self.groups() for entry in fields(group)}
 
     def law(self):
-        """The law that these settings ask for."""
-        return find(self.gait)(**{name: value for name, value, _ in self.quantities()})
+        """The law of this gait with these numbers."""
+        return find(self.gait)(**self.numbers())

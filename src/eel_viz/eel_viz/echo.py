@@ -7,14 +7,14 @@ import time
 
 import numpy as np
 import yaml
-from eel_gaits.command_line import Parser
+from eel_gaits.command_line import Parser, check_seconds, complain
 from eel_gaits.wording import shown
+from eel_ros.qos import fitting
+from eel_ros.run_node import run_node
 from rclpy.node import Node
 from rclpy.utilities import remove_ros_args
 
 from eel_viz.definitions import message_class
-from eel_viz.lifetime import check_seconds, live
-from eel_viz.quality import fitting
 
 NAME = "eel_echo"  # the name echo belongs to the shell
 SHORT = 128  # elements of an array that are printed without --full-length
@@ -118,7 +118,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--timeout", type=float, metavar="SECONDS", help="give up, with status 1, if nothing comes")
     parser.add_argument("-f", "--full-length", action="store_true", help=f"print arrays beyond {SHORT} elements")
     options = parser.parse_args(remove_ros_args(args=words)[1:])
-    return live(NAME, words, lambda: Echo(options), Echo.attend)
+    return run_node(NAME, words, lambda: Echo(options), Echo.attend, complain=complain)
 
 
 if __name__ == "__main__":

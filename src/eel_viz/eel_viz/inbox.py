@@ -8,12 +8,11 @@ keep all, until `take` fetches them.
 from collections import deque
 from collections.abc import Callable
 
-from rclpy.callback_groups import CallbackGroup
+from eel_ros.serving import Unattended, leave_out
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from rclpy.serialization import deserialize_message
 
-from eel_viz.lifetime import leave_out
 from eel_viz.succession import Succession
 
 BATCH = 64  # messages of one subscription before the next has its turn
@@ -21,26 +20,11 @@ PROCESS = 12  # bytes of an endpoint's identifier that its whole process has (RT
 REMEMBERED = 1024  # deliveries to subscriptions of one topic, of which one may be some batches behind the other
 
 
-class Untouched(CallbackGroup):
-    """What the executor leaves alone."""
-
-    def can_execute(self, entity) -> bool:
-        """Never."""
-        return False
-
-    def beginning_execution(self, entity) -> bool:
-        """Never."""
-        return False
-
-    def ending_execution(self, entity) -> None:
-        """Nothing has begun."""
-
-
 class Inbox:
     """The subscriptions of `node`."""
 
     def __init__(self, node: Node) -> None:
-        self._node, self._group = node, Untouched()
+        self._node, self._group = node, Unattended()
         self._subscriptions: list[tuple] = []
 
     def listen(self, kind: type, topic: str, show: Callable[..., None], *qualities: QoSProfile) -> None:

@@ -6,29 +6,32 @@ the messages. It runs until SIGINT or SIGTERM, or with `stop_with_publisher` unt
 
 import sys
 import time
+from dataclasses import fields
 
 from diagnostic_msgs.msg import DiagnosticArray
 from eel_gaits.command_line import complain
+from eel_gaits.quantity import limits
 from eel_gaits.wording import shown
+from eel_ros.command_line import USE_SIM_TIME, answer_words
+from eel_ros.parameters import declare, default_of, help_rows, take_overrides, warn_of_unknown
+from eel_ros.qos import keep_all
+from eel_ros.run_node import run_node
 from geometry_msgs.msg import PoseStamped, TwistStamped
 from nav_msgs.msg import Odometry
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 
 from eel_msgs.msg import Backbone, BodyGeometry, Curvature, CurvatureLaw, EnergyLedger, HydrodynamicLoad, InternalWrench
-from eel_viz.declaration import answer_words, declare_settings
 from eel_viz.flow import leave
 from eel_viz.inbox import Inbox
 from eel_viz.intake import Intake
-from eel_viz.lifetime import live
-from eel_viz.quality import keep_all
 from eel_viz.runs import OtherRuns, Runs
+from eel_viz.settings import Settings
 from eel_viz.sinks import destinations
 from eel_viz.topics import SWIMMER
 
 NAME = "visualiser"
 ABOUT = "Shows and records every topic of a swimmer in Rerun."
-DEFAULTS = ["--ros-args", "-p", "use_sim_time:=true", "--"]  # what the user says comes after, and wins
 LATCHED, LIVE = keep_all(latched=True), keep_all()  # the first also hears what was published before, the second anybody
 LOOK = 0.5  # s between two looks at who publishes
 GONE = 1.0  # s without publishers and messages, after which `stop_with_publisher` ends the node
@@ -50,7 +53,7 @@ class Visualiser(Node):
 
     def __init__(self):
         super().__init__(NAME, automatically_declare_parameters_from_overrides=True)
-        self.settings = declare_settings(self)
+        self.settings = self._declare_settings()
         own = self.get_namespace().rstrip("/")
         other = f"/{self.settings.compare.strip('/')}".rstrip("/")  # empty: the swimmer without a namespace
         told = other or "/"
@@ -70,6 +73,15 @@ class Visualiser(Node):
         if self.settings.compare:
             intake = Intake(OtherRuns(runs, other), namespace=other, warn=lambda text: self._warn(f"{told}: {text}"))
             self._listen(other, intake)
+
+    def _declare_settings(self) -> Settings:
+        """Declare a parameter for each setting, fixed at the start; ValueError names what does not fit."""
+        overrides = take_overrides(self)
+        values = {item.name: overrides.get(item.name, default_of(item)) for item in fields(Settings)}
+        settings = Settings.from_values(values)
+        declare(self, settings, limits)
+        warn_of_unknown(self, overrides, values)
+        return settings
 
     def attend(self) -> bool:
         """Now and then: look after the sinks; False once the swimmer has gone and the node is to follow."""
@@ -124,14 +136,12 @@ def main(arguments: list[str] | None = None) -> int:
     """Run the node; the exit status is 0 after SIGINT or SIGTERM, 1 if a file could not be written to its end, 2 if a
     parameter or a word is refused at start."""
     given = sys.argv if arguments is None else [NAME, *arguments]
-    try:
-        status = answer_words(NAME, ABOUT, given)
-    except RuntimeError as error:  # of rcl's parser
-        complain(NAME, error)
-        status = 2
+    status = answer_words(NAME, ABOUT, help_rows(Settings), given, complain)
     if status is not None:
         return status
-    return leave(live(NAME, DEFAULTS + given, Visualiser, Visualiser.attend, Visualiser.work, complete=True))
+    words = [*USE_SIM_TIME, *given]
+    node, attend, work = Visualiser, Visualiser.attend, Visualiser.work
+    return leave(run_node(NAME, words, node, attend, work, complain=complain, complete=True))
 
 
 if __name__ == "__main__":

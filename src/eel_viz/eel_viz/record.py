@@ -10,7 +10,9 @@ import sys
 import time
 from collections import Counter
 
-from eel_gaits.command_line import Parser
+from eel_gaits.command_line import Parser, check_seconds, complain
+from eel_ros.qos import fitting, keep_all, matches
+from eel_ros.run_node import run_node
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from rclpy.utilities import remove_ros_args
@@ -18,8 +20,6 @@ from rosbags.interfaces import Qos, QosDurability, QosHistory, QosLiveliness, Qo
 
 from eel_viz.definitions import definition, message_class, type_hash
 from eel_viz.growing_bag import GrowingBag
-from eel_viz.lifetime import check_seconds, live
-from eel_viz.quality import fitting, hears, keep_all
 from eel_viz.topics import GLOBAL, LATCHED, OWN, SWIMMER
 
 NAME = "record"
@@ -101,7 +101,7 @@ class Recorder(Node):
             self._offers[topic] = offers
             if topic not in self._listening:
                 self._listen(topic, kinds[0], fitting(offers))
-            elif not all(hears(self._listening[topic][1], offer) for offer in offers):
+            elif not all(matches(self._listening[topic][1], offer) for offer in offers):
                 subscription, _ = self._listening.pop(topic)
                 self.destroy_subscription(subscription)
                 self._listen(topic, kinds[0], fitting(offers))
@@ -179,7 +179,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--duration", type=float, metavar="SECONDS", help="end after so much wall time")
     parser.add_argument("--stop-with-publisher", action="store_true", help="end when the swimmer has gone")
     options = parser.parse_args(remove_ros_args(args=words)[1:])
-    return live(NAME, words, lambda: Recorder(options), Recorder.attend, complete=True)
+    return run_node(NAME, words, lambda: Recorder(options), Recorder.attend, complain=complain, complete=True)
 
 
 if __name__ == "__main__":

@@ -16,13 +16,14 @@ from types import SimpleNamespace
 
 from eel_gaits.command_line import Parser, complain
 from eel_gaits.output_file import NotWritten
+from eel_gaits.quantity import limits
 from eel_gaits.wording import shown
 
 from eel_viz.abreast import show
 from eel_viz.bag import Bag, DamagedBag
 from eel_viz.destination import Say
 from eel_viz.intake import SAMPLES
-from eel_viz.settings import Settings, limits
+from eel_viz.settings import Settings
 from eel_viz.sinks import destinations
 from eel_viz.topics import GLOBAL, OWN
 from eel_viz.viewer import display, open_window

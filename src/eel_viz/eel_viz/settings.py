@@ -3,7 +3,7 @@
 import ipaddress
 from dataclasses import dataclass, field, fields
 
-from eel_gaits.quantity import is_finite
+from eel_gaits.quantity import is_finite, limits
 from eel_gaits.wording import shown
 
 
@@ -129,14 +129,3 @@ def _checked(item, value):
             raise ValueError(f"{name} must be {limits(item.metadata)}, got {told}")
         return type(default)(value)
     return value
-
-
-def limits(metadata) -> str:
-    """The bounds in words, such as ">= 0.1 Hz and <= 1000 Hz"."""
-    unit = f" {metadata['unit']}" if metadata["unit"] else ""
-    words = [
-        f"{sign} {metadata[key]:g}{unit}"
-        for sign, key in ((">=", "minimum"), ("<=", "maximum"))
-        if metadata[key] is not None
-    ]
-    return " and ".join(words) or "a finite number"

@@ -12,7 +12,7 @@ from eel_gaits.output_file import NotWritten, replacing
 from eel_gaits import straight
 
 from ..accuracy import Accuracy
-from ..ending import leave_on_interrupt
+from ..interrupt import leave_on_interrupt
 from ..run import simulate
 from ..scene import Scene
 from . import corrections, kern_comparison, orders

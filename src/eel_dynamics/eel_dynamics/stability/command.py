@@ -11,7 +11,7 @@ from eel_gaits.command_line import Parser, complain
 from eel_gaits.output_file import NotWritten, check_output, replacing
 from eel_gaits.wording import shown
 
-from ..ending import leave_on_interrupt
+from ..interrupt import leave_on_interrupt
 
 BEGIN, END = "<!-- {}: written by `stability` -->", "<!-- end of {} -->"
 STUDIES = "maps", "condition", "drift", "plane"

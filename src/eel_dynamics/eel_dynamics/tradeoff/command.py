@@ -18,7 +18,7 @@ from eel_gaits.wording import shown
 from ..body import NAMED, Body
 from ..command import check_names
 from ..difficulty import difficulty_of
-from ..ending import leave_on_interrupt
+from ..interrupt import leave_on_interrupt
 from ..scene import Scene
 from . import measuring, models
 from .delivered import deliver, delivered_table, exceeding, farthest, scatter_line

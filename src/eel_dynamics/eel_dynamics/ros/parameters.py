@@ -5,12 +5,12 @@ gave. Poses and velocities are in ROS (REP-103) frames: world `odom`, head `base
 """
 
 import math
-from dataclasses import MISSING, Field, dataclass, field, fields
+from dataclasses import Field, dataclass, field, fields
 
-from eel_gaits.quantity import is_finite
+from eel_gaits.quantity import is_finite, limits
 from eel_gaits.wording import shown
 
-from .step_bounds import MOST_EVALUATIONS
+from ..step_bounds import MOST_EVALUATIONS
 
 
 def _parameter(default, description, unit="", **bounds):
@@ -96,14 +96,6 @@ class DynamicsParameters:
         return math.floor(self.duration * self.rate + 1e-9) if self.duration > 0.0 else math.inf
 
 
-def default_of(item: Field):
-    """The default as a ROS parameter holds it: lists for tuples, 0.0 for None."""
-    assert item.default is not MISSING, item.name
-    if item.default is None:
-        return 0.0
-    return list(item.default) if isinstance(item.default, tuple) else item.default
-
-
 def checked(item: Field, value, name: str):
     """`value` as the field has it; `ValueError` names the parameter `name`, what it must be, and what it got."""
     default = item.default
@@ -138,17 +130,6 @@ def checked(item: Field, value, name: str):
 def from_values(kind, values: dict, prefix: str = ""):
     """An instance of the dataclass `kind` from its fields' `values`, checked; names in errors begin with `prefix`."""
     return kind(**{item.name: checked(item, values[item.name], prefix + item.name) for item in fields(kind)})
-
-
-def limits(metadata) -> str:
-    """The bounds in words, such as "> 0 Hz"; empty without bounds."""
-    unit = f" {metadata['unit']}" if metadata.get("unit") else ""
-    words = []
-    if "minimum" in metadata:
-        words.append(f"{'>' if metadata.get('exclusive') else '>='} {metadata['minimum']:g}{unit}")
-    if "maximum" in metadata:
-        words.append(f"<= {metadata['maximum']:g}{unit}")
-    return " and ".join(words)
 
 
 def _check_bounds(item: Field, value, name: str):

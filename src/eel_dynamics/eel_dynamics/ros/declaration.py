@@ -2,12 +2,13 @@
 
 from dataclasses import fields, replace
 
-from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
+from eel_gaits.quantity import limits
+from eel_ros.parameters import declare, default_of, take_overrides, warn_of_unknown
+from rcl_interfaces.msg import SetParametersResult
 from rclpy.parameter import Parameter
 
-from .messages import descriptor_of
-from .parameters import DynamicsParameters, checked, default_of, from_values
-from .scene import Scene
+from ..scene import Scene
+from .parameters import DynamicsParameters, checked, from_values
 
 
 class Declaration:
@@ -19,27 +20,15 @@ class Declaration:
 
     def __init__(self, node, changed):
         self._changed = changed
-        self.values: DynamicsParameters = self._declare(node, DynamicsParameters, "")
-        self.scene: Scene = self._declare(node, Scene, "scene.")
+        overrides = take_overrides(node)
+        self.values: DynamicsParameters = _declared(node, DynamicsParameters, overrides, "")
+        self.scene: Scene = _declared(node, Scene, overrides, "scene.")
+        warn_of_unknown(node, overrides, [name for name in overrides if node.has_parameter(name)])
         self._fields = {item.name: item for item in fields(DynamicsParameters)}
         self._paced = self.values.real_time_factor > 0.0
         node.add_pre_set_parameters_callback(self._convert)
         node.add_on_set_parameters_callback(self._judge)
         node.add_post_set_parameters_callback(self._take)
-
-    def _declare(self, node, kind, prefix: str):
-        given = {}
-        for item in fields(kind):
-            # Declared twice: first with any type, to see what the user gave and say in one line what is wrong with it.
-            name = prefix + item.name
-            given[item.name] = node.declare_parameter(
-                name, default_of(item), ParameterDescriptor(dynamic_typing=True)
-            ).value
-            node.undeclare_parameter(name)
-            value = checked(item, given[item.name], name)
-            value = default_of(item) if value is None else list(value) if isinstance(value, tuple) else value
-            node.declare_parameter(name, value, descriptor_of(item), ignore_override=True)
-        return from_values(kind, given, prefix)
 
     def _convert(self, parameters):
         """Before a set: whole numbers for floats become floats; what does not fit is left for `_judge`."""
@@ -75,3 +64,11 @@ class Declaration:
         if changes:
             self.values = replace(self.values, **changes)
             self._changed(self.values)
+
+
+def _declared(node, kind: type, overrides: dict, prefix: str):
+    """An instance of the dataclass `kind` from the user's `overrides` and the defaults, declared as parameters."""
+    given = {item.name: overrides.get(prefix + item.name, default_of(item)) for item in fields(kind)}
+    values = from_values(kind, given, prefix)
+    declare(node, values, limits, prefix)
+    return values

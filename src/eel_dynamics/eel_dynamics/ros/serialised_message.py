@@ -1,7 +1,7 @@
 """Messages as they go over the network: serialised once, and their numbers changed in place.
 
-To hand a message over field by field costs a node at real time more than to compute what is in it. Its serialised form
-keeps its layout for as long as its texts and lengths stay: what changes are numbers at known places.
+At real time, passing a message on field by field costs more than computing its numbers. The serialised form keeps its
+layout while texts and lengths stay the same: only numbers at known places change.
 """
 
 import array
@@ -18,7 +18,7 @@ MARK = -1.2345678901234567e-200  # and its multiples: numbers that stand nowhere
 MARKED_TIME = 0x1A2B3C4D, 0x2B3C4D5E  # s, ns
 
 
-class Wire:
+class SerialisedMessage:
     """A `message` in its serialised form. Fields that are texts, and sequences of other lengths, need another one.
 
     numbers: views of its float64 numbers, by path: of a sequence ("torque_1"), or of what has numbers for fields

@@ -1,4 +1,4 @@
-"""The node's messages: the run's samples, serialised once and refilled, and what comes in.
+"""The node's messages: samples of the run, serialised once and refilled; laws and samples of laws, read.
 
 Library (the paper's) frames become REP-103 frames here and nowhere else, by `turn_vector` and `turn_quaternion`; fields
 that are kept in section axes (1 = -x, 2 = -y, 3 = +z of base_link) pass unchanged.
@@ -7,7 +7,6 @@ that are kept in section axes (1 = -x, 2 = -y, 3 = +z of base_link) pass unchang
 import array
 import struct
 from collections.abc import Callable
-from dataclasses import Field
 
 import numpy as np
 from builtin_interfaces.msg import Time
@@ -15,7 +14,6 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from eel_gaits.law import MAXIMUM_TERMS
 from geometry_msgs.msg import PoseStamped, TransformStamped, TwistStamped
 from nav_msgs.msg import Odometry
-from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from rclpy.serialization import deserialize_message
 from rosgraph_msgs.msg import Clock
 
@@ -30,12 +28,11 @@ from eel_msgs.msg import (
     InternalWrench,
 )
 
-from .axes import QUATERNION, VECTOR, turn_quaternion, turn_vector
-from .curvature_samples import check_points
-from .parameters import limits
-from .records import outline
-from .scene import Scene
-from .wire import Wire
+from ..axes import QUATERNION, VECTOR, turn_quaternion, turn_vector
+from ..curvature_samples import check_points
+from ..records import outline
+from ..scene import Scene
+from .serialised_message import SerialisedMessage
 
 try:
     from tf2_msgs.msg import TFMessage
@@ -80,7 +77,8 @@ class Sample:
             transform.header.frame_id = world_frame
             messages["/tf"] = TFMessage(transforms=[transform])
         self.kinds = {name: type(message) for name, message in messages.items()}
-        self._wires, self._clock = {name: Wire(message) for name, message in messages.items()}, Wire(Clock())
+        self._serialised = {name: SerialisedMessage(message) for name, message in messages.items()}
+        self._clock = SerialisedMessage(Clock())
         self._fill = {
             "head_pose": self._fill_pose,
             "head_twist": self._fill_twist,
@@ -104,16 +102,16 @@ class Sample:
 
     def fill(self, name: str, snapshot) -> bytes:
         """The message of topic `name` from `snapshot`."""
-        wire = self._wires[name]
+        message = self._serialised[name]
         if snapshot is not self._of:  # several topics tell how the head is
             head = np.concatenate((snapshot.position, snapshot.orientation, snapshot.twist))
             self._of, self._head = snapshot, head * HEAD + 0.0
-        self._fill[name](wire.numbers, snapshot)
-        return self._sealed(wire)
+        self._fill[name](message.numbers, snapshot)
+        return self._sealed(message)
 
-    def _sealed(self, wire: Wire) -> bytes:
-        wire.stamp[:] = self._nanoseconds
-        return wire.data()
+    def _sealed(self, message: SerialisedMessage) -> bytes:
+        message.stamp[:] = self._nanoseconds
+        return message.data()
 
     def _fill_pose(self, numbers, snapshot):
         numbers["pose.position"][:], numbers["pose.orientation"][:] = self._head[PLACE], self._head[TURN]
@@ -223,25 +221,3 @@ def diagnostic_array(time: float, name: str, level: int, text: str, values: dict
     message = DiagnosticArray(status=[status])
     message.header.stamp.sec, message.header.stamp.nanosec = divmod(round(time * SECOND), SECOND)
     return message
-
-
-def descriptor_of(item: Field) -> ParameterDescriptor:
-    """The ROS description of a parameter that a dataclass field declares."""
-    metadata = item.metadata
-    unit = f" [{metadata['unit']}]" if metadata.get("unit") else ""
-    none = "; 0: not overridden" if item.default is None else ""
-    descriptor = ParameterDescriptor(
-        description=metadata["description"] + unit + none, read_only=not metadata.get("changeable")
-    )
-    if "choices" in metadata:
-        descriptor.additional_constraints = "one of " + ", ".join(metadata["choices"])
-    elif "minimum" in metadata:
-        descriptor.additional_constraints = limits(metadata)
-        low, high = metadata["minimum"], metadata.get("maximum")
-        if isinstance(item.default, int):
-            descriptor.integer_range = [IntegerRange(from_value=int(low), to_value=int(high))]
-        else:
-            descriptor.floating_point_range = [
-                FloatingPointRange(from_value=float(low), to_value=float("inf") if high is None else float(high))
-            ]
-    return descriptor

@@ -1,17 +1,17 @@
-"""From the node's parameters, in ROS (REP-103) frames, to the simulation, in the library's."""
+"""Makes the simulation, in the library's frames, from the node's parameters, in ROS (REP-103) frames."""
 
 import math
 from dataclasses import replace
 from pathlib import Path
 
-from .axes import turn_quaternion, turn_vector
-from .body import Body
+from ..axes import turn_quaternion, turn_vector
+from ..body import Body
+from ..scene import Scene
+from ..simulation import Simulation
 from .parameters import DynamicsParameters
-from .scene import Scene
-from .simulation import Simulation
 
 
-def simulation_of(parameters: DynamicsParameters, scene: Scene) -> Simulation:
+def simulation_from_parameters(parameters: DynamicsParameters, scene: Scene) -> Simulation:
     """The simulation at its start; the scene's current is in the ROS world frame. `ValueError`: what does not fit."""
     twist = (*parameters.initial_angular_velocity, *parameters.initial_linear_velocity)
     return Simulation(

@@ -1,4 +1,4 @@
-"""What the node has to say, so that each thing is said once or seldom, and stays in /diagnostics while it lasts."""
+"""What the node logs and publishes on /diagnostics: a condition is logged once and shown while it lasts."""
 
 import math
 import time
@@ -7,6 +7,8 @@ OK, WARN, ERROR = 0, 1, 2  # as diagnostic_msgs/DiagnosticStatus has them
 REPEAT = 1.0  # s: an event of one kind is logged at most once in this time
 RECENT = 2.0  # s: how long an event shows in the diagnostics
 BURST = 20  # lines of one kind in that time, where each tells something else
+OVERDUE = 3.0  # s of wall time on the way to a sample at real time, after which something is wrong
+PERIOD = 1.0  # s of wall time, and of simulation time, after which /diagnostics is published again
 
 
 class Report:
@@ -94,3 +96,56 @@ class Quota:
         """How many lines were not logged since the last time, in words; empty where none."""
         count, self._refused = self._refused, 0
         return f" (and {count} more before, not shown)" if count else ""
+
+
+class Status:
+    """Collects the figures of a RunLoop from time to time."""
+
+    def __init__(self, run, report, accuracy):
+        self._run, self._report, self._accuracy = run, report, accuracy
+        self._seen = (0.0, 0.0)  # s: simulation time, wall time spent on samples
+        self._told = (-PERIOD, 0.0, None)  # s: wall time, simulation time, and the state that was told
+
+    def due(self) -> bool:
+        """Whether to tell: once a second of wall time and of simulation time, and when the state has changed."""
+        wall, simulated, state = self._told
+        run = self._run
+        return (
+            time.monotonic() - wall >= PERIOD
+            or abs(run.time - simulated) >= PERIOD
+            or (run.standing, self._report.state()) != state
+        )
+
+    def collect(self, publishers_of_laws: int, final: bool = False) -> tuple[int, str, dict]:
+        """Level, text, values; the real-time factor is that since the last collection, at the end that of the run."""
+        run = self._run
+        if publishers_of_laws > 1:
+            self._report.begin("laws", f"{publishers_of_laws} publishers of curvature_law: the later message wins")
+        else:
+            self._report.end("laws", "no more than one publisher of curvature_law again")
+        if run.overdue > OVERDUE:
+            self._report.begin(
+                "overdue",
+                f"no sample for {run.overdue:.0f} s after t = {run.time:g} s, which takes too many steps: another "
+                "law, reset and pause are heard",
+                ERROR,
+            )
+        else:
+            self._report.end("overdue")
+        before, self._seen = (0.0, 0.0) if final else self._seen, (run.time, run.wall_time.seconds)
+        simulated, wall = self._seen[0] - before[0], self._seen[1] - before[1]
+        level, warnings = state = self._report.state()
+        self._told = (time.monotonic(), run.time, (run.standing, state))
+        values = {
+            "law": run.laws.name,
+            "accuracy": self._accuracy,
+            "time": run.time,
+            "real_time_factor": max(0.0, simulated) / wall if wall > 0.0 else 0.0,
+            "late": run.pace.lost,
+            **run.totals.values(),
+            "samples_published": run.samples_published,
+            "publishers_of_laws": publishers_of_laws,
+            "warnings": "; ".join(warnings),
+        }
+        run.request_whole_snapshot()
+        return level, (warnings[0] if warnings else "finished" if final else run.standing or "swimming"), values

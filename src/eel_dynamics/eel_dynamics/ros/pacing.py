@@ -1,11 +1,11 @@
-"""When each sample is due on the steady clock.
+"""Pace on the steady clock: when each sample is due, how long to wait for a controller, time spent.
 
 Sample k is due at start + (k - first) * period / factor. A run that falls behind by more than a few periods gives the
 lost time up rather than hurry after it: it keeps its accuracy, not its pace.
 """
 
 import math
-import threading
+import time
 
 FEW_PERIODS = 5
 SHORTEST_DELAY = 0.02  # s: below this the operating system's scheduling is heard, not the run
@@ -44,23 +44,40 @@ class Pace:
         return delay
 
 
-class Bell:
-    """Wakes one thread that waits; a lock and nothing else, as a node that wakes 100 times a second pays for every
-    line of Python."""
+class ControllerWait:
+    """How long to wait for a controller that sends samples of a law: a while, then no more until it is back."""
 
     def __init__(self):
-        self._silent = threading.Lock()
-        self._silent.acquire()
+        self._since = None  # s, steady clock: since when its next samples are missing
 
-    def ring(self):
-        """Wakes who waits, or who waits next. Rings must not meet: the caller sees to that."""
-        if self._silent.locked():
-            self._silent.release()
+    def waits(self, missing: bool, now: float, timeout: float) -> bool:
+        """Whether to wait for samples that are `missing` at `now` [s, steady clock], for `timeout` [s] at most."""
+        if not missing:
+            self._since = None
+            return False
+        if self._since is None:
+            self._since = now
+        return now - self._since < timeout
 
-    def hush(self):
-        """Forgets that it rang."""
-        self._silent.acquire(blocking=False)
 
-    def wait(self, seconds: float) -> bool:
-        """Sleeps until it rings, or for so long: whether it rang."""
-        return self._silent.acquire(timeout=max(0.0, seconds))
+class Stopwatch:
+    """Wall time [s] spent on samples; times are those of the steady clock.
+
+    Attributes:
+        seconds: the sum of the laps.
+    """
+
+    def __init__(self):
+        self.seconds, self._since = 0.0, time.monotonic()
+
+    def lap(self, now: float):
+        """Add the time since the last lap."""
+        self.seconds, self._since = self.seconds + now - self._since, now
+
+    def resume(self, now: float):
+        """Leave out the time since the last lap."""
+        self._since = now
+
+    def restart(self, now: float):
+        """Begin again at 0."""
+        self.seconds, self._since = 0.0, now

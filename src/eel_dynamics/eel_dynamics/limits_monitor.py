@@ -7,7 +7,7 @@ from .model_limits import ModelLimits
 SETTLING = 5.0  # s: a swimmer that starts from rest is slow at first
 
 
-class Watch:
+class LimitsMonitor:
     """Looks at snapshots of a `simulation` and has the `report` say what lies beyond the model."""
 
     def __init__(self, simulation, report):

@@ -1,4 +1,4 @@
-"""The run's checks on itself, worst so far, for /diagnostics: energy ledger, closure of the wrench."""
+"""Totals and greatest values of a run for /diagnostics: energy ledger, closure of the wrench, torque and force."""
 
 import math
 
@@ -12,7 +12,7 @@ CHECKED = (
 )
 
 
-class Accounts:
+class RunTotals:
     """Accumulates the figures of successive snapshots."""
 
     def __init__(self):

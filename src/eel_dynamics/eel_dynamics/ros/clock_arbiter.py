@@ -13,7 +13,7 @@ GRACE_YOUNG = (0.0, 3.0)  # s: greater identifier, smaller identifier
 GRACE_OLD = (8.0, 12.0)
 
 
-class ClockRight:
+class ClockArbiter:
     """The right to publish, judged from the identifiers of all publishers of /clock."""
 
     def __init__(self):
@@ -46,7 +46,7 @@ class ClockWatch:
 
     def __init__(self, node, offer, report):
         self._node, self._offer, self._report = node, offer, report
-        self._right = ClockRight()
+        self._arbiter = ClockArbiter()
         self._offered = False
         self._own = ()
         self._strangers = set()
@@ -61,9 +61,9 @@ class ClockWatch:
             name = (self._node.get_namespace(), self._node.get_name())
             self._own = min((gid for gid in heard if heard[gid] == name and gid not in self._strangers), default=())
         others = {gid: name for gid, name in heard.items() if gid != self._own}
-        allowed = wanted and self._right.judge(time.monotonic(), self._own, set(others))
+        allowed = wanted and self._arbiter.judge(time.monotonic(), self._own, set(others))
         if not wanted:
-            self._right = ClockRight()
+            self._arbiter = ClockArbiter()
         if wanted and others:
             names = ", ".join(sorted(_full_name(*each) for each in others.values()))
             state = "this node does not" if not allowed else "one of the two has to go"

@@ -4,7 +4,7 @@ import os
 import xml.etree.ElementTree as ElementTree
 
 import pytest
-from eel_dynamics.repair import PROFILE, VARIABLE, repair_soon
+from eel_ros.fastdds_profile import PROFILE, VARIABLE, use_prompt_repair
 
 
 @pytest.fixture(autouse=True)
@@ -15,14 +15,14 @@ def no_profile(monkeypatch):
 
 
 def test_profile_is_set(monkeypatch):
-    repair_soon()
+    use_prompt_repair()
     assert os.environ[VARIABLE] == str(PROFILE)
 
 
 @pytest.mark.parametrize("name", [VARIABLE, "FASTDDS_DEFAULT_PROFILES_FILE"])
 def test_the_users_profile_stays(monkeypatch, name):
     monkeypatch.setenv(name, "mine.xml")
-    repair_soon()
+    use_prompt_repair()
     assert os.environ.get(VARIABLE) in (None, "mine.xml")
     assert os.environ[name] == "mine.xml"
 

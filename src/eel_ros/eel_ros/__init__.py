@@ -1,0 +1,1 @@
+"""What every node of the suite shares: parameters, command line, start, callbacks, signals, quality of service."""

@@ -1,0 +1,42 @@
+"""The command line of a node: --help lists its parameters; any other word that is no ROS argument is refused."""
+
+import reprlib
+import sys
+from collections.abc import Callable, Iterable
+
+from rclpy.utilities import remove_ros_args
+
+USE_SIM_TIME = ("--ros-args", "-p", "use_sim_time:=true", "--")  # before the user's words, which win
+SHOWN = reprlib.Repr()
+SHOWN.maxstring = 80  # characters of a refused word
+
+
+def answer_words(
+    name: str,
+    about: str,
+    parameters: Iterable[tuple],
+    words: list[str],
+    complain: Callable[[str, object], None],
+) -> int | None:
+    """The exit status of a node whose command line `words` (the program first) has words that are no ROS arguments.
+
+    0 for -h or --help, which print `about` and the `parameters` (name, description, default); 2 for any other word, or
+    bad ROS arguments, after `complain(name, error)`; None if the node is to start.
+    """
+    try:
+        rest = remove_ros_args(words)[1:]
+    except RuntimeError as error:  # of rcl's parser
+        complain(name, error)
+        return 2
+    if not rest:
+        return None
+    if not {"-h", "--help"} & set(rest):
+        word = SHOWN.repr(rest[0])
+        complain(name, f"unknown argument {word} (parameters come after --ros-args as -p NAME:=VALUE)")
+        return 2
+    lines = [f"usage: {name} [--ros-args -p NAME:=VALUE ...]", "", about, "", "parameters:"]
+    for key, description, default in parameters:
+        told = str(default).lower() if isinstance(default, bool) else "empty" if default == "" else default
+        lines.append(f"  {key:<24}  {description} (default {told})")
+    sys.stdout.write("\n".join([*lines, ""]))
+    return 0

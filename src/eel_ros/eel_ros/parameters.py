@@ -1,0 +1,92 @@
+"""ROS parameters from dataclasses: type, default, range and description come from the fields.
+
+Metadata of a field: description, unit; optional minimum, maximum, choices, changeable (at run time).
+"""
+
+import math
+from collections.abc import Callable, Collection, Iterator, Mapping
+from dataclasses import MISSING, Field, fields
+
+from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
+from rclpy.node import Node
+
+OF_ROS = ("use_sim_time", "start_type_description_service", "qos_overrides.")  # beginnings of its own parameters' names
+GREATEST = 2**63 - 1  # integer that a ROS parameter can hold
+
+
+def take_overrides(node: Node) -> dict:
+    """The values that the user gave at the start, by parameter name.
+
+    `node` was made with automatically_declare_parameters_from_overrides. All but ROS's own parameters are undeclared,
+    so that `declare` can declare them with type and range.
+    """
+    overrides = {name: parameter.value for name, parameter in node.get_parameters_by_prefix("").items()}
+    for name in overrides:
+        if not name.startswith(OF_ROS):
+            node.undeclare_parameter(name)
+    return overrides
+
+
+def warn_of_unknown(node: Node, overrides: Mapping, known: Collection[str]) -> None:
+    """Log the names of the overrides that are not `known`. They are no error: a parameter file may serve several
+    nodes."""
+    unknown = [repr(name) for name in overrides if name not in known and not name.startswith(OF_ROS)]
+    if unknown:
+        node.get_logger().warning(f"not parameters of this node, ignored: {', '.join(unknown)}")
+
+
+def declare(
+    node: Node, values, limits: Callable[[Mapping], str], prefix: str = "", changeable: bool | None = None
+) -> None:
+    """Declare a parameter, named `prefix` and field, for each field of the dataclass instance `values`.
+
+    limits: the bounds in a field's metadata in words. changeable: replaces the metadata's.
+    """
+    for item in fields(values):
+        descriptor = _descriptor(item, limits, changeable)
+        value = _as_parameter(getattr(values, item.name))
+        node.declare_parameter(prefix + item.name, value, descriptor, ignore_override=True)
+
+
+def help_rows(kind: type, prefix: str = "") -> Iterator[tuple]:
+    """Name, description and default of each parameter of the dataclass `kind`."""
+    for item in fields(kind):
+        yield prefix + item.name, described(item), default_of(item)
+
+
+def described(item: Field) -> str:
+    """The description of a field, with its unit in brackets."""
+    unit = item.metadata["unit"]
+    return item.metadata["description"] + (f" [{unit}]" if unit else "")
+
+
+def default_of(item: Field):
+    """The default of a field as a ROS parameter holds it: a list for a tuple, 0.0 for None."""
+    assert item.default is not MISSING, item.name
+    return _as_parameter(item.default)
+
+
+def _as_parameter(value):
+    if value is None:
+        return 0.0
+    return list(value) if isinstance(value, tuple) else value
+
+
+def _descriptor(item: Field, limits: Callable[[Mapping], str], changeable: bool | None) -> ParameterDescriptor:
+    metadata = item.metadata
+    if changeable is None:
+        changeable = metadata.get("changeable", False)
+    none = "; 0: not overridden" if item.default is None else ""
+    descriptor = ParameterDescriptor(description=described(item) + none, read_only=not changeable)
+    low, high = metadata.get("minimum"), metadata.get("maximum")
+    if "choices" in metadata:
+        descriptor.additional_constraints = "one of " + ", ".join(metadata["choices"])
+    elif low is not None or high is not None:
+        descriptor.additional_constraints = limits(metadata)
+        if isinstance(item.default, int):
+            low, high = -GREATEST if low is None else int(low), GREATEST if high is None else int(high)
+            descriptor.integer_range = [IntegerRange(from_value=low, to_value=high)]
+        else:
+            low, high = -math.inf if low is None else float(low), math.inf if high is None else float(high)
+            descriptor.floating_point_range = [FloatingPointRange(from_value=low, to_value=high)]
+    return descriptor

@@ -1,0 +1,76 @@
+"""The end of the process: by SIGINT or SIGTERM, or when a thread's work is done or fails, whichever comes first."""
+
+import os
+import queue
+import signal
+import sys
+import threading
+import time
+from collections.abc import Callable
+
+POLL = 0.1  # s: a signal at the very moment before a wait does not end that wait
+SIGNALS = (signal.SIGINT, signal.SIGTERM)
+
+
+class ProcessEnd:
+    """Made in the main thread, before anything that lasts.
+
+    A signal may interrupt any line, so its handler only sets a flag and puts into a queue.
+
+    Attributes:
+        signalled: whether SIGINT or SIGTERM has come.
+        over: for the threads to look at; set by the main thread.
+    """
+
+    def __init__(self) -> None:
+        self._reasons: queue.SimpleQueue[tuple[bool, Exception | None]] = queue.SimpleQueue()
+        self.over = False
+        self.signalled = False
+        for number in SIGNALS:
+            signal.signal(number, self._take_signal)
+
+    def _take_signal(self, number, frame) -> None:
+        self.signalled = True
+        self._reasons.put((False, None))
+
+    def ignore_signals(self) -> None:
+        """Ignore signals from now on: during the last steps one more would spoil the exit status."""
+        for number in SIGNALS:
+            signal.signal(number, signal.SIG_IGN)
+
+    def start(self, work: Callable[[], None]) -> None:
+        """Run `work()` in a thread. When it returns or raises, the process is to end."""
+
+        def run() -> None:
+            try:
+                work()
+            except Exception as error:
+                self._reasons.put((False, error))
+            else:
+                self._reasons.put((True, None))
+
+        threading.Thread(target=run, daemon=True).start()
+
+    def wait(self) -> tuple[bool, Exception | None]:
+        """Wait for the end: (whether a thread has done its work, the error of one that failed)."""
+        while True:
+            try:
+                return self._reasons.get(timeout=POLL)
+            except queue.Empty:
+                continue
+
+    def join(self, seconds: float) -> bool:
+        """Wait for all threads, at most `seconds`; whether they have ended."""
+        deadline = time.monotonic() + seconds
+        others = [thread for thread in threading.enumerate() if thread is not threading.main_thread()]
+        for thread in others:
+            thread.join(max(0.0, deadline - time.monotonic()))
+        return not any(thread.is_alive() for thread in others)
+
+
+def leave_at_once(status: int) -> None:
+    """End the process with this exit status although a thread may still be at work, without the interpreter's
+    clean-up."""
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(status)

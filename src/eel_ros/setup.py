@@ -1,0 +1,19 @@
+from setuptools import find_packages, setup
+
+setup(
+    name="eel_ros",
+    version="0.1.0",
+    packages=find_packages(),
+    package_data={"eel_ros": ["fastdds.xml"]},
+    data_files=[
+        ("share/ament_index/resource_index/packages", ["resource/eel_ros"]),
+        ("share/eel_ros", ["package.xml"]),
+    ],
+    install_requires=["setuptools"],
+    extras_require={"test": ["pytest"]},
+    zip_safe=False,
+    maintainer="Eel simulator maintainers",
+    maintainer_email="maintainers@eel-simulator.example.org",
+    description="What every node of the eel simulator shares: parameters, command line, callbacks, end.",
+    license="Apache-2.0",
+)
