@@ -25,8 +25,8 @@ begin nodes "${nodes[@]}"
 begin viz test/eel_viz
 tools/core_tests.sh tests > out/test-core.log 2>&1 &
 beside[core]=$!
-begin system test/system test/eel_gaits test/eel_core
-echo "[test] mechanics here; the dynamics node, test/eel_viz, test/system with test/eel_gaits and test/eel_core, and the C++ tests beside, shown when done"
+begin system test/system test/eel_ros test/eel_gaits test/eel_core
+echo "[test] mechanics here; the dynamics node, test/eel_viz, test/system with test/eel_ros, test/eel_gaits and test/eel_core, and the C++ tests beside, shown when done"
 "${pytest[@]}" test/eel_dynamics "${nodes[@]/#/--ignore=}"
 status=$?
 for name in core nodes viz system; do

@@ -87,7 +87,7 @@ def build(numpy1) -> dict[str, str]:
     done = subprocess.run(
         [python, Path(sys.prefix) / "bin/colcon", "--log-base", folder / "log", "build",
          "--build-base", folder / "build", "--install-base", folder / "install",
-         "--base-paths", *(ROOT / "src" / name for name in ("eel_msgs", "eel_gaits", "eel_dynamics")),
+         "--base-paths", *(ROOT / "src" / name for name in ("eel_msgs", "eel_ros", "eel_gaits", "eel_dynamics")),
          "--cmake-args", f"-DPython3_EXECUTABLE={python}"],
         env=environment, cwd=folder, capture_output=True, text=True, timeout=300,
     )  # fmt: skip

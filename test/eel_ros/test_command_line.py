@@ -1,0 +1,48 @@
+"""The words of a node's command line: a usage, one line of refusal, or none of them."""
+
+import pytest
+from eel_ros.command_line import answer_words
+
+ROWS = [("depth", "of the water [m]", 2.0), ("lid", "closed", False), ("label", "text on it", "")]
+
+
+@pytest.fixture
+def answer():
+    """answer(*words): the status, and what was complained of."""
+
+    def answer_these(*words):
+        lines = []
+        status = answer_words("tank", "Holds water.", ROWS, ["tank", *words], lambda *line: lines.append(line))
+        return status, [(name, str(error)) for name, error in lines]
+
+    return answer_these
+
+
+@pytest.mark.parametrize("words", [(), ("--ros-args", "-p", "depth:=1.0"), ("--ros-args", "-r", "a:=b", "--")])
+def test_ros_arguments_need_no_answer(answer, words, capsys):
+    assert answer(*words) == (None, []) and capsys.readouterr().out == ""
+
+
+@pytest.mark.parametrize("word", ["-h", "--help"])
+def test_help_lists_the_parameters_with_their_defaults(answer, word, capsys):
+    assert answer("--ros-args", "-p", "depth:=1.0", "--", word) == (0, [])
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == "usage: tank [--ros-args -p NAME:=VALUE ...]" and lines[2] == "Holds water."
+    assert [line.split(None, 1) for line in lines[-3:]] == [
+        ["depth", "of the water [m] (default 2.0)"],
+        ["lid", "closed (default false)"],
+        ["label", "text on it (default empty)"],
+    ]
+
+
+def test_another_word_is_refused_and_shown_in_short(answer):
+    for word, shown in (("--depth", "'--depth'"), ("x\ny", r"'x\ny'")):
+        status, ((name, text),) = answer(word)
+        assert status == 2 and name == "tank" and text.startswith(f"unknown argument {shown} (parameters come after")
+    _, ((_, text),) = answer("long " * 1000)
+    assert len(text) < 200
+
+
+def test_bad_ros_arguments_are_refused(answer):
+    status, ((_, text),) = answer("--ros-args", "-p", "depth")
+    assert status == 2 and "depth" in text

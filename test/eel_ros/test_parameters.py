@@ -1,0 +1,117 @@
+"""Parameters from a dataclass: type, range and description of each, the user's values over the defaults."""
+
+from dataclasses import dataclass, field
+
+import pytest
+from eel_ros.parameters import declare, default_of, help_rows, take_overrides, warn_of_unknown
+from rclpy.context import Context
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+
+
+def entry(default, description, unit="", **metadata):
+    return field(default=default, metadata={"description": description, "unit": unit, **metadata})
+
+
+@dataclass(frozen=True)
+class Tank:
+    depth: float = entry(2.0, "of the water", "m", minimum=0.5)
+    pumps: int = entry(1, "that run", minimum=0, maximum=3, changeable=True)
+    wall: str = entry("glass", "what it is made of", choices=("glass", "steel"))
+    size: tuple = entry((4.0, 3.0), "length and width", "m")
+    density: float | None = entry(None, "of the water", "kg/m^3", minimum=0.0)
+
+
+@pytest.fixture
+def make_node(ros_domain):
+    """make_node(*words): a node with these ROS arguments, and what it logged as warnings."""
+    made = []
+
+    def make(*words):
+        context = Context()
+        context.init(args=["--ros-args", *words], domain_id=ros_domain)
+        node = Node(
+            "tank",
+            context=context,
+            start_parameter_services=False,
+            automatically_declare_parameters_from_overrides=True,
+        )
+        made.append((node, context))
+        return node
+
+    yield make
+    for node, context in made:
+        node.destroy_node()
+        context.try_shutdown()
+
+
+def limits(metadata):
+    return f"at least {metadata['minimum']}"
+
+
+def test_descriptors_tell_unit_range_choices_and_whether_it_changes(make_node):
+    node = make_node()
+    declare(node, Tank(), limits, "tank.")
+    depth, pumps, wall, size, density = (
+        node.describe_parameter(f"tank.{name}") for name in ("depth", "pumps", "wall", "size", "density")
+    )
+    assert depth.description == "of the water [m]" and depth.additional_constraints == "at least 0.5"
+    (bounds,) = depth.floating_point_range
+    assert bounds.from_value == 0.5 and bounds.to_value == float("inf") and depth.read_only
+    (bounds,) = pumps.integer_range
+    assert (bounds.from_value, bounds.to_value) == (0, 3) and not pumps.read_only
+    assert wall.additional_constraints == "one of glass, steel" and not wall.floating_point_range
+    assert node.get_parameter("tank.size").value == [4.0, 3.0] and size.description == "length and width [m]"
+    assert node.get_parameter("tank.density").value == 0.0 and density.description.endswith("; 0: not overridden")
+
+
+def test_a_declared_parameter_is_set_within_its_range_alone(make_node):
+    node = make_node()
+    declare(node, Tank(), limits)
+    for value, successful in ((2, True), (4, False), (2.0, False)):
+        (result,) = node.set_parameters([Parameter("pumps", value=value)])
+        assert result.successful == successful, value
+    (result,) = node.set_parameters([Parameter("depth", value=3.0)])
+    assert not result.successful, "not changeable"
+    assert node.get_parameter("pumps").value == 2 and node.get_parameter("depth").value == 2.0
+
+
+def test_changeable_for_all_replaces_the_metadata(make_node):
+    node = make_node()
+    declare(node, Tank(), limits, changeable=True)
+    (result,) = node.set_parameters([Parameter("depth", value=3.0)])
+    assert result.successful
+
+
+def test_overrides_are_taken_with_their_own_type_and_ros_keeps_its_own(make_node):
+    node = make_node("-p", "depth:=7", "-p", "colour:=blue", "-p", "use_sim_time:=true")
+    overrides = take_overrides(node)
+    assert overrides["depth"] == 7 and isinstance(overrides["depth"], int) and overrides["colour"] == "blue"
+    assert not node.has_parameter("depth") and not node.has_parameter("colour")
+    assert node.get_parameter("use_sim_time").value is True
+    declare(node, Tank(depth=float(overrides["depth"])), limits)
+    assert node.get_parameter("depth").value == 7.0
+
+
+def test_unknown_overrides_are_named_in_one_warning(make_node, monkeypatch):
+    node, lines = make_node("-p", "depth:=7", "-p", "colour:=blue", "-p", "lid:=true"), []
+    monkeypatch.setattr(type(node.get_logger()), "warning", lambda logger, text: lines.append(text))
+    overrides = take_overrides(node)
+    warn_of_unknown(node, overrides, ["depth"])
+    assert lines == ["not parameters of this node, ignored: 'colour', 'lid'"]
+    warn_of_unknown(node, overrides, ["depth", "colour", "lid"])
+    assert len(lines) == 1
+
+
+def test_help_rows_are_the_fields_with_units_and_defaults():
+    assert next(help_rows(Tank, "tank.")) == ("tank.depth", "of the water [m]", 2.0)
+    assert [default for _, _, default in help_rows(Tank)] == [2.0, 1, "glass", [4.0, 3.0], 0.0]
+
+
+def test_a_field_without_a_default_is_an_error():
+    @dataclass
+    class Bare:
+        depth: float = field(metadata={"description": "of the water", "unit": "m"})
+
+    with pytest.raises(AssertionError, match="depth"):
+        default_of(*Bare.__dataclass_fields__.values())

@@ -1,0 +1,59 @@
+"""How a node's process ends: by itself, by a signal, with a failure, or because it cannot start."""
+
+import signal
+import sys
+
+import pytest
+
+LIMIT = 90.0  # s
+PROCESS = """
+import sys, time
+from eel_ros.run_node import run_node
+from rclpy.node import Node
+
+class Tank(Node):
+    def __init__(self, what):
+        if what == "refuse":
+            raise ValueError("depth must be > 0 m, got -1")
+        super().__init__("tank")
+        self.failure, self.what, self.begun = "", what, False
+    def attend(self):
+        if not self.begun:
+            self.begun = True
+            print("attended", flush=True)
+        if self.what == "fail":
+            self.failure = "it leaks"
+        return self.what == "wait"
+    def close(self):
+        print("closed", flush=True)
+
+def complain(name, error):
+    print(f"{name}: {error}", flush=True)
+
+what = sys.argv[1]
+work = (lambda node: False) if "work" in sys.argv else None
+sys.exit(run_node("tank", ["tank"], lambda: Tank(what), Tank.attend, work, complain=complain, complete=True))
+"""
+
+
+@pytest.mark.parametrize(
+    ("what", "status", "said"),
+    [
+        ("end", 0, "attended\nclosed\n"),
+        ("fail", 1, "attended\nclosed\ntank: it leaks\n"),
+        ("refuse", 2, "tank: depth must be > 0 m, got -1\n"),
+    ],
+)
+def test_status_and_words_at_its_own_end(start, what, status, said):
+    node = start(sys.executable, "-c", PROCESS, what)
+    assert node.wait(LIMIT) == status
+    assert node.output() == said
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("words", [(), ("work",)])
+def test_a_signal_ends_it_well(start, number, words):
+    node = start(sys.executable, "-c", PROCESS, "wait", *words)
+    node.wait_for_output("attended")
+    assert node.interrupt(number, LIMIT) == 0
+    assert node.output() == "attended\nclosed\n"

@@ -1,0 +1,54 @@
+"""The start: the node, or the reason why there is none, and rclpy as it was before."""
+
+import pytest
+import rclpy
+from eel_ros.start import REPAIR, start
+from rclpy.node import Node
+from rosidl_generator_py.import_type_support_impl import UnsupportedTypeSupport
+
+
+def tried(make, words=("tank",)):
+    lines = []
+    node = start("tank", list(words), make, lambda *line: lines.append(line))
+    return node, lines
+
+
+def test_the_node_is_made_with_the_ros_arguments_given():
+    node, lines = tried(lambda: Node("tank"), ("tank", "--ros-args", "-r", "__node:=pool"))
+    assert node.get_name() == "pool" and lines == []
+    node.destroy_node()
+    rclpy.shutdown()
+
+
+@pytest.mark.parametrize("error", [ValueError("depth must be > 0 m"), OSError("disk full"), RuntimeError("no network")])
+def test_the_reason_is_told_and_rclpy_is_shut_down(error):
+    def make():
+        raise error
+
+    assert tried(make) == (None, [("tank", error)])
+    assert not rclpy.ok()
+
+
+@pytest.mark.parametrize(
+    "error", [UnsupportedTypeSupport("eel_msgs"), RuntimeError("Could not import 'rosidl_typesupport_c': Type Support")]
+)
+def test_a_damaged_build_is_told_with_its_repair(error):
+    def make():
+        raise error
+
+    node, ((_, text),) = tried(make)
+    assert node is None and text == f"{REPAIR}: {error}"
+
+
+def test_bad_ros_arguments_are_a_reason():
+    node, lines = tried(lambda: Node("tank"), ("tank", "--ros-args", "-p", "depth"))
+    assert node is None and len(lines) == 1 and not rclpy.ok()
+
+
+def test_an_error_of_the_program_itself_is_not_hidden():
+    def make():
+        raise AttributeError("a mistake")
+
+    with pytest.raises(AttributeError, match="a mistake"):
+        tried(make)
+    rclpy.shutdown()
