@@ -40,6 +40,11 @@ struct Vector3 {
     Vector3& operator+=(const Vector3& other) { return x += other.x, y += other.y, z += other.z, *this; }
 };
 
+template <Number T>
+Vector2(T, T) -> Vector2<T>;  // Clang deduces an aggregate's arguments from version 17 on only
+template <Number T>
+Vector3(T, T, T) -> Vector3<T>;
+
 // clang-format off
 template <Number T> struct Components<Vector2<T>> {
     static constexpr std::size_t count = 2;

@@ -10,6 +10,7 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <new>
 #include <utility>
 #if defined(__x86_64__)
@@ -43,8 +44,13 @@ class Lanes {
     explicit Lanes(Native native) : native_(native) {}
 
     // From and to neighbouring doubles, which need not be aligned.
-    static Lanes load(const double* from) { return Lanes(Native(*reinterpret_cast<const Unaligned*>(from))); }
-    void store(double* to) const { *reinterpret_cast<Unaligned*>(to) = native_; }
+    static Lanes load(const double* from)
+    {
+        Native native;
+        std::memcpy(&native, from, sizeof native);
+        return Lanes(native);
+    }
+    void store(double* to) const { std::memcpy(to, &native_, sizeof native_); }
 
     double operator[](std::size_t lane) const { return native_[lane]; }
     Native native() const { return native_; }
@@ -62,8 +68,6 @@ class Lanes {
     friend Mask operator>=(Lanes a, Lanes b);
 
   private:
-    using Unaligned = double __attribute__((vector_size(width * sizeof(double)), aligned(alignof(double))));
-
     template <std::size_t... Lane>
     Lanes(double value, std::index_sequence<Lane...>) : native_{(static_cast<void>(Lane), value)...}
     {
