@@ -15,7 +15,7 @@ import numpy as np
 from against_paper_scheme import paper_scheme
 from against_peers import peers
 from batch import batch
-from eel_dynamics.calibration import REFERENCE
+from eel_dynamics.studies.calibration.calibration import REFERENCE
 from growth import growth
 from integrators import integrators
 from measuring import median_ratio, times_in_turn

@@ -9,7 +9,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from eel_viz.drawing import drawn
+from eel_viz.pictures.drawing import drawn
 from eel_viz.settings import BLUEPRINTS
 from eel_viz.viewer import CannotRender
 from PIL import Image

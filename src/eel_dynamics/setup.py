@@ -4,7 +4,7 @@ setup(
     name="eel_dynamics",
     version="0.1.0",
     packages=find_packages(),
-    package_data={"eel_dynamics": ["accuracy_table.csv"]},
+    package_data={"eel_dynamics.accuracy": ["accuracy_table.csv"]},
     data_files=[
         ("share/ament_index/resource_index/packages", ["resource/eel_dynamics"]),
         ("share/eel_dynamics", ["package.xml"]),
@@ -19,11 +19,11 @@ setup(
     entry_points={
         "console_scripts": [
             "dynamics = eel_dynamics.ros.node:main",
-            "simulate = eel_dynamics.command:main",
-            "figures = eel_dynamics.figures.command:main",
-            "sweep = eel_dynamics.sweep_command:main",
-            "stability = eel_dynamics.stability.command:main",
-            "tradeoff = eel_dynamics.tradeoff.command:main",
+            "simulate = eel_dynamics.runs.command:main",
+            "figures = eel_dynamics.studies.figures.command:main",
+            "sweep = eel_dynamics.studies.sweep.command:main",
+            "stability = eel_dynamics.studies.stability.command:main",
+            "tradeoff = eel_dynamics.studies.tradeoff.command:main",
         ]
     },
 )

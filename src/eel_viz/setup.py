@@ -17,11 +17,12 @@ setup(
     license="Apache-2.0",
     entry_points={
         "console_scripts": [
-            "visualiser = eel_viz.node:main",
-            "record = eel_viz.record:main",
-            "echo = eel_viz.echo:main",
-            "replay = eel_viz.replay:main",
-            "render = eel_viz.render:main",
-        ]
+            "visualiser = eel_viz.ros.node:main",
+            "record = eel_viz.bags.record:main",
+            "echo = eel_viz.bags.echo:main",
+            "replay = eel_viz.bags.replay:main",
+            "render = eel_viz.pictures.render:main",
+        ],
+        "eel_dynamics.drawing": ["rerun = eel_viz.recording.library:to_rerun"],
     },
 )

@@ -1,7 +1,7 @@
 """Random scenes over more than any swimmer has: bodies, waters, laws, ramps, settings, throws."""
 
 import numpy as np
-from eel_dynamics.stability.maps import spindle
+from eel_dynamics.studies.stability.maps import spindle
 
 from eel_dynamics import Accuracy, Body, Scene
 from eel_gaits import Law, Ramp, Term, falling, straight

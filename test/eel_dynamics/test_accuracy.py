@@ -1,7 +1,7 @@
 """What a target promises: the delivered error stays below it and not far below, and each run can tell its own error.
 
 Errors against a run with more points and smaller steps than any target has. The wide sweep over gaits, bodies and
-scenes is `eel_dynamics.calibration`; here are cases of each kind, and laws with seeds that it has not seen.
+scenes is `eel_dynamics.studies.calibration`; here are cases of each kind, and laws with seeds that it has not seen.
 """
 
 import warnings
@@ -9,11 +9,10 @@ from functools import partial
 
 import numpy as np
 import pytest
-from eel_dynamics.accuracy import table
-from eel_dynamics.budget import Budget
-from eel_dynamics.calibration import REFERENCE, Case, cases, random_law, swim
-from eel_dynamics.error_estimate import relative_errors
-from eel_dynamics.tradeoff.delivered import CLOSE, FAR, trials_of
+from eel_dynamics.accuracy.accuracy import table
+from eel_dynamics.runs.error_estimate import relative_errors
+from eel_dynamics.studies.calibration.calibration import REFERENCE, Case, cases, random_law, swim
+from eel_dynamics.studies.tradeoff.delivered import CLOSE, FAR, trials_of
 from eel_gaits.law import Law, Term
 
 from eel_dynamics import Accuracy, Body, Scene, Simulation, SimulationStopped, simulate, simulate_batch
@@ -112,14 +111,16 @@ def test_an_order_that_does_not_exist():
 
 def test_a_budget_buys_the_finest_target_that_keeps_within_it(monkeypatch):
     """The timings are given here, so that no machine decides: 1 ms at 1e-2, ten times that for each hundredth."""
-    monkeypatch.setattr("eel_dynamics.budget.seconds_per_second", lambda scene, target: 1e-3 * (1e-2 / target) ** 0.5)
-    bought = Budget.of("fastest within 5 ms per second").in_scene(Scene())
+    monkeypatch.setattr(
+        "eel_dynamics.simulation.simulation.swim_time", lambda scene, target: 1e-3 * (1e-2 / target) ** 0.5
+    )
+    bought = Simulation(accuracy="fastest within 5 ms per second").accuracy
     affordable = [
         row["target"] for row in table()[True, True, True, False] if 1e-3 * (1e-2 / row["target"]) ** 0.5 <= 5e-3
     ]
     assert bought.target == min(affordable)
     with pytest.raises(ValueError, match="cannot be met"):
-        Budget.of("fastest within 1 us per second").in_scene(Scene())
+        Simulation(accuracy="fastest within 1 us per second")
 
 
 def test_a_budget_is_measured_on_this_machine():

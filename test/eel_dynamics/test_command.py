@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-
-from eel_dynamics import command
+from eel_dynamics.runs import command
 
 
 def said_of(words, capsys) -> str:
@@ -28,7 +27,7 @@ def said_of(words, capsys) -> str:
     ],
 )
 def test_bad_input_is_refused_before_the_swim(words, named, monkeypatch, capsys):
-    monkeypatch.setattr("eel_dynamics.run.Swimmer.of", lambda *_: pytest.fail("it swims"))
+    monkeypatch.setattr("eel_dynamics.runs.run.Swimmer.of", lambda *_: pytest.fail("it swims"))
     assert named in said_of(words, capsys)
 
 

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from eel_dynamics.energy import EnergyLedger
+from eel_dynamics.simulation.energy import EnergyLedger
 
 from eel_dynamics import Body, Scene, simulate
 from eel_gaits import Law, Ramp, Term

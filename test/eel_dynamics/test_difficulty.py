@@ -6,10 +6,10 @@ from functools import partial
 
 import numpy as np
 import pytest
-from eel_dynamics.accuracy import Key, key_of, table
-from eel_dynamics.calibration import REFERENCE, Case, swim, varied
-from eel_dynamics.difficulty import EASIEST, HARDEST, NOMINAL, Difficulty, difficulty_of, speed_of
-from eel_dynamics.error_estimate import relative_errors
+from eel_dynamics.accuracy.accuracy import Key, key_of, table
+from eel_dynamics.curvature.difficulty import EASIEST, HARDEST, NOMINAL, Difficulty, difficulty_of, speed_of
+from eel_dynamics.runs.error_estimate import relative_errors
+from eel_dynamics.studies.calibration.calibration import REFERENCE, Case, swim, varied
 from eel_gaits.law import Law, Ramp, Term
 
 from eel_dynamics import Accuracy, Body, Scene, Simulation, simulate, simulate_batch

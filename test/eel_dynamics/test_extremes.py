@@ -5,8 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from draws import few, numbers
-from eel_dynamics.error_estimate import relative_errors
-from eel_dynamics.sample_check import first_bad_sample
+from eel_dynamics.runs.error_estimate import relative_errors
+from eel_dynamics.simulation.sample_check import first_bad_sample
 from hypothesis import given
 from hypothesis import strategies as st
 from random_scenes import fixed, pointed
@@ -19,8 +19,8 @@ from eel_gaits import Law, Ramp, Term, falling, helix, still, straight
 def test_steps_are_counted_over_the_run_however_often_it_is_sampled(ledger, monkeypatch):
     """A run of 40 steps to spare and 20 per simulated second, which needs more, is stopped at the same place by 3 as by
     3,000 samples."""
-    monkeypatch.setattr("eel_dynamics.step_bounds.SPARE_STEPS", 40.0)
-    monkeypatch.setattr("eel_dynamics.step_bounds.LEAST_SPARE", 40.0)
+    monkeypatch.setattr("eel_dynamics.simulation.step_bounds.SPARE_STEPS", 40.0)
+    monkeypatch.setattr("eel_dynamics.simulation.step_bounds.LEAST_SPARE", 40.0)
     stopped = []
     for period in (1.0, 0.1, 0.001):
         with pytest.raises(

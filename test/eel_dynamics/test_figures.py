@@ -9,7 +9,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from eel_dynamics.figures import command, corrections, further_drawings, kern_comparison, notes, orders, paper_drawings
+from eel_dynamics.studies.figures import (
+    command,
+    corrections,
+    further_drawings,
+    kern_comparison,
+    notes,
+    orders,
+    paper_drawings,
+)
 from matplotlib.figure import Figure
 
 from eel_dynamics import Body, simulate
@@ -229,16 +237,15 @@ def test_bad_input(tmp_path, capsys):
 
 
 def test_says_when_matplotlib_is_missing(tmp_path):
-    code = (
-        "import sys; sys.modules['matplotlib'] = None; from eel_dynamics.figures.command import main; sys.exit(main())"
-    )
+    code = "import sys; sys.modules['matplotlib'] = None\n"
+    code += "from eel_dynamics.studies.figures.command import main; sys.exit(main())"
     done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, timeout=60)
     assert done.returncode == 2 and "pip install matplotlib" in done.stderr and len(done.stderr.splitlines()) == 1
     assert os.listdir(tmp_path) == []
 
 
 def test_library_does_not_import_matplotlib():
-    code = "import sys, eel_dynamics, eel_dynamics.figures.command; assert 'matplotlib' not in sys.modules"
+    code = "import sys, eel_dynamics, eel_dynamics.studies.figures.command; assert 'matplotlib' not in sys.modules"
     subprocess.run([sys.executable, "-c", code], check=True, timeout=60)
 
 

@@ -3,7 +3,7 @@
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
-from eel_dynamics.fitting import Fitting
+from eel_dynamics.studies.calibration.fitting import Fitting
 
 from eel_dynamics import Accuracy
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from eel_dynamics.limits_monitor import LimitsMonitor
-from eel_dynamics.model_limits import ModelLimits, cross_axes
+from eel_dynamics.analysis.model_limits import ModelLimits, cross_axes
+from eel_dynamics.ros.loop.limits_monitor import LimitsMonitor
 from eel_gaits.law import Law, Term
 
 from eel_dynamics import Body, Scene, simulate

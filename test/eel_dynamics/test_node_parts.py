@@ -7,11 +7,11 @@ from types import SimpleNamespace
 import pytest
 from eel_dynamics.ros.clock_arbiter import ClockArbiter
 from eel_dynamics.ros.diagnostics import ERROR, OK, WARN, Report
-from eel_dynamics.ros.law_feed import LawFeed
-from eel_dynamics.ros.pacing import Pace
+from eel_dynamics.ros.loop.law_feed import LawFeed
+from eel_dynamics.ros.loop.pacing import Pace
+from eel_dynamics.ros.loop.run_loop import RunLoop
 from eel_dynamics.ros.parameters import DynamicsParameters, checked, from_values
 from eel_dynamics.ros.publishers import Patience, Publishers
-from eel_dynamics.ros.run_loop import RunLoop
 from eel_ros.parameters import default_of
 
 from eel_dynamics import Scene, Simulation

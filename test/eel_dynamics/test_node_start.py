@@ -4,8 +4,8 @@ import signal
 from dataclasses import fields
 
 import pytest
+from eel_dynamics.model.scene import Scene
 from eel_dynamics.ros.parameters import DynamicsParameters
-from eel_dynamics.scene import Scene
 from eel_gaits.messages import law_to_message
 from node_process import PROMPT
 from swim_client import LIMIT

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from eel_dynamics.panels import nearest, panels_of
+from eel_dynamics.model.panels import nearest, panels_of
 
 from eel_dynamics import Accuracy, Body
 

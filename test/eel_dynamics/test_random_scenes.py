@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from eel_dynamics.sample_check import OPEN
+from eel_dynamics.simulation.sample_check import OPEN
 from random_scenes import anywhere, robots_anywhere
 
 from eel_dynamics import Scene, Simulation, simulate, simulate_batch

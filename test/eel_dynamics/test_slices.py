@@ -6,7 +6,7 @@ import re
 
 import numpy as np
 import pytest
-from eel_dynamics.command import main
+from eel_dynamics.runs.command import main
 
 import eel_core
 from eel_dynamics import Scene, Simulation, SimulationStopped, simulate, simulate_batch
@@ -124,8 +124,8 @@ def test_a_batch_takes_the_limit_as_a_single_run_does():
 
 def test_what_costs_more_on_the_way_stops_with_what_to_change(monkeypatch):
     """An initial velocity that takes a million steps per simulated second."""
-    monkeypatch.setattr("eel_dynamics.step_bounds.SPARE_STEPS", 500.0)
-    monkeypatch.setattr("eel_dynamics.step_bounds.LEAST_SPARE", 500.0)
+    monkeypatch.setattr("eel_dynamics.simulation.step_bounds.SPARE_STEPS", 500.0)
+    monkeypatch.setattr("eel_dynamics.simulation.step_bounds.LEAST_SPARE", 500.0)
     with pytest.raises(SimulationStopped, match=r"coarser accuracy, .* or raise most_evaluations") as caught:
         simulate(straight(), 1.0, twist=(0.0, 0.0, 1e5, 0.0, 0.0, 0.0), sample_period=1e-4)
     assert caught.value.run.time[-1] == caught.value.time < 0.1
@@ -135,7 +135,9 @@ def test_what_costs_more_on_the_way_stops_with_what_to_change(monkeypatch):
 def hurried(monkeypatch):
     """A wall clock by which every look is a second after the one before."""
     ticks = itertools.count()
-    monkeypatch.setattr("eel_dynamics.foresight.time", type("Clock", (), {"monotonic": lambda: float(next(ticks))}))
+    monkeypatch.setattr(
+        "eel_dynamics.runs.foresight.time", type("Clock", (), {"monotonic": lambda: float(next(ticks))})
+    )
 
 
 def test_progress_is_told_with_what_is_left(hurried):
@@ -163,7 +165,7 @@ def test_a_swim_is_interrupted_from_the_keyboard(monkeypatch):
     wanted = simulate(falling(), 1.0, accuracy=1e-5)
     with monkeypatch.context() as patch:
         step_by_step(patch)
-        patch.setattr("eel_dynamics.run.Foresight.look", press)
+        patch.setattr("eel_dynamics.runs.run.Foresight.look", press)
         with pytest.raises(KeyboardInterrupt):
             simulate(falling(period=0.9), 1.0, accuracy=1e-5)
     np.testing.assert_array_equal(simulate(falling(), 1.0, accuracy=1e-5).position, wanted.position)

@@ -4,13 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from eel_dynamics.inertia import condition_of, straight_inertia
-from eel_dynamics.section_data import nose_of
-from eel_dynamics.stability import command, condition, drift, plane
-from eel_dynamics.stability.explicit import inertias, treat
-from eel_dynamics.stability.maps import ACCURATE, INACCURATE, STOPPED, maps_of, measure
-from eel_dynamics.stability.report import report
-from eel_dynamics.stability.studies import STUDIES, Study
+from eel_dynamics.model.inertia import condition_of, straight_inertia
+from eel_dynamics.model.section_data import nose_of
+from eel_dynamics.studies.stability import command, condition, drift, plane
+from eel_dynamics.studies.stability.explicit import inertias, treat
+from eel_dynamics.studies.stability.maps import ACCURATE, INACCURATE, STOPPED, maps_of, measure
+from eel_dynamics.studies.stability.report import report
+from eel_dynamics.studies.stability.studies import STUDIES, Study
 
 from eel_dynamics import Body, Scene, Simulation
 from eel_gaits import falling

@@ -10,12 +10,13 @@ import threading
 
 import numpy as np
 import pytest
-from eel_dynamics.measures import measures_of
-from eel_dynamics.sweep_command import main
-from eel_dynamics.sweep_key import key_of
-from eel_dynamics.sweeps import Point
+from eel_dynamics.studies.sweep import command as sweep_command
+from eel_dynamics.studies.sweep.command import main
+from eel_dynamics.studies.sweep.measures import measures_of
+from eel_dynamics.studies.sweep.sweep import Point
+from eel_dynamics.studies.sweep.sweep_key import key_of
 
-from eel_dynamics import Accuracy, Body, Scene, simulate, sweep, sweep_command
+from eel_dynamics import Accuracy, Body, Scene, simulate, sweep
 from eel_gaits import Law, Term, straight
 
 xarray = pytest.importorskip("xarray")
@@ -217,8 +218,8 @@ def test_the_key_changes_with_whatever_the_results_depend_on():
 def test_the_key_is_the_same_in_another_process(tmp_path):
     script = tmp_path / "script.py"
     script.write_text(
-        "from eel_dynamics import Accuracy, Body, Scene\nfrom eel_dynamics.sweep_key import key_of\n"
-        "from eel_dynamics.sweeps import Point\nfrom eel_gaits import straight\nLIMIT = 0.3\n"
+        "from eel_dynamics import Accuracy, Body, Scene\nfrom eel_dynamics.studies.sweep.sweep_key import key_of\n"
+        "from eel_dynamics.studies.sweep.sweep import Point\nfrom eel_gaits import straight\nLIMIT = 0.3\n"
         "def measure(run):\n    return {'far': run.path_length > LIMIT, 'near': run.path_length < LIMIT}\n"
         "point = Point(0, straight(), Body.kern2006(), Scene(), Accuracy.of('draft'))\n"
         "print(key_of([point], 1.0, 0.1, 11, measure))\n"

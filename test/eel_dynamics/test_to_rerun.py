@@ -7,9 +7,9 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from eel_dynamics.command import main
-from eel_dynamics.records import records
 from eel_dynamics.ros.messages import Sample, body_message, diagnostic_array
+from eel_dynamics.runs.command import main
+from eel_dynamics.runs.records import records
 from rclpy.serialization import deserialize_message
 
 from eel_dynamics import Scene, simulate
@@ -43,7 +43,7 @@ def node_messages(run, statuses):
 
 def test_it_is_what_the_visualiser_makes_of_the_nodes_messages(run, tmp_path):
     from compared import contents, differences
-    from eel_viz.library import to_rerun
+    from eel_viz.recording.library import to_rerun
 
     worst = {
         "energy_residual_worst": float(np.abs(run.energy.residual).max()),
@@ -63,7 +63,7 @@ def test_it_is_what_the_visualiser_makes_of_the_nodes_messages(run, tmp_path):
 
 
 def test_numbers_are_those_of_the_run_in_rep_103_axes(run, tmp_path):
-    from eel_viz.reading import read
+    from eel_viz.recording.reading import read
 
     from eel_viz import entities
 
@@ -82,7 +82,7 @@ def test_numbers_are_those_of_the_run_in_rep_103_axes(run, tmp_path):
 
 def test_a_stream_of_the_caller_s_stays_open(run, tmp_path):
     import rerun as rr
-    from eel_viz.reading import read
+    from eel_viz.recording.reading import read
 
     from eel_viz import entities
 
@@ -97,7 +97,7 @@ def test_a_stream_of_the_caller_s_stays_open(run, tmp_path):
 
 
 def test_two_runs_are_laid_over_each_other(run, tmp_path):
-    from eel_viz.reading import read
+    from eel_viz.recording.reading import read
 
     from eel_viz import entities
 
@@ -124,7 +124,7 @@ def test_what_a_run_has_not_computed_is_not_shown(tmp_path):
 
 
 def test_simulate_writes_it_too(tmp_path, capsys):
-    from eel_viz.reading import read
+    from eel_viz.recording.reading import read
 
     from eel_viz import entities
 

@@ -4,12 +4,12 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from eel_dynamics.error_estimate import ErrorEstimate
-from eel_dynamics.tradeoff import measuring, models, table
-from eel_dynamics.tradeoff.command import main
-from eel_dynamics.tradeoff.delivered import Trial, scatter_of
-from eel_dynamics.tradeoff.drawing import _apart
-from eel_dynamics.tradeoff.settings import REFERENCE, settings
+from eel_dynamics.runs.error_estimate import ErrorEstimate
+from eel_dynamics.studies.tradeoff import measuring, models, table
+from eel_dynamics.studies.tradeoff.command import main
+from eel_dynamics.studies.tradeoff.delivered import Trial, scatter_of
+from eel_dynamics.studies.tradeoff.drawing import _apart
+from eel_dynamics.studies.tradeoff.settings import REFERENCE, settings
 
 from eel_dynamics import Accuracy, Body, Scene, simulate
 from eel_gaits import falling, straight
@@ -136,7 +136,8 @@ def test_bad_input_is_named(words, named, capsys):
 
 
 def test_calibrate_writes_the_table_of_the_presets(monkeypatch, capsys):
-    from eel_dynamics import accuracy, calibration
+    from eel_dynamics.accuracy import accuracy
+    from eel_dynamics.studies.calibration import calibration
 
     asked = []
     monkeypatch.setattr(calibration, "calibrate", lambda path, say: asked.append(path))

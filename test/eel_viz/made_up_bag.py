@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import made_up
-from eel_viz.definitions import definition, type_hash
+from eel_viz.bags.definitions import definition, type_hash
 from eel_viz.topics import GLOBAL, OWN
 from fake_swimmer import body_message, diagnostics, messages
 from rclpy.serialization import serialize_message

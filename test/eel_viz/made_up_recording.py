@@ -3,8 +3,8 @@
 from pathlib import Path
 
 import made_up
-from eel_viz.file import File
-from eel_viz.loggers import Loggers, Rates
+from eel_viz.recording.loggers import Loggers, Rates
+from eel_viz.recording.recording_file import File
 from eel_viz.settings import Settings
 
 from eel_viz import messages

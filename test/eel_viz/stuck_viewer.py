@@ -13,10 +13,10 @@ from pathlib import Path
 
 import made_up
 from eel_gaits.output_file import part_of
-from eel_viz.flow import leave
-from eel_viz.runs import Runs
+from eel_viz.recording.delivery import leave
+from eel_viz.recording.runs import Runs
+from eel_viz.recording.sinks import destinations
 from eel_viz.settings import Settings
-from eel_viz.sinks import destinations
 from made_up_recording import body, sample
 
 STEP = 10**7  # ns

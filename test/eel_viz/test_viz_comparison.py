@@ -3,10 +3,10 @@
 import made_up
 import numpy as np
 import pytest
-from eel_viz.file import File
-from eel_viz.loggers import Loggers, Rates
-from eel_viz.pairs import Pairs
-from eel_viz.reading import read
+from eel_viz.plots.pairs import Pairs
+from eel_viz.recording.loggers import Loggers, Rates
+from eel_viz.recording.reading import read
+from eel_viz.recording.recording_file import File
 from eel_viz.settings import Settings
 from made_up_recording import body, sample
 

@@ -3,15 +3,17 @@
 import numpy as np
 import pytest
 import rerun as rr
-from eel_viz.heat_map import HeatMap
 from eel_viz.outlet import Outlet
-from eel_viz.profile_plot import ProfilePlot, grown_limit
-from eel_viz.reading import read
-from eel_viz.summary import Summary
+from eel_viz.plots import heat_map, profile_plot
+from eel_viz.plots.heat_map import HeatMap
+from eel_viz.plots.profile_plot import ProfilePlot, grown_limit
+from eel_viz.plots.state_text import Summary
+from eel_viz.recording.reading import read
+from eel_viz.scene3d import colours
 from hypothesis import given
 from hypothesis import strategies as st
 
-from eel_viz import colours, entities, heat_map, profile_plot
+from eel_viz import entities
 
 X = np.linspace(0.0, 2.0, 21)
 

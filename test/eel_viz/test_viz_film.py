@@ -6,9 +6,9 @@ import stat
 
 import numpy as np
 import pytest
-from eel_viz.drawing import drawn
-from eel_viz.film import film
-from eel_viz.render import main, times
+from eel_viz.pictures.drawing import drawn
+from eel_viz.pictures.film import film
+from eel_viz.pictures.render import main, times
 from made_up_recording import record
 from PIL import Image
 
@@ -162,7 +162,7 @@ def test_without_a_time_the_picture_is_of_seven_tenths_of_the_recording(tmp_path
         def png(self, at):
             return b"\x89PNG at %g s" % at
 
-    monkeypatch.setattr("eel_viz.render.drawn", lambda *_, **__: contextlib.nullcontext(Drawing()))
+    monkeypatch.setattr("eel_viz.pictures.render.drawn", lambda *_, **__: contextlib.nullcontext(Drawing()))
     assert main(["run.rrd", "-o", str(tmp_path / "picture.png")]) == 0
     assert (tmp_path / "picture.png").read_bytes() == b"\x89PNG at 9 s"
     assert main(["run.rrd", "-o", str(tmp_path / "picture.png"), "--at", "2"]) == 0

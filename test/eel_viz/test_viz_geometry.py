@@ -3,11 +3,10 @@
 import made_up
 import numpy as np
 import pytest
-from eel_viz.centre_line import Resampling
-from eel_viz.orientation import attitude, world_from_body, world_from_section
-from eel_viz.skin import Skin
-
-from eel_viz import camera
+from eel_viz.scene3d import camera
+from eel_viz.scene3d.centre_line import Resampling
+from eel_viz.scene3d.orientation import attitude, world_from_body, world_from_section
+from eel_viz.scene3d.skin import Skin
 
 
 def about_z(angle):
@@ -158,7 +157,7 @@ def test_the_camera_s_target_is_the_middle_of_the_picture_and_right_is_right():
 
 
 def test_the_camera_has_no_lag_behind_a_steady_motion_and_leaves_the_wiggle():
-    from eel_viz.camera import Steady
+    from eel_viz.scene3d.camera import Steady
 
     steady, speed, sway = Steady(), np.array([0.5, 0.1, -0.2]), np.array([0.0, 0.05, 0.0])
     behind, moved = [], []
@@ -175,7 +174,7 @@ def test_the_camera_has_no_lag_behind_a_steady_motion_and_leaves_the_wiggle():
 
 
 def test_the_camera_goes_straight_to_a_swimmer_that_was_away():
-    from eel_viz.camera import Steady
+    from eel_viz.scene3d.camera import Steady
 
     steady = Steady()
     np.testing.assert_array_equal(steady.follow(0, np.ones(3)), np.ones(3))

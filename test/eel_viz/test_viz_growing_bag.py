@@ -5,8 +5,8 @@ import os
 
 import pytest
 import yaml
-from eel_viz.definitions import definition, type_hash
-from eel_viz.growing_bag import GrowingBag
+from eel_viz.bags.definitions import definition, type_hash
+from eel_viz.bags.growing_bag import GrowingBag
 from mcap.reader import make_reader
 from rosbags.rosbag2 import Reader
 

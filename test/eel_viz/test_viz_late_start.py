@@ -5,7 +5,7 @@ import time
 import made_up
 import numpy as np
 import pytest
-from eel_viz.reading import read
+from eel_viz.recording.reading import read
 from fake_swimmer import LATCHED, TOPICS, arrived, body_message, messages
 
 from eel_msgs.msg import BodyGeometry, CurvatureLaw

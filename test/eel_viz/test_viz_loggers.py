@@ -3,15 +3,17 @@
 import made_up
 import numpy as np
 import pytest
-from eel_viz.blueprint import arrangement
-from eel_viz.colours import diverging, diverging_index
-from eel_viz.orientation import attitude, world_from_section
-from eel_viz.reading import read
-from eel_viz.skin import Skin
-from eel_viz.track import LENGTH, PIECES, POINTS
+from eel_viz.plots import heat_map
+from eel_viz.recording.blueprint import arrangement
+from eel_viz.recording.reading import read
+from eel_viz.scene3d import camera
+from eel_viz.scene3d.colours import diverging, diverging_index
+from eel_viz.scene3d.orientation import attitude, world_from_section
+from eel_viz.scene3d.skin import Skin
+from eel_viz.scene3d.track import LENGTH, PIECES, POINTS
 from made_up_recording import body
 
-from eel_viz import camera, entities, heat_map
+from eel_viz import entities
 
 TIME_SERIES = (
     entities.POSITION,
@@ -282,8 +284,8 @@ def test_the_floor_stays_below_and_its_labels_say_where(record_made_up):
 
 
 def test_stations_may_change_in_mid_run(record_made_up, tmp_path):
-    from eel_viz.file import File
-    from eel_viz.loggers import Loggers, Rates
+    from eel_viz.recording.loggers import Loggers, Rates
+    from eel_viz.recording.recording_file import File
     from eel_viz.settings import Settings
     from made_up_recording import sample
 
@@ -304,8 +306,8 @@ def test_stations_may_change_in_mid_run(record_made_up, tmp_path):
 
 
 def test_the_order_of_topics_does_not_matter(tmp_path):
-    from eel_viz.file import File
-    from eel_viz.loggers import Loggers, Rates
+    from eel_viz.recording.loggers import Loggers, Rates
+    from eel_viz.recording.recording_file import File
     from eel_viz.settings import Settings
     from made_up_recording import sample
 
@@ -335,8 +337,8 @@ def test_the_order_of_topics_does_not_matter(tmp_path):
 
 
 def test_a_lower_rate_for_a_live_viewer(tmp_path):
-    from eel_viz.file import File
-    from eel_viz.loggers import Loggers, Rates
+    from eel_viz.recording.loggers import Loggers, Rates
+    from eel_viz.recording.recording_file import File
     from eel_viz.settings import Settings
     from made_up_recording import sample
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import made_up
 import numpy as np
 import pytest
-from eel_viz.reading import read
+from eel_viz.recording.reading import read
 from eel_viz.settings import Settings
 from eel_viz.viewer import native_viewer
 from fake_swimmer import TOPICS, arrived, body_message, found, messages
@@ -188,7 +188,7 @@ def test_what_cannot_be_is_refused_in_one_line_with_status_2(start_in_turn, tmp_
         "blueprint:=mine": "blueprint must be one of overview, torques, motion, compare, got 'mine'",
     }
     lines = [["--ros-args", "-p", "sink:=[save]", "-p", setting] for setting in cannot_be]
-    for words, (status, said) in zip(cannot_be.values(), start_in_turn("eel_viz.node", lines), strict=True):
+    for words, (status, said) in zip(cannot_be.values(), start_in_turn("eel_viz.ros.node", lines), strict=True):
         assert status == 2 and said.count("\n") == 1 and words in said, said
 
 

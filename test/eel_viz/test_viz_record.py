@@ -9,8 +9,8 @@ import made_up
 import numpy as np
 import pytest
 import yaml
-from eel_viz.definitions import definition, message_class, type_hash
-from eel_viz.echo import as_yaml, picked
+from eel_viz.bags.definitions import definition, message_class, type_hash
+from eel_viz.bags.echo import as_yaml, picked
 from eel_viz.topics import GLOBAL, OWN
 from fake_swimmer import TOPICS, arrived, diagnostics, found, messages
 from node_process import PROMPT
@@ -19,7 +19,7 @@ from rosbags.rosbag2 import Reader
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 SWIMMER = str(Path(__file__).with_name("fake_swimmer.py"))
-ECHO = ("python", "-m", "eel_viz.echo")  # the name belongs to the shell
+ECHO = ("python", "-m", "eel_viz.bags.echo")  # the name belongs to the shell
 TYPES = sorted({*OWN.values(), *GLOBAL.values()})
 
 

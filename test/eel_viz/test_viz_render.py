@@ -6,7 +6,7 @@ import sys
 
 import numpy as np
 import pytest
-from eel_viz.drawing import drawn
+from eel_viz.pictures.drawing import drawn
 from eel_viz.settings import BLUEPRINTS
 from eel_viz.viewer import CannotRender, _await_listening, viewer
 

@@ -10,10 +10,10 @@ import made_up
 import numpy as np
 import pytest
 from compared import contents, differences
-from eel_viz.abreast import abreast
-from eel_viz.bag import Bag
-from eel_viz.reading import read
-from eel_viz.replay import main
+from eel_viz.bags.bag import Bag
+from eel_viz.bags.replay import main
+from eel_viz.recording.merged_messages import abreast
+from eel_viz.recording.reading import read
 from made_up_bag import write_bag
 from made_up_recording import record
 from rosbags.rosbag2 import CompressionMode, StoragePlugin
@@ -71,7 +71,7 @@ def test_every_number_is_that_of_the_visualisers_loggers(tmp_path, logged, stora
 
 def test_it_needs_no_ros_at_all(tmp_path, bag, logged):
     blocked = ["rclpy", "eel_msgs", "std_msgs", "geometry_msgs", "rcl_interfaces", "builtin_interfaces", "nav_msgs"]
-    code = f"import sys\nfor name in {blocked!r}: sys.modules[name] = None\nfrom eel_viz.replay import main\n"
+    code = f"import sys\nfor name in {blocked!r}: sys.modules[name] = None\nfrom eel_viz.bags.replay import main\n"
     code += f"sys.exit(main([{str(bag)!r}, '-o', {str(tmp_path / 'run.rrd')!r}]))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
     assert done.returncode == 0, done.stderr

@@ -11,16 +11,17 @@ import made_up
 import numpy as np
 import pytest
 import rerun as rr
-from eel_viz.file import REMINDER, File
-from eel_viz.flow import LOOK
 from eel_viz.messages import Status
-from eel_viz.reading import read
-from eel_viz.runs import Runs
+from eel_viz.recording import runs, sinks
+from eel_viz.recording.delivery import LOOK
+from eel_viz.recording.reading import read
+from eel_viz.recording.recording_file import REMINDER, File
+from eel_viz.recording.runs import Runs
+from eel_viz.recording.sinks import Connected, Served, destinations
 from eel_viz.settings import Settings
-from eel_viz.sinks import Connected, Served, destinations
 from made_up_recording import body, sample
 
-from eel_viz import entities, runs, sinks
+from eel_viz import entities
 
 SECOND = 10**9
 STAND_IN = """
@@ -311,7 +312,7 @@ def test_a_successor_begins_a_new_recording_whatever_its_stamps(file, ears, tmp_
 
 
 def test_succession_is_told_by_counts_pauses_and_who_is_there():
-    from eel_viz.succession import Succession
+    from eel_viz.ros.publisher_change import Succession
 
     there, looks = {"one"}, []
 
@@ -353,8 +354,8 @@ def test_two_processes_that_begin_in_the_same_second_write_two_files(ears, monke
         def now(cls):
             return cls(2026, 1, 2, 3, 4, 5)
 
-    monkeypatch.setattr("eel_viz.file.datetime.datetime", Clock)
-    monkeypatch.setattr("eel_viz.file.os.getpid", iter((17, 18)).__next__)
+    monkeypatch.setattr("eel_viz.recording.recording_file.datetime.datetime", Clock)
+    monkeypatch.setattr("eel_viz.recording.recording_file.os.getpid", iter((17, 18)).__next__)
     files = [File(Settings(), ears.said.append, ears.warned.append).path(1) for _ in range(2)]
     assert [str(path) for path in files] == ["eel-20260102-030405-17.rrd", "eel-20260102-030405-18.rrd"]
 
@@ -477,7 +478,7 @@ def test_spawn_without_a_display_warns_and_serves(monkeypatch, ears):
 
 
 def test_a_torn_file_is_read_up_to_its_last_whole_message(file, ears, tmp_path):
-    from eel_viz.frames import cut_to_whole_messages, end_of_whole_messages
+    from eel_viz.recording.rrd_frames import cut_to_whole_messages, end_of_whole_messages
 
     made = Runs([file], "eel", ears.warned.append)
     send(made, 0)
@@ -500,7 +501,7 @@ def test_a_torn_file_is_read_up_to_its_last_whole_message(file, ears, tmp_path):
 
 
 def test_a_file_is_read_while_it_grows(file, ears, tmp_path):
-    from eel_viz.frames import end_of_whole_messages, whole
+    from eel_viz.recording.rrd_frames import end_of_whole_messages, whole
     from rerun.chunk import RrdReader
 
     made = Runs([file], "eel", ears.warned.append)

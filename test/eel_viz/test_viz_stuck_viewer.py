@@ -10,7 +10,7 @@ import time
 from pathlib import Path
 
 import pytest
-from eel_viz.reading import read
+from eel_viz.recording.reading import read
 from eel_viz.viewer import free_port, native_viewer
 
 from eel_viz import entities

@@ -10,7 +10,7 @@ from collections import Counter
 from pathlib import Path
 
 import rclpy
-from eel_viz.definitions import message_class
+from eel_viz.bags.definitions import message_class
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from rosbags.interfaces import QosDurability
 from rosbags.rosbag2 import Reader

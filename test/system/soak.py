@@ -20,8 +20,8 @@ LISTENER = """
 import sys
 import rclpy
 from rclpy.qos import HistoryPolicy, QoSProfile
-from eel_viz.definitions import message_class
-from eel_viz.record import OWN
+from eel_viz.bags.definitions import message_class
+from eel_viz.bags.record import OWN
 
 rclpy.init()
 node = rclpy.create_node("listener")

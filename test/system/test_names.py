@@ -6,7 +6,7 @@ import re
 import pytest
 from eel_gaits.messages import law_to_message
 from eel_gaits.wording import shown
-from eel_viz.reading import read
+from eel_viz.recording.reading import read
 from swim_client import LIMIT, SwimClient
 
 from eel_gaits import Law, Ramp, Term

@@ -8,7 +8,7 @@ import time
 
 import numpy as np
 import pytest
-from eel_viz.reading import read
+from eel_viz.recording.reading import read
 from eel_viz.viewer import free_port
 from rosbags.highlevel import AnyReader
 from soak import Clock

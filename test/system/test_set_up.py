@@ -165,5 +165,5 @@ def test_a_changed_message_is_built_and_a_changed_python_file_works_as_it_is(fol
     folder.build()
     folder.write("src/eel_msgs/msg/Ramp.msg", "float64 end\n")
     assert steps(folder.build()[2]) == ["colcon"]
-    folder.write("src/eel_viz/eel_viz/render.py", "pass\n")
+    folder.write("src/eel_viz/eel_viz/pictures/render.py", "pass\n")
     assert folder.build() == (0, "", [])

@@ -4,7 +4,7 @@ import os
 import subprocess
 
 import pytest
-from eel_viz.reading import read
+from eel_viz.recording.reading import read
 
 from eel_viz import entities
 

@@ -190,7 +190,7 @@ def test_rerun_recording_carries_its_blueprint(results):
 def test_the_bag_replayed_without_ros_is_the_recording_of_the_live_visualiser(results, tmp_path):
     """Every entity, every component, every time, bit by bit; but for texts, whose order among topics is chance."""
     from compared import contents, differences
-    from eel_viz.replay import main
+    from eel_viz.bags.replay import main
 
     assert main([str(results.bag), "-o", str(tmp_path / "replayed.rrd")]) == 0
     assert differences(results.recording, tmp_path / "replayed.rrd") == []

@@ -1,16 +1,16 @@
 """Dynamics of an elongated swimmer in three dimensions, after Boyer, Porez and Leroyer (2010)."""
 
-from .accuracy import Accuracy
-from .batch import Batch, simulate_batch
-from .body import Body
-from .energy import EnergyLedger
-from .prescribed import HydrodynamicWrench, hydrodynamic_wrench
-from .run import Run, simulate
-from .scene import Scene
-from .simulation import Simulation
-from .snapshot import Snapshot
-from .stopping import SimulationStopped
-from .sweeps import sweep
+from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.model.body import Body
+from eel_dynamics.model.scene import Scene
+from eel_dynamics.runs.batch import Batch, simulate_batch
+from eel_dynamics.runs.run import Run, simulate
+from eel_dynamics.simulation.energy import EnergyLedger
+from eel_dynamics.simulation.prescribed import HydrodynamicWrench, hydrodynamic_wrench
+from eel_dynamics.simulation.simulation import Simulation
+from eel_dynamics.simulation.snapshot import Snapshot
+from eel_dynamics.simulation.stopping import SimulationStopped
+from eel_dynamics.studies.sweep.sweep import sweep
 
 __all__ = [
     "Accuracy",

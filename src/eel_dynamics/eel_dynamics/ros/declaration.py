@@ -7,8 +7,8 @@ from eel_ros.parameters import declare, default_of, take_overrides, warn_of_unkn
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.parameter import Parameter
 
-from ..scene import Scene
-from .parameters import DynamicsParameters, checked, from_values
+from eel_dynamics.model.scene import Scene
+from eel_dynamics.ros.parameters import DynamicsParameters, checked, from_values
 
 
 class Declaration:

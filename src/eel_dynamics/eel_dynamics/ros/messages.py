@@ -17,6 +17,11 @@ from nav_msgs.msg import Odometry
 from rclpy.serialization import deserialize_message
 from rosgraph_msgs.msg import Clock
 
+from eel_dynamics.curvature.curvature_samples import check_points
+from eel_dynamics.model.axes import QUATERNION, VECTOR, turn_quaternion, turn_vector
+from eel_dynamics.model.scene import Scene
+from eel_dynamics.ros.serialised_message import SerialisedMessage
+from eel_dynamics.runs.records import outline
 from eel_msgs.msg import (
     Backbone,
     BodyGeometry,
@@ -27,12 +32,6 @@ from eel_msgs.msg import (
     HydrodynamicLoad,
     InternalWrench,
 )
-
-from ..axes import QUATERNION, VECTOR, turn_quaternion, turn_vector
-from ..curvature_samples import check_points
-from ..records import outline
-from ..scene import Scene
-from .serialised_message import SerialisedMessage
 
 try:
     from tf2_msgs.msg import TFMessage

@@ -28,19 +28,18 @@ from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from std_srvs.srv import SetBool, Trigger
 
+from eel_dynamics.model.scene import Scene
+from eel_dynamics.ros.clock_arbiter import ClockWatch
+from eel_dynamics.ros.declaration import Declaration
+from eel_dynamics.ros.diagnostics import Report, Status
+from eel_dynamics.ros.loop.law_feed import LawFeed
+from eel_dynamics.ros.loop.run_loop import RunLoop
+from eel_dynamics.ros.messages import Sample, body_message, diagnostic_array, opened_law, samples_from_message
+from eel_dynamics.ros.parameters import DynamicsParameters
+from eel_dynamics.ros.publishers import Publishers
+from eel_dynamics.ros.simulation_from_parameters import simulation_from_parameters
+from eel_dynamics.runs.one_line_warnings import one_line_warnings
 from eel_msgs.msg import BodyGeometry, CurvatureLaw, CurvatureSamples
-
-from ..one_line_warnings import one_line_warnings
-from ..scene import Scene
-from .clock_arbiter import ClockWatch
-from .declaration import Declaration
-from .diagnostics import Report, Status
-from .law_feed import LawFeed
-from .messages import Sample, body_message, diagnostic_array, opened_law, samples_from_message
-from .parameters import DynamicsParameters
-from .publishers import Publishers
-from .run_loop import RunLoop
-from .simulation_from_parameters import simulation_from_parameters
 
 NAME = "dynamics"
 ABOUT = "Simulates the swimmer that the laws on curvature_law bend, and publishes how it moves."

@@ -10,7 +10,7 @@ from dataclasses import Field, dataclass, field, fields
 from eel_gaits.quantity import is_finite, limits
 from eel_gaits.wording import shown
 
-from ..step_bounds import MOST_EVALUATIONS
+from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
 
 
 def _parameter(default, description, unit="", **bounds):

@@ -4,11 +4,11 @@ import math
 from dataclasses import replace
 from pathlib import Path
 
-from ..axes import turn_quaternion, turn_vector
-from ..body import Body
-from ..scene import Scene
-from ..simulation import Simulation
-from .parameters import DynamicsParameters
+from eel_dynamics.model.axes import turn_quaternion, turn_vector
+from eel_dynamics.model.body import Body
+from eel_dynamics.model.scene import Scene
+from eel_dynamics.ros.parameters import DynamicsParameters
+from eel_dynamics.simulation.simulation import Simulation
 
 
 def simulation_from_parameters(parameters: DynamicsParameters, scene: Scene) -> Simulation:

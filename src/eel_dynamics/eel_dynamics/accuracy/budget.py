@@ -1,0 +1,50 @@
+"""A budget of time in place of an accuracy: "fastest within 5 ms per second", on this machine."""
+
+import re
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+
+from eel_gaits.wording import shown
+
+UNITS = {"us": 1e-6, "ms": 1e-3, "s": 1.0}
+PATTERN = re.compile(r"fastest within\s+([0-9.eE+-]+)\s*(us|ms|s) per second")
+
+
+@dataclass(frozen=True)
+class Budget:
+    """Wall time by simulated time, at most."""
+
+    name: str
+    seconds_per_second: float
+
+    @staticmethod
+    def of(text: str) -> "Budget":
+        """The budget that a text such as "fastest within 5 ms per second" gives. `ValueError` where it does not."""
+        found = PATTERN.fullmatch(text.strip())
+        try:
+            seconds = float(found.group(1)) * UNITS[found.group(2)] if found else 0.0
+        except ValueError:
+            seconds = 0.0
+        if not 0.0 < seconds < float("inf"):
+            raise ValueError(
+                "accuracy must give its budget as in 'fastest within 5 ms per second' (us, ms or s; > 0), "
+                f"got {shown(text)}"
+            )
+        return Budget(text.strip(), seconds)
+
+    def finest(self, targets: Iterable[float], seconds_per_second: Callable[[float], float]) -> float:
+        """The finest of the `targets`, coarsest first, whose swim keeps within the budget. `ValueError` where none
+        does. seconds_per_second(target): wall time [s] by simulated second."""
+        best = fastest = None
+        for target in targets:
+            seconds = seconds_per_second(target)
+            fastest = seconds if fastest is None else min(fastest, seconds)
+            if seconds > self.seconds_per_second:
+                break
+            best = target
+        if best is None:
+            raise ValueError(
+                f"accuracy {shown(self.name)} cannot be met on this machine in this scene: the coarsest run takes "
+                f"{1e3 * fastest:.3g} ms per second"
+            )
+        return best

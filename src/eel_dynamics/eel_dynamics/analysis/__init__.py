@@ -1,0 +1,1 @@
+"""What a run tells: speed, power, efficiency, actuators, limits of the model, summary."""

@@ -1,0 +1,119 @@
+"""What a run asks of a robot of n motors: a chain of n + 1 rigid links in place of the continuous backbone.
+
+Joint j stands for the segment (j - 1) l/n to j l/n, and lies in its middle, X = (j - 1/2) l/n. Its angles are the
+integrals of K2 (pitch) and K3 (yaw) over the segment, its torques -C2, -C3 there (the motor turns the part ahead
+against the part behind: their power per length is -C . dK/dt, C of eq. 26 of Boyer, Porez and Leroyer 2010).
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from eel_gaits.wording import shown
+
+from eel_dynamics.analysis.analysis import area, power_density
+
+
+@dataclass(frozen=True)
+class Motors:
+    """One axis (pitch or yaw) of the n joints over T samples."""
+
+    angle: np.ndarray  # (T, n) rad
+    speed: np.ndarray  # (T, n) rad/s
+    torque: np.ndarray  # (T, n) N m, of the motor
+
+    @property
+    def power(self) -> np.ndarray:
+        """(T, n) W, mechanical; negative while the motor brakes."""
+        return self.torque * self.speed
+
+    @property
+    def torque_speed(self) -> np.ndarray:
+        """(T, n, 2) the points (speed [rad/s], torque [N m]) that each motor runs through: its load on a data sheet."""
+        return np.stack((self.speed, self.torque), axis=2)
+
+    @property
+    def peak(self) -> dict[str, np.ndarray]:
+        """Greatest magnitudes (n,) of angle [rad], speed [rad/s], torque [N m], power [W]."""
+        return {name: np.max(np.abs(getattr(self, name)), axis=0) for name in QUANTITIES}
+
+    @property
+    def rms(self) -> dict[str, np.ndarray]:
+        """Roots of the mean squares over the samples (n,), of the same."""
+        return {name: np.sqrt(np.mean(getattr(self, name) ** 2, axis=0)) for name in QUANTITIES}
+
+
+MOST = 1000  # motors per axis
+QUANTITIES = ("angle", "speed", "torque", "power")
+
+
+@dataclass(frozen=True)
+class Actuators:
+    """The demand on n joints, pitch and yaw apart, and how well n joints stand for the continuous body."""
+
+    time: np.ndarray  # (T,) s
+    x: np.ndarray  # (n,) m, where the joints lie
+    pitch: Motors
+    yaw: Motors
+    continuous_power: np.ndarray  # (T,) W, -integral of C . dK/dt over the body
+
+    @property
+    def power(self) -> np.ndarray:
+        """(T,) W, of all joints together."""
+        return np.sum(self.pitch.power + self.yaw.power, axis=1)
+
+    @property
+    def power_difference(self) -> np.ndarray:
+        """(T,) W: what the joints' power differs from the continuous body's by; it falls like 1/n^2."""
+        return self.power - self.continuous_power
+
+    @property
+    def relative_difference(self) -> float | None:
+        """Root of the mean square of the difference by that of the continuous power; None where that is zero."""
+        scale = np.sqrt(np.mean(self.continuous_power**2))
+        return float(np.sqrt(np.mean(self.power_difference**2)) / scale) if scale > 0.0 else None
+
+    def table(self) -> str:
+        """Peak and RMS of each joint in lines, and the difference of the powers."""
+        lines = ["joint  X [m]   axis   angle [rad]     speed [rad/s]   torque [N m]    power [W]      (peak, RMS)"]
+        for joint, x in enumerate(self.x):
+            for name, motors in (("pitch", self.pitch), ("yaw", self.yaw)):
+                peak, rms = motors.peak, motors.rms
+                cells = [f"{peak[key][joint]:7.3g} {rms[key][joint]:7.3g}" for key in QUANTITIES]
+                lines.append(f"{joint + 1:5d}  {x:.3f}   {name:5s}  " + " ".join(cells))
+        part = self.relative_difference
+        said = "undefined" if part is None else f"{part:.2%} of it, RMS"
+        lines.append(f"power of the joints less that of the continuous body: {said}")
+        return "\n".join(lines)
+
+
+def actuators_of(run, joints: int) -> Actuators:
+    """The demand of `run` on a robot of `joints` motors per axis.
+
+    Splines in X through the stations. `ValueError` for a number below 1, for a run without internal wrench, or with
+    stations that do not reach from nose to tail or are fewer than 4.
+    """
+    from scipy.interpolate import CubicSpline
+
+    if isinstance(joints, bool) or not isinstance(joints, (int, np.integer)) or not 1 <= joints <= MOST:
+        raise ValueError(f"joints must be a whole number from 1 to {MOST}, got {shown(joints)}")
+    if run.torque is None:
+        raise ValueError("actuators needs a run with scene internal_wrench on")
+    density = power_density(run)
+    if len(run.x) < 4:
+        raise ValueError(f"actuators needs a run of 4 stations or more, got {len(run.x)}")
+    ends = np.linspace(0.0, run.body.length, int(joints) + 1)
+    x = 0.5 * (ends[1:] + ends[:-1])
+
+    def of_segments(values):
+        integral = CubicSpline(run.x, values, axis=1).antiderivative()
+        return np.diff(integral(ends), axis=1)
+
+    angle, speed = of_segments(run.curvature), of_segments(run.curvature_rate)
+    torque = -CubicSpline(run.x, run.torque, axis=1)(x)
+    return Actuators(
+        time=run.time,
+        x=x,
+        pitch=Motors(angle[..., 1], speed[..., 1], torque[..., 1]),
+        yaw=Motors(angle[..., 2], speed[..., 2], torque[..., 2]),
+        continuous_power=area(density, run.x),
+    )

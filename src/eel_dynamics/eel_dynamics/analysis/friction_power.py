@@ -1,0 +1,23 @@
+"""Power of the axial friction, k1 of section 7.2.1, apart from the rest of the drag."""
+
+import numpy as np
+
+import eel_core
+from eel_dynamics.model.axes import matrix_of
+from eel_dynamics.simulation.simulation import Simulation
+
+
+def drag_powers(run) -> np.ndarray:
+    """Powers (T, 4) [W] of the drag along the body at each sample of `run`: of the forces along axes 1 (friction), 2
+    and 3 (cross flow) of the sections, and of the torque about axis 1; all into the body, so none is positive.
+
+    Evaluated anew at the nodes of a simulation with the settings of the run, from the law and the head's motion: their
+    sum is the ledger's `drag_power`.
+    """
+    simulation = Simulation(body=run.body, scene=run.scene, accuracy=run.accuracy.as_it_is(), stations=2, law=run.law)
+    instant, powers = eel_core.Instant(simulation.discretisation.swimmer), np.zeros((len(run.time), 4))
+    for sample, time in enumerate(run.time):
+        relative = run.twist[sample].copy()
+        relative[3:] -= matrix_of(run.orientation[sample]).T @ run.scene.current
+        powers[sample] = instant.drag_powers(simulation.tabulated_law, float(time), relative)
+    return powers

@@ -1,0 +1,122 @@
+"""Samples of a controller: curvature along the body at one instant each, and the queue of those that lie ahead."""
+
+from bisect import bisect_left, bisect_right
+from operator import attrgetter
+from typing import NamedTuple
+
+import numpy as np
+from eel_gaits.quantity import is_finite
+from eel_gaits.wording import shown
+
+from eel_dynamics.curvature.law_waves import MOST_WAVES
+from eel_dynamics.model.arguments import checked_row
+
+POINTS_PER_WAVE = 8
+MOST_POINTS = int(POINTS_PER_WAVE * MOST_WAVES) + 1  # of one sample
+MOST_AHEAD, MOST_POINTS_AHEAD = 10_000, 1_000_000  # of the simulation: 50 MB of samples
+AHEAD = 100  # samples for which a grid is chosen, so that it does not change with every one
+QUANTITIES = "pitch", "pitch_rate", "pitch_accel", "yaw", "yaw_rate", "yaw_accel"
+TIME_OF = attrgetter("time")
+
+
+def check_points(count: int):
+    """`ValueError` for a sample with more points along the body than any grid carries."""
+    if count > MOST_POINTS:
+        raise ValueError(f"curvature samples x must have at most {MOST_POINTS} points, got {count}")
+
+
+class CurvatureSample(NamedTuple):
+    """Curvature `values` (2, 3, n) [rad/m, /s, /s^2], pitch and yaw, value, rate and acceleration, at the points x (n,)
+    [m], at `time` [s]."""
+
+    time: float
+    x: np.ndarray
+    values: np.ndarray
+
+    @staticmethod
+    def checked(time, x, rows, *, length: float, planar: bool, now: float) -> "CurvatureSample":
+        """From rows (6, n), named as in `QUANTITIES`, for a body of `length` [m] at the time `now` [s]. `ValueError`
+        names what does not fit."""
+        x = checked_row("curvature samples x", x, None)
+        if len(x) < 2 or np.any(np.diff(x) <= 0.0):
+            raise ValueError(f"curvature samples x must rise over 2 points or more, got {len(x)} points")
+        if x[0] < -1e-9 * length or x[-1] > length * (1.0 + 1e-9):
+            raise ValueError(f"curvature samples x must lie within 0 to {length} m, got {x[0]} to {x[-1]}")
+        values = [
+            checked_row(f"curvature samples {name}", row, len(x)) for name, row in zip(QUANTITIES, rows, strict=True)
+        ]
+        if planar and any(np.any(row) for row in values[:3]):
+            raise ValueError("curvature samples pitch must be 0 in a planar scene")
+        if not is_finite(time) or time <= now:
+            raise ValueError(
+                f"curvature samples time must lie ahead of the simulation ({now:.6f} s), got {shown(time)} s"
+            )
+        return CurvatureSample(float(time), x, np.reshape(values, (2, 3, len(x))))
+
+    @property
+    def waves(self) -> float:
+        """Waves on the body that its points resolve."""
+        return (len(self.x) - 1) / POINTS_PER_WAVE
+
+
+class SampleQueue:
+    """Samples in the order of their time. While they drive the shape, the first two bracket the present."""
+
+    def __init__(self):
+        self._samples: list[CurvatureSample] = []
+        self._points = 0  # of all of them
+
+    def __len__(self) -> int:
+        return len(self._samples)
+
+    def check_space(self, points: int):
+        """`ValueError` where a sample of so many points is one too many."""
+        if len(self._samples) >= MOST_AHEAD or self._points + points > MOST_POINTS_AHEAD:
+            raise ValueError(
+                f"curvature samples ahead of the simulation must be at most {MOST_AHEAD}, of {MOST_POINTS_AHEAD} "
+                f"points, got {len(self._samples) + 1} of {self._points + points}"
+            )
+
+    def add(self, sample: CurvatureSample, driving: bool):
+        """One sample more. `ValueError` for one that comes too late, while the samples are `driving`, or twice."""
+        time, place = sample.time, bisect_left(self._samples, sample.time, key=TIME_OF)
+        if driving and place < 2:
+            ahead = f"the instant being approached ({self._samples[1].time:.6f} s)"
+            raise ValueError(f"curvature samples time must come after {ahead}, got {time:.6f} s")
+        if place < len(self._samples) and self._samples[place].time == time:
+            raise ValueError(f"curvature samples time must be new, got {time:.6f} s twice")
+        self._samples.insert(place, sample)
+        self._points += len(sample.x)
+
+    def drop_first(self):
+        """Forget the first sample."""
+        self._points -= len(self._samples.pop(0).x)
+
+    def drop_until(self, now: float):
+        """Forget all samples that lie before the one before `now` [s]."""
+        while len(self._samples) > 1 and self._samples[1].time <= now:
+            self.drop_first()
+
+    def begun(self, now: float) -> bool:
+        """Whether two samples bracket `now` [s], where `drop_until` has been called for it."""
+        return len(self._samples) > 1 and self._samples[0].time <= now
+
+    @property
+    def first_two(self) -> list[CurvatureSample]:
+        """The samples that bracket the present."""
+        return self._samples[:2]
+
+    @property
+    def next_ones(self) -> list[CurvatureSample]:
+        """Those that a grid is chosen for."""
+        return self._samples[:AHEAD]
+
+    @property
+    def end(self) -> float | None:
+        """Time [s] of the last sample; None where there is none."""
+        return self._samples[-1].time if self._samples else None
+
+    def next_bracket(self, now: float) -> float:
+        """Time [s] after `now` from which two samples bracket the present; inf where there is none."""
+        later = bisect_right(self._samples, now, key=TIME_OF)
+        return self._samples[later].time if later + 1 < len(self._samples) else np.inf

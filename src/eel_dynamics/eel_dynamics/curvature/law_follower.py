@@ -1,0 +1,186 @@
+"""The law or the samples that the body follows, and the smooth passage from one to the next.
+
+When a new law or controller takes over, the difference between the present motion and the new one (value, rate and
+acceleration) dies out as a quintic over a transition, added to the new one: the curvature, its rate and its
+acceleration never jump. When a controller's samples run out, the shape comes to rest by the same means.
+"""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from eel_gaits.law import Law
+from eel_gaits.spline import natural_spline
+
+import eel_core
+from eel_dynamics.curvature.curvature_samples import CurvatureSample, SampleQueue
+from eel_dynamics.curvature.difficulty import speed_of
+from eel_dynamics.curvature.tabulated_law import TabulatedLaw, Tabulation
+
+
+class Blend(NamedTuple):
+    """Difference (6, width) between two motions at `start` [s], for each axis value, rate and acceleration, which dies
+    out until `end` [s]."""
+
+    difference: np.ndarray
+    start: float
+    end: float
+
+
+class LawFollower:
+    """The present source of curvature and its blend, and the `tabulated_law` of both for the compiled mechanics.
+
+    default_transition [s]: for samples. law: the first, whose own t = 0 lies at `origin` [s]; without one the body is
+    straight.
+    """
+
+    def __init__(self, tabulation: Tabulation, default_transition: float, law: Law | None = None, origin: float = 0.0):
+        self._tabulation, self._default_transition = tabulation, default_transition
+        self.law = law
+        self.samples = SampleQueue()
+        self.sampled = False  # a controller's samples drive the shape
+        self.resting = False  # they have run out
+        self._source = TabulatedLaw.of_law(law, origin, tabulation)
+        self._blend: Blend | None = None
+        self._spline: tuple[np.ndarray, np.ndarray] | None = None  # x of a sample, and its splines on the grid
+        self.tabulated_law = self._with_blend()
+
+    def move(self, tabulation: Tabulation, values_at_nodes):
+        """Go over to another grid. `values_at_nodes(rows)` takes fields at the old nodes (..., n) to the new points:
+        what remains of samples and blends are values at the old nodes; a law is tabulated anew."""
+        nodes = self._tabulation.nodes
+
+        def convert(rows):
+            return tabulation.columns(values_at_nodes(rows[..., :nodes]))
+
+        source = self._source.moved(tabulation, convert)
+        if self._blend is not None:
+            self._blend = self._blend._replace(difference=convert(self._blend.difference))
+        self._tabulation, self._spline = tabulation, None
+        self._follow(source)
+
+    def adopt(self, law: Law, *, origin: float, time: float, transition: float):
+        """Follow `law` from `time` [s] on, with a blend over `transition` [s]."""
+        self._take_over(TabulatedLaw.of_law(law, origin, self._tabulation), time, transition)
+        self.law = law
+        self._forget_samples()
+
+    # -- samples of a controller
+
+    def add(self, sample: CurvatureSample):
+        """One sample more. `ValueError` for one that comes too late, or twice."""
+        self.samples.add(sample, self.sampled)
+
+    def next_event(self, now: float) -> float:
+        """Time [s] at which the source changes by itself, inf where it does not."""
+        return self.samples.first_two[1].time if self.sampled else self.samples.next_bracket(now)
+
+    def pass_event(self, now: float, prepare: Callable[[list[CurvatureSample]], None]):
+        """Change the source as due at `now` [s]: to samples that bracket the time, to their next interval, or to rest.
+        prepare(samples) is called before samples drive, with them and the next ones, and may `move`."""
+        if self.sampled and now >= self.next_event(now):
+            self.samples.drop_first()
+            if len(self.samples) > 1:
+                prepare(self.samples.next_ones)
+                self._follow(self._segment())
+            else:
+                value, _, _ = self._at(now)
+                self._take_over(TabulatedLaw.constant(value), now, self._default_transition)
+                self._forget_samples()
+                self.resting = True
+        elif not self.sampled:
+            self.samples.drop_until(now)
+            if self.samples.begun(now):
+                prepare(self.samples.next_ones)
+                self._take_over(self._segment(), now, self._default_transition)
+                self.sampled, self.resting = True, False
+
+    def _forget_samples(self):
+        self.samples, self.sampled, self.resting = SampleQueue(), False, False
+
+    # -- what the steps in time depend on
+
+    @property
+    def breakpoints(self) -> list[float]:
+        """Times [s] at which a derivative of the curvature jumps, ascending."""
+        end = {self._blend.end} if self._blend is not None else set()
+        return sorted(self._source.breakpoints | end)
+
+    @property
+    def between_samples(self) -> bool:
+        """The curvature is a quintic between two samples of a controller."""
+        return self._source.segment is not None
+
+    @property
+    def time_scale(self) -> float:
+        """Shortest period [s] of the law; inf where it has none. Ramps, blends and samples begin and end on steps
+        anyway."""
+        return self._source.shortest_period
+
+    def speed(self, length: float) -> float:
+        """Order of magnitude of the speed [m/s] that the law gives to a body of `length` [m]; 0 for samples and at
+        rest."""
+        return speed_of(self._source.law, length) if self._source.law is not None else 0.0
+
+    # -- blends
+
+    @property
+    def blending(self) -> bool:
+        """The motion before dies out, or has come to rest: its finer waves are still there."""
+        return self._blend is not None or self.resting
+
+    def end_blend(self, now: float):
+        """Drop a blend that is over, so that it costs nothing."""
+        if self._blend is not None and now >= self._blend.end:
+            self._blend = None
+            self._follow(self._source)
+
+    def _take_over(self, source: TabulatedLaw, time: float, transition: float):
+        present = self._at(time)
+        self._blend = None
+        self._follow(source)
+        difference = (present - self._at(time)).swapaxes(0, 1).reshape(6, -1)
+        if np.any(difference):
+            self._blend = Blend(difference, time, time + transition)
+        self._follow(source)
+
+    def _at(self, time: float) -> np.ndarray:
+        """Tabulated value, rate and acceleration (3, 2, width) at `time` [s]."""
+        rows, axis = self._rows()
+        factor = np.array(self.tabulated_law.factors(time))
+        result = np.zeros((3, 2, self._tabulation.width))
+        for each in range(2):
+            result[:, each] = factor[:, axis == each] @ rows[axis == each]
+        return result
+
+    def _segment(self) -> TabulatedLaw:
+        """Between the two samples that bracket the present."""
+        first, second = self.samples.first_two
+        rows = np.stack((self._tabulated(first), self._tabulated(second)), axis=1).reshape(12, -1)
+        return TabulatedLaw.between(rows, first.time, second.time)
+
+    def _tabulated(self, sample: CurvatureSample) -> np.ndarray:
+        """Rows (2, 3, width) of a sample."""
+        if self._spline is None or not np.array_equal(self._spline[0], sample.x):
+            matrix = natural_spline(sample.x, np.eye(len(sample.x)), self._tabulation.x)
+            self._spline = sample.x, self._tabulation.columns(matrix)
+        return sample.values @ self._spline[1]
+
+    def _follow(self, source: TabulatedLaw):
+        self._source = source
+        self.tabulated_law = self._with_blend()
+
+    def _rows(self) -> tuple[np.ndarray, np.ndarray]:
+        """Rows (m, width) of source and blend, and their axes (m,)."""
+        if self._blend is None:
+            return self._source.rows, self._source.axis
+        rows = np.concatenate((self._source.rows, self._blend.difference))
+        return rows, np.concatenate((self._source.axis, np.repeat((0, 1), 3)))
+
+    def _with_blend(self) -> eel_core.Law:
+        source, blend = self._source, self._blend
+        shared = source.tables if blend is None else None
+        tables = self._tabulation.law_tables(*self._rows()) if shared is None else shared
+        segment = source.segment and (0, *source.segment)
+        dying = blend and (len(source.rows), blend.start, blend.end)
+        return eel_core.Law(tables, float(source.origin), list(source.waves), segment, dying)

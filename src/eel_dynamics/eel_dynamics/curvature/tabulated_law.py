@@ -1,0 +1,161 @@
+"""The curvature law on the grid: rows along the body times factors of time.
+
+Every law is a sum of fields of X times functions of time alone,
+
+    K_d(t, X) = sum_m c_m(t) row_m(X),
+
+since sin(kX + phase - wt) = sin(kX + phase) cos wt - cos(kX + phase) sin wt. The rows are tabulated once: at the nodes,
+at the stations, and as the Magnus moments of the intervals that lead to both; an instant needs the factors c_m only.
+The difference between a motion and the law that takes over, and the quintic between two samples of a controller, are of
+the same form. `eel_core.Law` holds both and evaluates them.
+"""
+
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from eel_gaits.law import Law, amplitude_of
+
+import eel_core
+from eel_dynamics.curvature.law_waves import AXES, groups_of
+
+MOMENT_POINTS = 10  # Gauss points per interval for the Magnus moments
+
+
+class Tabulation:
+    """Points along the body at which rows are tabulated, and their Magnus moments.
+
+    columns: [nodes n | moments of nodes 3n | stations s | moments of stations 3s]
+    """
+
+    def __init__(self, nodes: np.ndarray, previous: np.ndarray, stations: np.ndarray, station_base: np.ndarray):
+        self.nodes, self.stations = len(nodes), len(stations)
+        points, weights = np.polynomial.legendre.leggauss(MOMENT_POINTS)
+        start, end = np.concatenate((previous, station_base)), np.concatenate((nodes, stations))
+        self._length = end - start
+        inside = 0.5 * (start + end)[:, None] + 0.5 * self._length[:, None] * points
+        self.x = np.concatenate((nodes, stations, inside.ravel()))
+        b0, b1, b2 = 0.5 * weights, 0.25 * weights * points, 0.125 * weights * points**2
+        self._moments = np.stack((b0, 12.0 * b1, 180.0 * b2 - 15.0 * b0))  # B0, alpha2, alpha3 per unit length
+
+    @property
+    def width(self) -> int:
+        """Numbers in a tabulated row."""
+        return 4 * (self.nodes + self.stations)
+
+    def columns(self, values: np.ndarray) -> np.ndarray:
+        """Tabulated rows (..., width) of fields with `values` (..., len(x)) at the points x."""
+        n, s = self.nodes, self.stations
+        inside = values[..., n + s :].reshape(*values.shape[:-1], n + s, MOMENT_POINTS)
+        moments = np.einsum("...ig,kg->...ki", inside, self._moments) * self._length
+        flat = values.shape[:-1]
+        return np.concatenate(
+            (
+                values[..., :n],
+                moments[..., :n].reshape(*flat, 3 * n),
+                values[..., n : n + s],
+                moments[..., n:].reshape(*flat, 3 * s),
+            ),
+            axis=-1,
+        )
+
+    def __deepcopy__(self, memo: dict) -> "Tabulation":
+        """Itself, for it never changes."""
+        return self
+
+    def law_tables(self, rows: np.ndarray, axis) -> eel_core.LawTables:
+        """Tabulated `rows` (m, width) of the axes `axis` (m,) (0 pitch, 1 yaw), for the compiled mechanics."""
+        n, s, m = self.nodes, self.stations, len(rows)
+        node, moments, station, station_moments = np.split(rows, [n, 4 * n, 4 * n + s], axis=1)
+        moments, station_moments = moments.reshape(m, 3, n), station_moments.reshape(m, 3, s)
+        tables = node, np.cumsum(moments[:, 0], axis=1), moments, station, station_moments
+        return eel_core.LawTables([int(each) for each in axis], *(np.ascontiguousarray(table) for table in tables))
+
+
+class TabulatedLaw(NamedTuple):
+    """A source of curvature: m rows on the grid, and what their factors are made of. It never changes."""
+
+    rows: np.ndarray  # (m, width), as `Tabulation.columns` has them
+    axis: np.ndarray  # (m,) of the rows, 0 pitch, 1 yaw
+    tables: eel_core.LawTables | None = None  # the rows for the compiled mechanics, where several runs share them
+    waves: tuple = ()  # as `eel_core.Law` takes them: period [s], ramps, row of the sine, row of the cosine
+    origin: float = 0.0  # s, simulation time of the law's own t = 0
+    segment: tuple[float, float] | None = None  # s, of the quintic between two samples of a controller
+    law: Law | None = None  # that was tabulated
+    ramp_ends: tuple[float, ...] = ()  # s of the law's own time, where ramps begin and end
+
+    def __deepcopy__(self, memo: dict) -> "TabulatedLaw":
+        return self
+
+    @staticmethod
+    def of_law(law: Law, origin: float, tabulation: Tabulation) -> "TabulatedLaw":
+        """Tabulate `law`, whose own t = 0 lies at `origin` [s]."""
+        return _tabulated(law, tabulation)._replace(origin=origin)
+
+    @staticmethod
+    def constant(value: np.ndarray) -> "TabulatedLaw":
+        """A shape that stands still: value (2, width)."""
+        return TabulatedLaw(np.array(value), np.arange(2), waves=tuple((0.0, None, row, row) for row in range(2)))
+
+    @staticmethod
+    def between(rows: np.ndarray, start: float, end: float) -> "TabulatedLaw":
+        """The quintic between two samples of a controller from `start` to `end` [s]. rows (12, width): for each axis
+        value, rate and acceleration at both."""
+        return TabulatedLaw(rows, np.repeat((0, 1), 6), segment=(start, end))
+
+    def moved(self, tabulation: Tabulation, convert) -> "TabulatedLaw":
+        """The same on another grid: a law is tabulated anew, other rows are converted by convert(rows)."""
+        if self.law is not None:
+            return TabulatedLaw.of_law(self.law, self.origin, tabulation)
+        return self._replace(rows=convert(self.rows), tables=None)
+
+    @property
+    def shortest_period(self) -> float:
+        """Of the law [s]; inf where it has none."""
+        return min((period for period, *_ in self.waves if period > 0.0), default=np.inf)
+
+    @property
+    def breakpoints(self) -> set[float]:
+        """Times [s] at which a derivative of the source jumps."""
+        return {self.origin + time for time in self.ramp_ends} | set(self.segment or ())
+
+
+@lru_cache(maxsize=256)
+def _straight(tabulation: Tabulation) -> TabulatedLaw:
+    """The straight shape at rest."""
+    straight = TabulatedLaw.constant(np.zeros((2, tabulation.width)))
+    return straight._replace(tables=tabulation.law_tables(straight.rows, straight.axis))
+
+
+@lru_cache(maxsize=1024)
+def _tabulated(law: Law | None, tabulation: Tabulation) -> TabulatedLaw:
+    """`law`, or the straight shape where there is none. Terms of equal axis, period and envelope share their rows; laws
+    that differ in periods and envelopes alone share their tables."""
+    groups = groups_of(law) if law is not None else {}
+    if not groups:
+        return _straight(tabulation)
+    moving = tuple((axis, period > 0.0, tuple(terms)) for (axis, period, _), terms in groups.items())
+    rows, axis, tables, sine, cosine = _rows_of(moving, tabulation)
+    ramps = [[(ramp.start, ramp.end, ramp.delta) for ramp in envelope] for _, _, envelope in groups]
+    periods = [period for _, period, _ in groups]
+    waves = tuple(zip(periods, (envelope or None for envelope in ramps), sine, cosine, strict=True))
+    ends = {time for envelope in ramps for start, end, _ in envelope for time in (start, end)}
+    return TabulatedLaw(rows, axis, tables, waves, law=law, ramp_ends=tuple(sorted(ends)))
+
+
+@lru_cache(maxsize=1024)
+def _rows_of(groups: tuple, tabulation: Tabulation) -> tuple:
+    """Rows of `groups` of terms (axis, whether they have a period, their waveforms), their axes and tables, and for
+    each group the rows of its sine and cosine."""
+    rows, axis, sine, cosine = [], [], [], []
+    for name, moving, waveforms in groups:
+        angle = [wave_number * tabulation.x + phase for _, _, wave_number, phase in waveforms]
+        amplitude = [amplitude_of(*of, tabulation.x) for *of, _, _ in waveforms]
+        sine.append(len(rows))
+        rows.append(sum(a * np.sin(b) for a, b in zip(amplitude, angle, strict=True)))
+        cosine.append(len(rows) if moving else sine[-1])
+        if moving:
+            rows.append(sum(a * np.cos(b) for a, b in zip(amplitude, angle, strict=True)))
+        axis += [AXES[name]] * (2 if moving else 1)
+    tabulated = tabulation.columns(np.array(rows))
+    return tabulated, np.array(axis), tabulation.law_tables(tabulated, axis), tuple(sine), tuple(cosine)

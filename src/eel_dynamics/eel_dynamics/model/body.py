@@ -1,0 +1,218 @@
+"""The body: elliptic sections along a straight reference line, homogeneous (sections 3.3 and 7.2.1 of the paper).
+
+A section at X has the half-height a(X) along E3 (its major axis on the paper's robot) and the half-width b(X) along E2.
+X runs from 0 at the nose to the length at the tail. The nose is pointed, a(0) = b(0) = 0: it sheds no wake.
+"""
+
+import os
+import warnings
+from functools import cache, cached_property, lru_cache
+from pathlib import Path
+
+import numpy as np
+from eel_gaits.wording import shown
+
+from eel_dynamics.model.arguments import checked_instance, checked_number, checked_row
+from eel_dynamics.model.body_file import columns_of
+from eel_dynamics.model.grid import Grid
+from eel_dynamics.model.half_axis import ArrayHalfAxis, FunctionHalfAxis
+from eel_dynamics.model.panels import panels_of
+
+PANEL_OF_NOSE = 0.05  # of the length, where a body names no kinks
+LONGEST = 100.0  # m, of a body from a file; one that is longer may be in mm
+SHARP = 1e-3  # of the body's greatest half-axis: a half-axis at the tail that counts as none
+
+
+class Body:
+    """Geometry and density of a swimmer, and the coefficients of its drag. Immutable.
+
+    length: [m]. half_width, half_height: functions of X [m] that return m, or arrays [m] with `x=` [m] (rising from 0
+    to the length; interpolated in their squares by a monotone cubic between kinks). kinks: X [m] inside (0, length)
+    where a half-axis or one of its derivatives jumps. nose: half-axes and length (a_o, b_o, c_o) [m] of the cap in
+    m_o = rho_f pi k a_o b_o c_o and k_o = pi c_p a_o b_o; by default those at the end of the first panel, and its
+    length. density: [kg/m^3]. nose_added_mass: k. nose_drag: c_p. roll_drag, lateral_drag, vertical_drag: c_1, c_2,
+    c_3.
+
+    `ValueError` names the argument that does not fit, and what it got.
+    """
+
+    def __init__(
+        self,
+        *,
+        half_width,
+        half_height,
+        length: float | None = None,
+        x=None,
+        kinks=(),
+        nose: tuple[float, float, float] | None = None,
+        density: float = 1000.0,
+        nose_added_mass: float = 0.32,
+        nose_drag: float = 0.036,
+        roll_drag: float = 1.0,
+        lateral_drag: float = 1.98,
+        vertical_drag: float = 1.0,
+        name: str = "body",
+    ):
+        if x is not None:
+            x = checked_row("body x", x, None)
+            if len(x) < 4 or np.any(np.diff(x) <= 0.0) or x[0] != 0.0:
+                raise ValueError(
+                    f"body x must rise from 0 over 4 points or more, got {len(x)} points from {x[:1]} to {x[-1:]}"
+                )
+            length = x[-1] if length is None else length
+            if abs(x[-1] - checked_number("body length", length, "m")) > 1e-9 * x[-1]:
+                raise ValueError(f"body x must end at the length {length} m, got {x[-1]}")
+        elif length is None:
+            raise ValueError("body length must be given, in m, where half_width and half_height are functions")
+        self.length = float(x[-1]) if x is not None else checked_number("body length", length, "m")
+        self.density = checked_number("body density", density, "kg/m^3")
+        self.name = checked_instance("body name", name, str)
+        self.kinks = self._checked_kinks(kinks)
+        self.panel_ends = (*(self.kinks or (PANEL_OF_NOSE * self.length,)), self.length)
+        bounds = (0.0, *self.panel_ends)
+        kind = (
+            FunctionHalfAxis
+            if x is None
+            else (
+                lambda name, values, bounds: ArrayHalfAxis(name, x, checked_row(f"body {name}", values, None), bounds)
+            )
+        )
+        self._half_width = kind("half_width", half_width, bounds)
+        self._half_height = kind("half_height", half_height, bounds)
+        self.nose = self._checked_nose(nose)
+        self.nose_added_mass = checked_number("body nose_added_mass", nose_added_mass, "", zero=True)
+        self.nose_drag = checked_number("body nose_drag", nose_drag, "", zero=True)
+        self.roll_drag = checked_number("body roll_drag", roll_drag, "", zero=True)
+        self.lateral_drag = checked_number("body lateral_drag", lateral_drag, "", zero=True)
+        self.vertical_drag = checked_number("body vertical_drag", vertical_drag, "", zero=True)
+
+    def half_width(self, x) -> np.ndarray:
+        """b(X) [m] along E2 at `x` [m]."""
+        return np.sqrt(self._half_width.square(np.asarray(x, dtype=float)))
+
+    def half_height(self, x) -> np.ndarray:
+        """a(X) [m] along E3 at `x` [m]."""
+        return np.sqrt(self._half_height.square(np.asarray(x, dtype=float)))
+
+    @property
+    def half_axes(self) -> dict:
+        """Width and height as they were given: functions of X, or arrays (2, M) of X and half-axis [m]."""
+        return {"half_width": self._half_width.given, "half_height": self._half_height.given}
+
+    def squares(self, x) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """a^2, b^2 [m^2] and their derivatives by X [m] at `x` (M,) [m]; a kink takes the derivative ahead of it."""
+        x = np.asarray(x, dtype=float)
+        return (
+            self._half_height.square(x),
+            self._half_width.square(x),
+            self._half_height.slope(x),
+            self._half_width.slope(x),
+        )
+
+    @cached_property
+    def pointed_tail(self) -> bool:
+        """The tail ends in an edge or a point: a half-axis goes to nothing there, and the perimeter like its root."""
+        squares = np.array(self.squares(np.array([0.5 * self.length, self.length]))[:2])
+        return bool(np.min(squares[:, 1]) <= SHARP**2 * np.max(squares))
+
+    @property
+    def volume(self) -> float:
+        """Integral of pi a b dX [m^3]."""
+        grid = Grid.of(panels_of(self, resolution=40))
+        return float(np.sum(grid.weight * np.pi * self.half_width(grid.x) * self.half_height(grid.x)))
+
+    @property
+    def mass(self) -> float:
+        """Mass [kg] at the body's own density."""
+        return self.density * self.volume
+
+    def __repr__(self) -> str:
+        return f"Body({self.name!r}, length={self.length} m, density={self.density} kg/m^3)"
+
+    @staticmethod
+    @cache
+    def boyer2010() -> "Body":
+        """The eel-like robot of section 7.2.1: 1 m long, 1.944 kg."""
+
+        def radius(x):
+            return 0.05 * np.sqrt(np.maximum(0.0, 1.0 - np.maximum(0.0, 1.0 - np.asarray(x) / 0.05) ** 2))
+
+        def half_width(x):
+            return radius(x) * (0.5 - (np.sin(np.pi * x - np.pi / 2) + 1.0) / 6.0 - x**2 / 8.0)
+
+        def half_height(x):
+            part = np.clip((20.0 * np.asarray(x) - 4.0) / 11.0, 0.0, 1.0)
+            return radius(x) * (1.0 - (np.sin(np.pi * part - np.pi / 2) + 1.0) / 5.0)
+
+        return Body(
+            length=1.0,
+            half_width=half_width,
+            half_height=half_height,
+            kinks=(0.05, 0.2, 0.75),
+            nose=(0.025, 0.05, 0.05),
+            name="boyer2010",
+        )
+
+    @staticmethod
+    def kern2006(length: float = 1.0) -> "Body":
+        """The anguilliform swimmer of Kern and Koumoutsakos, J. Exp. Biol. 209 (2006): volume 0.0059326 length^3."""
+        return Body._kern2006(checked_number("body length", length, "m"))
+
+    @staticmethod
+    @lru_cache(maxsize=64)
+    def _kern2006(length: float) -> "Body":
+        head, width_tail, tail, middle, height = 0.04, 0.01, 0.95, 0.51, 0.08
+
+        def half_width(x):
+            s = np.asarray(x, dtype=float) / length
+            front = np.sqrt(np.maximum(0.0, 2.0 * head * s - s**2))
+            trunk = head - (head - width_tail) * ((s - head) / (tail - head)) ** 2
+            return length * np.where(s < head, front, np.where(s < tail, trunk, width_tail * (1.0 - s) / (1.0 - tail)))
+
+        def half_height(x):
+            s = np.asarray(x, dtype=float) / length
+            return length * height * np.sqrt(np.maximum(0.0, 1.0 - ((s - middle) / middle) ** 2))
+
+        return Body(
+            length=length,
+            half_width=half_width,
+            half_height=half_height,
+            kinks=(head * length, tail * length),
+            name="kern2006",
+        )
+
+    @staticmethod
+    def named(name: str) -> "Body":
+        """A body of the library by its name: boyer2010, kern2006."""
+        if name not in NAMED:
+            raise ValueError(f"body must be one of {', '.join(NAMED)} or a file, got {shown(name)}")
+        return getattr(Body, name)()
+
+    @staticmethod
+    def from_file(path) -> "Body":
+        """A body from columns x, half_width, half_height [m] of a .csv (with a header line) or .npz file."""
+        if not isinstance(path, (str, os.PathLike)):
+            raise ValueError(f"body file must be a path, got {shown(path)}")
+        path = Path(path)
+        body = Body(**columns_of(path), name=path.stem)
+        if body.length > LONGEST:
+            warnings.warn(f"body file {path} is {body.length:g} m long: are its columns in m?", stacklevel=2)
+        return body
+
+    def _checked_kinks(self, kinks) -> tuple[float, ...]:
+        values = checked_row("body kinks", kinks, None)
+        if np.any(np.diff(values) <= 0.0) or np.any(values <= 0.0) or np.any(values >= self.length):
+            raise ValueError(f"body kinks must rise inside (0, {self.length}) m, got {shown(values.tolist())}")
+        return tuple(values.tolist())
+
+    def _checked_nose(self, nose) -> tuple[float, float, float]:
+        if nose is None:
+            end = self.panel_ends[0]
+            return float(self.half_height(end)), float(self.half_width(end)), float(end)
+        values = checked_row("body nose", nose, None)
+        if values.shape != (3,) or np.any(values < 0.0):
+            raise ValueError(f"body nose must be three lengths (a_o, b_o, c_o) >= 0 m, got {shown(nose)}")
+        return tuple(values.tolist())
+
+
+NAMED = ("boyer2010", "kern2006")

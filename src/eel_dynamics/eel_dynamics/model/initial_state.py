@@ -1,0 +1,47 @@
+"""The initial state of the head, and what its velocity means for the run."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from eel_gaits.law import Law
+
+from eel_dynamics.model.axes import matrix_of
+
+FAST_START = 0.2  # periods of the law: a head that covers a body length, or turns by 1 rad, in less starts fast
+
+
+class InitialState(NamedTuple):
+    """The head at t = 0."""
+
+    position: np.ndarray  # (3,) m, world
+    orientation: np.ndarray  # (4,) x y z w, world from head
+    twist: np.ndarray  # (6,) (Omega, V) rad/s, m/s, head's axes
+
+    def in_water(self, current: np.ndarray) -> np.ndarray:
+        """Twist (6,) of the head relative to water that flows with the `current` (3,) [m/s]."""
+        relative = self.twist - 0.0
+        if current.any():
+            relative[3:] -= matrix_of(self.orientation).T @ current
+        return relative
+
+
+def time_scale(twist: np.ndarray, length: float) -> float:
+    """Time [s] in which a `twist` (6,) carries a body over its `length` [m], or turns it by 1 rad."""
+    a, b, c, u, v, w = twist.tolist()
+    speed, spin = math.hypot(u, v, w), math.hypot(a, b, c)
+    return min(length / speed if speed else np.inf, 1.0 / spin if spin else np.inf)
+
+
+def starts_fast(law: Law | None, scale: float) -> bool:
+    """Whether an initial velocity of the time `scale` [s] is large compared with the swimming speed of `law`."""
+    periods = [term.period for term in law.terms if term.period] if isinstance(law, Law) else []
+    return scale < FAST_START * min(periods, default=1.0)
+
+
+def stays_in_plane(law: Law | None, relative: np.ndarray) -> bool:
+    """Whether a swim stays in the plane of the head's axes 1 and 2: the law bends in yaw alone, and the head's twist
+    `relative` to the water lies in the plane."""
+    if law is None or not law.in_plane:
+        return False
+    return not (relative[0] or relative[1] or relative[5])

@@ -1,0 +1,51 @@
+"""The panels of a body's grid: where it is cut along X, and how many points each part gets."""
+
+import math
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+
+from eel_dynamics.model.grid import Panel
+
+FILLED = 8  # the number of nodes is a multiple of this: what any processor takes at once
+WIDEST_PANEL = 24  # points; a longer panel is cut into equal parts
+CLOSEST = 1e-3  # lengths between a kink of the body and a knot of a law that still gets a panel
+
+
+def panels_of(body, resolution: float, knots: tuple[float, ...] = (), wrench: bool = True) -> tuple[Panel, ...]:
+    """Panels between the kinks of `body` and the `knots` [m] of a law's splines, with about `resolution` points per
+    length of the body, and three to spare each; where the internal `wrench` is wanted more in the first, in which the
+    body and its loads go like roots of X (they weigh little there), and in the last where they do so at the tail.
+
+    Processors take up to eight nodes at once: these are filled, by points for the panels that would have them next.
+    """
+    least = CLOSEST * body.length
+    kinks = np.array([0.0, *body.panel_ends])
+    inner = [knot for knot in knots if np.min(np.abs(kinks - knot)) > least and kinks[1] < knot < body.length]
+    panels, start = [], 0.0
+    for end in sorted({*body.panel_ends, *inner}):
+        points = 3 + nearest(resolution * (end - start) / body.length)
+        graded = "start" if start == 0.0 else "end" if end == body.length and body.pointed_tail else ""
+        if graded:
+            points = 1 + (max(points, 3 + nearest(math.sqrt(resolution))) if wrench else points)
+        parts = -(-points // WIDEST_PANEL) if start > 0.0 else 1
+        edges = np.linspace(start, end, parts + 1).tolist()
+        for left, right in pairwise(edges):
+            kind = graded if right == end else ""
+            panels.append(Panel(start=left, end=right, points=-(-points // parts), graded=kind))
+        start = end
+    for _ in range(-sum(panel.points for panel in panels) % FILLED):
+        index = min(range(len(panels)), key=lambda k: (round(_next_resolution(panels[k], body.length), 6), k))
+        panels[index] = replace(panels[index], points=panels[index].points + 1)
+    return tuple(panels)
+
+
+def _next_resolution(panel: Panel, length: float) -> float:
+    """The resolution at which `panel` of a body of `length` [m] would have a further point."""
+    return (panel.points - 2.5 - (1 if panel.graded else 0)) * length / (panel.end - panel.start)
+
+
+def nearest(count: float) -> int:
+    """The nearest whole number, halves upwards: the last bit of `count` differs between versions of numpy."""
+    return math.floor(count + 0.5 + 1e-9)

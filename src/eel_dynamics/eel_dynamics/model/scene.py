@@ -1,0 +1,97 @@
+"""Which physics a run models, and the water it swims in. What is off costs nothing.
+
+The switches name the parts of the model of Boyer, Porez and Leroyer (2010): reactive (added mass, wake: eq. 36-37, 60),
+resistive (section 7.2.1), nose (section 7.2.1), and the readings of its printed formulae.
+
+Without `wake` each section keeps its own water: what sweeps past the body is left out of the strips' balance (50), the
+terms d/dX of V1 sigma_f and of V1 p_f - T_f t1, and so is what they come to at the tail, the flux of momentum and the
+pressure of eq. (51) and (60). That is a chain of bodies in a perfect fluid (Kirchhoff), which sheds nothing: the
+momentum of body and water changes by drag alone (and by the printed load of the nose), and the thrust of Lighthill's
+theory is gone. It tells how much of a motion the wake makes; it is no model of a fish.
+"""
+
+from dataclasses import dataclass, field, fields
+
+import numpy as np
+from eel_gaits.wording import shown
+
+from eel_dynamics.model.arguments import checked_number, checked_row
+
+FRICTION = ("printed", "laminar", "blended", "none")
+PERIMETER = ("ellipse", "printed")
+ADDED_MASS = ("corrected", "printed")
+TAIL_PRESSURE = ("lumped", "distributed")
+
+
+def _switch(default, description):
+    return field(default=default, metadata={"unit": "", "description": description})
+
+
+def _choice(default, choices, description):
+    return field(default=default, metadata={"unit": "", "description": description, "choices": choices})
+
+
+@dataclass(frozen=True, kw_only=True)
+class Scene:
+    """Physics of a run. Immutable; every field has a default. `ValueError` names a field that does not fit."""
+
+    planar: bool = _switch(
+        False, "motion in the plane z = 0 only: one angle in place of a rotation; a pitch term is refused"
+    )
+    reactive: bool = _switch(True, "inertia of the water: added mass M_f, J_f, wake, nose's added mass m_o")
+    wake: bool = _switch(
+        True, "momentum that the water carries along the body and off at the tail; off: every section keeps its water"
+    )
+    resistive: bool = _switch(True, "drag of the water: k_o, k1 (friction), k2, k3 (cross flow), k4 (roll)")
+    friction: str = _choice("printed", FRICTION, "law of the axial friction c_f(Re)")
+    nose: bool = _switch(True, "loads on the rounded nose: added mass m_o and drag k_o")
+    perimeter: str = _choice("ellipse", PERIMETER, "perimeter of a section: the ellipse's, or half of it as printed")
+    added_mass: str = _choice(
+        "corrected", ADDED_MASS, "added mass across each half-axis: the ellipse's, or swapped as printed in eq. (37)"
+    )
+    internal_wrench: bool = _switch(True, "internal force and torque along the body at output instants")
+    ledger: bool = _switch(True, "energy ledger, integrated along with the motion")
+    tail_pressure: str = _choice(
+        "lumped",
+        TAIL_PRESSURE,
+        "pressure force of the water behind: -T_f t1 at the tail, or -d/dX(T_f t1) along the body",
+    )
+    current: tuple[float, float, float] = field(
+        default=(0.0, 0.0, 0.0),
+        metadata={"unit": "m/s", "description": "uniform velocity of the water, in the world frame"},
+    )
+    density: float | None = field(
+        default=None,
+        metadata={
+            "unit": "kg/m^3",
+            "description": "density of the body, overrides the body's own",
+            "minimum": 0.0,
+            "exclusive": True,
+        },
+    )
+    fluid_density: float = field(
+        default=1000.0, metadata={"unit": "kg/m^3", "description": "density of the water", "minimum": 0.0}
+    )
+    viscosity: float = field(
+        default=1e-6, metadata={"unit": "m^2/s", "description": "kinematic viscosity of the water", "minimum": 0.0}
+    )
+
+    def __post_init__(self):
+        for item in fields(self):
+            value = getattr(self, item.name)
+            if item.type is bool or item.type == "bool":
+                if not isinstance(value, (bool, np.bool_)):
+                    raise ValueError(f"scene {item.name} must be True or False, got {shown(value)}")
+            elif "choices" in item.metadata:
+                if not isinstance(value, str) or value not in item.metadata["choices"]:
+                    raise ValueError(
+                        f"scene {item.name} must be one of {', '.join(item.metadata['choices'])}, got {shown(value)}"
+                    )
+            elif item.name == "current":
+                object.__setattr__(self, "current", tuple(checked_row("scene current", value, 3).tolist()))
+            elif not (item.name == "density" and value is None):
+                zero = not item.metadata.get("exclusive")
+                number = checked_number(f"scene {item.name}", value, item.metadata["unit"], zero=zero)
+                object.__setattr__(self, item.name, number)
+        if self.planar and self.current[2] != 0.0:
+            raise ValueError(f"scene current must lie in the plane z = 0 of a planar scene, got {shown(self.current)}")

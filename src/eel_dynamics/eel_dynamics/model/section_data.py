@@ -1,0 +1,136 @@
+"""Section data of the body and the water at the nodes and the stations (sections 3.3, 4.2 and 7.2.1 of the paper).
+
+Half-axes a along E3, b along E2. Body: m_b = rho_b pi a b, J2 = rho_b pi a^3 b/4, J3 = rho_b pi a b^3/4, J1 = J2 + J3.
+Water: J_f1 = rho_f pi/8 (a^2 - b^2)^2, M_f = rho_f pi diag(0, a^2, b^2) (eq. 37 with its semi-axes exchanged: the added
+mass for motion along an axis of an ellipse goes with the square of the other half-axis; Lamb; section 4.3 of the
+paper).
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+import eel_core
+from eel_dynamics.model.body import Body
+from eel_dynamics.model.grid import Grid, PanelPoints
+from eel_dynamics.model.scene import Scene
+
+WATCHED = {"all": 1, "jumps": 4, "none": 5}  # first of the speeds (V1, V2, V3, Omega1, Re/8e4 - 1) whose changes of
+# sign within a panel are integrated exactly
+TRANSITION = 8.0e4  # Reynolds number at which the printed friction law jumps from laminar to turbulent
+
+
+def added_masses(body: Body, scene: Scene, a_squared, b_squared):
+    """M_f along E2 and E3 [kg/m], J_f1 [kg m]; zero where the scene has no reactive water."""
+    rho = scene.fluid_density if scene.reactive else 0.0
+    along2, along3 = (a_squared, b_squared) if scene.added_mass == "corrected" else (b_squared, a_squared)
+    return rho * np.pi * along2, rho * np.pi * along3, rho * np.pi / 8.0 * (a_squared - b_squared) ** 2
+
+
+class SectionData(NamedTuple):
+    """Section data at n points, (n,) each, SI units."""
+
+    mass: np.ndarray  # kg/m, of the body
+    added2: np.ndarray  # kg/m, added mass along E2
+    added3: np.ndarray  # kg/m, along E3
+    inertia1: np.ndarray  # kg m, of body and water about E1
+    inertia2: np.ndarray  # kg m, about E2
+    inertia3: np.ndarray  # kg m, about E3
+    added_roll: np.ndarray  # kg m, of the water about E1
+    drag2: np.ndarray  # kg/m^2, 1/2 rho_f k2
+    drag3: np.ndarray  # kg/m^2, 1/2 rho_f k3
+    drag_roll: np.ndarray  # kg, 1/2 rho_f k4
+    laminar: np.ndarray  # friction force per length = -laminar |V1|^(1/2) V1
+    turbulent: np.ndarray  # friction force per length = -turbulent (Re/8e4)^(4/5) V1
+    reynolds: np.ndarray  # s/m, Re/8e4 per |V1|
+
+    def of_water(self) -> "SectionData":
+        """The same without the body: its mass and inertia are zero."""
+        none = np.zeros_like(self.mass)
+        return self._replace(mass=none, inertia1=self.added_roll, inertia2=none, inertia3=none)
+
+
+class StationData(NamedTuple):
+    """Where profiles are given, M stations."""
+
+    sections: SectionData
+    points: PanelPoints
+    nodes_before: np.ndarray  # (M,) unsigned, how many nodes lie at or before the station
+    added2_slope: np.ndarray  # (M,) kg/m^2, derivative of `added2` by X
+    added3_slope: np.ndarray  # (M,) kg/m^2
+    added_roll_slope: np.ndarray  # (M,) kg
+
+
+def nose_of(body: Body, scene: Scene) -> tuple[float, float]:
+    """m_o [kg] and 1/2 rho_f k_o [kg/m] of the nose."""
+    area = np.pi * body.nose[0] * body.nose[1] if scene.nose else 0.0
+    reactive = scene.fluid_density if scene.reactive else 0.0
+    resistive = 0.5 * scene.fluid_density if scene.resistive else 0.0
+    return float(reactive * area * body.nose_added_mass * body.nose[2]), float(resistive * area * body.nose_drag)
+
+
+def core_swimmer(body: Body, scene: Scene, grid: Grid, sections: SectionData, x, kinks: str) -> eel_core.Swimmer:
+    """`body` in `scene` for the compiled mechanics: the `sections` at the nodes of `grid`, and stations at `x` (M,)
+    [m]; `kinks`: which of the drag's are integrated exactly (`Accuracy`)."""
+    nose_mass, nose_drag = nose_of(body, scene)
+    return eel_core.Swimmer(
+        grid,
+        sections,
+        stations_of(body, scene, grid, x),
+        friction="laminar" if scene.friction == "none" or scene.viscosity == 0.0 else scene.friction,
+        resistive=bool(scene.resistive),
+        first_watched=WATCHED[kinks],
+        wake=bool(scene.wake),
+        nose_mass=nose_mass,
+        nose_drag=nose_drag,
+        distributed_pressure=scene.tail_pressure == "distributed",
+    )
+
+
+def stations_of(body: Body, scene: Scene, grid: Grid, x: np.ndarray) -> StationData:
+    """Tabulate `body` in `scene` at the stations `x` (M,) [m]."""
+    a_squared, b_squared, a_slope, b_slope = body.squares(x)
+    slope2, slope3, _ = added_masses(body, scene, a_slope, b_slope)
+    rho = scene.fluid_density if scene.reactive else 0.0
+    return StationData(
+        sections=sections_of(body, scene, x),
+        points=grid.points_at(x),
+        nodes_before=np.searchsorted(grid.x, x, side="right").astype(np.uint64),
+        added2_slope=slope2,
+        added3_slope=slope3,
+        added_roll_slope=rho * np.pi / 4.0 * (a_squared - b_squared) * (a_slope - b_slope),
+    )
+
+
+def sections_of(body: Body, scene: Scene, x: np.ndarray) -> SectionData:
+    """Section data of `body` in `scene` at `x` (n,) [m]."""
+    a, b = body.half_height(x), body.half_width(x)
+    density = body.density if scene.density is None else scene.density
+    area = np.pi * a * b
+    added2, added3, added_roll = added_masses(body, scene, a**2, b**2)
+    inertia2, inertia3 = density * area * a**2 / 4.0, density * area * b**2 / 4.0
+    half_rho = 0.5 * scene.fluid_density if scene.resistive else 0.0
+    # at the nose c_f P has a limit, as c_f grows like X^-1/2 and P like X^1/2
+    behind = np.maximum(x, 1e-9 * body.length)
+    c, d = body.half_height(behind), body.half_width(behind)
+    perimeter = np.pi * (1.5 * (c + d) - np.sqrt(c * d)) * (0.5 if scene.perimeter == "printed" else 1.0)
+    rubbed = 0.0 if scene.friction == "none" else half_rho
+    transition = TRANSITION * scene.viscosity / behind  # m/s, |V1| at which Re = 8e4
+    with np.errstate(divide="ignore"):
+        reynolds = np.where(transition > 0.0, 1.0 / transition, 0.0)
+    table = SectionData(
+        mass=density * area,
+        added2=added2,
+        added3=added3,
+        inertia1=inertia2 + inertia3 + added_roll,
+        inertia2=inertia2,
+        inertia3=inertia3,
+        added_roll=added_roll,
+        drag2=half_rho * 2.0 * body.lateral_drag * a,
+        drag3=half_rho * 2.0 * body.vertical_drag * b,
+        drag_roll=half_rho * body.roll_drag * np.pi * (a**2 - b**2) ** 2,
+        laminar=rubbed * perimeter * 0.664 * np.sqrt(scene.viscosity / behind),
+        turbulent=rubbed * perimeter * 0.059 * (scene.viscosity / behind) * TRANSITION**0.8,
+        reynolds=reynolds,
+    )
+    return SectionData(*(np.ascontiguousarray(row, dtype=float) for row in table))

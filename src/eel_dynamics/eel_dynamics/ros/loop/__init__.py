@@ -1,0 +1,1 @@
+"""The thread of the node that marches: waits, paces, takes requests and laws."""

@@ -1,0 +1,56 @@
+"""The model's own limits, watched while a node swims: each is said once, and stays in /diagnostics until a reset."""
+
+import numpy as np
+
+from eel_dynamics.analysis.model_limits import ModelLimits
+
+SETTLING = 5.0  # s: a swimmer that starts from rest is slow at first
+
+
+class LimitsMonitor:
+    """Looks at snapshots of a `simulation` and has the `report` say what lies beyond the model."""
+
+    def __init__(self, simulation, report):
+        self._limits = ModelLimits(simulation.body, simulation.scene, simulation.x)
+        self._current = np.array(simulation.scene.current)
+        self._report, self._said = report, set()
+        self.restart()
+
+    def restart(self):
+        """Forgets what it saw, and looks at the body."""
+        self._wake_power, self._since = [], None
+        for kind in self._said:
+            self._report.end(kind)
+        self._said = set()
+        self._warn("slenderness", self._limits.of_body())
+
+    def add(self, snapshot, look: bool):
+        """Takes in what is looked at over a while; `look`, now and then: has all limits looked at."""
+        if snapshot.energy is not None:
+            self._wake_power.append(float(snapshot.energy.wake_power))
+        if look:
+            self._look(snapshot)
+
+    def _look(self, snapshot):
+        limits, time = self._limits, np.array([snapshot.time])
+        bend = snapshot.curvature[None]
+        self._warn("bending", limits.of_bending(time, bend))
+        self._warn(
+            "contact", limits.of_contact(time, bend, snapshot.backbone[None], snapshot.section_orientation[None])
+        )
+        if len(self._wake_power) > 1:
+            self._warn("tail", limits.of_tail(self._wake_power))
+        self._wake_power = []
+        centre = snapshot.center_of_mass - snapshot.time * self._current
+        if self._since is None or snapshot.time < self._since[0]:
+            self._since = snapshot.time, centre.copy()
+        elif snapshot.time - self._since[0] >= SETTLING:
+            start, before = self._since
+            if start > 0.0:
+                self._warn("speed", limits.of_speed(float(np.linalg.norm(centre - before)) / (snapshot.time - start)))
+            self._since = snapshot.time, centre.copy()
+
+    def _warn(self, kind: str, text: str):
+        if text and kind not in self._said:
+            self._said.add(kind)
+            self._report.begin(kind, text)

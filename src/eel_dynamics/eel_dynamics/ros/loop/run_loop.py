@@ -1,0 +1,224 @@
+"""The run, in a thread of its own: waits, paces, advances the simulation, has each sample published.
+
+Only this thread touches the simulation. Other threads make requests, which are carried out between two samples. An
+urgent request interrupts the way to a sample, and so does any request once that way has taken long.
+No ROS here: `publishers` and `report` come from the node.
+"""
+
+import math
+import time
+
+from eel_dynamics.ros.diagnostics import ERROR
+from eel_dynamics.ros.loop.law_feed import LawAdopter
+from eel_dynamics.ros.loop.limits_monitor import LimitsMonitor
+from eel_dynamics.ros.loop.obstacles import Obstacles
+from eel_dynamics.ros.loop.pacing import ControllerWait, Pace, Stopwatch
+from eel_dynamics.ros.loop.requests import Request, RequestQueue
+from eel_dynamics.ros.loop.run_totals import RunTotals
+from eel_dynamics.simulation.stopping import SimulationStopped
+
+TICK = 0.05  # s of wall time between two messages on /clock while the simulation stands
+MOST_WAITING = 10_000  # requests
+TOO_MANY = f"curvature samples refused: at most {MOST_WAITING} wait for the next sample"
+
+
+class RunLoop:
+    """Publishes samples k = 0 ... `last_sample` at k/rate of the `simulation`, at the pace of the `parameters`.
+
+    `run` is the thread's work: it returns after the last sample, or after `stop`. A run that cannot go on waits for a
+    reset; one with a duration and no pace, which nobody attends, returns and has `given_up`.
+    greet: called once the subscribers that the run waits for are there.
+
+    Attributes:
+        time: simulation time of the last sample [s].
+        samples_published: their number, which is the index of the next one.
+        standing: what the simulation waits for, in words; empty while it runs.
+        totals: RunTotals since the start. laws: LawAdopter. pace: Pace. wall_time: Stopwatch.
+    """
+
+    def __init__(self, simulation, parameters, publishers, report, greet=lambda: None):
+        self._simulation, self._parameters, self._publishers, self._report = simulation, parameters, publishers, report
+        self._obstacles = Obstacles(simulation, publishers, parameters.wait_for_subscribers, greet)
+        self._requests = RequestQueue()
+        self.pace = Pace(1.0 / parameters.rate, parameters.real_time_factor)
+        self._controller, self.wall_time = ControllerWait(), Stopwatch()
+        self.laws, self._monitor = LawAdopter(simulation, report), LimitsMonitor(simulation, report)
+        self._last_tick = -math.inf  # s, steady clock: last message on /clock
+        self._under_way_since = None  # s, steady clock: since when the next sample is computed
+        self._whole_snapshot_due = True
+        self.time, self.samples_published, self.standing, self.totals = 0.0, 0, "", RunTotals()
+
+    # For other threads.
+
+    def request(self, action, replaces: str = "", urgent: bool = False) -> Request:
+        """Have `action()` done between two samples, or at once if it is `urgent`, after the requests before it.
+
+        It takes the place of the newest request if both have the same text `replaces`.
+        """
+        return self._requests.put(action, replaces, urgent)
+
+    def take_law(self, law, origin: float):
+        """Adopt a law whose own t = 0 lies at simulation time `origin` [s]; of several before a sample the last."""
+        self.request(lambda: self.laws.adopt(law, origin), "law")
+
+    def take_samples(self, samples: dict):
+        """Add one instant of a law, the arguments of `Simulation.add_samples`; refused while too many wait."""
+        if len(self._requests) < MOST_WAITING:
+            self.request(lambda: self.laws.add_samples(samples))
+        else:
+            self._report.event("samples", TOO_MANY, ERROR)
+
+    def reset(self) -> Request:
+        """State and time to the start."""
+        return self.request(self._reset, urgent=True)
+
+    def pause(self, paused: bool) -> Request:
+        """Stand still, or go on."""
+        return self.request(lambda: self._obstacles.pause(paused), urgent=True)
+
+    def change(self, parameters):
+        """Use other `parameters`, of those that may change during the run."""
+        self.request(lambda: self._change(parameters))
+
+    def request_whole_snapshot(self):
+        """Have the next snapshot hold everything that the totals use, whether or not someone subscribes to it."""
+        self._whole_snapshot_due = True
+
+    def stop(self):
+        """End the run."""
+        self._requests.stop()
+
+    @property
+    def stopped(self) -> bool:
+        """Whether `stop` was called."""
+        return self._requests.stopped
+
+    @property
+    def overdue(self) -> float:
+        """Wall time [s] for which the next sample has been computed, of a run with a pace."""
+        since = self._under_way_since
+        return time.monotonic() - since if since is not None and self.pace.factor > 0.0 else 0.0
+
+    @property
+    def given_up(self) -> bool:
+        """The simulation has stopped, and nobody is expected to reset it."""
+        return self._obstacles.failed and self.pace.factor == 0.0 and self._parameters.duration > 0.0
+
+    # The thread itself.
+
+    def run(self):
+        """The thread's work."""
+        self.pace.restart(0, time.monotonic())
+        while not self.stopped and self.samples_published <= self._parameters.last_sample and not self.given_up:
+            self._requests.carry_out(self._perform)
+            obstacle = self._obstacles.find(self.time)
+            if obstacle:
+                self._stand(obstacle)
+            elif self._wait_for_turn():
+                self._next_sample()
+
+    def _perform(self, action) -> float:
+        """Carry out a request's action; the simulation time [s] afterwards."""
+        try:
+            action()
+        except SimulationStopped as error:
+            self._fail(error)
+        return self.time
+
+    def _stand(self, obstacle: str):
+        """Wait a little for the obstacle to go; /clock ticks on."""
+        self._under_way_since = None
+        if obstacle != self.standing:
+            self.standing = obstacle
+            self._report.info(obstacle)
+        self._tick(time.monotonic())
+        self._requests.wait(TICK)
+
+    def _wait_for_turn(self) -> bool:
+        """Wait until the next sample is due, or something comes in between: then False."""
+        now = time.monotonic()
+        if self.standing:
+            self.standing = ""
+            self.pace.restart(self.samples_published, now)
+            self.wall_time.resume(now)
+        missing = self.pace.factor == 0.0 and self.laws.lacks_samples(self._next_time)
+        if self._controller.waits(missing, now, self._parameters.subscriber_timeout):
+            self._tick(now)
+            self._requests.wait(TICK)
+            return False
+        delay = self.pace.due(self.samples_published) - now
+        if delay > 0.0:
+            self._tick(now)
+            return not self._requests.wait(min(delay, TICK)) and delay <= TICK
+        return True
+
+    def _next_sample(self):
+        """Advance to the next sample and have it published."""
+        simulation, publishers = self._simulation, self._publishers
+        try:
+            if self._next_time > simulation.time and not self._advance():
+                return
+            last = self.samples_published == self._parameters.last_sample
+            whole, self._whole_snapshot_due = self._whole_snapshot_due or last, False
+            snapshot = simulation.observe(
+                **{part: wanted or whole for part, wanted in publishers.wanted_parts().items()}
+            )
+            self.totals.add(snapshot)
+            self._monitor.add(snapshot, look=whole)
+        except SimulationStopped as error:
+            self._fail(error)
+            return
+        self.time = self._next_time
+        publishers.publish(snapshot, nanoseconds(self.samples_published, self._parameters.rate))
+        now = self._last_tick = time.monotonic()
+        self.wall_time.lap(now)
+        self.laws.report_resting(self.time)
+        delay = self.pace.settle(self.samples_published, now)
+        if delay > 0.0:
+            self._report.event("late", f"late by {delay:.3g} s at t = {self.time:g} s: accuracy is kept, not the pace")
+        self.samples_published += 1
+
+    def _advance(self) -> bool:
+        """Advance to the next sample; False where a request comes in between, or the end of the run."""
+        if self._under_way_since is None:
+            self._under_way_since = time.monotonic()
+        since, requests = self._under_way_since, self._requests
+        reached = self._simulation.advance(self._next_time, lambda: requests.interrupt(since))
+        if reached:
+            self._under_way_since = None
+        return reached
+
+    def _fail(self, error: SimulationStopped):
+        self._obstacles.failed, self._under_way_since = True, None
+        then = "this run ends here, with status 1" if self.given_up else "reset starts it again"
+        self._report.begin("stopped", f"simulation {error}; {then}", ERROR)
+
+    @property
+    def _next_time(self) -> float:
+        return self.samples_published / self._parameters.rate
+
+    def _tick(self, now: float):
+        if now - self._last_tick >= TICK:
+            self._last_tick = now
+            self._publishers.tick(nanoseconds(max(0, self.samples_published - 1), self._parameters.rate))
+
+    def _change(self, parameters):
+        self._parameters = parameters
+        self.pace.restart(self.samples_published, time.monotonic(), parameters.real_time_factor)
+
+    def _reset(self):
+        now = time.monotonic()
+        self.time, self.samples_published, self.totals = 0.0, 0, RunTotals()
+        self._obstacles.failed, self._under_way_since = False, None
+        self._monitor.restart()
+        self.wall_time.restart(now)
+        self._report.end("stopped")
+        self.pace.restart(0, now)
+        self.laws.reset()
+        self._simulation.reset()
+        self._report.info("reset to t = 0 s")
+
+
+def nanoseconds(sample: int, rate: float) -> int:
+    """Simulation time [ns] of a sample at `rate` [Hz]."""
+    return round(sample * 1e9 / rate)

@@ -1,0 +1,1 @@
+"""Whole runs: `simulate`, `simulate_batch`, and the command `simulate`."""

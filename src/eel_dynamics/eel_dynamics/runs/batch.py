@@ -1,0 +1,234 @@
+"""Many swimmers side by side: `simulate_batch`, each as `simulate` would swim it.
+
+    batch = simulate_batch([straight(period=p) for p in periods], 10.0, accuracy=1e-3, stations=None)
+    batch.position[:, -1]                 # (B, 3), head at the end
+    batch.stopped, batch.error            # which could not go on, and why; the others are not touched by it
+    batch[7]                              # a Run, of the samples that it has
+
+The mechanics run in threads without Python's lock, as many as there are cores; bodies, scenes and stations that come
+more than once are tabulated once.
+"""
+
+import os
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+import numpy as np
+from eel_gaits.law import Law
+from eel_gaits.wording import shown
+
+from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.model.arguments import checked_stations
+from eel_dynamics.model.body import Body
+from eel_dynamics.model.scene import Scene
+from eel_dynamics.runs.broadcast import swimmers_of
+from eel_dynamics.runs.run import Run, check_memory, checked_times, run_of
+from eel_dynamics.simulation.energy import EnergyLedger
+from eel_dynamics.simulation.observations import Observations, empty_observations
+from eel_dynamics.simulation.simulation import Simulation
+from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
+from eel_dynamics.simulation.stopping import SimulationStopped
+
+ALONG = "backbone", "section_orientation", "curvature", "curvature_rate", "torque", "force", "fluid_force"
+MOST_THREADS = 1000
+
+
+@dataclass(frozen=True, eq=False)
+class Batch:
+    """B swimmers, T samples, M stations, in the axes and units of `Run`. What lies behind the last good sample of a
+    swimmer that stopped is 0; `valid` tells. Profiles are None without stations, wrench and energy are None unless
+    every scene has them."""
+
+    laws: tuple[Law, ...]
+    bodies: tuple[Body, ...]
+    scenes: tuple[Scene, ...]
+    accuracies: tuple[Accuracy, ...]
+    time: np.ndarray  # (T,) s
+    samples: np.ndarray  # (B,) int, good ones
+    error: tuple[SimulationStopped | None, ...]  # what stopped each: time, quantity, value, hint
+    steps: np.ndarray  # (B,) int, accepted steps in time
+    evaluations: np.ndarray  # (B,) int, of the head's dynamics, for the motion alone
+    position: np.ndarray  # (B, T, 3) m, head, world
+    orientation: np.ndarray  # (B, T, 4) x y z w, world from head
+    twist: np.ndarray  # (B, T, 6) (Omega, V) rad/s, m/s, head's axes
+    head_acceleration: np.ndarray  # (B, T, 6) rad/s^2, m/s^2, head's axes
+    center_of_mass: np.ndarray  # (B, T, 3) m, world
+    x: np.ndarray  # (B, M) m, stations
+    backbone: np.ndarray | None  # (B, T, M, 3) m, world
+    section_orientation: np.ndarray | None  # (B, T, M, 4) x y z w, world from section
+    curvature: np.ndarray | None  # (B, T, M, 3) rad/m
+    curvature_rate: np.ndarray | None  # (B, T, M, 3) rad/m/s
+    torque: np.ndarray | None  # (B, T, M, 3) N m, section axes
+    force: np.ndarray | None  # (B, T, M, 3) N, section axes
+    fluid_force: np.ndarray | None  # (B, T, M, 3) N/m, section axes; where `load` was asked for
+    energy: EnergyLedger | None  # one (B, T) array per field
+    _out: tuple = ()  # profiles, works, kinetic energy at the start, of all, for `__getitem__`
+
+    def __len__(self) -> int:
+        return len(self.laws)
+
+    @property
+    def valid(self) -> np.ndarray:
+        """(B, T) bool: samples that were reached."""
+        return np.arange(len(self.time)) < self.samples[:, None]
+
+    @property
+    def stopped(self) -> np.ndarray:
+        """(B,) bool: swimmers that could not go on to the end."""
+        return np.array([error is not None for error in self.error])
+
+    def __getitem__(self, index: int) -> Run:
+        """Swimmer `index` as a `Run`, with the samples that it has."""
+        index = range(len(self))[index]
+        out, works, start = self._out
+        scene, done = self.scenes[index], self.samples[index]
+        has_stations = self.backbone is not None
+        return run_of(
+            law=self.laws[index],
+            body=self.bodies[index],
+            scene=scene,
+            accuracy=self.accuracies[index],
+            x=self.x[index],
+            times=self.time[:done],
+            out=_of_one(out, index),
+            works=works[index, :done],
+            kinetic_at_start=start[index],
+            wrench=scene.internal_wrench and has_stations,
+            load=self.fluid_force is not None,
+            steps=int(self.steps[index]),
+            evaluations=int(self.evaluations[index]),
+        )
+
+
+def simulate_batch(
+    laws,
+    duration: float = 10.0,
+    *,
+    bodies=None,
+    scenes=None,
+    accuracy="standard",
+    sample_period: float = 0.05,
+    stations: "int | np.ndarray | None" = None,
+    positions=(0.0, 0.0, 0.0),
+    orientations=(0.0, 0.0, 0.0, 1.0),
+    twists=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+    load: bool = False,
+    threads: int | None = None,
+    progress: Callable[[int, int], None] | None = None,
+    most_evaluations: float = MOST_EVALUATIONS,
+) -> Batch:
+    """Swim B swimmers for `duration` [s] each and sample all every `sample_period` [s], from t = 0 on.
+
+    laws, bodies, scenes, accuracy: one for all, or a sequence of B; positions (3,) [m], orientations (4,), twists (6,):
+    one row for all, or (B, .). Every sequence has the same length B; one of length 1 counts as one for all. stations:
+    how many per body, or their X [m], for the profiles along the body; None: no profiles, the motion and the energies
+    alone. threads: None for one per core that this process may use. progress(done, B): called now and then.
+    most_evaluations: of each, as in `simulate`.
+
+    Each swimmer is the `simulate` of its arguments, not verified, to the last bit. One that cannot begin or go on keeps
+    the samples until then, with a `SimulationStopped` in `error`; the others do not notice. `ValueError` names an
+    argument that does not fit, with the number of the swimmer.
+    """
+    times = checked_times(duration, sample_period)
+    accuracy = accuracy.tolist() if isinstance(accuracy, np.ndarray) else accuracy
+    members = swimmers_of(laws, bodies, scenes, accuracy, positions, orientations, twists, duration, most_evaluations)
+    along = [0.0] if stations is None else stations
+    x_of = {length: checked_stations(along, length) for length in dict.fromkeys(each.body.length for each in members)}
+    x = [x_of[each.body.length] for each in members]
+    wrench = [each.scene.internal_wrench and stations is not None for each in members]
+    count, load = len(x), bool(load) and stations is not None
+    out = _space(count, len(times), len(x[0]), any(wrench), load)
+    works, start = np.zeros((count, len(times), 4)), np.zeros(count)
+    samples, steps, evaluations = np.zeros((3, count), dtype=int)
+    settings, errors = [each.accuracy for each in members], [None] * count
+
+    def swim(index: int):
+        try:
+            simulation = Simulation(stations=x[index], **members[index]._asdict())
+        except (SimulationStopped, ValueError) as error:
+            errors[index] = _stopped_at_start(error)
+            return
+        one = (
+            empty_observations(len(times), len(x[index]), wrench[index], load) if any(wrench) > wrench[index] else None
+        )
+        into = _of_one(out, index) if one is None else one
+        samples[index], errors[index] = simulation.record_into(times, into, works[index], wrench[index], load)
+        if one is not None:
+            _copy(one, out, index)
+        settings[index], start[index] = simulation.accuracy, simulation.kinetic_at_start
+        steps[index], _, evaluations[index] = simulation.evaluations
+
+    _for_each(swim, count, threads, progress)
+    for index in np.flatnonzero(samples < len(times)):
+        for array in (*_of_one(out, index)[:-1], works[index]):
+            array[samples[index] :] = 0.0
+    counts = steps, evaluations
+    return _batch_of(members, settings, times, samples, errors, counts, x, out, works, start, wrench, load, stations)
+
+
+def _batch_of(members, settings, times, samples, errors, counts, x, out, works, start, wrench, load, stations):
+    along = {name: getattr(out, name) if stations is not None else None for name in ALONG}
+    if not all(wrench):
+        along |= {"torque": None, "force": None}
+    if not load:
+        along["fluid_force"] = None
+    ledger = all(each.scene.ledger for each in members)
+    return Batch(
+        laws=tuple(each.law for each in members),
+        bodies=tuple(each.body for each in members),
+        scenes=tuple(each.scene for each in members),
+        accuracies=tuple(settings),
+        time=times,
+        samples=samples,
+        error=tuple(errors),
+        steps=counts[0],
+        evaluations=counts[1],
+        position=out.position,
+        orientation=out.orientation,
+        twist=out.twist,
+        head_acceleration=out.head_acceleration,
+        center_of_mass=out.center_of_mass,
+        x=np.array(x),
+        energy=EnergyLedger.of(out.kinetic, out.powers, works, start[:, None]) if ledger else None,
+        _out=(out, works, start),
+        **along,
+    )
+
+
+def _for_each(swim, count: int, threads: int | None, progress):
+    """`swim(index)` for all of `count`, in `threads` threads."""
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
+    threads = cores if threads is None else threads
+    if isinstance(threads, bool) or not isinstance(threads, (int, np.integer)) or not 1 <= threads <= MOST_THREADS:
+        raise ValueError(f"threads must be a whole number from 1 to {MOST_THREADS}, got {shown(threads)}")
+    with ThreadPoolExecutor(threads, thread_name_prefix="swimmer") as pool:
+        try:
+            for done, _ in enumerate(pool.map(swim, range(count)), start=1):
+                if progress is not None:
+                    progress(done, count)
+        except BaseException:
+            pool.shutdown(cancel_futures=True)
+            raise
+
+
+def _stopped_at_start(error: Exception) -> SimulationStopped:
+    if isinstance(error, SimulationStopped):
+        return error
+    return SimulationStopped(0.0, str(error), np.nan, "take a gentler law, or start slower")
+
+
+def _space(count: int, samples: int, stations: int, wrench: bool, load: bool) -> Observations:
+    """Space for observations with a first axis for the swimmers. `ValueError` where they would not fit into memory."""
+    check_memory(count, samples, stations, wrench, load)
+    return empty_observations(samples, stations, wrench, load, (count,))
+
+
+def _of_one(out: Observations, index: int) -> Observations:
+    return Observations(*(array[index] for array in out))
+
+
+def _copy(one: Observations, out: Observations, index: int):
+    """The profiles that `one` has, which was not asked for all of them, into those of a batch."""
+    for there, here in zip(one[:-1], out[:-1], strict=True):
+        here[index, : len(there)] = there

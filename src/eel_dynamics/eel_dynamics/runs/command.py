@@ -1,0 +1,253 @@
+"""`simulate`: swim a gait offline, print the summary, keep the run.
+
+simulate falling
+simulate falling --duration 20 --periods 4 --actuators 8
+simulate straight --set wavelength=0.8 --scene friction=laminar --accuracy 1e-6 --out run.npz
+"""
+
+import csv
+import sys
+import time
+from dataclasses import fields
+from importlib.util import find_spec
+from pathlib import Path
+
+import numpy as np
+from eel_gaits.command_line import Parser, complain
+from eel_gaits.output_file import NotWritten, check_output, replacing
+from eel_gaits.registry import GAITS, gait
+from eel_gaits.wording import shown
+
+from eel_dynamics.accuracy.accuracy import PRESETS
+from eel_dynamics.analysis.actuators import MOST as MOST_JOINTS
+from eel_dynamics.model.body import NAMED, Body
+from eel_dynamics.model.scene import Scene
+from eel_dynamics.runs.interrupt import leave_on_interrupt
+from eel_dynamics.runs.one_line_warnings import one_line_warnings
+from eel_dynamics.runs.run import Run, simulate
+from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
+from eel_dynamics.simulation.stopping import SimulationStopped
+
+ARRAYS = [
+    "time",
+    "position",
+    "orientation",
+    "twist",
+    "head_acceleration",
+    "center_of_mass",
+    "x",
+    "backbone",
+    "section_orientation",
+    "curvature",
+    "curvature_rate",
+    "torque",
+    "force",
+    "fluid_force",
+    "resistive_force",
+    "tail_force",
+    "nose_force",
+    "closure_torque",
+    "closure_force",
+]
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Exit status 0; 1 where the output cannot be written to its end; 2 for bad input; 3 for a run that stopped, with
+    what it had until then. One line says why."""
+    if arguments is None:
+        leave_on_interrupt()
+    options = _parser().parse_args(arguments)
+    try:
+        with one_line_warnings("simulate"):
+            return _swim(options, _checked_out(options.out))
+    except NotWritten as error:
+        complain("simulate", error)
+        return 1
+    except (ValueError, OSError) as error:
+        complain("simulate", error)
+        return 2
+    except MemoryError as error:
+        complain("simulate", f"the run does not fit into memory: {error}")
+        return 2
+
+
+def _swim(options, out: Path | None) -> int:
+    """Swim, print the summary, write the run; 0, or 3 for a run that stopped."""
+    numbers = {name: _number(name, value) for name, value in _pairs("--set", options.set)}
+    law = gait(options.gait, **numbers)
+    body = Body.named(options.body) if options.body in NAMED else Body.from_file(options.body)
+    scene = Scene(**{name: _scene_value(name, value) for name, value in _pairs("--scene", options.scene)})
+    if options.actuators is not None:
+        _check_actuators(options, scene)
+    start = time.perf_counter()
+    try:
+        run = simulate(
+            law,
+            options.duration,
+            body=body,
+            scene=scene,
+            accuracy=options.accuracy,
+            sample_period=options.sample_period,
+            stations=options.stations,
+            load=options.load,
+            most_evaluations=options.most_evaluations,
+            progress=Progress(options.duration),
+        )
+    except SimulationStopped as stopped:
+        complain("simulate", stopped)
+        if out is not None and len(stopped.run.time):
+            _write(stopped.run, out)
+        return 3
+    seconds = time.perf_counter() - start
+    print(run.summary(options.periods))
+    print(f"wall time           {seconds:.3f} s, set-up included")
+    if options.actuators is not None:
+        print(run.actuators(options.actuators).table())
+    if out is not None:
+        _write(run, out)
+        print(f"written to          {out}")
+    return 0
+
+
+class Progress:
+    """Tells on stderr how far a swim of `duration` [s] has come: after 1, 2, 4 ... s, and then every minute."""
+
+    def __init__(self, duration: float):
+        self._duration, self._count = duration, 0
+
+    def __call__(self, reached: float, left: float):
+        """Called once a second: `reached` [s] of the swim, `left` [s] of wall time."""
+        self._count += 1
+        if self._count & (self._count - 1) == 0 or self._count % 60 == 0:
+            print(f"simulate: at {reached:.3g} s of {self._duration:g} s, about {left:.3g} s to go", file=sys.stderr)
+
+
+def _parser() -> Parser:
+    scene = ", ".join(item.name for item in fields(Scene))
+    parser = Parser(prog="simulate", description="Swim a gait offline and print the summary.")
+    parser.add_argument("gait", nargs="?", default="falling", help=f"one of {', '.join(sorted(GAITS))} (falling)")
+    parser.add_argument(
+        "--set", action="append", default=[], metavar="NAME=VALUE", help="a number of the gait; may be repeated"
+    )
+    parser.add_argument("--duration", type=float, default=10.0, help="s (10)")
+    parser.add_argument(
+        "--accuracy", default="standard", help=f"{', '.join(PRESETS)}, or a target relative error (standard)"
+    )
+    parser.add_argument(
+        "--body",
+        default="boyer2010",
+        help=f"{', '.join(NAMED)}, or a .csv or .npz file with columns x, half_width, half_height [m]",
+    )
+    parser.add_argument(
+        "--scene", action="append", default=[], metavar="NAME=VALUE", help=f"physics: {scene}; may be repeated"
+    )
+    parser.add_argument("--sample-period", type=float, default=0.05, help="s (0.05)")
+    parser.add_argument("--stations", type=int, default=51, help="points along the body (51)")
+    parser.add_argument(
+        "--most-evaluations",
+        type=float,
+        default=MOST_EVALUATIONS,
+        metavar="N",
+        help=f"of the head's dynamics per simulated second; a swim that takes more ends ({MOST_EVALUATIONS:g})",
+    )
+    parser.add_argument("--load", action="store_true", help="keep the water's load along the body too")
+    parser.add_argument(
+        "--periods", type=int, metavar="N", help="figures of the gait over the last N whole periods (later half)"
+    )
+    parser.add_argument(
+        "--actuators", type=int, metavar="N", help="print the demand on a robot of N motors in pitch and N in yaw"
+    )
+    parser.add_argument(
+        "--out",
+        metavar="FILE",
+        help=".npz: every array of the run; .csv: head, energies, one line "
+        "per sample; .rrd: for Rerun's viewer, as the visualiser shows it (needs eel_viz)",
+    )
+    return parser
+
+
+def _pairs(option: str, texts: list[str]) -> list[tuple[str, str]]:
+    for text in texts:
+        if "=" not in text:
+            raise ValueError(f"{option} must be NAME=VALUE, got {shown(text)}")
+    check_names(texts)
+    return [tuple(text.split("=", 1)) for text in texts]
+
+
+def check_names(texts: list[str]):
+    """`ValueError` where two of the NAME=VALUE have the same name."""
+    names = [text.partition("=")[0] for text in texts]
+    for name in names:
+        if names.count(name) > 1:
+            raise ValueError(f"{name} must be given once, got it {names.count(name)} times")
+
+
+def _check_actuators(options, scene: Scene):
+    """`ValueError` for what `Run.actuators` would refuse, before the swim."""
+    if not 1 <= options.actuators <= MOST_JOINTS:
+        raise ValueError(f"--actuators must be 1 to {MOST_JOINTS}, got {shown(options.actuators)}")
+    if not scene.internal_wrench:
+        raise ValueError("--actuators needs --scene internal_wrench=on, got off")
+    if options.stations < 4:
+        raise ValueError(f"--actuators needs 4 --stations or more, got {options.stations}")
+
+
+def _number(name: str, text: str):
+    try:
+        values = tuple(float(part) for part in text.split(","))
+    except ValueError:
+        raise ValueError(f"{name} must be a number, or several with commas, got {shown(text)}") from None
+    return values[0] if len(values) == 1 else values
+
+
+def _scene_value(name: str, text: str):
+    kinds = {item.name: item for item in fields(Scene)}
+    if name not in kinds:
+        raise ValueError(f"scene has no field {shown(name)}, it has: {', '.join(kinds)}")
+    if isinstance(kinds[name].default, bool):
+        words = {"true": True, "on": True, "1": True, "false": False, "off": False, "0": False}
+        if text.lower() not in words:
+            raise ValueError(f"scene {name} must be true or false, got {shown(text)}")
+        return words[text.lower()]
+    return text if "choices" in kinds[name].metadata else _number(f"scene {name}", text)
+
+
+def _checked_out(out: str | None) -> Path | None:
+    if out is None:
+        return None
+    path = Path(out)
+    if path.suffix not in (".npz", ".csv", ".rrd"):
+        raise ValueError(f"--out must end in .npz, .csv or .rrd, got {shown(out)}")
+    if path.suffix == ".rrd" and find_spec("eel_viz") is None:
+        raise ValueError("--out .rrd needs the package eel_viz, with rerun-sdk, which is not installed")
+    check_output("--out", path)
+    if path.exists():
+        complain("simulate", f"{path} exists and will be overwritten")
+    return path
+
+
+def _write(run: Run, path: Path):
+    if path.suffix == ".rrd":
+        run.to_rerun(path)
+        return
+    energy = {} if run.energy is None else vars(run.energy)
+    if path.suffix == ".npz":
+        arrays = {name: getattr(run, name) for name in ARRAYS if getattr(run, name) is not None}
+        with replacing(path) as draft:
+            np.savez_compressed(draft, **arrays, **{f"energy_{name}": values for name, values in energy.items()})
+        return
+    columns = {"time": run.time}
+    groups = (("position", "xyz"), ("orientation", "xyzw"), ("center_of_mass", "xyz"))
+    columns |= {f"{name}_{axis}": getattr(run, name)[:, k] for name, axes in groups for k, axis in enumerate(axes)}
+    columns |= {
+        f"{name}_{axis}": run.twist[:, k]
+        for k, (name, axis) in enumerate((name, axis) for name in ("omega", "v") for axis in "123")
+    }
+    with replacing(path) as draft, draft.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow([*columns, *energy])
+        writer.writerows(np.column_stack([*columns.values(), *energy.values()]).tolist())
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,123 @@
+"""A run as the messages that the node would have sent: the same topics and fields, as plain objects without ROS.
+
+Library (the paper's) frames become REP-103 frames by `turn_vector` and `turn_quaternion`, as in `messages`; fields that
+are kept in section axes pass unchanged.
+"""
+
+from collections.abc import Iterator
+from types import SimpleNamespace
+
+import numpy as np
+
+from eel_dynamics.model.axes import turn_quaternion, turn_vector
+
+SECOND = 1_000_000_000  # ns
+AXES = (1, 2, 3)
+ENERGIES = (
+    *("kinetic_body", "kinetic_fluid", "actuator_power", "wake_power", "nose_power", "drag_power"),
+    "residual",
+)
+
+
+def records(run) -> Iterator[tuple[str, SimpleNamespace]]:
+    """Topic and message, in the order of time: body and law first, then every sample; at the end the run's checks."""
+    start, end = (_stamp(run.time[k]) for k in (0, -1))
+    yield "body", body_record(run)
+    yield "curvature_law", SimpleNamespace(name=run.law.name)
+    yield "diagnostics", _status(run, start, "computed", {})
+    for k, time in enumerate(run.time):
+        header = SimpleNamespace(stamp=_stamp(time))
+        for topic, fields in _sample(run, k).items():
+            yield topic, SimpleNamespace(header=header, **fields)
+    yield "diagnostics", _status(run, end, "computed", _checks(run))
+
+
+def outline(body, x: np.ndarray) -> dict[str, np.ndarray]:
+    """Abscissae [m] and half axes [m] of the body, at `x` [m] and, graded towards the nose where it rounds off, in
+    between: what the message BodyGeometry holds."""
+    x = np.union1d(x, body.length * np.linspace(0.0, 1.0, 101) ** 2)
+    return {
+        "x": x,
+        "half_width": np.asarray(body.half_width(x), dtype=float),
+        "half_height": np.asarray(body.half_height(x), dtype=float),
+    }
+
+
+def body_record(run) -> SimpleNamespace:
+    """The body, as BodyGeometry."""
+    return SimpleNamespace(length=float(run.body.length), mass=float(run.body_mass), **outline(run.body, run.x))
+
+
+def _sample(run, k: int) -> dict[str, dict]:
+    """Fields of each topic at sample `k`."""
+    pose = SimpleNamespace(
+        position=_named("xyz", turn_vector(run.position[k])),
+        orientation=_named("xyzw", turn_quaternion(run.orientation[k])),
+    )
+    twist = SimpleNamespace(
+        angular=_named("xyz", turn_vector(run.twist[k, :3])), linear=_named("xyz", turn_vector(run.twist[k, 3:]))
+    )
+    curvature, rate = run.curvature[k], run.curvature_rate[k]
+    found = {
+        "head_pose": {"pose": pose},
+        "head_twist": {"twist": twist},
+        "odom": {"pose": SimpleNamespace(pose=pose), "twist": SimpleNamespace(twist=twist)},
+        "backbone": {
+            "x": run.x,
+            "position": turn_vector(run.backbone[k]).ravel() + 0.0,
+            "orientation": turn_quaternion(run.section_orientation[k]).ravel() + 0.0,
+        },
+        "curvature": {
+            "x": run.x,
+            "pitch": curvature[:, 1],
+            "pitch_rate": rate[:, 1],
+            "yaw": curvature[:, 2],
+            "yaw_rate": rate[:, 2],
+        },
+    }
+    if run.torque is not None:
+        found["internal_wrench"] = {"x": run.x, **_by_axis(torque=run.torque[k], force=run.force[k])}
+    if run.fluid_force is not None:
+        found["hydrodynamic_load"] = {
+            "x": run.x,
+            **_by_axis(force=run.fluid_force[k], resistive=run.resistive_force[k]),
+            "tail_force": _named("xyz", run.tail_force[k]),
+            "nose_force": _named("xyz", run.nose_force[k]),
+        }
+    if run.energy is not None:
+        found["energy"] = {name: float(run.energy[name][k]) for name in ENERGIES}
+    return found
+
+
+def _checks(run) -> dict[str, float]:
+    """Worst figures of the run, by the names that they have in the node's diagnostics."""
+    found = {}
+    if run.energy is not None:
+        found["energy_residual_worst"] = np.max(np.abs(run.energy.residual))
+    if run.torque is not None and np.any(run.torque):
+        found["closure_torque_relative"] = np.max(run.closure_torque) / np.max(np.abs(run.torque))
+    return found
+
+
+def _status(run, stamp: SimpleNamespace, text: str, values: dict[str, float]) -> SimpleNamespace:
+    """One DiagnosticArray."""
+    told = {"law": run.law.name, "accuracy": run.accuracy.name} | {
+        name: f"{value:.9g}" for name, value in values.items()
+    }
+    entries = [SimpleNamespace(key=key, value=value) for key, value in told.items()]
+    status = SimpleNamespace(name="/simulate", level=0, message=text, values=entries)
+    return SimpleNamespace(header=SimpleNamespace(stamp=stamp), status=[status])
+
+
+def _stamp(time: float) -> SimpleNamespace:
+    seconds, nanoseconds = divmod(round(time * SECOND), SECOND)
+    return SimpleNamespace(sec=seconds, nanosec=nanoseconds)
+
+
+def _named(names: str, values: np.ndarray) -> SimpleNamespace:
+    return SimpleNamespace(**dict(zip(names, (values + 0.0).tolist(), strict=True)))  # + 0.0: no minus zero
+
+
+def _by_axis(**vectors: np.ndarray) -> dict[str, np.ndarray]:
+    """name_1, name_2, name_3 (M,) of each vector (M, 3)."""
+    return {f"{name}_{axis}": values[:, axis - 1] for name, values in vectors.items() for axis in AXES}

@@ -1,0 +1,323 @@
+"""A whole run of a law: `simulate`, and what it returns."""
+
+import os
+import warnings
+from collections.abc import Callable
+from contextvars import ContextVar
+from dataclasses import dataclass
+from functools import cached_property, partial
+from importlib.metadata import entry_points
+
+import numpy as np
+from eel_gaits.law import Law
+from eel_gaits.wording import shown
+
+from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.analysis.actuators import Actuators, actuators_of
+from eel_dynamics.analysis.analysis import Analysis
+from eel_dynamics.analysis.model_limits import warnings_of
+from eel_dynamics.analysis.run_summary import describe
+from eel_dynamics.model.arguments import checked_number, checked_stations
+from eel_dynamics.model.body import Body
+from eel_dynamics.model.scene import Scene
+from eel_dynamics.runs.broadcast import Swimmer
+from eel_dynamics.runs.error_estimate import ErrorEstimate, refined, relative_errors, stable_step
+from eel_dynamics.runs.foresight import Foresight
+from eel_dynamics.runs.records import records
+from eel_dynamics.simulation.energy import EnergyLedger
+from eel_dynamics.simulation.observations import Observations, size_of
+from eel_dynamics.simulation.simulation import Simulation
+from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
+from eel_dynamics.simulation.stopping import SimulationStopped
+
+MOST_REFINEMENTS = 3  # of a run whose error is above its target
+MOST_SAMPLES = 10_000_000  # of a run: their motion alone takes gigabytes
+MOST_MEMORY = 0.8  # of the machine's, that the samples may fill
+_searching = ContextVar("searching", default=False)  # for a stable step
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """T samples at M stations. Library axes (the body lies along +x from the head and swims towards -x), SI units."""
+
+    law: Law
+    body: Body
+    scene: Scene
+    accuracy: Accuracy
+    time: np.ndarray  # (T,) s
+    position: np.ndarray  # (T, 3) m, head, world
+    orientation: np.ndarray  # (T, 4) x y z w, world from head
+    twist: np.ndarray  # (T, 6) (Omega, V) rad/s, m/s, head's axes
+    head_acceleration: np.ndarray  # (T, 6) angular and true acceleration of the head, rad/s^2, m/s^2, head's axes
+    center_of_mass: np.ndarray  # (T, 3) m, world
+    x: np.ndarray  # (M,) m, where the profiles are given
+    backbone: np.ndarray  # (T, M, 3) m, world
+    section_orientation: np.ndarray  # (T, M, 4) x y z w, world from section
+    curvature: np.ndarray  # (T, M, 3) rad/m
+    curvature_rate: np.ndarray  # (T, M, 3) rad/m/s
+    torque: np.ndarray | None  # (T, M, 3) N m, section axes: of the part behind a section on the part ahead
+    force: np.ndarray | None  # (T, M, 3) N, section axes; force[..., 0] > 0 is tension
+    fluid_force: np.ndarray | None  # (T, M, 3) N/m, of the water on the body, section axes
+    resistive_force: np.ndarray | None  # (T, M, 3) N/m, its resistive part
+    tail_force: np.ndarray | None  # (T, 3) N, section axes at the tail
+    nose_force: np.ndarray | None  # (T, 3) N, section axes at the nose
+    energy: EnergyLedger | None  # one (T,) array per field
+    closure_torque: np.ndarray | None  # (T,) N m, what is left of the internal torque at the nose
+    closure_force: np.ndarray | None  # (T,) N, what is left of the internal force there, less the load on the nose
+    steps: int  # accepted steps in time
+    evaluations: int  # of the head's dynamics, for the motion alone
+
+    def __post_init__(self):
+        if not (self.time[1:] > self.time[:-1]).all():
+            falls = np.flatnonzero(np.diff(self.time) <= 0.0)
+            before, after = self.time[falls[0]], self.time[falls[0] + 1]
+            raise ValueError(
+                f"run time must rise, got {after:g} s after {before:g} s: a reset? Make a run of the samples after it"
+            )
+
+    @property
+    def twist_rate(self) -> np.ndarray:
+        """(T, 6) (Omegadot, Vdot): rate of the components of the twist, rad/s^2, m/s^2, head's axes."""
+        rate = self.head_acceleration.copy()
+        rate[:, 3:] -= np.cross(self.twist[:, :3], self.twist[:, 3:])
+        return rate
+
+    @property
+    def path_length(self) -> float:
+        """Length [m] of the head's path through the samples."""
+        return float(np.sum(np.linalg.norm(np.diff(self.position, axis=0), axis=1)))
+
+    @property
+    def mean_speed(self) -> float:
+        """Distance of the centre of mass between the first and the last sample by the time [m/s]; 0 for one sample."""
+        duration = self.time[-1] - self.time[0]
+        return float(np.linalg.norm(self.center_of_mass[-1] - self.center_of_mass[0]) / duration) if duration else 0.0
+
+    def greatest_torque(self) -> tuple[float, float, float]:
+        """Greatest magnitude [N m] of the internal torque over the run, with its X [m] and its time [s]."""
+        if self.torque is None:
+            raise ValueError("greatest_torque needs a run with scene internal_wrench on")
+        size = np.linalg.norm(self.torque, axis=2)
+        sample, station = np.unravel_index(np.argmax(size), size.shape)
+        return float(size[sample, station]), float(self.x[station]), float(self.time[sample])
+
+    def analysis(self, periods: int | None = None) -> Analysis:
+        """What researchers read off a run (speed, Strouhal number, power, efficiency ...), over its last `periods`
+        whole periods, or those of its later half. `ValueError` for a run that is too short to have one."""
+        return Analysis(self, periods)
+
+    def actuators(self, joints: int) -> Actuators:
+        """The demand on a robot of `joints` motors in pitch and as many in yaw: angles, speeds, torques, powers."""
+        return actuators_of(self, joints)
+
+    def summary(self, periods: int | None = None) -> str:
+        """The run in lines, each number with its unit: as a whole, then over its last `periods` whole periods."""
+        return describe(self, periods)
+
+    @cached_property
+    def warnings(self) -> tuple[str, ...]:
+        """What of the model's own limits the run went over, a line each (`model_limits.py`); empty: nothing."""
+        return warnings_of(self)
+
+    def to_rerun(self, target, compare: "Run | None" = None, **settings) -> None:
+        """Show the run in Rerun, as the visualiser shows a swimmer: `target` is a file to write (.rrd) or a
+        `rerun.RecordingStream`. compare: another run, laid over this one. settings: some of the visualiser's, such as
+        blueprint="torques", skin_rate=50. Needs the package eel_viz and rerun-sdk; loads are shown of runs that were
+        simulated with load=True."""
+        found = entry_points(group="eel_dynamics.drawing", name="rerun")
+        try:
+            (to_rerun,) = (each.load() for each in found)
+        except (ValueError, ImportError) as error:
+            reason = error if found else "it is not installed"
+            raise ImportError(f"to_rerun needs the package eel_viz, with rerun-sdk: {reason}") from error
+        runs = [self] if compare is None else [self, compare]
+        to_rerun(
+            target, [records(run) for run in runs], [f"{run.law.name} {run.accuracy.name}" for run in runs], **settings
+        )
+
+    @cached_property
+    def refined(self) -> "Run":
+        """The same run with finer settings, swum when it is first asked for."""
+        return refined(self, simulate)
+
+    @property
+    def error_estimate(self) -> ErrorEstimate:
+        """Estimate of the run's errors (as the targets of accuracy have them), from the finer run."""
+        return relative_errors(self, self.refined)
+
+    @property
+    def body_mass(self) -> float:
+        """Mass of the body in this scene [kg]."""
+        return self.body.volume * (self.body.density if self.scene.density is None else self.scene.density)
+
+
+def simulate(
+    law: Law,
+    duration: float = 10.0,
+    *,
+    body: Body | None = None,
+    scene: Scene | None = None,
+    accuracy: "str | float | Accuracy" = "standard",
+    sample_period: float = 0.05,
+    stations=51,
+    position=(0.0, 0.0, 0.0),
+    orientation=(0.0, 0.0, 0.0, 1.0),
+    twist=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+    load: bool = False,
+    verify: bool | None = None,
+    most_evaluations: float = MOST_EVALUATIONS,
+    progress: Callable[[float, float], None] | None = None,
+) -> Run:
+    """Swim `law` for `duration` [s] and sample every `sample_period` [s], from t = 0 on.
+
+    stations: number of equidistant stations, or their X (M,) [m]. position [m], orientation (x y z w), twist ((Omega,
+    V) in the head's axes): the head's initial state. load: the water's load along the body too. The steps in time do
+    not depend on the sampling. verify: have the error estimated (`Run.error_estimate`); where it is above the target,
+    return a finer run, or warn; None: where the motion is sensitive, that is in space without drag. most_evaluations:
+    of the head's dynamics by simulated second; what takes more is refused, or stopped. progress(time, left): told once
+    a second the time [s] that the swim has come to, and the wall time [s] that it still takes; without it, a swim that
+    takes more than a minute is warned of. `ValueError` names what does not fit; `SimulationStopped` carries the samples
+    so far as `run`.
+    """
+    times = checked_times(duration, sample_period)
+    again = partial(
+        simulate,
+        law,
+        duration,
+        body=body,
+        scene=scene,
+        sample_period=sample_period,
+        stations=stations,
+        position=position,
+        orientation=orientation,
+        twist=twist,
+        load=load,
+        most_evaluations=most_evaluations,
+        progress=progress,
+    )
+    swimmer = Swimmer.of(law, body, scene, accuracy, position, orientation, twist, duration, most_evaluations)
+    x, wrench = checked_stations(stations, swimmer.body.length), swimmer.scene.internal_wrench
+    check_memory(1, len(times), len(x), wrench, bool(load))
+    simulation = Simulation(stations=x, **swimmer._asdict())
+    foresight = Foresight(swimmer.horizon, progress)
+    out, works, done, stopped = simulation.record(times, wrench, bool(load), foresight.look)
+    steps, _, evaluations = simulation.evaluations
+    run = run_of(
+        law=law,
+        body=swimmer.body,
+        scene=swimmer.scene,
+        accuracy=simulation.accuracy,
+        x=x,
+        times=times[:done],
+        out=out,
+        works=works[:done],
+        kinetic_at_start=simulation.kinetic_at_start,
+        wrench=wrench,
+        load=load,
+        steps=steps,
+        evaluations=evaluations,
+    )
+    if stopped is not None:
+        stopped.run = run
+        if run.accuracy.step is not None and not _searching.get():
+            stopped = _with_stable_step(stopped, again, run.accuracy)
+        raise stopped
+    sensitive = run.accuracy.target is not None and not (run.scene.resistive or run.scene.planar)
+    return _verified(run) if verify or (verify is None and sensitive and done > 1) else run
+
+
+def _verified(run: Run) -> Run:
+    """`run`, or a finer one where the estimate of its error is above its target; a warning where none is fine
+    enough."""
+    target = run.accuracy.target
+    if target is None:
+        raise ValueError(f"verify needs an accuracy that is a target, got {shown(run.accuracy.name)}")
+    for _ in range(MOST_REFINEMENTS):
+        if run.error_estimate.worst <= target:
+            return run
+        run = run.refined
+    if run.error_estimate.worst > target:
+        warnings.warn(
+            f"the error is estimated at {run.error_estimate.worst:.1e}, above the target {target:g}: the motion is too "
+            f"sensitive, or the target too fine",
+            stacklevel=3,
+        )
+    return run
+
+
+def _with_stable_step(stopped: SimulationStopped, again, accuracy: Accuracy) -> SimulationStopped:
+    """The same, with the step that would have been stable in its hint."""
+    token = _searching.set(True)
+    try:
+        step = stable_step(lambda trial: again(accuracy=trial), accuracy)
+    finally:
+        _searching.reset(token)
+    hint = f"a step of {step:.3g} s is stable" if step else "no shorter step that was tried is stable"
+    told = SimulationStopped(stopped.time, stopped.quantity, stopped.value, f"{hint}; it was {accuracy.step:.3g} s")
+    told.run, told.diverged = stopped.run, True
+    return told
+
+
+def checked_times(duration, sample_period) -> np.ndarray:
+    """Instants (T,) [s] of the samples; `ValueError` for a duration or a period that makes no sense, or for more than
+    `MOST_SAMPLES`."""
+    duration = checked_number("duration", duration, "s", zero=True)
+    sample_period = checked_number("sample_period", sample_period, "s")
+    steps = duration / sample_period + 1e-9
+    if not steps < MOST_SAMPLES:
+        raise ValueError(
+            f"duration must be at most {MOST_SAMPLES:,} samples of sample_period, got {duration:g} s at "
+            f"{sample_period:g} s: {steps:.4g} samples"
+        )
+    return np.arange(int(steps) + 1) * sample_period
+
+
+def check_memory(swimmers: int, samples: int, stations: int, wrench: bool, load: bool):
+    """`ValueError` where the profiles of so many would not fit into memory."""
+    needed = 8.0 * swimmers * size_of(samples, stations, wrench, load)
+    there = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") * MOST_MEMORY
+    if needed > there:
+        raise ValueError(
+            f"stations must be fewer (or samples, or swimmers): {swimmers} swimmer{'s' if swimmers > 1 else ''} of "
+            f"{samples} samples at {stations} stations take {needed / 1e9:.3g} GB, of {there / 1e9:.3g} GB"
+        )
+
+
+def run_of(
+    *, law, body, scene, accuracy, x, times, out, works, kinetic_at_start, wrench, load, steps, evaluations
+) -> Run:
+    """The `Run` of samples `out` (`Observations`) and `works`, of which those at `times` were reached."""
+    if len(times) < len(out.position):
+        out = Observations(*(array[: len(times)] for array in out[:-1]), out.whole)
+    energy = EnergyLedger.of(out.kinetic, out.powers, works, kinetic_at_start) if scene.ledger else None
+    return Run(
+        law=law,
+        body=body,
+        scene=scene,
+        accuracy=accuracy,
+        time=times,
+        position=out.position,
+        orientation=out.orientation,
+        twist=out.twist,
+        head_acceleration=out.head_acceleration,
+        center_of_mass=out.center_of_mass,
+        x=x,
+        backbone=out.backbone,
+        section_orientation=out.section_orientation,
+        curvature=out.curvature,
+        curvature_rate=out.curvature_rate,
+        torque=out.torque if wrench else None,
+        force=out.force if wrench else None,
+        fluid_force=out.fluid_force if load else None,
+        resistive_force=out.resistive_force if load else None,
+        tail_force=out.tail_force if load else None,
+        nose_force=out.nose_force if load else None,
+        energy=energy,
+        closure_torque=out.closure[:, 0] if wrench else None,
+        closure_force=out.closure[:, 1] if wrench else None,
+        steps=steps,
+        evaluations=evaluations,
+    )
+
+
+__all__ = ["Run", "SimulationStopped", "simulate"]

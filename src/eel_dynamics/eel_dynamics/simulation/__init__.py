@@ -1,0 +1,1 @@
+"""One swimmer, marched in time and observed: `Simulation`."""

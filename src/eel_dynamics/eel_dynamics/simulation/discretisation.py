@@ -1,0 +1,63 @@
+"""A body in a scene on a grid: its section data at the nodes and the stations, shared by all runs of the same."""
+
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+
+import eel_core
+from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.curvature.tabulated_law import Tabulation
+from eel_dynamics.model.body import Body
+from eel_dynamics.model.grid import Grid
+from eel_dynamics.model.inertia import check_inertia
+from eel_dynamics.model.panels import panels_of
+from eel_dynamics.model.scene import Scene
+from eel_dynamics.model.section_data import SectionData, core_swimmer, nose_of, sections_of
+
+
+class GridSettings(NamedTuple):
+    """Points per body length, the kinks of the drag that are integrated exactly, and the knots [m] of a law."""
+
+    resolution: float
+    kinks: str
+    knots: tuple[float, ...]
+
+    @staticmethod
+    def of(accuracy: Accuracy, waves: float, knots: tuple[float, ...]) -> "GridSettings":
+        """Of a grid that an `accuracy` needs for `waves` on the body and the `knots` [m] of a law."""
+        return GridSettings(accuracy.points_per_length(waves), accuracy.kinks, knots)
+
+    def at_least(self, other: "GridSettings") -> "GridSettings":
+        """These, where they are fine enough for `other`; else those of `other`, and no coarser than these."""
+        resolution = max(self.resolution, other.resolution)
+        fine_enough = resolution <= self.resolution * (1.0 + 1e-9) and set(other.knots) <= set(self.knots)
+        return self if fine_enough and self.kinks == other.kinks else other._replace(resolution=resolution)
+
+
+class Discretisation(NamedTuple):
+    """A body in a scene on a grid. It never changes."""
+
+    grid: Grid
+    sections: SectionData  # at the nodes
+    swimmer: eel_core.Swimmer  # all of it, for the compiled mechanics
+    mass: float  # kg, of the body
+    tabulation: Tabulation
+
+    def __deepcopy__(self, memo: dict) -> "Discretisation":
+        return self
+
+
+@lru_cache(maxsize=256)
+def discretise(body: Body, scene: Scene, settings: GridSettings, stations: bytes) -> Discretisation:
+    """Tabulate `body` in `scene` on a grid of such `settings`, and at the `stations` (the bytes of the array of their X
+    [m]). `ValueError` for a body without inertia in some direction."""
+    x = np.frombuffer(stations)
+    grid = Grid.of(panels_of(body, settings.resolution, settings.knots, scene.internal_wrench or scene.ledger))
+    sections = sections_of(body, scene, grid.x)
+    check_inertia(grid, sections, nose_of(body, scene)[0], body.length, scene.planar)
+    nodes_before = np.searchsorted(grid.x, x, side="right")
+    base = np.where(nodes_before > 0, grid.x[nodes_before - 1], 0.0)
+    swimmer = core_swimmer(body, scene, grid, sections, x, settings.kinks)
+    tabulation = Tabulation(grid.x, grid.previous, x, base)
+    return Discretisation(grid, sections, swimmer, float(grid.weight @ sections.mass), tabulation)

@@ -1,0 +1,231 @@
+"""The march in time of a swimmer under a law: the grid follows the law's needs, the steps its breakpoints."""
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+from eel_gaits.law import Law
+
+import eel_core
+from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.curvature.curvature_samples import CurvatureSample
+from eel_dynamics.curvature.law_follower import LawFollower
+from eel_dynamics.simulation.discretisation import Discretisation, GridSettings
+from eel_dynamics.simulation.observations import Observations
+from eel_dynamics.simulation.sample_check import first_bad_sample
+from eel_dynamics.simulation.simulation_setup import MotionNeeds, ShapeNeeds, SimulationSetup
+from eel_dynamics.simulation.step_bounds import step_bounds_of
+from eel_dynamics.simulation.stopping import SimulationStopped, not_begun, remedy, stopped_by
+
+MUCH_FINER = 1.5  # times the resolution that is needed: such a grid gives way to a coarser one
+MARCHED, SINGULAR, UNFINISHED = (eel_core.STATUSES.index(name) for name in ("marched", "singular", "unfinished"))
+
+
+class LawDrivenMarch:
+    """Marches from the initial state of a `setup` on, with the settings of an `accuracy`, on a grid of such `settings`,
+    under the law of the `follower` that is made for it (`law`, from `origin` [s] on; None: straight).
+
+    `SimulationStopped` where the initial state has no finite energy.
+    """
+
+    def __init__(self, setup: SimulationSetup, accuracy: Accuracy, settings: GridSettings, law=None, origin=0.0):
+        self._setup, self.settings = setup, settings
+        self.accuracy, self.discretisation, self.time = accuracy, setup.discretise(settings), 0.0
+        self.follower = LawFollower(self.discretisation.tabulation, setup.default_transition, law, origin)
+        self.tabulated_law, self._bounds = self.follower.tabulated_law, self._step_bounds()
+        self._march = eel_core.March(self.discretisation.swimmer, *self._method)
+        self._hand_over_law(smoothly=False)
+        position, orientation, _ = setup.initial_state
+        self.kinetic_at_start = self._march.start(position, orientation, setup.initial_twist)
+        if not np.isfinite(self.kinetic_at_start):
+            raise SimulationStopped(0.0, "kinetic energy", self.kinetic_at_start, "start slower")
+
+    # -- law, accuracy and grid
+
+    def adopt(self, law: Law, origin: float, transition: float, needs: MotionNeeds, last: MotionNeeds):
+        """Follow `law`, whose own t = 0 lies at `origin` [s], from now on; blend over `transition` [s]. The settings
+        are for its `needs` and those of the `last` law."""
+        accuracy = self._setup.accuracy_for(needs.in_blend(last))
+        self.refine(accuracy, needs.shape)
+        self.follower.adopt(law, origin=origin, time=self.time, transition=transition)
+        self.follow(accuracy)
+
+    def add_sample(self, sample: CurvatureSample, needs: MotionNeeds):
+        """One sample of a controller more; the settings are for the `needs`. `ValueError` for a sample that comes too
+        late, or twice."""
+        accuracy = self._setup.accuracy_for(needs)
+        if accuracy != self.accuracy:
+            self.refine(accuracy, ShapeNeeds(needs.shape.waves, self.settings.knots))
+            self.follow(accuracy)
+        self.follower.add(sample)
+
+    def follow(self, accuracy: Accuracy | None = None, smoothly: bool = False):
+        """Go on under the follower's present law, with another `accuracy` if one is given; the next step begins anew,
+        unless the motion goes on `smoothly`."""
+        self._go_on(self.discretisation, self.accuracy if accuracy is None else accuracy, smoothly)
+
+    def refine(self, accuracy: Accuracy, needs: ShapeNeeds):
+        """Have a grid that is fine enough for the `needs` at an `accuracy`; the head's motion goes on as it is."""
+        settings = self.settings.at_least(GridSettings.of(accuracy, *needs))
+        if settings is not self.settings:
+            self._change_grid(settings, accuracy)
+
+    def fit(self, needs: ShapeNeeds):
+        """Have a grid that is fine enough for the `needs`, and, once no finer motion is left, not much finer."""
+        wanted = GridSettings.of(self.accuracy, *needs)
+        if self.settings.resolution > MUCH_FINER * wanted.resolution and not self.follower.blending:
+            self._change_grid(wanted, self.accuracy)
+        else:
+            self.refine(self.accuracy, needs)
+
+    def _fit_samples(self, samples: list[CurvatureSample]):
+        """Have a grid for `samples` of a controller; in few sizes, for each is kept."""
+        waves = max(sample.waves for sample in samples)
+        self.fit(ShapeNeeds(2.0 ** math.ceil(math.log2(max(1.0, waves)))))
+
+    def _change_grid(self, settings: GridSettings, accuracy: Accuracy):
+        old, twist = self.discretisation.grid, self._twist()
+        self.settings, discretisation = settings, self._setup.discretise(settings)
+        rows, first, _ = old.rows_at(discretisation.tabulation.x, "value")
+
+        def values(fields):
+            return sum(
+                rows[:, j] * fields[..., np.minimum(first + j, len(old.x) - 1).astype(np.int64)]
+                for j in range(rows.shape[1])
+            )
+
+        self.follower.move(discretisation.tabulation, values)
+        self._go_on(discretisation, accuracy)
+        self._march.set_twist(twist)
+
+    def _go_on(self, discretisation: Discretisation, accuracy: Accuracy, smoothly: bool = False):
+        changed = discretisation is not self.discretisation or accuracy != self.accuracy
+        self.discretisation, self.accuracy, self.tabulated_law = discretisation, accuracy, self.follower.tabulated_law
+        if changed:
+            self._march.change(discretisation.swimmer, *self._method)
+        self._bounds = self._step_bounds()
+        self._hand_over_law(smoothly)
+
+    def _hand_over_law(self, smoothly: bool):
+        ledger, current = bool(self._setup.scene.ledger), self._setup.current
+        self._march.follow(self.tabulated_law, self.follower.breakpoints, self._bounds, ledger, current, smoothly)
+
+    @property
+    def _method(self) -> tuple[str, int, bool]:
+        return self.accuracy.method, self.accuracy.order, bool(self._setup.scene.planar)
+
+    def _step_bounds(self) -> eel_core.StepBounds:
+        setup = self._setup
+        return step_bounds_of(
+            accuracy=self.accuracy,
+            scene=setup.scene,
+            follower=self.follower,
+            discretisation=self.discretisation,
+            length=setup.body.length,
+            scale=setup.time_scale,
+            most_evaluations=setup.most_evaluations,
+        )
+
+    # -- march
+
+    def advance(self, time: float, interrupted: Callable[[], bool] | None) -> bool:
+        """As `Simulation.advance`."""
+        while True:
+            self.follower.pass_event(self.time, self._fit_samples)
+            if self.follower.tabulated_law is not self.tabulated_law:
+                self.follow()
+            event = self.follower.next_event(self.time)
+            if not self._march_to(min(time, event), interrupted):
+                return False
+            if time <= event:
+                break
+        self.follower.end_blend(self.time)
+        if self.follower.tabulated_law is not self.tabulated_law:
+            self.follow(smoothly=True)
+            if not self.follower.sampled and self.follower.law is not None:
+                self.fit(self._setup.shape_needs(self.follower.law))
+        return True
+
+    def _march_to(self, time: float, interrupted) -> bool:
+        while (status := self._march.advance(time)) == UNFINISHED:
+            if interrupted is not None and interrupted():
+                self.time = self._march.time
+                return False
+        self.time = self._march.time
+        if status != MARCHED:
+            raise self._stopped(status)
+        return True
+
+    def _stopped(self, status: int) -> SimulationStopped:
+        return stopped_by(status, self.time, self._bounds, self.accuracy)
+
+    # -- observe
+
+    def observe(self, out: Observations, wrench: bool, load: bool):
+        """Write what the present instant shows into `out`."""
+        if not self._march.observe(out.whole, wrench, load):
+            raise self._stopped(SINGULAR)
+
+    def record(self, times, out: Observations, works, wrench: bool, load: bool, look) -> tuple:
+        """As `Simulation.record_into`."""
+        done, status = 0, UNFINISHED
+        while status == UNFINISHED:
+            done, status = self._march.record(times, done, out.whole, works, bool(wrench), bool(load))
+            if look is not None and status == UNFINISHED:
+                look(self._march.time)
+        failure = first_bad_sample(out, works, done, self.kinetic_at_start, self._energy_floor)
+        if failure:
+            done, quantity, value = failure
+        if done:
+            self.time = float(times[done - 1])
+        if failure:
+            return done, SimulationStopped(self.time, quantity, value, remedy(self.accuracy))
+        return done, None if status == MARCHED else self._stopped(status)
+
+    @property
+    def _energy_floor(self) -> float:
+        """As `first_bad_sample` has it; infinite where steps are chosen by their error, which is a check by itself."""
+        checked = self._setup.scene.ledger and self.accuracy.method == "classical"
+        return self._bounds.momentum_floor**2 / self.discretisation.mass if checked else np.inf
+
+    def _twist(self) -> np.ndarray:
+        """Twist (6,) of the head relative to the water, in its axes, of the present state."""
+        try:
+            return np.array(self._march.twist())
+        except ValueError:
+            raise self._stopped(SINGULAR) from None
+
+    @property
+    def state(self) -> np.ndarray:
+        """As `Simulation.state`."""
+        return np.array(self._march.state)
+
+    @property
+    def works(self) -> np.ndarray:
+        """As `Simulation.works`."""
+        return np.array(self._march.works)
+
+    @property
+    def counts(self) -> tuple[int, int, int]:
+        """As `Simulation.evaluations`."""
+        return self._march.counts
+
+    @property
+    def memory(self) -> int:
+        """As `Simulation.memory`."""
+        return self._march.memory
+
+
+def march_from_start(
+    setup: SimulationSetup, needs: MotionNeeds, law: Law | None, origin: float = 0.0, grid: GridSettings | None = None
+) -> LawDrivenMarch:
+    """A march from the initial state under `law` with the settings that its `needs` ask for, on the `grid` or a finer
+    one. `ValueError` where the law cannot be begun."""
+    accuracy = setup.accuracy_for(needs)
+    wanted = GridSettings.of(accuracy, *needs.shape)
+    settings = wanted if grid is None else grid.at_least(wanted)
+    try:
+        with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is reported
+            return LawDrivenMarch(setup, accuracy, settings, law, origin)
+    except SimulationStopped as stopped:
+        raise stopped if law is None else not_begun(law, stopped) from None

@@ -1,0 +1,74 @@
+"""The water's wrench on the body for a prescribed motion of the head: eq. (61) with the resistive and nose loads."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from eel_gaits.law import Law
+from eel_gaits.quantity import is_finite
+from eel_gaits.wording import shown
+
+import eel_core
+from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.model.arguments import checked_row
+from eel_dynamics.model.body import Body
+from eel_dynamics.model.scene import Scene
+from eel_dynamics.model.section_data import core_swimmer, nose_of
+from eel_dynamics.simulation.simulation import Simulation
+
+FINE = Accuracy(name="prescribed", resolution=100.0)
+
+
+@dataclass(frozen=True)
+class HydrodynamicWrench:
+    """Wrenches (torque, force) (6,) [N m, N] of the water on the body, about the head, in its axes. `numpy.asarray`
+    gives the sum of the parts."""
+
+    inertia: np.ndarray  # (6,) - d/dt of the water's momentum along the body
+    wake: np.ndarray  # (6,) momentum and pressure through the plane of the tail
+    resistive: np.ndarray  # (6,) drag along the body
+    nose: np.ndarray  # (6,) added mass and drag of the nose
+
+    @property
+    def total(self) -> np.ndarray:
+        """(6,) sum of the parts."""
+        return self.inertia + self.wake + self.resistive + self.nose
+
+    @property
+    def torque(self) -> np.ndarray:
+        """(3,) N m, of the sum."""
+        return self.total[:3]
+
+    @property
+    def force(self) -> np.ndarray:
+        """(3,) N, of the sum."""
+        return self.total[3:]
+
+    def __array__(self, dtype=None, copy=None):
+        return np.array(self.total, dtype=dtype)
+
+
+def hydrodynamic_wrench(
+    body: Body, law: Law, time: float, twist, twist_rate, scene: Scene | None = None
+) -> HydrodynamicWrench:
+    """The water's wrench on `body` bent by `law` at `time` [s], its head moving with `twist` (6,) = (Omega, V) [rad/s,
+    m/s] and `twist_rate` (6,) = (Omegadot, Vdot), the rates of these components in the head's axes.
+
+    A current of the scene is taken along the head's axes (head and world coincide). `ValueError` names what does not
+    fit.
+    """
+    twist, twist_rate = checked_row("twist", twist, 6), checked_row("twist_rate", twist_rate, 6)
+    if not is_finite(time):
+        raise ValueError(f"time must be finite, got {shown(time)} s")
+    simulation = Simulation(body=body, scene=scene, accuracy=FINE, stations=2, law=law)
+    scene, here, time = simulation.scene, simulation.discretisation, float(time)
+    relative, acceleration = twist.copy(), twist_rate.copy()
+    relative[3:] -= scene.current
+    acceleration[3:] += np.cross(twist[:3], twist[3:])
+    arguments = scene, here.grid, here.sections.of_water(), simulation.x, simulation.accuracy.kinks
+    water = eel_core.Instant(core_swimmer(simulation.body, *arguments))
+    inertia = np.array(water.momentum_taken(simulation.tabulated_law, time, relative, acceleration))
+    wake, resistive = np.array(eel_core.Instant(here.swimmer).loads(simulation.tabulated_law, time, relative))
+    nose_mass, nose_drag = nose_of(simulation.body, scene)
+    nose = np.zeros(6)
+    nose[3] = -nose_mass * acceleration[3] - nose_drag * relative[3] * abs(relative[3])
+    return HydrodynamicWrench(inertia=-inertia, wake=wake, resistive=resistive, nose=nose)

@@ -1,0 +1,240 @@
+"""A swimmer in water, marched in time and observed: the algorithm of section 7.1 of Boyer, Porez and Leroyer (2010)."""
+
+import math
+import time as clock
+from collections.abc import Callable
+from functools import cache
+
+import numpy as np
+from eel_gaits.gaits import falling, straight
+from eel_gaits.law import Law
+from eel_gaits.quantity import is_finite
+from eel_gaits.wording import shown
+
+import eel_core
+from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.curvature.curvature_samples import CurvatureSample, check_points
+from eel_dynamics.model.body import Body
+from eel_dynamics.model.scene import Scene
+from eel_dynamics.simulation.discretisation import Discretisation, GridSettings
+from eel_dynamics.simulation.law_driven_march import march_from_start
+from eel_dynamics.simulation.observations import Observations, empty_observations
+from eel_dynamics.simulation.simulation_setup import SimulationSetup
+from eel_dynamics.simulation.snapshot import Snapshot
+from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
+from eel_dynamics.simulation.stopping import SimulationStopped
+
+
+class Simulation:
+    """One swimmer, from its initial state on. Adopt a law (or add samples), advance, observe.
+
+    body, scene: what swims in what. accuracy: preset, target relative error, or `Accuracy`. stations: how many, or
+    their X (M,) [m]. position [m], orientation (x y z w, world from head), twist ((Omega, V) [rad/s, m/s], head's
+    axes): the initial state, in the library's axes. default_transition [s]: of blends where a law gives none. law: the
+    first to adopt. horizon [s]: how long a swim a target of accuracy is for, by default however long.
+    most_evaluations: of the head's dynamics by simulated second; what takes more is refused, or stopped.
+    `ValueError` names the argument that does not fit.
+    """
+
+    def __init__(
+        self,
+        body: Body | None = None,
+        scene: Scene | None = None,
+        accuracy: "str | float | Accuracy" = "standard",
+        stations=51,
+        position=(0.0, 0.0, 0.0),
+        orientation=(0.0, 0.0, 0.0, 1.0),
+        twist=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+        default_transition: float = 1.0,
+        law: Law | None = None,
+        horizon: float = math.inf,
+        most_evaluations: float = MOST_EVALUATIONS,
+    ):
+        self._setup = setup = SimulationSetup.of(
+            body=body,
+            scene=scene,
+            accuracy=accuracy,
+            stations=stations,
+            initial_state=(position, orientation, twist),
+            default_transition=default_transition,
+            law=law,
+            horizon=horizon,
+            most_evaluations=most_evaluations,
+            swim_time=swim_time,
+        )
+        self.body, self.scene, self.x = setup.body, setup.scene, setup.x
+        self._needs = setup.first_needs()
+        self._march = march_from_start(setup, self._needs, law)
+        self.ready, self._started = law is not None, False
+
+    @property
+    def time(self) -> float:
+        """Present time [s]."""
+        return self._march.time
+
+    @property
+    def state(self) -> np.ndarray:
+        """(13,) position, orientation, momentum about the head, in the world's axes."""
+        return self._march.state
+
+    @property
+    def accuracy(self) -> Accuracy:
+        """The settings in force."""
+        return self._march.accuracy
+
+    @property
+    def grid(self):
+        """The nodes along the body (`quadrature.Grid`)."""
+        return self._march.discretisation.grid
+
+    @property
+    def discretisation(self) -> Discretisation:
+        """Body and scene on the grid."""
+        return self._march.discretisation
+
+    # -- law and samples
+
+    @property
+    def law(self) -> Law | None:
+        """The law in force, or the last one before a controller took over."""
+        return self._march.follower.law
+
+    @property
+    def tabulated_law(self) -> eel_core.Law:
+        """What drives the body, on the grid."""
+        return self._march.tabulated_law
+
+    @property
+    def samples_until(self) -> float | None:
+        """Last instant [s] of a controller's samples, or None where there are none."""
+        return self._march.follower.samples.end
+
+    @property
+    def sampled(self) -> bool:
+        """A controller's samples drive the shape at present."""
+        return self._march.follower.sampled
+
+    @property
+    def resting(self) -> bool:
+        """A controller's samples have run out: the shape comes to rest."""
+        return self._march.follower.resting
+
+    def adopt(self, law: Law, origin: float = 0.0, transition: float | None = None):
+        """Follow `law` from the present time on; `origin` [s] is the simulation time of its own t = 0.
+
+        The first law, before the start, needs no blend; a later one takes over during `transition` [s], or the law's
+        own, or the default. `ValueError` for a law that the scene does not allow.
+        """
+        needs = self._setup.motion_needs(law, self._needs.plane)
+        if not is_finite(origin):
+            raise ValueError(f"law origin must be finite, got {shown(origin)} s")
+        blend = self._setup.transition_to(law, transition)
+        if self._started:
+            self._march.adopt(law, float(origin), blend, needs, self._needs)
+        else:
+            self._march = march_from_start(self._setup, needs, law, float(origin), self._march.settings)
+        self._needs, self.ready = needs, True
+
+    def add_samples(self, time, x, pitch, pitch_rate, pitch_accel, yaw, yaw_rate, yaw_accel):
+        """One instant of a controller: curvature [rad/m], its rate and acceleration at the points `x` [m], `time` [s]
+        ahead.
+
+        Natural cubic splines in X; between instants the quintic that meets value, rate and acceleration at both. It
+        takes over as soon as two instants bracket the present. `ValueError` names what does not fit.
+        """
+        check_points(len(x))
+        self._march.follower.samples.check_space(len(x))
+        rows = pitch, pitch_rate, pitch_accel, yaw, yaw_rate, yaw_accel
+        length, planar = self.body.length, self.scene.planar
+        sample = CurvatureSample.checked(time, x, rows, length=length, planar=planar, now=self.time)
+        self._needs = self._needs.with_samples()
+        self._march.add_sample(sample, self._needs)
+        self.ready = True
+
+    # -- march
+
+    def advance(self, time: float, interrupted: Callable[[], bool] | None = None) -> bool:
+        """March to `time` [s]; whether it was reached. Raises `SimulationStopped` where it cannot; the state stays the
+        last good one.
+
+        interrupted(): asked every few milliseconds. Once it is true the march ends where it has come to, and another
+        `advance` goes on as if nothing had been.
+        """
+        if not self.ready:
+            raise RuntimeError("no law has been adopted")
+        if not is_finite(time) or time < self.time:
+            raise ValueError(f"time must be finite and >= the present {self.time} s, got {shown(time)}")
+        self._started = True
+        return self._march.advance(float(time), interrupted)
+
+    def reset(self):
+        """State and time to the start; the last law kept, with its own t = 0 at 0."""
+        law, setup = self.law, self._setup
+        self._needs = setup.motion_needs(law, self._needs.plane)
+        grid = GridSettings.of(self.accuracy, *self._needs.shape)  # it may be finer than needed, for samples
+        self._march = march_from_start(setup, self._needs, law, grid=grid)
+        self.ready, self._started = law is not None, False
+
+    # -- observe
+
+    def observe(self, wrench: bool = True, load: bool = True) -> Snapshot:
+        """What the present instant shows; `wrench` and `load` ask for the internal wrench and the water's load along
+        the body."""
+        wrench, load = bool(wrench and self.scene.internal_wrench), bool(load)
+        out = empty_observations(1, len(self.x), wrench, load)
+        self._march.observe(out, wrench, load)
+        return Snapshot.of(out, self.time, self.x, self.works if self.scene.ledger else None, self.kinetic_at_start)
+
+    def record(
+        self, times: np.ndarray, wrench: bool, load: bool, look: Callable[[float], None] | None = None
+    ) -> tuple[Observations, np.ndarray, int, SimulationStopped | None]:
+        """March through `times` (T,) [s] under the law in force, observing each: the observations, the works (T, 4) [J]
+        of actuators, wake, nose and drag, how many instants are good, and what stopped it, if anything did; look(time
+        [s]) is called every few milliseconds. Behind a bad instant it must be reset."""
+        out, works = empty_observations(len(times), len(self.x), wrench, load), np.zeros((len(times), 4))
+        return out, works, *self.record_into(np.array(times, dtype=float), out, works, wrench, load, look)
+
+    def record_into(
+        self, times, out: Observations, works, wrench: bool, load: bool, look=None
+    ) -> tuple[int, SimulationStopped | None]:
+        """As `record`, into the space of `out` and `works`."""
+        self._started = True
+        return self._march.record(times, out, works, wrench, load, look)
+
+    @property
+    def kinetic_at_start(self) -> float:
+        """Kinetic energy [J] of body and water in the initial state."""
+        return self._march.kinetic_at_start
+
+    @property
+    def works(self) -> np.ndarray:
+        """(4,) J of actuators, wake, nose and drag since the start."""
+        return self._march.works
+
+    @property
+    def evaluations(self) -> tuple[int, int, int]:
+        """Steps, rejected steps and evaluations of the head's dynamics so far."""
+        return self._march.counts
+
+    @property
+    def memory(self) -> int:
+        """Bytes that an evaluation reads and writes."""
+        return self._march.memory
+
+
+@cache
+def swim_time(scene: Scene, target: float) -> float:
+    """Wall time [s] by simulated second of the falling gait (straight in the plane) at a `target` in `scene`, the least
+    of some swims of two seconds with samples every 0.05 s."""
+    law = straight() if scene.planar else falling()
+    settings = Accuracy.of(target).in_scene(scene).as_it_is()
+    duration, best = 2.0, math.inf
+    for repeat in range(4):  # the first fills caches
+        start = clock.perf_counter()
+        simulation = Simulation(scene=scene, accuracy=settings, law=law)
+        for sample in range(1, 41):
+            simulation.advance(duration * sample / 40)
+            simulation.observe(wrench=scene.internal_wrench, load=False)
+        if repeat:
+            best = min(best, (clock.perf_counter() - start) / duration)
+    return best

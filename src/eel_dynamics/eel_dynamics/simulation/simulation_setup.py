@@ -1,0 +1,180 @@
+"""The set-up of a simulation: its arguments, checked, and what they mean for accuracy and grid."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from eel_gaits.law import Law
+from eel_gaits.quantity import is_finite
+from eel_gaits.wording import shown
+
+from eel_dynamics.accuracy.accuracy import Accuracy, within_budget
+from eel_dynamics.accuracy.budget import Budget
+from eel_dynamics.curvature.difficulty import NOMINAL, Difficulty, difficulty_of
+from eel_dynamics.curvature.law_waves import check_law, knots_of_law
+from eel_dynamics.model.arguments import (
+    check_planar,
+    check_planar_law,
+    checked_instance,
+    checked_number,
+    checked_quaternion,
+    checked_row,
+    checked_stations,
+)
+from eel_dynamics.model.body import Body
+from eel_dynamics.model.initial_state import InitialState, starts_fast, stays_in_plane, time_scale
+from eel_dynamics.model.scene import Scene
+from eel_dynamics.simulation.discretisation import Discretisation, GridSettings, discretise
+from eel_dynamics.simulation.step_bounds import check_cost
+
+
+class ShapeNeeds(NamedTuple):
+    """What a curvature along the body needs of a grid: waves on the body, and the knots [m] of splines."""
+
+    waves: float = 1.0
+    knots: tuple[float, ...] = ()
+
+
+class MotionNeeds(NamedTuple):
+    """What a swim needs of the accuracy's settings."""
+
+    plane: bool  # the motion stays in a plane
+    shape: ShapeNeeds
+    difficulty: Difficulty
+
+    def in_blend(self, last: "MotionNeeds") -> "MotionNeeds":
+        """These, while the `last` law's motion dies out; the law after this one need not care for the last."""
+        shape = self.shape._replace(waves=max(last.shape.waves, self.shape.waves))
+        return MotionNeeds(self.plane, shape, last.difficulty.at_least(self.difficulty))
+
+    def with_samples(self) -> "MotionNeeds":
+        """These, where a controller may lead the body anywhere."""
+        return MotionNeeds(False, self.shape, self.difficulty.at_least(NOMINAL))
+
+
+@dataclass(frozen=True)
+class SimulationSetup:
+    """What does not change during a simulation, nor by a reset. `of` checks arguments."""
+
+    body: Body
+    scene: Scene
+    accuracy: Accuracy | Budget  # as it was asked for
+    x: np.ndarray  # (M,) m, stations
+    initial_state: InitialState
+    default_transition: float  # s
+    horizon: float  # s
+    most_evaluations: float  # by simulated second
+    law: Law | None  # the first
+    swim_time: Callable[[Scene, float], float]  # s of wall time by simulated second, of a scene and a target
+
+    @staticmethod
+    def of(
+        *,
+        body: Body | None,
+        scene: Scene | None,
+        accuracy,
+        stations,
+        initial_state: tuple,
+        default_transition: float,
+        law: Law | None,
+        horizon: float,
+        most_evaluations: float,
+        swim_time: Callable[[Scene, float], float],
+    ) -> "SimulationSetup":
+        """From the arguments of `Simulation`; initial_state: (position, orientation, twist). `ValueError` names the one
+        that does not fit."""
+        body = Body.boyer2010() if body is None else checked_instance("body", body, Body)
+        scene = Scene() if scene is None else checked_instance("scene", scene, Scene)
+        accuracy, x = Accuracy.of(accuracy), checked_stations(stations, body.length)
+        position, orientation, twist = initial_state
+        start = InitialState(
+            checked_row("position", position, 3),
+            checked_quaternion("orientation", orientation),
+            checked_row("twist", twist, 6),
+        )
+        if scene.planar:
+            check_planar(*start)
+        if not (is_finite(default_transition) and default_transition > 0.0):
+            raise ValueError(f"default_transition must be finite and > 0 s, got {shown(default_transition)}")
+        if not (horizon == math.inf or is_finite(horizon)) or horizon < 0.0:
+            raise ValueError(f"horizon must be >= 0 s, got {shown(horizon)}")
+        most_evaluations = checked_number("most_evaluations", most_evaluations, "per simulated second")
+        transition, horizon = float(default_transition), float(horizon)
+        return SimulationSetup(body, scene, accuracy, x, start, transition, horizon, most_evaluations, law, swim_time)
+
+    def __deepcopy__(self, memo: dict) -> "SimulationSetup":
+        return self
+
+    @cached_property
+    def current(self) -> np.ndarray:
+        """(3,) m/s, of the water, world."""
+        return np.array(self.scene.current)
+
+    @cached_property
+    def initial_twist(self) -> np.ndarray:
+        """(6,) rad/s, m/s, of the head relative to the water, head's axes."""
+        return self.initial_state.in_water(self.current)
+
+    @cached_property
+    def time_scale(self) -> float:
+        """s, of the initial velocity."""
+        return time_scale(self.initial_twist, self.body.length)
+
+    @cached_property
+    def starts_fast(self) -> bool:
+        """The initial velocity is large compared with the swimming speed."""
+        return starts_fast(self.law, self.time_scale)
+
+    def shape_needs(self, law: Law | None) -> ShapeNeeds:
+        """What `law` needs of a grid. `ValueError` for one that the scene or the limit of evaluations does not
+        allow."""
+        if law is None:
+            return ShapeNeeds()
+        checked_instance("law", law, Law)
+        if self.scene.planar:
+            check_planar_law(law)
+        check_cost(law, self.most_evaluations)
+        return ShapeNeeds(check_law(law, self.body.length), knots_of_law(law))
+
+    def first_needs(self) -> MotionNeeds:
+        """What a swim by the first law, from the initial state on, needs."""
+        shape = self.shape_needs(self.law)
+        plane = stays_in_plane(self.law, self.initial_twist) and not self.starts_fast
+        return MotionNeeds(plane, shape, self._difficulty(self.law))
+
+    def motion_needs(self, law: Law | None, plane: bool) -> MotionNeeds:
+        """What a swim by `law` needs whose head moved in a `plane`, or not, before. `ValueError` as `shape_needs`."""
+        shape = self.shape_needs(law)
+        return MotionNeeds(plane and law is not None and law.in_plane, shape, self._difficulty(law))
+
+    def transition_to(self, law: Law, transition: float | None) -> float:
+        """Time [s] of the blend to `law`: `transition`, the law's own, or the default."""
+        blend = transition or law.transition or self.default_transition
+        if not (is_finite(blend) and blend > 0.0):
+            raise ValueError(f"transition must be finite and > 0 s, got {shown(transition)}")
+        return float(blend)
+
+    def _difficulty(self, law: Law | None) -> Difficulty:
+        """Of a swim by `law` until the horizon; at least nominal where the head moves from the start, or no law is
+        known."""
+        if law is None:
+            return NOMINAL
+        difficulty = difficulty_of(law, self.body.length, self.horizon)
+        return difficulty.at_least(NOMINAL) if self.initial_twist.any() else difficulty
+
+    def accuracy_for(self, needs: MotionNeeds) -> Accuracy:
+        """The settings that deliver the accuracy in a swim of such `needs`."""
+        if isinstance(self.accuracy, Budget):
+            accuracy = within_budget(self.accuracy, self.scene, needs.plane, needs.difficulty, self.swim_time)
+        else:
+            accuracy = self.accuracy.in_scene(self.scene, needs.plane, needs.difficulty)
+        if self.starts_fast:
+            accuracy = accuracy.for_fast_start()
+        return accuracy.for_waves(needs.shape.waves)
+
+    def discretise(self, settings: GridSettings) -> Discretisation:
+        """Body, scene and stations on a grid of such `settings`."""
+        return discretise(self.body, self.scene, settings, self.x.tobytes())

@@ -1,0 +1,49 @@
+"""Why a march could not go on, and what to change."""
+
+import numpy as np
+from eel_gaits.law import Law
+from eel_gaits.wording import shown
+
+import eel_core
+from eel_dynamics.accuracy.accuracy import Accuracy
+
+
+class SimulationStopped(RuntimeError):
+    """The march could not go on. `time` [s], `quantity` and `value` that failed, `hint`: what to change."""
+
+    def __init__(self, time: float, quantity: str, value: float, hint: str):
+        super().__init__(f"stopped at t = {time:.6g} s: {quantity} ({value:.3g}); {hint}")
+        self.time, self.quantity, self.value, self.hint = time, quantity, value, hint
+        self.diverged = False  # the steps were too long
+
+
+def stopped_by(status: int, time: float, bounds: eel_core.StepBounds, accuracy: Accuracy) -> SimulationStopped:
+    """What the `status` of a march at an `accuracy`, that stopped at `time` [s] with steps within `bounds`, says
+    in words."""
+    if eel_core.STATUSES[status] == "singular":
+        quantity, value = "inertia of body and water is not positive definite", np.nan
+        return SimulationStopped(time, quantity, value, "check the body's section data")
+    if eel_core.STATUSES[status] == "not_finite":
+        stopped = SimulationStopped(time, "momentum is not finite", np.nan, remedy(accuracy))
+        stopped.diverged = True
+        return stopped
+    if eel_core.STATUSES[status] == "too_many_steps":
+        quantity = "more steps per simulated second than most_evaluations allows"
+        hint = "take a coarser accuracy, a slower or gentler law, or raise most_evaluations"
+        return SimulationStopped(time, quantity, bounds.most_steps, hint)
+    quantity = "step for the wanted accuracy is too small"
+    return SimulationStopped(time, quantity, bounds.smallest, "take a coarser accuracy, or a slower law")
+
+
+def remedy(accuracy: Accuracy) -> str:
+    """What to change where numbers have grown beyond reason."""
+    if accuracy.step is not None:
+        return "take a smaller step, or an accuracy in its place"
+    if accuracy.fixed is not None:
+        return "take the accuracy without fixed steps, or a gentler law"
+    return "take a gentler law, or start slower"
+
+
+def not_begun(law: Law, stopped: SimulationStopped) -> ValueError:
+    """That a swim by `law` cannot begin, for what `stopped` it."""
+    return ValueError(f"law {shown(law.name)} cannot be begun: {stopped.quantity}")

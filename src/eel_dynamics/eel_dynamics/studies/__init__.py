@@ -1,0 +1,1 @@
+"""Studies of many runs, each with a command of its own. They alone import matplotlib and Dask."""

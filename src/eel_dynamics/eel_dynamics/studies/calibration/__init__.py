@@ -1,0 +1,1 @@
+"""The table of accuracy: settings measured to deliver each target."""

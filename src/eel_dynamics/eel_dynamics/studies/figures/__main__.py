@@ -1,0 +1,7 @@
+"""`python -m eel_dynamics.studies.figures`, where the executable `figures` is not on the PATH."""
+
+import sys
+
+from eel_dynamics.studies.figures.command import main
+
+sys.exit(main())

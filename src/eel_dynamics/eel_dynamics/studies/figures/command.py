@@ -1,0 +1,114 @@
+"""`figures`: the paper's figures 5 to 9 from our own runs, and more, with a page that says what they show.
+
+figures                       # into docs/figures
+figures --out out/figures --format png
+"""
+
+from pathlib import Path
+
+from eel_gaits.command_line import Parser, complain
+from eel_gaits.output_file import NotWritten, replacing
+
+from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.model.scene import Scene
+from eel_dynamics.runs.interrupt import leave_on_interrupt
+from eel_dynamics.runs.run import simulate
+from eel_dynamics.studies.figures import corrections, kern_comparison, orders
+from eel_dynamics.studies.figures.notes import page
+from eel_dynamics.studies.figures.style import SETTINGS
+from eel_gaits import straight
+
+SIZES = {  # inches; name of the file
+    "figure5_body": (7.0, 3.6),
+    "figure6_configurations": (9.0, 4.8),
+    "figure7_wrench_along_the_body": (6.4, 5.0),
+    "figure8_wrench_in_time": (6.8, 5.0),
+    "figure9_head_velocity": (6.8, 3.8),
+    "torque_surface": (8.5, 4.4),
+    "head_path": (7.0, 6.2),
+    "power_ledger": (6.8, 5.8),
+    "convergence": (7.6, 3.8),
+}
+FORMATS = ("svg", "png")
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Exit status 0; 1 where a file cannot be written to its end; 2 where the folder cannot be made, matplotlib is
+    missing or input is bad. One line says why."""
+    if arguments is None:
+        leave_on_interrupt()
+    options = _parser().parse_args(arguments)
+    try:
+        import matplotlib  # noqa: F401
+    except ImportError:
+        complain("figures", "matplotlib is missing; install it with: python -m pip install matplotlib")
+        return 2
+    folder = Path(options.out)
+    try:
+        for reading in corrections.READINGS.values():
+            Accuracy.of(options.accuracy).in_scene(Scene(**reading))  # refused before there is a folder
+        folder.mkdir(exist_ok=True)
+        readings = corrections.swim(accuracy=options.accuracy)
+        print(corrections.table_of(readings))
+        control = simulate(straight(), readings[0].run.time[-1], accuracy=options.accuracy)
+        comparison = kern_comparison.compare()
+        print(kern_comparison.table_of(comparison))
+        errors = {
+            rule.__name__: {drag: rule(drag) for drag in (False, True)} for rule in (orders.in_space, orders.in_time)
+        }
+        for path in draw(drawings_of(readings, errors), folder, options.format):
+            print(f"{path}  {path.stat().st_size / 1000.0:.0f} kB")
+        with replacing(folder / "README.md") as draft:
+            draft.write_text(page(readings, control, comparison, errors), encoding="utf-8")
+        print(folder / "README.md")
+    except (ValueError, OSError) as error:
+        complain("figures", error)
+        return 1 if isinstance(error, NotWritten) else 2
+    return 0
+
+
+def draw(drawings: dict, folder: Path, formats=FORMATS):
+    """Draw each of `drawings_of` into `folder`; yields the path of each file."""
+    import matplotlib
+    from matplotlib.figure import Figure
+
+    with matplotlib.rc_context(SETTINGS):
+        for name, fill in drawings.items():
+            figure = Figure(figsize=SIZES[name], layout="constrained")
+            fill(figure)
+            for suffix in formats:
+                path = folder / f"{name}.{suffix}"
+                with replacing(path) as draft:
+                    figure.savefig(draft, metadata={"Date": None} if suffix == "svg" else {"Software": None})
+                yield path
+
+
+def drawings_of(readings, errors) -> dict:
+    """Name of the file: what fills an empty matplotlib figure."""
+    from eel_dynamics.studies.figures import further_drawings, paper_drawings
+
+    runs = {row.label: row.run for row in readings}
+    run, printed = runs[corrections.OWN], runs[corrections.PRINTED]
+    return {
+        "figure5_body": lambda figure: paper_drawings.draw_body(figure, run.body),
+        "figure6_configurations": lambda figure: paper_drawings.draw_configurations(figure, run),
+        "figure7_wrench_along_the_body": lambda figure: paper_drawings.draw_wrench_along_the_body(figure, run, printed),
+        "figure8_wrench_in_time": lambda figure: paper_drawings.draw_wrench_in_time(figure, run, printed),
+        "figure9_head_velocity": lambda figure: paper_drawings.draw_head_velocity(figure, run, printed),
+        "torque_surface": lambda figure: further_drawings.draw_torque_surface(figure, run),
+        "head_path": lambda figure: further_drawings.draw_head_path(figure, run),
+        "power_ledger": lambda figure: further_drawings.draw_ledger(figure, run),
+        "convergence": lambda figure: further_drawings.draw_convergence(figure, errors["in_space"], errors["in_time"]),
+    }
+
+
+def _parser() -> Parser:
+    parser = Parser(
+        prog="figures",
+        description="Draw the paper's figures and more from runs of the falling gait, and write the page that explains "
+        "them; half a minute.",
+    )
+    parser.add_argument("--out", default="docs/figures", metavar="FOLDER", help="where to (docs/figures)")
+    parser.add_argument("--format", nargs="+", choices=FORMATS, default=FORMATS, help="file formats (svg png)")
+    parser.add_argument("--accuracy", default="fine", help="of the runs: a preset or a target relative error (fine)")
+    return parser

@@ -1,0 +1,119 @@
+"""Figures 5 to 9 of the paper: each function fills one empty matplotlib figure, from runs of the falling gait."""
+
+import numpy as np
+
+from eel_dynamics.model.body import Body
+from eel_dynamics.studies.figures.style import AS_PRINTED, BLACK, BLUE, OWN, PALE_BLUE, mark_pitch, plain
+
+FRAME_PERIOD = 0.5  # s, of Fig. 6: 2 frames a second
+INSTANT = 7.0  # s, of Fig. 7
+PLACE = 0.5  # m, of Fig. 8
+SECTIONS = (0.05, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95)  # of the length, drawn in Fig. 5
+
+
+def draw_body(figure, body: Body):
+    """Fig. 5: outlines from the side and from above, and sections in between at their true size."""
+    # points crowd at the nose, where the outline is round
+    x = body.length * np.concatenate((np.linspace(0.0, 0.05**0.5, 60) ** 2, np.linspace(0.05, 1.0, 200)[1:]))
+    side, above, ellipses = figure.subplots(3, 1, sharex=True)
+    for axes, half, name in (
+        (side, body.half_height(x), "from the side\n$X_3$ [m]"),
+        (above, body.half_width(x), "from above\n$X_2$ [m]"),
+    ):
+        axes.fill_between(x, -half, half, facecolor=PALE_BLUE, edgecolor=BLUE, linewidth=1.4)
+        axes.set_ylabel(name)
+    angle = np.linspace(0.0, 2.0 * np.pi, 73)
+    for place in body.length * np.array(SECTIONS):
+        width, height = float(body.half_width(place)), float(body.half_height(place))
+        ellipses.fill(place + width * np.cos(angle), height * np.sin(angle), facecolor=PALE_BLUE, edgecolor=BLUE)
+    ellipses.set_ylabel("sections\n$X_3$ [m]")
+    ellipses.set_xlabel("$X_1$ from nose to tail [m]; each section is drawn at its place, turned towards the reader")
+    for axes in (side, above, ellipses):
+        axes.set_aspect("equal")
+        axes.set_ylim(-0.07, 0.07)
+        axes.set_xlim(-0.03 * body.length, 1.03 * body.length)
+        axes.set_yticks([-0.05, 0.0, 0.05])
+        axes.grid(alpha=0.3)
+
+
+def draw_configurations(figure, run):
+    """Fig. 6: the backbone twice a second, in space, from above and from the side."""
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import Normalize
+
+    figure.set_layout_engine("none")  # axes in space leave no room for what the engine would do
+    space = figure.add_axes((-0.03, 0.14, 0.58, 0.88), projection="3d")
+    above, side = figure.add_axes((0.64, 0.66, 0.35, 0.31)), figure.add_axes((0.64, 0.09, 0.35, 0.48))
+    bar = figure.add_axes((0.09, 0.11, 0.4, 0.025))
+    colours = ScalarMappable(Normalize(run.time[0], run.time[-1]), "cividis")
+    for time in np.arange(run.time[0], run.time[-1] + 1e-9, FRAME_PERIOD):
+        x, y, z = run.backbone[np.argmin(np.abs(run.time - time)), ::2].T
+        line = {"color": colours.to_rgba(time), "linewidth": 1.8, "solid_capstyle": "round"}
+        space.plot(x, y, z, **line)
+        for axes, across in ((above, y), (side, z)):
+            axes.plot(x, across, **line)
+            axes.plot(x[0], across[0], "o", color=line["color"], markersize=3.5)
+    space.set_xlabel("x [m]", labelpad=12)
+    space.set_ylabel("y [m]", labelpad=2)
+    space.set_zlabel("z, up [m]", labelpad=-2)
+    space.set_aspect("equal", adjustable="box")
+    space.view_init(elev=24, azim=-64)
+    space.set_xticks(range(-4, 2))
+    space.set_yticks([0.0, 1.0])
+    space.set_zticks([-2.0, -1.0, 0.0])
+    for axes, name in ((above, "y [m], from above"), (side, "z, up [m], from the side")):
+        axes.set(ylabel=name, xlim=(-4.3, 1.2))
+        axes.set_aspect("equal", adjustable="datalim")
+        axes.grid(alpha=0.3)
+    side.set_xlabel("x [m]; a dot marks the head")
+    figure.colorbar(colours, cax=bar, orientation="horizontal", label="time [s]")
+
+
+def draw_wrench_along_the_body(figure, run, printed):
+    """Fig. 7: N1, C2, C3 against X at t = 7 s."""
+    samples = [int(np.argmin(np.abs(each.time - INSTANT))) for each in (run, printed)]
+    profiles = [
+        {"force": each.force[k], "torque": each.torque[k]} for each, k in zip((run, printed), samples, strict=True)
+    ]
+    _draw_wrench(figure, run.x, profiles, f"$X_1$ from nose to tail [m], at t = {INSTANT:g} s")
+
+
+def draw_wrench_in_time(figure, run, printed):
+    """Fig. 8: N1, C2, C3 against t at X = 0.5 m."""
+    station = int(np.argmin(np.abs(run.x - PLACE)))
+    profiles = [{"force": each.force[:, station], "torque": each.torque[:, station]} for each in (run, printed)]
+    _draw_wrench(figure, run.time, profiles, f"time t [s], at $X_1$ = {PLACE:g} m; grey: the body bends in pitch")
+    mark_pitch(figure.axes)
+
+
+def _draw_wrench(figure, abscissa, profiles, name):
+    """N1, C2, C3, one under the other; `profiles`: force and torque (n, 3) against `abscissa`, ours and as printed."""
+    rows = (
+        ("force", 0, "$N_1$ [N]\n(> 0: tension)"),
+        ("torque", 1, "$C_2$ [N m]\n(pitch)"),
+        ("torque", 2, "$C_3$ [N m]\n(yaw)"),
+    )
+    for axes, (field, column, label) in zip(figure.subplots(3, 1, sharex=True), rows, strict=True):
+        for profile, style in zip(profiles, (OWN, AS_PRINTED), strict=True):
+            axes.plot(abscissa, profile[field][:, column], **style)
+        axes.set_ylabel(label)
+        axes.axhline(0.0, color=BLACK, linewidth=0.5)
+        plain(axes)
+    axes.set_xlabel(name)
+    figure.axes[0].legend(loc="best", ncols=2)
+    figure.align_ylabels()
+
+
+def draw_head_velocity(figure, run, printed):
+    """Fig. 9: V1(0) and Omega1(0) against t."""
+    rows = ((3, "$V_1(0)$ [m/s]\n(< 0: ahead)"), (0, "$\\Omega_1(0)$ [rad/s]\n(roll)"))
+    for axes, (column, label) in zip(figure.subplots(2, 1, sharex=True), rows, strict=True):
+        for each, style in ((run, OWN), (printed, AS_PRINTED)):
+            axes.plot(each.time, each.twist[:, column], **style)
+        axes.set_ylabel(label)
+        axes.axhline(0.0, color=BLACK, linewidth=0.5)
+        plain(axes)
+    axes.set_xlabel("time t [s]; grey: the body bends in pitch")
+    figure.axes[0].legend(loc="upper right")
+    figure.align_ylabels()
+    mark_pitch(figure.axes)

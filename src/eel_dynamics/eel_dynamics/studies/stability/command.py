@@ -1,0 +1,101 @@
+"""`stability`: two numbers of a swim at a time, over more than any swimmer has; long runs, planes, singular bodies.
+
+stability                       # every study; pictures into docs/images
+stability --study drift         # one of them: maps, condition, drift, plane
+stability --page docs/robustness.md --out docs/images
+"""
+
+from pathlib import Path
+
+from eel_gaits.command_line import Parser, complain
+from eel_gaits.output_file import NotWritten, check_output, replacing
+from eel_gaits.wording import shown
+
+from eel_dynamics.runs.interrupt import leave_on_interrupt
+
+BEGIN, END = "<!-- {}: written by `stability` -->", "<!-- end of {} -->"
+STUDIES = "maps", "condition", "drift", "plane"
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Exit status 0; 2 with one line where a folder cannot be written, matplotlib is missing or input is bad."""
+    if arguments is None:
+        leave_on_interrupt()
+    options = _parser().parse_args(arguments)
+    try:
+        import matplotlib
+        from matplotlib.figure import Figure
+
+        from eel_dynamics.studies.figures.style import SETTINGS
+        from eel_dynamics.studies.stability.studies import STUDIES as found
+    except ImportError:
+        complain("stability", "matplotlib is missing; install it with: python -m pip install matplotlib")
+        return 2
+    try:
+        if options.points < 2:
+            raise ValueError(f"points must be >= 2, got {options.points}")
+        if options.page:
+            _check_page(options.page, options.study or STUDIES)
+        folder = Path(options.out)
+        folder.mkdir(exist_ok=True)
+        for name in options.study or STUDIES:
+            study = found[name](options.points)
+            print(f"{study.text}\n")
+            for picture, (_, fill) in study.pictures.items():
+                with matplotlib.rc_context(SETTINGS):
+                    figure = Figure(figsize=(5.6, 4.2), layout="constrained")
+                    fill(figure)
+                    for suffix in ("png", "svg"):
+                        metadata = {"Date": None} if suffix == "svg" else {"Software": None}
+                        with replacing(folder / f"stability_{picture}.{suffix}") as draft:
+                            figure.savefig(draft, metadata=metadata)
+            if options.page:
+                page = Path(options.page)
+                text = with_study(page.read_text(encoding="utf-8"), name, study)
+                with replacing(page) as draft:
+                    draft.write_text(text, encoding="utf-8")
+    except (ValueError, OSError) as error:
+        complain("stability", error)
+        return 1 if isinstance(error, NotWritten) else 2
+    return 0
+
+
+def _check_page(page: str, studies):
+    """`OSError` or `ValueError` for a page that cannot be written, or has no place for one of the `studies`."""
+    check_output("--page", page)
+    text = Path(page).read_text(encoding="utf-8")
+    for name in studies:
+        _around(text, name)
+
+
+def with_study(page: str, name: str, study) -> str:
+    """The page's text with the tables and pictures of the study `name` between its marker lines."""
+    before, first, last, after = _around(page, name)
+    pictures = [f"![{title}](images/stability_{picture}.svg)" for picture, (title, _) in study.pictures.items()]
+    text = "\n".join([study.text, *(["", *pictures] if pictures else [])])
+    return f"{before}{first}\n{text}\n{last}{after}"
+
+
+def _around(page: str, name: str) -> tuple[str, str, str, str]:
+    """The page's text before the study `name`, its marker lines, and the text behind it."""
+    first, last = BEGIN.format(name), END.format(name)
+    before, begin, rest = page.partition(first)
+    _, end, after = rest.partition(last)
+    if not begin or not end:
+        raise ValueError(f"the page must have the lines {shown(first)} and {shown(last)}")
+    return before, first, last, after
+
+
+def _parser() -> Parser:
+    parser = Parser(
+        prog="stability",
+        description="Drive the simulator to the extremes: maps of where a swim is accurate, inaccurate, or stops, the "
+        "condition of the inertia, drift over 100,000 periods, growth out of a plane.",
+    )
+    parser.add_argument(
+        "--study", action="append", choices=STUDIES, metavar="NAME", help=f"one of {', '.join(STUDIES)} (all)"
+    )
+    parser.add_argument("--out", default="docs/images", metavar="FOLDER", help="where to (docs/images)")
+    parser.add_argument("--points", type=int, default=13, help="swims along each side of a map (13)")
+    parser.add_argument("--page", metavar="FILE", help="page whose parts between the marker lines are written anew")
+    return parser

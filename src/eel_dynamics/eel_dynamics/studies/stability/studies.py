@@ -1,0 +1,46 @@
+"""The studies by their names: each gives a text in Markdown and pictures."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from eel_dynamics.studies.stability import condition, drift, plane
+from eel_dynamics.studies.stability.drawing import draw, draw_condition
+from eel_dynamics.studies.stability.maps import maps_of, measure
+from eel_dynamics.studies.stability.report import report
+
+
+@dataclass(frozen=True)
+class Study:
+    """What was found: `text` in Markdown, `pictures` by name: title, and what fills an empty figure."""
+
+    text: str
+    pictures: dict[str, tuple[str, Callable]] = field(default_factory=dict)
+
+
+def maps(points: int) -> Study:
+    """Two numbers of a swim at a time: accurate, inaccurate, or stopped."""
+    found = [measure(item) for item in maps_of(points)]
+    return Study(report(found), {each.map.name: (each.map.title, _drawn(draw, each)) for each in found})
+
+
+def conditions(points: int) -> Study:
+    """Condition of the 6 x 6 matrix, and what becomes of singular bodies."""
+    found = condition.maps_of(points)
+    return Study(condition.table(found), {each.name: (each.title, _drawn(draw_condition, each)) for each in found})
+
+
+def drifts(points: int) -> Study:
+    """What 100,000 periods gather."""
+    return Study(drift.table([drift.drift_of(name, *each) for name, each in drift.swimmers().items()]))
+
+
+def planes(points: int) -> Study:
+    """Whether round-off grows out of the plane of a planar law, and why."""
+    return Study(plane.table())
+
+
+STUDIES = {"maps": maps, "condition": conditions, "drift": drifts, "plane": planes}
+
+
+def _drawn(function, item) -> Callable:
+    return lambda figure: function(figure, item)

@@ -1,0 +1,1 @@
+"""The command `sweep`: a grid of parameters on many processes."""

@@ -1,0 +1,146 @@
+"""`sweep`: swim a grid of parameters on all cores, or on a Dask cluster, into a NetCDF file of labelled arrays.
+
+sweep straight --vary period=0.5:2:16 --vary scene.friction=printed,laminar --out periods.nc
+sweep straight --vary body=boyer2010,kern2006 --vary wavelength=0.6:1.2:7 --scheduler tcp://host:8786 --out waves.nc
+"""
+
+import sys
+import time
+
+import numpy as np
+from eel_gaits.command_line import Parser, complain
+from eel_gaits.output_file import NotWritten
+from eel_gaits.registry import GAITS
+from eel_gaits.wording import shown
+
+from eel_dynamics.accuracy.accuracy import PRESETS
+from eel_dynamics.model.body import NAMED, Body
+from eel_dynamics.runs.command import check_names
+from eel_dynamics.runs.one_line_warnings import one_line_warnings
+from eel_dynamics.studies.sweep.sweep import check_points, sweep
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Exit status 0; 1 where the output cannot be written to its end; 2 for bad input or a missing package; 4 where
+    points could not be computed. One line says why."""
+    options = _parser().parse_args(arguments)
+    with one_line_warnings("sweep"):
+        return _sweep(options)
+
+
+def _sweep(options) -> int:
+    start = time.perf_counter()
+    try:
+        check_names(options.vary + options.set)
+        grid = dict(_axis(text) for text in options.vary)
+        data = sweep(
+            grid,
+            gait=options.gait,
+            numbers=dict(_one(text) for text in options.set),
+            duration=options.duration,
+            body=Body.named(options.body) if options.body in NAMED else Body.from_file(options.body),
+            accuracy=options.accuracy,
+            sample_period=options.sample_period,
+            out=options.out,
+            scheduler=options.scheduler,
+            workers=options.workers,
+            progress=_say_progress if sys.stderr.isatty() else None,
+            overwrite=options.overwrite,
+        )
+    except NotWritten as error:
+        complain("sweep", error)
+        return 1
+    except (ValueError, ImportError, OSError) as error:
+        complain("sweep", error)
+        return 2
+    except MemoryError as error:
+        complain("sweep", f"it does not fit into memory: {error}")
+        return 2
+    except RuntimeError as error:
+        complain("sweep", error)
+        return 4
+    except KeyboardInterrupt:
+        complain("sweep", "interrupted; the same command goes on from here")
+        return 130
+    points = int(np.prod([len(values) for values in grid.values()]))
+    print(f"points                      {points}, of which {int(data.stopped.sum())} stopped")
+    for name, array in data.items():
+        if name not in ("stopped", "error") and bool(array.notnull().any()):
+            unit = array.attrs.get("units", "")
+            unit = "" if unit == "1" else f" {unit}"
+            print(f"{name:<28s}{float(array.min()):.4g} to {float(array.max()):.4g}{unit}")
+    print(f"wall time                   {time.perf_counter() - start:.1f} s")
+    print(f"written to                  {options.out}")
+    return 0
+
+
+def _parser() -> Parser:
+    parser = Parser(
+        prog="sweep",
+        description="Swim every combination of parameters, and keep what each run amounts to in a NetCDF file. Called "
+        "again after an end that was not planned, it goes on where it was.",
+    )
+    parser.add_argument("gait", nargs="?", default="straight", help=f"one of {', '.join(sorted(GAITS))} (straight)")
+    parser.add_argument(
+        "--vary",
+        action="append",
+        required=True,
+        metavar="NAME=VALUES",
+        help="a number of the gait, scene.FIELD, body or accuracy; values a,b,c or start:end:count; may be repeated",
+    )
+    parser.add_argument(
+        "--set", action="append", default=[], metavar="NAME=VALUE", help="a number of the gait; may be repeated"
+    )
+    parser.add_argument("--duration", type=float, default=10.0, help="s (10)")
+    parser.add_argument("--accuracy", default="standard", help=f"{', '.join(PRESETS)}, or a target (standard)")
+    parser.add_argument("--body", default="boyer2010", help=f"{', '.join(NAMED)}, or a file as for simulate")
+    parser.add_argument("--sample-period", type=float, default=0.05, help="s (0.05)")
+    parser.add_argument("--out", required=True, metavar="FILE.nc", help="NetCDF file; parts lie in FILE.nc.parts")
+    parser.add_argument("--overwrite", action="store_true", help="replace what the output holds of another sweep")
+    parser.add_argument(
+        "--scheduler", metavar="ADDRESS", help="of a Dask scheduler; without: processes of this machine"
+    )
+    parser.add_argument("--workers", type=int, metavar="N", help="processes on this machine (one per core)")
+    return parser
+
+
+def _one(text: str) -> tuple:
+    name, values = _axis(text)
+    if len(values) != 1:
+        raise ValueError(f"--set must have one value, got {shown(text)}: --vary takes several")
+    return name, values[0]
+
+
+def _axis(text: str) -> tuple[str, list]:
+    name, equals, values = text.partition("=")
+    if not equals or not name or not values:
+        raise ValueError(f"a parameter must be NAME=VALUES, got {shown(text)}")
+    bounds = values.split(":")
+    if len(bounds) == 3:
+        try:
+            start, end, count = float(bounds[0]), float(bounds[1]), int(bounds[2])
+        except ValueError:
+            raise ValueError(f"{name} must be start:end:count, got {shown(values)}") from None
+        if count < 1:
+            raise ValueError(f"{name} must be start:end:count, count >= 1, got {shown(values)}")
+        check_points(name, count)
+        return name, np.linspace(start, end, count).tolist()
+    return name, [_value(part) for part in values.split(",")]
+
+
+def _value(text: str):
+    words = {"true": True, "on": True, "false": False, "off": False}
+    if text.lower() in words:
+        return words[text.lower()]
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+def _say_progress(done: int, points: int):
+    print(f"\r{done} of {points} points", end="" if done < points else "\n", file=sys.stderr, flush=True)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

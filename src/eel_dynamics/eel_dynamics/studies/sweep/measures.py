@@ -1,0 +1,96 @@
+"""What a sweep keeps of each run: one number per measure, with its unit and its definition."""
+
+import numpy as np
+from eel_gaits.wording import shown
+
+from eel_dynamics.runs.run import Run
+
+
+def _analysed(name: str):
+    """A property of the run's analysis; undefined where the gait has no period or the run is too short for one."""
+
+    def measure(run: Run, analysis):
+        try:
+            return None if analysis is None else getattr(analysis, name)
+        except ValueError:  # the scene has no ledger or no wrench
+            return None
+
+    return measure
+
+
+def _torque(run: Run, analysis):
+    return None if run.torque is None else run.greatest_torque()[0]
+
+
+def _residual(run: Run, analysis):
+    return None if run.energy is None else float(np.max(np.abs(run.energy.residual)))
+
+
+MEASURES = {  # name: (unit, description, function of the run and its analysis)
+    "head_x": ("m", "head at the end, world axes", lambda run, _: run.position[-1, 0]),
+    "head_y": ("m", "head at the end, world axes", lambda run, _: run.position[-1, 1]),
+    "head_z": ("m", "head at the end, world axes", lambda run, _: run.position[-1, 2]),
+    "path_length": ("m", "length of the head's path through the samples", lambda run, _: run.path_length),
+    "mean_speed": ("m/s", "distance of the centre of mass from its start by the time", lambda run, _: run.mean_speed),
+    "cruising_speed": ("m/s", "speed over whole periods of the later half", _analysed("mean_speed")),
+    "stride": ("", "body lengths per period, later half", _analysed("stride")),
+    "slip": ("", "speed by that of the wave along the body, later half", _analysed("slip")),
+    "tail_excursion": ("m", "peak-to-peak excursion of the tail, later half", _analysed("tail_excursion")),
+    "strouhal": ("", "frequency times excursion by speed, later half", _analysed("strouhal")),
+    "reynolds": ("", "speed times length by viscosity, later half", _analysed("reynolds")),
+    "actuator_power": ("W", "mean power of the actuators, later half", _analysed("actuator_power")),
+    "cost_of_transport": (
+        "J/(kg m)",
+        "work of the actuators by mass and way, later half",
+        _analysed("cost_of_transport"),
+    ),
+    "hydromechanical_efficiency": (
+        "",
+        "part of the work not shed into the wake, later half",
+        _analysed("hydromechanical_efficiency"),
+    ),
+    "propulsive_efficiency": (
+        "",
+        "part of the work that overcomes the drag of going ahead, later half",
+        _analysed("propulsive_efficiency"),
+    ),
+    "greatest_torque": ("N m", "greatest internal torque over the run and the body", _torque),
+    "ledger_residual": ("J", "greatest residual of the energy ledger", _residual),
+    "evaluations": ("", "evaluations of the head's dynamics", lambda run, _: run.evaluations),
+}
+
+
+def measures_of(run: Run) -> dict[str, float]:
+    """Every measure of `run`; NaN where it is undefined, or the run does not hold what it needs."""
+    try:
+        analysis = run.analysis()
+    except ValueError:
+        analysis = None
+    found = {name: function(run, analysis) for name, (_, _, function) in MEASURES.items()}
+    return {name: float("nan") if value is None else float(value) for name, value in found.items()}
+
+
+def checked_point(found: dict) -> dict:
+    """What is kept of a point, as plain numbers. `ValueError` that names the measure that is none."""
+    if not isinstance(found.get("error"), str):
+        raise ValueError(f"'error' must be the point's own, a text, and no measure, got {shown(found.get('error'))}")
+    point = {}
+    for name, value in found.items():
+        number = value.item() if hasattr(value, "item") and np.ndim(value) == 0 else value
+        if not isinstance(name, str) or name == "stopped":
+            raise ValueError(f"measure must have a name other than 'stopped', got {shown(name)}")
+        if name != "error" and not isinstance(number, (bool, int, float)):
+            raise ValueError(f"measure {shown(name)} must be a real number, got {shown(value)}")
+        point[name] = number
+    return point
+
+
+def described(name: str) -> dict[str, str]:
+    """Unit and description of a measure, as attributes of a labelled array; none for one that is not ours."""
+    if name not in MEASURES:
+        return {}
+    unit, description, _ = MEASURES[name]
+    return {"units": unit or "1", "long_name": description}
+
+
+__all__ = ["MEASURES", "checked_point", "described", "measures_of"]

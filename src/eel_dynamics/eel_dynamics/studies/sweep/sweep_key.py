@@ -1,0 +1,72 @@
+"""The key of a sweep: a name that changes with anything that the results depend on."""
+
+import hashlib
+import inspect
+import sys
+from pathlib import Path
+
+import numpy as np
+from eel_gaits.wording import shown
+
+import eel_core
+import eel_dynamics
+import eel_gaits
+from eel_dynamics.model.body import Body
+from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
+
+PACKAGES = (Path(eel_gaits.__file__).parent, Path(eel_dynamics.__file__).parent)
+
+
+def key_of(points, duration, sample_period, stations, measure, most_evaluations=MOST_EVALUATIONS) -> str:
+    """The key: of the points, the run's arguments, the measure's code and closure, and this software, its compiled core
+    included."""
+    content = hashlib.sha256(repr((duration, sample_period, most_evaluations)).encode())
+    content.update(np.asarray(stations, dtype=float).tobytes())
+    content.update(_sources())
+    content.update(_content_of_function("measure", measure))
+    bodies = {}
+    for point in points:
+        if id(point.body) not in bodies:
+            bodies[id(point.body)] = _content_of_body(point.body)
+        content.update(bodies[id(point.body)])
+        content.update(repr((point.law, point.scene, point.accuracy)).encode())
+    return content.hexdigest()[:32]
+
+
+def _sources() -> bytes:
+    content = hashlib.sha256()
+    for package in PACKAGES:
+        for path in sorted(package.rglob("*.py")):
+            content.update(path.name.encode() + path.read_bytes())
+    content.update(Path(eel_core._core.__file__).read_bytes())
+    return content.digest()
+
+
+def _content_of_function(argument: str, function) -> bytes:
+    """What `function` computes with: its code and closure, or its whole file where others can import it from there.
+
+    `ValueError` that names the argument for what cannot be told apart from others.
+    """
+    from dask.tokenize import TokenizationError, tokenize
+
+    try:
+        content = tokenize(function, ensure_deterministic=True)
+    except TokenizationError:
+        raise ValueError(
+            f"{argument} must be a function that worker processes can be given, got {shown(function)}"
+        ) from None
+    home = sys.modules.get(getattr(function, "__module__", None) or "")
+    if home is not None and home.__name__ != "__main__" and getattr(home, "__file__", None):
+        content += inspect.getsource(home)
+    return content.encode()
+
+
+def _content_of_body(body: Body) -> bytes:
+    """Its numbers, its half-axes as they were given, and what these are at 201 points: a function may read anything."""
+    x = np.linspace(0.0, body.length, 201)
+    numbers = body.length, body.density, *body.nose, body.nose_added_mass, body.nose_drag
+    drags = body.roll_drag, body.lateral_drag, body.vertical_drag
+    content = np.concatenate((body.half_width(x), body.half_height(x), body.kinks, numbers, drags)).tobytes()
+    for name, given in body.half_axes.items():
+        content += given.tobytes() if isinstance(given, np.ndarray) else _content_of_function(f"body {name}", given)
+    return content

@@ -1,0 +1,192 @@
+"""`tradeoff`: what exactness costs for a gait, and what leaving physics out would cost, as table and picture.
+
+tradeoff falling
+tradeoff falling straight turning --page docs/tradeoff.md --pictures docs/images
+tradeoff straight --set period=0.7 --quick --rerun trade.rrd
+tradeoff --delivered
+tradeoff --calibrate
+"""
+
+import sys
+from pathlib import Path
+
+from eel_gaits.command_line import Parser, complain
+from eel_gaits.output_file import NotWritten, check_output, replacing
+from eel_gaits.registry import GAITS, gait
+from eel_gaits.wording import shown
+
+from eel_dynamics.curvature.difficulty import difficulty_of
+from eel_dynamics.model.body import NAMED, Body
+from eel_dynamics.model.scene import Scene
+from eel_dynamics.runs.command import check_names
+from eel_dynamics.runs.interrupt import leave_on_interrupt
+from eel_dynamics.studies.tradeoff import measuring, models
+from eel_dynamics.studies.tradeoff.delivered import deliver, delivered_table, exceeding, farthest, scatter_line
+from eel_dynamics.studies.tradeoff.page import reference_line, write_page
+from eel_dynamics.studies.tradeoff.settings import settings
+from eel_dynamics.studies.tradeoff.table import model_table, trade_table, write_csv
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Exit status 0; 1 where a file cannot be written to its end; 2 for bad input or a missing package. One line says
+    why."""
+    if arguments is None:
+        leave_on_interrupt()
+    options = _parser().parse_args(arguments)
+    if options.calibrate:
+        return _calibrate()
+    if options.delivered:
+        trials = deliver(say=_say)
+        print(delivered_table(trials))
+        print(scatter_line(trials))
+        print(f"farther below the target than 30: {'; '.join(farthest(trials)) or 'none'}")
+        print(f"above the target: {'; '.join(exceeding(trials)) or 'none'}")
+        return 0
+    try:
+        found = _measure_all(options)
+        for trade, poorer in found:
+            print(f"\n{trade.law.name}, {trade.duration:g} s. {reference_line(trade)}\n")
+            print(trade_table(trade, everything=options.all))
+            print()
+            print(model_table(poorer, trade))
+        for path in _write_all(options, found):
+            print(f"written to {path}")
+    except (ValueError, OSError, ImportError) as error:
+        complain("tradeoff", error)
+        return 1 if isinstance(error, NotWritten) else 2
+    return 0
+
+
+def _calibrate() -> int:
+    """Measure anew which settings deliver which target, into the table that the presets are read from."""
+    from eel_dynamics.accuracy.accuracy import TABLE_FILE
+    from eel_dynamics.studies.calibration.calibration import calibrate
+
+    try:
+        calibrate(TABLE_FILE, say=_say)
+    except OSError as error:
+        complain("tradeoff", error)
+        return 2
+    print(f"written to {TABLE_FILE}")
+    return 0
+
+
+def _say(text: str):
+    print(f"tradeoff: {text}", file=sys.stderr, flush=True)
+
+
+def _measure_all(options) -> list[tuple]:
+    check_names(options.set)
+    numbers = dict(_number(text) for text in options.set)
+    laws = [gait(name, **numbers) for name in options.gaits]
+    body = Body.named(options.body) if options.body in NAMED else Body.from_file(options.body)
+    least = measuring.SAMPLE_PERIOD  # a single sample has no error
+    if not least <= options.duration < float("inf"):
+        raise ValueError(f"--duration must be finite and >= {least} s, got {options.duration}")
+    if not options.repeats >= 1:
+        raise ValueError(f"--repeats must be 1 or more, got {options.repeats}")
+    for folder in (
+        options.pictures,
+        options.page and Path(options.page).parent,
+        options.rerun and Path(options.rerun).parent,
+    ):
+        if folder and not Path(folder).is_dir():
+            raise ValueError(f"{folder} must be a folder that exists")
+    for option, name in (("--page", options.page), ("--rerun", options.rerun)):
+        if name:
+            check_output(option, name)
+    found = []
+    for law in laws:
+        fixed = {"duration": options.duration, "body": body, "scene": Scene(), "say": _say}
+        _say(f"gait {law.name}")
+        rows = settings(fixed["scene"], options.quick, law.in_plane, difficulty_of(law, body.length, options.duration))
+        trade = measuring.measure(law, rows, repeats=options.repeats, **fixed)
+        found.append((trade, models.compare(law, trade.reference, **fixed)))
+    return found
+
+
+def _write_all(options, found):
+    folder = Path(options.pictures or "out")
+    folder.mkdir(exist_ok=True)
+    for trade, poorer in found:
+        yield from _draw(trade, poorer, folder)
+        if options.csv:
+            path = folder / f"tradeoff_{trade.law.name}.csv"
+            write_csv(trade, path)
+            yield path
+    if options.page:
+        page = Path(options.page)
+        picture = (folder / f"tradeoff_{found[0][0].law.name}.png").resolve()
+        beside = picture.is_relative_to(page.resolve().parent)
+        trials = None if options.quick else deliver(say=_say)
+        write_page(page, found, str(picture.relative_to(page.resolve().parent)) if beside else None, trials)
+        yield page
+    if options.rerun:
+        from eel_dynamics.studies.tradeoff.stream import stream
+
+        stream(Path(options.rerun), found)
+        yield options.rerun
+
+
+def _draw(trade, poorer, folder: Path):
+    import matplotlib
+    from matplotlib.figure import Figure
+
+    from eel_dynamics.studies.figures.style import SETTINGS
+    from eel_dynamics.studies.tradeoff.drawing import SIZE, draw_trade
+
+    with matplotlib.rc_context(SETTINGS):
+        figure = Figure(figsize=SIZE, layout="constrained")
+        draw_trade(figure, trade, poorer)
+        for suffix in ("png", "svg"):
+            path = folder / f"tradeoff_{trade.law.name}.{suffix}"
+            with replacing(path) as draft:
+                figure.savefig(draft, metadata={"Date": None} if suffix == "svg" else {"Software": None})
+            yield path
+
+
+def _number(text: str) -> tuple[str, float]:
+    name, _, value = text.partition("=")
+    try:
+        return name, float(value)
+    except ValueError:
+        raise ValueError(f"--set must be NAME=NUMBER, got {shown(text)}") from None
+
+
+def _parser() -> Parser:
+    parser = Parser(
+        prog="tradeoff",
+        description="Measure error and cost of many settings for a gait, mark the Pareto front, and compare with the "
+        "error of models that leave physics out. Takes about a minute per gait.",
+    )
+    names = ", ".join(sorted(GAITS))
+    parser.add_argument("gaits", nargs="*", default=["falling"], metavar="GAIT", help=f"of {names} (falling)")
+    parser.add_argument(
+        "--set", action="append", default=[], metavar="NAME=VALUE", help="a number of the gaits; may be repeated"
+    )
+    parser.add_argument("--duration", type=float, default=10.0, help="s (10)")
+    parser.add_argument("--body", default="boyer2010", help=f"{', '.join(NAMED)}, or a file as for simulate")
+    parser.add_argument("--repeats", type=int, default=5, help="rounds of timing, of which the median counts (5)")
+    parser.add_argument("--quick", action="store_true", help="a ninth of the settings, for a look")
+    parser.add_argument("--all", action="store_true", help="print every setting, not the fronts and presets alone")
+    parser.add_argument("--pictures", metavar="FOLDER", help="for tradeoff_GAIT.png and .svg (out)")
+    parser.add_argument("--csv", action="store_true", help="everything measured, as .csv beside the pictures")
+    parser.add_argument("--page", metavar="FILE.md", help="write tables and picture as a page")
+    parser.add_argument("--rerun", metavar="FILE.rrd", help="write the runs and the trade as a Rerun recording")
+    parser.add_argument(
+        "--delivered",
+        action="store_true",
+        help="instead: measure what the targets deliver over gaits, bodies and scenes, and how well runs judge their "
+        "own error (a minute or two); a page has it too, unless it is quick",
+    )
+    parser.add_argument(
+        "--calibrate",
+        action="store_true",
+        help="instead of all this: measure which settings deliver which target over gaits, bodies and scenes, and "
+        "write the table that the presets are read from (minutes)",
+    )
+    return parser
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,130 @@
+"""The trade as a picture: error against times real time, both fronts, and what leaving physics out would cost.
+
+Methods differ by colour (Okabe and Ito) and by mark, so that print without colour tells them apart.
+"""
+
+import numpy as np
+
+from eel_dynamics.accuracy.accuracy import PRESETS
+from eel_dynamics.studies.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE
+from eel_dynamics.studies.tradeoff.measuring import Trade, front
+from eel_dynamics.studies.tradeoff.models import Model
+from eel_dynamics.studies.tradeoff.settings import METHODS
+
+LOOKS = {"adams": (BLUE, "o"), "dormand_prince": (GREEN, "s"), "classical": (ORANGE, "^")}
+SIZE = 11.0, 5.4  # inches
+FLOOR = 3.0  # times the reference's own error: below, differences mean nothing
+
+
+def draw_trade(figure, trade: Trade, models: list[Model]):
+    """Fill an empty matplotlib figure: pose on the left, torque on the right."""
+    figure.suptitle(
+        f"Gait {trade.law.name!r}, {trade.duration:g} s: what exactness costs, and what a poorer model is off by"
+    )
+    panels = figure.subplots(1, 2, sharex=True)
+    for axes, quantity, place in (
+        (panels[0], "pose_error", 0),
+        (panels[1], "torque_error", 1),
+    ):
+        _draw_panel(axes, trade, models, quantity, FLOOR * trade.reference_error[place])
+    panels[0].set_ylabel("error of the head's position at the end, by its path")
+    panels[1].set_ylabel("error of the torque along the body, by its greatest")
+    handles, labels = panels[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=len(labels), frameon=False)
+
+
+def _draw_panel(axes, trade: Trade, models: list[Model], quantity: str, floor: float):
+    from matplotlib.patheffects import withStroke
+
+    error = lambda row: max(getattr(row, quantity), floor)  # noqa: E731
+    for method, (colour, mark) in LOOKS.items():
+        rows = [row for row in trade.rows if row.accuracy.method == method]
+        axes.plot(
+            [row.times_real_time for row in rows],
+            [error(row) for row in rows],
+            mark,
+            color=colour,
+            markersize=4,
+            alpha=0.45,
+            markeredgewidth=0,
+            label=METHODS[method],
+        )
+    best = front(trade.rows, error, lambda row: row.seconds)
+    axes.plot(
+        [row.times_real_time for row in best],
+        [error(row) for row in best],
+        color=BLACK,
+        linewidth=1.4,
+        label="Pareto front",
+    )
+    for row in best:
+        axes.plot(row.times_real_time, error(row), LOOKS[row.accuracy.method][1], color=BLACK, markersize=5)
+    presets = [row for row in trade.rows if row.accuracy.name in PRESETS]
+    axes.plot(
+        [row.times_real_time for row in presets],
+        [error(row) for row in presets],
+        "D",
+        markerfacecolor="white",
+        markeredgecolor=BLACK,
+        markersize=7,
+        linestyle="",
+        label="presets",
+    )
+    for row in presets:
+        axes.annotate(
+            row.accuracy.name,
+            (row.times_real_time, error(row)),
+            xytext=(-7, 3),
+            textcoords="offset points",
+            ha="right",
+            path_effects=[withStroke(linewidth=3, foreground="white")],
+        )
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    worst = max((getattr(model, quantity) for model in models if model.run is not None), default=1.0)
+    axes.set_ylim(0.1 * floor, max(3.0, 2.0 * worst))
+    axes.set_xlim(0.2 * min(row.times_real_time for row in trade.rows), None)
+    axes.axhspan(0.1 * floor, floor, color=GREY, alpha=0.25, linewidth=0)
+    said = {"transform": axes.get_yaxis_transform(), "va": "center", "ha": "right"}
+    axes.text(0.98, 0.33 * floor, "as exact as the converged run itself", **said)
+    axes.set_xlabel("times real time")
+    axes.grid(alpha=0.3)
+    _draw_models(axes, models, quantity, floor)
+
+
+def _draw_models(axes, models: list[Model], quantity: str, floor: float):
+    """A line for each poorer model, with its name at the right edge, moved apart where they would overlap."""
+    shown = [model for model in models if model.run is not None and getattr(model, quantity) > floor]
+    shown.sort(key=lambda model: getattr(model, quantity))
+    low, high = np.log10(axes.get_ylim())
+    heights = _apart([np.log10(getattr(model, quantity)) for model in shown], 0.042 * (high - low))
+    for model, height in zip(shown, heights, strict=True):
+        value = getattr(model, quantity)
+        axes.axhline(value, color=GREY, linewidth=0.8, linestyle=(0, (5, 3)), zorder=0)
+        axes.annotate(
+            model.name.split(" (")[0],
+            (1.0, value),
+            xycoords=axes.get_yaxis_transform(),
+            xytext=(1.03, 10.0**height),
+            textcoords=axes.get_yaxis_transform(),
+            fontsize="small",
+            va="center",
+            arrowprops={"arrowstyle": "-", "color": GREY, "linewidth": 0.6},
+        )
+
+
+def _apart(heights: list[float], gap: float) -> list[float]:
+    """Rising `heights`, moved as little as it takes to lie `gap` apart: those that touch share one middle."""
+    groups = []  # [sum of heights, count]
+    for height in heights:
+        groups.append([height, 1])
+        while len(groups) > 1 and _edge(groups[-1], -gap) < _edge(groups[-2], gap):
+            total, count = groups.pop()
+            groups[-1][0] += total
+            groups[-1][1] += count
+    return [total / count + gap * (place - 0.5 * (count - 1)) for total, count in groups for place in range(count)]
+
+
+def _edge(group: list, gap: float) -> float:
+    """Upper edge of a group of labels, or its lower one for a negative gap."""
+    return group[0] / group[1] + 0.5 * gap * group[1]

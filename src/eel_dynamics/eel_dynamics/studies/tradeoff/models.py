@@ -1,0 +1,71 @@
+"""What leaving physics out does to the answer: the error of a poorer model, solved exactly, against the full one.
+
+A discretisation error far below that of what the scene leaves out buys nothing: that is what a scene requires.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from eel_gaits.law import Law
+
+from eel_dynamics.model.body import Body
+from eel_dynamics.model.scene import Scene
+from eel_dynamics.runs.run import Run
+from eel_dynamics.simulation.simulation import SimulationStopped
+from eel_dynamics.studies.tradeoff.measuring import errors_of, swim
+from eel_dynamics.studies.tradeoff.settings import REFERENCE
+
+VARIANTS: dict[str, dict] = {
+    "planar": {"planar": True},
+    "reactive only (no drag)": {"resistive": False},
+    "resistive only (no added mass, no wake)": {"reactive": False},
+    "no wake": {"wake": False},
+    "no friction": {"friction": "none"},
+    "laminar friction": {"friction": "laminar"},
+    "blended friction": {"friction": "blended"},
+    "no loads on the nose": {"nose": False},
+    "added mass as printed": {"added_mass": "printed"},
+    "half the perimeter, as printed": {"perimeter": "printed"},
+}
+
+
+@dataclass(frozen=True)
+class Model:
+    """A poorer model's errors, against the full one."""
+
+    name: str
+    pose_error: float
+    torque_error: float
+    run: Run | None  # None: it could not go on
+    stopped: str = ""
+
+
+def compare(
+    law: Law,
+    reference: Run,
+    *,
+    duration: float,
+    body: Body,
+    scene: Scene,
+    say: Callable[[str], None] = lambda text: None,
+) -> list[Model]:
+    """Every variant that changes `scene`, against the `reference` in it."""
+    found = []
+    for name, changes in VARIANTS.items():
+        changed = replace(scene, **changes)
+        if changed == scene:
+            continue
+        say(f"the model without: {name}")
+        driven = flattened(law) if changed.planar else law
+        try:
+            run = swim(driven, duration, body, changed, REFERENCE)
+        except SimulationStopped as stopped:
+            found.append(Model(name, float("nan"), float("nan"), None, str(stopped)))
+            continue
+        found.append(Model(name, *errors_of(run, reference), run))
+    return found
+
+
+def flattened(law: Law) -> Law:
+    """`law` without what bends the body out of the plane."""
+    return Law(*(term for term in law.terms if term.axis == "yaw"), name=law.name, transition=law.transition)

@@ -1,0 +1,44 @@
+"""The settings that the trade is measured over: points along the body, method and steps in time."""
+
+from dataclasses import replace
+
+from eel_dynamics.accuracy.accuracy import PRESETS, Accuracy
+from eel_dynamics.curvature.difficulty import NOMINAL, Difficulty
+from eel_dynamics.model.scene import Scene
+
+RESOLUTIONS = (6.0, 8.0, 11.0, 16.0, 24.0, 36.0, 60.0, 110.0)  # points per body length
+TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8, 1e-10)  # relative error per adaptive step
+STEPS = (0.1, 0.05, 0.02, 0.01, 0.005)  # s, of the classical method
+ADAMS_ORDERS = (3, 4, 5, 6)
+COARSE_POINTS, COARSE_TOLERANCE = 24.0, 1e-5  # up to and from which the drag's kinks are left out, too
+REFERENCE = Accuracy(name="reference run", resolution=240.0, tolerance=1e-12)
+CHECK = Accuracy(name="check of the reference", resolution=170.0, tolerance=1e-11)
+METHODS = {  # name in `Accuracy`: in words
+    "adams": "Adams-Bashforth, adaptive steps",
+    "dormand_prince": "Dormand-Prince, adaptive steps",
+    "classical": "Runge-Kutta, fixed steps",
+}
+
+
+def settings(
+    scene: Scene, quick: bool = False, plane: bool = False, difficulty: Difficulty = NOMINAL
+) -> list[Accuracy]:
+    """Every combination of points and steps, and the presets as they are in `scene`, for a motion that stays in a
+    `plane` or for any, of such `difficulty`; `quick`: every third of both, for a look."""
+    part = slice(None, None, 3) if quick else slice(None)
+    rows = []
+    for resolution in RESOLUTIONS[part]:
+        nodes = f"{resolution:g} points"
+        for tolerance in TOLERANCES[part]:
+            common = {"resolution": resolution, "tolerance": tolerance}
+            rows.append(Accuracy(name=f"{nodes}, tolerance {tolerance:g}", **common))
+            for order in ADAMS_ORDERS[part]:
+                name = f"{nodes}, tolerance {tolerance:g}, Adams {order}"
+                rows.append(Accuracy(name=name, method="adams", order=order, **common))
+                if resolution <= COARSE_POINTS and tolerance >= COARSE_TOLERANCE and scene.resistive:
+                    rows.append(replace(rows[-1], name=f"{name}, no kinks", kinks="none"))
+        for step in STEPS[part]:
+            rows.append(Accuracy(name=f"{nodes}, step {step:g} s", resolution=resolution, step=step))
+    # The presets without their target, which would have them take other settings where the wrench is off, for timing.
+    presets = [Accuracy.of(name).in_scene(scene, plane, difficulty) for name in PRESETS]
+    return rows + [each.as_it_is() for each in presets]

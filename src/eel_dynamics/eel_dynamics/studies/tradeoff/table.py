@@ -1,0 +1,117 @@
+"""The trade as text: aligned for a terminal, or as tables of Markdown."""
+
+import csv
+from pathlib import Path
+
+from eel_gaits.output_file import replacing
+
+from eel_dynamics.accuracy.accuracy import PRESETS
+from eel_dynamics.studies.tradeoff.measuring import Measured, Trade, front
+from eel_dynamics.studies.tradeoff.models import Model
+
+HEAD = (
+    "front",
+    "setting",
+    "method",
+    "order",
+    "nodes",
+    "mean step [s]",
+    "error of pose",
+    "error of torque",
+    "evaluations",
+    "us per evaluation",
+    "times real time",
+    "memory [kB]",
+)
+EXACT_ENOUGH = 0.1  # of a model's error, that a discretisation may add
+
+
+def marks_of(trade: Trade) -> dict[int, str]:
+    """P, T: a row is on the front of pose, of torque, against time. By the row's identity."""
+    marks = {id(row): "" for row in trade.rows}
+    for letter, error in (("P", pose), ("T", torque)):
+        for row in front(trade.rows, error, seconds):
+            marks[id(row)] += letter
+    return marks
+
+
+def pose(row: Measured) -> float:
+    return row.pose_error
+
+
+def torque(row: Measured) -> float:
+    return row.torque_error
+
+
+def seconds(row: Measured) -> float:
+    return row.seconds
+
+
+def cells_of(row: Measured, mark: str) -> list[str]:
+    return [
+        mark or "-",
+        row.accuracy.name,
+        row.accuracy.method.replace("_", "-"),
+        str(row.accuracy.order),
+        str(row.nodes),
+        f"{row.step:.2g}",
+        f"{row.pose_error:.1e}",
+        f"{row.torque_error:.1e}",
+        str(row.evaluations),
+        f"{row.microseconds:.2f}",
+        f"{row.times_real_time:.0f}",
+        f"{row.memory / 1000.0:.0f}",
+    ]
+
+
+def trade_table(trade: Trade, *, everything: bool = False, markdown: bool = False) -> str:
+    """The fronts and the presets, cheapest first; `everything`: all that was measured."""
+    marks = marks_of(trade)
+    rows = [row for row in trade.rows if everything or marks[id(row)] or row.accuracy.name in PRESETS]
+    rows.sort(key=seconds)
+    return laid_out(HEAD, [cells_of(row, marks[id(row)]) for row in rows], markdown)
+
+
+def model_table(models: list[Model], trade: Trade, *, markdown: bool = False) -> str:
+    """Each poorer model's errors, and the cheapest setting whose own error is a tenth of them, or less."""
+    head = "left out, or otherwise", "error of pose", "error of torque", "exact enough for it", "times real time"
+    rows = []
+    for model in sorted(models, key=lambda model: -max(model.pose_error, model.torque_error)):
+        if model.run is None:
+            rows.append([model.name, "-", "-", model.stopped, "-"])
+            continue
+        setting, speed = exact_enough(model, trade)
+        rows.append([model.name, f"{model.pose_error:.1e}", f"{model.torque_error:.1e}", setting, speed])
+    return laid_out(head, rows, markdown)
+
+
+def exact_enough(model: Model, trade: Trade) -> tuple[str, str]:
+    """The cheapest setting whose error is a tenth of the model's in pose and in torque, and its times real time."""
+    for row in sorted(trade.rows, key=seconds):
+        if row.pose_error <= EXACT_ENOUGH * model.pose_error and row.torque_error <= EXACT_ENOUGH * model.torque_error:
+            return row.accuracy.name, f"{row.times_real_time:.0f}"
+    return "no difference that a setting resolves", "-"
+
+
+def write_csv(trade: Trade, path: Path):
+    """Everything that was measured, one line per setting."""
+    marks = marks_of(trade)
+    with replacing(path) as draft, draft.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(HEAD)
+        writer.writerows(cells_of(row, marks[id(row)]) for row in sorted(trade.rows, key=seconds))
+
+
+def laid_out(head, rows, markdown: bool) -> str:
+    """A table as text, or of Markdown."""
+    if markdown:
+        lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
+        return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows])
+    widths = [max(len(cell) for cell in column) for column in zip(head, *rows, strict=True)]
+    return "\n".join(
+        "  ".join(
+            cell.ljust(width) if place < 3 else cell.rjust(width)
+            for place, (cell, width) in enumerate(zip(row, widths, strict=True))
+        ).rstrip()
+        for row in (head, *rows)
+    )

@@ -1,0 +1,184 @@
+"""Reads a rosbag2 folder, or one of its files, without ROS: MCAP or sqlite3, split or whole, compressed or not.
+
+What a crash left (no metadata, no index, half a file) is read as far as it goes. Types are those that the bag defines;
+a bag without definitions (sqlite3 before Iron) needs the message packages installed here.
+"""
+
+import contextlib
+import os
+import pathlib
+import shutil
+import sqlite3
+import tempfile
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+from eel_gaits.wording import shown
+from rosbags.interfaces import MessageDefinitionFormat
+from rosbags.rosbag2 import Reader
+from rosbags.typesys import Stores, TypesysError, get_types_from_idl, get_types_from_msg, get_typestore
+
+from eel_viz.bags.remains import Remains
+
+SUFFIXES = (".mcap", ".db3")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Topic:
+    """A topic of a bag: its `type`, the text that defines it ("" if the bag has none), and how many published it."""
+
+    type: str
+    definition: str
+    idl: bool = False
+    publishers: int = 1
+
+
+class DamagedBag(ValueError):
+    """What cannot be read on from here."""
+
+
+class Bag:
+    """A bag, open for reading; `topics` by name. `ValueError` in one line if nothing of it can be read.
+
+    `damage` says what is wrong with it, "" if nothing is.
+    """
+
+    def __init__(self, path: str | os.PathLike[str]) -> None:
+        self._path = pathlib.Path(path)
+        self._stack = contextlib.ExitStack()
+        self._readers: list[Reader | Remains] = []
+        self._store = get_typestore(Stores.EMPTY)
+        self.damage = ""
+        self.topics: dict[str, Topic] = {}
+        if not self._path.exists():
+            raise ValueError(f"bag {shown(str(path))} does not exist")
+        try:
+            self._open()
+            self.topics = self._topics()
+        except BaseException:
+            self.close()
+            raise
+
+    def close(self) -> None:
+        """Let go of the files."""
+        self._stack.close()
+
+    def __enter__(self) -> "Bag":
+        return self
+
+    def __exit__(self, *_) -> None:
+        self.close()
+
+    def messages(
+        self, *topics: str, unreadable: Callable[[str, str], None] = lambda topic, why: None
+    ) -> Iterator[tuple[str, int, object]]:
+        """Topic, time of reception [ns] and message of all messages of `topics`, in the order of reception.
+
+        `unreadable(topic, why)` is told of each message whose bytes do not fit its type. `ValueError` if a type is not
+        known, `DamagedBag` where it is torn.
+        """
+        for name in topics:
+            self._learn(self.topics[name])
+        for reader in self._readers:
+            chosen = [connection for connection in reader.connections if connection.topic in topics]
+            records = reader.messages(chosen) if chosen else iter(())
+            while True:
+                try:
+                    connection, stamp, raw = next(records)
+                except StopIteration:
+                    break
+                except Exception as error:
+                    raise DamagedBag(f"bag {shown(str(self._path))} is damaged: {_line(error)}") from error
+                try:
+                    message = self._store.deserialize_cdr(raw, connection.msgtype)
+                except Exception as error:  # rosbags' own, struct.error, ValueError of numpy or of text
+                    unreadable(connection.topic, _line(error))
+                    continue
+                yield connection.topic, stamp, message
+
+    def _open(self) -> None:
+        if self._path.is_file() or (self._path / "metadata.yaml").is_file():
+            try:
+                self._readers = [self._stack.enter_context(Reader(self._path))]
+                return
+            except Exception as error:  # on damaged files rosbags raises anything: struct.error, KeyError, sqlite's
+                self.damage = _line(error)
+        else:
+            self.damage = "no metadata.yaml"
+        files = [self._path] if self._path.is_file() else sorted(self._path.iterdir())
+        files = [each for each in files if each.suffix in SUFFIXES]
+        if not files:
+            raise ValueError(
+                f"bag {shown(str(self._path))} cannot be read: {self.damage}, no .mcap or .db3 file"
+                if self._path.is_dir()
+                else f"{shown(str(self._path))} is no bag: {self.damage}"
+            )
+        for each in files:
+            try:
+                self._readers.append(self._stack.enter_context(_reader(each, self._stack)))
+            except Exception as error:
+                self.damage = f"{each.name}: {_line(error)}"
+        if not any(reader.connections for reader in self._readers):
+            raise ValueError(f"bag {shown(str(self._path))} cannot be read: {self.damage}")
+
+    def _topics(self) -> dict[str, Topic]:
+        found: dict[str, Topic] = {}
+        for reader in self._readers:
+            for connection in reader.connections:
+                known = found.get(connection.topic)
+                text = connection.msgdef.data or (known.definition if known else "")
+                found[connection.topic] = Topic(
+                    type=connection.msgtype,
+                    definition=text,
+                    idl=connection.msgdef.format == MessageDefinitionFormat.IDL,
+                    publishers=max(1, len(connection.ext.offered_qos_profiles)),
+                )
+        return found
+
+    def _learn(self, topic: Topic) -> None:
+        if topic.type in self._store.fielddefs:
+            return
+        text = topic.definition
+        if not text:
+            from eel_viz.bags.definitions import definition
+
+            try:
+                text = definition(topic.type)
+            except ValueError as error:
+                raise ValueError(f"bag {shown(str(self._path))} does not define its types, and {error}") from error
+        try:
+            if topic.idl:
+                separator = "=" * 80 + "\n"
+                found: dict = {}
+                for part in text.split(f"{separator}IDL: "):
+                    found.update(get_types_from_idl(part.split("\n", 1)[-1] if separator in text else part))
+            else:
+                found = get_types_from_msg(text, topic.type)
+            self._store.register({name: value for name, value in found.items() if name not in self._store.fielddefs})
+        except TypesysError as error:
+            raise ValueError(
+                f"bag {shown(str(self._path))} defines {topic.type} in a way not understood: {_line(error)}"
+            ) from error
+
+
+def _reader(path: pathlib.Path, stack: contextlib.ExitStack):
+    """A reader of one file, which may be unfinished."""
+    if path.suffix == ".mcap":
+        with contextlib.suppress(Exception), Reader(path):
+            return Reader(path)
+        return Remains(path)
+    journal = [path.with_name(path.name + suffix) for suffix in ("-wal", "-journal")]
+    if any(each.exists() and each.stat().st_size for each in journal):  # sqlite recovers it, in a copy
+        folder = pathlib.Path(stack.enter_context(tempfile.TemporaryDirectory()))
+        for each in (path, *journal):
+            if each.exists():
+                shutil.copy(each, folder / each.name)
+        path = folder / path.name
+        with contextlib.closing(sqlite3.connect(path)) as database:
+            database.execute("PRAGMA wal_checkpoint(TRUNCATE)").fetchall()
+            database.execute("PRAGMA journal_mode=DELETE").fetchall()
+    return Reader(path)
+
+
+def _line(error: BaseException) -> str:
+    return " ".join(str(error).split()) or type(error).__name__

@@ -1,0 +1,186 @@
+"""Records topics to a rosbag2 folder in MCAP storage, for `ros2 bag play` and `rosbags`, where there is no `ros2 bag`.
+
+Messages are written as they come, undecoded; once a second the bag is made whole (see `growing_bag`), so that whatever
+ends the recorder leaves one that opens. The suite's own topics are listened to from the start, so that a run
+without a pace loses nothing; others as soon as they are discovered. Stamps in the bag are times of reception.
+"""
+
+import argparse
+import sys
+import time
+from collections import Counter
+
+from eel_gaits.command_line import Parser, check_seconds, complain
+from eel_ros.qos import fitting, keep_all, matches
+from eel_ros.run_node import run_node
+from rclpy.node import Node
+from rclpy.qos import QoSProfile
+from rclpy.utilities import remove_ros_args
+from rosbags.interfaces import Qos, QosDurability, QosHistory, QosLiveliness, QosReliability, QosTime
+
+from eel_viz.bags.definitions import definition, message_class, type_hash
+from eel_viz.bags.growing_bag import GrowingBag
+from eel_viz.topics import GLOBAL, LATCHED, OWN, SWIMMER
+
+NAME = "record"
+GONE = 1.0  # s without publishers and messages, after which --stop-with-publisher ends it
+LOOK = 0.2  # s between two looks at who is there
+SAVE = 1.0  # s between two times at which the bag is made whole; it is longer
+SHARE = 20.0  # than so many times the processor's time that it takes
+UNASKED = ("/rosout", "/parameter_events")  # recorded only by name
+
+
+class Recorder(Node):
+    """One raw subscription per topic, one rosbag2 writer."""
+
+    def __init__(self, options: argparse.Namespace) -> None:
+        check_seconds("--duration", options.duration)
+        super().__init__(NAME, namespace=options.namespace)
+        self._options = options
+        self._bag = GrowingBag(options.output)
+        self._saved, self._saving = time.monotonic(), 0.0  # s: when it was whole last, and what that cost
+        self.failure = ""
+        self.counts: Counter[str] = Counter()
+        self._saved_messages = 0
+        self._listening: dict[str, tuple[object, QoSProfile]] = {}
+        self._offers: dict[str, list[QoSProfile]] = {}
+        self._connections: dict[str, object] = {}
+        self._refused: set[str] = set()
+        self._began = self._looked = self._last_message = time.monotonic()
+        self._present = False
+        for topic, kind in {**{self.resolve_topic_name(name): kind for name, kind in OWN.items()}, **GLOBAL}.items():
+            if self._wanted(topic):
+                self._listen(topic, kind, keep_all(latched=topic.rsplit("/", 1)[-1] in LATCHED))
+        self.get_logger().info(f"recording to {options.output}, end with Ctrl-C")
+
+    def attend(self) -> bool:
+        """Now and then: look for new topics; False when it is time to end."""
+        now = time.monotonic()
+        if now - self._looked >= LOOK:
+            self._looked = now
+            self._look()
+        if now - self._saved >= max(SAVE, SHARE * self._saving) and not self._save():
+            return False
+        if self._options.duration is not None and now - self._began >= self._options.duration:
+            return False
+        if self._options.stop_with_publisher:
+            if self.count_publishers(SWIMMER):
+                self._present, self._last_message = True, now
+            return not self._present or now - self._last_message < GONE
+        return True
+
+    def close(self) -> None:
+        """Complete the bag, and say what is in it."""
+        if not self.failure:
+            self._save()
+        self._bag.abort()
+        counts = ", ".join(f"{topic} {count}" for topic, count in sorted(self.counts.items())) or "no message"
+        self.get_logger().info(f"recorded in {self._options.output}: {counts}")
+
+    def _save(self) -> bool:
+        """Make the bag whole; whether that was possible."""
+        began = time.process_time()
+        try:
+            self._bag.save()
+        except OSError as error:
+            saved = self._saved_messages
+            self.failure = f"{self._options.output}: {error.strerror}: the bag ends with the {saved} messages before"
+            return False
+        self._saved = time.monotonic()
+        self._saving = time.process_time() - began
+        self._saved_messages = self.counts.total()
+        return True
+
+    def _look(self) -> None:
+        for topic, kinds in self.get_topic_names_and_types():
+            if not self._wanted(topic) or topic in self._refused:
+                continue
+            offers = [info.qos_profile for info in self.get_publishers_info_by_topic(topic)]
+            if not offers:
+                continue
+            self._offers[topic] = offers
+            if topic not in self._listening:
+                self._listen(topic, kinds[0], fitting(offers))
+            elif not all(matches(self._listening[topic][1], offer) for offer in offers):
+                subscription, _ = self._listening.pop(topic)
+                self.destroy_subscription(subscription)
+                self._listen(topic, kinds[0], fitting(offers))
+
+    def _wanted(self, topic: str) -> bool:
+        if self._options.topics:
+            return topic in [self.resolve_topic_name(name) for name in self._options.topics]
+        space = self.get_namespace().rstrip("/") + "/"
+        return (topic.startswith(space) or topic in GLOBAL or topic == "/tf") and topic not in UNASKED
+
+    def _listen(self, topic: str, kind: str, quality: QoSProfile) -> None:
+        def receive(data: bytes, about: dict) -> None:
+            if topic not in self._connections:
+                self._connect(topic, kind)
+            self._last_message = time.monotonic()
+            self._present |= topic == self.resolve_topic_name(SWIMMER)  # a law alone is no swimmer
+            self.counts[topic] += 1
+            self._bag.write(self._connections[topic], about.get("received_timestamp") or time.time_ns(), data)
+
+        try:
+            subscription = self.create_subscription(message_class(kind), topic, receive, quality, raw=True)
+        except ValueError as error:
+            self._refused.add(topic)
+            self.get_logger().warning(f"{topic} is left out: {error}")
+            return
+        self._listening[topic] = (subscription, quality)
+
+    def _connect(self, topic: str, kind: str) -> None:
+        offers = self._offers.get(topic) or [info.qos_profile for info in self.get_publishers_info_by_topic(topic)]
+        self._connections[topic] = self._bag.add_connection(
+            topic,
+            kind,
+            msgdef=definition(kind),
+            rihs01=type_hash(kind),
+            offered_qos_profiles=[_stored(offer) for offer in offers or [self._listening[topic][1]]],
+        )
+
+
+def _stored(offer: QoSProfile) -> Qos:
+    """A publisher's quality of service as rosbag2 writes it."""
+
+    def seconds(duration) -> QosTime:
+        return QosTime(*divmod(duration.nanoseconds, 1_000_000_000))
+
+    return Qos(
+        QosHistory[offer.history.name],
+        offer.depth,
+        QosReliability[offer.reliability.name],
+        QosDurability[offer.durability.name],
+        seconds(offer.deadline),
+        seconds(offer.lifespan),
+        QosLiveliness[offer.liveliness.name],
+        seconds(offer.liveliness_lease_duration),
+        offer.avoid_ros_namespace_conventions,
+    )
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Command line; status 0 after SIGINT, SIGTERM or the end that was asked for, 1 if it had to stop (disk full), 2 if
+    it cannot begin."""
+    words = sys.argv if arguments is None else [NAME, *arguments]
+    parser = Parser(
+        prog=NAME,
+        description="Record topics to a rosbag2 folder (MCAP), readable by ros2 bag and rosbags: all messages, as they "
+        "come, with the quality of service that their publishers offer.",
+        epilog="The bag is made whole once a second, so that it opens even if the recorder is killed or the disk is "
+        "full. Exit status: 0 after Ctrl-C or the end that was asked for; 1 if it had to stop, 2 if it cannot begin, "
+        "with one line that says why. ROS arguments follow --ros-args.",
+    )
+    parser.add_argument(
+        "topics", nargs="*", help="names; none: every topic of the namespace, /clock, /diagnostics and /tf"
+    )
+    parser.add_argument("-o", "--output", required=True, metavar="FOLDER", help="new folder of the bag")
+    parser.add_argument("--namespace", default="/", metavar="NS", help="of the swimmer (default /)")
+    parser.add_argument("--duration", type=float, metavar="SECONDS", help="end after so much wall time")
+    parser.add_argument("--stop-with-publisher", action="store_true", help="end when the swimmer has gone")
+    options = parser.parse_args(remove_ros_args(args=words)[1:])
+    return run_node(NAME, words, lambda: Recorder(options), Recorder.attend, complain=complain, complete=True)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,218 @@
+"""A bag into a Rerun recording, without ROS running: what the visualiser would have made of the same messages.
+
+    replay BAG -o run.rrd
+
+Messages take the very way that the visualiser's take (`intake`), in the order in which they were recorded, as fast as
+it goes. A reset in the bag begins a second file, as it does live.
+"""
+
+import contextlib
+import os
+import sys
+import time
+from collections.abc import Iterator
+from dataclasses import fields
+from types import SimpleNamespace
+
+from eel_gaits.command_line import Parser, complain
+from eel_gaits.output_file import NotWritten
+from eel_gaits.quantity import limits
+from eel_gaits.wording import shown
+
+from eel_viz.bags.bag import Bag, DamagedBag
+from eel_viz.recording.destination import Say
+from eel_viz.recording.intake import SAMPLES
+from eel_viz.recording.merged_messages import show
+from eel_viz.recording.sinks import destinations
+from eel_viz.settings import Settings
+from eel_viz.topics import GLOBAL, OWN
+from eel_viz.viewer import display, open_window
+
+NAME = "replay"
+DIAGNOSTICS = "/diagnostics"
+OPTIONS = ("blueprint", "rate", "skin_rate", "colour_limit", "torque_limit", "force_limit", "curvature_limit")
+OPTIONS += ("load_scale", "end_force_scale", "viewer")
+
+
+class Source:
+    """The messages of one swimmer in `bag`. `namespace`: which; None: the one that is there."""
+
+    def __init__(self, bag: Bag, namespace: str | None, warn: Say) -> None:
+        self._bag, self._warn = bag, warn
+        self._told: set[str] = set()
+        self.namespace = self._found(namespace)
+        self._topics = {f"{self.namespace}/{name}": name for name in (*SAMPLES, "body", "curvature_law")}
+        self._topics[DIAGNOSTICS] = "diagnostics"
+        for topic, name in list(self._topics.items()):
+            there, kind = bag.topics.get(topic), OWN.get(name) or GLOBAL.get(topic)
+            if there is None or there.type != kind:
+                del self._topics[topic]
+            if there is not None and there.type != kind:
+                warn(f"{topic} is left out: it is {there.type}, not {kind}")
+
+    def crowded(self, name: str) -> bool:
+        """Whether several publishers sent on a topic."""
+        return any(
+            self._bag.topics[topic].publishers > 1 for topic, relative in self._topics.items() if relative == name
+        )
+
+    def __iter__(self) -> Iterator[tuple[str, object]]:
+        """Topic and message of all messages, in order; the body first, which is valid at all times."""
+        body = f"{self.namespace}/body"
+        first = next((message for _, _, message in self._bag.messages(body)), None) if body in self._topics else None
+        if first is not None:
+            yield "body", first
+        count = 0
+        try:
+            for topic, _, message in self._bag.messages(*self._topics, unreadable=self._leave_out):
+                name, count = self._topics[topic], count + 1
+                if name == "body" and first is not None:
+                    first = None
+                elif name == "curvature_law":  # its arrays cannot be compared; each counts as a law of its own
+                    yield name, SimpleNamespace(name=message.name, place=count)
+                else:
+                    yield name, message
+        except DamagedBag as error:
+            if not count:
+                raise
+            self._warn(f"{error}: shown as far as it goes")
+
+    def _leave_out(self, topic: str, why: str) -> None:
+        if topic not in self._told:
+            self._told.add(topic)
+            self._warn(f"{topic}: {why}: left out, and those like it")
+
+    def _found(self, namespace: str | None) -> str:
+        spaces = sorted(
+            {
+                topic[: -len(name) - 1]
+                for topic, about in self._bag.topics.items()
+                for name, kind in OWN.items()
+                if topic.endswith(f"/{name}") and about.type == kind and name in SAMPLES
+            }
+        )
+        named = ", ".join(space or "/" for space in spaces)
+        if namespace is not None:
+            wanted = "/" + namespace.strip("/") if namespace.strip("/") else ""
+            if wanted not in spaces:
+                raise ValueError(f"no swimmer in namespace {shown(namespace)} of the bag; there is: {named or 'none'}")
+            return wanted
+        if len(spaces) > 1:
+            raise ValueError(f"the bag has swimmers in several namespaces, choose one with --namespace: {named}")
+        if not spaces:
+            topics = ", ".join(sorted(self._bag.topics)) or "none at all"
+            raise ValueError(f"the bag has no topic of a swimmer; its topics: {topics}")
+        return spaces[0]
+
+
+def replay(
+    path: str | os.PathLike[str],
+    settings: Settings,
+    *,
+    other: str | os.PathLike[str] | None = None,
+    namespace: str | None = None,
+    say: Say = lambda text: None,
+    warn: Say = lambda text: None,
+) -> str:
+    """The bag at `path` to where `settings.sink` says; returns in words what it held. `ValueError` in one line.
+
+    `other` is a bag to compare it with; `settings.compare`, which is its name, or names the other swimmer's namespace
+    in the same bag.
+    """
+    with contextlib.ExitStack() as stack:
+        paths = [path, *([other] if other else [path] if settings.compare else [])]
+        spaces = [namespace, *([None] if other else [settings.compare])]
+        sources, names = [], []
+        for where, space in zip(paths, spaces, strict=False):
+            bag = stack.enter_context(Bag(where))
+            sources.append(Source(bag, space, warn))
+            names.append(name_of(where, other, path) if other else sources[-1].namespace.strip("/") or "eel")
+            if bag.damage:
+                warn(f"{where} is unfinished or damaged ({bag.damage}): shown as far as it goes")
+        return show(
+            sources,
+            destinations(settings, say, warn),
+            names=names,
+            namespaces=[source.namespace for source in sources],
+            warn=warn,
+            crowded=sources[0].crowded,
+        )
+
+
+def name_of(bag: str | os.PathLike[str], *besides: str | os.PathLike[str]) -> str:
+    """What a bag is called: the name of its folder or file, or all of its path where that of another is the same."""
+    name = os.path.basename(os.path.abspath(bag)).removesuffix(".mcap").removesuffix(".db3")
+    same = [each for each in besides if os.fspath(each) != os.fspath(bag) and name_of(each) == name]
+    return os.fspath(bag).strip("/") if same else name
+
+
+def parser() -> Parser:
+    """What the command line takes."""
+    made = Parser(
+        prog=NAME,
+        description="Turn a rosbag2 folder (or one of its .mcap or .db3 files) into a Rerun recording, without ROS "
+        "running: the same that the visualiser shows of these messages. Split bags and those compressed with zstd are "
+        "read; a bag that was not finished is shown as far as it goes.",
+        epilog="A reset in the bag begins another file, with a number before the suffix. Exit status: 0; 1 if the "
+        "recording cannot be written to its end; 2 if the bag cannot be read or the recording not be begun; one line "
+        "says why.",
+    )
+    made.add_argument("bag", help="folder of the bag, or a file of one")
+    made.add_argument("-o", "--output", metavar="RRD", help="recording to write (default: BAG.rrd, in this folder)")
+    made.add_argument("--namespace", metavar="NS", help="of the swimmer, where the bag has more than one")
+    made.add_argument(
+        "--compare",
+        default="",
+        metavar="OTHER",
+        help="another bag, or with /NS another namespace of this one: its swimmer is laid over this one's, their "
+        "difference drawn, in the arrangement compare",
+    )
+    made.add_argument("--spawn", action="store_true", help="open a viewer on the recording when it is done")
+    made.add_argument("--connect", action="store_true", help="send it to a viewer that runs (see --viewer), too")
+    for item in fields(Settings):
+        if item.name in OPTIONS:
+            about, kind = item.metadata, type(item.default)
+            unit = f" [{about['unit']}]" if about["unit"] else ""
+            bounds = "" if kind is str else f"; {limits(about)}"
+            text = f"{about['description']}{unit} (default {item.default}{bounds})".replace("%", "%%")
+            option, letter = "--" + item.name.replace("_", "-"), "TEXT" if kind is str else "X"
+            made.add_argument(option, type=kind, default=item.default, help=text, metavar=letter)
+    return made
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Command line; status 0; with one line on stderr 1 if the recording cannot be written to its end, 2 if it cannot
+    be begun, 130 after Ctrl-C."""
+    chosen = parser().parse_args(arguments)
+    output = chosen.output or f"{name_of(chosen.bag)}.rrd"
+    other = chosen.compare if chosen.compare.strip("/") and os.path.exists(chosen.compare) else None
+
+    def warn(text: str) -> None:
+        complain(NAME, text)
+
+    began = time.monotonic()
+    try:
+        if chosen.spawn and not display():
+            raise ValueError("--spawn needs a display, and there is none")
+        values = {name: getattr(chosen, name) for name in OPTIONS}
+        values["compare"] = name_of(other, chosen.bag) if other else chosen.compare
+        sink = ("save", "connect") if chosen.connect else ("save",)
+        settings = Settings.from_values({**values, "sink": sink, "recording": output})
+        told = replay(chosen.bag, settings, other=other, namespace=chosen.namespace, say=print, warn=warn)
+    except NotWritten as error:
+        warn(str(error))
+        return 1
+    except (ValueError, OSError) as error:
+        warn(error)
+        return 2
+    except KeyboardInterrupt:
+        warn("interrupted: the recording ends there")
+        return 130
+    print(f"replayed in {time.monotonic() - began:.1f} s: {told}")
+    if chosen.spawn:
+        open_window(output)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

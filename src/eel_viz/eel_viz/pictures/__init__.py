@@ -1,0 +1,1 @@
+"""Pictures and films of recordings, without a display: the command `render`."""

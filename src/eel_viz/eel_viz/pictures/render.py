@@ -1,0 +1,202 @@
+"""A recording to pictures, or to a film, without a display.
+
+render RUN.rrd -o picture.png                # --at 7.0 for a moment of one's own
+render RUN.rrd -o frames/ --fps 30           # frames/frame_00000.png ..., and frames/film.mp4 where ffmpeg is
+render RUN.rrd -o swim.webp --fps 15 --size 960x540
+"""
+
+import argparse
+import contextlib
+import math
+import os
+import pathlib
+import sys
+import tempfile
+from collections.abc import Callable, Sequence
+
+from eel_gaits.command_line import Parser, complain
+from eel_gaits.output_file import NotWritten, check_output, replacing
+from eel_gaits.wording import shown
+
+from eel_viz.pictures.drawing import SIZE, Drawing, drawn
+from eel_viz.pictures.film import ANIMATIONS, FILMS, FRAME, ffmpeg, film
+from eel_viz.viewer import CannotRender
+
+NAME = "render"
+FILM = "film.mp4"
+MANY = 100_000  # pictures
+TELLING = 0.7  # of a recording's duration: the swimmer is under way, and the curves have a past
+
+
+def render(
+    recording: str | os.PathLike[str],
+    picture: str | os.PathLike[str],
+    *,
+    at: float | None = None,
+    size: tuple[int, int] = SIZE,
+    blueprint: str = "",
+) -> None:
+    """Write the PNG `picture` of `recording` at simulation time `at` [s] (None: after `TELLING` of it), `size` pixels.
+
+    `blueprint`: the arrangement shown; empty: the one the recording has in front.
+    """
+    with drawn(recording, size=size, blueprint=blueprint) as drawing:
+        if at is None:
+            at = drawing.start + TELLING * (drawing.end - drawing.start)
+        png = drawing.png(at)
+    with replacing(picture) as draft:
+        draft.write_bytes(png)
+
+
+def times(drawing: Drawing, *, fps: float, start: float | None, end: float | None, speed: float) -> list[float]:
+    """Times [s] of the pictures of a film with `fps` a second, running `speed` times as fast as the swimmer."""
+    _check_positive(fps=fps, speed=speed)
+    start = drawing.start if start is None else start
+    end = drawing.end if end is None else end
+    if not start <= end:
+        raise ValueError(f"end must not come before start, got {start:g} to {end:g} s")
+    count = math.floor((end - start) * fps / speed + 1e-6) + 1
+    if count > MANY:
+        raise ValueError(f"fps {fps:g} from {start:g} to {end:g} s makes {count} pictures, more than {MANY}")
+    return [start + k * speed / fps for k in range(count)]
+
+
+def frames(
+    drawing: Drawing, folder: pathlib.Path, at: Sequence[float], progress: Callable[[str], None] = lambda text: None
+) -> list[pathlib.Path]:
+    """Pictures at the times `at` [s] as frame_00000.png and so on in `folder`; their paths."""
+    written = []
+    for k, moment in enumerate(at):
+        png = drawing.png(min(moment, drawing.end))
+        written.append(folder / (FRAME % k))
+        with replacing(written[-1]) as draft:
+            draft.write_bytes(png)
+        progress(f"\r{k + 1} of {len(at)}")
+    return written
+
+
+def parser() -> Parser:
+    """What the command line takes."""
+    made = Parser(
+        prog=NAME,
+        description="Draw a Rerun recording to a PNG, to many, or to a film, without a display.",
+        epilog="Needs a Vulkan driver; Mesa's software driver will do (apt-get install --no-install-recommends "
+        "mesa-vulkan-drivers). Exit status: 0; 1 where the output cannot be written to its end; 2 for what cannot be; "
+        "3 where the viewer cannot draw; with one line that says why.",
+    )
+    made.add_argument("recording", help="file .rrd; one that was cut short is drawn as far as it goes")
+    made.add_argument("picture", nargs="?", help="as -o")
+    made.add_argument(
+        "-o",
+        "--output",
+        metavar="OUT",
+        help="with --at a PNG; with --fps a folder, made in one that exists, for frame_00000.png ... and, where "
+        f"ffmpeg is installed, {FILM}; or a film alone: {', '.join(FILMS)} (the last two do without ffmpeg)",
+    )
+    which = made.add_mutually_exclusive_group()
+    which.add_argument(
+        "--at",
+        type=float,
+        metavar="SECONDS",
+        help=f"simulation time of one picture (default: after {TELLING:.0%}% of the recording)",
+    )
+    which.add_argument("--fps", type=float, metavar="N", help="pictures a second of a film")
+    made.add_argument("--start", type=float, metavar="SECONDS", help="of the film (default: the recording's)")
+    made.add_argument("--end", type=float, metavar="SECONDS", help="of the film (default: the recording's)")
+    made.add_argument(
+        "--speed", type=float, default=1.0, metavar="X", help="simulated seconds in a second of the film (default 1)"
+    )
+    made.add_argument("--size", default=f"{SIZE[0]}x{SIZE[1]}", metavar="WxH", help="in pixels (default %(default)s)")
+    made.add_argument(
+        "--blueprint", default="", metavar="NAME", help="arrangement: overview, torques ... (default: the first)"
+    )
+    return made
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Command line; status 0, 1 where the output cannot be written to its end, 2 for what cannot be, 3 where the viewer
+    cannot draw, 130 after Ctrl-C."""
+    made = parser()
+    chosen = made.parse_args(arguments)
+    output = chosen.output or chosen.picture
+    if output is None:
+        made.error("where to write is missing: -o PICTURE.png, or -o FOLDER with --fps")
+    try:
+        width, height = (int(number) for number in chosen.size.split("x"))
+    except ValueError:
+        made.error(f"--size must look like 1920x1080, got {shown(chosen.size)}")
+    try:
+        _draw(chosen, pathlib.Path(output), (width, height))
+    except (CannotRender, ConnectionError) as reason:
+        complain(NAME, f"no picture: {reason}")
+        return 3
+    except NotWritten as reason:
+        _say(f"{NAME}: {reason}\n")
+        return 1
+    except (ValueError, OSError) as reason:
+        complain(NAME, reason)
+        return 2
+    except KeyboardInterrupt:
+        _say(f"\n{NAME}: interrupted\n")
+        return 130
+    return 0
+
+
+def _draw(chosen: argparse.Namespace, output: pathlib.Path, size: tuple[int, int]) -> None:
+    many = chosen.fps is not None
+    if many:
+        _check_positive(fps=chosen.fps, speed=chosen.speed)
+    alone = many and output.suffix in FILMS
+    if alone and output.suffix not in ANIMATIONS and ffmpeg() is None:
+        raise ValueError(f"ffmpeg is not installed, which {output.suffix} needs; {' and '.join(ANIMATIONS)} do without")
+    if not many and output.suffix != ".png":
+        raise ValueError(f"a picture must end in .png, got {shown(str(output))}; --fps N makes many in a folder")
+    _check_writable(output, folder=many and not alone)
+    if not many:
+        render(chosen.recording, output, at=chosen.at, size=size, blueprint=chosen.blueprint)
+        return
+    with contextlib.ExitStack() as stack:
+        drawing = stack.enter_context(drawn(chosen.recording, size=size, blueprint=chosen.blueprint))
+        at = times(drawing, fps=chosen.fps, start=chosen.start, end=chosen.end, speed=chosen.speed)
+        folder = output
+        if alone:
+            folder = pathlib.Path(stack.enter_context(tempfile.TemporaryDirectory()))
+        else:
+            folder.mkdir(exist_ok=True)
+        if any(folder.glob("frame_*.png")):
+            _say(f"{NAME}: {folder} has pictures already, those of the same number are replaced\n")
+        written = frames(drawing, folder, at, _say if sys.stderr.isatty() else lambda text: None)
+        name = output if alone else folder / FILM
+        print(f"{len(written)} pictures" + ("" if alone else f" in {folder}"))
+        if alone or ffmpeg() is not None:
+            film(folder, len(written), name, fps=chosen.fps)
+            print(f"film {name}, {len(written) / chosen.fps:.3g} s")
+        else:
+            print(f"no film, for ffmpeg is not installed: ffmpeg -framerate {chosen.fps:g} -i "
+                  f"{folder}/frame_%05d.png -pix_fmt yuv420p {name}")  # fmt: skip
+
+
+def _check_positive(**values: float) -> None:
+    for name, value in values.items():
+        if not 0.0 < value < math.inf:
+            raise ValueError(f"{name} must be > 0, got {value:g}")
+
+
+def _check_writable(output: pathlib.Path, *, folder: bool) -> None:
+    if not folder:
+        check_output("output", output)
+        return
+    where = output if output.exists() else output.parent
+    if not where.is_dir() or not os.access(where, os.W_OK):
+        raise ValueError(
+            f"output {shown(str(output))} cannot be written: {shown(str(where))} is no folder that can be written to"
+        )
+
+
+def _say(text: str) -> None:
+    sys.stderr.write(text)
+    sys.stderr.flush()
+
+
+if __name__ == "__main__":
+    sys.exit(main())

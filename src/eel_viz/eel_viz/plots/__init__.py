@@ -1,0 +1,1 @@
+"""Profiles, maps, curves and text beside the scene."""

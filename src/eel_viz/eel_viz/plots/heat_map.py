@@ -1,0 +1,89 @@
+"""A map of one profile over abscissa and time: the last seconds, the present at the right, the head at the top.
+
+It is a rolling image of palette indices (one byte each), a column per `STEP` seconds, with its own axes and colour bar.
+"""
+
+from itertools import pairwise
+
+import numpy as np
+import rerun as rr
+
+from eel_viz import entities
+from eel_viz.outlet import Outlet
+from eel_viz.scene3d import colours
+
+COLUMNS = 200
+ROWS = 41
+STEP = 0.04  # s; the map is 8 s long
+NO_DATA = 0
+BOUNDS_X = (-23.0, COLUMNS + 24.0)
+BOUNDS_Y = (-3.0, ROWS + 9.0)
+
+
+class HeatMap:
+    """Keeps the columns and logs the image; `limit` is the value of the deepest colour."""
+
+    def __init__(self, outlet: Outlet, *, limit: float) -> None:
+        self._outlet, self._limit = outlet, limit
+        self._pixels = np.full((ROWS, COLUMNS), NO_DATA, dtype=np.uint8)
+        self._last: int | None = None
+        palette = [rr.AnnotationInfo(id=NO_DATA, color=(24, 27, 31))]
+        palette += [rr.AnnotationInfo(id=k, color=tuple(int(c) for c in colours.DIVERGING[k])) for k in range(1, 256)]
+        outlet.fixed(entities.HEAT_MAP, rr.AnnotationContext(palette))
+        self._length: float | None = None
+        self._draw_bar()
+
+    def include(self, stamp: int, x: np.ndarray, values: np.ndarray) -> None:
+        """Put `values` (M,) at stations `x` [m] into the column of `stamp` [ns]."""
+        column = int((stamp + 1000) // int(STEP * 1e9))
+        if self._last is not None and column <= self._last:
+            return
+        if self._length != x[-1]:
+            self._length = float(x[-1])
+            self._draw_labels(self._length)
+        shift = COLUMNS if self._last is None else min(column - self._last, COLUMNS)
+        self._pixels[:, :-shift] = self._pixels[:, shift:].copy()
+        rows = np.interp(np.linspace(0.0, x[-1], ROWS), x, values)
+        fresh = np.maximum(colours.diverging_index(rows, self._limit), 1)
+        self._pixels[:, -shift:] = NO_DATA if self._last is None else fresh[:, None]
+        self._pixels[:, -1] = fresh
+        self._last = column
+
+    def draw(self, stamp: int) -> None:
+        """The image at `stamp` [ns]."""
+        self._outlet.once(stamp, entities.HEAT_MAP_IMAGE, rr.SegmentationImage(self._pixels, draw_order=0.0))
+
+    def _draw_bar(self) -> None:
+        bar = np.linspace(0, ROWS, 65)
+        left, right = COLUMNS + 4.0, COLUMNS + 8.0
+        steps = [[((left + right) / 2, y0), ((left + right) / 2, y1)] for y0, y1 in pairwise(bar)]
+        shades = colours.diverging(np.linspace(1.0, -1.0, 64), 1.0)
+        self._outlet.fixed(
+            f"{entities.HEAT_MAP_FRAME}/bar",
+            rr.LineStrips2D(steps, colors=shades, radii=(right - left) / 2),
+        )
+
+    def _draw_labels(self, length: float) -> None:
+        rise, right = 4.2, COLUMNS + 8.0
+        places = [
+            (-9.0, 2.5 - rise),
+            (-9.0, ROWS / 2 - rise),
+            (-9.0, ROWS - 2.5 - rise),
+            (right + 9.0, 2.5 - rise),
+            (right + 9.0, ROWS / 2 - rise),
+        ]
+        places += [(right + 9.0, ROWS - 2.5 - rise)]
+        texts = ["head 0", f"X {length / 2:.3g} m", f"tail {length:.3g}", f"+{self._limit:g}", "0", f"-{self._limit:g}"]
+        span = COLUMNS * STEP
+        places += [(COLUMNS * k / 4, ROWS + 4.5 - rise) for k in range(5)]
+        texts += [f"-{span * (1 - k / 4):g} s" for k in range(4)] + ["now"]
+        self._outlet.fixed(
+            f"{entities.HEAT_MAP_FRAME}/labels",
+            rr.Points2D(
+                places,
+                labels=texts,
+                colors=[colours.LABEL] * len(texts),
+                show_labels=True,
+                radii=rr.Radius.ui_points(0.1),
+            ),
+        )

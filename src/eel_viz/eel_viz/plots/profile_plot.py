@@ -1,0 +1,125 @@
+"""A drawing of profiles against the abscissa X: curves, their envelope so far, and axes with ticks.
+
+Rerun has no plot against anything but time, so the drawing is made of lines in a two-dimensional view, whose axes
+share one scale and whose y points down: drawn x = WIDTH * X / length, drawn y = -value / (2 limit). If a value is
+beyond the limit, the limit grows to the next of 1, 2, 5, 10 ... and the ticks with it; nothing is cut off.
+"""
+
+import numpy as np
+import rerun as rr
+
+from eel_viz import entities
+from eel_viz.outlet import Outlet
+from eel_viz.scene3d import colours
+from eel_viz.stations import same
+
+WIDTH = 5.2
+LABEL_RISE = 0.085  # a label hangs below its point
+BOUNDS_X = (-0.42, WIDTH + 0.18)
+BOUNDS_Y = (-0.79, 0.79)
+
+
+class ProfilePlot:
+    """Draws up to three profiles into the entities below `root` of a recording.
+
+    `names` are the curves' (C1, C2, C3), which lie over each other in this order and are `widths` [pixels] wide, `unit`
+    that of the values, `limit` > 0 the value at the upper edge at first.
+    """
+
+    def __init__(
+        self,
+        outlet: Outlet,
+        root: str,
+        *,
+        names: tuple[str, ...],
+        unit: str,
+        limit: float,
+        palette: tuple[tuple[int, int, int], ...] = colours.AXIS,
+        widths: tuple[float, ...] = (1.4,),
+    ):
+        self._outlet, self._root, self._names, self._unit = outlet, root, names, unit
+        self.limit = limit
+        self._palette, self._widths = palette, widths
+        self._ticks: tuple[float, float] | None = None
+        self._x: np.ndarray | None = None
+        self._low = self._high = np.empty(0)
+        self._draw_frame()
+
+    def include(self, x: np.ndarray, values: np.ndarray) -> None:
+        """Widen the envelope and the limit by `values`, (M, n) at stations `x` [m], (M,)."""
+        if self._x is None or not same(self._x, x):
+            self._x, self._low, self._high = x, np.array(values), np.array(values)
+        else:
+            np.minimum(self._low, values, out=self._low)
+            np.maximum(self._high, values, out=self._high)
+        self.limit = grown_limit(self.limit, float(np.max(np.abs(values))))
+
+    def draw(self, stamp: int, x: np.ndarray, values: np.ndarray) -> None:
+        """The curves of `values`, (M, n), at `stamp` [ns]."""
+        length = float(x[-1])
+        if self._ticks != (self.limit, length):
+            self._ticks = (self.limit, length)
+            self._draw_ticks(stamp, length)
+        self._outlet.row(stamp, f"{self._root}/{entities.CURVES}", rr.LineStrips2D, strips=self._drawn(x, values))
+
+    def draw_envelope(self, stamp: int) -> None:
+        """The least and the greatest value so far at each station, behind the curves."""
+        if self._x is not None:
+            strips = np.concatenate([self._drawn(self._x, self._low), self._drawn(self._x, self._high)])
+            self._outlet.row(stamp, f"{self._root}/{entities.ENVELOPE}", rr.LineStrips2D, strips=strips)
+
+    def _drawn(self, x: np.ndarray, values: np.ndarray) -> np.ndarray:
+        strips = np.empty((values.shape[1], len(x), 2), dtype=np.float32)
+        strips[:, :, 0] = WIDTH * x / x[-1]
+        strips[:, :, 1] = values.T / (-2.0 * self.limit)
+        return strips
+
+    def _draw_frame(self) -> None:
+        palette = self._palette[: len(self._names)]
+        grid = [[(0, y), (WIDTH, y)] for y in (-0.5, -0.25, 0.0, 0.25, 0.5)]
+        grid += [[(WIDTH * k / 5, -0.5), (WIDTH * k / 5, 0.5)] for k in range(6)]
+        shades = [colours.TICK] * len(grid)
+        shades[2] = colours.FRAME
+        log = self._outlet.fixed
+        log(
+            f"{self._root}/{entities.FRAME}",
+            rr.LineStrips2D(grid, colors=shades, radii=rr.Radius.ui_points(0.6), draw_order=10.0),
+        )
+        log(
+            f"{self._root}/{entities.CURVES}",
+            rr.LineStrips2D.from_fields(
+                colors=palette, radii=[rr.Radius.ui_points(width) for width in self._widths], draw_order=30.0
+            ),
+        )
+        behind = [colours.dim(colour) for colour in palette]
+        log(
+            f"{self._root}/{entities.ENVELOPE}",
+            rr.LineStrips2D.from_fields(colors=behind * 2, radii=rr.Radius.ui_points(0.7), draw_order=20.0),
+        )
+        widths = [0.16 + 0.075 * len(name) for name in self._names]
+        starts = 0.26 - widths[0] / 2 + np.cumsum([0.0, *widths[:-1]])
+        keys = [(start + width / 2, -0.62 - LABEL_RISE) for start, width in zip(starts, widths, strict=True)]
+        log(f"{self._root}/{entities.KEY}", _labels(keys, list(self._names), palette))
+
+    def _draw_ticks(self, stamp: int, length: float) -> None:
+        places = [(-0.2, -y - LABEL_RISE) for y in (0.5, 0.0, -0.5)]
+        texts = [f"{y * self.limit:+.3g}" if y else "0" for y in (1.0, 0.0, -1.0)]
+        places += [(WIDTH * k / 5, 0.585 - LABEL_RISE) for k in range(6)]
+        texts += [f"{length * k / 5:.3g}" for k in range(6)]
+        places.append((WIDTH * 0.88, -0.62 - LABEL_RISE))
+        texts.append(f"[{self._unit}] over X [m]")
+        self._outlet.once(stamp, f"{self._root}/{entities.TICKS}", _labels(places, texts, [colours.LABEL] * len(texts)))
+
+
+def grown_limit(limit: float, value: float) -> float:
+    """`limit`, or the first of 1, 2, 5, 10, 20 ... times a power of ten that is not below `value`."""
+    if value <= limit:
+        return limit
+    decade = 10.0 ** np.floor(np.log10(value))
+    return next(float(step * decade) for step in (1.0, 2.0, 5.0, 10.0) if step * decade >= value * (1 - 1e-12))
+
+
+def _labels(places: list, texts: list[str], palette: list | tuple) -> rr.Points2D:
+    return rr.Points2D(
+        places, labels=texts, colors=palette, show_labels=True, radii=rr.Radius.ui_points(0.1), draw_order=40.0
+    )

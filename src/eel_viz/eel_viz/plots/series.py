@@ -1,0 +1,29 @@
+"""The scalars over time: which values an entity has, in order, and how its lines look."""
+
+import rerun as rr
+
+from eel_viz import entities
+from eel_viz.outlet import Outlet
+from eel_viz.scene3d import colours
+
+_ONE, _TWO, _THREE = colours.AXIS
+
+SERIES = {  # entity: (name, colour) of each value
+    entities.POSITION: (("x [m]", _ONE), ("y [m]", _TWO), ("z [m]", _THREE)),
+    entities.ORIENTATION: (("x", _ONE), ("y", _TWO), ("z", _THREE), ("w", colours.GREY)),
+    entities.ATTITUDE: (("heading", _THREE), ("pitch", _TWO), ("roll", _ONE)),
+    entities.LINEAR: (("x", _ONE), ("y", _TWO), ("z", _THREE)),
+    entities.ANGULAR: (("x", _ONE), ("y", _TWO), ("z", _THREE)),
+    entities.SPEED: (("speed [m/s]", _THREE),),
+    entities.DEPTH: (("depth [m]", _ONE),),
+    entities.POWER: (("actuator", _TWO), ("wake", _ONE), ("nose", colours.GREY), ("drag", colours.MAGENTA)),
+    entities.KINETIC: (("body", _ONE), ("fluid", _THREE)),
+    entities.RESIDUAL: (("residual [J]", colours.MAGENTA),),
+}
+
+
+def log_styles(outlet: Outlet) -> None:
+    """Names, colours and widths of all lines, for all times."""
+    for path, lines in SERIES.items():
+        names, shades = zip(*lines, strict=True)
+        outlet.fixed(path, rr.SeriesLines(names=names, colors=shades, widths=[1.5] * len(names)))

@@ -1,0 +1,1 @@
+"""Messages into Rerun recordings: where they go, what they hold, how they are read back."""

@@ -1,0 +1,67 @@
+"""A recording back to arrays: what was logged where, and when.
+
+    columns = read("out/falling.rrd", entities.WRENCH_NUMBERS)
+    columns.time                    # (T,) s
+    columns["torque_3"]             # (T, 51) N m
+
+Names of components are those after the colon in Rerun (`Scalars:scalars` is `scalars`).
+"""
+
+import os
+from dataclasses import dataclass
+
+import numpy as np
+from eel_gaits.wording import shown
+
+from eel_viz.entities import TIMELINE
+from eel_viz.recording.rrd_frames import HEAD, whole
+
+
+@dataclass(frozen=True, kw_only=True)
+class Columns:
+    """One entity: the `stamps` (T,) [ns] of all its rows, and of each component the values and their stamps."""
+
+    stamps: np.ndarray
+    values: dict[str, list]
+    stamps_of: dict[str, np.ndarray]
+
+    @property
+    def time(self) -> np.ndarray:
+        """(T,) [s]."""
+        return self.stamps / 1e9
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """All values of a component, one row for each stamp that has it; ragged ones stay a list of arrays."""
+        rows = [np.asarray(row) for row in self.values[name]]
+        return np.stack(rows) if len({row.shape for row in rows}) == 1 else rows
+
+
+def read(path: str | os.PathLike[str], entity: str, *, static: bool = False) -> Columns:
+    """All rows of `entity`, ordered by time; with `static` those that are valid at all times (one row)."""
+    from rerun.chunk import RrdReader
+
+    found: dict[str, list[tuple[int, object]]] = {}
+    stamps: set[int] = set()
+    with whole(path) as readable:
+        empty = readable.stat().st_size <= HEAD
+        chunks = [] if empty else list(RrdReader(str(readable)).stream().filter(content=entity))
+    for chunk in chunks:
+        if chunk.is_static != static or str(chunk.entity_path).strip("/") != entity.strip("/"):
+            continue
+        batch = chunk.to_record_batch()
+        at = [0] * chunk.num_rows if static else batch.column(TIMELINE).cast("int64").to_pylist()
+        for name in batch.schema.names:
+            if ":" not in name:
+                continue
+            for stamp, row in zip(at, batch.column(name).to_pylist(), strict=True):
+                if row is not None:
+                    found.setdefault(name.rpartition(":")[2], []).append((stamp, row))
+                    stamps.add(stamp)
+    if not stamps:
+        raise ValueError(f"recording {shown(str(path))} has nothing at {shown(entity)}")
+    ordered = {name: sorted(rows, key=lambda row: row[0]) for name, rows in found.items()}
+    return Columns(
+        stamps=np.array(sorted(stamps), dtype=np.int64),
+        values={name: [row for _, row in rows] for name, rows in ordered.items()},
+        stamps_of={name: np.array([stamp for stamp, _ in rows], dtype=np.int64) for name, rows in ordered.items()},
+    )

@@ -1,0 +1,1 @@
+"""The swimmer and its surroundings in three dimensions."""

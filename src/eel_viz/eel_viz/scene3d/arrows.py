@@ -1,0 +1,77 @@
+"""The fluid's force on the body as arrows in the world: along the body, and at nose and tail.
+
+A load is in section axes, so it needs the backbone of the same time; whichever comes first waits for the other.
+"""
+
+from collections import OrderedDict
+
+import numpy as np
+import rerun as rr
+
+from eel_viz import entities
+from eel_viz.messages import Backbone, Load
+from eel_viz.outlet import Outlet
+from eel_viz.scene3d import colours
+from eel_viz.scene3d.centre_line import Resampling
+from eel_viz.scene3d.orientation import world_from_section
+from eel_viz.stations import same
+
+ALONG = 24  # arrows between nose and tail
+KEPT = 512  # that wait; the oldest is given up
+
+
+class Arrows:
+    """`load_scale` [m per N/m] and `end_scale` [m per N] are the arrows' lengths."""
+
+    def __init__(self, outlet: Outlet, *, load_scale: float, end_scale: float) -> None:
+        self._outlet, self._load_scale, self._end_scale = outlet, load_scale, end_scale
+        self._along: tuple[np.ndarray, np.ndarray] | None = None  # all stations, and which have an arrow
+        self._backbones: OrderedDict[int, Backbone] = OrderedDict()
+        self._loads: OrderedDict[int, Load] = OrderedDict()
+        outlet.fixed(entities.LOAD, rr.Arrows3D.from_fields(colors=[colours.TEAL], radii=[0.0022]))
+        outlet.fixed(entities.LOAD_ENDS, rr.Arrows3D.from_fields(colors=[colours.MAGENTA], radii=[0.004]))
+
+    def backbone(self, stamp: int, backbone: Backbone) -> None:
+        """The backbone at `stamp` [ns]."""
+        load = self._loads.pop(stamp, None)
+        if load is None:
+            _keep(self._backbones, stamp, backbone)
+        else:
+            self._draw(stamp, backbone, load)
+
+    def load(self, stamp: int, load: Load) -> None:
+        """The load at `stamp` [ns]."""
+        backbone = self._backbones.pop(stamp, None)
+        if backbone is None:
+            _keep(self._loads, stamp, load)
+        else:
+            self._draw(stamp, backbone, load)
+
+    def _draw(self, stamp: int, backbone: Backbone, load: Load) -> None:
+        along = self._stations(backbone.x)
+        x, force = backbone.x[along], load.profiles.together("force_1", "force_2", "force_3")
+        alike = same(load.profiles.x, backbone.x)
+        force = force[along] if alike else Resampling(load.profiles.x, x).linear(force)
+        vectors = world_from_section(backbone.orientation[along], force) * self._load_scale
+        self._log(stamp, entities.LOAD, backbone.position[along], vectors)
+        ends = [0, -1]
+        forces = world_from_section(backbone.orientation[ends], np.stack([load.nose, load.tail]))
+        self._log(stamp, entities.LOAD_ENDS, backbone.position[ends], forces * self._end_scale)
+
+    def _stations(self, x: np.ndarray) -> np.ndarray:
+        """Indices of the stations that have an arrow: evenly along the body, and nothing is interpolated."""
+        if self._along is None or not same(self._along[0], x):
+            wanted = np.linspace(x[0], x[-1], ALONG + 2)[1:-1]
+            self._along = x, np.unique(np.searchsorted(x, wanted - 1e-9))
+        return self._along[1]
+
+    def _log(self, stamp: int, path: str, origins: np.ndarray, vectors: np.ndarray) -> None:
+        self._outlet.row(
+            stamp, path, rr.Arrows3D, origins=origins.astype(np.float32), vectors=vectors.astype(np.float32)
+        )
+
+
+def _keep(waiting: OrderedDict, stamp: int, value) -> None:
+    waiting[stamp] = value
+    if len(waiting) > KEPT:
+        waiting.popitem(last=False)

@@ -1,0 +1,52 @@
+"""The backbone between its stations: cubic Hermite in position, whose slope is known exactly (dr/dX = t1).
+
+So the skin can have its own abscissae, finer at the nose, and keeps its mesh when the number of stations changes.
+"""
+
+import numpy as np
+
+from eel_viz.scene3d.orientation import world_from_body
+from eel_viz.stations import same
+
+
+class Resampling:
+    """Values at abscissae `target` [m], shape (R,), from those at strictly increasing stations `x` [m], shape (M,)."""
+
+    def __init__(self, x: np.ndarray, target: np.ndarray) -> None:
+        self.x, self.target = x, target
+        self.left = np.clip(np.searchsorted(self.x, self.target, side="right") - 1, 0, len(self.x) - 2)
+        self.span = self.x[self.left + 1] - self.x[self.left]
+        self.fraction = np.clip((self.target - self.x[self.left]) / self.span, 0.0, 1.0)
+
+    def matches(self, x: np.ndarray, target: np.ndarray) -> bool:
+        """Whether these weights serve for `x` and `target`, so that they can be kept."""
+        return same(self.x, x) and same(self.target, target)
+
+    def linear(self, values: np.ndarray) -> np.ndarray:
+        """Linear interpolation of `values`, shape (M,) or (M, n); returns (R,) or (R, n)."""
+        values = np.asarray(values, dtype=float)
+        weight = self.fraction if values.ndim == 1 else self.fraction[:, None]
+        return values[self.left] * (1.0 - weight) + values[self.left + 1] * weight
+
+    def centre_line(self, position: np.ndarray, orientation: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Position [m], (R, 3), and section axes, (R, 3, 3) with columns t1, t2, t3, both in the world frame.
+
+        `position` (M, 3) [m] and `orientation` (M, 4) are those of the message `Backbone` (REP-103 axes).
+        """
+        axes = world_from_body(orientation) * (-1.0, -1.0, 1.0)
+        position = np.asarray(position, dtype=float)
+        s = self.fraction[:, None]
+        slope = axes[:, :, 0]
+        points = (
+            position[self.left] * (1 + 2 * s) * (1 - s) ** 2
+            + position[self.left + 1] * s * s * (3 - 2 * s)
+            + self.span[:, None] * (slope[self.left] * s * (1 - s) ** 2 - slope[self.left + 1] * s * s * (1 - s))
+        )
+        blended = axes[self.left] * (1 - s)[:, :, None] + axes[self.left + 1] * s[:, :, None]
+        t1 = _unit(blended[:, :, 0])
+        t2 = _unit(blended[:, :, 1] - t1 * np.sum(t1 * blended[:, :, 1], axis=1, keepdims=True))
+        return points, np.stack([t1, t2, np.cross(t1, t2)], axis=2)
+
+
+def _unit(vectors: np.ndarray) -> np.ndarray:
+    return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
