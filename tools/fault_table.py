@@ -4,7 +4,7 @@ A test that shows what happens at a fault says so by a decorator, once for each 
 
     @pytest.mark.fault("laws", "a law with NaN or infinity", "refused with one error that names the field")
 
-The table is what stands between two marker lines of the page; test/system/test_fault_table.py fails where it is stale.
+The table is what stands between two marker lines of the page; test/test_fault_table.py fails where it is stale.
 What `make soak` has left goes there too.
 """
 
@@ -61,7 +61,8 @@ def faults_of(path: Path) -> list[Fault]:
 
 def faults() -> list[Fault]:
     """All rows: by group, and in each by test file and place in it."""
-    rows = [row for path in sorted((ROOT / "test").glob("*/test_*.py")) for row in faults_of(path)]
+    files = [*sorted(ROOT.glob("src/*/test/test_*.py")), *sorted(ROOT.glob("test/test_*.py"))]
+    rows = [row for path in files for row in faults_of(path)]
     return sorted(rows, key=lambda row: list(GROUPS).index(row.group))
 
 
@@ -72,7 +73,7 @@ def table() -> str:
         rows = [row for row in faults() if row.group == group]
         if rows:
             lines += [f"### {heading}", "| fault | what happens | test |", "|---|---|---|"]
-            lines += [f"| {row.fault} | {row.outcome} | `{row.test.removeprefix('test/')}` |" for row in rows]
+            lines += [f"| {row.fault} | {row.outcome} | `{row.test}` |" for row in rows]
             lines.append("")
     return "\n".join(lines)
 

@@ -20,14 +20,14 @@ begin() {   # NAME TESTS...: into out/test-NAME.log
     beside[$1]=$!
 }
 
-nodes=(test/eel_dynamics/test_node_[!r]*.py)
+nodes=(src/eel_dynamics/test/test_node_[!r]*.py)
 begin nodes "${nodes[@]}"
-begin viz test/eel_viz
+begin viz src/eel_viz/test
 tools/core_tests.sh tests > out/test-core.log 2>&1 &
 beside[core]=$!
-begin system test/system test/eel_ros test/eel_gaits test/eel_core
-echo "[test] mechanics here; the dynamics node, test/eel_viz, test/system with test/eel_ros, test/eel_gaits and test/eel_core, and the C++ tests beside, shown when done"
-"${pytest[@]}" test/eel_dynamics "${nodes[@]/#/--ignore=}"
+begin system test src/eel_ros/test src/eel_gaits/test src/eel_core/test
+echo "[test] mechanics here; beside, shown when done: the dynamics node, eel_viz, the processes together with the other packages, the C++ tests"
+"${pytest[@]}" src/eel_dynamics/test "${nodes[@]/#/--ignore=}"
 status=$?
 for name in core nodes viz system; do
     wait "${beside[$name]}" || status=1

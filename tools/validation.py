@@ -33,7 +33,7 @@ IDENTITIES = {
     "Scaling": "Similar swimmers at equal Reynolds number swim alike.",
     "Second implementation": "The equations again from the kinetic energy alone, differentiated numerically, in "
     "another direction of integration, by code that shares nothing with the package "
-    "(`test/eel_dynamics/reference.py`).",
+    "(`test/reference.py`).",
     "Pressure at the tail": "Lumped at the tail or distributed along the body: the same resultant and moment.",
     "Bodies": "Geometry and section data against what is printed or known.",
     "Read off a run": "Figures of `Run.analysis()` and `Run.actuators()` against the same, computed another way.",
@@ -169,7 +169,7 @@ class Checks:
 
 def main() -> int:
     RECORD.unlink(missing_ok=True)
-    tests = [sys.executable, "-m", "pytest", "-m", "identity and not soak", "test/eel_dynamics", "-q"]
+    tests = [sys.executable, "-m", "pytest", "-m", "identity and not soak", "src/eel_dynamics/test", "-q"]
     status = subprocess.run(tests, cwd=ROOT).returncode
     if status:
         return status

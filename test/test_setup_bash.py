@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[1]
 NODES = ("gait_generator", "dynamics", "visualiser", "record", "eel_echo", "replay", "render", "simulate")
 
 

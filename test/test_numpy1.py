@@ -16,7 +16,7 @@ import pytest
 
 import eel_core
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[1]
 SWIM = """
 import json, sys
 import numpy
@@ -55,7 +55,7 @@ def numpy1(tmp_path_factory):
     venv.create(folder / "venv", with_pip=False, symlinks=True)
     python = folder / "venv/bin/python"
     site = next((folder / "venv/lib").glob("python3.*/site-packages"))
-    pins = ROOT / "test/system/numpy1.txt"
+    pins = ROOT / "test/numpy1.txt"
     install = [
         sys.executable,
         "-m",

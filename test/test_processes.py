@@ -48,7 +48,7 @@ def test_stubborn_process_is_ended_with_its_children(tmp_path):
 def test_process_does_not_outlive_a_killed_owner(tmp_path):
     owner = textwrap.dedent(f"""
         import os, sys, time
-        sys.path.insert(0, {str(Path(__file__).parents[2] / "tools")!r})
+        sys.path.insert(0, {str(Path(__file__).parents[1] / "tools")!r})
         from pathlib import Path
         from node_process import NodeProcess
         node = NodeProcess("sleep", "1000", environment=dict(os.environ), log=Path({str(tmp_path)!r}) / "log.txt")

@@ -11,7 +11,7 @@ import pytest
 from soak import NODES, RATE, soak
 from soak_table import soak_table
 
-OUT = Path(__file__).parents[2] / "out"
+OUT = Path(__file__).parents[1] / "out"
 HOUR, SHORT = 3600.0, 20.0  # s of simulation
 FILLED = 0.5  # of the hour, by which every history is as full as it gets
 GROWTH = 0.01  # of the median, what the memory may vary by afterwards

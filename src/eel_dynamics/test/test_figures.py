@@ -23,7 +23,7 @@ from matplotlib.figure import Figure
 from eel_dynamics import Body, simulate
 from eel_gaits import straight
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 
 
 @pytest.fixture(scope="module")

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[1]
 NEEDED = """
     bash sh env sed awk cat tee uname find sort xargs sha256sum cut flock rm mkdir touch dirname
 """

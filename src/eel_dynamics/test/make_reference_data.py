@@ -1,6 +1,6 @@
 """Writes data/falling.json: the head after the falling gait, by the reference. From the root of the repository:
 
-    source setup.bash && python test/eel_dynamics/make_reference_data.py
+    source setup.bash && python src/eel_dynamics/test/make_reference_data.py
 
 Some minutes; names of cases as arguments make these alone. `converged_to` is the greatest change of any component
 of the state at any of the times from the coarser of two runs: the kinks of V|V| and the jump of the printed c_f(Re)
