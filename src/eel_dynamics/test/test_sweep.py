@@ -290,14 +290,14 @@ def test_command_with_a_cluster_of_its_own(tmp_path, capsys):
 @pytest.mark.parametrize(
     "options, words",
     [
-        (["--vary", "period"], "NAME=VALUES"),
+        (["--vary", "period"], "--vary must be NAME=VALUE, got 'period'"),
         (["--vary", "period=1:2:x"], "start:end:count"),
         (["--vary", "period=1:2:-1"], "start:end:count"),
         (["--vary", "period=0.5:2:100000000000"], "period must have at most 1000000 points, got 100000000000"),
         (["--vary", "period=1:2:1001", "--vary", "wavelength=1:2:1000"], "at most 1000000 points, got 1001000"),
         (["--vary", "period=1,2", "--vary", "period=3"], "period must be given once, got it 2 times"),
         (["--vary", "period=1,2", "--set", "period=3"], "period must be given once"),
-        (["--vary", "period=1,2", "--set", "wavelength=1,2"], "--set must have one value, got 'wavelength=1,2'"),
+        (["--vary", "period=1,2", "--set", "wavelength=1,2"], "--set must be NAME=NUMBER, got 'wavelength=1,2'"),
         (["--vary", "period=1", "--duration", "1e9"], "2e+10 samples"),
         (["--vary", "tail=1"], "tail"),
         (["--vary", "period=-1,1"], "period=-1.0"),

@@ -23,6 +23,7 @@ from eel_dynamics.analysis.actuators import MOST as MOST_JOINTS
 from eel_dynamics.model.body import NAMED, Body
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.interrupt import leave_on_interrupt
+from eel_dynamics.runs.named_values import scene_of, set_numbers
 from eel_dynamics.runs.one_line_warnings import one_line_warnings
 from eel_dynamics.runs.run import Run, simulate
 from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
@@ -73,10 +74,9 @@ def main(arguments: list[str] | None = None) -> int:
 
 def _swim(options, out: Path | None) -> int:
     """Swim, print the summary, write the run; 0, or 3 for a run that stopped."""
-    numbers = {name: _number(name, value) for name, value in _pairs("--set", options.set)}
-    law = gait(options.gait, **numbers)
+    law = gait(options.gait, **set_numbers(options.set))
     body = Body.named(options.body) if options.body in NAMED else Body.from_file(options.body)
-    scene = Scene(**{name: _scene_value(name, value) for name, value in _pairs("--scene", options.scene)})
+    scene = scene_of(options.scene)
     if options.actuators is not None:
         _check_actuators(options, scene)
     start = time.perf_counter()
@@ -166,22 +166,6 @@ def _parser() -> Parser:
     return parser
 
 
-def _pairs(option: str, texts: list[str]) -> list[tuple[str, str]]:
-    for text in texts:
-        if "=" not in text:
-            raise ValueError(f"{option} must be NAME=VALUE, got {shown(text)}")
-    check_names(texts)
-    return [tuple(text.split("=", 1)) for text in texts]
-
-
-def check_names(texts: list[str]):
-    """`ValueError` where two of the NAME=VALUE have the same name."""
-    names = [text.partition("=")[0] for text in texts]
-    for name in names:
-        if names.count(name) > 1:
-            raise ValueError(f"{name} must be given once, got it {names.count(name)} times")
-
-
 def _check_actuators(options, scene: Scene):
     """`ValueError` for what `Run.actuators` would refuse, before the swim."""
     if not 1 <= options.actuators <= MOST_JOINTS:
@@ -190,26 +174,6 @@ def _check_actuators(options, scene: Scene):
         raise ValueError("--actuators needs --scene internal_wrench=on, got off")
     if options.stations < 4:
         raise ValueError(f"--actuators needs 4 --stations or more, got {options.stations}")
-
-
-def _number(name: str, text: str):
-    try:
-        values = tuple(float(part) for part in text.split(","))
-    except ValueError:
-        raise ValueError(f"{name} must be a number, or several with commas, got {shown(text)}") from None
-    return values[0] if len(values) == 1 else values
-
-
-def _scene_value(name: str, text: str):
-    kinds = {item.name: item for item in fields(Scene)}
-    if name not in kinds:
-        raise ValueError(f"scene has no field {shown(name)}, it has: {', '.join(kinds)}")
-    if isinstance(kinds[name].default, bool):
-        words = {"true": True, "on": True, "1": True, "false": False, "off": False, "0": False}
-        if text.lower() not in words:
-            raise ValueError(f"scene {name} must be true or false, got {shown(text)}")
-        return words[text.lower()]
-    return text if "choices" in kinds[name].metadata else _number(f"scene {name}", text)
 
 
 def _checked_out(out: str | None) -> Path | None:

@@ -11,11 +11,10 @@ import numpy as np
 from eel_gaits.command_line import Parser, complain
 from eel_gaits.output_file import NotWritten
 from eel_gaits.registry import GAITS
-from eel_gaits.wording import shown
 
 from eel_dynamics.accuracy.accuracy import PRESETS
 from eel_dynamics.model.body import NAMED, Body
-from eel_dynamics.runs.command import check_names
+from eel_dynamics.runs.named_values import check_names, named_texts, set_numbers, varied_values
 from eel_dynamics.runs.one_line_warnings import one_line_warnings
 from eel_dynamics.studies.sweep.sweep import check_points, sweep
 
@@ -31,12 +30,13 @@ def main(arguments: list[str] | None = None) -> int:
 def _sweep(options) -> int:
     start = time.perf_counter()
     try:
-        check_names(options.vary + options.set)
-        grid = dict(_axis(text) for text in options.vary)
+        numbers, vary = set_numbers(options.set), named_texts("--vary", options.vary)
+        check_names([*numbers, *(name for name, _ in vary)])
+        grid = {name: varied_values(text, lambda count, name=name: check_points(name, count)) for name, text in vary}
         data = sweep(
             grid,
             gait=options.gait,
-            numbers=dict(_one(text) for text in options.set),
+            numbers=numbers,
             duration=options.duration,
             body=Body.named(options.body) if options.body in NAMED else Body.from_file(options.body),
             accuracy=options.accuracy,
@@ -102,40 +102,6 @@ def _parser() -> Parser:
     )
     parser.add_argument("--workers", type=int, metavar="N", help="processes on this machine (one per core)")
     return parser
-
-
-def _one(text: str) -> tuple:
-    name, values = _axis(text)
-    if len(values) != 1:
-        raise ValueError(f"--set must have one value, got {shown(text)}: --vary takes several")
-    return name, values[0]
-
-
-def _axis(text: str) -> tuple[str, list]:
-    name, equals, values = text.partition("=")
-    if not equals or not name or not values:
-        raise ValueError(f"a parameter must be NAME=VALUES, got {shown(text)}")
-    bounds = values.split(":")
-    if len(bounds) == 3:
-        try:
-            start, end, count = float(bounds[0]), float(bounds[1]), int(bounds[2])
-        except ValueError:
-            raise ValueError(f"{name} must be start:end:count, got {shown(values)}") from None
-        if count < 1:
-            raise ValueError(f"{name} must be start:end:count, count >= 1, got {shown(values)}")
-        check_points(name, count)
-        return name, np.linspace(start, end, count).tolist()
-    return name, [_value(part) for part in values.split(",")]
-
-
-def _value(text: str):
-    words = {"true": True, "on": True, "false": False, "off": False}
-    if text.lower() in words:
-        return words[text.lower()]
-    try:
-        return float(text)
-    except ValueError:
-        return text
 
 
 def _say_progress(done: int, points: int):

@@ -13,13 +13,12 @@ from pathlib import Path
 from eel_gaits.command_line import Parser, complain
 from eel_gaits.output_file import NotWritten, check_output, replacing
 from eel_gaits.registry import GAITS, gait
-from eel_gaits.wording import shown
 
 from eel_dynamics.curvature.difficulty import difficulty_of
 from eel_dynamics.model.body import NAMED, Body
 from eel_dynamics.model.scene import Scene
-from eel_dynamics.runs.command import check_names
 from eel_dynamics.runs.interrupt import leave_on_interrupt
+from eel_dynamics.runs.named_values import set_numbers
 from eel_dynamics.studies.tradeoff import measuring, models
 from eel_dynamics.studies.tradeoff.delivered import deliver, delivered_table, exceeding, farthest, scatter_line
 from eel_dynamics.studies.tradeoff.page import reference_line, write_page
@@ -76,8 +75,7 @@ def _say(text: str):
 
 
 def _measure_all(options) -> list[tuple]:
-    check_names(options.set)
-    numbers = dict(_number(text) for text in options.set)
+    numbers = set_numbers(options.set)
     laws = [gait(name, **numbers) for name in options.gaits]
     body = Body.named(options.body) if options.body in NAMED else Body.from_file(options.body)
     least = measuring.SAMPLE_PERIOD  # a single sample has no error
@@ -143,14 +141,6 @@ def _draw(trade, poorer, folder: Path):
             with replacing(path) as draft:
                 figure.savefig(draft, metadata={"Date": None} if suffix == "svg" else {"Software": None})
             yield path
-
-
-def _number(text: str) -> tuple[str, float]:
-    name, _, value = text.partition("=")
-    try:
-        return name, float(value)
-    except ValueError:
-        raise ValueError(f"--set must be NAME=NUMBER, got {shown(text)}") from None
 
 
 def _parser() -> Parser:

@@ -1,0 +1,86 @@
+"""The options --set, --scene and --vary of the commands: each is NAME=VALUE, and may be given several times.
+
+A value is a number, true or false (on or off), or a word.
+"""
+
+from collections.abc import Callable
+from dataclasses import fields
+
+import numpy as np
+from eel_gaits.wording import shown
+
+from eel_dynamics.model.scene import Scene
+
+TRUTH = {"true": True, "on": True, "false": False, "off": False}
+
+
+def named_texts(option: str, texts: list[str]) -> list[tuple[str, str]]:
+    """The names and values of an `option`. `ValueError` for what is not NAME=VALUE."""
+    pairs = [text.partition("=") for text in texts]
+    for (name, _, value), text in zip(pairs, texts, strict=True):
+        if not name or not value:
+            raise ValueError(f"{option} must be NAME=VALUE, got {shown(text)}")
+    check_names([name for name, _, _ in pairs])
+    return [(name, value) for name, _, value in pairs]
+
+
+def check_names(names: list[str]):
+    """`ValueError` where a name is given twice."""
+    for name in names:
+        if names.count(name) > 1:
+            raise ValueError(f"{name} must be given once, got it {names.count(name)} times")
+
+
+def set_numbers(texts: list[str]) -> dict[str, float]:
+    """The numbers of a gait that --set gives, by name."""
+    found = {}
+    for name, text in named_texts("--set", texts):
+        try:
+            found[name] = float(text)
+        except ValueError:
+            raise ValueError(f"--set must be NAME=NUMBER, got {shown(f'{name}={text}')}") from None
+    return found
+
+
+def scene_of(texts: list[str]) -> Scene:
+    """The scene that --scene gives. `ValueError` names the field that there is not, or whose value does not fit."""
+    known = {item.name: item for item in fields(Scene)}
+    found = {}
+    for name, text in named_texts("--scene", texts):
+        if name not in known:
+            raise ValueError(f"scene has no field {shown(name)}, it has: {', '.join(known)}")
+        if isinstance(known[name].default, bool):
+            found[name] = {"1": True, "0": False, **TRUTH}.get(text.lower(), text)
+        elif "choices" in known[name].metadata:
+            found[name] = text
+        else:
+            values = [value_of(part) for part in text.split(",")]
+            found[name] = values[0] if len(values) == 1 else tuple(values)
+    return Scene(**found)
+
+
+def varied_values(text: str, check_count: Callable[[int], None]) -> list:
+    """The values of --vary: a,b,c or start:end:count. `ValueError` where it is neither.
+
+    check_count(count) may refuse the count before the values are made."""
+    bounds = text.split(":")
+    if len(bounds) != 3:
+        return [value_of(part) for part in text.split(",")]
+    try:
+        start, end, count = float(bounds[0]), float(bounds[1]), int(bounds[2])
+    except ValueError:
+        count = 0
+    if count < 1:
+        raise ValueError(f"--vary must be NAME=start:end:count, count >= 1, or NAME=a,b,c, got {shown(text)}")
+    check_count(count)
+    return np.linspace(start, end, count).tolist()
+
+
+def value_of(text: str):
+    """A truth, a number, or the text itself."""
+    if text.lower() in TRUTH:
+        return TRUTH[text.lower()]
+    try:
+        return float(text)
+    except ValueError:
+        return text
