@@ -10,7 +10,7 @@ import time
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tools"))
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "test" / "eel_dynamics"))
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "src" / "eel_dynamics" / "test"))
 import numpy as np
 from eel_gaits.messages import law_to_message
 from geometry_msgs.msg import PoseStamped

@@ -34,7 +34,7 @@ def test_every_line_of_the_page_is_a_test_that_measures_it(checks, request):
     assert len(found) > 40
     for identity, what, _, test in found:
         file, name = test.split("::")
-        source = (ROOT / "test" / "eel_dynamics" / file).read_text()
+        source = (ROOT / "src/eel_dynamics/test" / file).read_text()
         assert re.search(rf"^def {name}\(", source, re.MULTILINE), (test, STALE)
         if test in ran and not any(item.startswith(f"{name}[") for item in alone):  # a parametrised one may run in part
             assert (identity, what) in measured, (what, STALE)
