@@ -79,7 +79,9 @@ def masses(recording) -> np.ndarray:
     "it finds the law on the network and swims from 0; a third recording; the late one has body, law and what follows",
 )
 @pytest.mark.timeout(240)
-def test_nodes_die_and_come_back(start, fresh_domain, tmp_path):
+def test_nodes_die_and_come_back(start, fresh_domain, tmp_path, monkeypatch):
+    """Over UDP: SIGKILL may leave Fast DDS's shared memory locked (README.md), and then no data comes at all."""
+    monkeypatch.setenv("FASTDDS_BUILTIN_TRANSPORTS", "UDPv4")
     swim = SwimClient(domain=fresh_domain, topics=("curvature",))
     heard = swim.heard["curvature"]
 
