@@ -11,7 +11,7 @@ from eel_dynamics.ros.loop.law_feed import LawFeed
 from eel_dynamics.ros.loop.pacing import Pace
 from eel_dynamics.ros.loop.run_loop import RunLoop
 from eel_dynamics.ros.parameters import DynamicsParameters, checked, from_values
-from eel_dynamics.ros.publishers import Patience, Publishers
+from eel_dynamics.ros.publishers import Publishers, WaitBudget
 from eel_ros.parameters import default_of
 
 from eel_dynamics import Scene, Simulation
@@ -115,15 +115,15 @@ def test_pace_gives_due_times():
 def test_pace_keeps_small_delays_and_gives_up_great_ones():
     pace = Pace(0.01, 1.0)
     pace.restart(0, 0.0)
-    assert pace.settle(1, 0.03) == 0.0 and pace.due(2) == pytest.approx(0.02)  # will be caught up with
-    assert pace.settle(2, 1.02) == pytest.approx(1.0)
+    assert pace.give_up_delay(1, 0.03) == 0.0 and pace.due(2) == pytest.approx(0.02)  # will be caught up with
+    assert pace.give_up_delay(2, 1.02) == pytest.approx(1.0)
     assert pace.lost == pytest.approx(1.0) and pace.due(3) == pytest.approx(1.03)
 
 
 def test_no_pace_is_never_late():
     pace = Pace(0.01, 0.0)
     pace.restart(0, 50.0)
-    assert pace.due(1000) == -math.inf and pace.settle(1000, 1e9) == 0.0
+    assert pace.due(1000) == -math.inf and pace.give_up_delay(1000, 1e9) == 0.0
 
 
 # the right to /clock
@@ -204,7 +204,7 @@ def test_differing_events_are_all_logged_if_asked():
 
 
 def test_patience_is_one_account_for_all_topics():
-    patience = Patience()
+    patience = WaitBudget()
     patience.begin(0.0)
     assert not patience.over(4.9, 5.0) and patience.over(5.0, 5.0)
     patience.begin(5.1)
@@ -235,7 +235,7 @@ def feed(run, log, law_of=lambda message: Law(name=message.name)):
     def opened(message):
         return message.name, lambda: message
 
-    return LawFeed(run, Report(log), opened=opened, law_of=law_of, samples_of=None)
+    return LawFeed(run, Report(log), parse=opened, law_of=law_of, samples_of=None)
 
 
 def info(number):
@@ -246,13 +246,13 @@ def test_a_law_delivered_twice_is_taken_once():
     run = FakeRun()
     heard = feed(run, Log())
     for number, name in ((1, "a"), (2, "b"), (1, "a"), (2, "b"), (3, "a")):
-        heard.hear_law(message(name), info(number))
+        heard.receive_law(message(name), info(number))
     assert [law.name for law, _ in run.laws] == ["a", "b", "a"]
 
 
 def test_origin_is_the_stamp():
     run = FakeRun()
-    feed(run, Log()).hear_law(message(sec=3, nanosec=500_000_000), info(1))
+    feed(run, Log()).receive_law(message(sec=3, nanosec=500_000_000), info(1))
     assert run.laws[0][1] == 3.5
 
 
@@ -267,7 +267,7 @@ def test_origin_is_the_stamp():
 )
 def test_bad_stamp_is_refused(stamp, words):
     run, log = FakeRun(time=10.0), Log()
-    feed(run, log).hear_law(message(**stamp), info(1))
+    feed(run, log).receive_law(message(**stamp), info(1))
     assert not run.laws
     ((level, text),) = log.lines
     assert level == "error" and all(word in text for word in words), text
@@ -275,7 +275,7 @@ def test_bad_stamp_is_refused(stamp, words):
 
 def test_stamp_up_to_an_hour_ahead_is_taken():
     run = FakeRun(time=10.0)
-    feed(run, Log()).hear_law(message(sec=3609), info(1))
+    feed(run, Log()).receive_law(message(sec=3609), info(1))
     assert run.laws[0][1] == 3609.0
 
 
@@ -285,7 +285,7 @@ def test_bad_law_is_one_error_that_names_the_field():
 
     run, log = FakeRun(), Log()
     heard = feed(run, log, refuse)
-    heard.hear_law(message("jump"), info(1))
+    heard.receive_law(message("jump"), info(1))
     assert not run.laws
     assert log.lines == [("error", "law 'jump' refused: terms[0].period must be >= 0 s, got -1.0")]
 
@@ -298,7 +298,7 @@ def test_bad_law_is_one_error_that_names_the_field():
 )
 def test_a_subscriber_that_comes_after_the_snapshot_was_taken(monkeypatch):
     """Nobody hears when it is asked what to compute; somebody does when it is published."""
-    monkeypatch.setattr("eel_dynamics.ros.publishers.LOOK", 0.0)
+    monkeypatch.setattr("eel_dynamics.ros.publishers.COUNT_PERIOD", 0.0)
     heard, audience = [], {"internal_wrench": 0, "hydrodynamic_load": 0, "energy": 0}
     sample = SimpleNamespace(
         kinds=dict.fromkeys(audience, str),
@@ -310,7 +310,7 @@ def test_a_subscriber_that_comes_after_the_snapshot_was_taken(monkeypatch):
         return SimpleNamespace(get_subscription_count=lambda: audience[topic], publish=heard.append)
 
     publishers = Publishers(
-        sample, create=create, destroy=None, received=None, refusal=RuntimeError, values=DynamicsParameters,
+        sample, create=create, destroy=None, received=None, publish_error=RuntimeError, values=DynamicsParameters,
         stopped=lambda: False, report=Report(Log()),
     )  # fmt: skip
     assert publishers.wanted_parts() == {"wrench": False, "load": False}
@@ -324,7 +324,7 @@ def test_a_subscriber_that_comes_after_the_snapshot_was_taken(monkeypatch):
 
 def test_who_was_given_up_does_not_cost_the_others_the_end_of_a_run(monkeypatch):
     """Its topic gets a short farewell; on the others a backlog is waited for as long as without it."""
-    monkeypatch.setattr("eel_dynamics.ros.publishers.FAREWELL", 0.0)
+    monkeypatch.setattr("eel_dynamics.ros.publishers.END_TIMEOUT", 0.0)
     asked = []
 
     def received(publisher, seconds):
@@ -333,7 +333,7 @@ def test_who_was_given_up_does_not_cost_the_others_the_end_of_a_run(monkeypatch)
 
     publishers = Publishers(
         SimpleNamespace(kinds=dict.fromkeys(("backbone", "head_pose"), str)), create=lambda kind, topic, depth: topic,
-        destroy=lambda publisher: None, received=received, refusal=RuntimeError,
+        destroy=lambda publisher: None, received=received, publish_error=RuntimeError,
         values=lambda: DynamicsParameters(real_time_factor=0.0), stopped=lambda: False, report=Report(Log()),
     )  # fmt: skip
     publishers._give_up(publishers._channels["backbone"])

@@ -136,7 +136,7 @@ def hurried(monkeypatch):
     """A wall clock by which every look is a second after the one before."""
     ticks = itertools.count()
     monkeypatch.setattr(
-        "eel_dynamics.runs.foresight.time", type("Clock", (), {"monotonic": lambda: float(next(ticks))})
+        "eel_dynamics.runs.progress_monitor.time", type("Clock", (), {"monotonic": lambda: float(next(ticks))})
     )
 
 
@@ -165,7 +165,7 @@ def test_a_swim_is_interrupted_from_the_keyboard(monkeypatch):
     wanted = simulate(falling(), 1.0, accuracy=1e-5)
     with monkeypatch.context() as patch:
         step_by_step(patch)
-        patch.setattr("eel_dynamics.runs.run.Foresight.look", press)
+        patch.setattr("eel_dynamics.runs.run.ProgressMonitor.update", press)
         with pytest.raises(KeyboardInterrupt):
             simulate(falling(period=0.9), 1.0, accuracy=1e-5)
     np.testing.assert_array_equal(simulate(falling(), 1.0, accuracy=1e-5).position, wanted.position)

@@ -1,1 +1,1 @@
-"""What every node of the suite shares: parameters, command line, start, callbacks, signals, quality of service."""
+"""Code that all nodes of the suite share: parameters, command line, start, callbacks, signals, quality of service."""

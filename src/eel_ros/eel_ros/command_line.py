@@ -1,4 +1,4 @@
-"""The command line of a node: --help lists its parameters; any other word that is no ROS argument is refused."""
+"""The command line of a node: --help lists its parameters; other arguments than ROS arguments are refused."""
 
 import reprlib
 import sys
@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterable
 
 from rclpy.utilities import remove_ros_args
 
-USE_SIM_TIME = ("--ros-args", "-p", "use_sim_time:=true", "--")  # before the user's words, which win
+USE_SIM_TIME = ("--ros-args", "-p", "use_sim_time:=true", "--")  # before the user's arguments, which override it
 SHOWN = reprlib.Repr()
-SHOWN.maxstring = 80  # characters of a refused word
+SHOWN.maxstring = 80  # characters of a refused argument
 
 
 def answer_words(
@@ -18,14 +18,14 @@ def answer_words(
     words: list[str],
     complain: Callable[[str, object], None],
 ) -> int | None:
-    """The exit status of a node whose command line `words` (the program first) has words that are no ROS arguments.
+    """Handle the arguments in `words` (the program first) that are not ROS arguments; returns the exit status.
 
-    0 for -h or --help, which print `about` and the `parameters` (name, description, default); 2 for any other word, or
-    bad ROS arguments, after `complain(name, error)`; None if the node is to start.
+    0 after -h or --help, which print `about` and the `parameters` (name, description, default); 2 for any other
+    argument, or bad ROS arguments, after `complain(name, error)`; None if the node is to start.
     """
     try:
         rest = remove_ros_args(words)[1:]
-    except RuntimeError as error:  # of rcl's parser
+    except RuntimeError as error:  # from rcl's parser
         complain(name, error)
         return 2
     if not rest:
@@ -36,7 +36,7 @@ def answer_words(
         return 2
     lines = [f"usage: {name} [--ros-args -p NAME:=VALUE ...]", "", about, "", "parameters:"]
     for key, description, default in parameters:
-        told = str(default).lower() if isinstance(default, bool) else "empty" if default == "" else default
-        lines.append(f"  {key:<24}  {description} (default {told})")
+        shown_default = str(default).lower() if isinstance(default, bool) else "empty" if default == "" else default
+        lines.append(f"  {key:<24}  {description} (default {shown_default})")
     sys.stdout.write("\n".join([*lines, ""]))
     return 0

@@ -1,20 +1,20 @@
-"""The profile for Fast DDS that has lost packets sent again within 50 ms.
+"""Fast DDS profile that makes a publisher resend lost packets within 50 ms.
 
 A run as fast as possible publishes thousands of messages a second, and packets are dropped when a subscriber's process
-is not scheduled for some milliseconds. The reliable protocol sends them again, but by default it looks for losses only
+is not scheduled for some milliseconds. The reliable protocol resends them, but by default it checks for losses only
 every 3 s. After several losses the wait at the end of a run (5 s) was too short, and messages were missing (in 1 of 6
-runs on a busy machine). Only nodes that publish faster than real time need it.
+runs on a busy machine). Only nodes that publish faster than real time need the profile.
 """
 
 import os
 from pathlib import Path
 
-VARIABLE = "FASTRTPS_DEFAULT_PROFILES_FILE"  # read by Fast DDS, the default middleware; others do not know it
+VARIABLE = "FASTRTPS_DEFAULT_PROFILES_FILE"  # read by Fast DDS, the default middleware, alone
 PROFILE = Path(__file__).with_name("fastdds.xml")
 
 
 def use_prompt_repair() -> None:
-    """Set the profile for this process, unless the user has one; call it before `rclpy.init`."""
+    """Set the profile for this process, unless the user has set one; call this before `rclpy.init`."""
     if os.environ.get("FASTDDS_DEFAULT_PROFILES_FILE"):
         return
     os.environ.setdefault(VARIABLE, str(PROFILE))

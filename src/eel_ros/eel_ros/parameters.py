@@ -10,27 +10,30 @@ from dataclasses import MISSING, Field, fields
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from rclpy.node import Node
 
-OF_ROS = ("use_sim_time", "start_type_description_service", "qos_overrides.")  # beginnings of its own parameters' names
-GREATEST = 2**63 - 1  # integer that a ROS parameter can hold
+ROS_PREFIXES = (
+    "use_sim_time",
+    "start_type_description_service",
+    "qos_overrides.",
+)  # of ROS's own parameters
+MAXIMUM_INTEGER = 2**63 - 1  # of a ROS parameter
 
 
 def take_overrides(node: Node) -> dict:
-    """The values that the user gave at the start, by parameter name.
+    """The user's parameter overrides, by name.
 
-    `node` was made with automatically_declare_parameters_from_overrides. All but ROS's own parameters are undeclared,
-    so that `declare` can declare them with type and range.
+    `node` must be made with automatically_declare_parameters_from_overrides. All but ROS's own parameters are
+    undeclared, so that `declare` can declare them with type and range.
     """
     overrides = {name: parameter.value for name, parameter in node.get_parameters_by_prefix("").items()}
     for name in overrides:
-        if not name.startswith(OF_ROS):
+        if not name.startswith(ROS_PREFIXES):
             node.undeclare_parameter(name)
     return overrides
 
 
 def warn_of_unknown(node: Node, overrides: Mapping, known: Collection[str]) -> None:
-    """Log the names of the overrides that are not `known`. They are no error: a parameter file may serve several
-    nodes."""
-    unknown = [repr(name) for name in overrides if name not in known and not name.startswith(OF_ROS)]
+    """Warn of overrides that are not `known`. They are not an error: a parameter file may serve several nodes."""
+    unknown = [repr(name) for name in overrides if name not in known and not name.startswith(ROS_PREFIXES)]
     if unknown:
         node.get_logger().warning(f"not parameters of this node, ignored: {', '.join(unknown)}")
 
@@ -84,7 +87,7 @@ def _descriptor(item: Field, limits: Callable[[Mapping], str], changeable: bool 
     elif low is not None or high is not None:
         descriptor.additional_constraints = limits(metadata)
         if isinstance(item.default, int):
-            low, high = -GREATEST if low is None else int(low), GREATEST if high is None else int(high)
+            low, high = -MAXIMUM_INTEGER if low is None else int(low), MAXIMUM_INTEGER if high is None else int(high)
             descriptor.integer_range = [IntegerRange(from_value=low, to_value=high)]
         else:
             low, high = -math.inf if low is None else float(low), math.inf if high is None else float(high)

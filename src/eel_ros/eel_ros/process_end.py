@@ -1,4 +1,4 @@
-"""The end of the process: by SIGINT or SIGTERM, or when a thread's work is done or fails, whichever comes first."""
+"""Waits for the end of the process: SIGINT or SIGTERM, or a thread that returns or raises, whichever comes first."""
 
 import os
 import queue
@@ -8,18 +8,18 @@ import threading
 import time
 from collections.abc import Callable
 
-POLL = 0.1  # s: a signal at the very moment before a wait does not end that wait
+POLL = 0.1  # s: a signal just before a wait does not interrupt that wait
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
 class ProcessEnd:
-    """Made in the main thread, before anything that lasts.
+    """Handles signals and the ends of threads. Create it first, in the main thread.
 
     A signal may interrupt any line, so its handler only sets a flag and puts into a queue.
 
     Attributes:
         signalled: whether SIGINT or SIGTERM has come.
-        over: for the threads to look at; set by the main thread.
+        over: set by the main thread; the other threads end when they see it.
     """
 
     def __init__(self) -> None:
@@ -34,12 +34,12 @@ class ProcessEnd:
         self._reasons.put((False, None))
 
     def ignore_signals(self) -> None:
-        """Ignore signals from now on: during the last steps one more would spoil the exit status."""
+        """Ignore signals from now on: one more during clean-up would change the exit status."""
         for number in SIGNALS:
             signal.signal(number, signal.SIG_IGN)
 
     def start(self, work: Callable[[], None]) -> None:
-        """Run `work()` in a thread. When it returns or raises, the process is to end."""
+        """Run `work()` in a thread. When it returns or raises, `wait` returns."""
 
         def run() -> None:
             try:
@@ -52,7 +52,7 @@ class ProcessEnd:
         threading.Thread(target=run, daemon=True).start()
 
     def wait(self) -> tuple[bool, Exception | None]:
-        """Wait for the end: (whether a thread has done its work, the error of one that failed)."""
+        """Wait for a signal or a thread; returns (whether a thread returned, the error of one that raised)."""
         while True:
             try:
                 return self._reasons.get(timeout=POLL)
@@ -60,7 +60,7 @@ class ProcessEnd:
                 continue
 
     def join(self, seconds: float) -> bool:
-        """Wait for all threads, at most `seconds`; whether they have ended."""
+        """Wait at most `seconds` for all threads; whether they have ended."""
         deadline = time.monotonic() + seconds
         others = [thread for thread in threading.enumerate() if thread is not threading.main_thread()]
         for thread in others:
@@ -69,8 +69,7 @@ class ProcessEnd:
 
 
 def leave_at_once(status: int) -> None:
-    """End the process with this exit status although a thread may still be at work, without the interpreter's
-    clean-up."""
+    """End the process with this exit status, without the interpreter's clean-up: a thread may still be running."""
     sys.stdout.flush()
     sys.stderr.flush()
     os._exit(status)

@@ -1,15 +1,15 @@
-"""Quality of service: keep all messages, get those published before, and match what publishers offer."""
+"""Quality-of-service profiles: KEEP_ALL, transient local, and profiles that match the publishers' offers."""
 
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 
 
 def latched(depth: int) -> QoSProfile:
-    """Reliable; the newest `depth` messages are kept for subscribers that come later."""
+    """Reliable and transient local: later subscribers get the newest `depth` messages."""
     return QoSProfile(depth=depth, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 def keep_all(*, reliable: bool = True, latched: bool = False) -> QoSProfile:
-    """No message is dropped for want of room. `latched`: a subscriber also gets what was published before."""
+    """KEEP_ALL history: no message is dropped. `latched`: transient local, a subscriber also gets earlier messages."""
     return QoSProfile(
         history=HistoryPolicy.KEEP_ALL,
         depth=1,
@@ -19,7 +19,7 @@ def keep_all(*, reliable: bool = True, latched: bool = False) -> QoSProfile:
 
 
 def fitting(offers: list[QoSProfile]) -> QoSProfile:
-    """The most that all of the publishers' `offers` can serve."""
+    """The strictest subscription profile that all of the publishers' `offers` match."""
     return keep_all(
         reliable=all(offer.reliability == ReliabilityPolicy.RELIABLE for offer in offers),
         latched=all(offer.durability == DurabilityPolicy.TRANSIENT_LOCAL for offer in offers),
@@ -27,7 +27,7 @@ def fitting(offers: list[QoSProfile]) -> QoSProfile:
 
 
 def matches(profile: QoSProfile, offer: QoSProfile) -> bool:
-    """Whether a subscription of `profile` gets the messages of a publisher's `offer`."""
+    """Whether a subscription with `profile` gets the messages of a publisher with `offer`."""
     unreliable = profile.reliability == ReliabilityPolicy.RELIABLE and offer.reliability != ReliabilityPolicy.RELIABLE
     volatile = (
         profile.durability == DurabilityPolicy.TRANSIENT_LOCAL and offer.durability != DurabilityPolicy.TRANSIENT_LOCAL

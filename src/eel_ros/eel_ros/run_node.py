@@ -11,28 +11,28 @@ from eel_ros.process_end import ProcessEnd
 from eel_ros.serving import serve_once
 from eel_ros.start import start
 
-ATTEND = 0.1  # s between two calls of `attend`
-PAUSE = 0.1  # s between two calls of `work` that found nothing: messages that come in bursts cost less
-LAST_LOOK = 0.25  # s at most, at the end, for messages that have arrived and are not yet taken
-EMPTY = 0.005  # s that the executor waits for a message there; three times in vain, and there is none
+POLL_PERIOD = 0.1  # s between two calls of `poll`
+PAUSE = 0.1  # s after a call of `take_messages` that found none: messages in bursts cost less
+DRAIN_LIMIT = 0.25  # s at most, at the end, to take messages that have arrived
+EMPTY_TIMEOUT = 0.005  # s that the executor waits for a message there; after three time-outs there is none
 
 
 def run_node(
     name: str,
     words: list[str],
     make: Callable[[], Node],
-    attend: Callable[[Node], bool],
-    work: Callable[[Node], bool] | None = None,
+    poll: Callable[[Node], bool],
+    take_messages: Callable[[Node], bool] | None = None,
     *,
     complain: Callable[[str, object], None],
-    period: float = ATTEND,
+    period: float = POLL_PERIOD,
     complete: bool = False,
 ) -> int:
-    """Make the node and serve it until a signal comes or `attend(node)`, called every `period` [s], returns False.
+    """Make the node and spin it until a signal comes or `poll(node)` returns False.
 
-    With `work` the node takes its messages itself, there, and returns whether it found some; the executor then only
-    has what is rare, such as requests about parameters. `complete`: messages that have arrived when the end comes are
-    taken too. At the end the node's `close()` is called, if it has one.
+    take_messages: takes the waiting messages itself and returns whether there were any; the executor then only serves
+    rare callbacks, such as parameter services. period: between two calls of `poll` [s]. complete: at the end, take the
+    messages that have arrived. At the end the node's `close()` is called, if it has one.
     Returns the exit status: 0; 1 if the node has a `failure` (a text), which `complain(name, failure)` gets; 2 if it
     cannot start.
     """
@@ -43,9 +43,9 @@ def run_node(
     executor = SingleThreadedExecutor()
     executor.add_node(node)
     try:
-        _serve(executor, node, attend, work, period, end)
+        _serve(executor, node, poll, take_messages, period, end)
         if complete and not getattr(node, "failure", ""):
-            _take_the_rest(executor, node, work)
+            _drain(executor, node, take_messages)
     finally:
         executor.shutdown()
         if hasattr(node, "close"):
@@ -59,30 +59,30 @@ def run_node(
     return int(bool(failure))
 
 
-def _serve(executor, node, attend, work, period: float, end: ProcessEnd) -> None:
-    attended = 0.0  # s, steady clock
+def _serve(executor, node, poll, take_messages, period: float, end: ProcessEnd) -> None:
+    last_poll = 0.0  # s, steady clock
     while not end.signalled:
         now = time.monotonic()
-        if now - attended > period:
-            attended = now
-            if not attend(node):
+        if now - last_poll > period:
+            last_poll = now
+            if not poll(node):
                 return
-            if work is not None:
+            if take_messages is not None:
                 serve_once(executor, node, 0.0)
-        if work is None:
+        if take_messages is None:
             serve_once(executor, node, period)
-        elif not work(node):
+        elif not take_messages(node):
             time.sleep(PAUSE)
 
 
-def _take_the_rest(executor, node, work) -> None:
-    """Messages that have arrived when the end comes belong to the run: take them, in `LAST_LOOK` [s] at most."""
-    limit, in_vain = time.monotonic() + LAST_LOOK, 0
-    while in_vain < 3 and time.monotonic() < limit:
+def _drain(executor, node, take_messages) -> None:
+    """Take the messages that have arrived, for at most `DRAIN_LIMIT` [s]: they belong to the run."""
+    limit, empty_polls = time.monotonic() + DRAIN_LIMIT, 0
+    while empty_polls < 3 and time.monotonic() < limit:
         began = time.monotonic()
-        if work is not None:
-            found = work(node)
+        if take_messages is not None:
+            found = take_messages(node)
         else:
-            serve_once(executor, node, EMPTY)
-            found = time.monotonic() - began < EMPTY
-        in_vain = 0 if found else in_vain + 1
+            serve_once(executor, node, EMPTY_TIMEOUT)
+            found = time.monotonic() - began < EMPTY_TIMEOUT
+        empty_polls = 0 if found else empty_polls + 1

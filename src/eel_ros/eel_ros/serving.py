@@ -1,36 +1,36 @@
-"""Callbacks that cannot end the node: an exception is logged, its message is left out, the next one is served."""
+"""Runs callbacks so that an exception does not end the node: it is logged, and the message is dropped."""
 
 from rclpy.callback_groups import CallbackGroup
 from rclpy.executors import Executor
 from rclpy.node import Node
 
-SELDOM = 1.0  # s between two lines of log about that
+LOG_PERIOD = 1.0  # s between two log lines about dropped messages
 
 
-class Unattended(CallbackGroup):
-    """The executor neither waits for the entities of this group nor runs them; the node takes their messages."""
+class PolledGroup(CallbackGroup):
+    """A callback group that the executor neither waits for nor runs; the node polls its subscriptions."""
 
     def can_execute(self, entity) -> bool:
-        """Never."""
+        """Return False: the executor runs none of them."""
         return False
 
     def beginning_execution(self, entity) -> bool:
-        """Never."""
+        """Return False: the executor runs none of them."""
         return False
 
     def ending_execution(self, entity) -> None:
-        """Nothing has begun."""
+        """Do nothing: none has begun."""
 
 
 def serve_once(executor: Executor, node: Node, timeout: float | None = None) -> None:
-    """Run one callback of the `executor`, which waits at most `timeout` [s] for one."""
+    """Run one callback of the `executor`, waiting at most `timeout` [s] for it."""
     try:
         executor.spin_once(timeout_sec=timeout)
-    except Exception as error:  # also of rclpy's own callback for /clock
-        leave_out(node, error)
+    except Exception as error:  # rclpy's own callback for /clock may raise too
+        log_dropped(node, error)
 
 
-def leave_out(node: Node, error: Exception, what: str = "a message") -> None:
-    """Log that `what` is left out, and the `error` that is the reason."""
+def log_dropped(node: Node, error: Exception, what: str = "a message") -> None:
+    """Log that `what` is dropped, with the `error`."""
     reason = " ".join(f"{type(error).__name__}: {error}".split())[:300]
-    node.get_logger().error(f"{what} cannot be taken and is left out: {reason}", throttle_duration_sec=SELDOM)
+    node.get_logger().error(f"{what} cannot be taken and is left out: {reason}", throttle_duration_sec=LOG_PERIOD)

@@ -1,4 +1,4 @@
-"""The start of a node: it is made, or one line says why it cannot start."""
+"""Starts a node, or reports in one line why it cannot start."""
 
 from collections.abc import Callable
 

@@ -17,7 +17,7 @@ class Tank(Node):
             raise ValueError("depth must be > 0 m, got -1")
         super().__init__("tank")
         self.failure, self.what, self.begun = "", what, False
-    def attend(self):
+    def poll(self):
         if not self.begun:
             self.begun = True
             print("attended", flush=True)
@@ -32,7 +32,7 @@ def complain(name, error):
 
 what = sys.argv[1]
 work = (lambda node: False) if "work" in sys.argv else None
-sys.exit(run_node("tank", ["tank"], lambda: Tank(what), Tank.attend, work, complain=complain, complete=True))
+sys.exit(run_node("tank", ["tank"], lambda: Tank(what), Tank.poll, work, complain=complain, complete=True))
 """
 
 

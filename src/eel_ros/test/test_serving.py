@@ -1,7 +1,7 @@
 """Callbacks that raise do not end the node; what is left to the node is left alone by the executor."""
 
 import pytest
-from eel_ros.serving import Unattended, leave_out, serve_once
+from eel_ros.serving import PolledGroup, log_dropped, serve_once
 from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
@@ -48,7 +48,7 @@ def test_after_a_callback_that_raises_the_next_is_served(served):
 
 def test_what_is_left_out_is_told_in_one_short_line(served):
     node, _, errors = served
-    leave_out(node, ValueError("x\n" * 1000), "a message on /clock")
+    log_dropped(node, ValueError("x\n" * 1000), "a message on /clock")
     (line,) = errors
     assert line.startswith("a message on /clock cannot be taken and is left out: ValueError: x x") and len(line) < 400
 
@@ -60,7 +60,7 @@ def test_the_executor_runs_nothing_of_an_unattended_group(served):
     def count(name):
         ran[name] += 1
 
-    node.create_timer(0.001, lambda: count("unattended"), callback_group=Unattended())
+    node.create_timer(0.001, lambda: count("unattended"), callback_group=PolledGroup())
     node.create_timer(0.001, lambda: count("attended"))
     while ran["attended"] < 20:
         serve_once(executor, node, 10.0)

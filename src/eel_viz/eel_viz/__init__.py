@@ -1,7 +1,9 @@
-"""Shows a swimmer in Rerun and records its topics; wired to the rest by topics alone.
+"""Shows a swimmer in Rerun and records its topics. Topics are the only connection to the other packages.
 
-`scene3d` and `plots` draw, `recording` takes messages into recordings, `bags` holds rosbag2 files, `pictures` draws
-recordings without a display, `ros` is the node. Only `ros` and `record`, `echo` and `definitions` in `bags` need ROS.
+`ros` holds the visualiser node. `recording` turns messages into Rerun recordings: dispatcher, loggers, destinations,
+blueprint, and the reader of recordings. `scene3d` draws in three dimensions, `plots` draws curves, maps and texts.
+`bags` records, prints and replays bags. `pictures` renders recordings. Only `ros`
+and `record`, `echo` and `definitions` in `bags` import ROS.
 
 Nothing is imported here, so that `import eel_viz` costs nothing.
 """

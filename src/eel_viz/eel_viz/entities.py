@@ -1,8 +1,8 @@
-"""Where everything lies in a recording: the entity paths that loggers and blueprints share.
+"""The entity paths of a recording, shared by loggers and blueprints.
 
 Three trees: `/world` (three-dimensional, metres, the world frame of the messages, z up), `/profiles` and `/heat_map`
 (two-dimensional drawings against the abscissa X), `/plots` (scalars over time). `/numbers` holds the profiles of the
-messages unchanged, in double precision; nothing draws it.
+messages unchanged, in double precision; no view draws them.
 """
 
 TIMELINE = "sim_time"  # duration since the start of the simulation, from header.stamp

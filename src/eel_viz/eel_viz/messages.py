@@ -1,7 +1,7 @@
-"""Messages of the swimmer as arrays, checked: nothing that is not finite or does not fit comes further than here.
+"""Reads the swimmer's messages into arrays, and checks that they are finite and of consistent size.
 
-Each `read_*` takes one message (any object with its fields) and returns arrays; it raises `BadMessage`, which names the
-field, instead of guessing. Frames and units are those of the message.
+Each `read_*` takes one message (any object with its fields) and returns arrays, or raises `BadMessage` that names the
+field. Frames and units are those of the message.
 """
 
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ UNIT_TOLERANCE = 1e-6  # of a quaternion's norm
 
 
 class BadMessage(ValueError):
-    """A message that cannot be shown; `field` says where, so that each fault is reported once."""
+    """A message that cannot be shown; `field` is the faulty field, so that each fault is reported once."""
 
     def __init__(self, field: str, problem: str) -> None:
         super().__init__(f"{field} {problem}")
@@ -202,7 +202,7 @@ def _stations(values) -> np.ndarray:
     return _checked_stations(np.asarray(values, dtype=float).tobytes())
 
 
-@lru_cache(maxsize=16)  # one array for all messages that have the same
+@lru_cache(maxsize=16)  # one array for all messages with equal stations
 def _checked_stations(content: bytes) -> np.ndarray:
     x = _finite("x", np.frombuffer(content))
     if len(x) < 2:

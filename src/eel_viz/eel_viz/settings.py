@@ -1,4 +1,4 @@
-"""What the user can set, each once, with unit, default, bounds and description; the node's parameters come from it."""
+"""The visualiser's settings with unit, default, bounds and description; the node declares its parameters from them."""
 
 import ipaddress
 from dataclasses import dataclass, field, fields
@@ -8,7 +8,7 @@ from eel_gaits.wording import shown
 
 
 def setting(default, description: str, *, unit: str = "", minimum: float | None = None, maximum: float | None = None):
-    """A field with what `ros2 param describe` tells. Bounds are inclusive."""
+    """A dataclass field with the metadata that `ros2 param describe` shows. Bounds are inclusive."""
     return field(
         default=default,
         metadata={"description": description, "unit": unit, "minimum": minimum, "maximum": maximum},
@@ -21,7 +21,7 @@ BLUEPRINTS = ("overview", "torques", "motion", "compare")
 
 @dataclass(frozen=True, kw_only=True)
 class Settings:
-    """Parameters of the visualiser; read when it starts."""
+    """Parameters of the visualiser, read at start. `ValueError` names one that does not fit."""
 
     sink: tuple[str, ...] = setting(
         ("auto",),
@@ -98,9 +98,9 @@ class Settings:
 
     @classmethod
     def from_values(cls, values: dict) -> "Settings":
-        """Settings from what a user gave, by name; floats may be integers, lists may be one text with commas.
+        """Settings from a user's values by name; floats may be integers, lists may be one text with commas.
 
-        ValueError names the setting, what it must be, and what it got.
+        `ValueError` names the setting, what it must be, and what it got.
         """
         return cls(**{item.name: _checked(item, values[item.name]) for item in fields(cls) if item.name in values})
 

@@ -1,8 +1,8 @@
-"""The stations of a swimmer's profiles: rows of abscissae X [m] that hardly ever change."""
+"""Comparison of stations: arrays of abscissae X [m], which rarely change during a run."""
 
 import numpy as np
 
 
 def same(x: np.ndarray, other: np.ndarray) -> bool:
-    """Whether two rows of stations are equal; quickly where they are one."""
+    """Whether two arrays of stations, (M,) [m], are equal; fast if they are the same object."""
     return x is other or np.array_equal(x, other)

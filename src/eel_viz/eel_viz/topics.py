@@ -1,4 +1,4 @@
-"""The swimmer's topics and their types, in words, for those who need no ROS to know them."""
+"""Names and types of the swimmer's topics, as texts: no ROS is imported."""
 
 OWN = {  # relative: below the swimmer's namespace
     "head_pose": "geometry_msgs/msg/PoseStamped",
@@ -15,4 +15,4 @@ OWN = {  # relative: below the swimmer's namespace
 }
 GLOBAL = {"/clock": "rosgraph_msgs/msg/Clock", "/diagnostics": "diagnostic_msgs/msg/DiagnosticArray"}
 LATCHED = ("body", "curvature_law")  # transient local
-SWIMMER = "head_pose"  # whose publishers' leaving is the swimmer's
+SWIMMER = "head_pose"  # without publishers of this topic the swimmer has gone

@@ -1,6 +1,6 @@
-"""Rerun's native viewer as a process of its own: without a window, for pictures, or with one.
+"""Starts Rerun's native viewer as a separate process: with a window, or headless for pictures.
 
-Drawing without a window needs a Vulkan driver; Mesa's software driver (package mesa-vulkan-drivers) does.
+Headless drawing needs a Vulkan driver; Mesa's software driver (package mesa-vulkan-drivers) is enough.
 """
 
 import contextlib
@@ -16,43 +16,46 @@ import time
 from collections.abc import Iterator
 from typing import IO
 
-# Has Linux end the process when the thread that started it has gone (PR_SET_PDEATHSIG, SIGTERM), killed or not.
+# Makes Linux end the process when the thread that started it ends, even by SIGKILL (PR_SET_PDEATHSIG, SIGTERM).
 DIE_WITH_PARENT = "import ctypes, os, sys; ctypes.CDLL(None).prctl(1, 15); os.execv(sys.argv[1], sys.argv[1:])"
 DRIVER = "it needs a Vulkan driver: apt-get install --no-install-recommends mesa-vulkan-drivers"
-START_LIMIT = 60.0  # s, until the viewer listens
-END_LIMIT = 5.0  # s, until it has ended
+START_LIMIT = 60.0  # s until the viewer must listen
+END_LIMIT = 5.0  # s until it must have ended
 
 
 class CannotRender(RuntimeError):
-    """The viewer cannot draw on this machine; the text says why and what to do."""
+    """The viewer cannot draw on this machine; the text gives the reason and the remedy."""
 
 
 @contextlib.contextmanager
 def viewer(size: tuple[int, int] = (1920, 1080)) -> Iterator:
-    """A `rerun.experimental.ViewerClient` of a viewer without window, which ends with the block."""
+    """A `rerun.experimental.ViewerClient` of a headless viewer of `size` [pixels], which ends with the context.
+
+    `CannotRender` if it does not start.
+    """
     from rerun.experimental import ViewerClient
 
     port = free_port()
     command = [native_viewer(), "--headless", "--window-size", f"{size[0]}x{size[1]}", "--port", str(port)]
     command += ["--bind", "127.0.0.1", "--hide-welcome-screen"]
-    # with more than errors in the log, notices of the start would be in the picture
+    # a more verbose log would put start-up notices into the picture
     environment = {**os.environ, "RUST_LOG": "error", "RERUN_APP_ONLY": "true"}
-    with tempfile.TemporaryFile() as said:
-        process = subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=said)
+    with tempfile.TemporaryFile() as output:
+        process = subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=output)
         try:
-            _await_listening(process, port, said)
+            _await_listening(process, port, output)
             yield ViewerClient.connect(f"rerun+http://127.0.0.1:{port}/proxy")
-        except ConnectionError as lost:  # without a driver the viewer listens for a moment, then it ends
+        except ConnectionError as lost:  # without a driver the viewer listens briefly, then it ends
             with contextlib.suppress(subprocess.TimeoutExpired):
                 process.wait(timeout=END_LIMIT)
-                raise _ended(process, said) from lost
+                raise _ended(process, output) from lost
             raise
         finally:
             end_process(process)
 
 
 def open_window(what: str) -> None:
-    """A viewer on this machine's display, showing `what` (a file or an address); it stays when this process ends."""
+    """Open a viewer of `what` (a file or an address) on this machine's display; it outlives this process."""
     process = subprocess.Popen(
         [native_viewer(), "--port", str(free_port()), "--bind", "127.0.0.1", "--hide-welcome-screen", what],
         env={**os.environ, "RERUN_APP_ONLY": "true"},
@@ -61,27 +64,26 @@ def open_window(what: str) -> None:
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
     )
-    threading.Thread(target=process.wait, daemon=True).start()  # closed, it leaves nothing behind
+    threading.Thread(target=process.wait, daemon=True).start()  # leaves no zombie
 
 
 def serve_to_browsers(address: str, here: str, port: int, uri: str) -> subprocess.Popen:
-    """Serve the web viewer on `port` of `address` (this machine reaches it at `here`), for the data at `uri`; the
-    process ends with this one.
+    """Serve the web viewer on `port` of `address`, for the data at `uri`; the process ends with this one.
 
-    `rerun.serve_web_viewer` would listen on every network that the machine is in.
+    `here`: the address that this machine reaches it at. `rerun.serve_web_viewer` would listen on every network.
     """
     command = [native_viewer(), "--serve-web", "--bind", address, "--web-viewer-port", str(port)]
     command += ["--port", str(free_port()), uri]
-    with tempfile.TemporaryFile() as said:
+    with tempfile.TemporaryFile() as output:
         process = subprocess.Popen(
             [sys.executable, "-I", "-S", "-c", DIE_WITH_PARENT, *command],
             env={**os.environ, "RERUN_APP_ONLY": "true"},
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
-            stderr=said,
-            start_new_session=True,  # Ctrl-C is for the parent, which ends it
+            stderr=output,
+            start_new_session=True,  # Ctrl-C reaches the parent alone, which ends it
         )
-        _await_listening(process, port, said, host=here, remedy=f"it was to listen on port {port} of {address}")
+        _await_listening(process, port, output, host=here, remedy=f"it was to listen on port {port} of {address}")
     return process
 
 
@@ -101,7 +103,7 @@ def display() -> bool:
 
 
 def native_viewer() -> str:
-    """The viewer's own executable: the `rerun` command is a wrapper that would leave it behind when it ends."""
+    """The viewer's own executable: the `rerun` command is a wrapper, and ending it would not end the viewer."""
     package = importlib.util.find_spec("rerun_cli")
     if package is None:
         raise CannotRender("rerun-sdk is not installed: its viewer is needed")
@@ -109,35 +111,35 @@ def native_viewer() -> str:
 
 
 def free_port() -> int:
-    """A port of this machine that nobody listens on."""
+    """A port of this machine that no process listens on."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         return probe.getsockname()[1]
 
 
 def listening(port: int, host: str = "127.0.0.1") -> bool:
-    """Whether somebody listens on `port` of `host`."""
+    """Whether a process listens on `port` of `host`."""
     with socket.socket() as probe:
         probe.settimeout(0.5)
         return probe.connect_ex((host, port)) == 0
 
 
 def _await_listening(
-    process: subprocess.Popen, port: int, said: IO[bytes], *, host: str = "127.0.0.1", remedy: str = DRIVER
+    process: subprocess.Popen, port: int, output: IO[bytes], *, host: str = "127.0.0.1", remedy: str = DRIVER
 ) -> None:
     limit = time.monotonic() + START_LIMIT
     while not listening(port, host):
         if process.poll() is not None:
-            raise _ended(process, said, remedy)
+            raise _ended(process, output, remedy)
         if time.monotonic() > limit:
             raise CannotRender(f"the viewer did not start within {START_LIMIT:g} s")
         time.sleep(0.05)
 
 
-def _ended(process: subprocess.Popen, said: IO[bytes], remedy: str = DRIVER) -> CannotRender:
-    """Why the viewer has ended by itself, with the package that is missing most often."""
-    said.seek(0)
-    lines = said.read().decode(errors="replace").splitlines()
+def _ended(process: subprocess.Popen, output: IO[bytes], remedy: str = DRIVER) -> CannotRender:
+    """The error for a viewer that has ended by itself, with the remedy."""
+    output.seek(0)
+    lines = output.read().decode(errors="replace").splitlines()
     reason = next((line for line in lines if "graphics" in line or "render" in line.lower()), "".join(lines[-1:]))
     return CannotRender(
         f"the viewer ended with status {process.returncode} ({reason.strip() or 'no reason given'}); {remedy}"

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import made_up
 from eel_viz.recording.loggers import Loggers, Rates
-from eel_viz.recording.recording_file import File
+from eel_viz.recording.recording_file import FileDestination
 from eel_viz.settings import Settings
 
 from eel_viz import messages
@@ -44,7 +44,7 @@ def record(path: Path, seconds: float, rate: float, *, stations: int = 51, **set
     """Log everything; returns what was logged, by stamp [ns]."""
     chosen = Settings(recording=str(path), **settings)
     said: list[str] = []
-    destination = File(chosen, said.append, said.append)
+    destination = FileDestination(chosen, said.append, said.append)
     stream = destination.open(1, "made up")
     loggers = Loggers(stream, chosen, Rates(numbers=0.0, drawings=chosen.skin_rate))
     loggers.body(body())
@@ -61,6 +61,6 @@ def record(path: Path, seconds: float, rate: float, *, stations: int = 51, **set
         for method, arguments in logged[stamp].items():
             for side in sides:
                 getattr(side, method)(stamp, *arguments)
-    loggers.send()
-    destination.end(stream)
+    loggers.flush()
+    destination.close_recording(stream)
     return logged

@@ -13,8 +13,8 @@ from pathlib import Path
 
 import made_up
 from eel_gaits.output_file import part_of
-from eel_viz.recording.delivery import leave
-from eel_viz.recording.runs import Runs
+from eel_viz.recording.delivery import exit_despite_blocked
+from eel_viz.recording.recordings import Recordings
 from eel_viz.recording.sinks import destinations
 from eel_viz.settings import Settings
 from made_up_recording import body, sample
@@ -38,7 +38,7 @@ def main() -> None:
         port=port, viewer=f"rerun+http://127.0.0.1:{port}/proxy",
     )  # fmt: skip
     said: list[str] = []
-    made = Runs(destinations(settings, said.append, said.append, live=True), "eel", said.append)
+    made = Recordings(destinations(settings, said.append, said.append, live=True), "eel", said.append)
     made.body(body())
     print("ready", flush=True)
     sys.stdin.readline()  # until the viewer is stuck
@@ -55,11 +55,11 @@ def main() -> None:
     while not done():
         stamp = k * STEP
         for topic, arguments in samples[k % len(samples)].items():
-            for loggers in made.at(topic, stamp):
+            for loggers in made.loggers_for(topic, stamp):
                 getattr(loggers, topic)(stamp, *arguments)
         k += 1
         if k % 10 == 0:
-            made.attend()
+            made.poll()
         now = time.monotonic() - began
         if now - told > WAIT:
             told = now
@@ -67,7 +67,7 @@ def main() -> None:
     tell()
     print("done", flush=True)
     made.close()
-    leave(0)
+    exit_despite_blocked(0)
 
 
 if __name__ == "__main__":

@@ -6,7 +6,7 @@ import pytest
 from eel_viz.plots.pairs import Pairs
 from eel_viz.recording.loggers import Loggers, Rates
 from eel_viz.recording.reading import read
-from eel_viz.recording.recording_file import File
+from eel_viz.recording.recording_file import FileDestination
 from eel_viz.settings import Settings
 from made_up_recording import body, sample
 
@@ -20,7 +20,7 @@ SHIFT = (0.003, -0.004, 0.0)  # m: between the two heads
 def record(path, *, other_first=False):
     """Two swimmers beside each other, the other with other stations and half the torque; their samples."""
     settings = Settings(recording=str(path), compare="/draft", blueprint="compare")
-    file = File(settings, print, print)
+    file = FileDestination(settings, print, print)
     stream = file.open(1, "made up")
     loggers = Loggers(stream, settings, Rates(), "standard")
     loggers.body(body())
@@ -40,8 +40,8 @@ def record(path, *, other_first=False):
     for target, stamp, messages in calls:
         for method, arguments in messages.items():
             getattr(target, method)(stamp, *arguments)
-    loggers.send()
-    file.end(stream)
+    loggers.flush()
+    file.close_recording(stream)
     return logged
 
 
@@ -53,27 +53,27 @@ def made(tmp_path_factory):
 
 def test_pairs_are_exact_at_equal_stamps_and_linear_between():
     pairs = Pairs()
-    assert pairs.this(10, np.array([1.0])) == []
-    assert pairs.other(0, np.array([4.0])) == []
-    ((stamp, _, this, other),) = pairs.other(40, np.array([8.0]))
+    assert pairs.add_this(10, np.array([1.0])) == []
+    assert pairs.add_other(0, np.array([4.0])) == []
+    ((stamp, _, this, other),) = pairs.add_other(40, np.array([8.0]))
     assert (stamp, *this, *other) == (10, 1.0, 5.0)
-    ((stamp, _, this, other),) = pairs.this(40, np.array([2.0]))
+    ((stamp, _, this, other),) = pairs.add_this(40, np.array([2.0]))
     assert (stamp, *this, *other) == (40, 2.0, 8.0)
 
 
 def test_pairs_are_brought_to_the_first_s_stations():
     pairs = Pairs()
     x, own = np.array([0.0, 0.25, 1.0]), np.array([0.0, 1.0])
-    pairs.other(0, np.array([[0.0], [4.0]]), own)
-    ((_, _, _, other),) = pairs.this(0, np.zeros((3, 1)), x)
+    pairs.add_other(0, np.array([[0.0], [4.0]]), own)
+    ((_, _, _, other),) = pairs.add_this(0, np.zeros((3, 1)), x)
     np.testing.assert_array_equal(other, [[0.0], [1.0], [4.0]])
 
 
 def test_a_run_that_is_far_ahead_is_bounded_and_the_rest_still_pairs():
     pairs = Pairs()
     for k in range(5000):
-        pairs.this(k, np.zeros(1))
-    found = [pair[0] for k in range(5000) for pair in pairs.other(k, np.zeros(1))]
+        pairs.add_this(k, np.zeros(1))
+    found = [pair[0] for k in range(5000) for pair in pairs.add_other(k, np.zeros(1))]
     assert found == list(range(5000 - 1024, 5000))
 
 
@@ -132,10 +132,10 @@ def test_the_order_of_the_two_does_not_matter(made, tmp_path):
 
 def test_without_another_run_there_is_no_other(record_made_up, tmp_path):
     settings = Settings(recording=str(tmp_path / "alone.rrd"))
-    file = File(settings, print, print)
+    file = FileDestination(settings, print, print)
     stream = file.open(1, "alone")
     with pytest.raises(ValueError, match=r"settings\.compare is empty"):
         _ = Loggers(stream, settings, Rates()).other
-    file.end(stream)
+    file.close_recording(stream)
     with pytest.raises(ValueError, match="compare must be the other swimmer's namespace"):
         Settings(blueprint="compare")

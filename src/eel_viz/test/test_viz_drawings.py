@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import rerun as rr
-from eel_viz.outlet import Outlet
+from eel_viz.batched_stream import BatchedStream
 from eel_viz.plots import heat_map, profile_plot
 from eel_viz.plots.heat_map import HeatMap
 from eel_viz.plots.profile_plot import ProfilePlot, grown_limit
@@ -18,8 +18,8 @@ from eel_viz import entities
 X = np.linspace(0.0, 2.0, 21)
 
 
-class Drawn(Outlet):
-    """An outlet into the file `path`, which `disconnect` completes."""
+class Drawn(BatchedStream):
+    """A batched stream to the file `path`, which `disconnect` completes."""
 
     def __init__(self, path):
         self.path, self.recording = path, rr.RecordingStream("eel_test")
@@ -28,7 +28,7 @@ class Drawn(Outlet):
         super().__init__(self.recording, tick=1.0)
 
     def disconnect(self):
-        self.send()
+        self.flush()
         self.recording.disconnect()
 
 
@@ -154,20 +154,20 @@ def test_diverging_colours_are_ordered_and_differ_in_hue_from_the_middle():
 def test_the_summary_counts_path_speed_and_greatest_torque():
     summary = Summary()
     summary.law = "falling"
-    summary.status(9 * 10**9, "finished", {"accuracy": "fine"})  # later than the head is
-    summary.status(
+    summary.add_status(9 * 10**9, "finished", {"accuracy": "fine"})  # later than the head is
+    summary.add_status(
         10**9, "waiting", {"accuracy": "standard", "closure_torque_relative": "1.23456e-14", "real_time_factor": "0.0"}
     )
     for k in range(5):
-        summary.move(k * 10**9, np.array([0.5 * k, 0.0, 0.0]))
+        summary.add_position(k * 10**9, np.array([0.5 * k, 0.0, 0.0]))
         if k == 2:
             assert "law **falling**, waiting  \n" in summary.text()
             assert "real-time factor 0" in summary.text()
     assert "waiting" not in summary.text()  # that was 3 s ago
     assert "real-time factor" not in summary.text()
-    assert summary.status(3 * 10**9, "swimming", {})  # late
-    summary.strain(2 * 10**9, np.array([0.0, 0.5, 1.0]), np.array([0.1, -0.7, 0.2]))
-    summary.strain(3 * 10**9, np.array([0.0, 0.5, 1.0]), np.array([0.6, 0.1, 0.2]))
+    assert summary.add_status(3 * 10**9, "swimming", {})  # late
+    summary.add_torque(2 * 10**9, np.array([0.0, 0.5, 1.0]), np.array([0.1, -0.7, 0.2]))
+    summary.add_torque(3 * 10**9, np.array([0.0, 0.5, 1.0]), np.array([0.6, 0.1, 0.2]))
     text = summary.text()
     assert "law **falling**, swimming" in text
     assert "mean speed **0.500 m/s**, path 2.00 m" in text

@@ -157,9 +157,9 @@ def test_the_camera_s_target_is_the_middle_of_the_picture_and_right_is_right():
 
 
 def test_the_camera_has_no_lag_behind_a_steady_motion_and_leaves_the_wiggle():
-    from eel_viz.scene3d.camera import Steady
+    from eel_viz.scene3d.camera import FollowFilter
 
-    steady, speed, sway = Steady(), np.array([0.5, 0.1, -0.2]), np.array([0.0, 0.05, 0.0])
+    steady, speed, sway = FollowFilter(), np.array([0.5, 0.1, -0.2]), np.array([0.0, 0.05, 0.0])
     behind, moved = [], []
     for k in range(1000):
         t = k * 0.04
@@ -174,9 +174,9 @@ def test_the_camera_has_no_lag_behind_a_steady_motion_and_leaves_the_wiggle():
 
 
 def test_the_camera_goes_straight_to_a_swimmer_that_was_away():
-    from eel_viz.scene3d.camera import Steady
+    from eel_viz.scene3d.camera import FollowFilter
 
-    steady = Steady()
+    steady = FollowFilter()
     np.testing.assert_array_equal(steady.follow(0, np.ones(3)), np.ones(3))
     assert np.linalg.norm(steady.follow(40_000_000, np.zeros(3))) > 1.5
     np.testing.assert_array_equal(steady.follow(10**10, np.array([5.0, 0.0, 0.0])), [5.0, 0.0, 0.0])

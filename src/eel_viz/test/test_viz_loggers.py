@@ -136,7 +136,7 @@ def test_skin_and_frames_at_the_drawing_rate(made):
     triangles = read(path, entities.SKIN, static=True)["triangle_indices"][0]
     np.testing.assert_array_equal(triangles, skin.triangles)
     heads, tails, follow = (read(path, entity) for entity in (entities.HEAD, entities.TAIL, entities.FOLLOW))
-    followed = camera.Steady()
+    followed = camera.FollowFilter()
     for k, stamp in enumerate(stamps):
         backbone = samples[stamp]["backbone"][0]
         vertices, normals = skin.place(backbone.x, backbone.position, backbone.orientation)
@@ -285,20 +285,20 @@ def test_the_floor_stays_below_and_its_labels_say_where(record_made_up):
 
 def test_stations_may_change_in_mid_run(record_made_up, tmp_path):
     from eel_viz.recording.loggers import Loggers, Rates
-    from eel_viz.recording.recording_file import File
+    from eel_viz.recording.recording_file import FileDestination
     from eel_viz.settings import Settings
     from made_up_recording import sample
 
     settings = Settings(recording=str(tmp_path / "changing.rrd"))
-    file = File(settings, print, print)
+    file = FileDestination(settings, print, print)
     stream = file.open(1, "changing")
     loggers = Loggers(stream, settings, Rates())
     loggers.body(body())
     for k, stations in enumerate((51, 51, 21, 101)):
         for method, arguments in sample(made_up.Swimmer(stations), k * 10**9).items():
             getattr(loggers, method)(k * 10**9, *arguments)
-    loggers.send()
-    file.end(stream)
+    loggers.flush()
+    file.close_recording(stream)
     numbers = read(tmp_path / "changing.rrd", entities.WRENCH_NUMBERS)
     assert [len(row) for row in numbers.values["x"]] == [51, 21, 101]
     assert [len(row) for row in numbers.values["torque_3"]] == [51, 51, 21, 101]
@@ -307,22 +307,22 @@ def test_stations_may_change_in_mid_run(record_made_up, tmp_path):
 
 def test_the_order_of_topics_does_not_matter(tmp_path):
     from eel_viz.recording.loggers import Loggers, Rates
-    from eel_viz.recording.recording_file import File
+    from eel_viz.recording.recording_file import FileDestination
     from eel_viz.settings import Settings
     from made_up_recording import sample
 
     paths = []
     for name, turn in (("forwards", 1), ("backwards", -1)):
         settings = Settings(recording=str(tmp_path / f"{name}.rrd"))
-        file = File(settings, print, print)
+        file = FileDestination(settings, print, print)
         stream = file.open(1, name)
         loggers = Loggers(stream, settings, Rates())
         loggers.body(body())
         for k in range(10):
             for method, arguments in list(sample(made_up.Swimmer(), k * 10**8).items())[::turn]:
                 getattr(loggers, method)(k * 10**8, *arguments)
-        loggers.send()
-        file.end(stream)
+        loggers.flush()
+        file.close_recording(stream)
         paths.append(tmp_path / f"{name}.rrd")
     for entity, component in (
         (entities.LOAD, "vectors"),
@@ -338,19 +338,19 @@ def test_the_order_of_topics_does_not_matter(tmp_path):
 
 def test_a_lower_rate_for_a_live_viewer(tmp_path):
     from eel_viz.recording.loggers import Loggers, Rates
-    from eel_viz.recording.recording_file import File
+    from eel_viz.recording.recording_file import FileDestination
     from eel_viz.settings import Settings
     from made_up_recording import sample
 
     settings = Settings(recording=str(tmp_path / "live.rrd"))
-    file = File(settings, print, print)
+    file = FileDestination(settings, print, print)
     stream = file.open(1, "live")
     loggers = Loggers(stream, settings, Rates(numbers=10.0, drawings=10.0))
     for k in range(101):
         for method, arguments in sample(made_up.Swimmer(), k * 10**7).items():
             getattr(loggers, method)(k * 10**7, *arguments)
-    loggers.send()
-    file.end(stream)
+    loggers.flush()
+    file.close_recording(stream)
     for entity in (entities.SPEED, entities.WRENCH_NUMBERS, entities.BACKBONE, entities.POWER):
         assert len(read(tmp_path / "live.rrd", entity).stamps) == 11, entity
 

@@ -12,7 +12,7 @@ import pytest
 from compared import contents, differences
 from eel_viz.bags.bag import Bag
 from eel_viz.bags.replay import main
-from eel_viz.recording.merged_messages import abreast
+from eel_viz.recording.merged_messages import merged_by_time
 from eel_viz.recording.reading import read
 from made_up_bag import write_bag
 from made_up_recording import record
@@ -269,8 +269,8 @@ def test_the_one_who_is_behind_in_time_comes_next():
 
     first = [("body", "a"), ("energy", message(0)), ("energy", message(20)), ("body", "b"), ("energy", message(0))]
     second = [("energy", message(5)), ("energy", message(30)), ("odom", message(30))]
-    order = [(which, topic) for which, topic, _ in abreast([first, second])]
+    order = [(which, topic) for which, topic, _ in merged_by_time([first, second])]
     assert order == [
         (0, "body"), (0, "energy"), (1, "energy"), (0, "energy"), (0, "body"), (0, "energy"), (1, "energy"), (1, "odom")
     ]  # fmt: skip
-    assert list(abreast([[], []])) == []
+    assert list(merged_by_time([[], []])) == []

@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 import rerun as rr
 from eel_viz.messages import Status
-from eel_viz.recording import runs, sinks
-from eel_viz.recording.delivery import LOOK
+from eel_viz.recording import recordings, sinks
+from eel_viz.recording.delivery import CHECK_PERIOD
 from eel_viz.recording.reading import read
-from eel_viz.recording.recording_file import REMINDER, File
-from eel_viz.recording.runs import Runs
-from eel_viz.recording.sinks import Connected, Served, destinations
+from eel_viz.recording.recording_file import REMINDER, FileDestination
+from eel_viz.recording.recordings import Recordings
+from eel_viz.recording.sinks import ServerDestination, ViewerDestination, destinations
 from eel_viz.settings import Settings
 from made_up_recording import body, sample
 
@@ -50,13 +50,13 @@ def ears():
 
 @pytest.fixture
 def file(tmp_path, ears):
-    return File(Settings(recording=str(tmp_path / "run.rrd")), ears.said.append, ears.warned.append)
+    return FileDestination(Settings(recording=str(tmp_path / "run.rrd")), ears.said.append, ears.warned.append)
 
 
 def send(made, stamp, topics=None):
     for topic, arguments in sample(made_up.Swimmer(11), stamp).items():
         if topics is None or topic in topics:
-            for loggers in made.at(topic, stamp):
+            for loggers in made.loggers_for(topic, stamp):
                 getattr(loggers, topic)(stamp, *arguments)
 
 
@@ -67,21 +67,23 @@ def send(made, stamp, topics=None):
 )
 def test_recordings_are_few_however_often_time_jumps_back(ears, tmp_path, monkeypatch):
     now = 1000.0
-    monkeypatch.setattr(runs, "time", type("Clock", (), {"monotonic": lambda: now}))
-    file = File(Settings(recording=str(tmp_path / "run.rrd")), ears.said.append, ears.warned.append)
-    made = Runs([file], "eel", ears.warned.append)
-    cycles = 3 * runs.MOST_RUNS
+    monkeypatch.setattr(recordings, "time", type("Clock", (), {"monotonic": lambda: now}))
+    file = FileDestination(Settings(recording=str(tmp_path / "run.rrd")), ears.said.append, ears.warned.append)
+    made = Recordings([file], "eel", ears.warned.append)
+    cycles = 3 * recordings.MAXIMUM_RECORDINGS
     for cycle in range(cycles):
         for stamp in (0, SECOND, 2 * SECOND + cycle):
             send(made, stamp, {"head_pose"})
-    assert len(list(tmp_path.iterdir())) == runs.MOST_RUNS
+    assert len(list(tmp_path.iterdir())) == recordings.MAXIMUM_RECORDINGS
     assert sum("goes into the present one" in text for text in ears.warned) == 1
-    now += runs.MINUTE + 1.0
+    now += recordings.MINUTE + 1.0
     send(made, SECOND, {"head_pose"})
     made.close()
-    last, following = (tmp_path / f"run-{runs.MOST_RUNS + more}.rrd" for more in (0, 1))
+    last, following = (tmp_path / f"run-{recordings.MAXIMUM_RECORDINGS + more}.rrd" for more in (0, 1))
     shown = read(last, entities.POSITION).stamps.tolist()
-    assert {2 * SECOND + cycle for cycle in range(runs.MOST_RUNS - 1, cycles)} <= set(shown)  # nothing is lost
+    assert {2 * SECOND + cycle for cycle in range(recordings.MAXIMUM_RECORDINGS - 1, cycles)} <= set(
+        shown
+    )  # nothing is lost
     assert read(following, entities.POSITION).stamps.tolist() == [SECOND]
 
 
@@ -91,7 +93,7 @@ def test_recordings_are_few_however_often_time_jumps_back(ears, tmp_path, monkey
     "a new recording begins, with a number before its suffix; each is complete",
 )
 def test_a_stamp_that_goes_back_begins_a_new_recording(file, ears, tmp_path):
-    made = Runs([file], "eel", ears.warned.append)
+    made = Recordings([file], "eel", ears.warned.append)
     made.body(body())
     made.law("falling")
     for stamp in (0, SECOND, 2 * SECOND, 0, SECOND):
@@ -108,7 +110,7 @@ def test_a_stamp_that_goes_back_begins_a_new_recording(file, ears, tmp_path):
 
 
 def test_topics_may_reach_a_reset_at_different_times(file, ears, tmp_path):
-    made = Runs([file], "eel", ears.warned.append)
+    made = Recordings([file], "eel", ears.warned.append)
     early, late = ("head_pose", "backbone"), ("internal_wrench", "energy")
     send(made, 0, late)
     for stamp in (0, SECOND, 0, SECOND):  # two runs
@@ -126,17 +128,17 @@ def test_topics_may_reach_a_reset_at_different_times(file, ears, tmp_path):
     "neighbours", "two simulations on the same topics", "one warning; the visualiser leaves the older stamps out"
 )
 def test_two_publishers_do_not_begin_a_recording_with_every_message(file, ears, tmp_path):
-    made = Runs([file], "eel", ears.warned.append, crowded=lambda topic: True)
+    made = Recordings([file], "eel", ears.warned.append, has_several_publishers=lambda topic: True)
     for k in range(50):
         send(made, 100 * SECOND + k, ("head_pose",))
         send(made, k, ("head_pose",))
     made.close()
-    assert len(list(tmp_path.iterdir())) <= runs.RESETS + 1
+    assert len(list(tmp_path.iterdir())) <= recordings.RESETS + 1
     assert sum("more than one publisher" in line for line in ears.warned) == 1
 
 
 def test_resets_in_quick_succession_are_taken(file, ears, tmp_path):
-    made = Runs([file], "eel", ears.warned.append)
+    made = Recordings([file], "eel", ears.warned.append)
     for _ in range(6):
         for stamp in (0, SECOND):
             send(made, stamp, ("head_pose",))
@@ -152,7 +154,7 @@ def test_resets_in_quick_succession_are_taken(file, ears, tmp_path):
 
 
 def test_diagnostics_at_their_own_time_or_at_the_newest_if_that_is_wall_time(file, ears, tmp_path):
-    made = Runs([file], "eel", ears.warned.append)
+    made = Recordings([file], "eel", ears.warned.append)
     for stamp in (0, 3 * SECOND):
         send(made, stamp, ("head_pose",))
     for stamp, state in ((2 * SECOND, "swimming"), (1_795_234_285 * SECOND, "elsewhere")):
@@ -165,7 +167,7 @@ def test_diagnostics_at_their_own_time_or_at_the_newest_if_that_is_wall_time(fil
 
 
 def test_a_late_start_shows_the_present(file, ears, tmp_path):
-    made = Runs([file], "eel", ears.warned.append)
+    made = Recordings([file], "eel", ears.warned.append)
     for stamp in (500 * SECOND, 501 * SECOND):
         send(made, stamp)
     made.close()
@@ -178,7 +180,7 @@ def test_a_late_start_shows_the_present(file, ears, tmp_path):
 )
 def test_a_file_that_is_there_is_replaced_when_the_new_one_is_complete(file, ears, tmp_path):
     (tmp_path / "run.rrd").write_bytes(b"RRF2 of yesterday")
-    made = Runs([file], "eel", ears.warned.append)
+    made = Recordings([file], "eel", ears.warned.append)
     assert ears.warned == [
         f"{tmp_path / 'run.rrd'} is there already and is replaced by the new recording when that is complete"
     ]
@@ -187,7 +189,7 @@ def test_a_file_that_is_there_is_replaced_when_the_new_one_is_complete(file, ear
     assert (tmp_path / "run.rrd").read_bytes() == b"RRF2 of yesterday"
     made.close()
     assert read(tmp_path / "run.rrd", entities.SPEED).stamps.tolist() == [SECOND]
-    assert os.listdir(tmp_path) == ["run.rrd"] and not made.lost
+    assert os.listdir(tmp_path) == ["run.rrd"] and not made.incomplete
 
 
 @pytest.mark.fault(
@@ -197,14 +199,16 @@ def test_a_file_that_is_there_is_replaced_when_the_new_one_is_complete(file, ear
 )
 def test_a_recording_that_cannot_be_completed_stays_a_part(ears, tmp_path, limit_of_files):
     (tmp_path / "run.rrd").write_bytes(b"RRF2 of yesterday")
-    file = File(Settings(recording=str(tmp_path / "run.rrd")), ears.said.append, ears.warned.append, patient_from=2)
+    file = FileDestination(
+        Settings(recording=str(tmp_path / "run.rrd")), ears.said.append, ears.warned.append, retry_from=2
+    )
     stream, part = file.open(1, "eel"), tmp_path / "run.part.rrd"
     for k in range(3):
         stream.set_time(entities.TIMELINE, duration=float(k))
         stream.log(entities.SPEED, rr.Scalars([1.0]))
     stream.flush()
     with limit_of_files(part.stat().st_size + 100):  # the index does not fit any more
-        file.end(stream)
+        file.close_recording(stream)
     assert file.incomplete and (tmp_path / "run.rrd").read_bytes() == b"RRF2 of yesterday"
     (told,) = (line for line in ears.warned if "cannot be written any more" in line)
     assert f"recording {str(part)!r} cannot be written any more: File too large; it ends here" in told
@@ -214,7 +218,7 @@ def test_a_recording_that_cannot_be_completed_stays_a_part(ears, tmp_path, limit
 def test_a_folder_that_is_not_there_is_not_made(tmp_path, ears):
     path = tmp_path / "mistyped" / "run.rrd"
     with pytest.raises(ValueError, match=r"run\.rrd' cannot be written: there is no folder '.*/mistyped'"):
-        Runs([File(Settings(recording=str(path)), ears.said.append, ears.warned.append)], "eel", print)
+        Recordings([FileDestination(Settings(recording=str(path)), ears.said.append, ears.warned.append)], "eel", print)
     assert not os.listdir(tmp_path)
 
 
@@ -228,9 +232,9 @@ def test_a_recording_of_another_kind_is_refused():
 def test_a_path_that_cannot_be_written(path, tmp_path, ears):
     (tmp_path / "taken.rrd").mkdir()
     path = path.format(folder=tmp_path)
-    file = File(Settings(recording=path), ears.said.append, ears.warned.append)
+    file = FileDestination(Settings(recording=path), ears.said.append, ears.warned.append)
     with pytest.raises(ValueError, match=r"recording .* cannot be written"):
-        Runs([file], "eel", print)
+        Recordings([file], "eel", print)
 
 
 @pytest.mark.fault(
@@ -241,15 +245,15 @@ def test_a_path_that_cannot_be_written(path, tmp_path, ears):
 def test_a_file_that_cannot_be_written_is_said_again_and_again_and_tried_again(tmp_path, ears, monkeypatch):
     path, place = tmp_path / "taken" / "run.rrd", tmp_path / "taken"
     place.write_text("where the folder should be")
-    file = File(Settings(recording=str(path)), ears.said.append, ears.warned.append, patient_from=1)
-    made = Runs([file], "eel", ears.warned.append)
+    file = FileDestination(Settings(recording=str(path)), ears.said.append, ears.warned.append, retry_from=1)
+    made = Recordings([file], "eel", ears.warned.append)
     made.body(body())
-    monkeypatch.setattr(runs, "RETRY", 0.0)
+    monkeypatch.setattr(recordings, "RETRY", 0.0)
     now = time.monotonic()
     for later in (0.0, 0.4 * REMINDER, 0.8 * REMINDER, 1.2 * REMINDER):
         monkeypatch.setattr(time, "monotonic", lambda later=later: now + later)
         send(made, round(later) * SECOND)
-        made.attend()
+        made.poll()
     told = f"recording {str(path)!r} cannot be written: there is no folder {str(place)!r}: "
     told += "nothing of this run is saved; "
     assert ears.warned == [told + "it is tried again while running"] * 2
@@ -257,22 +261,24 @@ def test_a_file_that_cannot_be_written_is_said_again_and_again_and_tried_again(t
     place.unlink()
     place.mkdir()
     monkeypatch.setattr(time, "monotonic", lambda: now + 2 * REMINDER)
-    made.attend()
+    made.poll()
     send(made, 99 * SECOND)
     made.close()
-    assert made.lost and len(ears.warned) == 2
+    assert made.incomplete and len(ears.warned) == 2
     np.testing.assert_array_equal(read(path, entities.SPEED).stamps, [99 * SECOND])
     assert read(path, entities.BODY_NUMBERS, static=True)["mass"].size == 1
 
 
 def test_a_later_run_that_cannot_be_written_is_not_the_end(tmp_path, ears):
     (tmp_path / "run-2.rrd").mkdir()
-    file = File(Settings(recording=str(tmp_path / "run.rrd")), ears.said.append, ears.warned.append, patient_from=2)
-    made = Runs([file], "eel", ears.warned.append)
+    file = FileDestination(
+        Settings(recording=str(tmp_path / "run.rrd")), ears.said.append, ears.warned.append, retry_from=2
+    )
+    made = Recordings([file], "eel", ears.warned.append)
     for stamp in (0, SECOND, 0, SECOND):
         send(made, stamp)
     made.close()
-    assert made.lost and sum("run-2.rrd' cannot be written: it is a folder" in line for line in ears.warned) == 1
+    assert made.incomplete and sum("run-2.rrd' cannot be written: it is a folder" in line for line in ears.warned) == 1
     assert len(read(tmp_path / "run.rrd", entities.SPEED).stamps) == 2
 
 
@@ -282,11 +288,11 @@ def test_the_only_sink_must_be_writable_at_the_start(sink, allowed, tmp_path, ea
     settings = Settings(sink=sink, recording=str(tmp_path / "taken.rrd"))
     made = destinations(settings, ears.said.append, ears.warned.append, live=True)
     if allowed:
-        Runs(made, "eel", ears.warned.append).close()
+        Recordings(made, "eel", ears.warned.append).close()
         assert sum("recording" in line for line in ears.warned) == 1
     else:
         with pytest.raises(ValueError, match=r"recording .* cannot be written: it is a folder"):
-            Runs(made, "eel", ears.warned.append)
+            Recordings(made, "eel", ears.warned.append)
 
 
 @pytest.mark.fault(
@@ -295,12 +301,12 @@ def test_the_only_sink_must_be_writable_at_the_start(sink, allowed, tmp_path, ea
     "another publisher: a new recording begins",
 )
 def test_a_successor_begins_a_new_recording_whatever_its_stamps(file, ears, tmp_path):
-    made = Runs([file], "eel", ears.warned.append)
+    made = Recordings([file], "eel", ears.warned.append)
     made.body(body())
     send(made, SECOND)
     for stamp in (2 * SECOND, 3 * SECOND):
         for topic, arguments in sample(made_up.Swimmer(11), stamp).items():
-            for loggers in made.at(topic, stamp, successor=stamp == 2 * SECOND):
+            for loggers in made.loggers_for(topic, stamp, new_publisher=stamp == 2 * SECOND):
                 getattr(loggers, topic)(stamp, *arguments)
     made.close()
     np.testing.assert_array_equal(read(tmp_path / "run.rrd", entities.POSITION).stamps, [SECOND])
@@ -312,7 +318,7 @@ def test_a_successor_begins_a_new_recording_whatever_its_stamps(file, ears, tmp_
 
 
 def test_succession_is_told_by_counts_pauses_and_who_is_there():
-    from eel_viz.ros.publisher_change import Succession
+    from eel_viz.ros.publisher_change import PublisherChange
 
     there, looks = {"one"}, []
 
@@ -320,7 +326,7 @@ def test_succession_is_told_by_counts_pauses_and_who_is_there():
         looks.append(1)
         return set(there)
 
-    topic = Succession(publishers)
+    topic = PublisherChange(publishers)
     at = iter(range(0, 10**12, 10**7))  # ns
     assert not any(topic.changes(count, next(at)) for count in range(1, 50))
     assert len(looks) == 1  # it costs nothing while all goes on
@@ -333,7 +339,7 @@ def test_succession_is_told_by_counts_pauses_and_who_is_there():
     there.add("three")
     assert topic.changes(601, next(at) + 2 * 10**9)  # the count goes on by chance, after a while
     there.add("four")
-    topic.look()
+    topic.note_publishers()
     there.remove("four")
     assert topic.changes(1, 4 * 10**9)  # shown when its publisher has gone
     assert not topic.changes(None, 4 * 10**9)
@@ -341,7 +347,7 @@ def test_succession_is_told_by_counts_pauses_and_who_is_there():
 
 def test_without_a_name_the_file_is_called_after_the_time(tmp_path, ears, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    Runs([File(Settings(), ears.said.append, ears.warned.append)], "eel", print).close()
+    Recordings([FileDestination(Settings(), ears.said.append, ears.warned.append)], "eel", print).close()
     (made,) = os.listdir(tmp_path)
     assert made.startswith("eel-20")
     assert made.endswith(".rrd")
@@ -356,7 +362,7 @@ def test_two_processes_that_begin_in_the_same_second_write_two_files(ears, monke
 
     monkeypatch.setattr("eel_viz.recording.recording_file.datetime.datetime", Clock)
     monkeypatch.setattr("eel_viz.recording.recording_file.os.getpid", iter((17, 18)).__next__)
-    files = [File(Settings(), ears.said.append, ears.warned.append).path(1) for _ in range(2)]
+    files = [FileDestination(Settings(), ears.said.append, ears.warned.append).path(1) for _ in range(2)]
     assert [str(path) for path in files] == ["eel-20260102-030405-17.rrd", "eel-20260102-030405-18.rrd"]
 
 
@@ -371,7 +377,7 @@ def taken():
 
 @pytest.mark.fault("neighbours", "the visualiser's port in use", "another one is taken, and said")
 def test_a_port_in_use_is_said_and_another_one_taken(taken, ears):
-    served = Served(Settings(port=taken), ears.said.append, ears.warned.append)
+    served = ServerDestination(Settings(port=taken), ears.said.append, ears.warned.append)
     served.close()
     assert len(ears.warned) == 1
     assert f"port {taken} is in use, taking " in ears.warned[0]
@@ -387,17 +393,17 @@ def test_a_viewer_that_is_absent_is_said_once_and_found_later(ears, tmp_path, mo
     port = free_port()
     settings = Settings(viewer=f"rerun+http://127.0.0.1:{port}/proxy", recording=str(tmp_path / "run.rrd"))
     say, warn = ears.said.append, ears.warned.append
-    file, viewer = File(settings, say, warn), Connected(settings, say, warn)
-    made = Runs([file, viewer], "eel", warn)
-    monkeypatch.setattr(runs, "RETRY", 0.0)
+    file, viewer = FileDestination(settings, say, warn), ViewerDestination(settings, say, warn)
+    made = Recordings([file, viewer], "eel", warn)
+    monkeypatch.setattr(recordings, "RETRY", 0.0)
     monkeypatch.setattr(sinks, "ANSWER_LIMIT", 60.0)  # a busy machine takes its time
     for k in range(3):
         send(made, k * SECOND)
-        made.attend()
+        made.poll()
     assert len(ears.warned) == 1
     assert "no viewer listens at" in ears.warned[0]
-    host = Served(Settings(port=port), ears.said.append, ears.warned.append)  # stands in for the viewer
-    made.attend()
+    host = ServerDestination(Settings(port=port), ears.said.append, ears.warned.append)  # stands in for the viewer
+    made.poll()
     send(made, 3 * SECOND)
     made.close()
     host.close()
@@ -412,7 +418,7 @@ def test_a_viewer_that_is_closed_and_opened_again(ears, tmp_path, monkeypatch):
     port = free_port()
     settings = Settings(viewer=f"rerun+http://127.0.0.1:{port}/proxy", recording=str(tmp_path / "run.rrd"))
     say, warn = ears.said.append, ears.warned.append
-    monkeypatch.setattr(runs, "RETRY", 0.0)
+    monkeypatch.setattr(recordings, "RETRY", 0.0)
     monkeypatch.setattr(sinks, "ANSWER_LIMIT", 60.0)  # a busy machine takes its time
 
     def open_viewer():
@@ -426,18 +432,18 @@ def test_a_viewer_that_is_closed_and_opened_again(ears, tmp_path, monkeypatch):
         return viewer
 
     viewer = come()
-    made = Runs([File(settings, say, warn), Connected(settings, say, warn)], "eel", warn)
+    made = Recordings([FileDestination(settings, say, warn), ViewerDestination(settings, say, warn)], "eel", warn)
     try:
         send(made, 0)
-        made.attend()
+        made.poll()
         viewer.kill()
         viewer.wait()
         assert not listening(port)
         for k in range(1, 4):
             send(made, k * SECOND)
-            made.attend()
+            made.poll()
         viewer = come()
-        made.attend()
+        made.poll()
         send(made, 4 * SECOND)
         made.close()
     finally:
@@ -452,7 +458,7 @@ def test_a_viewer_that_is_closed_and_opened_again(ears, tmp_path, monkeypatch):
 
 def test_a_viewer_s_address_that_is_none():
     with pytest.raises(ValueError, match="viewer must look like"):
-        Connected(Settings(viewer="somewhere"), print, print)
+        ViewerDestination(Settings(viewer="somewhere"), print, print)
 
 
 def test_auto_saves_without_a_display_and_opens_a_window_with_one(monkeypatch, tmp_path, ears):
@@ -460,10 +466,10 @@ def test_auto_saves_without_a_display_and_opens_a_window_with_one(monkeypatch, t
     monkeypatch.delenv("DISPLAY", raising=False)
     monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
     (chosen,) = destinations(Settings(), ears.said.append, ears.warned.append)
-    assert isinstance(chosen, File)
+    assert isinstance(chosen, FileDestination)
     monkeypatch.setenv("DISPLAY", ":99")
     opened = []
-    monkeypatch.setattr(Served, "show_in_window", lambda self: opened.append(self.uri))
+    monkeypatch.setattr(ServerDestination, "show_in_window", lambda self: opened.append(self.uri))
     (chosen,) = destinations(Settings(), ears.said.append, ears.warned.append)
     chosen.close()
     assert opened == [chosen.uri]
@@ -480,11 +486,11 @@ def test_spawn_without_a_display_warns_and_serves(monkeypatch, ears):
 def test_a_torn_file_is_read_up_to_its_last_whole_message(file, ears, tmp_path):
     from eel_viz.recording.rrd_frames import cut_to_whole_messages, end_of_whole_messages
 
-    made = Runs([file], "eel", ears.warned.append)
+    made = Recordings([file], "eel", ears.warned.append)
     send(made, 0)
-    made.attend()
-    time.sleep(LOOK)
-    made.attend()  # what there is goes to the file
+    made.poll()
+    time.sleep(CHECK_PERIOD)
+    made.poll()  # what there is goes to the file
     send(made, SECOND)
     made.close()
     path, torn = tmp_path / "run.rrd", tmp_path / "torn.rrd"
@@ -501,18 +507,18 @@ def test_a_torn_file_is_read_up_to_its_last_whole_message(file, ears, tmp_path):
 
 
 def test_a_file_is_read_while_it_grows(file, ears, tmp_path):
-    from eel_viz.recording.rrd_frames import end_of_whole_messages, whole
+    from eel_viz.recording.rrd_frames import complete_file, end_of_whole_messages
     from rerun.chunk import RrdReader
 
-    made = Runs([file], "eel", ears.warned.append)
+    made = Recordings([file], "eel", ears.warned.append)
     send(made, 0)
     made.close()
     complete, growing = (tmp_path / "run.rrd").read_bytes(), tmp_path / "growing.rrd"
     growing.write_bytes(complete[:-50])
     end = end_of_whole_messages(growing)
     growing.write_bytes(complete[:end])
-    with whole(growing) as readable:
+    with complete_file(growing) as readable:
         growing.write_bytes(complete[: end + 20])  # the next message, begun after the look at the file's end
         assert list(RrdReader(str(readable)).stream())
-    with whole(tmp_path / "run.rrd") as readable:
+    with complete_file(tmp_path / "run.rrd") as readable:
         assert readable == tmp_path / "run.rrd", "what was completed is not copied"

@@ -1,6 +1,6 @@
-"""What a run asks of a robot of n motors: a chain of n + 1 rigid links in place of the continuous backbone.
+"""The demand of a run on a robot with n joints: a chain of n + 1 rigid links in place of the continuous backbone.
 
-Joint j stands for the segment (j - 1) l/n to j l/n, and lies in its middle, X = (j - 1/2) l/n. Its angles are the
+Joint j represents the segment (j - 1) l/n to j l/n, and lies in its middle, X = (j - 1/2) l/n. Its angles are the
 integrals of K2 (pitch) and K3 (yaw) over the segment, its torques -C2, -C3 there (the motor turns the part ahead
 against the part behind: their power per length is -C . dK/dt, C of eq. 26 of Boyer, Porez and Leroyer 2010).
 """
@@ -48,10 +48,10 @@ QUANTITIES = ("angle", "speed", "torque", "power")
 
 @dataclass(frozen=True)
 class Actuators:
-    """The demand on n joints, pitch and yaw apart, and how well n joints stand for the continuous body."""
+    """The demand on n joints in pitch and yaw, and the difference of their power from the continuous body's."""
 
     time: np.ndarray  # (T,) s
-    x: np.ndarray  # (n,) m, where the joints lie
+    x: np.ndarray  # (n,) m, positions of the joints
     pitch: Motors
     yaw: Motors
     continuous_power: np.ndarray  # (T,) W, -integral of C . dK/dt over the body
@@ -63,17 +63,17 @@ class Actuators:
 
     @property
     def power_difference(self) -> np.ndarray:
-        """(T,) W: what the joints' power differs from the continuous body's by; it falls like 1/n^2."""
+        """(T,) W: power of the joints minus that of the continuous body; it falls like 1/n^2."""
         return self.power - self.continuous_power
 
     @property
     def relative_difference(self) -> float | None:
-        """Root of the mean square of the difference by that of the continuous power; None where that is zero."""
+        """RMS of the difference relative to the RMS of the continuous power; None if that is zero."""
         scale = np.sqrt(np.mean(self.continuous_power**2))
         return float(np.sqrt(np.mean(self.power_difference**2)) / scale) if scale > 0.0 else None
 
     def table(self) -> str:
-        """Peak and RMS of each joint in lines, and the difference of the powers."""
+        """A text table of peak and RMS values of each joint, and the difference of the powers."""
         lines = ["joint  X [m]   axis   angle [rad]     speed [rad/s]   torque [N m]    power [W]      (peak, RMS)"]
         for joint, x in enumerate(self.x):
             for name, motors in (("pitch", self.pitch), ("yaw", self.yaw)):

@@ -1,10 +1,10 @@
-"""What researchers read off a run: speed, kinematic numbers, power and efficiency, over whole periods of the gait.
+"""Analyses a run: speed, kinematic numbers, power and efficiency over whole periods of the gait.
 
     analysis = run.analysis()          # the later half of the run, in whole periods
     analysis.mean_speed, analysis.strouhal, analysis.propulsive_efficiency
 
-What divides by zero is undefined, and None: a swimmer that stays where it is has no Strouhal number. What the run does
-not hold (no ledger, no internal wrench) is a `ValueError`.
+A ratio with a zero denominator is None: a swimmer at rest has no Strouhal number. Figures that need data which the run
+lacks (ledger, internal wrench) raise `ValueError`.
 """
 
 from functools import cached_property
@@ -45,7 +45,7 @@ class Analysis:
 
     @property
     def moves(self) -> bool:
-        """Whether the swimmer gets anywhere, beyond round-off."""
+        """Whether the swimmer moves by more than round-off."""
         return self.mean_speed > AT_REST * self.run.body.length / self.window.period
 
     @property

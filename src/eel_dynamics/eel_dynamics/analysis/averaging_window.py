@@ -1,7 +1,7 @@
-"""Whole periods of a run's gait, over which its figures are averaged.
+"""The averaging window of a run: whole periods of its gait.
 
-Samples are joined by cubic splines, so that a window need not begin or end at a sample. Positions are those over the
-water: a current is taken out.
+Samples are interpolated by cubic splines, so a window need not begin or end at a sample. Positions are relative to the
+water: a current is subtracted.
 """
 
 import math
@@ -13,7 +13,7 @@ from eel_gaits.wording import shown
 
 LONGEST_COMMON = 12  # of the strongest wave's periods, after which the whole gait must repeat
 FEWEST_SAMPLES = 8  # in a period
-FINE = 64  # points in a period, where a path or its width is measured
+FINE = 64  # points in a period at which a path or its width is evaluated
 
 
 def strength(term: Term, x: np.ndarray, time: np.ndarray) -> float:
@@ -119,9 +119,10 @@ class AveragingWindow:
 
     @cached_property
     def tail(self):
-        """Spline of the tail's way over the water, (3,) m from where it began.
+        """Spline of the tail's displacement relative to the water since the start, (3,) m.
 
-        `ValueError` where the last station is not the tail."""
+        `ValueError` if the last station is not the tail.
+        """
         length = self.run.body.length
         if abs(self.run.x[-1] - length) > 1e-9 * length:
             raise ValueError(
@@ -132,5 +133,5 @@ class AveragingWindow:
 
     @property
     def _drift(self) -> np.ndarray:
-        """Way of the water since t = 0 (T, 3) [m]."""
+        """Displacement of the water since t = 0, (T, 3) [m]."""
         return np.outer(self.run.time, self.run.scene.current)

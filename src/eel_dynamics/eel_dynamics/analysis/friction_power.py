@@ -8,11 +8,11 @@ from eel_dynamics.simulation.simulation import Simulation
 
 
 def drag_powers(run) -> np.ndarray:
-    """Powers (T, 4) [W] of the drag along the body at each sample of `run`: of the forces along axes 1 (friction), 2
-    and 3 (cross flow) of the sections, and of the torque about axis 1; all into the body, so none is positive.
+    """Powers (T, 4) [W] of the drag along the body at each sample of `run`.
 
-    Evaluated anew at the nodes of a simulation with the settings of the run, from the law and the head's motion: their
-    sum is the ledger's `drag_power`.
+    Columns: forces along section axes 1 (friction), 2 and 3 (cross flow), and the torque about axis 1. Positive is into
+    the body, so none is positive. They are evaluated from the law and the head's motion, at the nodes of a simulation
+    with the run's settings; their sum is the ledger's `drag_power`.
     """
     simulation = Simulation(body=run.body, scene=run.scene, accuracy=run.accuracy.as_it_is(), stations=2, law=run.law)
     instant, powers = eel_core.Instant(simulation.discretisation.swimmer), np.zeros((len(run.time), 4))

@@ -1,4 +1,4 @@
-"""Where the model's own limits lie, found in a run and said once each: the numbers go on, but mean less there.
+"""Checks a run against the limits of the model. Beyond a limit the simulation continues, but its results mean less.
 
 | limit | why |
 |---|---|
@@ -29,7 +29,7 @@ AT_ONCE = 64  # instants whose pairs of sections are looked at together
 
 
 class ModelLimits:
-    """The limits of `body` in `scene`, looked at from its stations x (M,) [m]."""
+    """Checks of `body` in `scene` with stations x (M,) [m]; each returns a warning, or an empty text."""
 
     def __init__(self, body, scene, x):
         self.body, self.scene, self.x = body, scene, np.asarray(x, dtype=float)
@@ -40,7 +40,7 @@ class ModelLimits:
         self._pairs = np.argwhere(self.x[None, :] - self.x[:, None] > APART * self._greatest).T
 
     def of_body(self) -> str:
-        """The body is not slender; empty: it is."""
+        """A warning if the body is not slender."""
         slenderness = self.body.length / (2.0 * self._greatest)
         if self.scene.reactive and slenderness < LEAST_SLENDERNESS:
             return (
@@ -50,7 +50,7 @@ class ModelLimits:
         return ""
 
     def of_bending(self, time, curvature) -> str:
-        """Sections cut through each other at one of the instants time (T,) [s] by curvature (T, M, 3) [rad/m]."""
+        """A warning if sections intersect at one of the times (T,) [s], given the curvature (T, M, 3) [rad/m]."""
         reach = np.abs(curvature[..., 2]) * self._width + np.abs(curvature[..., 1]) * self._height
         if not reach.size or np.max(reach) < 1.0:
             return ""
@@ -62,10 +62,10 @@ class ModelLimits:
         )
 
     def of_contact(self, time, curvature, backbone, section_orientation) -> str:
-        """The body overlaps itself at one of the instants time (T,) [s]; backbone (T, M, 3) [m], section_orientation
-        (T, M, 4).
+        """A warning if the body overlaps itself at one of the times (T,) [s].
 
-        Two sections overlap when the distance of their centres is less than both ellipses reach towards each other.
+        curvature (T, M, 3) [rad/m], backbone (T, M, 3) [m] and section_orientation (T, M, 4) in the world. Two sections
+        overlap if the distance of their centres is less than the sum of the ellipses' extents along it.
         """
         if not self._pairs.size:
             return ""
@@ -101,7 +101,7 @@ class ModelLimits:
         return ""
 
     def of_speed(self, speed: float) -> str:
-        """The Reynolds number of a mean speed [m/s] over the water is too low; 0: at rest, and no matter."""
+        """A warning if the Reynolds number of a mean speed [m/s] relative to the water is too low; 0: not checked."""
         if not speed or not self.scene.viscosity:
             return ""
         reynolds = speed * self.body.length / self.scene.viscosity
@@ -110,15 +110,18 @@ class ModelLimits:
         return f"Reynolds number U l/nu is {reynolds:.3g}, below {LEAST_REYNOLDS:g}: viscosity rules, not inertia"
 
     def of_tail(self, wake_power) -> str:
-        """The tail leads for a good part of the instants of wake_power (T,) [W], which has the sign of V1(l)."""
+        """A warning if the tail leads for a good part of the time; wake_power (T,) [W] has the sign of V1(l)."""
         share = float(np.mean(np.asarray(wake_power) > 0.0)) if len(wake_power) else 0.0
         if share < TAIL_LEADS:
             return ""
         return f"the tail leads, V1(l) > 0, for {share:.0%} of the time: the wake feeds energy in, as the theory has it"
 
     def of_ledger(self, energy, most: float = OPEN) -> str:
-        """The residual of an `EnergyLedger` of (T,) arrays is more than the part `most` of the energy that was there or
-        passed, by its samples: what came and went between two of them, as in a sudden ramp, is not in it."""
+        """A warning if the residual of an `EnergyLedger` of (T,) arrays exceeds the share `most` of the energy.
+
+        The energy is the greatest sum of kinetic energies and works at the samples; it misses what comes and goes
+        between two samples, as in a sudden ramp.
+        """
         works = energy.actuator_work, energy.wake_work, energy.nose_work, energy.drag_work
         passed = np.max(energy.kinetic_body + energy.kinetic_fluid + sum(np.abs(work) for work in works), initial=0.0)
         residual = np.max(np.abs(energy.residual), initial=0.0)
@@ -131,8 +134,10 @@ class ModelLimits:
 
 
 def warnings_of(run) -> tuple[str, ...]:
-    """What of the model's limits a `Run` went over, a line each; speed and tail over its later half, in whole periods
-    where the gait has them."""
+    """The model's limits that a `Run` exceeded, one line each.
+
+    Speed and tail are checked over the later half of the run, in whole periods if the gait is periodic.
+    """
     limits = ModelLimits(run.body, run.scene, run.x)
     later, speed = _later_half(run)
     most = OPEN if run.accuracy.target is not None else OPEN_OF_SETTINGS
@@ -158,7 +163,7 @@ def cross_axes(orientation) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _later_half(run) -> tuple[np.ndarray, float]:
-    """Which samples count (T,), and the mean speed [m/s] there: 0 where there is none to speak of."""
+    """Mask of the later half's samples, (T,), and the mean speed [m/s] there; 0 if it is round-off or undefined."""
     try:
         analysis = run.analysis()
     except ValueError:  # no period, or too few samples

@@ -1,4 +1,4 @@
-"""The text of `Run.summary()`: a run in lines, each number with its unit."""
+"""The text of `Run.summary()`: the figures of a run with their units."""
 
 import numpy as np
 
@@ -6,7 +6,7 @@ from eel_dynamics.analysis.analysis import Analysis
 
 
 def describe(run, periods: int | None = None) -> str:
-    """The run as a whole, then its figures over the last `periods` whole periods (None: the later half of the run)."""
+    """Figures of the whole run, then those over the last `periods` whole periods (None: the later half of the run)."""
     return "\n".join([*_of_the_run(run), *_of_the_gait(run, periods), *_of_the_cost(run), *_of_the_limits(run)])
 
 

@@ -1,45 +1,45 @@
-"""Whether this node may publish /clock: one publisher on the network, and the one that was there first.
+"""Decides whether this node may publish /clock: only one publisher may, and the first one stays.
 
-Each publisher knows the others by their identifiers alone, and learns of them up to some seconds late. So that two
-nodes of this kind never both stay and never both leave, each gives the other time to leave before it leaves itself: a
-node that started lately gives little, one that has been publishing for long gives more, and of two alike the one with
-the greater identifier goes first. A publisher of another kind never leaves; this node does when that time is over.
+A publisher knows the others by their identifiers alone, and discovers them up to some seconds late. Two nodes of this
+kind must not both stop and must not both go on. So each waits for a grace period before it stops: a node that has just
+begun waits briefly, one that has published for long waits longer, and of two alike the one with the greater identifier
+stops first. A publisher of another kind never stops; this node does after its grace period.
 """
 
 import time
 
-YOUNG = 4.0  # s: discovery of an older publisher takes no longer than this
+YOUNG = 4.0  # s: discovery of an older publisher takes less
 GRACE_YOUNG = (0.0, 3.0)  # s: greater identifier, smaller identifier
 GRACE_OLD = (8.0, 12.0)
 
 
 class ClockArbiter:
-    """The right to publish, judged from the identifiers of all publishers of /clock."""
+    """Decides from the identifiers of all publishers of /clock; `publishing`: the last decision."""
 
     def __init__(self):
         self.publishing = False
         self._since = 0.0  # s, steady clock: when this node began to publish
-        self._met = None  # s: when it first saw another
-        self._grace = 0.0  # s: time it gives the other
+        self._conflict_since = None  # s: when this node first saw another publisher
+        self._grace = 0.0  # s: grace period before this node stops
 
     def judge(self, now: float, own: tuple, others: set) -> bool:
         """Whether to publish at `now` [s, steady clock]; `own` identifier (empty while unknown), `others`: the rest."""
         if not self.publishing:
             if not others:
-                self.publishing, self._since, self._met = True, now, None
+                self.publishing, self._since, self._conflict_since = True, now, None
         elif not others:
-            self._met = None
+            self._conflict_since = None
         else:
-            if self._met is None:
-                self._met = now
+            if self._conflict_since is None:
+                self._conflict_since = now
                 grace = GRACE_YOUNG if now - self._since < YOUNG else GRACE_OLD
                 self._grace = grace[0] if own > min(others) else grace[1]
-            self.publishing = now - self._met < self._grace
+            self.publishing = now - self._conflict_since < self._grace
         return self.publishing
 
 
-class ClockWatch:
-    """Looks who publishes /clock, and has `offer(bool)` called when this node is to begin or to end.
+class ClockMonitor:
+    """Looks up the publishers of /clock, and calls `offer(bool)` when this node is to begin or to stop publishing.
 
     node: get_publishers_info_by_topic, get_name, get_namespace.
     """
@@ -49,18 +49,20 @@ class ClockWatch:
         self._arbiter = ClockArbiter()
         self._offered = False
         self._own = ()
-        self._strangers = set()
+        self._foreign = set()
 
     def look(self, wanted: bool):
-        """To be called a few times a second; `wanted`: the parameter."""
+        """Look the publishers up; call this a few times a second. `wanted`: the value of the parameter `clock`."""
         infos = self._node.get_publishers_info_by_topic("/clock")
-        heard = {tuple(info.endpoint_gid): (info.node_namespace, info.node_name) for info in infos}
+        publishers = {tuple(info.endpoint_gid): (info.node_namespace, info.node_name) for info in infos}
         if not self._offered:
-            self._own, self._strangers = (), set(heard)
-        elif self._own not in heard:
+            self._own, self._foreign = (), set(publishers)
+        elif self._own not in publishers:
             name = (self._node.get_namespace(), self._node.get_name())
-            self._own = min((gid for gid in heard if heard[gid] == name and gid not in self._strangers), default=())
-        others = {gid: name for gid, name in heard.items() if gid != self._own}
+            self._own = min(
+                (gid for gid in publishers if publishers[gid] == name and gid not in self._foreign), default=()
+            )
+        others = {gid: name for gid, name in publishers.items() if gid != self._own}
         allowed = wanted and self._arbiter.judge(time.monotonic(), self._own, set(others))
         if not wanted:
             self._arbiter = ClockArbiter()
@@ -76,5 +78,5 @@ class ClockWatch:
 
 
 def _full_name(namespace: str, name: str) -> str:
-    """A node's full name; of a node just discovered the publisher is known before the name is."""
+    """A node's full name; a publisher may be discovered before the name of its node."""
     return "a node just discovered" if "UNKNOWN" in name else f"{namespace.rstrip('/')}/{name}"

@@ -14,8 +14,11 @@ from eel_dynamics.ros.parameters import DynamicsParameters, checked, from_values
 class Declaration:
     """Declares all parameters of `node`; `ValueError` names one that does not fit.
 
-    Attributes: values, the DynamicsParameters in force; scene. Those that can be set during the run are checked, a
-    number without a point is taken for one with it, and `changed(values)` is called afterwards.
+    Changes during the run are checked; an integer is accepted for a float. After a change `changed(values)` is called.
+
+    Attributes:
+        values: the present DynamicsParameters.
+        scene: the Scene.
     """
 
     def __init__(self, node, changed):
@@ -27,11 +30,11 @@ class Declaration:
         self._fields = {item.name: item for item in fields(DynamicsParameters)}
         self._paced = self.values.real_time_factor > 0.0
         node.add_pre_set_parameters_callback(self._convert)
-        node.add_on_set_parameters_callback(self._judge)
-        node.add_post_set_parameters_callback(self._take)
+        node.add_on_set_parameters_callback(self._check)
+        node.add_post_set_parameters_callback(self._apply)
 
     def _convert(self, parameters):
-        """Before a set: whole numbers for floats become floats; what does not fit is left for `_judge`."""
+        """Before a set: convert integers to floats where needed; bad values are left for `_check`."""
         return [self._converted(parameter) for parameter in parameters]
 
     def _converted(self, parameter):
@@ -45,7 +48,7 @@ class Declaration:
         except ValueError:
             return parameter
 
-    def _judge(self, parameters) -> SetParametersResult:
+    def _check(self, parameters) -> SetParametersResult:
         try:
             for parameter in parameters:
                 item = self._fields.get(parameter.name)
@@ -53,13 +56,13 @@ class Declaration:
                     continue
                 value = checked(item, parameter.value, item.name)
                 if item.name == "real_time_factor" and (value > 0.0) != self._paced:
-                    now = "> 0" if self._paced else "0 (as fast as it goes)"
+                    now = "> 0" if self._paced else "0 (as fast as possible)"
                     raise ValueError(f"real_time_factor was {now} at the start and has to stay so, got {value:g}")
         except ValueError as error:
             return SetParametersResult(successful=False, reason=str(error))
         return SetParametersResult(successful=True)
 
-    def _take(self, parameters):
+    def _apply(self, parameters):
         changes = {each.name: each.value for each in parameters if each.name in self._fields}
         if changes:
             self.values = replace(self.values, **changes)

@@ -1,18 +1,18 @@
-"""What the node logs and publishes on /diagnostics: a condition is logged once and shown while it lasts."""
+"""The node's log and its content of /diagnostics: a condition is logged once, and published while it lasts."""
 
 import math
 import time
 
-OK, WARN, ERROR = 0, 1, 2  # as diagnostic_msgs/DiagnosticStatus has them
+OK, WARN, ERROR = 0, 1, 2  # levels of diagnostic_msgs/DiagnosticStatus
 REPEAT = 1.0  # s: an event of one kind is logged at most once in this time
-RECENT = 2.0  # s: how long an event shows in the diagnostics
-BURST = 20  # lines of one kind in that time, where each tells something else
-OVERDUE = 3.0  # s of wall time on the way to a sample at real time, after which something is wrong
+RECENT = 2.0  # s: how long an event is shown in the diagnostics
+BURST = 20  # lines of one kind with different texts that are logged in that time
+OVERDUE = 3.0  # s of wall time for one sample of a paced run, after which an error is reported
 PERIOD = 1.0  # s of wall time, and of simulation time, after which /diagnostics is published again
 
 
 class Report:
-    """Writes to `logger` (methods info, warning, error). Safe to use from several threads."""
+    """Logs conditions and events to `logger` (methods info, warning, error). Safe to use from several threads."""
 
     def __init__(self, logger, now=time.monotonic):
         self._logger = logger
@@ -25,27 +25,27 @@ class Report:
         self._logger.info(text)
 
     def note(self, kind: str, text: str):
-        """Something usual that happened; of one kind some lines a second are logged at most."""
+        """Log a normal event; at most `BURST` lines a second of one kind."""
         if self._quota(kind).allows(self._now()):
             self.info(text + self._quota(kind).left_out())
 
     def begin(self, kind: str, text: str, level: int = WARN):
-        """A condition `kind` that lasts until `end`; logged when it begins."""
+        """Begin the condition `kind`, which lasts until `end`; it is logged when it begins."""
         if kind not in self._lasting:
             self._log(level, text)
         self._lasting[kind] = (level, text)
 
     def end(self, kind: str, text: str = ""):
-        """The condition is over; `text`, if any, is logged if it had begun."""
+        """End the condition; `text`, if any, is logged if it had begun."""
         if self._lasting.pop(kind, None) is not None and text:
             self.info(text)
 
     def lasts(self, kind: str) -> bool:
-        """Whether the condition has begun and is not over."""
+        """Whether the condition has begun and has not ended."""
         return kind in self._lasting
 
     def event(self, kind: str, text: str, level: int = WARN, differing: bool = False):
-        """Something that happened; of one kind one a second is logged at most, or some `differing` texts if asked."""
+        """Log an event; at most one a second of one kind, or with `differing` up to `BURST` different texts."""
         now = self._now()
         _, last, logged, _ = self._events.get(kind, (OK, "", -math.inf, 0.0))
         if differing:
@@ -59,7 +59,7 @@ class Report:
         self._events[kind] = (level, text, logged, now)
 
     def state(self) -> tuple[int, list[str]]:
-        """Present level and texts, the gravest first."""
+        """Present level and texts, the most severe first."""
         now = self._now()
         recent = [(level, text) for level, text, _, seen in list(self._events.values()) if now - seen < RECENT]
         present = sorted([*list(self._lasting.values()), *recent], key=lambda entry: -entry[0])
@@ -77,7 +77,7 @@ class Report:
 
 
 class Quota:
-    """`BURST` lines in `REPEAT` seconds."""
+    """Rate limit: `BURST` lines in `REPEAT` seconds."""
 
     def __init__(self):
         self._begin = -math.inf  # s
@@ -93,22 +93,22 @@ class Quota:
         return allowed
 
     def left_out(self) -> str:
-        """How many lines were not logged since the last time, in words; empty where none."""
+        """Text with the number of lines left out since the last call; empty if there were none."""
         count, self._refused = self._refused, 0
         return f" (and {count} more before, not shown)" if count else ""
 
 
 class Status:
-    """Collects the figures of a RunLoop from time to time."""
+    """Collects the content of /diagnostics from a RunLoop."""
 
     def __init__(self, run, report, accuracy):
         self._run, self._report, self._accuracy = run, report, accuracy
         self._seen = (0.0, 0.0)  # s: simulation time, wall time spent on samples
-        self._told = (-PERIOD, 0.0, None)  # s: wall time, simulation time, and the state that was told
+        self._last_published = (-PERIOD, 0.0, None)  # s, s: wall time, simulation time; state
 
     def due(self) -> bool:
-        """Whether to tell: once a second of wall time and of simulation time, and when the state has changed."""
-        wall, simulated, state = self._told
+        """Whether to publish: after a second of wall time or of simulation time, and when the state has changed."""
+        wall, simulated, state = self._last_published
         run = self._run
         return (
             time.monotonic() - wall >= PERIOD
@@ -117,7 +117,7 @@ class Status:
         )
 
     def collect(self, publishers_of_laws: int, final: bool = False) -> tuple[int, str, dict]:
-        """Level, text, values; the real-time factor is that since the last collection, at the end that of the run."""
+        """Level, text and values; the real-time factor is the one since the last call, with `final` that of the run."""
         run = self._run
         if publishers_of_laws > 1:
             self._report.begin("laws", f"{publishers_of_laws} publishers of curvature_law: the later message wins")
@@ -135,7 +135,7 @@ class Status:
         before, self._seen = (0.0, 0.0) if final else self._seen, (run.time, run.wall_time.seconds)
         simulated, wall = self._seen[0] - before[0], self._seen[1] - before[1]
         level, warnings = state = self._report.state()
-        self._told = (time.monotonic(), run.time, (run.standing, state))
+        self._last_published = (time.monotonic(), run.time, (run.standing, state))
         values = {
             "law": run.laws.name,
             "accuracy": self._accuracy,

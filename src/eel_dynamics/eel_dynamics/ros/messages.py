@@ -1,7 +1,7 @@
-"""The node's messages: samples of the run, serialised once and refilled; laws and samples of laws, read.
+"""Converts between snapshots and messages: fills serialised sample messages, and reads laws and samples of laws.
 
-Library (the paper's) frames become REP-103 frames here and nowhere else, by `turn_vector` and `turn_quaternion`; fields
-that are kept in section axes (1 = -x, 2 = -y, 3 = +z of base_link) pass unchanged.
+The paper's frames, which the library uses, are converted to REP-103 frames by `turn_vector` and `turn_quaternion`.
+Fields in section axes (1 = -x, 2 = -y, 3 = +z of base_link) stay unchanged.
 """
 
 import array
@@ -42,13 +42,17 @@ SECOND = 1_000_000_000  # ns
 
 
 def seconds_of(time: Time) -> float:
-    """A stamp in s."""
+    """The stamp `time` in seconds."""
     return time.sec + 1e-9 * time.nanosec
 
 
 class Sample:
-    """What goes out for a sample: `fill` gives the message of a topic, serialised, from a snapshot; `tick` that of
-    /clock. `kinds`: the types of the topics; `clock`: that of /clock."""
+    """The serialised messages of one sample: `fill` returns that of a topic, `tick` that of /clock.
+
+    Attributes:
+        kinds: message type by topic.
+        clock: message type of /clock.
+    """
 
     clock = Clock
 
@@ -92,7 +96,7 @@ class Sample:
         self._of = self._head = None  # a snapshot, and the head's position, orientation and twist in it
 
     def set_time(self, nanoseconds: int):
-        """The simulation time [ns] of all messages, /clock's too."""
+        """Set the simulation time [ns] of all messages, including /clock's."""
         self._nanoseconds = divmod(nanoseconds, SECOND)
 
     def tick(self) -> bytes:
@@ -100,9 +104,9 @@ class Sample:
         return self._sealed(self._clock)
 
     def fill(self, name: str, snapshot) -> bytes:
-        """The message of topic `name` from `snapshot`."""
+        """The message of topic `name`, filled from `snapshot`."""
         message = self._serialised[name]
-        if snapshot is not self._of:  # several topics tell how the head is
+        if snapshot is not self._of:  # several topics need the head's state
             head = np.concatenate((snapshot.position, snapshot.orientation, snapshot.twist))
             self._of, self._head = snapshot, head * HEAD + 0.0
         self._fill[name](message.numbers, snapshot)
@@ -113,18 +117,21 @@ class Sample:
         return message.data()
 
     def _fill_pose(self, numbers, snapshot):
-        numbers["pose.position"][:], numbers["pose.orientation"][:] = self._head[PLACE], self._head[TURN]
+        numbers["pose.position"][:], numbers["pose.orientation"][:] = self._head[POSITION], self._head[ORIENTATION]
 
     def _fill_twist(self, numbers, snapshot):
-        numbers["twist.angular"][:], numbers["twist.linear"][:] = self._head[TURNING], self._head[MOVING]
+        numbers["twist.angular"][:], numbers["twist.linear"][:] = self._head[ANGULAR], self._head[LINEAR]
 
     def _fill_odometry(self, numbers, snapshot):
-        numbers["pose.pose.position"][:], numbers["pose.pose.orientation"][:] = self._head[PLACE], self._head[TURN]
-        numbers["twist.twist.angular"][:], numbers["twist.twist.linear"][:] = self._head[TURNING], self._head[MOVING]
+        numbers["pose.pose.position"][:], numbers["pose.pose.orientation"][:] = (
+            self._head[POSITION],
+            self._head[ORIENTATION],
+        )
+        numbers["twist.twist.angular"][:], numbers["twist.twist.linear"][:] = self._head[ANGULAR], self._head[LINEAR]
 
     def _fill_transform(self, numbers, snapshot):
-        numbers["transforms.transform.translation"][:] = self._head[PLACE]
-        numbers["transforms.transform.rotation"][:] = self._head[TURN]
+        numbers["transforms.transform.translation"][:] = self._head[POSITION]
+        numbers["transforms.transform.rotation"][:] = self._head[ORIENTATION]
 
     def _fill_backbone(self, numbers, snapshot):
         numbers["position"][:] = (turn_vector(snapshot.backbone) + 0.0).ravel()
@@ -150,7 +157,7 @@ class Sample:
 
 
 def _lengthen(message, x: np.ndarray):
-    """Give the sequences of numbers in a `message` their lengths for the stations `x`, and `x` itself."""
+    """Set the lengths of the sequences in a `message` for the stations `x` (M,) [m], and `x` itself."""
     for field, kind in message.get_fields_and_field_types().items():
         if kind == "sequence<double>":
             count = {"position": 3, "orientation": 4}.get(field, 1) * len(x)
@@ -158,7 +165,7 @@ def _lengthen(message, x: np.ndarray):
 
 
 HEAD = np.concatenate((VECTOR, QUATERNION, VECTOR, VECTOR))  # to REP-103 axes
-PLACE, TURN, TURNING, MOVING = slice(0, 3), slice(3, 7), slice(7, 10), slice(10, 13)
+POSITION, ORIENTATION, ANGULAR, LINEAR = slice(0, 3), slice(3, 7), slice(7, 10), slice(10, 13)
 TORQUES, FORCES, RESISTANCES = (
     tuple(f"{name}_{axis}" for axis in (1, 2, 3)) for name in ("torque", "force", "resistive")
 )
@@ -166,7 +173,7 @@ ENERGY_FIELDS = tuple(name for name, kind in EnergyLedger.get_fields_and_field_t
 
 
 def body_message(body, scene: Scene, x: np.ndarray, head_frame: str) -> BodyGeometry:
-    """The body's outline at the stations `x` [m] and, graded towards the nose where it rounds off, in between."""
+    """The body's outline at the stations `x` (M,) [m] and at points in between, which are denser at the nose."""
     message = BodyGeometry(length=float(body.length), mass=float((scene.density or body.density) * body.volume))
     message.header.frame_id = head_frame
     for name, values in outline(body, x).items():
@@ -174,12 +181,12 @@ def body_message(body, scene: Scene, x: np.ndarray, head_frame: str) -> BodyGeom
     return message
 
 
-def opened_law(data: bytes) -> tuple[str, Callable[[], CurvatureLaw]]:
-    """The name of a CurvatureLaw as it came over the network, and what makes the message of the rest.
+def parse_law(data: bytes) -> tuple[str, Callable[[], CurvatureLaw]]:
+    """Parse a serialised CurvatureLaw: its name, and a function that deserialises it.
 
-    Making a message of 10^5 terms would hold the process up for a second, so that terms are counted before: ValueError
-    of the second where there are too many. The layout is CDR's (RTPS 2.5, 10.5): 4 bytes that tell it, then header,
-    name and number of terms, each number on a multiple of its size.
+    Deserialising 10^5 terms would block the process for a second, so the terms are counted first: the function raises
+    `ValueError` if there are too many. The layout is CDR (RTPS 2.5, 10.5): 4 bytes for the encoding, then header, name
+    and number of terms, each number aligned to its size. `ValueError` if the message ends before.
     """
     order = "<" if data[1:2] == b"\x01" else ">"
 
@@ -205,13 +212,13 @@ def opened_law(data: bytes) -> tuple[str, Callable[[], CurvatureLaw]]:
 def samples_from_message(message: CurvatureSamples) -> dict[str, np.ndarray | float]:
     """The arguments of `Simulation.add_samples`: time [s], x [m], curvatures and two time derivatives, section axes.
     `ValueError` for too many points."""
-    check_points(len(message.x))  # before it waits for its turn
+    check_points(len(message.x))  # before the request is queued
     names = ("x", "pitch", "pitch_rate", "pitch_accel", "yaw", "yaw_rate", "yaw_accel")
     return {"time": seconds_of(message.header.stamp)} | {name: np.array(getattr(message, name)) for name in names}
 
 
 def diagnostic_array(time: float, name: str, level: int, text: str, values: dict) -> DiagnosticArray:
-    """One status of the node `name` at simulation time `time` [s], its values as text."""
+    """A DiagnosticArray with one status of the node `name` at simulation time `time` [s]."""
     status = DiagnosticStatus(level=bytes([level]), name=name, message=text, hardware_id="simulation")
     status.values = [
         KeyValue(key=key, value=f"{value:.9g}" if isinstance(value, float) else str(value))

@@ -1,6 +1,6 @@
 """The dynamics node: declares parameters, subscribes to laws, runs the simulation, publishes samples and diagnostics.
 
-The run loop has a thread of its own (run_loop.py), callbacks run in another, and the main thread waits for the end.
+The run loop runs in one thread (run_loop.py), callbacks in another, and the main thread waits for the end.
 """
 
 import math
@@ -29,12 +29,12 @@ from rclpy.qos import QoSProfile
 from std_srvs.srv import SetBool, Trigger
 
 from eel_dynamics.model.scene import Scene
-from eel_dynamics.ros.clock_arbiter import ClockWatch
+from eel_dynamics.ros.clock_arbiter import ClockMonitor
 from eel_dynamics.ros.declaration import Declaration
 from eel_dynamics.ros.diagnostics import Report, Status
 from eel_dynamics.ros.loop.law_feed import LawFeed
 from eel_dynamics.ros.loop.run_loop import RunLoop
-from eel_dynamics.ros.messages import Sample, body_message, diagnostic_array, opened_law, samples_from_message
+from eel_dynamics.ros.messages import Sample, body_message, diagnostic_array, parse_law, samples_from_message
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.ros.publishers import Publishers
 from eel_dynamics.ros.simulation_from_parameters import simulation_from_parameters
@@ -44,14 +44,14 @@ from eel_msgs.msg import BodyGeometry, CurvatureLaw, CurvatureSamples
 NAME = "dynamics"
 ABOUT = "Simulates the swimmer that the laws on curvature_law bend, and publishes how it moves."
 LATCHED, LOSSLESS = latched(10), keep_all()
-MANY_CALLS = QoSProfile(depth=1000)  # of a service: with ROS's own, calls beyond ten at once are lost without a word
-ATTENTION = 0.25  # s: how often the state is looked at, and who publishes /clock
-PROMPT = 1.0  # s: a service has answered by then
-HASTE = 0.2  # s: longest wait for acknowledgements after a signal
+SERVICE_QOS = QoSProfile(depth=1000)  # with ROS's default, more than ten simultaneous calls are lost silently
+TIMER_PERIOD = 0.25  # s between two checks of the state and of the publishers of /clock
+SERVICE_TIMEOUT = 1.0  # s within which a service answers
+SIGNAL_TIMEOUT = 0.2  # s: longest wait for acknowledgements after a signal
 
 
 class DynamicsNode(Node):
-    """Topics, services and parameters of a run."""
+    """Topics, services and parameters of one simulation."""
 
     def __init__(self):
         super().__init__(NAME, automatically_declare_parameters_from_overrides=True)
@@ -59,68 +59,68 @@ class DynamicsNode(Node):
         self.parameters = Declaration(self, lambda values: self.run_loop.change(values))
         values, scene = self.parameters.values, self.parameters.scene
         simulation = simulation_from_parameters(values, scene)
-        self.outlets = Publishers(
+        self.sample_publishers = Publishers(
             Sample(simulation.x, scene, values.world_frame, values.head_frame),
             create=lambda kind, topic, depth: self.create_publisher(kind, topic, depth or LOSSLESS),
             destroy=self.destroy_publisher,
             received=lambda publisher, seconds: publisher.wait_for_all_acked(Duration(seconds=seconds)),
-            refusal=rclpy_implementation.RCLError,
+            publish_error=rclpy_implementation.RCLError,
             values=lambda: self.parameters.values,
             stopped=lambda: self.run_loop.stopped,
             report=report,
         )
-        self.run_loop = RunLoop(simulation, values, self.outlets, report, greet=self._introduce)
+        self.run_loop = RunLoop(
+            simulation, values, self.sample_publishers, report, on_subscribers_complete=self._wait_for_body_received
+        )
         self.status = Status(self.run_loop, report, values.accuracy)
         self._diagnostics = self.create_publisher(DiagnosticArray, "/diagnostics", 10)
         self._body = self.create_publisher(BodyGeometry, "body", LATCHED)
         self._body.publish(body_message(simulation.body, scene, simulation.x, values.head_frame))
 
-        feed = LawFeed(
-            self.run_loop, report, opened=opened_law, law_of=law_from_message, samples_of=samples_from_message
-        )
-        # The first also gets what was published before, the second matches any publisher.
+        feed = LawFeed(self.run_loop, report, parse=parse_law, law_of=law_from_message, samples_of=samples_from_message)
+        # The first also gets earlier messages, the second matches any publisher.
         for number, quality in enumerate((LATCHED, QoSProfile(depth=10))):
             self.create_subscription(
                 CurvatureLaw,
                 "curvature_law",
-                lambda data, info, number=number: feed.hear_law(data, info, number),
+                lambda data, info, number=number: feed.receive_law(data, info, number),
                 quality,
                 raw=True,
-                event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),  # what one lacks the other has
+                event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),  # one of the two matches
             )
-        self.create_subscription(CurvatureSamples, "curvature_samples", feed.hear_samples, LOSSLESS)
-        self.create_service(Trigger, "~/reset", self._reset, qos_profile=MANY_CALLS)
-        self.create_service(SetBool, "~/pause", self._pause, qos_profile=MANY_CALLS)
-        clock = ClockWatch(
-            self, lambda offered: self.run_loop.request(lambda: self.outlets.offer_clock(offered)), report
+        self.create_subscription(CurvatureSamples, "curvature_samples", feed.receive_samples, LOSSLESS)
+        self.create_service(Trigger, "~/reset", self._reset, qos_profile=SERVICE_QOS)
+        self.create_service(SetBool, "~/pause", self._pause, qos_profile=SERVICE_QOS)
+        clock = ClockMonitor(
+            self, lambda offered: self.run_loop.request(lambda: self.sample_publishers.enable_clock(offered)), report
         )
         clock.look(values.clock)
 
-        def attend():
-            """One timer for both: each wakes the executor, which costs more than what it is for."""
+        def on_timer():
+            """Check both in one timer: waking the executor costs more than the checks."""
             if self.status.due():
-                self.tell()
+                self.publish_diagnostics()
             clock.look(self.parameters.values.clock)
 
-        self.create_timer(ATTENTION, attend, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        self.create_timer(TIMER_PERIOD, on_timer, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
-    def tell(self, final: bool = False):
-        """Publishes /diagnostics."""
+    def publish_diagnostics(self, final: bool = False):
+        """Publish /diagnostics; `final`: at the end of the run."""
         level, text, values = self.status.collect(self.count_publishers("curvature_law"), final)
         name = self.get_fully_qualified_name()
         self._diagnostics.publish(diagnostic_array(self.run_loop.time, name, level, text, values))
 
-    def see_off(self, interrupted, longest: float = math.inf):
-        """Waits until subscribers have received everything, no longer than `longest` [s]."""
+    def wait_until_received(self, interrupted, longest: float = math.inf):
+        """Wait at most `longest` [s] until subscribers have acknowledged everything, or until `interrupted()`."""
         began = time.monotonic()
-        received = self.outlets.wait_until_received([self._diagnostics, self._body], interrupted, longest)
+        received = self.sample_publishers.wait_until_received([self._diagnostics, self._body], interrupted, longest)
         if not received and not interrupted():
             waited = time.monotonic() - began
             self.get_logger().warning(f"some subscriber has not received everything within {waited:.2g} s")
 
-    def _introduce(self):
-        """Waits until all who have come know the body, which they need for what follows."""
-        self._body.wait_for_all_acked(Duration(seconds=PROMPT))
+    def _wait_for_body_received(self):
+        """Wait until the present subscribers have received the body: they need it for the samples."""
+        self._body.wait_for_all_acked(Duration(seconds=SERVICE_TIMEOUT))
 
     def _reset(self, request, response):
         return self._answer(response, self.run_loop.reset(), "reset")
@@ -129,7 +129,7 @@ class DynamicsNode(Node):
         return self._answer(response, self.run_loop.pause(request.data), "paused" if request.data else "going on")
 
     def _answer(self, response, request, state):
-        response.success = request.done.wait(PROMPT)
+        response.success = request.done.wait(SERVICE_TIMEOUT)
         response.message = f"{state} at t = {request.time:g} s" if response.success else "to be done soon"
         return response
 
@@ -141,8 +141,8 @@ def parameter_rows():
 
 
 def main(args=None) -> int:
-    """Runs the node; status 0 after its duration, SIGINT or SIGTERM, 2 if it cannot start as asked, 1 if it fails, or
-    if a simulation that nobody attends (a duration, no pace) cannot go on."""
+    """Run the node. Exit status: 0 after its duration, SIGINT or SIGTERM; 1 if it fails, or if an unattended simulation
+    (with a duration, as fast as possible) stops; 2 if it cannot start."""
     end, words = ProcessEnd(), sys.argv if args is None else args
     use_prompt_repair()
     status = answer_words(NAME, ABOUT, parameter_rows(), words, complain)
@@ -159,21 +159,21 @@ def main(args=None) -> int:
     done, error = end.wait()
     node.run_loop.stop()
     end.over = True
-    executor.create_task(lambda: None)  # one more turn, its last
-    joined = end.join(HASTE)
+    executor.create_task(lambda: None)  # wakes the executor once more
+    joined = end.join(SIGNAL_TIMEOUT)
     if error is not None:
         node.get_logger().fatal("".join(traceback.format_exception(error)))
-    node.tell(final=True)
-    node.see_off(lambda: end.signalled, math.inf if done else HASTE)
+    node.publish_diagnostics(final=True)
+    node.wait_until_received(lambda: end.signalled, math.inf if done else SIGNAL_TIMEOUT)
     if joined:
         executor.shutdown()
         node.destroy_node()
         rclpy.try_shutdown()
-        rclpy.get_default_context().destroy()  # says goodbye to the network, which would wait 20 s for news otherwise
+        rclpy.get_default_context().destroy()  # leaves the network: others would wait 20 s for this node
     return leave_at_once(int(error is not None or node.run_loop.given_up))
 
 
 def spin(executor, node, end):
-    """Serves callbacks until the process ends."""
+    """Run callbacks until the process ends."""
     while not end.over:
         serve_once(executor, node)

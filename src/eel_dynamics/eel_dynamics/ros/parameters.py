@@ -1,7 +1,7 @@
-"""The dynamics node's parameters: each one once, with its default, unit, bounds and description.
+"""The dynamics node's parameters with default, unit, bounds and description.
 
-The node declares its ROS parameters from these fields (and from `Scene`'s, as `scene.*`) and overlays what the user
-gave. Poses and velocities are in ROS (REP-103) frames: world `odom`, head `base_link`.
+The node declares its ROS parameters from these fields (and from `Scene`'s, as `scene.*`) and applies the user's
+overrides. Poses and velocities are in ROS (REP-103) frames: world `odom`, head `base_link`.
 """
 
 import math
@@ -19,7 +19,7 @@ def _parameter(default, description, unit="", **bounds):
 
 @dataclass(frozen=True, kw_only=True)
 class DynamicsParameters:
-    """What a run of the node is, but for the scene. Made by `from_values`, which checks each value.
+    """The node's parameters except the scene. Made by `from_values`, which checks each value.
 
     Metadata of a field: unit, description; minimum, maximum, exclusive (the minimum itself is refused), choices,
     number (a text or a number), changeable (at run time).
@@ -27,7 +27,7 @@ class DynamicsParameters:
 
     accuracy: str = _parameter(
         "standard",
-        "preset (draft, standard, fine, reference) or a target relative error, of a swim of that duration, or 10 s",
+        "preset (draft, standard, fine, reference) or a target relative error of a run of that duration, or of 10 s",
         number=True,
     )
     rate: float = _parameter(
@@ -35,18 +35,20 @@ class DynamicsParameters:
     )
     real_time_factor: float = _parameter(
         1.0,
-        "simulated seconds per second; 0: as fast as it goes, fixed at start",
+        "simulated seconds per second; 0: as fast as possible, fixed at start",
         minimum=0.0,
         maximum=1e6,
         changeable=True,
     )
     duration: float = _parameter(
-        0.0, "simulated time after which the node leaves with status 0; 0: no end", "s", minimum=0.0, maximum=1e9
+        0.0, "simulated time after which the node ends with status 0; 0: no end", "s", minimum=0.0, maximum=1e9
     )
-    stations: int = _parameter(51, "points along the backbone where profiles are given", minimum=2, maximum=10_000)
+    stations: int = _parameter(
+        51, "points along the backbone at which profiles are published", minimum=2, maximum=10_000
+    )
     most_evaluations: float = _parameter(
         MOST_EVALUATIONS,
-        "evaluations of the head's dynamics per simulated second; a law that takes more is refused, or stopped",
+        "evaluations of the head's dynamics per simulated second; a law that needs more is refused, or stopped",
         minimum=0.0,
         exclusive=True,
     )
@@ -97,7 +99,7 @@ class DynamicsParameters:
 
 
 def checked(item: Field, value, name: str):
-    """`value` as the field has it; `ValueError` names the parameter `name`, what it must be, and what it got."""
+    """`value` in the field's type; `ValueError` names the parameter `name`, what it must be, and what it got."""
     default = item.default
     if isinstance(default, bool):
         if not isinstance(value, bool):

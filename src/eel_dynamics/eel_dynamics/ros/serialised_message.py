@@ -1,7 +1,7 @@
-"""Messages as they go over the network: serialised once, and their numbers changed in place.
+"""Messages that are serialised once; after that their numbers are changed in place.
 
-At real time, passing a message on field by field costs more than computing its numbers. The serialised form keeps its
-layout while texts and lengths stay the same: only numbers at known places change.
+Serialising a message field by field costs more than computing its numbers. The layout of the serialised form stays the
+same while texts and lengths do; so only numbers at known offsets change.
 """
 
 import array
@@ -13,16 +13,18 @@ import numpy as np
 from builtin_interfaces.msg import Time
 from rclpy.serialization import serialize_message
 
-HEAD = 4  # bytes before the content, which numbers are aligned by
-MARK = -1.2345678901234567e-200  # and its multiples: numbers that stand nowhere else
+HEAD = 4  # bytes before the content; numbers are aligned to the content's start
+MARK = -1.2345678901234567e-200  # and its multiples: unique numbers, to find the offsets
 MARKED_TIME = 0x1A2B3C4D, 0x2B3C4D5E  # s, ns
 
 
 class SerialisedMessage:
-    """A `message` in its serialised form. Fields that are texts, and sequences of other lengths, need another one.
+    """A `message` in its serialised form. Texts and lengths of sequences cannot be changed.
 
-    numbers: views of its float64 numbers, by path: of a sequence ("torque_1"), or of what has numbers for fields
-    ("pose.position", "" for the message itself). stamp: view (2,) of s and ns of the time in it.
+    Attributes:
+        numbers: views of its float64 numbers, by the path of a sequence ("torque_1"), or of a message with float
+            fields ("pose.position", "" for the message itself).
+        stamp: view (2,) of the seconds and nanoseconds of its time.
     """
 
     def __init__(self, message):
@@ -43,13 +45,12 @@ class SerialisedMessage:
         return self._data[place : place + marks.nbytes].view(marks.dtype)
 
     def data(self) -> bytes:
-        """The message as it stands."""
+        """The serialised message with the present numbers."""
         return self._data.tobytes()
 
 
 def _marked(message, marks: Iterator[float], path: str = "") -> Iterator[tuple[str, list[float]]]:
-    """Put `marks` into the numbers, and one into the time: of all numbers that lie side by side, the path and what
-    stands there now."""
+    """Put `marks` into the numbers, and `MARKED_TIME` into the time; yields path and marks of each contiguous block."""
     if isinstance(message, Time):
         message.sec, message.nanosec = MARKED_TIME
 

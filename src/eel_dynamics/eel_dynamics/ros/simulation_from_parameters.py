@@ -1,4 +1,4 @@
-"""Makes the simulation, in the library's frames, from the node's parameters, in ROS (REP-103) frames."""
+"""Makes the simulation (in the library's frames) from the node's parameters (in REP-103 frames)."""
 
 import math
 from dataclasses import replace
@@ -12,7 +12,7 @@ from eel_dynamics.simulation.simulation import Simulation
 
 
 def simulation_from_parameters(parameters: DynamicsParameters, scene: Scene) -> Simulation:
-    """The simulation at its start; the scene's current is in the ROS world frame. `ValueError`: what does not fit."""
+    """The simulation at t = 0; the scene's current is in the ROS world frame. `ValueError` names what does not fit."""
     twist = (*parameters.initial_angular_velocity, *parameters.initial_linear_velocity)
     return Simulation(
         body=_body_of(parameters.body),

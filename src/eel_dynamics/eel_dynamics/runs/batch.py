@@ -1,12 +1,12 @@
-"""Many swimmers side by side: `simulate_batch`, each as `simulate` would swim it.
+"""Simulates many swimmers in parallel: `simulate_batch`, each with the result of `simulate`.
 
     batch = simulate_batch([straight(period=p) for p in periods], 10.0, accuracy=1e-3, stations=None)
     batch.position[:, -1]                 # (B, 3), head at the end
-    batch.stopped, batch.error            # which could not go on, and why; the others are not touched by it
-    batch[7]                              # a Run, of the samples that it has
+    batch.stopped, batch.error            # which swimmers stopped, and why; the others are not affected
+    batch[7]                              # a Run, with the samples that it has
 
-The mechanics run in threads without Python's lock, as many as there are cores; bodies, scenes and stations that come
-more than once are tabulated once.
+The mechanics run in threads without the GIL, one per core. Bodies, scenes and stations that occur more than once are
+tabulated once.
 """
 
 import os
@@ -36,17 +36,19 @@ MOST_THREADS = 1000
 
 @dataclass(frozen=True, eq=False)
 class Batch:
-    """B swimmers, T samples, M stations, in the axes and units of `Run`. What lies behind the last good sample of a
-    swimmer that stopped is 0; `valid` tells. Profiles are None without stations, wrench and energy are None unless
-    every scene has them."""
+    """B swimmers, T samples, M stations, in the axes and units of `Run`.
+
+    Values after the last valid sample of a swimmer that stopped are 0, see `valid`. Profiles are None without stations;
+    wrench and energy are None unless every scene has them.
+    """
 
     laws: tuple[Law, ...]
     bodies: tuple[Body, ...]
     scenes: tuple[Scene, ...]
     accuracies: tuple[Accuracy, ...]
     time: np.ndarray  # (T,) s
-    samples: np.ndarray  # (B,) int, good ones
-    error: tuple[SimulationStopped | None, ...]  # what stopped each: time, quantity, value, hint
+    samples: np.ndarray  # (B,) int, number of valid samples
+    error: tuple[SimulationStopped | None, ...]  # why each swimmer stopped: time, quantity, value, hint
     steps: np.ndarray  # (B,) int, accepted steps in time
     evaluations: np.ndarray  # (B,) int, of the head's dynamics, for the motion alone
     position: np.ndarray  # (B, T, 3) m, head, world
@@ -61,7 +63,7 @@ class Batch:
     curvature_rate: np.ndarray | None  # (B, T, M, 3) rad/m/s
     torque: np.ndarray | None  # (B, T, M, 3) N m, section axes
     force: np.ndarray | None  # (B, T, M, 3) N, section axes
-    fluid_force: np.ndarray | None  # (B, T, M, 3) N/m, section axes; where `load` was asked for
+    fluid_force: np.ndarray | None  # (B, T, M, 3) N/m, section axes; with `load` only
     energy: EnergyLedger | None  # one (B, T) array per field
     _out: tuple = ()  # profiles, works, kinetic energy at the start, of all, for `__getitem__`
 
@@ -70,16 +72,16 @@ class Batch:
 
     @property
     def valid(self) -> np.ndarray:
-        """(B, T) bool: samples that were reached."""
+        """(B, T) bool: valid samples."""
         return np.arange(len(self.time)) < self.samples[:, None]
 
     @property
     def stopped(self) -> np.ndarray:
-        """(B,) bool: swimmers that could not go on to the end."""
+        """(B,) bool: swimmers that stopped before the end."""
         return np.array([error is not None for error in self.error])
 
     def __getitem__(self, index: int) -> Run:
-        """Swimmer `index` as a `Run`, with the samples that it has."""
+        """SwimmerArguments `index` as a `Run`, with the samples that it has."""
         index = range(len(self))[index]
         out, works, start = self._out
         scene, done = self.scenes[index], self.samples[index]
@@ -118,34 +120,34 @@ def simulate_batch(
     progress: Callable[[int, int], None] | None = None,
     most_evaluations: float = MOST_EVALUATIONS,
 ) -> Batch:
-    """Swim B swimmers for `duration` [s] each and sample all every `sample_period` [s], from t = 0 on.
+    """Simulate B swimmers for `duration` [s] each, with samples every `sample_period` [s] from t = 0 on.
 
-    laws, bodies, scenes, accuracy: one for all, or a sequence of B; positions (3,) [m], orientations (4,), twists (6,):
-    one row for all, or (B, .). Every sequence has the same length B; one of length 1 counts as one for all. stations:
-    how many per body, or their X [m], for the profiles along the body; None: no profiles, the motion and the energies
-    alone. threads: None for one per core that this process may use. progress(done, B): called now and then.
-    most_evaluations: of each, as in `simulate`.
+    laws, bodies, scenes, accuracy: one for all, or a sequence of B. positions (3,) [m], orientations (4,), twists (6,):
+    one row for all, or (B, .). All sequences have the same length B; one of length 1 counts as one for all. stations:
+    number per body, or their X [m], for the profiles along the body; None: no profiles, only motion and energies.
+    threads: None for one per available core. progress(done, B): called after each swimmer. most_evaluations: of each,
+    as in `simulate`.
 
-    Each swimmer is the `simulate` of its arguments, not verified, to the last bit. One that cannot begin or go on keeps
-    the samples until then, with a `SimulationStopped` in `error`; the others do not notice. `ValueError` names an
-    argument that does not fit, with the number of the swimmer.
+    Each swimmer's result equals that of `simulate` with verify=False to the last bit. A swimmer that stops, or cannot
+    start, keeps its samples until then, with a `SimulationStopped` in `error`; the others are not affected.
+    `ValueError` names an argument that does not fit, with the number of the swimmer.
     """
     times = checked_times(duration, sample_period)
     accuracy = accuracy.tolist() if isinstance(accuracy, np.ndarray) else accuracy
-    members = swimmers_of(laws, bodies, scenes, accuracy, positions, orientations, twists, duration, most_evaluations)
+    swimmers = swimmers_of(laws, bodies, scenes, accuracy, positions, orientations, twists, duration, most_evaluations)
     along = [0.0] if stations is None else stations
-    x_of = {length: checked_stations(along, length) for length in dict.fromkeys(each.body.length for each in members)}
-    x = [x_of[each.body.length] for each in members]
-    wrench = [each.scene.internal_wrench and stations is not None for each in members]
+    x_of = {length: checked_stations(along, length) for length in dict.fromkeys(each.body.length for each in swimmers)}
+    x = [x_of[each.body.length] for each in swimmers]
+    wrench = [each.scene.internal_wrench and stations is not None for each in swimmers]
     count, load = len(x), bool(load) and stations is not None
     out = _space(count, len(times), len(x[0]), any(wrench), load)
     works, start = np.zeros((count, len(times), 4)), np.zeros(count)
     samples, steps, evaluations = np.zeros((3, count), dtype=int)
-    settings, errors = [each.accuracy for each in members], [None] * count
+    settings, errors = [each.accuracy for each in swimmers], [None] * count
 
     def swim(index: int):
         try:
-            simulation = Simulation(stations=x[index], **members[index]._asdict())
+            simulation = Simulation(stations=x[index], **swimmers[index]._asdict())
         except (SimulationStopped, ValueError) as error:
             errors[index] = _stopped_at_start(error)
             return
@@ -164,20 +166,20 @@ def simulate_batch(
         for array in (*_of_one(out, index)[:-1], works[index]):
             array[samples[index] :] = 0.0
     counts = steps, evaluations
-    return _batch_of(members, settings, times, samples, errors, counts, x, out, works, start, wrench, load, stations)
+    return _batch_of(swimmers, settings, times, samples, errors, counts, x, out, works, start, wrench, load, stations)
 
 
-def _batch_of(members, settings, times, samples, errors, counts, x, out, works, start, wrench, load, stations):
+def _batch_of(swimmers, settings, times, samples, errors, counts, x, out, works, start, wrench, load, stations):
     along = {name: getattr(out, name) if stations is not None else None for name in ALONG}
     if not all(wrench):
         along |= {"torque": None, "force": None}
     if not load:
         along["fluid_force"] = None
-    ledger = all(each.scene.ledger for each in members)
+    ledger = all(each.scene.ledger for each in swimmers)
     return Batch(
-        laws=tuple(each.law for each in members),
-        bodies=tuple(each.body for each in members),
-        scenes=tuple(each.scene for each in members),
+        laws=tuple(each.law for each in swimmers),
+        bodies=tuple(each.body for each in swimmers),
+        scenes=tuple(each.scene for each in swimmers),
         accuracies=tuple(settings),
         time=times,
         samples=samples,
@@ -197,7 +199,7 @@ def _batch_of(members, settings, times, samples, errors, counts, x, out, works, 
 
 
 def _for_each(swim, count: int, threads: int | None, progress):
-    """`swim(index)` for all of `count`, in `threads` threads."""
+    """Call `swim(index)` for all indices below `count`, in `threads` threads."""
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
     threads = cores if threads is None else threads
     if isinstance(threads, bool) or not isinstance(threads, (int, np.integer)) or not 1 <= threads <= MOST_THREADS:
@@ -219,7 +221,7 @@ def _stopped_at_start(error: Exception) -> SimulationStopped:
 
 
 def _space(count: int, samples: int, stations: int, wrench: bool, load: bool) -> Observations:
-    """Space for observations with a first axis for the swimmers. `ValueError` where they would not fit into memory."""
+    """Empty observations whose first axis is the swimmers'. `ValueError` if they do not fit into memory."""
     check_memory(count, samples, stations, wrench, load)
     return empty_observations(samples, stations, wrench, load, (count,))
 
@@ -229,6 +231,6 @@ def _of_one(out: Observations, index: int) -> Observations:
 
 
 def _copy(one: Observations, out: Observations, index: int):
-    """The profiles that `one` has, which was not asked for all of them, into those of a batch."""
+    """Copy the observations of `one` swimmer, which may have fewer profiles, into those of the batch."""
     for there, here in zip(one[:-1], out[:-1], strict=True):
         here[index, : len(there)] = there

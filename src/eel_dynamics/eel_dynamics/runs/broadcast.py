@@ -1,4 +1,4 @@
-"""Swimmers and their initial states: of one run, or of a batch with arguments for all or for each."""
+"""Checks the arguments of `simulate` and `simulate_batch`, and broadcasts those of a batch to its swimmers."""
 
 from typing import NamedTuple
 
@@ -22,8 +22,8 @@ from eel_dynamics.model.scene import Scene
 from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
 
 
-class Swimmer(NamedTuple):
-    """A swimmer, its law and its initial state."""
+class SwimmerArguments(NamedTuple):
+    """The arguments of one swimmer: law, body, scene, accuracy and initial state."""
 
     law: Law
     body: Body
@@ -32,15 +32,15 @@ class Swimmer(NamedTuple):
     position: np.ndarray  # (3,) m, head, world
     orientation: np.ndarray  # (4,) x y z w, world from head
     twist: np.ndarray  # (6,) (Omega, V) rad/s, m/s, head's axes
-    horizon: float  # s, how long it swims
-    most_evaluations: float = MOST_EVALUATIONS  # by simulated second
+    horizon: float  # s, duration of the run
+    most_evaluations: float = MOST_EVALUATIONS  # per simulated second
 
     @staticmethod
     def of(
         law, body, scene, accuracy, position, orientation, twist, duration, most_evaluations=MOST_EVALUATIONS
-    ) -> "Swimmer":
-        """One of the arguments of `simulate`. `ValueError` names what does not fit."""
-        swimmer = Swimmer(
+    ) -> "SwimmerArguments":
+        """Check the arguments of `simulate`. `ValueError` names what does not fit."""
+        swimmer = SwimmerArguments(
             checked_instance("law", law, Law),
             Body.boyer2010() if body is None else checked_instance("body", body, Body),
             Scene() if scene is None else checked_instance("scene", scene, Scene),
@@ -63,10 +63,12 @@ class Swimmer(NamedTuple):
 
 def swimmers_of(
     laws, bodies, scenes, accuracy, positions, orientations, twists, duration, most_evaluations=MOST_EVALUATIONS
-) -> list[Swimmer]:
-    """B swimmers, for a `duration` [s], with `most_evaluations` by simulated second. Each other argument is one for
-    all, or a sequence of B (rows of an array (B, .) for the last three of them); a sequence of length 1 counts as one
-    for all. `ValueError` names what does not fit, and the swimmer's number."""
+) -> list[SwimmerArguments]:
+    """The arguments of B swimmers, for `duration` [s], with `most_evaluations` per simulated second.
+
+    Each other argument is one for all, or a sequence of B (for the last three the rows of an array (B, .)); a sequence
+    of length 1 counts as one for all. `ValueError` names what does not fit, and the swimmer's number.
+    """
     columns = _broadcast(
         laws=_several("laws", laws, Law),
         bodies=_several("bodies", Body.boyer2010() if bodies is None else bodies, Body),
@@ -77,7 +79,7 @@ def swimmers_of(
         twists=_rows("twists", twists, lambda name, row: checked_row(name, row, 6)),
     )
     most_evaluations = checked_number("most_evaluations", most_evaluations, "per simulated second")
-    swimmers = [Swimmer(*row, float(duration), most_evaluations) for row in zip(*columns, strict=True)]
+    swimmers = [SwimmerArguments(*row, float(duration), most_evaluations) for row in zip(*columns, strict=True)]
     for index, swimmer in enumerate(swimmers):
         if swimmer.scene.planar:
             _check_planar(index, swimmer)
@@ -111,7 +113,7 @@ def _rows(name: str, values, check) -> list[np.ndarray]:
     return [check(f"{name}[{index}]", row) for index, row in enumerate(np.atleast_1d(array))]
 
 
-def _check_planar(index: int, swimmer: Swimmer):
+def _check_planar(index: int, swimmer: SwimmerArguments):
     try:
         check_planar(*swimmer.initial_state)
         check_planar_law(swimmer.law)

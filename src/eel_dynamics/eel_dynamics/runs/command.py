@@ -1,4 +1,4 @@
-"""`simulate`: swim a gait offline, print the summary, keep the run.
+"""The command `simulate`: simulates a gait offline, prints the summary, and writes the run.
 
 simulate falling
 simulate falling --duration 20 --periods 4 --actuators 8
@@ -22,7 +22,7 @@ from eel_dynamics.accuracy.accuracy import PRESETS
 from eel_dynamics.analysis.actuators import MOST as MOST_JOINTS
 from eel_dynamics.model.body import NAMED, Body
 from eel_dynamics.model.scene import Scene
-from eel_dynamics.runs.interrupt import leave_on_interrupt
+from eel_dynamics.runs.interrupt import end_on_interrupt
 from eel_dynamics.runs.named_values import scene_of, set_numbers
 from eel_dynamics.runs.one_line_warnings import one_line_warnings
 from eel_dynamics.runs.run import Run, simulate
@@ -53,10 +53,10 @@ ARRAYS = [
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Exit status 0; 1 where the output cannot be written to its end; 2 for bad input; 3 for a run that stopped, with
-    what it had until then. One line says why."""
+    """Run the command. Exit status: 0; 1 if the output cannot be written completely; 2 for bad input; 3 for a run that
+    stopped, whose samples until then are written. One line gives the reason."""
     if arguments is None:
-        leave_on_interrupt()
+        end_on_interrupt()
     options = _parser().parse_args(arguments)
     try:
         with one_line_warnings("simulate"):
@@ -73,7 +73,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _swim(options, out: Path | None) -> int:
-    """Swim, print the summary, write the run; 0, or 3 for a run that stopped."""
+    """Simulate, print the summary and write the run; returns the exit status: 0, or 3 for a run that stopped."""
     law = gait(options.gait, **set_numbers(options.set))
     body = Body.named(options.body) if options.body in NAMED else Body.from_file(options.body)
     scene = scene_of(options.scene)
@@ -110,13 +110,13 @@ def _swim(options, out: Path | None) -> int:
 
 
 class Progress:
-    """Tells on stderr how far a swim of `duration` [s] has come: after 1, 2, 4 ... s, and then every minute."""
+    """Prints the progress of a run of `duration` [s] to stderr: after 1, 2, 4 ... s, and every minute."""
 
     def __init__(self, duration: float):
         self._duration, self._count = duration, 0
 
     def __call__(self, reached: float, left: float):
-        """Called once a second: `reached` [s] of the swim, `left` [s] of wall time."""
+        """Print, if due; called once a second. reached: simulation time [s]. left: remaining wall time [s]."""
         self._count += 1
         if self._count & (self._count - 1) == 0 or self._count % 60 == 0:
             print(f"simulate: at {reached:.3g} s of {self._duration:g} s, about {left:.3g} s to go", file=sys.stderr)

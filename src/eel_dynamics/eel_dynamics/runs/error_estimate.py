@@ -1,8 +1,8 @@
-"""How far a run is from the exact solution of its equations: by a finer run, and for a step that was too long.
+"""Estimates the discretisation error of a run from a finer run, and finds a stable step.
 
-The errors are those of the targets: of the head's position at the end by the length of its path (or of the body, if
-longer), and of the torque at samples and stations by its own maximum. The finer run has some ten times less of either,
-so that the difference is the error to some ten per cent. It costs about twice the run.
+The errors are those of the accuracy targets: of the head's position at the end, relative to the length of its path (or
+of the body, if longer), and of the torque at samples and stations, relative to its maximum. The finer run's errors are
+some ten times smaller, so the difference is the error to about ten per cent. It costs about twice the run.
 """
 
 from dataclasses import dataclass, replace
@@ -14,14 +14,14 @@ import numpy as np
 from eel_dynamics.accuracy.accuracy import FINEST_TOLERANCE
 from eel_dynamics.simulation.stopping import SimulationStopped
 
-MORE_STEPS = 1.4  # of a finer run, at least: coarse tolerances may leave the steps at their longest
-MOST_FINER = 3  # tries for these
-HALVINGS = 8  # of a step that was too long, until the search for a stable one is given up
+MORE_STEPS = 1.4  # ratio of steps that a finer run must have: coarse tolerances may leave the steps at their bound
+MOST_FINER = 3  # attempts to get that many steps
+HALVINGS = 8  # of an unstable step, at most, in the search for a stable one
 
 
 @dataclass(frozen=True)
 class ErrorEstimate:
-    """Relative errors; `torque` None where there is none."""
+    """Relative errors of position and torque; `torque` is None for a run without internal wrench."""
 
     position: float
     torque: float | None
@@ -33,7 +33,7 @@ class ErrorEstimate:
 
 
 def relative_errors(run, reference) -> ErrorEstimate:
-    """The errors of `run` against a run `reference` of the same, with the same samples and stations."""
+    """Errors of `run` relative to `reference`, a run of the same swimmer with the same samples and stations."""
     scale = max(reference.path_length, reference.body.length)
     position = float(np.linalg.norm(run.position[-1] - reference.position[-1])) / scale
     if run.torque is None or reference.torque is None:
@@ -44,7 +44,7 @@ def relative_errors(run, reference) -> ErrorEstimate:
 
 
 def refined(run, simulate):
-    """The same run by `simulate` with finer settings, and with shorter steps."""
+    """The same run, by `simulate`, with a finer grid and shorter steps."""
     period = float(run.time[1] - run.time[0]) if len(run.time) > 1 else 1.0
     again = partial(
         simulate,
@@ -72,8 +72,7 @@ def refined(run, simulate):
 
 
 def stable_step(swim, accuracy) -> float | None:
-    """The longest step [s], halved from that of `accuracy`, at which `swim(accuracy)` gets through; None if none was
-    found."""
+    """The longest step [s], by halving that of `accuracy`, at which `swim(accuracy)` does not stop; None if none is."""
     step = accuracy.step
     for _ in range(HALVINGS):
         step *= 0.5

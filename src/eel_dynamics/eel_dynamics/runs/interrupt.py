@@ -1,8 +1,8 @@
-"""Ctrl-C for commands that keep nothing of what is half done."""
+"""Ctrl-C handling for commands that keep no partial results."""
 
 import signal
 
 
-def leave_on_interrupt():
-    """Have Ctrl-C end the process at once, also in compiled code, which Python's own handler waits for."""
+def end_on_interrupt():
+    """Let Ctrl-C end the process at once, even in compiled code, for which Python's own handler would wait."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)

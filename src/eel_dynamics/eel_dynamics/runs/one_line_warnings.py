@@ -1,4 +1,4 @@
-"""Warnings of a command: one line each on stderr, without the place in the sources."""
+"""Prints the warnings of a command: one line each on stderr, without the place in the sources."""
 
 import contextlib
 import warnings

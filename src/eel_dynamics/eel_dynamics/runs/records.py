@@ -1,7 +1,7 @@
-"""A run as the messages that the node would have sent: the same topics and fields, as plain objects without ROS.
+"""Converts a run to the messages that the node would publish: the same topics and fields, as plain objects without ROS.
 
-Library (the paper's) frames become REP-103 frames by `turn_vector` and `turn_quaternion`, as in `messages`; fields that
-are kept in section axes pass unchanged.
+The paper's frames, which the library uses, are converted to REP-103 frames by `turn_vector` and `turn_quaternion`, as
+in `messages`. Fields in section axes stay unchanged.
 """
 
 from collections.abc import Iterator
@@ -20,7 +20,7 @@ ENERGIES = (
 
 
 def records(run) -> Iterator[tuple[str, SimpleNamespace]]:
-    """Topic and message, in the order of time: body and law first, then every sample; at the end the run's checks."""
+    """Yield topic and message in the order of time: body and law, then all samples, then the diagnostics."""
     start, end = (_stamp(run.time[k]) for k in (0, -1))
     yield "body", body_record(run)
     yield "curvature_law", SimpleNamespace(name=run.law.name)
@@ -33,8 +33,10 @@ def records(run) -> Iterator[tuple[str, SimpleNamespace]]:
 
 
 def outline(body, x: np.ndarray) -> dict[str, np.ndarray]:
-    """Abscissae [m] and half axes [m] of the body, at `x` [m] and, graded towards the nose where it rounds off, in
-    between: what the message BodyGeometry holds."""
+    """Abscissae and half axes of the body [m], each (N,), by the field names of BodyGeometry.
+
+    The abscissae are `x` (M,) [m] and points in between, which are denser at the nose.
+    """
     x = np.union1d(x, body.length * np.linspace(0.0, 1.0, 101) ** 2)
     return {
         "x": x,
@@ -44,7 +46,7 @@ def outline(body, x: np.ndarray) -> dict[str, np.ndarray]:
 
 
 def body_record(run) -> SimpleNamespace:
-    """The body, as BodyGeometry."""
+    """The body as a BodyGeometry."""
     return SimpleNamespace(length=float(run.body.length), mass=float(run.body_mass), **outline(run.body, run.x))
 
 
@@ -90,7 +92,7 @@ def _sample(run, k: int) -> dict[str, dict]:
 
 
 def _checks(run) -> dict[str, float]:
-    """Worst figures of the run, by the names that they have in the node's diagnostics."""
+    """Greatest residual and closure of the run, by their names in the node's diagnostics."""
     found = {}
     if run.energy is not None:
         found["energy_residual_worst"] = np.max(np.abs(run.energy.residual))

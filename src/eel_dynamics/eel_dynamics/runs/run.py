@@ -1,4 +1,4 @@
-"""A whole run of a law: `simulate`, and what it returns."""
+"""Simulates one run of a law: `simulate`, and the `Run` that it returns."""
 
 import os
 import warnings
@@ -20,9 +20,9 @@ from eel_dynamics.analysis.run_summary import describe
 from eel_dynamics.model.arguments import checked_number, checked_stations
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
-from eel_dynamics.runs.broadcast import Swimmer
+from eel_dynamics.runs.broadcast import SwimmerArguments
 from eel_dynamics.runs.error_estimate import ErrorEstimate, refined, relative_errors, stable_step
-from eel_dynamics.runs.foresight import Foresight
+from eel_dynamics.runs.progress_monitor import ProgressMonitor
 from eel_dynamics.runs.records import records
 from eel_dynamics.simulation.energy import EnergyLedger
 from eel_dynamics.simulation.observations import Observations, size_of
@@ -31,14 +31,14 @@ from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 MOST_REFINEMENTS = 3  # of a run whose error is above its target
-MOST_SAMPLES = 10_000_000  # of a run: their motion alone takes gigabytes
-MOST_MEMORY = 0.8  # of the machine's, that the samples may fill
-_searching = ContextVar("searching", default=False)  # for a stable step
+MOST_SAMPLES = 10_000_000  # of a run: the motion alone takes gigabytes
+MOST_MEMORY = 0.8  # share of the machine's memory for the samples
+_searching = ContextVar("searching", default=False)  # whether a stable step is searched for
 
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """T samples at M stations. Library axes (the body lies along +x from the head and swims towards -x), SI units."""
+    """A run: T samples at M stations, in SI units. The body lies along +x from the head and swims towards -x."""
 
     law: Law
     body: Body
@@ -50,7 +50,7 @@ class Run:
     twist: np.ndarray  # (T, 6) (Omega, V) rad/s, m/s, head's axes
     head_acceleration: np.ndarray  # (T, 6) angular and true acceleration of the head, rad/s^2, m/s^2, head's axes
     center_of_mass: np.ndarray  # (T, 3) m, world
-    x: np.ndarray  # (M,) m, where the profiles are given
+    x: np.ndarray  # (M,) m, stations of the profiles
     backbone: np.ndarray  # (T, M, 3) m, world
     section_orientation: np.ndarray  # (T, M, 4) x y z w, world from section
     curvature: np.ndarray  # (T, M, 3) rad/m
@@ -62,8 +62,8 @@ class Run:
     tail_force: np.ndarray | None  # (T, 3) N, section axes at the tail
     nose_force: np.ndarray | None  # (T, 3) N, section axes at the nose
     energy: EnergyLedger | None  # one (T,) array per field
-    closure_torque: np.ndarray | None  # (T,) N m, what is left of the internal torque at the nose
-    closure_force: np.ndarray | None  # (T,) N, what is left of the internal force there, less the load on the nose
+    closure_torque: np.ndarray | None  # (T,) N m, magnitude of the internal torque left over at the nose
+    closure_force: np.ndarray | None  # (T,) N, of the internal force left over there, less the load on the nose
     steps: int  # accepted steps in time
     evaluations: int  # of the head's dynamics, for the motion alone
 
@@ -89,7 +89,7 @@ class Run:
 
     @property
     def mean_speed(self) -> float:
-        """Distance of the centre of mass between the first and the last sample by the time [m/s]; 0 for one sample."""
+        """Distance of the centre of mass from first to last sample, divided by the time [m/s]; 0 for one sample."""
         duration = self.time[-1] - self.time[0]
         return float(np.linalg.norm(self.center_of_mass[-1] - self.center_of_mass[0]) / duration) if duration else 0.0
 
@@ -102,28 +102,32 @@ class Run:
         return float(size[sample, station]), float(self.x[station]), float(self.time[sample])
 
     def analysis(self, periods: int | None = None) -> Analysis:
-        """What researchers read off a run (speed, Strouhal number, power, efficiency ...), over its last `periods`
-        whole periods, or those of its later half. `ValueError` for a run that is too short to have one."""
+        """Speed, Strouhal number, power, efficiency and more over the last `periods` whole periods of the gait.
+
+        None: those of the run's later half. `ValueError` if the run is shorter than one period.
+        """
         return Analysis(self, periods)
 
     def actuators(self, joints: int) -> Actuators:
-        """The demand on a robot of `joints` motors in pitch and as many in yaw: angles, speeds, torques, powers."""
+        """Angles, speeds, torques and powers of a robot with `joints` motors in pitch and as many in yaw."""
         return actuators_of(self, joints)
 
     def summary(self, periods: int | None = None) -> str:
-        """The run in lines, each number with its unit: as a whole, then over its last `periods` whole periods."""
+        """A text of the run's figures with units: of the whole run, then of its last `periods` whole periods."""
         return describe(self, periods)
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
-        """What of the model's own limits the run went over, a line each (`model_limits.py`); empty: nothing."""
+        """The model's limits that the run exceeded, one line each (`model_limits.py`)."""
         return warnings_of(self)
 
     def to_rerun(self, target, compare: "Run | None" = None, **settings) -> None:
-        """Show the run in Rerun, as the visualiser shows a swimmer: `target` is a file to write (.rrd) or a
-        `rerun.RecordingStream`. compare: another run, laid over this one. settings: some of the visualiser's, such as
-        blueprint="torques", skin_rate=50. Needs the package eel_viz and rerun-sdk; loads are shown of runs that were
-        simulated with load=True."""
+        """Record the run to Rerun, as the visualiser shows a swimmer.
+
+        target: a file (.rrd) or a `rerun.RecordingStream`. compare: another run, drawn over this one. settings: of the
+        visualiser, such as blueprint="torques", skin_rate=50. Loads are shown if the run was simulated with load=True.
+        `ImportError` without the package eel_viz and rerun-sdk.
+        """
         found = entry_points(group="eel_dynamics.drawing", name="rerun")
         try:
             (to_rerun,) = (each.load() for each in found)
@@ -137,12 +141,12 @@ class Run:
 
     @cached_property
     def refined(self) -> "Run":
-        """The same run with finer settings, swum when it is first asked for."""
+        """The same run with finer settings, simulated on first access."""
         return refined(self, simulate)
 
     @property
     def error_estimate(self) -> ErrorEstimate:
-        """Estimate of the run's errors (as the targets of accuracy have them), from the finer run."""
+        """Estimate of the run's errors, as defined for accuracy targets, from the finer run."""
         return relative_errors(self, self.refined)
 
     @property
@@ -168,16 +172,16 @@ def simulate(
     most_evaluations: float = MOST_EVALUATIONS,
     progress: Callable[[float, float], None] | None = None,
 ) -> Run:
-    """Swim `law` for `duration` [s] and sample every `sample_period` [s], from t = 0 on.
+    """Simulate `law` for `duration` [s], with samples every `sample_period` [s] from t = 0 on.
 
-    stations: number of equidistant stations, or their X (M,) [m]. position [m], orientation (x y z w), twist ((Omega,
-    V) in the head's axes): the head's initial state. load: the water's load along the body too. The steps in time do
-    not depend on the sampling. verify: have the error estimated (`Run.error_estimate`); where it is above the target,
-    return a finer run, or warn; None: where the motion is sensitive, that is in space without drag. most_evaluations:
-    of the head's dynamics by simulated second; what takes more is refused, or stopped. progress(time, left): told once
-    a second the time [s] that the swim has come to, and the wall time [s] that it still takes; without it, a swim that
-    takes more than a minute is warned of. `ValueError` names what does not fit; `SimulationStopped` carries the samples
-    so far as `run`.
+    stations: number of equidistant stations, or their X (M,) [m]. position (3,) [m], orientation (4,) (x y z w), twist
+    (6,) ((Omega, V) in the head's axes): the head's initial state. load: compute the water's load along the body too.
+    The steps in time do not depend on the sampling. verify: estimate the error (`Run.error_estimate`); if it exceeds
+    the target, return a finer run, or warn. None: only for sensitive motions, in space without drag. most_evaluations:
+    of the head's dynamics per simulated second; a law that needs more is refused, or stopped. progress(time, left):
+    called once a second with the simulation time reached [s] and the remaining wall time [s]; without it, a run longer
+    than a minute gives a warning. `ValueError` names what does not fit; `SimulationStopped` carries the samples so far
+    as `run`.
     """
     times = checked_times(duration, sample_period)
     again = partial(
@@ -195,12 +199,12 @@ def simulate(
         most_evaluations=most_evaluations,
         progress=progress,
     )
-    swimmer = Swimmer.of(law, body, scene, accuracy, position, orientation, twist, duration, most_evaluations)
+    swimmer = SwimmerArguments.of(law, body, scene, accuracy, position, orientation, twist, duration, most_evaluations)
     x, wrench = checked_stations(stations, swimmer.body.length), swimmer.scene.internal_wrench
     check_memory(1, len(times), len(x), wrench, bool(load))
     simulation = Simulation(stations=x, **swimmer._asdict())
-    foresight = Foresight(swimmer.horizon, progress)
-    out, works, done, stopped = simulation.record(times, wrench, bool(load), foresight.look)
+    monitor = ProgressMonitor(swimmer.horizon, progress)
+    out, works, done, stopped = simulation.record(times, wrench, bool(load), monitor.update)
     steps, _, evaluations = simulation.evaluations
     run = run_of(
         law=law,
@@ -227,8 +231,7 @@ def simulate(
 
 
 def _verified(run: Run) -> Run:
-    """`run`, or a finer one where the estimate of its error is above its target; a warning where none is fine
-    enough."""
+    """`run`, or a finer one if its estimated error exceeds its target; a warning if none is fine enough."""
     target = run.accuracy.target
     if target is None:
         raise ValueError(f"verify needs an accuracy that is a target, got {shown(run.accuracy.name)}")
@@ -246,7 +249,7 @@ def _verified(run: Run) -> Run:
 
 
 def _with_stable_step(stopped: SimulationStopped, again, accuracy: Accuracy) -> SimulationStopped:
-    """The same, with the step that would have been stable in its hint."""
+    """The same error, with a stable step in its hint."""
     token = _searching.set(True)
     try:
         step = stable_step(lambda trial: again(accuracy=trial), accuracy)
@@ -259,8 +262,7 @@ def _with_stable_step(stopped: SimulationStopped, again, accuracy: Accuracy) -> 
 
 
 def checked_times(duration, sample_period) -> np.ndarray:
-    """Instants (T,) [s] of the samples; `ValueError` for a duration or a period that makes no sense, or for more than
-    `MOST_SAMPLES`."""
+    """Times (T,) [s] of the samples; `ValueError` for a bad duration or period, or more than `MOST_SAMPLES`."""
     duration = checked_number("duration", duration, "s", zero=True)
     sample_period = checked_number("sample_period", sample_period, "s")
     steps = duration / sample_period + 1e-9
@@ -273,7 +275,7 @@ def checked_times(duration, sample_period) -> np.ndarray:
 
 
 def check_memory(swimmers: int, samples: int, stations: int, wrench: bool, load: bool):
-    """`ValueError` where the profiles of so many would not fit into memory."""
+    """`ValueError` if the profiles would not fit into memory."""
     needed = 8.0 * swimmers * size_of(samples, stations, wrench, load)
     there = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") * MOST_MEMORY
     if needed > there:
@@ -286,7 +288,7 @@ def check_memory(swimmers: int, samples: int, stations: int, wrench: bool, load:
 def run_of(
     *, law, body, scene, accuracy, x, times, out, works, kinetic_at_start, wrench, load, steps, evaluations
 ) -> Run:
-    """The `Run` of samples `out` (`Observations`) and `works`, of which those at `times` were reached."""
+    """The `Run` of observations `out` and `works`, cut to the samples at `times`, which were reached."""
     if len(times) < len(out.position):
         out = Observations(*(array[: len(times)] for array in out[:-1]), out.whole)
     energy = EnergyLedger.of(out.kinetic, out.powers, works, kinetic_at_start) if scene.ledger else None

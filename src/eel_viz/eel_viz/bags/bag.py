@@ -1,7 +1,7 @@
-"""Reads a rosbag2 folder, or one of its files, without ROS: MCAP or sqlite3, split or whole, compressed or not.
+"""Reads a rosbag2 folder, or one of its files, without ROS: MCAP or sqlite3, split or not, compressed or not.
 
-What a crash left (no metadata, no index, half a file) is read as far as it goes. Types are those that the bag defines;
-a bag without definitions (sqlite3 before Iron) needs the message packages installed here.
+After a crash (no metadata, no index, a truncated file) the readable part is read. Types are those that the bag defines;
+a bag without definitions (sqlite3 before Iron) needs the message packages installed.
 """
 
 import contextlib
@@ -18,14 +18,14 @@ from rosbags.interfaces import MessageDefinitionFormat
 from rosbags.rosbag2 import Reader
 from rosbags.typesys import Stores, TypesysError, get_types_from_idl, get_types_from_msg, get_typestore
 
-from eel_viz.bags.remains import Remains
+from eel_viz.bags.damaged_mcap import DamagedMcapReader
 
 SUFFIXES = (".mcap", ".db3")
 
 
 @dataclass(frozen=True, kw_only=True)
 class Topic:
-    """A topic of a bag: its `type`, the text that defines it ("" if the bag has none), and how many published it."""
+    """A topic of a bag: its `type`, the type's definition ("" if the bag has none), and the number of publishers."""
 
     type: str
     definition: str
@@ -34,19 +34,21 @@ class Topic:
 
 
 class DamagedBag(ValueError):
-    """What cannot be read on from here."""
+    """The bag cannot be read any further."""
 
 
 class Bag:
-    """A bag, open for reading; `topics` by name. `ValueError` in one line if nothing of it can be read.
+    """A bag, open for reading. `ValueError` in one line if nothing of it can be read.
 
-    `damage` says what is wrong with it, "" if nothing is.
+    Attributes:
+        topics: by name.
+        damage: what is wrong with the bag; empty if nothing is.
     """
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
         self._path = pathlib.Path(path)
         self._stack = contextlib.ExitStack()
-        self._readers: list[Reader | Remains] = []
+        self._readers: list[Reader | DamagedMcapReader] = []
         self._store = get_typestore(Stores.EMPTY)
         self.damage = ""
         self.topics: dict[str, Topic] = {}
@@ -60,7 +62,7 @@ class Bag:
             raise
 
     def close(self) -> None:
-        """Let go of the files."""
+        """Close the files."""
         self._stack.close()
 
     def __enter__(self) -> "Bag":
@@ -72,10 +74,10 @@ class Bag:
     def messages(
         self, *topics: str, unreadable: Callable[[str, str], None] = lambda topic, why: None
     ) -> Iterator[tuple[str, int, object]]:
-        """Topic, time of reception [ns] and message of all messages of `topics`, in the order of reception.
+        """Yield topic, time of reception [ns] and message of all messages of `topics`, in the order of reception.
 
-        `unreadable(topic, why)` is told of each message whose bytes do not fit its type. `ValueError` if a type is not
-        known, `DamagedBag` where it is torn.
+        `unreadable(topic, why)` is called for each message whose bytes do not fit its type. `ValueError` if a type is
+        unknown; `DamagedBag` where the bag is damaged.
         """
         for name in topics:
             self._learn(self.topics[name])
@@ -101,7 +103,7 @@ class Bag:
             try:
                 self._readers = [self._stack.enter_context(Reader(self._path))]
                 return
-            except Exception as error:  # on damaged files rosbags raises anything: struct.error, KeyError, sqlite's
+            except Exception as error:  # on damaged files rosbags raises struct.error, KeyError, sqlite's and others
                 self.damage = _line(error)
         else:
             self.damage = "no metadata.yaml"
@@ -162,13 +164,13 @@ class Bag:
 
 
 def _reader(path: pathlib.Path, stack: contextlib.ExitStack):
-    """A reader of one file, which may be unfinished."""
+    """A reader of one file, which may be incomplete."""
     if path.suffix == ".mcap":
         with contextlib.suppress(Exception), Reader(path):
             return Reader(path)
-        return Remains(path)
+        return DamagedMcapReader(path)
     journal = [path.with_name(path.name + suffix) for suffix in ("-wal", "-journal")]
-    if any(each.exists() and each.stat().st_size for each in journal):  # sqlite recovers it, in a copy
+    if any(each.exists() and each.stat().st_size for each in journal):  # let sqlite recover a copy
         folder = pathlib.Path(stack.enter_context(tempfile.TemporaryDirectory()))
         for each in (path, *journal):
             if each.exists():

@@ -1,7 +1,7 @@
-"""What a message type is, as bags need it: the text of its definition with all that it contains, and its hash.
+"""Definitions and hashes of message types, as bags store them.
 
-Both are read from the files that every interface package installs (`share/PACKAGE/msg/TYPE.msg` and `.json`), so that
-they are those of the very types that are on the network.
+Both are read from the files that every interface package installs (`share/PACKAGE/msg/TYPE.msg` and `.json`), so they
+are those of the types on the network.
 """
 
 import importlib
@@ -20,7 +20,7 @@ _PRIMITIVES = {"bool", "byte", "char", "string", "wstring", "float32", "float64"
 
 
 def message_class(name: str) -> type:
-    """The Python class of `name`, such as eel_msgs/msg/Backbone; ValueError if its package is not installed here."""
+    """The Python class of `name`, such as eel_msgs/msg/Backbone; `ValueError` if its package is not installed."""
     package, _, kind = name.partition("/msg/")
     try:
         return getattr(importlib.import_module(f"{package}.msg"), kind)
@@ -29,7 +29,7 @@ def message_class(name: str) -> type:
 
 
 def definition(name: str) -> str:
-    """The text of `name` and, after separators, of all types in it, as rosbag2 stores it."""
+    """The definition of type `name` and, after separators, of all types that it contains, as rosbag2 stores it."""
     texts = {name: _text(name)}
     waiting = [name]
     while waiting:
@@ -46,7 +46,7 @@ def definition(name: str) -> str:
 
 
 def type_hash(name: str) -> str:
-    """The hash of `name` (RIHS01_...), as end points announce it."""
+    """The hash of type `name` (RIHS01_...), as endpoints announce it."""
     described = json.loads(_file(name, "json").read_text(encoding="utf8"))
     return next(entry["hash_string"] for entry in described["type_hashes"] if entry["type_name"] == name)
 

@@ -1,4 +1,4 @@
-"""Prints the messages of a topic as YAML, as `ros2 topic echo` does, where there is no `ros2`."""
+"""The command `eel_echo`: prints the messages of a topic as YAML, as `ros2 topic echo` does, without `ros2`."""
 
 import argparse
 import array
@@ -16,12 +16,12 @@ from rclpy.utilities import remove_ros_args
 
 from eel_viz.bags.definitions import message_class
 
-NAME = "eel_echo"  # the name echo belongs to the shell
+NAME = "eel_echo"  # echo is the shell's
 SHORT = 128  # elements of an array that are printed without --full-length
 
 
 class Echo(Node):
-    """Waits for a publisher of the topic, to learn its type and quality of service, and prints what comes."""
+    """Waits for a publisher of the topic, adopts its type and quality of service, and prints its messages."""
 
     def __init__(self, options: argparse.Namespace) -> None:
         check_seconds("--timeout", options.timeout)
@@ -33,8 +33,8 @@ class Echo(Node):
         self.printed = 0
         self.failure = ""
 
-    def attend(self) -> bool:
-        """False when all that was asked for is printed, or time is up."""
+    def poll(self) -> bool:
+        """Look for a publisher; False when the message of --once is printed, or after an error or time-out."""
         if self.failure or (self._options.once and self.printed):
             return False
         limit = self._options.timeout
@@ -72,7 +72,7 @@ class Echo(Node):
 
 
 def picked(message, field: str | None):
-    """`message`, or what is in it at `field`, such as pose.position.x or status.0.name."""
+    """`message`, or its value at `field`, such as pose.position.x or status.0.name. `ValueError` if it has none."""
     value, path = message, []
     for name in field.split(".") if field else ():
         path.append(name)
@@ -84,14 +84,14 @@ def picked(message, field: str | None):
 
 
 def as_yaml(value, *, short: int | None = None) -> str:
-    """YAML of a message or a part of one; arrays end after `short` elements."""
+    """YAML of a message or a part of one; arrays are cut after `short` elements."""
     return yaml.safe_dump(
         _plain(value, short), sort_keys=False, allow_unicode=True, default_flow_style=False, width=10**6
     ).replace("\n...\n", "\n")
 
 
 def _plain(value, short: int | None):
-    """Dictionaries, lists and numbers in place of messages and arrays."""
+    """The value with dictionaries, lists and numbers in place of messages and arrays."""
     if hasattr(value, "get_fields_and_field_types"):
         return {name: _plain(getattr(value, name), short) for name in value.get_fields_and_field_types()}
     if isinstance(value, bytes):
@@ -103,7 +103,7 @@ def _plain(value, short: int | None):
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Command line; status 0, 1 if no message came or it has not the field, 2 if it cannot begin."""
+    """Run the command. Exit status: 0; 1 if no message came or it has no such field; 2 if it cannot start."""
     words = sys.argv if arguments is None else [NAME, *arguments]
     parser = Parser(
         prog=NAME,
@@ -118,7 +118,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--timeout", type=float, metavar="SECONDS", help="give up, with status 1, if nothing comes")
     parser.add_argument("-f", "--full-length", action="store_true", help=f"print arrays beyond {SHORT} elements")
     options = parser.parse_args(remove_ros_args(args=words)[1:])
-    return run_node(NAME, words, lambda: Echo(options), Echo.attend, complain=complain)
+    return run_node(NAME, words, lambda: Echo(options), Echo.poll, complain=complain)
 
 
 if __name__ == "__main__":

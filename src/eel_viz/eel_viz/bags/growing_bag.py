@@ -1,10 +1,9 @@
-"""A rosbag2 folder in MCAP storage that is whole at all times, not only once it is closed.
+"""Writes a rosbag2 folder in MCAP storage that can be opened at all times, not only once it is closed.
 
-rosbags' writer brings out the index, the end of the file and metadata.yaml when it closes; until then there is no bag.
-Here `save` does so whenever it is called: what has come since is written over the end of the file, and with it a new
-end, in one go. So a recorder that is killed leaves a bag with all that was saved, which opens everywhere; and if the
-disk is full, the end that was there before is put back. (Killed within that one write, a moment in each second, the
-file lacks its end; `remains` reads it.)
+rosbags' writer writes the index, the end of the file and metadata.yaml when it is closed; before, there is no bag. Here
+`save` writes them whenever it is called: the new messages and a new end overwrite the old end in one write. So a
+recorder that is killed leaves a complete bag of all saved messages. If the disk is full, the old end is restored. (A
+process killed within that write leaves a file without its end; `damaged_mcap` reads it.)
 """
 
 import os
@@ -21,7 +20,7 @@ VERSION = 9  # of metadata.yaml, as ROS 2 Jazzy writes it
 
 
 class GrowingFile(McapWriter):
-    """rosbags' writer of one MCAP file, writing to memory; `close` brings that out, as often as it is called."""
+    """rosbags' writer of one MCAP file that writes to memory; each call of `close` writes the memory to the file."""
 
     def __init__(self, path: pathlib.Path, compression: CompressionMode) -> None:
         super().__init__(path, compression)
@@ -29,10 +28,10 @@ class GrowingFile(McapWriter):
         self._kept = self._file.tell()  # bytes of the file that no `close` touches again
         self._end = b""  # the file's end, behind them
         self._file.flush()
-        self.bio = _Waiting(self._kept)
+        self.bio = _PendingData(self._kept)
 
     def close(self, version: int, metadata: str) -> None:
-        """Complete the file. `OSError` if there is no room: the file is as after the last time, and stays so."""
+        """Complete the file. `OSError` if there is no room: the file then is as after the last call."""
         if self.chunk.bio.tell():
             self.close_chunk()
         kept = self.bio.tell()
@@ -46,10 +45,10 @@ class GrowingFile(McapWriter):
             raise
         self._end = data[kept - self._kept :]
         self._kept = kept
-        self.bio = _Waiting(kept)
+        self.bio = _PendingData(kept)
 
     def abort(self) -> None:
-        """Let go of the file as it is."""
+        """Close the file descriptor; the file stays as it is."""
         self._file.close()
 
     def _write(self, data: bytes) -> None:
@@ -60,7 +59,7 @@ class GrowingFile(McapWriter):
 
 
 class GrowingBag(Writer):
-    """`rosbags.rosbag2.Writer` with `save`; `ValueError` if the folder is there already or cannot be made."""
+    """`rosbags.rosbag2.Writer` with `save`; `ValueError` if the folder exists or cannot be made."""
 
     STORAGE_PLUGINS: ClassVar = {StoragePlugin.MCAP: GrowingFile}
 
@@ -74,7 +73,7 @@ class GrowingBag(Writer):
             raise ValueError(f"bag {shown(str(folder))} cannot be made: {reason}") from error
 
     def save(self) -> None:
-        """Make the folder a whole bag of all messages so far. `OSError` if there is no room: it is what it was."""
+        """Make the folder a complete bag of all messages so far. `OSError` if there is no room: it is unchanged."""
         storage = self.storage
         try:
             super().close()
@@ -85,15 +84,15 @@ class GrowingBag(Writer):
             self.storage = storage
 
     def close(self) -> None:
-        """`save`, and let go of the file."""
+        """Save the bag and close its file."""
         try:
             self.save()
         finally:
             self.abort()
 
 
-class _Waiting:
-    """What is to follow the first `place` bytes of a file; as a file from outside."""
+class _PendingData:
+    """The data after the first `place` bytes of a file, in memory, with the interface of a file."""
 
     def __init__(self, place: int) -> None:
         self._place, self._data = place, BytesIO()
@@ -108,4 +107,4 @@ class _Waiting:
         return self._data.getvalue()
 
     def close(self) -> None:
-        """Nothing: there is no file yet."""
+        """Do nothing: there is no file yet."""

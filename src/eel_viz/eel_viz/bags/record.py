@@ -1,8 +1,8 @@
-"""Records topics to a rosbag2 folder in MCAP storage, for `ros2 bag play` and `rosbags`, where there is no `ros2 bag`.
+"""The command `record`: records topics to a rosbag2 folder in MCAP storage, without `ros2 bag`.
 
-Messages are written as they come, undecoded; once a second the bag is made whole (see `growing_bag`), so that whatever
-ends the recorder leaves one that opens. The suite's own topics are listened to from the start, so that a run
-without a pace loses nothing; others as soon as they are discovered. Stamps in the bag are times of reception.
+Messages are written undecoded. The bag is completed once a second (see `growing_bag`), so that it opens however the
+recorder ends. The swimmer's topics are subscribed to from the start, so that no message of a run as fast as possible is
+lost; other topics as soon as they are discovered. Stamps in the bag are times of reception.
 """
 
 import argparse
@@ -24,25 +24,30 @@ from eel_viz.topics import GLOBAL, LATCHED, OWN, SWIMMER
 
 NAME = "record"
 GONE = 1.0  # s without publishers and messages, after which --stop-with-publisher ends it
-LOOK = 0.2  # s between two looks at who is there
-SAVE = 1.0  # s between two times at which the bag is made whole; it is longer
-SHARE = 20.0  # than so many times the processor's time that it takes
-UNASKED = ("/rosout", "/parameter_events")  # recorded only by name
+LOOK = 0.2  # s between two look-ups of the topics
+SAVE = 1.0  # s between two saves of the bag, at least
+SHARE = 20.0  # the least ratio of that period to the CPU time of a save
+NOT_BY_DEFAULT = ("/rosout", "/parameter_events")  # recorded only by name
 
 
 class Recorder(Node):
-    """One raw subscription per topic, one rosbag2 writer."""
+    """Subscribes to the raw messages of each topic and writes them to one bag.
+
+    Attributes:
+        failure: the reason for exit status 1; empty if there is none.
+        counts: number of messages by topic.
+    """
 
     def __init__(self, options: argparse.Namespace) -> None:
         check_seconds("--duration", options.duration)
         super().__init__(NAME, namespace=options.namespace)
         self._options = options
         self._bag = GrowingBag(options.output)
-        self._saved, self._saving = time.monotonic(), 0.0  # s: when it was whole last, and what that cost
+        self._saved, self._saving = time.monotonic(), 0.0  # s: time of the last save, and its CPU time
         self.failure = ""
         self.counts: Counter[str] = Counter()
         self._saved_messages = 0
-        self._listening: dict[str, tuple[object, QoSProfile]] = {}
+        self._subscribed: dict[str, tuple[object, QoSProfile]] = {}
         self._offers: dict[str, list[QoSProfile]] = {}
         self._connections: dict[str, object] = {}
         self._refused: set[str] = set()
@@ -50,15 +55,15 @@ class Recorder(Node):
         self._present = False
         for topic, kind in {**{self.resolve_topic_name(name): kind for name, kind in OWN.items()}, **GLOBAL}.items():
             if self._wanted(topic):
-                self._listen(topic, kind, keep_all(latched=topic.rsplit("/", 1)[-1] in LATCHED))
+                self._subscribe(topic, kind, keep_all(latched=topic.rsplit("/", 1)[-1] in LATCHED))
         self.get_logger().info(f"recording to {options.output}, end with Ctrl-C")
 
-    def attend(self) -> bool:
-        """Now and then: look for new topics; False when it is time to end."""
+    def poll(self) -> bool:
+        """Look for new topics and save the bag; False when the recording is to end."""
         now = time.monotonic()
         if now - self._looked >= LOOK:
             self._looked = now
-            self._look()
+            self._update_topics()
         if now - self._saved >= max(SAVE, SHARE * self._saving) and not self._save():
             return False
         if self._options.duration is not None and now - self._began >= self._options.duration:
@@ -70,7 +75,7 @@ class Recorder(Node):
         return True
 
     def close(self) -> None:
-        """Complete the bag, and say what is in it."""
+        """Complete the bag, and log its contents."""
         if not self.failure:
             self._save()
         self._bag.abort()
@@ -78,7 +83,7 @@ class Recorder(Node):
         self.get_logger().info(f"recorded in {self._options.output}: {counts}")
 
     def _save(self) -> bool:
-        """Make the bag whole; whether that was possible."""
+        """Save the bag; whether that succeeded."""
         began = time.process_time()
         try:
             self._bag.save()
@@ -91,7 +96,7 @@ class Recorder(Node):
         self._saved_messages = self.counts.total()
         return True
 
-    def _look(self) -> None:
+    def _update_topics(self) -> None:
         for topic, kinds in self.get_topic_names_and_types():
             if not self._wanted(topic) or topic in self._refused:
                 continue
@@ -99,25 +104,25 @@ class Recorder(Node):
             if not offers:
                 continue
             self._offers[topic] = offers
-            if topic not in self._listening:
-                self._listen(topic, kinds[0], fitting(offers))
-            elif not all(matches(self._listening[topic][1], offer) for offer in offers):
-                subscription, _ = self._listening.pop(topic)
+            if topic not in self._subscribed:
+                self._subscribe(topic, kinds[0], fitting(offers))
+            elif not all(matches(self._subscribed[topic][1], offer) for offer in offers):
+                subscription, _ = self._subscribed.pop(topic)
                 self.destroy_subscription(subscription)
-                self._listen(topic, kinds[0], fitting(offers))
+                self._subscribe(topic, kinds[0], fitting(offers))
 
     def _wanted(self, topic: str) -> bool:
         if self._options.topics:
             return topic in [self.resolve_topic_name(name) for name in self._options.topics]
         space = self.get_namespace().rstrip("/") + "/"
-        return (topic.startswith(space) or topic in GLOBAL or topic == "/tf") and topic not in UNASKED
+        return (topic.startswith(space) or topic in GLOBAL or topic == "/tf") and topic not in NOT_BY_DEFAULT
 
-    def _listen(self, topic: str, kind: str, quality: QoSProfile) -> None:
+    def _subscribe(self, topic: str, kind: str, quality: QoSProfile) -> None:
         def receive(data: bytes, about: dict) -> None:
             if topic not in self._connections:
                 self._connect(topic, kind)
             self._last_message = time.monotonic()
-            self._present |= topic == self.resolve_topic_name(SWIMMER)  # a law alone is no swimmer
+            self._present |= topic == self.resolve_topic_name(SWIMMER)  # a law alone is not a swimmer
             self.counts[topic] += 1
             self._bag.write(self._connections[topic], about.get("received_timestamp") or time.time_ns(), data)
 
@@ -127,7 +132,7 @@ class Recorder(Node):
             self._refused.add(topic)
             self.get_logger().warning(f"{topic} is left out: {error}")
             return
-        self._listening[topic] = (subscription, quality)
+        self._subscribed[topic] = (subscription, quality)
 
     def _connect(self, topic: str, kind: str) -> None:
         offers = self._offers.get(topic) or [info.qos_profile for info in self.get_publishers_info_by_topic(topic)]
@@ -136,7 +141,7 @@ class Recorder(Node):
             kind,
             msgdef=definition(kind),
             rihs01=type_hash(kind),
-            offered_qos_profiles=[_stored(offer) for offer in offers or [self._listening[topic][1]]],
+            offered_qos_profiles=[_stored(offer) for offer in offers or [self._subscribed[topic][1]]],
         )
 
 
@@ -160,8 +165,8 @@ def _stored(offer: QoSProfile) -> Qos:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Command line; status 0 after SIGINT, SIGTERM or the end that was asked for, 1 if it had to stop (disk full), 2 if
-    it cannot begin."""
+    """Run the command. Exit status: 0 after SIGINT, SIGTERM, --duration or the publishers' end; 1 after a write error
+    (disk full); 2 if it cannot start."""
     words = sys.argv if arguments is None else [NAME, *arguments]
     parser = Parser(
         prog=NAME,
@@ -179,7 +184,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--duration", type=float, metavar="SECONDS", help="end after so much wall time")
     parser.add_argument("--stop-with-publisher", action="store_true", help="end when the swimmer has gone")
     options = parser.parse_args(remove_ros_args(args=words)[1:])
-    return run_node(NAME, words, lambda: Recorder(options), Recorder.attend, complain=complain, complete=True)
+    return run_node(NAME, words, lambda: Recorder(options), Recorder.poll, complain=complain, complete=True)
 
 
 if __name__ == "__main__":

@@ -1,9 +1,9 @@
-"""A bag into a Rerun recording, without ROS running: what the visualiser would have made of the same messages.
+"""The command `replay`: turns a bag into the Rerun recording that the visualiser would make, without ROS.
 
     replay BAG -o run.rrd
 
-Messages take the very way that the visualiser's take (`intake`), in the order in which they were recorded, as fast as
-it goes. A reset in the bag begins a second file, as it does live.
+Messages pass through the visualiser's `dispatcher`, in the order in which they were recorded, as fast as possible. A
+reset in the bag begins a second file, as in the visualiser.
 """
 
 import contextlib
@@ -20,9 +20,9 @@ from eel_gaits.quantity import limits
 from eel_gaits.wording import shown
 
 from eel_viz.bags.bag import Bag, DamagedBag
-from eel_viz.recording.destination import Say
-from eel_viz.recording.intake import SAMPLES
-from eel_viz.recording.merged_messages import show
+from eel_viz.recording.destination import LogFunction
+from eel_viz.recording.dispatcher import SAMPLES
+from eel_viz.recording.merged_messages import record_messages
 from eel_viz.recording.sinks import destinations
 from eel_viz.settings import Settings
 from eel_viz.topics import GLOBAL, OWN
@@ -35,10 +35,13 @@ OPTIONS += ("load_scale", "end_force_scale", "viewer")
 
 
 class Source:
-    """The messages of one swimmer in `bag`. `namespace`: which; None: the one that is there."""
+    """The messages of one swimmer in `bag`, as pairs of topic and message.
 
-    def __init__(self, bag: Bag, namespace: str | None, warn: Say) -> None:
-        self._bag, self._warn = bag, warn
+    namespace: the swimmer's; None: that of the only swimmer. `ValueError` if there is none, or several.
+    """
+
+    def __init__(self, bag: Bag, namespace: str | None, log_warning: LogFunction) -> None:
+        self._bag, self._log_warning = bag, log_warning
         self._told: set[str] = set()
         self.namespace = self._found(namespace)
         self._topics = {f"{self.namespace}/{name}": name for name in (*SAMPLES, "body", "curvature_law")}
@@ -48,16 +51,16 @@ class Source:
             if there is None or there.type != kind:
                 del self._topics[topic]
             if there is not None and there.type != kind:
-                warn(f"{topic} is left out: it is {there.type}, not {kind}")
+                log_warning(f"{topic} is left out: it is {there.type}, not {kind}")
 
-    def crowded(self, name: str) -> bool:
-        """Whether several publishers sent on a topic."""
+    def has_several_publishers(self, name: str) -> bool:
+        """Whether the topic `name` has several publishers in the bag."""
         return any(
             self._bag.topics[topic].publishers > 1 for topic, relative in self._topics.items() if relative == name
         )
 
     def __iter__(self) -> Iterator[tuple[str, object]]:
-        """Topic and message of all messages, in order; the body first, which is valid at all times."""
+        """Yield topic and message in the recorded order; the body first, as it is valid at all times."""
         body = f"{self.namespace}/body"
         first = next((message for _, _, message in self._bag.messages(body)), None) if body in self._topics else None
         if first is not None:
@@ -68,19 +71,19 @@ class Source:
                 name, count = self._topics[topic], count + 1
                 if name == "body" and first is not None:
                     first = None
-                elif name == "curvature_law":  # its arrays cannot be compared; each counts as a law of its own
+                elif name == "curvature_law":  # its arrays cannot be compared: each message counts as a new law
                     yield name, SimpleNamespace(name=message.name, place=count)
                 else:
                     yield name, message
         except DamagedBag as error:
             if not count:
                 raise
-            self._warn(f"{error}: shown as far as it goes")
+            self._log_warning(f"{error}: shown as far as it goes")
 
     def _leave_out(self, topic: str, why: str) -> None:
         if topic not in self._told:
             self._told.add(topic)
-            self._warn(f"{topic}: {why}: left out, and those like it")
+            self._log_warning(f"{topic}: {why}: left out, and those like it")
 
     def _found(self, namespace: str | None) -> str:
         spaces = sorted(
@@ -111,13 +114,13 @@ def replay(
     *,
     other: str | os.PathLike[str] | None = None,
     namespace: str | None = None,
-    say: Say = lambda text: None,
-    warn: Say = lambda text: None,
+    log_info: LogFunction = lambda text: None,
+    log_warning: LogFunction = lambda text: None,
 ) -> str:
-    """The bag at `path` to where `settings.sink` says; returns in words what it held. `ValueError` in one line.
+    """Record the bag at `path` to `settings.sink`; returns its topics with their numbers of messages as text.
 
-    `other` is a bag to compare it with; `settings.compare`, which is its name, or names the other swimmer's namespace
-    in the same bag.
+    other: a bag to compare it with, called `settings.compare`. Without it `settings.compare` is the namespace of the
+    other swimmer in the same bag. `ValueError` in one line if a bag cannot be read.
     """
     with contextlib.ExitStack() as stack:
         paths = [path, *([other] if other else [path] if settings.compare else [])]
@@ -125,29 +128,29 @@ def replay(
         sources, names = [], []
         for where, space in zip(paths, spaces, strict=False):
             bag = stack.enter_context(Bag(where))
-            sources.append(Source(bag, space, warn))
+            sources.append(Source(bag, space, log_warning))
             names.append(name_of(where, other, path) if other else sources[-1].namespace.strip("/") or "eel")
             if bag.damage:
-                warn(f"{where} is unfinished or damaged ({bag.damage}): shown as far as it goes")
-        return show(
+                log_warning(f"{where} is unfinished or damaged ({bag.damage}): shown as far as it goes")
+        return record_messages(
             sources,
-            destinations(settings, say, warn),
+            destinations(settings, log_info, log_warning),
             names=names,
             namespaces=[source.namespace for source in sources],
-            warn=warn,
-            crowded=sources[0].crowded,
+            log_warning=log_warning,
+            has_several_publishers=sources[0].has_several_publishers,
         )
 
 
 def name_of(bag: str | os.PathLike[str], *besides: str | os.PathLike[str]) -> str:
-    """What a bag is called: the name of its folder or file, or all of its path where that of another is the same."""
+    """A bag's name: of its folder or file, or its whole path if one of `besides` has the same name."""
     name = os.path.basename(os.path.abspath(bag)).removesuffix(".mcap").removesuffix(".db3")
     same = [each for each in besides if os.fspath(each) != os.fspath(bag) and name_of(each) == name]
     return os.fspath(bag).strip("/") if same else name
 
 
 def parser() -> Parser:
-    """What the command line takes."""
+    """The parser of the command line."""
     made = Parser(
         prog=NAME,
         description="Turn a rosbag2 folder (or one of its .mcap or .db3 files) into a Rerun recording, without ROS "
@@ -181,13 +184,13 @@ def parser() -> Parser:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Command line; status 0; with one line on stderr 1 if the recording cannot be written to its end, 2 if it cannot
-    be begun, 130 after Ctrl-C."""
+    """Run the command. Exit status: 0; with one line on stderr 1 if the recording cannot be written completely, 2 if it
+    cannot be begun, 130 after Ctrl-C."""
     chosen = parser().parse_args(arguments)
     output = chosen.output or f"{name_of(chosen.bag)}.rrd"
     other = chosen.compare if chosen.compare.strip("/") and os.path.exists(chosen.compare) else None
 
-    def warn(text: str) -> None:
+    def log_warning(text: str) -> None:
         complain(NAME, text)
 
     began = time.monotonic()
@@ -198,15 +201,17 @@ def main(arguments: list[str] | None = None) -> int:
         values["compare"] = name_of(other, chosen.bag) if other else chosen.compare
         sink = ("save", "connect") if chosen.connect else ("save",)
         settings = Settings.from_values({**values, "sink": sink, "recording": output})
-        told = replay(chosen.bag, settings, other=other, namespace=chosen.namespace, say=print, warn=warn)
+        told = replay(
+            chosen.bag, settings, other=other, namespace=chosen.namespace, log_info=print, log_warning=log_warning
+        )
     except NotWritten as error:
-        warn(str(error))
+        log_warning(str(error))
         return 1
     except (ValueError, OSError) as error:
-        warn(error)
+        log_warning(error)
         return 2
     except KeyboardInterrupt:
-        warn("interrupted: the recording ends there")
+        log_warning("interrupted: the recording ends there")
         return 130
     print(f"replayed in {time.monotonic() - began:.1f} s: {told}")
     if chosen.spawn:

@@ -1,7 +1,7 @@
-"""A recording drawn by Rerun's viewer, without a display: one viewer for as many pictures as are wanted.
+"""Draws pictures of a recording with Rerun's headless viewer: one viewer for all pictures.
 
-A picture is taken when everything is loaded, that is when two in a row are equal; from then on the first one after
-setting the time is the right one, and only if it equals the one before it is looked at again.
+The first picture is complete when two screenshots in a row are equal. After that, the first screenshot after setting
+the time is complete, unless it equals the previous picture: then it is verified again.
 """
 
 import contextlib
@@ -17,16 +17,16 @@ from eel_gaits.wording import shown
 from eel_viz.entities import TIMELINE
 from eel_viz.viewer import CannotRender, native_viewer, viewer
 
-LOADING_LIMIT = 60.0  # s, until the recording is open
-LOOKS = 5  # in a row at a loaded recording: then it has no more timelines to come
-PICTURE_LIMIT = 90.0  # s, until two pictures are equal
+LOADING_LIMIT = 60.0  # s until the recording must be open
+LOADED_CHECKS = 5  # checks in a row of a loaded recording, after which no more timelines are expected
+PICTURE_LIMIT = 90.0  # s until two screenshots must be equal
 SIZE = (1920, 1080)  # pixels
-MAGIC = b"RRF"  # what recordings begin with, whatever their version
+MAGIC = b"RRF"  # first bytes of a recording of any version
 LEAST, MOST = 64, 8192  # pixels of a window's side
 
 
 class Drawing:
-    """A recording that a viewer shows; `start` and `end` are its times [s]."""
+    """A recording that a viewer shows; `start` and `end` [s] are its first and last simulation time."""
 
     def __init__(self, client, path: pathlib.Path) -> None:
         self._client, self._path = client, path
@@ -34,20 +34,20 @@ class Drawing:
         self._last = b""
 
     def png(self, at: float) -> bytes:
-        """The picture at simulation time `at` [s]."""
+        """The picture at simulation time `at` [s] as PNG. `ValueError` if it lies outside the recording."""
         if not self.start <= at <= self.end:
             raise ValueError(
                 f"time must lie in the recording, {self.start:g} to {self.end:g} s ({self._path.name}), got {at:g}"
             )
         self._client.set_time(TIMELINE, duration=at, play_state="paused")
         picture = self._client.take_screenshot() if self._last else b""
-        if picture == self._last:  # the first, or nothing has moved: is it up to date?
-            picture = self._settled()
+        if picture == self._last:  # the first, or perhaps not up to date
+            picture = self._stable_picture()
         self._last = picture
         return picture
 
     def arrange(self, name: str) -> None:
-        """Bring the arrangement `name` to the front, one of those that the recording carries."""
+        """Bring the arrangement `name` of the recording to the front. `ValueError` if there is none."""
         blueprint = self._client.get_blueprint(of="recording").blueprint
         boxes = {
             path.strip("/"): part["ContainerBlueprint"]
@@ -67,19 +67,21 @@ class Drawing:
 
     def _load(self) -> tuple[float, float]:
         self._client.open([str(self._path)])
-        limit, in_vain = time.monotonic() + LOADING_LIMIT, 0
+        limit, loaded_checks = time.monotonic() + LOADING_LIMIT, 0
         while True:
             state = self._client.get_state()
             times = [line for one in state.recordings for line in one.timelines if line.name == TIMELINE]
             if times and not state.loading:
                 return times[0].start / 1e9, times[0].end / 1e9
-            loaded = bool(state.recordings) and not state.loading  # at first it has neither, and loads nothing yet
-            in_vain = in_vain + 1 if loaded else 0
-            if time.monotonic() > limit or in_vain == LOOKS:
+            loaded = (
+                bool(state.recordings) and not state.loading
+            )  # at first there is no recording, and nothing is loading
+            loaded_checks = loaded_checks + 1 if loaded else 0
+            if time.monotonic() > limit or loaded_checks == LOADED_CHECKS:
                 raise ValueError(f"{self._path.name} is no recording of a swimmer, it has no timeline {TIMELINE}")
             time.sleep(0.1)
 
-    def _settled(self) -> bytes:
+    def _stable_picture(self) -> bytes:
         limit = time.monotonic() + PICTURE_LIMIT
         before = b""
         while time.monotonic() < limit:
@@ -93,9 +95,9 @@ class Drawing:
 
 @contextlib.contextmanager
 def drawn(recording: str | os.PathLike[str], *, size: tuple[int, int] = SIZE, blueprint: str = "") -> Iterator[Drawing]:
-    """A `Drawing` of the file `recording` in a window of `size` pixels; `blueprint`: the arrangement in front.
+    """Open a `Drawing` of the file `recording` in a window of `size` pixels; `blueprint`: the arrangement in front.
 
-    `ValueError` if it is no recording, `CannotRender` where the viewer cannot draw.
+    `ValueError` if the file is not a recording; `CannotRender` if the viewer cannot draw.
     """
     if not all(LEAST <= side <= MOST for side in size):
         raise ValueError(f"size must be {LEAST} to {MOST} pixels each way, got {size[0]}x{size[1]}")
@@ -108,7 +110,7 @@ def drawn(recording: str | os.PathLike[str], *, size: tuple[int, int] = SIZE, bl
 
 
 def _readable(path: pathlib.Path, stack: contextlib.ExitStack) -> pathlib.Path:
-    """`path`, or where a recording that was cut short lies repaired."""
+    """`path`, or a repaired copy if the recording is incomplete. `ValueError` if it cannot be read."""
     if not path.is_file():
         raise ValueError(f"recording must be a file, got {shown(str(path))}")
     with path.open("rb") as file:

@@ -1,4 +1,4 @@
-"""A row of pictures as a film: by ffmpeg where it is installed, or as an animated GIF or WebP without it."""
+"""Makes a film of pictures: with ffmpeg if it is installed, or as an animated GIF or WebP without it."""
 
 import os
 import pathlib
@@ -14,14 +14,14 @@ FILMS = (".mp4", ".webm", ".mkv", ".mov", *ANIMATIONS)
 
 
 def ffmpeg() -> str | None:
-    """Where ffmpeg is, if it is installed."""
+    """The path of ffmpeg; None if it is not installed."""
     return shutil.which("ffmpeg")
 
 
 def film(folder: str | os.PathLike[str], count: int, output: str | os.PathLike[str], *, fps: float) -> None:
-    """Write the film `output` of the first `count` pictures `FRAME` in `folder`, equal in size, `fps` a second.
+    """Write the film `output` of the first `count` pictures `FRAME` in `folder`, of equal size, with `fps` per second.
 
-    `ValueError` says what is missing; `OSError` where it cannot be written to its end.
+    `ValueError` for an unknown suffix, or if ffmpeg is needed and missing; `OSError` if writing fails.
     """
     path = pathlib.Path(output)
     if path.suffix not in FILMS:
@@ -37,7 +37,7 @@ def film(folder: str | os.PathLike[str], count: int, output: str | os.PathLike[s
 
 
 def _encode(program: str, pictures: pathlib.Path, count: int, path: pathlib.Path, fps: float) -> None:
-    even = "pad=ceil(iw/2)*2:ceil(ih/2)*2"  # most codecs want that
+    even = "pad=ceil(iw/2)*2:ceil(ih/2)*2"  # most codecs need even sizes
     command = [program, "-y", "-v", "error", "-framerate", f"{fps:g}", "-i", str(pictures)]
     command += ["-frames:v", str(count), "-vf", even, "-pix_fmt", "yuv420p", str(path)]
     done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True)

@@ -1,6 +1,6 @@
-"""A recording to pictures, or to a film, without a display.
+"""The command `render`: draws a recording to pictures, or to a film, without a display.
 
-render RUN.rrd -o picture.png                # --at 7.0 for a moment of one's own
+render RUN.rrd -o picture.png                # --at 7.0: at another time
 render RUN.rrd -o frames/ --fps 30           # frames/frame_00000.png ..., and frames/film.mp4 where ffmpeg is
 render RUN.rrd -o swim.webp --fps 15 --size 960x540
 """
@@ -25,7 +25,7 @@ from eel_viz.viewer import CannotRender
 NAME = "render"
 FILM = "film.mp4"
 MANY = 100_000  # pictures
-TELLING = 0.7  # of a recording's duration: the swimmer is under way, and the curves have a past
+DEFAULT_SHARE = 0.7  # of a recording's duration, at which a single picture is taken: the swimmer moves by then
 
 
 def render(
@@ -36,20 +36,20 @@ def render(
     size: tuple[int, int] = SIZE,
     blueprint: str = "",
 ) -> None:
-    """Write the PNG `picture` of `recording` at simulation time `at` [s] (None: after `TELLING` of it), `size` pixels.
+    """Write the PNG `picture` of `recording` at simulation time `at` [s] (None: after `DEFAULT_SHARE` of it).
 
-    `blueprint`: the arrangement shown; empty: the one the recording has in front.
+    size: width and height [pixels]. blueprint: the arrangement shown; empty: the recording's first.
     """
     with drawn(recording, size=size, blueprint=blueprint) as drawing:
         if at is None:
-            at = drawing.start + TELLING * (drawing.end - drawing.start)
+            at = drawing.start + DEFAULT_SHARE * (drawing.end - drawing.start)
         png = drawing.png(at)
     with replacing(picture) as draft:
         draft.write_bytes(png)
 
 
 def times(drawing: Drawing, *, fps: float, start: float | None, end: float | None, speed: float) -> list[float]:
-    """Times [s] of the pictures of a film with `fps` a second, running `speed` times as fast as the swimmer."""
+    """Simulation times [s] of the pictures of a film with `fps` per second, at `speed` times real time."""
     _check_positive(fps=fps, speed=speed)
     start = drawing.start if start is None else start
     end = drawing.end if end is None else end
@@ -64,7 +64,7 @@ def times(drawing: Drawing, *, fps: float, start: float | None, end: float | Non
 def frames(
     drawing: Drawing, folder: pathlib.Path, at: Sequence[float], progress: Callable[[str], None] = lambda text: None
 ) -> list[pathlib.Path]:
-    """Pictures at the times `at` [s] as frame_00000.png and so on in `folder`; their paths."""
+    """Write pictures at the times `at` [s] to frame_00000.png and so on in `folder`; returns their paths."""
     written = []
     for k, moment in enumerate(at):
         png = drawing.png(min(moment, drawing.end))
@@ -98,7 +98,7 @@ def parser() -> Parser:
         "--at",
         type=float,
         metavar="SECONDS",
-        help=f"simulation time of one picture (default: after {TELLING:.0%}% of the recording)",
+        help=f"simulation time of one picture (default: after {DEFAULT_SHARE:.0%}% of the recording)",
     )
     which.add_argument("--fps", type=float, metavar="N", help="pictures a second of a film")
     made.add_argument("--start", type=float, metavar="SECONDS", help="of the film (default: the recording's)")
@@ -114,8 +114,8 @@ def parser() -> Parser:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Command line; status 0, 1 where the output cannot be written to its end, 2 for what cannot be, 3 where the viewer
-    cannot draw, 130 after Ctrl-C."""
+    """Run the command. Exit status: 0; 1 if the output cannot be written completely; 2 for bad arguments; 3 if the
+    viewer cannot draw; 130 after Ctrl-C."""
     made = parser()
     chosen = made.parse_args(arguments)
     output = chosen.output or chosen.picture

@@ -1,7 +1,7 @@
-"""Two runs laid over each other, and how they differ: another swimmer, accuracy or gait beside the one that is shown.
+"""Compares two runs: draws the other run over this one, and plots their differences.
 
-The other swimmer is drawn as hoops around the first, so that both are seen where they coincide. Differences are this
-run's value less the other's, at this run's times and stations (see `pairs`).
+The other swimmer is drawn as hoops around this one, so that both can be seen where they coincide. A difference is this
+run's value minus the other's, at this run's stamps and stations (see `pairs`).
 """
 
 from collections.abc import Callable
@@ -10,8 +10,8 @@ import numpy as np
 import rerun as rr
 
 from eel_viz import entities
+from eel_viz.batched_stream import BatchedStream
 from eel_viz.messages import Backbone, Body, Pose, Profiles, Status, Twist
-from eel_viz.outlet import Outlet
 from eel_viz.plots.pairs import Pairs
 from eel_viz.plots.profile_plot import ProfilePlot
 from eel_viz.plots.state_text import Summary
@@ -26,18 +26,18 @@ Due = Callable[[str, int, int], bool]
 
 
 class Comparison:
-    """`this` and `other` take the messages of either run, by the methods of `Loggers`.
+    """`this` and `other` log the messages of the two runs, by the methods of `Loggers`.
 
-    `due(what, stamp, period)` says whether something is due at a stamp [ns], `drawings` is the period [ns] of what is
-    drawn, `names` are those of the two runs.
+    names: of this run and the other. limit: of the torque plot [N m]. due(what, stamp, period): whether `what` is to be
+    logged at `stamp` [ns]. drawings: the period of drawings [ns].
     """
 
-    def __init__(self, outlet: Outlet, *, names: tuple[str, str], limit: float, due: Due, drawings: int):
-        self._outlet, self._due, self._drawings, self.names = outlet, due, drawings, names
+    def __init__(self, stream: BatchedStream, *, names: tuple[str, str], limit: float, due: Due, drawings: int):
+        self._stream, self._due, self._drawings, self.names = stream, due, drawings, names
         self._heads, self._torques = Pairs(), Pairs()
-        self.this, self.other = This(self), Other(self, outlet, lambda stamp: due("other", stamp, drawings))
+        self.this, self.other = ThisSide(self), OtherSide(self, stream, lambda stamp: due("other", stamp, drawings))
         self._both = ProfilePlot(
-            outlet,
+            stream,
             entities.COMPARED_TORQUE,
             names=tuple(f"C3 {name}" for name in names[::-1]),  # the other below
             unit="N m",
@@ -46,7 +46,7 @@ class Comparison:
             widths=(2.6, 1.2),
         )
         self._difference = ProfilePlot(
-            outlet,
+            stream,
             entities.TORQUE_DIFFERENCE,
             names=("C1", "C2", "C3"),
             unit="N m",
@@ -58,26 +58,24 @@ class Comparison:
             (entities.DISTANCE, "distance [mm]", colours.MAGENTA),
             (entities.TORQUE_DIFFERENCE_MOST, "greatest over X [N m]", colours.MAGENTA),
         ):
-            outlet.fixed(path, rr.SeriesLines(names=[name], colors=[colour], widths=[1.5]))
+            stream.log_static(path, rr.SeriesLines(names=[name], colors=[colour], widths=[1.5]))
 
     def heads(self, pairs: list[tuple]) -> None:
-        """The distance between the two heads."""
+        """Log the distance between the two heads for each complete pair of positions, (3,) [m]."""
         for stamp, _, this, other in pairs:
-            self.this.summary.move(stamp, this)
-            self.other.summary.move(stamp, other)
+            self.this.summary.add_position(stamp, this)
+            self.other.summary.add_position(stamp, other)
             if self._due("compared", stamp, SUMMARY_PERIOD):
-                self._outlet.once(
-                    stamp, entities.COMPARE_TEXT, rr.TextDocument(self.text(), media_type="text/markdown")
-                )
+                self._stream.log(stamp, entities.COMPARE_TEXT, rr.TextDocument(self.text(), media_type="text/markdown"))
             distance = float(np.linalg.norm(this - other))
             self._farthest = max(self._farthest, distance)
-            self._outlet.scalars(stamp, entities.DISTANCE, [1e3 * distance])
+            self._stream.add_scalars(stamp, entities.DISTANCE, [1e3 * distance])
 
     def torques(self, pairs: list[tuple]) -> None:
-        """C3 of both, and the difference of all three."""
+        """Log C3 of both runs and the differences of C1, C2, C3 for each complete pair of torques, (M, 3) [N m]."""
         for stamp, x, this, other in pairs:
-            self.this.summary.strain(stamp, x, this[:, 2])
-            self.other.summary.strain(stamp, x, other[:, 2])
+            self.this.summary.add_torque(stamp, x, this[:, 2])
+            self.other.summary.add_torque(stamp, x, other[:, 2])
             difference = this - other
             both = np.stack([other[:, 2], this[:, 2]], axis=1)
             self._both.include(x, both)
@@ -85,14 +83,14 @@ class Comparison:
             most = float(np.abs(difference).max())
             self._worst = max(self._worst, most)
             self._greatest = max(self._greatest, float(np.abs(this).max()))
-            self._outlet.scalars(stamp, entities.TORQUE_DIFFERENCE_MOST, [most])
+            self._stream.add_scalars(stamp, entities.TORQUE_DIFFERENCE_MOST, [most])
             if self._due("compared torque", stamp, self._drawings):
                 self._both.draw(stamp, x, both)
                 self._difference.draw(stamp, x, difference)
                 self._difference.draw_envelope(stamp)
 
     def text(self) -> str:
-        """Markdown: both runs side by side, and how far they are apart."""
+        """Markdown: the greatest differences, and the figures of both runs side by side."""
         columns = [side.summary.figures() for side in (self.this, self.other)]
         lines = [f"heads apart by at most **{1e3 * self._farthest:.3g} mm**  "]
         if self._greatest:
@@ -105,27 +103,27 @@ class Comparison:
 
 
 class Side:
-    """One of the two runs: what both have."""
+    """The messages that are logged alike for both runs."""
 
     def __init__(self, comparison: Comparison) -> None:
         self._comparison = comparison
         self.summary = Summary()
 
     def law(self, stamp: int, name: str) -> None:
-        """The law's name."""
+        """Take the law's name."""
         self.summary.law = name
 
     def diagnostics(self, stamp: int, statuses: list[Status]) -> None:
-        """The statuses' values."""
+        """Take the values of the statuses."""
         for status in statuses:
-            self.summary.status(stamp, status.message, status.values)
+            self.summary.add_status(stamp, status.message, status.values)
 
     def head_pose(self, stamp: int, pose: Pose) -> None:
-        """The head's place."""
+        """Take the head's position."""
         self._comparison.heads(self._pair(self._comparison._heads, stamp, pose.position))
 
     def internal_wrench(self, stamp: int, wrench: Profiles) -> None:
-        """The torques."""
+        """Take the torques."""
         torque = wrench.together("torque_1", "torque_2", "torque_3")
         self._comparison.torques(self._pair(self._comparison._torques, stamp, torque, wrench.x))
 
@@ -133,57 +131,57 @@ class Side:
         raise NotImplementedError
 
 
-class This(Side):
+class ThisSide(Side):
     """The run that the rest of the recording shows."""
 
     def _pair(self, pairs: Pairs, *sample) -> list[tuple]:
-        return pairs.this(*sample)
+        return pairs.add_this(*sample)
 
 
-class Other(Side):
-    """The other run: drawn here, since nothing else shows it."""
+class OtherSide(Side):
+    """The other run, which is drawn here."""
 
-    def __init__(self, comparison: Comparison, outlet: Outlet, due: Callable[[int], bool]) -> None:
+    def __init__(self, comparison: Comparison, stream: BatchedStream, due: Callable[[int], bool]) -> None:
         super().__init__(comparison)
-        self._outlet, self._due = outlet, due
+        self._stream, self._due = stream, due
         self._skin: Skin | None = None
         shade, thin = [colours.AMBER], [rr.Radius.ui_points(0.8)]
         for path in (entities.OTHER_HOOPS, entities.OTHER_BACKBONE):
-            outlet.fixed(path, rr.LineStrips3D.from_fields(colors=shade, radii=thin))
+            stream.log_static(path, rr.LineStrips3D.from_fields(colors=shade, radii=thin))
 
     def _pair(self, pairs: Pairs, *sample) -> list[tuple]:
-        return pairs.other(*sample)
+        return pairs.add_other(*sample)
 
     def body(self, body: Body) -> None:
-        """The sections, which the hoops show."""
+        """Take the sections, for the hoops."""
         self.summary.body = body
         self._skin = Skin(body.x, body.half_width, body.half_height, rings=HOOPS, sides=SIDES)
 
     def head_twist(self, stamp: int, twist: Twist) -> None:
-        """The speed."""
-        self._outlet.scalars(stamp, entities.OTHER_SPEED, [np.linalg.norm(twist.linear)])
+        """Log the speed [m/s]."""
+        self._stream.add_scalars(stamp, entities.OTHER_SPEED, [np.linalg.norm(twist.linear)])
 
     def backbone(self, stamp: int, backbone: Backbone) -> None:
-        """Line and hoops."""
+        """Log line and hoops."""
         if not self._due(stamp):
             return
         line = backbone.position[None].astype(np.float32)
-        self._outlet.row(stamp, entities.OTHER_BACKBONE, rr.LineStrips3D, strips=line)
+        self._stream.add_row(stamp, entities.OTHER_BACKBONE, rr.LineStrips3D, strips=line)
         if self._skin is not None:
             vertices, _ = self._skin.place(backbone.x, backbone.position, backbone.orientation)
             rings = vertices.reshape(HOOPS, SIDES, 3)[3:]  # those at the nose are too dense
-            self._outlet.row(
+            self._stream.add_row(
                 stamp, entities.OTHER_HOOPS, rr.LineStrips3D, strips=np.concatenate([rings, rings[:, :1]], axis=1)
             )
 
     def odom(self, stamp: int, pose: Pose, twist: Twist) -> None:
-        """Nothing: the same as head_pose and head_twist."""
+        """Do nothing: the same data as head_pose and head_twist."""
 
     def curvature(self, stamp: int, curvature: Profiles) -> None:
-        """Nothing is compared."""
+        """Do nothing: curvatures are not compared."""
 
     def hydrodynamic_load(self, stamp: int, load) -> None:
-        """Nothing is compared."""
+        """Do nothing: loads are not compared."""
 
     def energy(self, stamp: int, energy: dict[str, float]) -> None:
-        """The residual, in the summary."""
+        """Do nothing: the summary shows the residual."""

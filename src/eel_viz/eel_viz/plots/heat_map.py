@@ -1,6 +1,6 @@
-"""A map of one profile over abscissa and time: the last seconds, the present at the right, the head at the top.
+"""A heat map of one profile over abscissa and time: the last seconds, the present at the right, the head at the top.
 
-It is a rolling image of palette indices (one byte each), a column per `STEP` seconds, with its own axes and colour bar.
+It is a rolling image of palette indices (one byte each) with one column per `STEP` seconds, axes and a colour bar.
 """
 
 from itertools import pairwise
@@ -9,7 +9,7 @@ import numpy as np
 import rerun as rr
 
 from eel_viz import entities
-from eel_viz.outlet import Outlet
+from eel_viz.batched_stream import BatchedStream
 from eel_viz.scene3d import colours
 
 COLUMNS = 200
@@ -23,18 +23,18 @@ BOUNDS_Y = (-3.0, ROWS + 9.0)
 class HeatMap:
     """Keeps the columns and logs the image; `limit` is the value of the deepest colour."""
 
-    def __init__(self, outlet: Outlet, *, limit: float) -> None:
-        self._outlet, self._limit = outlet, limit
+    def __init__(self, stream: BatchedStream, *, limit: float) -> None:
+        self._stream, self._limit = stream, limit
         self._pixels = np.full((ROWS, COLUMNS), NO_DATA, dtype=np.uint8)
         self._last: int | None = None
         palette = [rr.AnnotationInfo(id=NO_DATA, color=(24, 27, 31))]
         palette += [rr.AnnotationInfo(id=k, color=tuple(int(c) for c in colours.DIVERGING[k])) for k in range(1, 256)]
-        outlet.fixed(entities.HEAT_MAP, rr.AnnotationContext(palette))
+        stream.log_static(entities.HEAT_MAP, rr.AnnotationContext(palette))
         self._length: float | None = None
         self._draw_bar()
 
     def include(self, stamp: int, x: np.ndarray, values: np.ndarray) -> None:
-        """Put `values` (M,) at stations `x` [m] into the column of `stamp` [ns]."""
+        """Put `values` (M,) at stations `x` (M,) [m] into the column of `stamp` [ns]."""
         column = int((stamp + 1000) // int(STEP * 1e9))
         if self._last is not None and column <= self._last:
             return
@@ -50,15 +50,15 @@ class HeatMap:
         self._last = column
 
     def draw(self, stamp: int) -> None:
-        """The image at `stamp` [ns]."""
-        self._outlet.once(stamp, entities.HEAT_MAP_IMAGE, rr.SegmentationImage(self._pixels, draw_order=0.0))
+        """Log the image at `stamp` [ns]."""
+        self._stream.log(stamp, entities.HEAT_MAP_IMAGE, rr.SegmentationImage(self._pixels, draw_order=0.0))
 
     def _draw_bar(self) -> None:
         bar = np.linspace(0, ROWS, 65)
         left, right = COLUMNS + 4.0, COLUMNS + 8.0
         steps = [[((left + right) / 2, y0), ((left + right) / 2, y1)] for y0, y1 in pairwise(bar)]
         shades = colours.diverging(np.linspace(1.0, -1.0, 64), 1.0)
-        self._outlet.fixed(
+        self._stream.log_static(
             f"{entities.HEAT_MAP_FRAME}/bar",
             rr.LineStrips2D(steps, colors=shades, radii=(right - left) / 2),
         )
@@ -77,7 +77,7 @@ class HeatMap:
         span = COLUMNS * STEP
         places += [(COLUMNS * k / 4, ROWS + 4.5 - rise) for k in range(5)]
         texts += [f"-{span * (1 - k / 4):g} s" for k in range(4)] + ["now"]
-        self._outlet.fixed(
+        self._stream.log_static(
             f"{entities.HEAT_MAP_FRAME}/labels",
             rr.Points2D(
                 places,

@@ -1,6 +1,6 @@
-"""Samples of two runs at the same times: for each of this run's the other's, linear between its two neighbours in time.
+"""Pairs the samples of two runs: this run's sample with the other run's, interpolated linearly to the same stamp.
 
-Where the stamps are equal nothing is interpolated. Whichever run is ahead waits for the other, `KEPT` samples at most.
+Samples with equal stamps are not interpolated. Samples of the run that is ahead wait for the other run.
 """
 
 from collections import deque
@@ -9,23 +9,23 @@ import numpy as np
 
 from eel_viz.stations import same
 
-KEPT = 1024  # samples of either run that wait; the oldest are given up
+MAXIMUM_WAITING = 1024  # samples of either run; older ones are dropped
 
 
 class Pairs:
-    """Of one kind of sample: an array at a stamp [ns], (n,) or, with abscissae `x`, (M, n)."""
+    """Pairs of one kind of sample: an array (n,) at a stamp [ns], or (M, n) at stations `x` (M,) [m] and a stamp."""
 
     def __init__(self) -> None:
-        self._these: deque[tuple] = deque(maxlen=KEPT)
-        self._others: deque[tuple] = deque(maxlen=KEPT)
+        self._these: deque[tuple] = deque(maxlen=MAXIMUM_WAITING)
+        self._others: deque[tuple] = deque(maxlen=MAXIMUM_WAITING)
 
-    def this(self, stamp: int, values: np.ndarray, x: np.ndarray | None = None) -> list[tuple]:
-        """This run's sample; returns the pairs that are complete: (stamp, x, this run's values, the other's)."""
+    def add_this(self, stamp: int, values: np.ndarray, x: np.ndarray | None = None) -> list[tuple]:
+        """Add a sample of this run; returns the complete pairs: (stamp, x, this run's values, the other's)."""
         self._these.append((stamp, x, values))
         return self._complete()
 
-    def other(self, stamp: int, values: np.ndarray, x: np.ndarray | None = None) -> list[tuple]:
-        """The other run's sample; returns as `this`."""
+    def add_other(self, stamp: int, values: np.ndarray, x: np.ndarray | None = None) -> list[tuple]:
+        """Add a sample of the other run; returns as `add_this`."""
         self._others.append((stamp, x, values))
         return self._complete()
 
@@ -50,7 +50,7 @@ class Pairs:
 
 
 def _on(x: np.ndarray | None, own: np.ndarray | None, values: np.ndarray) -> np.ndarray:
-    """`values` at the abscissae `x` instead of their `own`."""
+    """`values` interpolated from their `own` stations to `x`."""
     if x is None or same(x, own):
         return values
     return np.stack([np.interp(x, own, column) for column in values.T], axis=1)

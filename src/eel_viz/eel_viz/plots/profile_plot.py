@@ -1,15 +1,15 @@
-"""A drawing of profiles against the abscissa X: curves, their envelope so far, and axes with ticks.
+"""A plot of profiles against the abscissa X: curves, their envelope so far, and axes with ticks.
 
-Rerun has no plot against anything but time, so the drawing is made of lines in a two-dimensional view, whose axes
-share one scale and whose y points down: drawn x = WIDTH * X / length, drawn y = -value / (2 limit). If a value is
-beyond the limit, the limit grows to the next of 1, 2, 5, 10 ... and the ticks with it; nothing is cut off.
+Rerun only plots against time. So the plot is made of lines in a two-dimensional view, whose axes share one scale and
+whose y points down: drawn x = WIDTH * X / length, drawn y = -value / (2 limit). If a value exceeds the limit, the limit
+grows to the next of 1, 2, 5, 10 ..., and the ticks with it.
 """
 
 import numpy as np
 import rerun as rr
 
 from eel_viz import entities
-from eel_viz.outlet import Outlet
+from eel_viz.batched_stream import BatchedStream
 from eel_viz.scene3d import colours
 from eel_viz.stations import same
 
@@ -22,13 +22,13 @@ BOUNDS_Y = (-0.79, 0.79)
 class ProfilePlot:
     """Draws up to three profiles into the entities below `root` of a recording.
 
-    `names` are the curves' (C1, C2, C3), which lie over each other in this order and are `widths` [pixels] wide, `unit`
-    that of the values, `limit` > 0 the value at the upper edge at first.
+    names: of the curves (C1, C2, C3), from back to front. unit: of the values. limit: the value > 0 at the upper edge
+    at first. palette: colours of the curves. widths: of the curves [pixels].
     """
 
     def __init__(
         self,
-        outlet: Outlet,
+        stream: BatchedStream,
         root: str,
         *,
         names: tuple[str, ...],
@@ -37,7 +37,7 @@ class ProfilePlot:
         palette: tuple[tuple[int, int, int], ...] = colours.AXIS,
         widths: tuple[float, ...] = (1.4,),
     ):
-        self._outlet, self._root, self._names, self._unit = outlet, root, names, unit
+        self._stream, self._root, self._names, self._unit = stream, root, names, unit
         self.limit = limit
         self._palette, self._widths = palette, widths
         self._ticks: tuple[float, float] | None = None
@@ -46,7 +46,7 @@ class ProfilePlot:
         self._draw_frame()
 
     def include(self, x: np.ndarray, values: np.ndarray) -> None:
-        """Widen the envelope and the limit by `values`, (M, n) at stations `x` [m], (M,)."""
+        """Extend the envelope and the limit by `values`, (M, n) at stations `x` (M,) [m]."""
         if self._x is None or not same(self._x, x):
             self._x, self._low, self._high = x, np.array(values), np.array(values)
         else:
@@ -55,18 +55,18 @@ class ProfilePlot:
         self.limit = grown_limit(self.limit, float(np.max(np.abs(values))))
 
     def draw(self, stamp: int, x: np.ndarray, values: np.ndarray) -> None:
-        """The curves of `values`, (M, n), at `stamp` [ns]."""
+        """Draw the curves of `values`, (M, n) at stations `x` (M,) [m], at `stamp` [ns]."""
         length = float(x[-1])
         if self._ticks != (self.limit, length):
             self._ticks = (self.limit, length)
             self._draw_ticks(stamp, length)
-        self._outlet.row(stamp, f"{self._root}/{entities.CURVES}", rr.LineStrips2D, strips=self._drawn(x, values))
+        self._stream.add_row(stamp, f"{self._root}/{entities.CURVES}", rr.LineStrips2D, strips=self._drawn(x, values))
 
     def draw_envelope(self, stamp: int) -> None:
-        """The least and the greatest value so far at each station, behind the curves."""
+        """Draw the least and the greatest value so far at each station, behind the curves."""
         if self._x is not None:
             strips = np.concatenate([self._drawn(self._x, self._low), self._drawn(self._x, self._high)])
-            self._outlet.row(stamp, f"{self._root}/{entities.ENVELOPE}", rr.LineStrips2D, strips=strips)
+            self._stream.add_row(stamp, f"{self._root}/{entities.ENVELOPE}", rr.LineStrips2D, strips=strips)
 
     def _drawn(self, x: np.ndarray, values: np.ndarray) -> np.ndarray:
         strips = np.empty((values.shape[1], len(x), 2), dtype=np.float32)
@@ -80,7 +80,7 @@ class ProfilePlot:
         grid += [[(WIDTH * k / 5, -0.5), (WIDTH * k / 5, 0.5)] for k in range(6)]
         shades = [colours.TICK] * len(grid)
         shades[2] = colours.FRAME
-        log = self._outlet.fixed
+        log = self._stream.log_static
         log(
             f"{self._root}/{entities.FRAME}",
             rr.LineStrips2D(grid, colors=shades, radii=rr.Radius.ui_points(0.6), draw_order=10.0),
@@ -108,7 +108,7 @@ class ProfilePlot:
         texts += [f"{length * k / 5:.3g}" for k in range(6)]
         places.append((WIDTH * 0.88, -0.62 - LABEL_RISE))
         texts.append(f"[{self._unit}] over X [m]")
-        self._outlet.once(stamp, f"{self._root}/{entities.TICKS}", _labels(places, texts, [colours.LABEL] * len(texts)))
+        self._stream.log(stamp, f"{self._root}/{entities.TICKS}", _labels(places, texts, [colours.LABEL] * len(texts)))
 
 
 def grown_limit(limit: float, value: float) -> float:

@@ -1,9 +1,9 @@
-"""The scalars over time: which values an entity has, in order, and how its lines look."""
+"""The time series: names and colours of each entity's values, in order."""
 
 import rerun as rr
 
 from eel_viz import entities
-from eel_viz.outlet import Outlet
+from eel_viz.batched_stream import BatchedStream
 from eel_viz.scene3d import colours
 
 _ONE, _TWO, _THREE = colours.AXIS
@@ -22,8 +22,8 @@ SERIES = {  # entity: (name, colour) of each value
 }
 
 
-def log_styles(outlet: Outlet) -> None:
-    """Names, colours and widths of all lines, for all times."""
+def log_styles(stream: BatchedStream) -> None:
+    """Log names, colours and widths of all lines, valid at all times."""
     for path, lines in SERIES.items():
         names, shades = zip(*lines, strict=True)
-        outlet.fixed(path, rr.SeriesLines(names=names, colors=shades, widths=[1.5] * len(names)))
+        stream.log_static(path, rr.SeriesLines(names=names, colors=shades, widths=[1.5] * len(names)))

@@ -1,6 +1,6 @@
-"""The state of a run in a few lines of text: what a viewer wants to know before trusting the picture.
+"""The state of a run in a few lines of Markdown.
 
-Everything comes from messages: the path from head_pose, the torque from internal_wrench, the rest from diagnostics.
+The path comes from head_pose, the torque from internal_wrench, the rest from diagnostics.
 """
 
 import re
@@ -9,49 +9,52 @@ import numpy as np
 
 from eel_viz.messages import Body
 
-FRESH = 2_000_000_000  # ns: what the diagnostics said longer ago is not told as the present
-TOLD = {  # keys of the diagnostics, and the words for them
+MAXIMUM_AGE = 2_000_000_000  # ns: older diagnostics are not shown as the present state
+LABELS = {  # key of the diagnostics: its label
     "warnings": "**warnings:**",
     "accuracy": "accuracy",
     "real_time_factor": "real-time factor",
     "closure_torque_relative": "closure",
     "energy_residual_worst": "worst residual [J]",
 }
-COMPARED = ("accuracy", "real_time_factor", "energy_residual_worst")  # beside another run
+COMPARED = ("accuracy", "real_time_factor", "energy_residual_worst")  # keys shown in the comparison of two runs
 LONGEST_NAME, LONGEST_TEXT = 60, 400  # characters
-PRESENT = ("warnings", "real_time_factor")  # those that may be otherwise a moment later
+VOLATILE = ("warnings", "real_time_factor")  # keys that are shown only while they are fresh
 
 
 class Summary:
-    """Collects, and writes Markdown."""
+    """Collects the state of a run, and writes it as Markdown."""
 
     def __init__(self) -> None:
         self.law: str | None = None
         self.body: Body | None = None
-        self._state: tuple[int, str] = (0, "")  # in the diagnostics' words, and when [ns]
-        self._statuses: list[tuple[int, str, dict[str, str]]] = []  # to come
+        self._state: tuple[int, str] = (0, "")  # ns, message of the diagnostics
+        self._statuses: list[tuple[int, str, dict[str, str]]] = []  # later than the head's last stamp
         self.values: dict[str, str] = {}  # of the diagnostics
         self._first: tuple[int, np.ndarray] | None = None
         self._last: tuple[int, np.ndarray] | None = None
         self._path = 0.0  # m
         self._peak: tuple[float, float, int] = (0.0, 0.0, 0)  # N m, m, ns
 
-    def move(self, stamp: int, position: np.ndarray) -> None:
-        """The head is at `position`, (3,) [m], at `stamp` [ns]."""
+    def add_position(self, stamp: int, position: np.ndarray) -> None:
+        """Add the head's `position`, (3,) [m] in the world, at `stamp` [ns]."""
         if self._last is not None:
             self._path += float(np.linalg.norm(position - self._last[1]))
         self._last = (stamp, np.array(position))
         self._first = self._first or self._last
         self._take_statuses()
 
-    def strain(self, stamp: int, x: np.ndarray, torque: np.ndarray) -> None:
-        """The yaw torque C3, (M,) [N m], at stations `x` [m] and `stamp` [ns]."""
+    def add_torque(self, stamp: int, x: np.ndarray, torque: np.ndarray) -> None:
+        """Add the yaw torque C3, (M,) [N m], at stations `x` (M,) [m] and `stamp` [ns]."""
         k = int(np.argmax(np.abs(torque)))
         if abs(torque[k]) > abs(self._peak[0]):
             self._peak = (float(torque[k]), float(x[k]), stamp)
 
-    def status(self, stamp: int, state: str, values: dict[str, str]) -> bool:
-        """What the diagnostics say at `stamp` [ns]; told once the head is there, and whether it is already."""
+    def add_status(self, stamp: int, state: str, values: dict[str, str]) -> bool:
+        """Add message and values of the diagnostics at `stamp` [ns]; they apply once the head has reached that stamp.
+
+        Returns whether they apply already.
+        """
         self._statuses.append((stamp, state, values))
         self._statuses.sort(key=lambda status: status[0])
         return self._take_statuses()
@@ -71,12 +74,12 @@ class Summary:
         return 0 if self._last is None else self._last[0]
 
     def text(self) -> str:
-        """Markdown, one line of text a line."""
+        """The state as Markdown, one line per item."""
         law = "" if self.law is None else f"law **{plain(self.law)}**"
-        fresh = self.stamp - self._state[0] <= FRESH
+        fresh = self.stamp - self._state[0] <= MAXIMUM_AGE
         lines = [", ".join(part for part in (law, plain(self._state[1], LONGEST_TEXT) if fresh else "") if part)]
-        told = [key for key in TOLD if self.values.get(key) and (fresh or key not in PRESENT)]
-        lines.append(", ".join(f"{TOLD[key]} {_short(self.values[key])}" for key in told))
+        shown = [key for key in LABELS if self.values.get(key) and (fresh or key not in VOLATILE)]
+        lines.append(", ".join(f"{LABELS[key]} {_short(self.values[key])}" for key in shown))
         if self._last is not None and self._first is not None:
             seconds = (self._last[0] - self._first[0]) / 1e9
             mean = self._path / seconds if seconds > 0 else 0.0
@@ -89,27 +92,27 @@ class Summary:
         return "  \n".join(line for line in lines if line)
 
     def figures(self) -> dict[str, str]:
-        """The same in short, by name, to stand beside those of another run."""
-        told = {"law": plain(self.law or "")}
-        told |= {TOLD[key]: _short(self.values[key]) for key in COMPARED if self.values.get(key)}
+        """The main figures by name, for the comparison of two runs."""
+        shown = {"law": plain(self.law or "")}
+        shown |= {LABELS[key]: _short(self.values[key]) for key in COMPARED if self.values.get(key)}
         if self._last is not None and self._first is not None:
             seconds = (self._last[0] - self._first[0]) / 1e9
-            told["mean speed [m/s]"] = f"{self._path / seconds:.4f}" if seconds > 0 else "0"
-            told["path [m]"] = f"{self._path:.3f}"
-        told["greatest C3 [N m]"] = f"{self._peak[0]:+.4f}"
-        told["warnings"] = str(len(self.values["warnings"].split("; "))) if self.values.get("warnings") else "none"
-        return told
+            shown["mean speed [m/s]"] = f"{self._path / seconds:.4f}" if seconds > 0 else "0"
+            shown["path [m]"] = f"{self._path:.3f}"
+        shown["greatest C3 [N m]"] = f"{self._peak[0]:+.4f}"
+        shown["warnings"] = str(len(self.values["warnings"].split("; "))) if self.values.get("warnings") else "none"
+        return shown
 
 
 def plain(name: str, longest: int = LONGEST_NAME) -> str:
-    """A text from a message, in Markdown: shown as it is, in one line and not too long."""
+    """A text from a message, escaped for Markdown, in one line of at most `longest` characters."""
     text = "".join(letter if letter.isprintable() else " " for letter in name[:longest])
     escaped = re.sub(r"([\\`*_{}\[\]<>#|~])", r"\\\1", text)
     return escaped + ("..." if len(name) > longest else "")
 
 
 def _short(value: str) -> str:
-    """Numbers to three digits; words as they are."""
+    """Numbers to three digits; other texts unchanged."""
     try:
         return f"{float(value):.3g}"
     except ValueError:

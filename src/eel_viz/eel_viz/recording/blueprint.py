@@ -1,7 +1,7 @@
-"""How a recording is arranged: functions without data. Each arrangement fits a window of 1280 by 720.
+"""The blueprints of a recording, as functions without data. Each fits a window of 1280 by 720 pixels.
 
 `overview` shows everything at once, `torques` the profiles large, `motion` the path and the velocities, `compare`
-another run laid over this one; a recording carries all as tabs, the one asked for in front.
+another run laid over this one. A recording carries all of them as tabs.
 """
 
 import rerun.blueprint as rrb
@@ -27,8 +27,11 @@ _PAST = rrb.VisibleTimeRanges(
 def arrangement(
     first: str = "overview", *, live: bool = False, compare: bool = False, frames: bool = False
 ) -> rrb.Blueprint:
-    """All arrangements, `first` in front; `live` follows the newest data, else the cursor stands at the start;
-    `compare`: there is another run to compare with; `frames`: the axes of head and tail are shown."""
+    """All arrangements as tabs, `first` in front. `ValueError` for an unknown one.
+
+    live: the time cursor follows the newest data, otherwise it stands at the start. compare: add the comparison with
+    another run. frames: show the axes of head and tail.
+    """
     if first not in BLUEPRINTS:
         raise ValueError(f"blueprint must be one of {', '.join(BLUEPRINTS)}, got {shown(first)}")
     tabs = {
@@ -48,7 +51,7 @@ def arrangement(
 
 
 def overview(*, frames: bool = False) -> rrb.Container:
-    """The swimmer, its profiles, its power, and whether the run can be trusted."""
+    """The swimmer, its profiles, its power, and the run's state and residual."""
     return rrb.Horizontal(
         rrb.Vertical(
             rrb.Tabs(following_view(frames=frames), standing_view(frames=frames)),
@@ -68,7 +71,7 @@ def overview(*, frames: bool = False) -> rrb.Container:
 
 
 def torques(*, frames: bool = False) -> rrb.Container:
-    """What the actuators feel."""
+    """The profiles of torque, force and curvature."""
     return rrb.Horizontal(
         rrb.Vertical(following_view(frames=frames), heat_map_view(), row_shares=[1.5, 1.0]),
         rrb.Vertical(
@@ -81,7 +84,7 @@ def torques(*, frames: bool = False) -> rrb.Container:
 
 
 def motion(*, frames: bool = False) -> rrb.Container:
-    """Where the head goes, and how."""
+    """Path, attitude and velocities of the head."""
     return rrb.Horizontal(
         rrb.Vertical(
             standing_view(frames=frames),
@@ -99,7 +102,7 @@ def motion(*, frames: bool = False) -> rrb.Container:
 
 
 def comparison(*, frames: bool = False) -> rrb.Container:
-    """Two runs, and how they differ."""
+    """Two runs and their difference."""
     return rrb.Horizontal(
         rrb.Vertical(
             following_view("Both swimmers, the other as hoops", both=True, arrows=False, frames=frames),
@@ -131,7 +134,7 @@ def following_view(
     arrows: bool = True,
     frames: bool = False,
 ) -> rrb.Spatial3DView:
-    """Three dimensions, the camera moving with the swimmer without turning."""
+    """Three dimensions; the camera moves with the swimmer without turning."""
     return rrb.Spatial3DView(
         name=name,
         origin=entities.FOLLOW,
@@ -147,7 +150,7 @@ def following_view(
 
 
 def standing_view(*, frames: bool = False) -> rrb.Spatial3DView:
-    """Three dimensions, the camera standing still above the start."""
+    """Three dimensions; the camera stands still above the start."""
     return rrb.Spatial3DView(
         name="Path, from a still camera",
         origin=entities.WORLD,
@@ -198,7 +201,7 @@ def residual_view() -> rrb.TimeSeriesView:
 
 
 def run_tabs() -> rrb.Tabs:
-    """The run in words, and the log."""
+    """The run's summary, and the log."""
     return rrb.Tabs(
         rrb.TextDocumentView(name="Run", origin=entities.RUN),
         rrb.TextLogView(name="Log", origin=entities.LOG),

@@ -1,8 +1,8 @@
-"""Whether what is logged arrives: a disk may be full, a viewer may have stopped reading.
+"""Checks that logged data arrives: a disk may be full, a viewer may have stopped reading.
 
-Rerun tells neither: a file that could not be written once swallows all that follows, and logging to a viewer that does
-not read blocks for ever after some 300 MB, as ending that stream does. Both show when the stream is flushed: it fails,
-or it takes for ever where writing failed in that very moment.
+Rerun reports neither. After one failed write a file silently drops everything that follows. Logging to a viewer that
+does not read blocks for ever after some 300 MB, and so does closing that stream. Both faults show when the stream is
+flushed: the flush fails, or it times out.
 """
 
 import os
@@ -13,91 +13,101 @@ import time
 
 import rerun as rr
 
-LOOK = 0.5  # s between two looks: a process that is killed loses no more of its file
-FILE_LIMIT = 1.0  # s that writing what is there may take, in mid-run
-VIEWER_LIMIT = 0.1  # s in which a viewer takes what is there; nobody waits longer for it
-PATIENCE = 2.0  # s without reading, after which it is said
+CHECK_PERIOD = 0.5  # s between two checks; a process that is killed loses no more of its file
+FILE_FLUSH_TIMEOUT = 1.0  # s for one flush to a file during a run
+VIEWER_FLUSH_TIMEOUT = 0.1  # s for one flush to a viewer
+STALL_TIMEOUT = 2.0  # s without progress, after which a viewer is reported and a file is given up
 
-_abandoned: list = []
+_detached: list = []
 
 
-class Flow:
-    """One stream of a `Destination`: to the file `path`, to a viewer if it is live, or to whatever the caller wants,
-    which is then the caller's to look after."""
+class DeliveryMonitor:
+    """Watches one stream of a `Destination`: to the file `path`, or to a viewer if the destination is live.
+
+    A stream that the caller owns is not watched.
+
+    Attributes:
+        failed: the file can no longer be written.
+        disconnected: the viewer has ended.
+    """
 
     def __init__(self, stream: rr.RecordingStream, destination, path: pathlib.Path | None) -> None:
         self._stream, self._destination, self._path = stream, destination, path
-        self._say, self._warn = destination.say, destination.warn
+        self._log_info, self._log_warning = destination.log_info, destination.log_warning
         self._watched = path is not None or destination.live
-        self._looked = time.monotonic()
-        self._since: float | None = None  # s: since when the viewer has not read
-        self._told = False
-        self._grown = (0, self._looked)  # bytes, s: size of the file, and when it was first seen
-        self.lost = False  # the file cannot be written any more
-        self.gone = False  # the viewer has ended
+        self._last_check = time.monotonic()
+        self._stalled_since: float | None = None  # s: since when the viewer has not read
+        self._stall_reported = False
+        self._last_growth = (0, self._last_check)  # bytes, s: size of the file, and when it was first seen
+        self.failed = False
+        self.disconnected = False
 
     @property
-    def runs(self) -> bool:
-        """Whether to log to it."""
-        return not self.lost and not self.gone and self._since is None
+    def accepts_data(self) -> bool:
+        """Whether data may be logged to the stream now."""
+        return not self.failed and not self.disconnected and self._stalled_since is None
 
-    def attend(self) -> None:
-        """Now and then: see whether all has arrived."""
+    def check(self) -> None:
+        """Flush the stream and update its state; at most once in `CHECK_PERIOD`."""
         now = time.monotonic()
-        if not self._watched or self.lost or self.gone or now - self._looked < LOOK:
+        if not self._watched or self.failed or self.disconnected or now - self._last_check < CHECK_PERIOD:
             return
-        if self._flushed(VIEWER_LIMIT if self._path is None else FILE_LIMIT):
-            if self._told:
-                self._say("the viewer reads again")
-            self._since, self._told = None, False
+        if self._flush():
+            if self._stall_reported:
+                self._log_info("the viewer reads again")
+            self._stalled_since, self._stall_reported = None, False
         elif self._path is not None:
-            self._watch_file(now)
+            self._check_growth(now)
         else:
-            self._since = now if self._since is None else self._since
-            if now - self._since > PATIENCE and not self._told:
-                self._told = True
-                self._warn(f"the viewer has not read for {PATIENCE:g} s: it misses what comes until it does")
-        self._looked = time.monotonic()
-
-    def _watch_file(self, now: float) -> None:
-        """It may be slow; if it does not grow either, nobody writes it any more."""
-        size = self._path.stat().st_size if self._path.exists() else 0
-        if size != self._grown[0]:
-            self._grown = (size, now)
-        elif not self.lost and now - self._grown[1] > PATIENCE:
-            self._lose()
+            self._stalled_since = now if self._stalled_since is None else self._stalled_since
+            if now - self._stalled_since > STALL_TIMEOUT and not self._stall_reported:
+                self._stall_reported = True
+                self._log_warning(
+                    f"the viewer has not read for {STALL_TIMEOUT:g} s: it misses what comes until it does"
+                )
+        self._last_check = time.monotonic()
 
     def close(self) -> None:
-        """Bring out what is on its way and end the stream: a file is then complete."""
-        arrived = not self._watched or self.lost or self.gone
-        arrived = arrived or self._flushed(VIEWER_LIMIT if self._path is None else FILE_LIMIT)
-        if self._path is None and not arrived and not self.gone:
-            abandon(self._stream)
-        elif not self.lost:
-            self._destination.end(self._stream)
+        """Flush and close the stream, which completes a file. A stream that blocks is detached instead."""
+        arrived = not self._watched or self.failed or self.disconnected or self._flush()
+        if self._path is None and not arrived and not self.disconnected:
+            detach_blocked(self._stream)
+        elif not self.failed:
+            self._destination.close_recording(self._stream)
 
-    def _flushed(self, seconds: float) -> bool:
-        """Whether all has arrived within so many seconds."""
+    def _check_growth(self, now: float) -> None:
+        """Give the file up if it has not grown for `STALL_TIMEOUT`: a slow disk still grows it."""
+        size = self._path.stat().st_size if self._path.exists() else 0
+        if size != self._last_growth[0]:
+            self._last_growth = (size, now)
+        elif not self.failed and now - self._last_growth[1] > STALL_TIMEOUT:
+            self._fail()
+
+    def _flush(self) -> bool:
+        """Flush the stream; whether all data arrived within the time-out."""
         try:
-            self._stream.flush(timeout_sec=seconds)
+            self._stream.flush(timeout_sec=VIEWER_FLUSH_TIMEOUT if self._path is None else FILE_FLUSH_TIMEOUT)
         except RuntimeError as error:
             if "timed out" in str(error):
                 return False
             if self._path is None:
-                self.gone = True
+                self.disconnected = True
             else:
-                self._lose()
+                self._fail()
             return False
         return True
 
-    def _lose(self) -> None:
-        self.lost = True
-        abandon(self._stream)
-        self._destination.break_off(self._stream)
+    def _fail(self) -> None:
+        self.failed = True
+        detach_blocked(self._stream)
+        self._destination.abort(self._stream)
 
 
-def obstacle_to_growth(path: pathlib.Path, size: int) -> str:
-    """Why the file cannot take `size` more bytes, found by trying; empty if it can. What was tried is taken back."""
+def space_error(path: pathlib.Path, size: int) -> str:
+    """The error when `size` more bytes are allocated at the file's end; empty if there is room.
+
+    The allocated bytes are removed again.
+    """
     try:
         before = path.stat().st_size
         with path.open("r+b") as file:
@@ -110,19 +120,19 @@ def obstacle_to_growth(path: pathlib.Path, size: int) -> str:
     return ""
 
 
-def why_not_written(path: pathlib.Path) -> str:
-    """The reason why the file could not be written a moment ago."""
-    return obstacle_to_growth(path, 65536) or "an earlier attempt failed"
+def write_error(path: pathlib.Path) -> str:
+    """Why the last write to the file failed."""
+    return space_error(path, 65536) or "an earlier attempt failed"
 
 
-def abandon(blocked: rr.RecordingStream | threading.Thread) -> None:
-    """Leave something alone that would block whoever ends it, this process at its end too."""
-    _abandoned.append(blocked)
+def detach_blocked(blocked: rr.RecordingStream | threading.Thread) -> None:
+    """Keep a reference to a blocked stream or thread: its destructor would block this process."""
+    _detached.append(blocked)
 
 
-def leave(status: int) -> int:
-    """`status`, for the process to exit with; where a stream had to be abandoned, the process ends here."""
-    if _abandoned:
+def exit_despite_blocked(status: int) -> int:
+    """Return `status`; if a stream or thread was detached, end the process with it here, without clean-up."""
+    if _detached:
         sys.stdout.flush()
         sys.stderr.flush()
         os._exit(status)

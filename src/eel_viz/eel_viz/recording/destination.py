@@ -1,4 +1,4 @@
-"""What makes the Rerun streams of runs: one for each run, of the application `APPLICATION`, with a blueprint."""
+"""Base class of the destinations of recordings: each opens one Rerun stream per recording and sends the blueprint."""
 
 import contextlib
 import pathlib
@@ -11,66 +11,77 @@ from eel_viz.recording.blueprint import arrangement
 from eel_viz.recording.loggers import Rates
 from eel_viz.settings import Settings
 
-APPLICATION = "eel"
-CLOSING_LIMIT = 3.0  # s for what is still on its way
+APPLICATION = "eel"  # Rerun's application id
+CLOSE_TIMEOUT = 3.0  # s for the last flush of a stream
 
-Say = Callable[[str], None]
+LogFunction = Callable[[str], None]
 
 
 class Destination:
-    """Makes the streams of runs. `rates`: how much of a run goes there; `say`, `warn`: one line to the user.
-    `live`: a viewer looks on."""
+    """Opens and closes the streams of recordings.
 
-    def __init__(self, settings: Settings, rates: Rates, say: Say, warn: Say, *, live: bool) -> None:
-        self.settings, self.rates, self.say, self.warn = settings, rates, say, warn
+    rates: how often numbers and drawings are logged. log_info, log_warning: write one line to the user.
+    live: a viewer shows the data as they come.
+    """
+
+    def __init__(
+        self,
+        settings: Settings,
+        rates: Rates,
+        log_info: LogFunction,
+        log_warning: LogFunction,
+        *,
+        live: bool,
+    ) -> None:
+        self.settings, self.rates, self.log_info, self.log_warning = settings, rates, log_info, log_warning
         self.live = live
-        self._arranged = False  # the viewer has our arrangement; in later runs the user's changes of it stay
+        self._blueprint_sent = False  # sent once: later recordings keep the user's changes in the viewer
 
-    def file(self, run: int) -> pathlib.Path | None:
-        """The file that run number `run` is written to; None where it goes elsewhere."""
+    def file(self, number: int) -> pathlib.Path | None:
+        """The file that recording `number` is written to; None if it is not a file."""
         return None
 
-    def open(self, run: int, name: str) -> rr.RecordingStream | None:
-        """The stream of run number `run` (1, 2, ...), called `name`; None: not now."""
-        sink = self._sink(run)
+    def open(self, number: int, name: str) -> rr.RecordingStream | None:
+        """The stream of recording `number` (1, 2, ...), called `name`; None if it cannot be opened now."""
+        sink = self._sink(number)
         if sink is None:
             return None
-        return self._connected(sink, name)
+        return self._make_stream(sink, name)
 
-    def _connected(self, sink: rr.FileSink | rr.GrpcSink, name: str) -> rr.RecordingStream | None:
-        stream = rr.RecordingStream(APPLICATION, batcher_config=self._batches())
+    def _make_stream(self, sink: rr.FileSink | rr.GrpcSink, name: str) -> rr.RecordingStream | None:
+        stream = rr.RecordingStream(APPLICATION, batcher_config=self._batcher_config())
         stream.set_log_time_enabled(False)
         stream.set_sinks(sink, default_blueprint=self._blueprint())
-        if self.live and not self._arranged:  # a default one that comes after the first data is not looked at
+        if self.live and not self._blueprint_sent:  # viewers ignore a default blueprint that comes after the first data
             stream.send_blueprint(self._blueprint(), make_active=True, make_default=True)
-            self._arranged = True
+            self._blueprint_sent = True
         stream.send_recording_name(name)
         return stream
 
-    def end(self, stream: rr.RecordingStream) -> None:
-        """End a run's stream."""
+    def close_recording(self, stream: rr.RecordingStream) -> None:
+        """Close a recording's stream."""
         close_stream(stream)
 
-    def break_off(self, stream: rr.RecordingStream) -> None:
-        """The file of the run's `stream` cannot be written any more."""
+    def abort(self, stream: rr.RecordingStream) -> None:
+        """Handle a stream whose file can no longer be written."""
 
-    def drop(self) -> None:
-        """An error ends the runs: what is not complete yet is not kept."""
+    def discard(self) -> None:
+        """After an error: discard the recordings that are not complete."""
 
-    def lost(self) -> bool:
-        """Whether what was open has gone, and its stream is to be given up."""
+    def disconnected(self) -> bool:
+        """Whether the receiver of open streams has gone, so that they must be given up."""
         return False
 
     @property
     def incomplete(self) -> bool:
-        """Whether it lacks a part of a run that was to be kept there."""
+        """Whether part of a recording is missing at this destination."""
         return False
 
     def close(self) -> None:
-        """End what is not a run's: a server."""
+        """Close what outlives the recordings, such as a server."""
 
-    def _batches(self) -> rr.ChunkBatcherConfig:
-        """How data are gathered before they are sent."""
+    def _batcher_config(self) -> rr.ChunkBatcherConfig:
+        """How Rerun batches data before it sends them."""
         return rr.ChunkBatcherConfig.DEFAULT()
 
     def _blueprint(self) -> rrb.Blueprint:
@@ -78,12 +89,12 @@ class Destination:
             self.settings.blueprint, live=self.live, compare=bool(self.settings.compare), frames=self.settings.frames
         )
 
-    def _sink(self, run: int) -> rr.FileSink | rr.GrpcSink | None:
+    def _sink(self, number: int) -> rr.FileSink | rr.GrpcSink | None:
         raise NotImplementedError
 
 
 def close_stream(stream: rr.RecordingStream) -> None:
-    """Bring out what is on its way, within `CLOSING_LIMIT`, and end the stream: a file is then complete."""
+    """Flush the stream within `CLOSE_TIMEOUT` and close it, which completes a file."""
     with contextlib.suppress(RuntimeError):  # the viewer has gone; a file is complete all the same
-        stream.flush(timeout_sec=CLOSING_LIMIT)
+        stream.flush(timeout_sec=CLOSE_TIMEOUT)
     stream.disconnect()

@@ -1,6 +1,6 @@
-"""A run of the library to Rerun, without ROS: what `Run.to_rerun` calls.
+"""Records a run of the library to Rerun, without ROS; called by `Run.to_rerun`.
 
-It knows no run, only messages: pairs of a topic and a plain object with the fields of its message.
+A run is a sequence of messages here: pairs of a topic and a plain object with the message's fields.
 """
 
 import os
@@ -9,31 +9,31 @@ from collections.abc import Sequence
 
 import rerun as rr
 
-from eel_viz.recording.destination import Destination, Say
+from eel_viz.recording.destination import Destination, LogFunction
 from eel_viz.recording.loggers import Rates
-from eel_viz.recording.merged_messages import Messages, show
-from eel_viz.recording.recording_file import File
+from eel_viz.recording.merged_messages import Messages, record_messages
+from eel_viz.recording.recording_file import FileDestination
 from eel_viz.settings import Settings
 
-SPACE = ""  # what a library's run has in place of a namespace
+NAMESPACE = ""  # of a run of the library
 
 
-class Given(Destination):
-    """A stream that the caller has made, and that stays open."""
+class CallerStream(Destination):
+    """A stream that the caller owns; it stays open."""
 
-    def __init__(self, stream: rr.RecordingStream, settings: Settings, warn: Say) -> None:
+    def __init__(self, stream: rr.RecordingStream, settings: Settings, log_warning: LogFunction) -> None:
         rates = Rates(numbers=0.0, drawings=settings.skin_rate, tick=float("inf"))
-        super().__init__(settings, rates, lambda text: None, warn, live=False)
+        super().__init__(settings, rates, lambda text: None, log_warning, live=False)
         self._stream = stream
 
-    def open(self, run: int, name: str) -> rr.RecordingStream:
-        """The stream, with the arrangement and the recording's name sent."""
+    def open(self, number: int, name: str) -> rr.RecordingStream:
+        """Send blueprint and name, and return the stream."""
         self._stream.send_blueprint(self._blueprint())
         self._stream.send_recording_name(name)
         return self._stream
 
-    def end(self, stream: rr.RecordingStream) -> None:
-        """Bring out what is on its way."""
+    def close_recording(self, stream: rr.RecordingStream) -> None:
+        """Flush the stream."""
         stream.flush()
 
 
@@ -43,14 +43,13 @@ def to_rerun(
     names: Sequence[str],
     **settings,
 ) -> None:
-    """Show one run, or two that are compared, in `target`: a file to write (one that is there is replaced), or a
-    stream.
+    """Record one run, or two that are compared, to `target`: a stream, or a file, which is replaced if it exists.
 
-    `settings` are those of the visualiser, such as blueprint or skin_rate. What cannot be shown is warned of. `OSError`
-    where a file cannot be written to its end; an older one stays.
+    `settings` are those of the visualiser, such as blueprint or skin_rate. Data that cannot be shown give a warning.
+    `ValueError` for a bad setting; `OSError` if the file cannot be written completely, an older file then stays.
     """
 
-    def warn(text: str) -> None:
+    def log_warning(text: str) -> None:
         warnings.warn(text, stacklevel=4)
 
     fixed = {"sink", "recording", "compare"} & settings.keys()
@@ -62,8 +61,10 @@ def to_rerun(
     if len(runs) > 1:
         settings["compare"] = names[1]
     if isinstance(target, rr.RecordingStream):
-        destination = Given(target, Settings.from_values(settings), warn)
+        destination = CallerStream(target, Settings.from_values(settings), log_warning)
     else:
         chosen = Settings.from_values({**settings, "recording": os.fspath(target)})
-        destination = File(chosen, lambda text: None, lambda text: None)  # a file that is there is replaced
-    show(runs, [destination], names=names, namespaces=[SPACE] * len(runs), warn=warn)
+        destination = FileDestination(
+            chosen, lambda text: None, lambda text: None
+        )  # no warning that the file is replaced
+    record_messages(runs, [destination], names=names, namespaces=[NAMESPACE] * len(runs), log_warning=log_warning)

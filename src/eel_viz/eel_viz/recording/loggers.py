@@ -1,9 +1,8 @@
-"""The swimmer's messages into one Rerun stream: one method for each message, each called at the message's own time.
+"""Logs the swimmer's messages to one Rerun recording: one method per topic, called with the message's own stamp.
 
-Geometry is drawn in single precision at one rate; scalars and profiles go in as they are, in double precision, at
-another (see `Rates`). What belongs together has the same time, and that is all that ties it: the skin takes its shape
-from the backbone and its colour from the torque, whichever comes first. Rows are sent together (see `outlet`): call
-`attend` now and then, and `send` at the end.
+Geometry is drawn in single precision at one rate. Scalars and profiles are logged in double precision at another rate
+(see `Rates`). The skin takes its shape from the backbone and its colour from the torque of the same stamp, in any
+order. Rows are sent in batches (see `batched_stream`): call `send_due` regularly, and `flush` at the end.
 """
 
 import reprlib
@@ -13,8 +12,8 @@ import numpy as np
 import rerun as rr
 
 from eel_viz import entities
+from eel_viz.batched_stream import BatchedStream
 from eel_viz.messages import Backbone, Body, Load, Pose, Profiles, Status, Twist
-from eel_viz.outlet import Outlet
 from eel_viz.plots.comparison import Comparison
 from eel_viz.plots.heat_map import HeatMap
 from eel_viz.plots.profile_plot import ProfilePlot
@@ -22,7 +21,7 @@ from eel_viz.plots.series import log_styles
 from eel_viz.plots.state_text import Summary
 from eel_viz.scene3d import colours
 from eel_viz.scene3d.arrows import Arrows
-from eel_viz.scene3d.camera import Steady
+from eel_viz.scene3d.camera import FollowFilter
 from eel_viz.scene3d.orientation import attitude
 from eel_viz.scene3d.skin import Skin
 from eel_viz.scene3d.surroundings import Water, log_legend
@@ -34,15 +33,15 @@ ENVELOPE_PERIOD = 500_000_000  # ns
 HEAT_MAP_PERIOD = 200_000_000
 SUMMARY_PERIOD = 500_000_000
 LOG_NAMES = reprlib.Repr()
-LOG_NAMES.maxstring = 220  # characters of a law's name, which is not yet checked here
+LOG_NAMES.maxstring = 220  # characters of a law's name, which is not checked before
 LEVELS = ("INFO", "WARN", "ERROR", "WARN")
 
 
 @dataclass(frozen=True, kw_only=True)
 class Rates:
-    """How often [Hz of simulation time] numbers and drawings go in; 0: with every message.
+    """How often numbers and drawings are logged [Hz of simulation time]; 0: with every message.
 
-    `tick` [s of wall time] is how long they may wait to be sent together.
+    `tick` [s of wall time]: how long rows may wait for a batch.
     """
 
     numbers: float = 0.0
@@ -51,13 +50,13 @@ class Rates:
 
 
 class Loggers:
-    """Everything about one run, into one `stream`.
+    """Logs one run to one `recording`; `name` is the run's.
 
-    With `settings.compare`, `other` takes the messages of the other run, by the same methods; `name` is this run's.
+    With `settings.compare`, `other` logs the messages of the compared run by the same methods.
     """
 
-    def __init__(self, stream: rr.RecordingStream, settings: Settings, rates: Rates, name: str = "eel") -> None:
-        self._outlet = outlet = Outlet(stream, tick=rates.tick)
+    def __init__(self, recording: rr.RecordingStream, settings: Settings, rates: Rates, name: str = "eel") -> None:
+        self._stream = stream = BatchedStream(recording, tick=rates.tick)
         self._settings = settings
         self._number_period = _period(rates.numbers)
         self._drawing_period = _period(rates.drawings)
@@ -66,35 +65,35 @@ class Loggers:
         self._skin: Skin | None = None
         self._statuses: dict[str, tuple[int, str]] = {}
         self.summary = Summary()
-        outlet.fixed(entities.WORLD, rr.ViewCoordinates.RIGHT_HAND_Z_UP)
-        self._camera = Steady()
-        self._water = Water(outlet)
-        self._track = Track(outlet)
+        stream.log_static(entities.WORLD, rr.ViewCoordinates.RIGHT_HAND_Z_UP)
+        self._camera = FollowFilter()
+        self._water = Water(stream)
+        self._track = Track(stream)
         self._torque = ProfilePlot(
-            outlet, entities.TORQUE, names=("C1", "C2", "C3"), unit="N m", limit=settings.torque_limit
+            stream, entities.TORQUE, names=("C1", "C2", "C3"), unit="N m", limit=settings.torque_limit
         )
         self._force = ProfilePlot(
-            outlet, entities.FORCE, names=("N1", "N2", "N3"), unit="N", limit=settings.force_limit
+            stream, entities.FORCE, names=("N1", "N2", "N3"), unit="N", limit=settings.force_limit
         )
         self._curvature = ProfilePlot(
-            outlet,
+            stream,
             entities.CURVATURE,
             names=("K2", "K3"),
             unit="rad/m",
             limit=settings.curvature_limit,
             palette=colours.AXIS[1:],
         )
-        self._heat_map = HeatMap(outlet, limit=settings.colour_limit)
-        log_legend(outlet, limit=settings.colour_limit, unit="N m", name="C3")
-        self._arrows = Arrows(outlet, load_scale=settings.load_scale, end_scale=settings.end_force_scale)
-        log_styles(outlet)
-        outlet.fixed(entities.BACKBONE, rr.LineStrips3D.from_fields(colors=[colours.LABEL], radii=[0.0004]))
+        self._heat_map = HeatMap(stream, limit=settings.colour_limit)
+        log_legend(stream, limit=settings.colour_limit, unit="N m", name="C3")
+        self._arrows = Arrows(stream, load_scale=settings.load_scale, end_scale=settings.end_force_scale)
+        log_styles(stream)
+        stream.log_static(entities.BACKBONE, rr.LineStrips3D.from_fields(colors=[colours.LABEL], radii=[0.0004]))
         for path in (entities.HEAD, entities.TAIL):
-            outlet.fixed(path, rr.TransformAxes3D(0.12))
+            stream.log_static(path, rr.TransformAxes3D(0.12))
         self._comparison: Comparison | None = None
         if settings.compare:
             self._comparison = Comparison(
-                outlet,
+                stream,
                 names=(name, settings.compare.strip("/") or "eel"),
                 limit=settings.torque_limit,
                 due=self._due,
@@ -103,37 +102,37 @@ class Loggers:
 
     @property
     def other(self):
-        """What takes the messages of the run that this one is compared with."""
+        """The loggers of the compared run."""
         if self._comparison is None:
             raise ValueError("there is no other run: settings.compare is empty")
         return self._comparison.other
 
-    def attend(self) -> None:
-        """Now and then: send what has waited long enough."""
-        self._outlet.attend()
+    def send_due(self) -> None:
+        """Send the rows that have waited for a tick."""
+        self._stream.send_due()
 
-    def send(self) -> None:
-        """Send all that waits, before the stream ends."""
-        self._outlet.send()
+    def flush(self) -> None:
+        """Send all rows, before the recording is closed."""
+        self._stream.flush()
 
     # --- the swimmer ---------------------------------------------------------------------------------------------
     def body(self, body: Body) -> None:
-        """The geometry, valid at all times."""
+        """Log the geometry, valid at all times."""
         self._skin = Skin(body.x, body.half_width, body.half_height)
         self.summary.body = body
         if self._comparison:
             self._comparison.this.summary.body = body
-        self._outlet.fixed(entities.SKIN, rr.Mesh3D.from_fields(triangle_indices=self._skin.triangles))
+        self._stream.log_static(entities.SKIN, rr.Mesh3D.from_fields(triangle_indices=self._skin.triangles))
         values = {name: getattr(body, name) for name in ("length", "mass", "x", "half_width", "half_height")}
-        self._outlet.fixed(entities.BODY_NUMBERS, rr.DynamicArchetype("BodyGeometry", components=values))
+        self._stream.log_static(entities.BODY_NUMBERS, rr.DynamicArchetype("BodyGeometry", components=values))
 
     def head_pose(self, stamp: int, pose: Pose) -> None:
-        """Path, attitude and depth of the head."""
-        self.summary.move(stamp, pose.position)
+        """Log path, attitude and depth of the head."""
+        self.summary.add_position(stamp, pose.position)
         if self._comparison:
             self._comparison.this.head_pose(stamp, pose)
         if self._due("head_pose", stamp, self._number_period):
-            scalars = self._outlet.scalars
+            scalars = self._stream.add_scalars
             scalars(stamp, entities.POSITION, pose.position)
             scalars(stamp, entities.ORIENTATION, pose.orientation)
             scalars(stamp, entities.ATTITUDE, np.degrees(attitude(pose.orientation)))
@@ -145,41 +144,41 @@ class Loggers:
             self._summarise(stamp)
 
     def head_twist(self, stamp: int, twist: Twist) -> None:
-        """Speed, and the velocities of the head in its own axes."""
+        """Log the head's speed, and its velocities in base_link."""
         if self._due("head_twist", stamp, self._number_period):
-            self._outlet.scalars(stamp, entities.SPEED, [np.linalg.norm(twist.linear)])
-            self._outlet.scalars(stamp, entities.LINEAR, twist.linear)
-            self._outlet.scalars(stamp, entities.ANGULAR, twist.angular)
+            self._stream.add_scalars(stamp, entities.SPEED, [np.linalg.norm(twist.linear)])
+            self._stream.add_scalars(stamp, entities.LINEAR, twist.linear)
+            self._stream.add_scalars(stamp, entities.ANGULAR, twist.angular)
 
     def odom(self, stamp: int, pose: Pose, twist: Twist) -> None:
-        """The numbers of odom; what they show is drawn from head_pose and head_twist."""
+        """Log the numbers of odom; head_pose and head_twist draw the same."""
         if self._due("odom", stamp, self._number_period):
             values = {"position": pose.position, "orientation": pose.orientation}
             values |= {"linear": twist.linear, "angular": twist.angular}
             self._numbers(stamp, entities.ODOMETRY_NUMBERS, "Odometry", values)
 
     def backbone(self, stamp: int, backbone: Backbone) -> None:
-        """Line, skin, floor and camera."""
+        """Log line, skin, floor and camera."""
         position = backbone.position
         if self._due("backbone", stamp, self._number_period):
             line = position[None].astype(np.float32)
-            self._outlet.row(stamp, entities.BACKBONE, rr.LineStrips3D, strips=line)
+            self._stream.add_row(stamp, entities.BACKBONE, rr.LineStrips3D, strips=line)
         if not self._due("skin", stamp, self._drawing_period):
             return
         middle = self._camera.follow(stamp, position.mean(axis=0))
-        self._outlet.row(stamp, entities.FOLLOW, rr.Transform3D, translation=middle[None])
+        self._stream.add_row(stamp, entities.FOLLOW, rr.Transform3D, translation=middle[None])
         self._place(stamp, entities.TAIL, position[-1], backbone.orientation[-1])
         self._water.draw(stamp, position, middle)
         if self._skin is not None:
             vertices, normals = self._skin.place(backbone.x, position, backbone.orientation)
-            self._outlet.row(stamp, entities.SKIN, rr.Mesh3D, vertex_positions=vertices, vertex_normals=normals)
+            self._stream.add_row(stamp, entities.SKIN, rr.Mesh3D, vertex_positions=vertices, vertex_normals=normals)
         self._arrows.backbone(stamp, backbone)
 
     def internal_wrench(self, stamp: int, wrench: Profiles) -> None:
-        """Torques and forces along the body; C3 colours the skin and makes the heat map."""
+        """Log torques and forces along the body; C3 colours the skin and makes the heat map."""
         torque = wrench.together("torque_1", "torque_2", "torque_3")
         force = wrench.together("force_1", "force_2", "force_3")
-        self.summary.strain(stamp, wrench.x, torque[:, 2])
+        self.summary.add_torque(stamp, wrench.x, torque[:, 2])
         if self._comparison:
             self._comparison.this.internal_wrench(stamp, wrench)
         self._torque.include(wrench.x, torque)
@@ -192,7 +191,7 @@ class Loggers:
             self._force.draw(stamp, wrench.x, force)
             if self._skin is not None:
                 shades = colours.diverging(self._skin.spread(wrench.x, torque[:, 2]), self._settings.colour_limit)
-                self._outlet.row(stamp, entities.SKIN, rr.Mesh3D, vertex_colors=shades)
+                self._stream.add_row(stamp, entities.SKIN, rr.Mesh3D, vertex_colors=shades)
         if self._due("envelope", stamp, ENVELOPE_PERIOD):
             self._torque.draw_envelope(stamp)
             self._force.draw_envelope(stamp)
@@ -200,7 +199,7 @@ class Loggers:
             self._heat_map.draw(stamp)
 
     def curvature(self, stamp: int, curvature: Profiles) -> None:
-        """K2 and K3 as the body has them."""
+        """Log the body's curvatures K2 and K3."""
         values = curvature.together("pitch", "yaw")
         self._curvature.include(curvature.x, values)
         if self._due("curvature", stamp, self._number_period):
@@ -211,7 +210,7 @@ class Loggers:
             self._curvature.draw_envelope(stamp)
 
     def hydrodynamic_load(self, stamp: int, load: Load) -> None:
-        """The fluid's force on the body, as arrows in the world."""
+        """Log the fluid's force on the body, as arrows in the world."""
         if self._due("load", stamp, self._number_period):
             values = {**load.profiles.values, "tail_force": load.tail, "nose_force": load.nose}
             self._numbers(stamp, entities.LOAD_NUMBERS, "HydrodynamicLoad", values, load.profiles.x)
@@ -219,33 +218,33 @@ class Loggers:
             self._arrows.load(stamp, load)
 
     def energy(self, stamp: int, energy: dict[str, float]) -> None:
-        """The ledger's terms."""
+        """Log the terms of the energy ledger [W], [J]."""
         if self._due("energy", stamp, self._number_period):
             powers = [energy[f"{name}_power"] for name in ("actuator", "wake", "nose", "drag")]
-            self._outlet.scalars(stamp, entities.POWER, powers)
-            self._outlet.scalars(stamp, entities.KINETIC, [energy["kinetic_body"], energy["kinetic_fluid"]])
-            self._outlet.scalars(stamp, entities.RESIDUAL, [energy["residual"]])
+            self._stream.add_scalars(stamp, entities.POWER, powers)
+            self._stream.add_scalars(stamp, entities.KINETIC, [energy["kinetic_body"], energy["kinetic_fluid"]])
+            self._stream.add_scalars(stamp, entities.RESIDUAL, [energy["residual"]])
 
     # --- the run -------------------------------------------------------------------------------------------------
     def law(self, stamp: int, name: str) -> None:
-        """The law that was published, by name."""
+        """Log the name of the published law."""
         self.summary.law = name
         if self._comparison:
             self._comparison.this.law(stamp, name)
         self._text(stamp, f"law {LOG_NAMES.repr(name)} published", "INFO")
 
     def diagnostics(self, stamp: int, statuses: list[Status]) -> None:
-        """Each status whose level or words have changed, as text; the values go into the summary."""
+        """Log each status whose level or message has changed; the values go into the summary."""
         if self._comparison:
             self._comparison.this.diagnostics(stamp, statuses)
         for status in statuses:
-            if self.summary.status(stamp, status.message, status.values):
+            if self.summary.add_status(stamp, status.message, status.values):
                 self._summarise(self.summary.stamp)
             if self._statuses.get(status.name) != (status.level, status.message):
                 self._statuses[status.name] = (status.level, status.message)
                 self._text(stamp, f"{status.name}: {status.message}", LEVELS[min(status.level, 3)])
 
-    # --- how it is logged ----------------------------------------------------------------------------------------
+    # --- logging ----------------------------------------------------------------------------------------
     def _due(self, what: str, stamp: int, period: int) -> bool:
         """Whether `stamp` [ns] lies in a new slot of `period` [ns]."""
         if period:
@@ -256,23 +255,23 @@ class Loggers:
         return True
 
     def _place(self, stamp: int, path: str, position: np.ndarray, orientation: np.ndarray) -> None:
-        self._outlet.row(stamp, path, rr.Transform3D, translation=position[None], quaternion=orientation[None])
+        self._stream.add_row(stamp, path, rr.Transform3D, translation=position[None], quaternion=orientation[None])
 
     def _numbers(
         self, stamp: int, path: str, name: str, values: dict[str, np.ndarray], x: np.ndarray | None = None
     ) -> None:
-        """Arrays as components of their own; the stations only when they are new."""
+        """Log arrays as components; the stations only when they change."""
         known = self._stations.get(path)
         if x is not None and (known is None or not same(known, x)):
             self._stations[path] = x
             values = {"x": x, **values}
-        self._outlet.numbers(stamp, path, name, values)
+        self._stream.add_arrays(stamp, path, name, values)
 
     def _summarise(self, stamp: int) -> None:
-        self._outlet.once(stamp, entities.RUN, rr.TextDocument(self.summary.text(), media_type="text/markdown"))
+        self._stream.log(stamp, entities.RUN, rr.TextDocument(self.summary.text(), media_type="text/markdown"))
 
     def _text(self, stamp: int, text: str, level: str) -> None:
-        self._outlet.once(stamp, entities.LOG, rr.TextLog(text, level=level))
+        self._stream.log(stamp, entities.LOG, rr.TextLog(text, level=level))
 
 
 def _period(rate: float) -> int:

@@ -1,67 +1,69 @@
-"""Messages of one swimmer, or of two that are compared, to their intakes, outside of a network."""
+"""Records messages that do not come from the network: of one swimmer, or of two that are compared."""
 
 from collections.abc import Iterable, Iterator, Sequence
 
 from eel_viz.messages import stamp_of
-from eel_viz.recording.destination import Destination, Say
-from eel_viz.recording.intake import SAMPLES, Intake
-from eel_viz.recording.runs import OtherRuns, Runs
+from eel_viz.recording.destination import Destination, LogFunction
+from eel_viz.recording.dispatcher import SAMPLES, Dispatcher
+from eel_viz.recording.recordings import ComparedRecordings, Recordings
 
-Messages = Iterable[tuple[str, object]]  # topic, a name of `Intake.topics`, and message
-OFTEN = 100  # messages between two looks at what waits to be sent
+Messages = Iterable[tuple[str, object]]  # topic, a name of `Dispatcher.topics`, and message
+MESSAGES_PER_POLL = 100
 
 
-def show(
+def record_messages(
     sources: Sequence[Messages],
     destinations: list[Destination],
     *,
     names: Sequence[str],
     namespaces: Sequence[str],
-    warn: Say,
-    crowded=lambda topic: False,
+    log_warning: LogFunction,
+    has_several_publishers=lambda topic: False,
 ) -> str:
-    """The messages of `sources`, one swimmer or two, to `destinations`; returns in words what came of the first.
+    """Record the messages of `sources`, one swimmer or two, to `destinations`.
 
-    `names` are those of the recording and of the other; `namespaces` those whose diagnostics are taken.
+    names: of the recording and of the compared swimmer. namespaces: of the swimmers, for their diagnostics.
+    Returns the topics of the first source with their numbers of messages as text.
     """
-    runs = Runs(destinations, name=names[0], warn=warn, crowded=crowded)
-    intakes = [Intake(runs, namespace=namespaces[0], warn=warn)]
+    recordings = Recordings(
+        destinations, name=names[0], log_warning=log_warning, has_several_publishers=has_several_publishers
+    )
+    dispatchers = [Dispatcher(recordings, namespace=namespaces[0], log_warning=log_warning)]
     if len(sources) > 1:
-        other = OtherRuns(runs, "/" + names[1])
-        intakes.append(Intake(other, namespace=namespaces[1], warn=lambda text: warn(f"{names[1]}: {text}")))
-    try:  # a signal ends the recordings here, an error drops them
-        for k, (which, topic, message) in enumerate(abreast(sources)):
-            intakes[which].take(topic, message)
-            if k % OFTEN == 0:
-                runs.attend()
+        other = ComparedRecordings(recordings, "/" + names[1])
+        dispatchers.append(
+            Dispatcher(other, namespace=namespaces[1], log_warning=lambda text: log_warning(f"{names[1]}: {text}"))
+        )
+    try:  # a signal completes the recordings, an error discards them
+        for k, (index, topic, message) in enumerate(merged_by_time(sources)):
+            dispatchers[index].dispatch(topic, message)
+            if k % MESSAGES_PER_POLL == 0:
+                recordings.poll()
     except Exception:
         for destination in destinations:
-            destination.drop()
+            destination.discard()
         raise
     finally:
-        told = intakes[0].close()
-    return told
+        received = dispatchers[0].close()
+    return received
 
 
-def abreast(sources: Sequence[Messages]) -> Iterator[tuple[int, str, object]]:
-    """All messages, those of each source in their order, the one that is behind in simulated time first.
-
-    Yields the source's number, topic and message.
-    """
-    waiting = {which: iter(source) for which, source in enumerate(sources)}
+def merged_by_time(sources: Sequence[Messages]) -> Iterator[tuple[int, str, object]]:
+    """All messages, merged by simulation time; each source keeps its order. Yields source index, topic, message."""
+    waiting = {index: iter(source) for index, source in enumerate(sources)}
     times = dict.fromkeys(waiting, -1)  # ns
     heads = {}
     while waiting:
-        for which in list(waiting):
-            if which in heads:
+        for index in list(waiting):
+            if index in heads:
                 continue
-            head = next(waiting[which], None)
+            head = next(waiting[index], None)
             if head is None:
-                del waiting[which]
+                del waiting[index]
                 continue
-            heads[which] = head
+            heads[index] = head
             if head[0] in SAMPLES:
-                times[which] = stamp_of(head[1])
+                times[index] = stamp_of(head[1])
         if heads:
-            which = min(heads, key=lambda each: (times[each], each))
-            yield which, *heads.pop(which)
+            index = min(heads, key=lambda each: (times[each], each))
+            yield index, *heads.pop(index)

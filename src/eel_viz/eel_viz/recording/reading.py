@@ -1,4 +1,4 @@
-"""A recording back to arrays: what was logged where, and when.
+"""Reads a recording back into arrays.
 
     columns = read("out/falling.rrd", entities.WRENCH_NUMBERS)
     columns.time                    # (T,) s
@@ -14,12 +14,12 @@ import numpy as np
 from eel_gaits.wording import shown
 
 from eel_viz.entities import TIMELINE
-from eel_viz.recording.rrd_frames import HEAD, whole
+from eel_viz.recording.rrd_frames import HEAD, complete_file
 
 
 @dataclass(frozen=True, kw_only=True)
 class Columns:
-    """One entity: the `stamps` (T,) [ns] of all its rows, and of each component the values and their stamps."""
+    """The rows of one entity: all `stamps` (T,) [ns], and the values of each component with their stamps [ns]."""
 
     stamps: np.ndarray
     values: dict[str, list]
@@ -27,22 +27,25 @@ class Columns:
 
     @property
     def time(self) -> np.ndarray:
-        """(T,) [s]."""
+        """Simulation time of all rows, (T,) [s]."""
         return self.stamps / 1e9
 
     def __getitem__(self, name: str) -> np.ndarray:
-        """All values of a component, one row for each stamp that has it; ragged ones stay a list of arrays."""
+        """All values of a component, one row per stamp that has it; rows of different shapes as a list of arrays."""
         rows = [np.asarray(row) for row in self.values[name]]
         return np.stack(rows) if len({row.shape for row in rows}) == 1 else rows
 
 
 def read(path: str | os.PathLike[str], entity: str, *, static: bool = False) -> Columns:
-    """All rows of `entity`, ordered by time; with `static` those that are valid at all times (one row)."""
+    """All rows of `entity`, ordered by time; with `static` the row that is valid at all times.
+
+    `ValueError` if there is none.
+    """
     from rerun.chunk import RrdReader
 
     found: dict[str, list[tuple[int, object]]] = {}
     stamps: set[int] = set()
-    with whole(path) as readable:
+    with complete_file(path) as readable:
         empty = readable.stat().st_size <= HEAD
         chunks = [] if empty else list(RrdReader(str(readable)).stream().filter(content=entity))
     for chunk in chunks:

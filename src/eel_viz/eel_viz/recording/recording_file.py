@@ -1,4 +1,4 @@
-"""Runs as .rrd files, where the user said; nowhere else."""
+"""Recordings as .rrd files."""
 
 import datetime
 import os
@@ -9,151 +9,154 @@ import rerun as rr
 from eel_gaits.output_file import Draft, NotWritten
 from eel_gaits.wording import shown
 
-from eel_viz.recording.delivery import obstacle_to_growth, why_not_written
-from eel_viz.recording.destination import Destination, Say
+from eel_viz.recording.delivery import space_error, write_error
+from eel_viz.recording.destination import Destination, LogFunction
 from eel_viz.recording.loggers import Rates
 from eel_viz.recording.rrd_frames import cut_to_whole_messages, is_complete
 from eel_viz.settings import Settings
 
-FILE_TICK = 0.6  # s: a process that is killed loses no more; each batch of an entity costs its file some 700 bytes
-ROOM = 2**18  # bytes that must be free: rerun writes 170 kB at once, and may wait for ever where that fails
-REMINDER = 30.0  # s between two times at which it is said that nothing is saved
+FILE_TICK = 0.6  # s: a process that is killed loses no more; each batch of an entity takes some 700 bytes of the file
+ROOM = 2**18  # bytes that must be free: Rerun writes 170 kB at once, and may block for ever if that fails
+REMINDER = 30.0  # s between two warnings that nothing is saved
 
 
-class File(Destination):
-    """A .rrd file; the second run and later ones get a number before the suffix.
+class FileDestination(Destination):
+    """A .rrd file; the second recording and later ones get a number before the suffix.
 
-    A recording is written as `run.part.rrd` and named `run.rrd` when it is complete; an older file stays until then.
+    A recording is written to `run.part.rrd` and renamed to `run.rrd` when it is complete; an older file stays until
+    then.
 
-    `patient_from`: number of the run from which on a file that cannot be written is said, now and then, and tried
-    again; before that it is a ValueError. None: the runs do not come from a network and can be had again. Then it is
-    always a ValueError, and a file that cannot be written to its end is removed, with the error `NotWritten`.
+    retry_from: from this recording on, a file that cannot be written gives a warning and is retried; before, it is a
+    ValueError. None: the data can be recorded again, so it is always a ValueError, and a file that cannot be completed
+    is removed, with the error `NotWritten`.
     """
 
-    def __init__(self, settings: Settings, say: Say, warn: Say, *, patient_from: int | None = None) -> None:
+    def __init__(
+        self, settings: Settings, log_info: LogFunction, log_warning: LogFunction, *, retry_from: int | None = None
+    ) -> None:
         super().__init__(
-            settings, Rates(numbers=0.0, drawings=settings.skin_rate, tick=FILE_TICK), say, warn, live=False
+            settings, Rates(numbers=0.0, drawings=settings.skin_rate, tick=FILE_TICK), log_info, log_warning, live=False
         )
         self._first = pathlib.Path(settings.recording) if settings.recording else new_file()
-        self._patient_from = patient_from
-        self._keep = patient_from is not None  # what there is of a run
-        self._drafts: dict[int, Draft] = {}  # by the number of the run
+        self._retry_from = retry_from
+        self._keeps_partial = retry_from is not None
+        self._drafts: dict[int, Draft] = {}  # by number of the recording
         self._streams: dict[int, rr.RecordingStream] = {}
-        self._incomplete = self._dropped = False
-        self._reminded = (0, 0.0)  # number of the run, and when [s] it was said that it is not saved
+        self._incomplete = self._discarded = False
+        self._reminded = (0, 0.0)  # number of the recording, and when [s] the last warning was logged
 
     @property
     def incomplete(self) -> bool:
-        """Whether it lacks a part of a run."""
+        """Whether part of a recording is missing."""
         return self._incomplete
 
-    def path(self, run: int) -> pathlib.Path:
-        """The name of run number `run`."""
+    def path(self, number: int) -> pathlib.Path:
+        """The final path of recording `number`."""
         first = self._first
-        return first if run == 1 else first.with_name(f"{first.stem}-{run}{first.suffix}")
+        return first if number == 1 else first.with_name(f"{first.stem}-{number}{first.suffix}")
 
-    def file(self, run: int) -> pathlib.Path | None:
-        """The file that run number `run` is written to."""
-        draft = self._drafts.get(run)
+    def file(self, number: int) -> pathlib.Path | None:
+        """The file that recording `number` is written to now."""
+        draft = self._drafts.get(number)
         return draft and draft.path
 
-    def open(self, run: int, name: str) -> rr.RecordingStream | None:
-        """The stream of run number `run`; None: it cannot be written now."""
+    def open(self, number: int, name: str) -> rr.RecordingStream | None:
+        """The stream of recording `number`; None if it cannot be written now."""
         try:
-            stream = super().open(run, name)
-        except RuntimeError:  # the sink's first bytes found no room
-            self._give_up(run, why_not_written(self._drafts[run].path))
+            stream = super().open(number, name)
+        except RuntimeError:  # no room for the sink's first bytes
+            self._give_up(number, write_error(self._drafts[number].path))
             return None
         if stream is not None:
-            self._streams[run] = stream
+            self._streams[number] = stream
         return stream
 
-    def end(self, stream: rr.RecordingStream) -> None:
-        """End a run's stream and give its file the name. What the sink could not write at the end shows only now."""
-        super().end(stream)
-        if self._dropped:
+    def close_recording(self, stream: rr.RecordingStream) -> None:
+        """Close the stream and rename its file. A write error of the sink at the end shows only now."""
+        super().close_recording(stream)
+        if self._discarded:
             return
-        draft = self._without(stream)
+        draft = self._pop_draft(stream)
         if self.settings.index and not is_complete(draft.path):
-            self._keep_what_there_is(draft, why_not_written(draft.path))
+            self._keep_partial(draft, write_error(draft.path))
             return
         try:
             draft.complete()
         except OSError as error:
-            self._keep_what_there_is(draft, error.strerror or str(error))
+            self._keep_partial(draft, error.strerror or str(error))
 
-    def break_off(self, stream: rr.RecordingStream) -> None:
-        """The stream's file cannot be written any more: keep what there is of a run that cannot be had again."""
-        if not self._dropped:
-            draft = self._without(stream)
-            self._keep_what_there_is(draft, why_not_written(draft.path))
+    def abort(self, stream: rr.RecordingStream) -> None:
+        """Handle a file that can no longer be written: keep its readable part, or remove it."""
+        if not self._discarded:
+            draft = self._pop_draft(stream)
+            self._keep_partial(draft, write_error(draft.path))
 
-    def _keep_what_there_is(self, draft: Draft, reason: str) -> None:
+    def _keep_partial(self, draft: Draft, reason: str) -> None:
         path = draft.path
-        if not self._keep:
+        if not self._keeps_partial:
             draft.discard()
-            self.drop()
+            self.discard()
             raise NotWritten(f"recording {shown(str(draft.name))} cannot be written: {reason}")
         self._incomplete = True
         size = cut_to_whole_messages(path) if path.exists() else 0
-        self.warn(
+        self.log_warning(
             f"recording {shown(str(path))} cannot be written any more: {reason}; it ends here, and what there is "
             f"({size / 1e6:.1f} MB) can be opened"
         )
 
-    def drop(self) -> None:
-        """An error ends the runs: remove what is not complete, unless it cannot be had again."""
-        self._dropped = not self._keep
+    def discard(self) -> None:
+        """After an error: remove the incomplete files, unless partial ones are kept."""
+        self._discarded = not self._keeps_partial
         for draft in self._drafts.values():
-            if self._dropped:
+            if self._discarded:
                 draft.discard()
 
-    def _without(self, stream: rr.RecordingStream) -> Draft:
-        """The stream's draft; neither is held any longer."""
-        run = next(run for run, each in self._streams.items() if each is stream)
-        del self._streams[run]
-        return self._drafts.pop(run)
+    def _pop_draft(self, stream: rr.RecordingStream) -> Draft:
+        """Forget the stream, and return its draft."""
+        number = next(number for number, each in self._streams.items() if each is stream)
+        del self._streams[number]
+        return self._drafts.pop(number)
 
-    def _batches(self) -> rr.ChunkBatcherConfig:
+    def _batcher_config(self) -> rr.ChunkBatcherConfig:
         return rr.ChunkBatcherConfig(flush_tick=FILE_TICK)
 
-    def _sink(self, run: int) -> rr.FileSink | None:
-        path = self.path(run)
+    def _sink(self, number: int) -> rr.FileSink | None:
+        path = self.path(number)
         try:
             draft = Draft(path)
         except OSError as error:
-            self._refuse(run, path, error.strerror or str(error))
+            self._refuse(number, path, error.strerror or str(error))
             return None
-        self._drafts[run] = draft
-        problem = obstacle_to_growth(draft.path, ROOM)
+        self._drafts[number] = draft
+        problem = space_error(draft.path, ROOM)
         if problem:
-            self._give_up(run, problem)
+            self._give_up(number, problem)
             return None
         if path.exists():
-            self.warn(f"{path} is there already and is replaced by the new recording when that is complete")
-        self.say(f"saving to {path}; until it is complete, to {draft.path.name}")
+            self.log_warning(f"{path} is there already and is replaced by the new recording when that is complete")
+        self.log_info(f"saving to {path}; until it is complete, to {draft.path.name}")
         return rr.FileSink(str(draft.path), write_footer=self.settings.index)
 
-    def _give_up(self, run: int, reason: str) -> None:
-        """The run's draft has no room: remove it, and raise or say why."""
-        draft = self._drafts.pop(run)
+    def _give_up(self, number: int, reason: str) -> None:
+        """Remove the draft, for which there is no room; raise or log why."""
+        draft = self._drafts.pop(number)
         draft.discard()
-        if not self._keep:
+        if not self._keeps_partial:
             raise NotWritten(f"recording {shown(str(draft.name))} cannot be written: {reason}")
-        self._refuse(run, draft.name, reason)
+        self._refuse(number, draft.name, reason)
 
-    def _refuse(self, run: int, path: pathlib.Path, reason: str) -> None:
-        """Raise, or say that nothing is saved: at once for each run, and then as a reminder."""
+    def _refuse(self, number: int, path: pathlib.Path, reason: str) -> None:
+        """Raise, or warn that nothing is saved: once per recording, then every `REMINDER` seconds."""
         problem = f"recording {shown(str(path))} cannot be written: {reason}"
-        if self._patient_from is None or run < self._patient_from:
+        if self._retry_from is None or number < self._retry_from:
             raise ValueError(problem)
         self._incomplete = True
         last, when = self._reminded
-        if run != last or time.monotonic() - when > REMINDER:
-            self._reminded = run, time.monotonic()
-            self.warn(f"{problem}: nothing of this run is saved; it is tried again while running")
+        if number != last or time.monotonic() - when > REMINDER:
+            self._reminded = number, time.monotonic()
+            self.log_warning(f"{problem}: nothing of this run is saved; it is tried again while running")
 
 
 def new_file() -> pathlib.Path:
-    """A file in the present folder, named after the time and this process: no other one takes the same."""
+    """A path in the working folder, named after the time and this process, so that it is unique."""
     return pathlib.Path(f"eel-{datetime.datetime.now():%Y%m%d-%H%M%S}-{os.getpid()}.rrd")

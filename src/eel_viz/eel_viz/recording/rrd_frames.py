@@ -1,7 +1,7 @@
-"""The frames of an .rrd file: one that was cut off in the middle of a message is whole up to the message before.
+"""The framing of an .rrd file: finds the complete messages of a file that was cut off within a message.
 
-A file begins with 12 bytes; each message is its kind and its length (two little-endian 64-bit numbers) and so many
-bytes; a file that was completed ends with a footer beyond the last one (Rerun 0.41, `re_log_encoding`).
+A file begins with 12 bytes. Each message is its kind and its length (two little-endian 64-bit numbers), then its
+content. A complete file ends with a footer after the last message (Rerun 0.41, `re_log_encoding`).
 """
 
 import contextlib
@@ -17,14 +17,14 @@ FOOTER, FOOTER_PLACE = b"RRF2FOOT", 12  # and how many bytes before the end it b
 
 
 def is_complete(path: str | os.PathLike[str]) -> bool:
-    """Whether the file ends with a footer: nothing comes after it."""
+    """Whether the file ends with a footer."""
     with open(path, "rb") as file:
         file.seek(max(0, os.path.getsize(path) - FOOTER_PLACE))
         return file.read(len(FOOTER)) == FOOTER
 
 
 def end_of_whole_messages(path: str | os.PathLike[str]) -> int:
-    """Where the last message that is there completely ends [bytes]."""
+    """The end of the last complete message [bytes]."""
     size = os.path.getsize(path)
     if is_complete(path):
         return size
@@ -40,7 +40,7 @@ def end_of_whole_messages(path: str | os.PathLike[str]) -> int:
 
 
 def cut_to_whole_messages(path: str | os.PathLike[str]) -> int:
-    """Take a message that was written in part off the file's end; returns the size that is left [bytes]."""
+    """Truncate the file after its last complete message; returns the new size [bytes]."""
     end = end_of_whole_messages(path)
     if end < os.path.getsize(path):
         os.truncate(path, end)
@@ -48,10 +48,10 @@ def cut_to_whole_messages(path: str | os.PathLike[str]) -> int:
 
 
 @contextlib.contextmanager
-def whole(path: str | os.PathLike[str]) -> Iterator[pathlib.Path]:
-    """The file if it was completed, else a copy of its whole messages, for as long as the context lasts.
+def complete_file(path: str | os.PathLike[str]) -> Iterator[pathlib.Path]:
+    """The file if it is complete, else a temporary copy of its complete messages.
 
-    What was not completed may still be growing: its last message, whole a moment ago, has one behind it that is not.
+    A copy, because an incomplete file may still be growing.
     """
     path = pathlib.Path(path)
     if is_complete(path):

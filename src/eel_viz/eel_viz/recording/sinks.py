@@ -1,8 +1,8 @@
-"""Where a recording goes: a file, a viewer that runs already, or served data that any viewer can come to, now or later.
+"""The destinations of a recording: a file, a running viewer, or a server that any viewer can connect to.
 
-What is served lives in a server of this process, to which the streams of the runs are clients: nothing blocks when no
-viewer is there, memory is bounded, and an open viewer moves on to the new run. A stream straight to an absent viewer
-would block for ever in the end; so the viewer's port is probed first.
+The server runs in this process, and the streams of the recordings are its clients: nothing blocks without a viewer,
+memory is bounded, and an open viewer switches to a new recording. A stream directly to an absent viewer would block for
+ever in the end, so the viewer's port is probed first.
 """
 
 import ipaddress
@@ -13,23 +13,27 @@ from urllib.parse import urlsplit
 import rerun as rr
 from eel_gaits.wording import shown
 
-from eel_viz.recording.delivery import abandon
-from eel_viz.recording.destination import APPLICATION, Destination, Say, close_stream
+from eel_viz.recording.delivery import detach_blocked
+from eel_viz.recording.destination import APPLICATION, Destination, LogFunction, close_stream
 from eel_viz.recording.loggers import Rates
-from eel_viz.recording.recording_file import File
+from eel_viz.recording.recording_file import FileDestination
 from eel_viz.settings import Settings
 from eel_viz.viewer import display, end_process, free_port, listening, open_window, serve_to_browsers
 
-LIVE_TICK = 0.16  # s: a viewer shall move smoothly
-ANSWER_LIMIT = 1.0  # s, until a viewer that listens answers
+LIVE_TICK = 0.16  # s: short enough for smooth motion in a viewer
+ANSWER_LIMIT = 1.0  # s until a listening viewer must answer
 
 
-class Served(Destination):
-    """Data served on a port of this machine, for viewers that come and go."""
+class ServerDestination(Destination):
+    """A gRPC server on a port of this machine, for viewers that come and go."""
 
-    def __init__(self, settings: Settings, say: Say, warn: Say) -> None:
+    def __init__(self, settings: Settings, log_info: LogFunction, log_warning: LogFunction) -> None:
         super().__init__(
-            settings, Rates(numbers=settings.rate, drawings=settings.rate, tick=LIVE_TICK), say, warn, live=True
+            settings,
+            Rates(numbers=settings.rate, drawings=settings.rate, tick=LIVE_TICK),
+            log_info,
+            log_warning,
+            live=True,
         )
         port, self._web_viewer = settings.port, None
         address = ipaddress.IPv4Address(settings.address)
@@ -37,8 +41,8 @@ class Served(Destination):
         self._name = socket.gethostname() if address.is_unspecified else settings.address
         if listening(port):  # the server would only log it
             port = free_port()
-            warn(f"port {settings.port} is in use, taking {port}")
-        # The page of the web viewer may ask for the data: on this machine the server allows that by itself.
+            log_warning(f"port {settings.port} is in use, taking {port}")
+        # The web viewer's page requests the data: on this machine the server allows it by default.
         pages = None if address.is_loopback else [f"http://*:{settings.web_port}"]
         server = rr.GrpcServerSink(
             bind_ip=settings.address,
@@ -51,111 +55,120 @@ class Served(Destination):
         self._host.set_sinks(server)
         self._host.send_recording_name("(server)")  # a viewer lists it beside the runs
         self._shown_uri = f"rerun+http://{self._name}:{port}/proxy"
-        say(f"serving on {address}; to look at it, now or later: rerun {self._shown_uri}")
+        log_info(f"serving on {address}; to look at it, now or later: rerun {self._shown_uri}")
         if not address.is_loopback:
-            warn(f"anybody who reaches {self._name} can read what is served, and add to it (address is {address})")
+            log_warning(
+                f"anybody who reaches {self._name} can read what is served, and add to it (address is {address})"
+            )
 
-    def _sink(self, run: int) -> rr.GrpcSink:
+    def _sink(self, number: int) -> rr.GrpcSink:
         return rr.GrpcSink(self.uri)
 
     def close(self) -> None:
-        """End the servers, after the runs' streams."""
+        """Close the servers, after the streams of the recordings."""
         close_stream(self._host)
         if self._web_viewer is not None:
             end_process(self._web_viewer)
 
     def show_in_window(self) -> None:
-        """Open a viewer on this machine's display; it stays when this process ends."""
+        """Open a viewer on this machine's display; it stays open when this process ends."""
         if not display():
-            self.warn("there is no display: no viewer is opened")
+            self.log_warning("there is no display: no viewer is opened")
             return
         open_window(self.uri)
 
     def show_in_browser(self) -> None:
-        """Serve the web viewer too, and say where."""
+        """Serve the web viewer too, and log its address."""
         port = self.settings.web_port
         if listening(port):
             port = free_port()
-            self.warn(f"port {self.settings.web_port} is in use, taking {port}")
+            self.log_warning(f"port {self.settings.web_port} is in use, taking {port}")
         self._web_viewer = serve_to_browsers(self.settings.address, self._here, port, self.uri)
-        self.say(f"look at it in a browser: http://{self._name}:{port}/?url={self._shown_uri}")
+        self.log_info(f"look at it in a browser: http://{self._name}:{port}/?url={self._shown_uri}")
 
 
-class Connected(Destination):
-    """A viewer that somebody else has started; while it is absent, or closed again, nothing is sent."""
+class ViewerDestination(Destination):
+    """A viewer that another process has started; while it is absent or closed, nothing is sent."""
 
-    def __init__(self, settings: Settings, say: Say, warn: Say) -> None:
+    def __init__(self, settings: Settings, log_info: LogFunction, log_warning: LogFunction) -> None:
         super().__init__(
-            settings, Rates(numbers=settings.rate, drawings=settings.rate, tick=LIVE_TICK), say, warn, live=True
+            settings,
+            Rates(numbers=settings.rate, drawings=settings.rate, tick=LIVE_TICK),
+            log_info,
+            log_warning,
+            live=True,
         )
         address = urlsplit(settings.viewer)
         if address.hostname is None or address.port is None:
             raise ValueError(f"viewer must look like rerun+http://127.0.0.1:9876/proxy, got {shown(settings.viewer)}")
         self._address = (address.hostname, address.port)
-        self._missed = False
-        self._attempts: list[threading.Thread] = []  # that have had no answer
+        self._missing_reported = False
+        self._attempts: list[threading.Thread] = []  # to connect, without an answer so far
 
-    def _sink(self, run: int) -> rr.GrpcSink | None:
+    def _sink(self, number: int) -> rr.GrpcSink | None:
         host, port = self._address
         self._attempts = [attempt for attempt in self._attempts if attempt.is_alive()]
         if self._attempts:
             return None
         if listening(port, host):
             return rr.GrpcSink(self.settings.viewer)
-        self._miss(f"no viewer listens at {self.settings.viewer}: start one with `rerun`")
+        self._report_missing(f"no viewer listens at {self.settings.viewer}: start one with `rerun`")
         return None
 
-    def lost(self) -> bool:
-        """Whether the viewer has been closed: a stream does not come back to one that is opened again."""
+    def disconnected(self) -> bool:
+        """Whether the viewer has been closed: a stream does not reconnect to one that is opened again."""
         host, port = self._address
-        if self._missed or listening(port, host):
+        if self._missing_reported or listening(port, host):
             return False
-        self._arranged = False
-        self._miss(f"the viewer at {self.settings.viewer} has gone")
+        self._blueprint_sent = False
+        self._report_missing(f"the viewer at {self.settings.viewer} has gone")
         return True
 
-    def _connected(self, sink: rr.GrpcSink, name: str) -> rr.RecordingStream | None:
-        """In a thread, as it would wait for ever for a viewer that listens and does nothing else."""
+    def _make_stream(self, sink: rr.GrpcSink, name: str) -> rr.RecordingStream | None:
+        """Connect in a thread: a viewer that listens but does not answer would block for ever."""
         made: list[rr.RecordingStream] = []
-        connect = super()._connected
+        connect = super()._make_stream
         attempt = threading.Thread(target=lambda: made.append(connect(sink, name)), daemon=True)
         attempt.start()
         attempt.join(ANSWER_LIMIT)
         if not made:
-            abandon(attempt)
+            detach_blocked(attempt)
             self._attempts.append(attempt)
-            self._miss(f"the viewer at {self.settings.viewer} does not answer")
+            self._report_missing(f"the viewer at {self.settings.viewer} does not answer")
             return None
-        self.say(f"connected to the viewer at {self.settings.viewer}")
-        self._missed = False
+        self.log_info(f"connected to the viewer at {self.settings.viewer}")
+        self._missing_reported = False
         return made[0]
 
-    def _miss(self, text: str) -> None:
-        """Say what is missing, once until it is found."""
-        if not self._missed:
-            self._missed = True
-            self.warn(f"{text}: it is tried again while running")
+    def _report_missing(self, text: str) -> None:
+        """Log once that the viewer is missing."""
+        if not self._missing_reported:
+            self._missing_reported = True
+            self.log_warning(f"{text}: it is tried again while running")
 
 
-def destinations(settings: Settings, say: Say, warn: Say, *, live: bool = False) -> list[Destination]:
-    """What `settings.sink` asks for. ValueError: the only one is a file that cannot be written.
+def destinations(
+    settings: Settings, log_info: LogFunction, log_warning: LogFunction, *, live: bool = False
+) -> list[Destination]:
+    """The destinations in `settings.sink`. `ValueError` if the only one is a file that cannot be written.
 
-    `live`: messages do not wait; what cannot be written later, or beside other sinks, is then tried again and again.
+    live: messages come from the network and do not wait, so a file that cannot be written later, or beside other sinks,
+    is retried.
     """
     names = set(settings.sink)
     if "auto" in names:
         names = (names - {"auto"}) | {"spawn" if display() else "save"}
     found: list[Destination] = []
     if "save" in names:
-        patient_from = None if not live else 1 if len(names) > 1 else 2
-        found.append(File(settings, say, warn, patient_from=patient_from))
+        retry_from = None if not live else 1 if len(names) > 1 else 2
+        found.append(FileDestination(settings, log_info, log_warning, retry_from=retry_from))
     if names & {"spawn", "serve"}:
-        served = Served(settings, say, warn)
+        served = ServerDestination(settings, log_info, log_warning)
         found.append(served)
         if "spawn" in names:
             served.show_in_window()
         if "serve" in names:
             served.show_in_browser()
     if "connect" in names:
-        found.append(Connected(settings, say, warn))
+        found.append(ViewerDestination(settings, log_info, log_warning))
     return found

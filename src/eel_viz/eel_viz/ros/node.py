@@ -1,7 +1,8 @@
-"""The visualiser: every topic of a swimmer into Rerun.
+"""The visualiser node: subscribes to every topic of a swimmer and logs the messages to Rerun.
 
-It only listens. Subscriptions are reliable and keep all, so that a run without a pace loses nothing; times are those of
-the messages. It runs until SIGINT or SIGTERM, or with `stop_with_publisher` until the swimmer has gone.
+Subscriptions are reliable and keep all, so that no message is lost when the simulation runs as fast as possible. Times
+are the messages' stamps. The node runs until SIGINT or SIGTERM, or with `stop_with_publisher` until the swimmer's
+publishers have gone.
 """
 
 import sys
@@ -22,18 +23,18 @@ from rclpy.node import Node
 from rclpy.qos import QoSProfile
 
 from eel_msgs.msg import Backbone, BodyGeometry, Curvature, CurvatureLaw, EnergyLedger, HydrodynamicLoad, InternalWrench
-from eel_viz.recording.delivery import leave
-from eel_viz.recording.intake import Intake
-from eel_viz.recording.runs import OtherRuns, Runs
+from eel_viz.recording.delivery import exit_despite_blocked
+from eel_viz.recording.dispatcher import Dispatcher
+from eel_viz.recording.recordings import ComparedRecordings, Recordings
 from eel_viz.recording.sinks import destinations
-from eel_viz.ros.inbox import Inbox
+from eel_viz.ros.polled_subscriptions import PolledSubscriptions
 from eel_viz.settings import Settings
 from eel_viz.topics import SWIMMER
 
 NAME = "visualiser"
 ABOUT = "Shows and records every topic of a swimmer in Rerun."
-LATCHED, LIVE = keep_all(latched=True), keep_all()  # the first also hears what was published before, the second anybody
-LOOK = 0.5  # s between two looks at who publishes
+LATCHED, LIVE = keep_all(latched=True), keep_all()  # the first gets earlier messages, the second matches any publisher
+LOOK = 0.5  # s between two look-ups of the publishers
 GONE = 1.0  # s without publishers and messages, after which `stop_with_publisher` ends the node
 
 SAMPLED = {
@@ -49,7 +50,7 @@ SAMPLED = {
 
 
 class Visualiser(Node):
-    """Topics to an intake."""
+    """Subscribes to the topics of one swimmer, or two that are compared, and passes the messages to dispatchers."""
 
     def __init__(self):
         super().__init__(NAME, automatically_declare_parameters_from_overrides=True)
@@ -59,23 +60,27 @@ class Visualiser(Node):
         told = other or "/"
         if self.settings.compare and other == own:
             raise ValueError(f"compare must be another namespace than the swimmer's own, got {shown(told)}")
-        self._runs = runs = Runs(
-            destinations(self.settings, self._say, self._warn, live=True),
+        self._recordings = recordings = Recordings(
+            destinations(self.settings, self._log_info, self._log_warning, live=True),
             name=own.strip("/") or "eel",
-            warn=self._warn,
-            crowded=lambda topic: self.count_publishers(topic) > 1,
+            log_warning=self._log_warning,
+            has_several_publishers=lambda topic: self.count_publishers(topic) > 1,
         )
-        self._inbox = Inbox(self)
-        self._intake = Intake(runs, namespace=own, warn=self._warn)
+        self._polled = PolledSubscriptions(self)
+        self._dispatcher = Dispatcher(recordings, namespace=own, log_warning=self._log_warning)
         self._last_message = self._looked = time.monotonic()
         self._present = False
-        self._listen(own, self._intake)
+        self._subscribe_swimmer(own, self._dispatcher)
         if self.settings.compare:
-            intake = Intake(OtherRuns(runs, other), namespace=other, warn=lambda text: self._warn(f"{told}: {text}"))
-            self._listen(other, intake)
+            dispatcher = Dispatcher(
+                ComparedRecordings(recordings, other),
+                namespace=other,
+                log_warning=lambda text: self._log_warning(f"{told}: {text}"),
+            )
+            self._subscribe_swimmer(other, dispatcher)
 
     def _declare_settings(self) -> Settings:
-        """Declare a parameter for each setting, fixed at the start; ValueError names what does not fit."""
+        """Declare a read-only parameter for each setting; `ValueError` names one that does not fit."""
         overrides = take_overrides(self)
         values = {item.name: overrides.get(item.name, default_of(item)) for item in fields(Settings)}
         settings = Settings.from_values(values)
@@ -83,13 +88,13 @@ class Visualiser(Node):
         warn_of_unknown(self, overrides, values)
         return settings
 
-    def attend(self) -> bool:
-        """Now and then: look after the sinks; False once the swimmer has gone and the node is to follow."""
-        self._intake.attend()
+    def poll(self) -> bool:
+        """Poll the recordings; False once the swimmer has gone, with `stop_with_publisher`."""
+        self._dispatcher.poll()
         now = time.monotonic()
         if now - self._looked > LOOK:
             self._looked = now
-            self._inbox.look()
+            self._polled.note_publishers()
         if not self.settings.stop_with_publisher:
             return True
         if self.count_publishers(SWIMMER):
@@ -97,51 +102,51 @@ class Visualiser(Node):
         return not self._present or now - self._last_message < GONE
 
     def close(self) -> None:
-        """Complete the recordings, and say what came."""
-        self._say(f"received: {self._intake.close()}")
+        """Close the recordings, and log what was received."""
+        self._log_info(f"received: {self._dispatcher.close()}")
 
     @property
     def failure(self) -> str:
-        """What could not be done; empty if all was."""
-        return "a recording lacks a part of its run" if self._runs.lost else ""
+        """The reason for exit status 1; empty if there is none."""
+        return "a recording lacks a part of its run" if self._recordings.incomplete else ""
 
-    def work(self) -> bool:
-        """Show what has come; whether there was any."""
-        return self._inbox.take() > 0
+    def take_messages(self) -> bool:
+        """Log the messages that have come; whether there were any."""
+        return self._polled.take() > 0
 
-    def _listen(self, space: str, intake: Intake) -> None:
-        """Hear the swimmer in the namespace `space`."""
-        self._hear(space, intake, "body", BodyGeometry, LATCHED)  # first, for the others need it
-        self._hear(space, intake, "curvature_law", CurvatureLaw, LATCHED, LIVE)
+    def _subscribe_swimmer(self, space: str, dispatcher: Dispatcher) -> None:
+        """Subscribe to the topics of the swimmer in the namespace `space`."""
+        self._subscribe(space, dispatcher, "body", BodyGeometry, LATCHED)  # first: the others need it
+        self._subscribe(space, dispatcher, "curvature_law", CurvatureLaw, LATCHED, LIVE)
         for topic, kind in SAMPLED.items():
-            self._hear(space, intake, topic, kind, LIVE)
-        self._hear("", intake, "diagnostics", DiagnosticArray, LIVE)
+            self._subscribe(space, dispatcher, topic, kind, LIVE)
+        self._subscribe("", dispatcher, "diagnostics", DiagnosticArray, LIVE)
 
-    def _hear(self, space: str, intake: Intake, topic: str, kind: type, *qualities: QoSProfile) -> None:
-        def receive(message, successor):
+    def _subscribe(self, space: str, dispatcher: Dispatcher, topic: str, kind: type, *qualities: QoSProfile) -> None:
+        def receive(message, new_publisher):
             self._last_message = time.monotonic()
-            self._present |= topic == SWIMMER  # a law alone is no swimmer
-            intake.take(topic, message, successor=successor)
+            self._present |= topic == SWIMMER  # a law alone is not a swimmer
+            dispatcher.dispatch(topic, message, new_publisher=new_publisher)
 
-        self._inbox.listen(kind, f"{space}/{topic}", receive, *qualities)
+        self._polled.subscribe(kind, f"{space}/{topic}", receive, *qualities)
 
-    def _say(self, text: str) -> None:
+    def _log_info(self, text: str) -> None:
         self.get_logger().info(text)
 
-    def _warn(self, text: str) -> None:
+    def _log_warning(self, text: str) -> None:
         self.get_logger().warning(text)
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Run the node; the exit status is 0 after SIGINT or SIGTERM, 1 if a file could not be written to its end, 2 if a
-    parameter or a word is refused at start."""
+    """Run the node. Exit status: 0 after SIGINT or SIGTERM; 1 if a file could not be written completely; 2 if a
+    parameter or an argument is refused at start."""
     given = sys.argv if arguments is None else [NAME, *arguments]
     status = answer_words(NAME, ABOUT, help_rows(Settings), given, complain)
     if status is not None:
         return status
     words = [*USE_SIM_TIME, *given]
-    node, attend, work = Visualiser, Visualiser.attend, Visualiser.work
-    return leave(run_node(NAME, words, node, attend, work, complain=complain, complete=True))
+    node, poll, take_messages = Visualiser, Visualiser.poll, Visualiser.take_messages
+    return exit_despite_blocked(run_node(NAME, words, node, poll, take_messages, complain=complain, complete=True))
 
 
 if __name__ == "__main__":

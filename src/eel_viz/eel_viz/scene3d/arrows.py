@@ -1,6 +1,6 @@
-"""The fluid's force on the body as arrows in the world: along the body, and at nose and tail.
+"""Draws the fluid's force on the body as arrows in the world: along the body, and at nose and tail.
 
-A load is in section axes, so it needs the backbone of the same time; whichever comes first waits for the other.
+A load is in section axes, so it needs the backbone of the same stamp; the one that comes first waits for the other.
 """
 
 from collections import OrderedDict
@@ -9,30 +9,30 @@ import numpy as np
 import rerun as rr
 
 from eel_viz import entities
+from eel_viz.batched_stream import BatchedStream
 from eel_viz.messages import Backbone, Load
-from eel_viz.outlet import Outlet
 from eel_viz.scene3d import colours
 from eel_viz.scene3d.centre_line import Resampling
 from eel_viz.scene3d.orientation import world_from_section
 from eel_viz.stations import same
 
 ALONG = 24  # arrows between nose and tail
-KEPT = 512  # that wait; the oldest is given up
+MAXIMUM_WAITING = 512  # backbones, or loads; the oldest is dropped
 
 
 class Arrows:
-    """`load_scale` [m per N/m] and `end_scale` [m per N] are the arrows' lengths."""
+    """Draws the arrows; their lengths are `load_scale` [m per N/m] and `end_scale` [m per N]."""
 
-    def __init__(self, outlet: Outlet, *, load_scale: float, end_scale: float) -> None:
-        self._outlet, self._load_scale, self._end_scale = outlet, load_scale, end_scale
+    def __init__(self, stream: BatchedStream, *, load_scale: float, end_scale: float) -> None:
+        self._stream, self._load_scale, self._end_scale = stream, load_scale, end_scale
         self._along: tuple[np.ndarray, np.ndarray] | None = None  # all stations, and which have an arrow
         self._backbones: OrderedDict[int, Backbone] = OrderedDict()
         self._loads: OrderedDict[int, Load] = OrderedDict()
-        outlet.fixed(entities.LOAD, rr.Arrows3D.from_fields(colors=[colours.TEAL], radii=[0.0022]))
-        outlet.fixed(entities.LOAD_ENDS, rr.Arrows3D.from_fields(colors=[colours.MAGENTA], radii=[0.004]))
+        stream.log_static(entities.LOAD, rr.Arrows3D.from_fields(colors=[colours.TEAL], radii=[0.0022]))
+        stream.log_static(entities.LOAD_ENDS, rr.Arrows3D.from_fields(colors=[colours.MAGENTA], radii=[0.004]))
 
     def backbone(self, stamp: int, backbone: Backbone) -> None:
-        """The backbone at `stamp` [ns]."""
+        """Take the backbone at `stamp` [ns]."""
         load = self._loads.pop(stamp, None)
         if load is None:
             _keep(self._backbones, stamp, backbone)
@@ -40,7 +40,7 @@ class Arrows:
             self._draw(stamp, backbone, load)
 
     def load(self, stamp: int, load: Load) -> None:
-        """The load at `stamp` [ns]."""
+        """Take the load at `stamp` [ns]."""
         backbone = self._backbones.pop(stamp, None)
         if backbone is None:
             _keep(self._loads, stamp, load)
@@ -59,19 +59,19 @@ class Arrows:
         self._log(stamp, entities.LOAD_ENDS, backbone.position[ends], forces * self._end_scale)
 
     def _stations(self, x: np.ndarray) -> np.ndarray:
-        """Indices of the stations that have an arrow: evenly along the body, and nothing is interpolated."""
+        """Indices of the stations that have an arrow, evenly spaced along the body as far as stations allow."""
         if self._along is None or not same(self._along[0], x):
             wanted = np.linspace(x[0], x[-1], ALONG + 2)[1:-1]
             self._along = x, np.unique(np.searchsorted(x, wanted - 1e-9))
         return self._along[1]
 
     def _log(self, stamp: int, path: str, origins: np.ndarray, vectors: np.ndarray) -> None:
-        self._outlet.row(
+        self._stream.add_row(
             stamp, path, rr.Arrows3D, origins=origins.astype(np.float32), vectors=vectors.astype(np.float32)
         )
 
 
 def _keep(waiting: OrderedDict, stamp: int, value) -> None:
     waiting[stamp] = value
-    if len(waiting) > KEPT:
+    if len(waiting) > MAXIMUM_WAITING:
         waiting.popitem(last=False)

@@ -1,6 +1,6 @@
-"""The backbone between its stations: cubic Hermite in position, whose slope is known exactly (dr/dX = t1).
+"""Interpolates the backbone between its stations: cubic Hermite in position, with the exact slope dr/dX = t1.
 
-So the skin can have its own abscissae, finer at the nose, and keeps its mesh when the number of stations changes.
+So the skin has its own abscissae, finer at the nose, and keeps its mesh when the number of stations changes.
 """
 
 import numpy as np
@@ -10,7 +10,7 @@ from eel_viz.stations import same
 
 
 class Resampling:
-    """Values at abscissae `target` [m], shape (R,), from those at strictly increasing stations `x` [m], shape (M,)."""
+    """Interpolates values from strictly increasing stations `x` (M,) [m] to abscissae `target` (R,) [m]."""
 
     def __init__(self, x: np.ndarray, target: np.ndarray) -> None:
         self.x, self.target = x, target
@@ -19,7 +19,7 @@ class Resampling:
         self.fraction = np.clip((self.target - self.x[self.left]) / self.span, 0.0, 1.0)
 
     def matches(self, x: np.ndarray, target: np.ndarray) -> bool:
-        """Whether these weights serve for `x` and `target`, so that they can be kept."""
+        """Whether these weights are those of `x` and `target`."""
         return same(self.x, x) and same(self.target, target)
 
     def linear(self, values: np.ndarray) -> np.ndarray:

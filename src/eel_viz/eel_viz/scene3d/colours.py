@@ -1,4 +1,4 @@
-"""Colours that the colour-blind can tell apart: one for each section axis, and a diverging map for signed values.
+"""Colours for colour-blind readers too: one for each section axis, and a diverging map for signed values.
 
 The three axis colours are Okabe and Ito's orange, bluish green and sky blue. The diverging map goes from blue over
 a light grey to red (after Moreland's "cool to warm"), so that both signs differ in hue and lightness from zero.
@@ -41,7 +41,7 @@ DIVERGING = (
 
 
 def dim(colour: tuple[int, int, int], factor: float = 0.45) -> tuple[int, int, int]:
-    """The same hue, darker: for what stands behind, like an envelope."""
+    """The same hue, darker: for drawings in the background, such as an envelope."""
     return tuple(int(channel * factor) for channel in colour)
 
 

@@ -1,4 +1,4 @@
-"""Quaternions to axes. Quaternions are x, y, z, w; body axes are REP-103 (x forward, y left, z up).
+"""Converts quaternions to axes. Quaternions are x, y, z, w; body axes are REP-103 (x forward, y left, z up).
 
 The section axes of the messages differ from them by half a turn about z: 1 = -x, 2 = -y, 3 = +z.
 """
@@ -26,7 +26,7 @@ def world_from_body(orientation: np.ndarray) -> np.ndarray:
 
 
 def world_from_section(orientation: np.ndarray, vectors: np.ndarray) -> np.ndarray:
-    """Turn `vectors`, shape (..., 3) in section axes, into the world; `orientation` (..., 4) are the REP-103 axes."""
+    """Rotate `vectors`, shape (..., 3), from section axes to the world; `orientation` (..., 4): of the REP-103 axes."""
     return np.einsum("...ij,...j->...i", world_from_body(orientation), np.asarray(vectors) * (-1.0, -1.0, 1.0))
 
 

@@ -48,7 +48,7 @@ class Skin:
         self._resampling: Resampling | None = None
 
     def resampling(self, x: np.ndarray) -> Resampling:
-        """Weights from stations `x` [m] to the rings; kept while the stations stay."""
+        """The interpolation from stations `x` (M,) [m] to the rings; cached while the stations stay the same."""
         if self._resampling is None or not self._resampling.matches(x, self.x):
             self._resampling = Resampling(x, self.x)
         return self._resampling

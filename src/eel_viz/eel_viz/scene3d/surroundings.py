@@ -1,7 +1,7 @@
-"""What stands around the swimmer: a water floor with metres, and the colour legend.
+"""Draws the surroundings of the swimmer: a floor with a grid in metres, and the colour legend.
 
-The floor is a grid of 12 m by 12 m that jumps along by whole metres, so it has no edge, and sinks by whole metres if
-the swimmer comes near; its labels say where it is in the world frame.
+The floor is a grid of 12 m by 12 m. It follows the swimmer in steps of 1 m, and sinks by whole metres if the swimmer
+comes near. Its labels give the world coordinates.
 """
 
 from functools import lru_cache
@@ -10,7 +10,7 @@ import numpy as np
 import rerun as rr
 
 from eel_viz import entities
-from eel_viz.outlet import Outlet
+from eel_viz.batched_stream import BatchedStream
 from eel_viz.scene3d import camera, colours
 
 HALF = 6  # m, from the middle of the grid to its edge
@@ -21,10 +21,10 @@ LEGEND_SIZE = (0.16, 0.009)  # m
 
 
 class Water:
-    """The floor below the swimmer, the swimmer's shadow on it, and the labels of its metres."""
+    """Draws the floor below the swimmer, the swimmer's shadow on it, and the labels of the grid."""
 
-    def __init__(self, outlet: Outlet) -> None:
-        self._outlet = outlet
+    def __init__(self, stream: BatchedStream) -> None:
+        self._stream = stream
         self._at: tuple[int, int, int] | None = None
         self._labelled: dict[tuple[int, int, int], str] = {}
         lines, shades = [], []
@@ -32,29 +32,31 @@ class Water:
             c = k / 2
             lines += [[(c, -HALF, 0), (c, HALF, 0)], [(-HALF, c, 0), (HALF, c, 0)]]
             shades += [colours.WATER_LINE if k % 2 else colours.WATER_LINE_MAJOR] * 2
-        outlet.fixed(entities.GRID, rr.LineStrips3D(lines, colors=shades, radii=rr.Radius.ui_points(0.5)))
-        outlet.fixed(entities.SHADOW, rr.LineStrips3D.from_fields(colors=[(4, 10, 17)], radii=[0.03]))
+        stream.log_static(entities.GRID, rr.LineStrips3D(lines, colors=shades, radii=rr.Radius.ui_points(0.5)))
+        stream.log_static(entities.SHADOW, rr.LineStrips3D.from_fields(colors=[(4, 10, 17)], radii=[0.03]))
 
     def draw(self, stamp: int, position: np.ndarray, middle: np.ndarray) -> None:
-        """Floor, shadow and labels at `stamp` [ns] for a backbone `position`, (M, 3) [m], seen by a camera that
-        follows `middle`, (3,) [m]."""
+        """Draw floor, shadow and labels at `stamp` [ns].
+
+        position: of the backbone, (M, 3) [m]. middle: the point that the camera follows, (3,) [m].
+        """
         x, y = (int(np.floor(value)) for value in middle[:2])
         floor = -1 if self._at is None else self._at[2]
         while float(position[:, 2].min()) - CLEARANCE < floor:
             floor -= 1
         if self._at != (x, y, floor):
             self._at = (x, y, floor)
-            self._outlet.once(stamp, entities.GRID, rr.Transform3D(translation=self._at))
+            self._stream.log(stamp, entities.GRID, rr.Transform3D(translation=self._at))
         shadow = np.array(position[:: max(1, len(position) // 24)], dtype=np.float32)
         shadow[:, 2] = floor + 0.002
-        self._outlet.row(stamp, entities.SHADOW, rr.LineStrips3D, strips=shadow[None])
+        self._stream.add_row(stamp, entities.SHADOW, rr.LineStrips3D, strips=shadow[None])
         labels = _clear_labels(*_labels(x, y, floor), position - middle, middle)
         if labels != self._labelled:
             self._labelled = labels
             self._label(stamp, labels)
 
     def _label(self, stamp: int, labels: dict[tuple[int, int, int], str]) -> None:
-        self._outlet.once(
+        self._stream.log(
             stamp,
             entities.GRID_LABELS,
             rr.Points3D(
@@ -69,8 +71,8 @@ class Water:
 
 @lru_cache(maxsize=4)
 def _labels(x: int, y: int, floor: int) -> tuple[dict[tuple[int, int, int], str], np.ndarray]:
-    """Places [m] on the floor around (x, y), and what to write there: a row of x, a row of y, a corner with all. And
-    the places as an array (N, 3)."""
+    """Labels by their places [m] on the floor around (x, y): a row of x, a row of y, a corner with x, y and z. Also the
+    places as an array (N, 3)."""
     right, far = x + 2, y + 4
     row = {(i, far, floor): f"x {i} m" for i in range(right - 5, right)}
     column = {(right, j, floor): f"y {j} m" for j in range(y - 1, far)}
@@ -79,15 +81,17 @@ def _labels(x: int, y: int, floor: int) -> tuple[dict[tuple[int, int, int], str]
 
 
 def _clear_labels(labels: dict, places: np.ndarray, swimmer: np.ndarray, middle: np.ndarray) -> dict:
-    """Those of `labels` at `places`, (N, 3) [m], that are not before or behind the `swimmer`, (M, 3) [m] about its
-    `middle`, in the picture."""
+    """Those of `labels` at `places`, (N, 3) [m], that do not overlap the swimmer in the picture.
+
+    swimmer: positions of the backbone relative to `middle`, (M, 3) [m].
+    """
     apart = np.abs(camera.in_picture(places - middle)[:, None] - camera.in_picture(swimmer))
     hidden = ((apart <= LABEL_SIZE).all(axis=2)).any(axis=1)
     return {place: text for (place, text), behind in zip(labels.items(), hidden.tolist(), strict=True) if not behind}
 
 
-def log_legend(outlet: Outlet, *, limit: float, unit: str, name: str) -> None:
-    """A bar of the skin's colours in the lower left corner of the following view, as its camera stands at first."""
+def log_legend(stream: BatchedStream, *, limit: float, unit: str, name: str) -> None:
+    """Log a bar of the skin's colours: in the lower left corner of the following view at its initial camera pose."""
     steps = 33
     middle = camera.before_eye(*LEGEND_AT)
     along = np.linspace(-0.5, 0.5, steps)[:, None] * LEGEND_SIZE[0] * camera.RIGHT
@@ -95,13 +99,13 @@ def log_legend(outlet: Outlet, *, limit: float, unit: str, name: str) -> None:
     k = np.arange(steps - 1)
     triangles = np.concatenate([np.stack([k, k + 1, k + steps], 1), np.stack([k + 1, k + steps + 1, k + steps], 1)])
     shades = np.tile(colours.diverging(np.linspace(-1.0, 1.0, steps), 1.0), (2, 1))
-    outlet.fixed(
+    stream.log_static(
         f"{entities.LEGEND}/bar",
         rr.Mesh3D(vertex_positions=vertices, triangle_indices=triangles, vertex_colors=shades),
     )
     places = [middle + share * LEGEND_SIZE[0] * camera.RIGHT for share in (-0.5, 0.0, 0.5)]
     texts = [f"-{limit:g}", f"{name} [{unit}]", f"+{limit:g}"]
-    outlet.fixed(
+    stream.log_static(
         f"{entities.LEGEND}/labels",
         rr.Points3D(places, labels=texts, show_labels=True, radii=rr.Radius.ui_points(0.1), colors=[colours.LABEL] * 3),
     )

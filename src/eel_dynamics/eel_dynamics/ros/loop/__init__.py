@@ -1,1 +1,1 @@
-"""The thread of the node that marches: waits, paces, takes requests and laws."""
+"""The node's run loop: pacing, waiting, requests and laws."""

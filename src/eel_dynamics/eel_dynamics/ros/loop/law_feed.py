@@ -1,8 +1,8 @@
-"""Laws and samples of laws: checked as they arrive, each taken once, and given to the simulation.
+"""Checks laws and samples of laws as they arrive, drops duplicates, and passes them to the simulation.
 
-Laws come over two subscriptions (one that also hears what was published before it, one that hears any publisher), so
-that most arrive twice. Where laws come faster than they are read, each subscription drops others of them: one that the
-other subscription has dropped is no news.
+There are two subscriptions to laws: one also gets earlier messages (transient local), the other matches any publisher
+(volatile). So most laws arrive twice. If laws come faster than they are read, each subscription drops different ones:
+an old law that the other subscription has dropped is not adopted.
 """
 
 import reprlib
@@ -12,34 +12,34 @@ from eel_gaits.wording import shown
 
 from eel_dynamics.ros.diagnostics import ERROR
 
-FAR_AHEAD = 3600.0  # s: a stamp so far ahead of the simulation is wall time by mistake
-DROPPED = 1_000_000_000  # ns: a publisher's earlier law that comes after a later one is no older than this
+FAR_AHEAD = 3600.0  # s: a stamp further ahead of the simulation is wall time by mistake
+DROPPED = 1_000_000_000  # ns: a publisher's law that arrives after a later one is at most this much older
 SHOWN = reprlib.Repr()
 SHOWN.maxstring = 60  # characters of a refused law's name
-UNFIT = ValueError, ArithmeticError, MemoryError  # what the simulation refuses laws and samples with
+REFUSALS = ValueError, ArithmeticError, MemoryError  # errors with which the simulation refuses laws and samples
 
 
 class LawFeed:
-    """Takes laws and samples from messages to `run` (time, take_law, take_samples), in the thread of callbacks.
+    """Passes laws and samples from messages to `run` (time, take_law, take_samples), in the thread of callbacks.
 
-    opened: what arrives, to a CurvatureLaw's name and a function that gives the message. law_of, samples_of: a message
-    to a `Law`, to the arguments of `Simulation.add_samples`. ValueError: what is wrong.
+    parse(data): name of a serialised CurvatureLaw, and a function that deserialises it. law_of(message): the `Law`.
+    samples_of(message): the arguments of `Simulation.add_samples`. All raise `ValueError` for bad content.
     """
 
-    def __init__(self, run, report, *, opened, law_of, samples_of):
+    def __init__(self, run, report, *, parse, law_of, samples_of):
         self._run, self._report = run, report
-        self._opened, self._law_of, self._samples_of = opened, law_of, samples_of
-        self._heard = deque(maxlen=256)
+        self._parse, self._law_of, self._samples_of = parse, law_of, samples_of
+        self._received = deque(maxlen=256)
         self._newest = {}  # subscription: its last delivery
 
-    def hear_law(self, data, info: dict, subscription: int = 0):
-        """Takes a law from `data`; `info` tells two deliveries of one message from two messages."""
+    def receive_law(self, data, info: dict, subscription: int = 0):
+        """Pass on the law in the serialised message `data`; `info`: message info, to recognise a second delivery."""
         delivery = (info.get("source_timestamp"), info.get("publication_sequence_number"))
         if delivery[0] and self._is_known(delivery, subscription):
             return
         name = ""
         try:
-            name, message_of = self._opened(data)
+            name, message_of = self._parse(data)
             message = message_of()
             origin = self._checked_stamp(message.header.stamp)
             law = self._law_of(message)
@@ -49,15 +49,15 @@ class LawFeed:
             self._run.take_law(law, origin)
 
     def _is_known(self, delivery: tuple, subscription: int) -> bool:
-        """Whether the other subscription has heard this law, or a later one of the same publisher instead."""
-        heard = delivery in self._heard
-        self._heard.append(delivery)
+        """Whether the other subscription has received this law, or a later one of the same publisher."""
+        received = delivery in self._received
+        self._received.append(delivery)
         self._newest[subscription] = delivery
         later = (newest for other, newest in self._newest.items() if other != subscription)
-        return heard or any(time > delivery[0] > time - DROPPED and number > delivery[1] for time, number in later)
+        return received or any(time > delivery[0] > time - DROPPED and number > delivery[1] for time, number in later)
 
-    def hear_samples(self, message):
-        """Takes one instant of a law from a controller."""
+    def receive_samples(self, message):
+        """Pass on one instant of a law from a controller."""
         try:
             self._checked_stamp(message.header.stamp)
             samples = self._samples_of(message)
@@ -81,8 +81,10 @@ class LawFeed:
 
 
 class LawAdopter:
-    """Gives laws and samples to the `simulation`, in the thread of the run loop; `SimulationStopped`: it cannot go on
-    with a law."""
+    """Passes laws and samples to the `simulation`, in the thread of the run loop.
+
+    `SimulationStopped` if the simulation cannot continue with a law.
+    """
 
     def __init__(self, simulation, report):
         self._simulation, self._report = simulation, report
@@ -90,21 +92,21 @@ class LawAdopter:
 
     @property
     def name(self) -> str:
-        """Name of what the swimmer follows."""
+        """Name of the law that the swimmer follows, or of the topic of samples."""
         simulation = self._simulation
         if simulation.sampled or simulation.resting:
             return "curvature_samples"
         return simulation.law.name if simulation.law is not None else ""
 
     def adopt(self, law, origin: float):
-        """Have the swimmer follow a law whose own t = 0 lies at simulation time `origin` [s]."""
+        """Adopt a law whose own t = 0 lies at simulation time `origin` [s]; log a refusal."""
         simulation = self._simulation
         driven = simulation.law is not None and simulation.samples_until is None and not simulation.resting
         if driven and law == simulation.law and origin == self._origin:
             return  # published again: nothing to blend
         try:
             simulation.adopt(law, origin=origin)
-        except UNFIT as error:
+        except REFUSALS as error:
             self._report.event("law", f"law {shown(law.name)} refused: {error}", ERROR, differing=True)
         else:
             self._origin = origin
@@ -115,16 +117,16 @@ class LawAdopter:
         """Add one instant of a law: the arguments of `Simulation.add_samples`."""
         try:
             self._simulation.add_samples(**samples)
-        except UNFIT as error:
+        except REFUSALS as error:
             self._report.event("samples", f"curvature samples refused: {error}", ERROR)
 
     def lacks_samples(self, time: float) -> bool:
-        """Whether the samples of a controller that drives the swimmer do not reach simulation time `time` [s] yet."""
+        """Whether a controller's samples drive the swimmer and do not reach simulation time `time` [s] yet."""
         until = self._simulation.samples_until
         return until is not None and until < time and not self._simulation.resting
 
     def reset(self):
-        """The law begins at t = 0 again."""
+        """Set the law's own t = 0 back to simulation time 0."""
         self._origin = 0.0
         self._report.end("resting")
 

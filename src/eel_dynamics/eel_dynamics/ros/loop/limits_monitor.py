@@ -1,37 +1,37 @@
-"""The model's own limits, watched while a node swims: each is said once, and stays in /diagnostics until a reset."""
+"""Monitors the model's limits during a run: each violation is logged once, and stays in /diagnostics until a reset."""
 
 import numpy as np
 
 from eel_dynamics.analysis.model_limits import ModelLimits
 
-SETTLING = 5.0  # s: a swimmer that starts from rest is slow at first
+SETTLING = 5.0  # s after the start in which the speed is not checked: a swimmer starts from rest
 
 
 class LimitsMonitor:
-    """Looks at snapshots of a `simulation` and has the `report` say what lies beyond the model."""
+    """Checks snapshots of a `simulation` against the model's limits, and reports violations to `report`."""
 
     def __init__(self, simulation, report):
         self._limits = ModelLimits(simulation.body, simulation.scene, simulation.x)
         self._current = np.array(simulation.scene.current)
-        self._report, self._said = report, set()
+        self._report, self._reported = report, set()
         self.restart()
 
     def restart(self):
-        """Forgets what it saw, and looks at the body."""
+        """Forget all snapshots and reported violations, and check the body."""
         self._wake_power, self._since = [], None
-        for kind in self._said:
+        for kind in self._reported:
             self._report.end(kind)
-        self._said = set()
+        self._reported = set()
         self._warn("slenderness", self._limits.of_body())
 
-    def add(self, snapshot, look: bool):
+    def add(self, snapshot, check: bool):
         """Takes in what is looked at over a while; `look`, now and then: has all limits looked at."""
         if snapshot.energy is not None:
             self._wake_power.append(float(snapshot.energy.wake_power))
-        if look:
-            self._look(snapshot)
+        if check:
+            self._check(snapshot)
 
-    def _look(self, snapshot):
+    def _check(self, snapshot):
         limits, time = self._limits, np.array([snapshot.time])
         bend = snapshot.curvature[None]
         self._warn("bending", limits.of_bending(time, bend))
@@ -51,6 +51,6 @@ class LimitsMonitor:
             self._since = snapshot.time, centre.copy()
 
     def _warn(self, kind: str, text: str):
-        if text and kind not in self._said:
-            self._said.add(kind)
+        if text and kind not in self._reported:
+            self._reported.add(kind)
             self._report.begin(kind, text)

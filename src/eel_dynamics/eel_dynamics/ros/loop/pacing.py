@@ -1,14 +1,14 @@
-"""Pace on the steady clock: when each sample is due, how long to wait for a controller, time spent.
+"""Pacing on the steady clock: due times of samples, the wait for a controller, and the wall time spent.
 
-Sample k is due at start + (k - first) * period / factor. A run that falls behind by more than a few periods gives the
-lost time up rather than hurry after it: it keeps its accuracy, not its pace.
+Sample k is due at start + (k - first) * period / factor. A run that falls behind by more than a few periods does not
+catch up: later samples are due later. It keeps its accuracy, not its pace.
 """
 
 import math
 import time
 
 FEW_PERIODS = 5
-SHORTEST_DELAY = 0.02  # s: below this the operating system's scheduling is heard, not the run
+SHORTEST_DELAY = 0.02  # s: shorter delays come from the operating system's scheduling
 
 
 class Pace:
@@ -17,11 +17,11 @@ class Pace:
     def __init__(self, period: float, factor: float):
         self.period = period
         self.factor = factor
-        self.lost = 0.0  # s of wall time given up so far
+        self.lost = 0.0  # s: sum of the delays that were not caught up
         self._first, self._start = 0, -math.inf
 
     def restart(self, sample: int, now: float, factor: float | None = None):
-        """`sample` is due `now` [s, steady clock], and the ones after it from there on."""
+        """Make `sample` due `now` [s, steady clock], and later samples relative to it."""
         if factor is not None:
             self.factor = factor
         self._first, self._start = sample, now
@@ -32,8 +32,11 @@ class Pace:
             return -math.inf
         return self._start + (sample - self._first) * self.period / self.factor
 
-    def settle(self, sample: int, now: float) -> float:
-        """Delay [s] of `sample` where it is late by more than a few periods, else 0; the delay is given up."""
+    def give_up_delay(self, sample: int, now: float) -> float:
+        """If `sample` is late by more than a few periods at `now` [s, steady clock], make later samples due later.
+
+        Returns the delay [s], or 0.
+        """
         if self.factor == 0.0:
             return 0.0
         delay = now - self.due(sample)
@@ -45,10 +48,10 @@ class Pace:
 
 
 class ControllerWait:
-    """How long to wait for a controller that sends samples of a law: a while, then no more until it is back."""
+    """Decides whether to wait for a controller that sends samples of a law: once per gap, up to a time-out."""
 
     def __init__(self):
-        self._since = None  # s, steady clock: since when its next samples are missing
+        self._since = None  # s, steady clock: since when its samples are missing
 
     def waits(self, missing: bool, now: float, timeout: float) -> bool:
         """Whether to wait for samples that are `missing` at `now` [s, steady clock], for `timeout` [s] at most."""

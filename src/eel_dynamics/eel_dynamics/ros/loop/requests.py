@@ -1,4 +1,4 @@
-"""Requests of other threads to the run loop, which carries them out between two samples."""
+"""Queue of requests from other threads to the run loop, which executes them between two samples."""
 
 import math
 import threading
@@ -6,20 +6,20 @@ import time
 from collections import deque
 from collections.abc import Callable
 
-PATIENCE = 1.0  # s of wall time on the way to a sample, after which every request is urgent
+INTERRUPT_AFTER = 1.0  # s of wall time for one sample, after which any request interrupts its computation
 
 
 class Request:
-    """An `action` for the run loop; `done` is set when it has been carried out."""
+    """An `action` for the run loop; `done` is set after its execution."""
 
     def __init__(self, action: Callable[[], None], replaces: str = ""):
         self.action, self.replaces = action, replaces
         self.done = threading.Event()
-        self.time = math.nan  # s: simulation time when it had been carried out
+        self.time = math.nan  # s: simulation time after its execution
 
 
 class RequestQueue:
-    """Requests in the order in which they came, and the order to stop.
+    """Requests in the order of arrival, and the flag to stop.
 
     Attributes:
         urgent: a request does not wait for the next sample.
@@ -27,7 +27,7 @@ class RequestQueue:
     """
 
     def __init__(self):
-        self._guard, self._bell = threading.Lock(), Bell()
+        self._guard, self._wake_up = threading.Lock(), WakeUp()
         self._waiting: deque[Request] = deque()
         self.urgent = False
         self.stopped = False
@@ -36,63 +36,63 @@ class RequestQueue:
         return len(self._waiting)
 
     def put(self, action: Callable[[], None], replaces: str = "", urgent: bool = False) -> Request:
-        """Add a request. It takes the place of the newest one if both have the same text `replaces`, not empty."""
+        """Add a request. It replaces the newest one if both have the same non-empty text `replaces`."""
         request = Request(action, replaces)
         with self._guard:
             if replaces and self._waiting and self._waiting[-1].replaces == replaces:
                 self._waiting.pop()
             self._waiting.append(request)
             self.urgent |= urgent
-            self._bell.ring()
+            self._wake_up.set()
         return request
 
     def stop(self):
         """End the run."""
         with self._guard:
             self.stopped = True
-            self._bell.ring()
+            self._wake_up.set()
 
     def interrupt(self, since: float) -> bool:
-        """Whether the way to a sample, begun at `since` [s, steady clock], is to be interrupted."""
-        return self.stopped or self.urgent or (len(self._waiting) > 0 and time.monotonic() - since > PATIENCE)
+        """Whether to interrupt the computation of a sample, begun at `since` [s, steady clock]."""
+        return self.stopped or self.urgent or (len(self._waiting) > 0 and time.monotonic() - since > INTERRUPT_AFTER)
 
     def wait(self, seconds: float) -> bool:
-        """Sleep, unless there is a request or the run is stopped: then True. For the thread of the run loop."""
+        """Sleep at most `seconds`; True at once if there is a request or the run stops. For the run loop's thread."""
         with self._guard:
             if self._waiting or self.stopped:
                 return True
-            self._bell.hush()
-        return self._bell.wait(seconds)
+            self._wake_up.clear()
+        return self._wake_up.wait(seconds)
 
     def carry_out(self, perform: Callable[[Callable[[], None]], float]):
-        """Have `perform(action)` carry out what waits; it returns the simulation time [s] afterwards."""
-        self.urgent = False  # before they are counted, so that none is missed
-        for _ in range(len(self._waiting)):  # those that come meanwhile wait for the next sample
+        """Execute the waiting requests by `perform(action)`, which returns the simulation time [s] afterwards."""
+        self.urgent = False  # before counting, so that no request is missed
+        for _ in range(len(self._waiting)):  # later requests wait for the next sample
             with self._guard:
                 request = self._waiting.popleft()
             request.time = perform(request.action)
             request.done.set()
 
 
-class Bell:
-    """Wakes one thread that waits.
+class WakeUp:
+    """An event for one waiting thread.
 
-    It is one lock and nothing else: a node wakes 100 times a second, and each line of Python counts.
+    It is a single lock, faster than `threading.Event`: a node waits 100 times a second.
     """
 
     def __init__(self):
-        self._silent = threading.Lock()
-        self._silent.acquire()
+        self._lock = threading.Lock()
+        self._lock.acquire()
 
-    def ring(self):
-        """Wake the thread that waits, or the next that waits. The caller sees to it that two rings do not overlap."""
-        if self._silent.locked():
-            self._silent.release()
+    def set(self):
+        """Wake the waiting thread, or the next one that waits. Calls must not overlap."""
+        if self._lock.locked():
+            self._lock.release()
 
-    def hush(self):
-        """Forget that it rang."""
-        self._silent.acquire(blocking=False)
+    def clear(self):
+        """Reset the event."""
+        self._lock.acquire(blocking=False)
 
     def wait(self, seconds: float) -> bool:
-        """Sleep until it rings, or for `seconds`: whether it rang."""
-        return self._silent.acquire(timeout=max(0.0, seconds))
+        """Sleep until the event is set, at most `seconds`; whether it was set."""
+        return self._lock.acquire(timeout=max(0.0, seconds))

@@ -1,8 +1,8 @@
-"""The run, in a thread of its own: waits, paces, advances the simulation, has each sample published.
+"""The run loop, in a thread of its own: waits, paces, advances the simulation, and publishes each sample.
 
-Only this thread touches the simulation. Other threads make requests, which are carried out between two samples. An
-urgent request interrupts the way to a sample, and so does any request once that way has taken long.
-No ROS here: `publishers` and `report` come from the node.
+Only this thread uses the simulation. Other threads make requests, which are executed between two samples. An urgent
+request interrupts the computation of a sample, and so does any request once that has taken long.
+No ROS is imported: `publishers` and `report` come from the node.
 """
 
 import math
@@ -18,42 +18,42 @@ from eel_dynamics.ros.loop.run_totals import RunTotals
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 TICK = 0.05  # s of wall time between two messages on /clock while the simulation stands
-MOST_WAITING = 10_000  # requests
-TOO_MANY = f"curvature samples refused: at most {MOST_WAITING} wait for the next sample"
+MAXIMUM_REQUESTS = 10_000  # requests
+TOO_MANY = f"curvature samples refused: at most {MAXIMUM_REQUESTS} wait for the next sample"
 
 
 class RunLoop:
-    """Publishes samples k = 0 ... `last_sample` at k/rate of the `simulation`, at the pace of the `parameters`.
+    """Publishes samples k = 0 ... `last_sample` of the `simulation`, at times k/rate, paced by the `parameters`.
 
-    `run` is the thread's work: it returns after the last sample, or after `stop`. A run that cannot go on waits for a
-    reset; one with a duration and no pace, which nobody attends, returns and has `given_up`.
-    greet: called once the subscribers that the run waits for are there.
+    `run` is the thread's function: it returns after the last sample, or after `stop`. A simulation that has stopped
+    waits for a reset; an unattended one (with a duration, as fast as possible) returns and has `given_up`.
+    on_subscribers_complete: called when the subscribers that the run waits for are there.
 
     Attributes:
         time: simulation time of the last sample [s].
-        samples_published: their number, which is the index of the next one.
-        standing: what the simulation waits for, in words; empty while it runs.
+        samples_published: number of samples, which is the index of the next one.
+        standing: what the simulation waits for, as text; empty while it runs.
         totals: RunTotals since the start. laws: LawAdopter. pace: Pace. wall_time: Stopwatch.
     """
 
-    def __init__(self, simulation, parameters, publishers, report, greet=lambda: None):
+    def __init__(self, simulation, parameters, publishers, report, on_subscribers_complete=lambda: None):
         self._simulation, self._parameters, self._publishers, self._report = simulation, parameters, publishers, report
-        self._obstacles = Obstacles(simulation, publishers, parameters.wait_for_subscribers, greet)
+        self._obstacles = Obstacles(simulation, publishers, parameters.wait_for_subscribers, on_subscribers_complete)
         self._requests = RequestQueue()
         self.pace = Pace(1.0 / parameters.rate, parameters.real_time_factor)
         self._controller, self.wall_time = ControllerWait(), Stopwatch()
         self.laws, self._monitor = LawAdopter(simulation, report), LimitsMonitor(simulation, report)
         self._last_tick = -math.inf  # s, steady clock: last message on /clock
-        self._under_way_since = None  # s, steady clock: since when the next sample is computed
+        self._sample_begun = None  # s, steady clock: when the computation of the next sample began
         self._whole_snapshot_due = True
         self.time, self.samples_published, self.standing, self.totals = 0.0, 0, "", RunTotals()
 
     # For other threads.
 
     def request(self, action, replaces: str = "", urgent: bool = False) -> Request:
-        """Have `action()` done between two samples, or at once if it is `urgent`, after the requests before it.
+        """Queue `action()` for execution between two samples; an `urgent` one interrupts the present sample.
 
-        It takes the place of the newest request if both have the same text `replaces`.
+        It replaces the newest request if both have the same non-empty text `replaces`.
         """
         return self._requests.put(action, replaces, urgent)
 
@@ -63,25 +63,25 @@ class RunLoop:
 
     def take_samples(self, samples: dict):
         """Add one instant of a law, the arguments of `Simulation.add_samples`; refused while too many wait."""
-        if len(self._requests) < MOST_WAITING:
+        if len(self._requests) < MAXIMUM_REQUESTS:
             self.request(lambda: self.laws.add_samples(samples))
         else:
             self._report.event("samples", TOO_MANY, ERROR)
 
     def reset(self) -> Request:
-        """State and time to the start."""
+        """Reset state and time to the start."""
         return self.request(self._reset, urgent=True)
 
     def pause(self, paused: bool) -> Request:
-        """Stand still, or go on."""
+        """Pause the run, or continue it."""
         return self.request(lambda: self._obstacles.pause(paused), urgent=True)
 
     def change(self, parameters):
-        """Use other `parameters`, of those that may change during the run."""
+        """Apply `parameters`; only the changeable ones may differ."""
         self.request(lambda: self._change(parameters))
 
     def request_whole_snapshot(self):
-        """Have the next snapshot hold everything that the totals use, whether or not someone subscribes to it."""
+        """Let the next snapshot hold everything that the totals use, even without subscribers."""
         self._whole_snapshot_due = True
 
     def stop(self):
@@ -95,39 +95,39 @@ class RunLoop:
 
     @property
     def overdue(self) -> float:
-        """Wall time [s] for which the next sample has been computed, of a run with a pace."""
-        since = self._under_way_since
+        """Wall time [s] that the computation of the next sample has taken so far; 0 in a run as fast as possible."""
+        since = self._sample_begun
         return time.monotonic() - since if since is not None and self.pace.factor > 0.0 else 0.0
 
     @property
     def given_up(self) -> bool:
-        """The simulation has stopped, and nobody is expected to reset it."""
+        """The simulation has stopped, and it is unattended: no reset is expected."""
         return self._obstacles.failed and self.pace.factor == 0.0 and self._parameters.duration > 0.0
 
-    # The thread itself.
+    # In the run loop's thread.
 
     def run(self):
-        """The thread's work."""
+        """Run the loop: the thread's function."""
         self.pace.restart(0, time.monotonic())
         while not self.stopped and self.samples_published <= self._parameters.last_sample and not self.given_up:
             self._requests.carry_out(self._perform)
             obstacle = self._obstacles.find(self.time)
             if obstacle:
-                self._stand(obstacle)
+                self._idle(obstacle)
             elif self._wait_for_turn():
                 self._next_sample()
 
     def _perform(self, action) -> float:
-        """Carry out a request's action; the simulation time [s] afterwards."""
+        """Execute a request's action; returns the simulation time [s] afterwards."""
         try:
             action()
         except SimulationStopped as error:
             self._fail(error)
         return self.time
 
-    def _stand(self, obstacle: str):
-        """Wait a little for the obstacle to go; /clock ticks on."""
-        self._under_way_since = None
+    def _idle(self, obstacle: str):
+        """Wait for one tick while there is an obstacle; /clock continues."""
+        self._sample_begun = None
         if obstacle != self.standing:
             self.standing = obstacle
             self._report.info(obstacle)
@@ -135,7 +135,7 @@ class RunLoop:
         self._requests.wait(TICK)
 
     def _wait_for_turn(self) -> bool:
-        """Wait until the next sample is due, or something comes in between: then False."""
+        """Wait until the next sample is due; False if a request or a tick comes first."""
         now = time.monotonic()
         if self.standing:
             self.standing = ""
@@ -153,7 +153,7 @@ class RunLoop:
         return True
 
     def _next_sample(self):
-        """Advance to the next sample and have it published."""
+        """Advance to the next sample and publish it."""
         simulation, publishers = self._simulation, self._publishers
         try:
             if self._next_time > simulation.time and not self._advance():
@@ -164,7 +164,7 @@ class RunLoop:
                 **{part: wanted or whole for part, wanted in publishers.wanted_parts().items()}
             )
             self.totals.add(snapshot)
-            self._monitor.add(snapshot, look=whole)
+            self._monitor.add(snapshot, check=whole)
         except SimulationStopped as error:
             self._fail(error)
             return
@@ -173,23 +173,23 @@ class RunLoop:
         now = self._last_tick = time.monotonic()
         self.wall_time.lap(now)
         self.laws.report_resting(self.time)
-        delay = self.pace.settle(self.samples_published, now)
+        delay = self.pace.give_up_delay(self.samples_published, now)
         if delay > 0.0:
             self._report.event("late", f"late by {delay:.3g} s at t = {self.time:g} s: accuracy is kept, not the pace")
         self.samples_published += 1
 
     def _advance(self) -> bool:
-        """Advance to the next sample; False where a request comes in between, or the end of the run."""
-        if self._under_way_since is None:
-            self._under_way_since = time.monotonic()
-        since, requests = self._under_way_since, self._requests
+        """Advance to the next sample; False if a request or the end of the run interrupts it."""
+        if self._sample_begun is None:
+            self._sample_begun = time.monotonic()
+        since, requests = self._sample_begun, self._requests
         reached = self._simulation.advance(self._next_time, lambda: requests.interrupt(since))
         if reached:
-            self._under_way_since = None
+            self._sample_begun = None
         return reached
 
     def _fail(self, error: SimulationStopped):
-        self._obstacles.failed, self._under_way_since = True, None
+        self._obstacles.failed, self._sample_begun = True, None
         then = "this run ends here, with status 1" if self.given_up else "reset starts it again"
         self._report.begin("stopped", f"simulation {error}; {then}", ERROR)
 
@@ -209,7 +209,7 @@ class RunLoop:
     def _reset(self):
         now = time.monotonic()
         self.time, self.samples_published, self.totals = 0.0, 0, RunTotals()
-        self._obstacles.failed, self._under_way_since = False, None
+        self._obstacles.failed, self._sample_begun = False, None
         self._monitor.restart()
         self.wall_time.restart(now)
         self._report.end("stopped")

@@ -1,4 +1,4 @@
-"""Totals and greatest values of a run for /diagnostics: energy ledger, closure of the wrench, torque and force."""
+"""Totals and extreme values of a run for /diagnostics: energy ledger, closure of the wrench, torque and force."""
 
 import math
 
@@ -25,7 +25,7 @@ class RunTotals:
         self.greatest_force = 0.0  # N
 
     def add(self, snapshot):
-        """Takes a snapshot's figures in; SimulationStopped if something in it is not finite."""
+        """Add a snapshot's figures; `SimulationStopped` if one of its values is not finite."""
         if not math.isfinite(np.add.reduce(snapshot.whole)):
             for name in CHECKED:
                 values = getattr(snapshot, name)
@@ -45,7 +45,7 @@ class RunTotals:
             self.greatest_force = max(self.greatest_force, _greatest(snapshot.force))
 
     def values(self) -> dict[str, float]:
-        """The figures by name, those that this run computes."""
+        """The figures that this run computes, by name."""
         named = {
             "energy_residual": self.energy_residual,
             "energy_residual_worst": self.energy_residual_worst,

@@ -11,7 +11,7 @@ from eel_gaits.output_file import NotWritten, replacing
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.model.scene import Scene
-from eel_dynamics.runs.interrupt import leave_on_interrupt
+from eel_dynamics.runs.interrupt import end_on_interrupt
 from eel_dynamics.runs.run import simulate
 from eel_dynamics.studies.figures import corrections, kern_comparison, orders
 from eel_dynamics.studies.figures.notes import page
@@ -36,7 +36,7 @@ def main(arguments: list[str] | None = None) -> int:
     """Exit status 0; 1 where a file cannot be written to its end; 2 where the folder cannot be made, matplotlib is
     missing or input is bad. One line says why."""
     if arguments is None:
-        leave_on_interrupt()
+        end_on_interrupt()
     options = _parser().parse_args(arguments)
     try:
         import matplotlib  # noqa: F401

@@ -11,7 +11,7 @@ from eel_gaits.command_line import Parser, complain
 from eel_gaits.output_file import NotWritten, check_output, replacing
 from eel_gaits.wording import shown
 
-from eel_dynamics.runs.interrupt import leave_on_interrupt
+from eel_dynamics.runs.interrupt import end_on_interrupt
 
 BEGIN, END = "<!-- {}: written by `stability` -->", "<!-- end of {} -->"
 STUDIES = "maps", "condition", "drift", "plane"
@@ -20,7 +20,7 @@ STUDIES = "maps", "condition", "drift", "plane"
 def main(arguments: list[str] | None = None) -> int:
     """Exit status 0; 2 with one line where a folder cannot be written, matplotlib is missing or input is bad."""
     if arguments is None:
-        leave_on_interrupt()
+        end_on_interrupt()
     options = _parser().parse_args(arguments)
     try:
         import matplotlib

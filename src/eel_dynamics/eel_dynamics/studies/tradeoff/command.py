@@ -17,7 +17,7 @@ from eel_gaits.registry import GAITS, gait
 from eel_dynamics.curvature.difficulty import difficulty_of
 from eel_dynamics.model.body import NAMED, Body
 from eel_dynamics.model.scene import Scene
-from eel_dynamics.runs.interrupt import leave_on_interrupt
+from eel_dynamics.runs.interrupt import end_on_interrupt
 from eel_dynamics.runs.named_values import set_numbers
 from eel_dynamics.studies.tradeoff import measuring, models
 from eel_dynamics.studies.tradeoff.delivered import deliver, delivered_table, exceeding, farthest, scatter_line
@@ -30,7 +30,7 @@ def main(arguments: list[str] | None = None) -> int:
     """Exit status 0; 1 where a file cannot be written to its end; 2 for bad input or a missing package. One line says
     why."""
     if arguments is None:
-        leave_on_interrupt()
+        end_on_interrupt()
     options = _parser().parse_args(arguments)
     if options.calibrate:
         return _calibrate()

@@ -1,7 +1,7 @@
-"""Rows of a recording, given one by one and sent together: a column of ten rows costs little more than one row.
+"""A Rerun stream that sends rows in batches: ten rows in one column cost little more than one row.
 
-Rows are kept for `tick` seconds of wall time at most (`attend` looks), or until there are `ROWS` of a kind; `send`
-brings out what is there, and must be called at the end. Every row has its own time, so the order of calls is free.
+Rows wait for at most `tick` seconds of wall time (`send_due`), or until there are `MAXIMUM_ROWS` of a kind. `flush`
+sends all, and must be called at the end. Every row has its own time, so the order of calls is free.
 """
 
 import time
@@ -12,12 +12,12 @@ import rerun as rr
 
 from eel_viz.entities import TIMELINE
 
-ROWS = 256  # of one kind, which are sent without waiting
-UNDRAWN = 10  # ticks that arrays which nothing draws may wait
+MAXIMUM_ROWS = 256  # of one kind, then they are sent
+ARRAY_TICKS = 10  # ticks that arrays may wait: no view draws them
 
 
-class Outlet:
-    """One recording `stream`; `tick` [s of wall time] is how long a row may wait."""
+class BatchedStream:
+    """Batches rows for the recording `stream`; `tick` [s of wall time]: how long a row may wait."""
 
     def __init__(self, stream: rr.RecordingStream, *, tick: float) -> None:
         self._stream, self._tick = stream, tick
@@ -25,46 +25,46 @@ class Outlet:
         self._sent = time.monotonic()
         self._ticks = 0
 
-    def fixed(self, path: str, archetype: rr.AsComponents) -> None:
-        """What is valid at all times."""
+    def log_static(self, path: str, archetype: rr.AsComponents) -> None:
+        """Log data that are valid at all times."""
         self._stream.log(path, archetype, static=True)
 
-    def once(self, stamp: int, path: str, archetype: rr.AsComponents) -> None:
-        """One thing at `stamp` [ns], sent at once: texts, images, what is rare."""
+    def log(self, stamp: int, path: str, archetype: rr.AsComponents) -> None:
+        """Log at `stamp` [ns], sent at once: for texts, images and rare data."""
         self._stream.set_time(TIMELINE, duration=np.timedelta64(stamp, "ns"))
         self._stream.log(path, archetype)
 
-    def row(self, stamp: int, path: str, kind: type, **components: np.ndarray) -> None:
-        """A row of the archetype `kind` at `stamp` [ns]; the first axis of each component counts its instances."""
-        self._gather(stamp, (path, kind, *components), components)
+    def add_row(self, stamp: int, path: str, kind: type, **components: np.ndarray) -> None:
+        """Add a row of the archetype `kind` at `stamp` [ns]; the first axis of each component counts its instances."""
+        self._add(stamp, (path, kind, *components), components)
 
-    def scalars(self, stamp: int, path: str, values: np.ndarray) -> None:
-        """A row of scalars at `stamp` [ns], (n,)."""
-        self._gather(stamp, (path, rr.Scalars, "scalars"), {"scalars": np.asarray(values, dtype=float)})
+    def add_scalars(self, stamp: int, path: str, values: np.ndarray) -> None:
+        """Add a row of scalars (n,) at `stamp` [ns]."""
+        self._add(stamp, (path, rr.Scalars, "scalars"), {"scalars": np.asarray(values, dtype=float)})
 
-    def numbers(self, stamp: int, path: str, name: str, values: dict[str, np.ndarray]) -> None:
-        """A row of arrays at `stamp` [ns] as components of their own, of an archetype called `name`."""
-        self._gather(stamp, (path, name, *values), values)
+    def add_arrays(self, stamp: int, path: str, name: str, values: dict[str, np.ndarray]) -> None:
+        """Add a row of arrays at `stamp` [ns]: components of an archetype called `name`."""
+        self._add(stamp, (path, name, *values), values)
 
-    def attend(self) -> None:
-        """Now and then: send what has waited long enough."""
+    def send_due(self) -> None:
+        """Send the rows that have waited for a tick."""
         if time.monotonic() - self._sent > self._tick:
             self._sent = time.monotonic()
             self._ticks += 1
             for key in self._rows:
-                if not isinstance(key[1], str) or self._ticks % UNDRAWN == 0:
+                if not isinstance(key[1], str) or self._ticks % ARRAY_TICKS == 0:
                     self._send(key)
 
-    def send(self) -> None:
+    def flush(self) -> None:
         """Send all rows."""
         for key in self._rows:
             self._send(key)
 
-    def _gather(self, stamp: int, key: tuple, components: dict[str, np.ndarray]) -> None:
+    def _add(self, stamp: int, key: tuple, components: dict[str, np.ndarray]) -> None:
         stamps, rows = self._rows.setdefault(key, ([], []))
         stamps.append(stamp)
         rows.append(tuple(components.values()))
-        if len(stamps) >= ROWS:
+        if len(stamps) >= MAXIMUM_ROWS:
             self._send(key)
 
     def _send(self, key: tuple) -> None:
@@ -87,12 +87,12 @@ class Outlet:
 
 
 def _listed(arrays: tuple[np.ndarray, ...], lengths: list[int]) -> pa.ListArray:
-    """A list for each row; of plain numbers rerun would make a list for each number."""
+    """One list per row; from plain numbers Rerun would make one list per number."""
     return pa.ListArray.from_arrays(np.cumsum([0, *lengths], dtype=np.int32), np.concatenate(arrays))
 
 
 def _joined(arrays: tuple[np.ndarray, ...]):
-    """One array after the other; strips of different lengths as a list."""
+    """The arrays concatenated; strips of different lengths as a list."""
     if len({array.shape[1:] for array in arrays}) == 1:
         return np.concatenate(arrays)
     return [part for array in arrays for part in array]

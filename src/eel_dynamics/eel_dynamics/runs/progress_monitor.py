@@ -1,28 +1,31 @@
-"""How long a swim is going to take, foreseen from how far it has come: who waits for it is told within a second."""
+"""Reports the progress of a run and its remaining wall time, once a second."""
 
 import time
 import warnings
 from collections.abc import Callable
 
-FIRST = 1.0  # s of wall time until it is foreseen, and between two times that it is told
-LONG = 60.0  # s of wall time: a swim that takes longer is warned of
+REPORT_PERIOD = 1.0  # s of wall time between two reports, and before the first
+LONG = 60.0  # s of wall time: a longer run gives a warning
 
 
-class Foresight:
-    """Looks on while a swim of `duration` [s] goes on. progress(time, left): is told the time [s] that the swim has
-    come to, and the wall time [s] that it still takes; without it a swim that takes long is warned of once."""
+class ProgressMonitor:
+    """Estimates the remaining wall time of a run of `duration` [s].
+
+    progress(time, left): called with the simulation time reached [s] and the remaining wall time [s]; without it, a run
+    longer than `LONG` gives one warning.
+    """
 
     def __init__(self, duration: float, progress: Callable[[float, float], None] | None):
         self._duration, self._progress = duration, progress
-        self._began = self._told = time.monotonic()
+        self._began = self._last_report = time.monotonic()
         self._warned = False
 
-    def look(self, reached: float):
-        """The swim has come to the time `reached` [s]."""
+    def update(self, reached: float):
+        """Report that the run has reached simulation time `reached` [s]."""
         now = time.monotonic()
-        if now - self._told < FIRST:
+        if now - self._last_report < REPORT_PERIOD:
             return
-        self._told = now
+        self._last_report = now
         took = now - self._began
         left = took * (self._duration - reached) / reached if reached > 0.0 else float("inf")
         if self._progress is not None:

@@ -1,6 +1,6 @@
-"""Messages of one swimmer into recordings, wherever they come from: the network, a bag, a run of the library.
+"""Dispatches one swimmer's messages to the loggers, whatever their source: the network, a bag, a run of the library.
 
-A message is any object with the fields of its type. What cannot be shown is said once and left out.
+A message is any object with the fields of its type. A message that cannot be shown is reported once and left out.
 """
 
 import time
@@ -9,13 +9,13 @@ from collections.abc import Callable
 
 from eel_viz import messages
 from eel_viz.messages import BadMessage, stamp_of
-from eel_viz.recording.destination import Say
-from eel_viz.recording.runs import Runs
+from eel_viz.recording.destination import LogFunction
+from eel_viz.recording.recordings import ComparedRecordings, Recordings
 
 COARSE = 4  # stations, below which a backbone says little about the shape
-BODY_LIMIT = 2.0  # s after the first backbone in which the body should have come
+BODY_LIMIT = 2.0  # s after the first backbone within which the body is expected
 
-SAMPLES: dict[str, Callable] = {  # topic, and method of `Loggers`: what the method is given besides the stamp
+SAMPLES: dict[str, Callable] = {  # topic, also the method of `Loggers`: its arguments after the stamp
     "head_pose": lambda message: [messages.read_pose(message.pose)],
     "head_twist": lambda message: [messages.read_twist(message.twist)],
     "odom": lambda message: [messages.read_pose(message.pose.pose), messages.read_twist(message.twist.twist)],
@@ -27,62 +27,67 @@ SAMPLES: dict[str, Callable] = {  # topic, and method of `Loggers`: what the met
 }
 
 
-class Intake:
-    """Hands each message to the loggers of its run, checked.
+class Dispatcher:
+    """Checks each message and passes it to the loggers of its recording.
 
-    `namespace`: the swimmer's, whose nodes' diagnostics are taken; `warn`: one line to the user.
+    namespace: the swimmer's; diagnostics of other namespaces are ignored. log_warning: writes one line to the user.
+
+    Attributes:
+        received: number of messages by topic.
     """
 
-    def __init__(self, runs: Runs, *, namespace: str, warn: Say) -> None:
-        self._runs, self._warn = runs, warn
-        self._space = namespace.rstrip("/")
+    def __init__(
+        self, recordings: Recordings | ComparedRecordings, *, namespace: str, log_warning: LogFunction
+    ) -> None:
+        self._recordings, self._log_warning = recordings, log_warning
+        self._namespace = namespace.rstrip("/")
         self.received: Counter[str] = Counter()
-        self._complaints: set = set()
-        self._stations: dict[str, int] = {}  # of each topic, how many
+        self._reported: set = set()  # faults
+        self._stations: dict[str, int] = {}  # number of stations by topic
         self._first_backbone: float | None = None  # s
         self._last_law = None
         self._others = {"body": self._body, "curvature_law": self._law, "diagnostics": self._diagnostics}
 
     @property
     def topics(self) -> tuple[str, ...]:
-        """All that `take` knows."""
+        """All topics that `dispatch` accepts."""
         return (*SAMPLES, *self._others)
 
-    def take(self, topic: str, message, *, successor: bool = False) -> None:
-        """One message of `topic`, a name in `topics`; `successor`: the first one of another publisher."""
+    def dispatch(self, topic: str, message, *, new_publisher: bool = False) -> None:
+        """Log one message of `topic`, a name in `topics`; `new_publisher`: the first one from another publisher."""
         self.received[topic] += 1
         try:
             if topic in SAMPLES:
-                self._sample(topic, message, successor)
+                self._sample(topic, message, new_publisher)
             else:
                 self._others[topic](message)
         except BadMessage as problem:
             self._warn_once((topic, problem.field), f"{topic}: {problem}: left out, and those like it")
 
-    def attend(self) -> None:
-        """Now and then: look after the sinks, and whether the body has come in time."""
-        self._runs.attend()
+    def poll(self) -> None:
+        """Poll the recordings, and warn if the body has not come in time."""
+        self._recordings.poll()
         if self._first_backbone is not None and time.monotonic() - self._first_backbone > BODY_LIMIT:
-            self._miss_body()
+            self._check_body()
 
     def close(self) -> str:
-        """Complete the recordings; returns in words what came."""
+        """Close the recordings; returns the received topics with their numbers of messages as text."""
         if self._first_backbone is not None:
-            self._miss_body()
-        self._runs.close()
+            self._check_body()
+        self._recordings.close()
         return ", ".join(f"{topic} {count}" for topic, count in self.received.items()) or "nothing"
 
-    def _sample(self, topic: str, message, successor: bool) -> None:
+    def _sample(self, topic: str, message, new_publisher: bool) -> None:
         try:
             stamp, values = stamp_of(message), SAMPLES[topic](message)
-        except AttributeError as error:  # from a bag of long ago
+        except AttributeError as error:  # from a bag of an older version
             raise BadMessage("type", f"is another version's: {error}") from error
         if hasattr(message, "x"):
-            self._watch_stations(topic, len(message.x))
-        for loggers in self._runs.at(topic, stamp, successor=successor):
+            self._check_stations(topic, len(message.x))
+        for loggers in self._recordings.loggers_for(topic, stamp, new_publisher=new_publisher):
             getattr(loggers, topic)(stamp, *values)
 
-    def _watch_stations(self, topic: str, count: int) -> None:
+    def _check_stations(self, topic: str, count: int) -> None:
         if self._stations.setdefault(topic, count) != count:
             text = (
                 f"{topic} has {count} stations and had {self._stations[topic]}: it is drawn, its envelope begins anew"
@@ -95,23 +100,25 @@ class Intake:
                 self._warn_once("coarse", f"backbone has {count} stations: the shape between them is a guess")
 
     def _body(self, message) -> None:
-        self._runs.body(messages.read_body(message))
+        self._recordings.body(messages.read_body(message))
 
     def _law(self, message) -> None:
-        if message != self._last_law:  # the same law published again is no news
+        if message != self._last_law:  # a law that is published again is not logged again
             self._last_law = message
-            self._runs.law(message.name)
+            self._recordings.law(message.name)
 
     def _diagnostics(self, message) -> None:
-        statuses = [each for each in messages.read_diagnostics(message) if each.name.rpartition("/")[0] == self._space]
+        statuses = [
+            each for each in messages.read_diagnostics(message) if each.name.rpartition("/")[0] == self._namespace
+        ]
         if statuses:
-            self._runs.diagnostics(stamp_of(message), statuses)
+            self._recordings.diagnostics(stamp_of(message), statuses)
 
-    def _miss_body(self) -> None:
+    def _check_body(self) -> None:
         if not self.received["body"]:
             self._warn_once("no body", "no body has come: the backbone is drawn as a line, without skin")
 
     def _warn_once(self, fault, text: str) -> None:
-        if fault not in self._complaints:
-            self._complaints.add(fault)
-            self._warn(text)
+        if fault not in self._reported:
+            self._reported.add(fault)
+            self._log_warning(text)

@@ -1,6 +1,6 @@
-"""What is left of an MCAP file whose end is missing: read record by record, as far as it goes.
+"""Reads an MCAP file whose end is missing: record by record, up to the damage.
 
-From outside it is as rosbags' `Reader`; messages come in the order in which they were written.
+The interface is that of rosbags' `Reader`; messages come in the order in which they were written.
 """
 
 import pathlib
@@ -14,17 +14,24 @@ from mcap.stream_reader import StreamReader
 from rosbags.interfaces import Connection, ConnectionExtRosbag2, MessageDefinition, MessageDefinitionFormat
 
 FORMATS = {"ros2msg": MessageDefinitionFormat.MSG, "ros2idl": MessageDefinitionFormat.IDL}
-TORN = (McapError, struct.error, zstandard.ZstdError, ValueError, RuntimeError, OSError)  # lz4 raises RuntimeError
+DAMAGE_ERRORS = (
+    McapError,
+    struct.error,
+    zstandard.ZstdError,
+    ValueError,
+    RuntimeError,
+    OSError,
+)  # lz4 raises RuntimeError
 
 
-class Remains:
-    """The readable part of the file at `path`; `connections` are there once it is entered."""
+class DamagedMcapReader:
+    """Reads the file at `path` up to the damage; `connections` are set on entering the context."""
 
     def __init__(self, path: pathlib.Path) -> None:
         self._path = path
         self.connections: list[Connection] = []
 
-    def __enter__(self) -> "Remains":
+    def __enter__(self) -> "DamagedMcapReader":
         schemas: dict[int, Schema] = {}
         found: dict[int, Connection] = {}
         for record in self._records():
@@ -39,7 +46,7 @@ class Remains:
         self.connections = []
 
     def messages(self, connections: list[Connection]) -> Iterator[tuple[Connection, int, bytes]]:
-        """Connection, time of reception [ns] and bytes of each message."""
+        """Yield connection, time of reception [ns] and bytes of each message."""
         wanted = {connection.id: connection for connection in connections}
         for record in self._records():
             if isinstance(record, Message) and record.channel_id in wanted:
@@ -57,5 +64,5 @@ class Remains:
             while True:
                 try:
                     yield next(records)
-                except (StopIteration, *TORN):
+                except (StopIteration, *DAMAGE_ERRORS):
                     return

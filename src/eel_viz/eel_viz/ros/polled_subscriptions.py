@@ -1,0 +1,74 @@
+"""Subscriptions that the node polls itself: many messages at once, instead of one executor call per message.
+
+An executor collects and waits on all entities of a node before each message. With eight topics that costs more than
+logging them. The callback group here is never executed, so messages stay in the KEEP_ALL histories until `take`.
+"""
+
+from collections import deque
+from collections.abc import Callable
+
+from eel_ros.serving import PolledGroup, log_dropped
+from rclpy.node import Node
+from rclpy.qos import QoSProfile
+from rclpy.serialization import deserialize_message
+
+from eel_viz.ros.publisher_change import PublisherChange
+
+BATCH = 64  # messages taken from one subscription before the next one
+PROCESS = 12  # bytes of an endpoint's identifier that all endpoints of a process share (RTPS: the GUID's prefix)
+REMEMBERED = 1024  # deliveries of a topic with two subscriptions, one of which may be some batches behind
+
+
+class PolledSubscriptions:
+    """The subscriptions of `node`."""
+
+    def __init__(self, node: Node) -> None:
+        self._node, self._group = node, PolledGroup()
+        self._subscriptions: list[tuple] = []
+
+    def subscribe(self, kind: type, topic: str, show: Callable[..., None], *qualities: QoSProfile) -> None:
+        """Subscribe to messages of `kind` on `topic`; `take` passes them to `show(message, new_publisher)`.
+
+        new_publisher: whether the message is the first one of another publisher than before. There is one subscription
+        for each of the `qualities`; a message that several of them receive is passed once.
+        """
+        delivered = deque(maxlen=REMEMBERED if len(qualities) > 1 else 0)
+        for quality in qualities:
+            made = self._node.create_subscription(kind, topic, show, quality, callback_group=self._group)
+            self._subscriptions.append((made, show, PublisherChange(lambda: self._publishers(topic)), delivered))
+
+    def _publishers(self, topic: str) -> set[tuple]:
+        """Identifiers of the processes that publish on `topic`. A node may replace one of its publishers."""
+        return {tuple(info.endpoint_gid[:PROCESS]) for info in self._node.get_publishers_info_by_topic(topic)}
+
+    def note_publishers(self) -> None:
+        """Note the present publishers of all topics, for messages that are not yet taken."""
+        for _, _, publisher_change, _ in self._subscriptions:
+            publisher_change.note_publishers()
+
+    def take(self) -> int:
+        """Take the waiting messages, at most `BATCH` per subscription, and pass them on; returns their number.
+
+        A message that raises an error is logged and left out. Messages are taken as bytes: otherwise rclpy would build
+        a message object even if none has come.
+        """
+        count = 0
+        for subscription, show, publisher_change, delivered in self._subscriptions:
+            with subscription.handle:  # keeps it from being destroyed meanwhile
+                for _ in range(BATCH):
+                    taken = subscription.handle.take_message(subscription.msg_type, True)
+                    if taken is None:
+                        break
+                    count += 1
+                    data, about = taken
+                    delivery = about["publication_sequence_number"], about["source_timestamp"]
+                    new_publisher = publisher_change.changes(*delivery)
+                    if new_publisher:
+                        self.note_publishers()
+                    if delivery not in delivered:
+                        delivered.append(delivery)
+                        try:
+                            show(deserialize_message(data, subscription.msg_type), new_publisher)
+                        except Exception as error:
+                            log_dropped(self._node, error, f"a message of {subscription.topic_name}")
+        return count
