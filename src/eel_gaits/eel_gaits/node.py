@@ -12,7 +12,7 @@ from eel_ros.command_line import USE_SIM_TIME, answer_words
 from eel_ros.parameters import declare, described, take_overrides, warn_of_unknown
 from eel_ros.qos import latched
 from eel_ros.run_node import run_node
-from eel_ros.serving import Unattended, leave_out
+from eel_ros.serving import PolledGroup, log_dropped
 from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
 from rclpy.clock import JumpThreshold
 from rclpy.duration import Duration
@@ -36,7 +36,7 @@ class GaitGenerator(Node):
     """Parameters `gait`, `transition` and the gait's own numbers; topic `curvature_law`."""
 
     def __init__(self):
-        self._ticks = Unattended()
+        self._ticks = PolledGroup()
         super().__init__(NAME, automatically_declare_parameters_from_overrides=True)
         overrides = take_overrides(self)
         self._settings = Settings.start(overrides)
@@ -71,7 +71,7 @@ class GaitGenerator(Node):
                 try:
                     ticks.callback(taken[0])
                 except ValueError as error:  # a negative time
-                    leave_out(self, error, "a message on /clock")
+                    log_dropped(self, error, "a message on /clock")
         return True
 
     def _declare_numbers(self):

@@ -2,8 +2,8 @@
 
 `ros` holds the visualiser node. `recording` turns messages into Rerun recordings: dispatcher, loggers, destinations,
 blueprint, and the reader of recordings. `scene3d` draws in three dimensions, `plots` draws curves, maps and texts.
-`bags` records, prints and replays bags. `pictures` renders recordings. Only `ros`
-and `record`, `echo` and `definitions` in `bags` import ROS.
+`bags` records, prints and replays bags. `pictures` renders recordings. Only `ros`, and `record`, `echo` and
+`definitions` in `bags`, import ROS.
 
 Nothing is imported here, so that `import eel_viz` costs nothing.
 """
