@@ -1,10 +1,9 @@
-"""What a long run gathers: drift of the energy ledger, the quaternion, the law's phase and the path, over decades of
-periods.
+"""Drift of long runs: of the energy ledger, the quaternion, the law's phase and the path, over decades of periods.
 
-The works of the ledger are integrated along with the motion, and only the samples asked for are kept: memory does not
-grow with time. Phase of the law: its curvature at t = n T less that after one period, by the greatest curvature, which
-is an angle. Beat: the head's velocity at t = n T less that after 100 periods, by its size: the swimmer's own phase.
-Path: the head's distance from a finer run's, by the way from the start.
+The works of the ledger are integrated along with the motion, and only the samples are kept: memory does not grow with
+time. Phase of the law: change of its curvature at t = n T since the first period, relative to the greatest curvature;
+it is an angle. Beat: change of the head's velocity at t = n T since 100 periods, relative to its magnitude. Path: the
+head's distance from that of a finer run, relative to the distance from the start.
 """
 
 from dataclasses import dataclass
@@ -19,15 +18,15 @@ from eel_gaits import helix, straight
 
 PERIOD = 0.7  # s, whose multiples are not exact in binary
 DECADES = 5
-SETTLED = 2  # decade from which on every beat is like the other
-COMPARED = 3  # decades over which a finer run is swum too
+SETTLED = 2  # decade from which on the motion is periodic
+COMPARED = 3  # decades over which a finer run is simulated too
 ACCURACY = "draft"
-STATIONS = 5  # where the law's phase is looked at
+STATIONS = 5  # at which the law's phase is evaluated
 
 
 @dataclass(frozen=True)
 class Drift:
-    """One swimmer at (T,) numbers of periods; path is NaN where no finer run was swum."""
+    """The drift of one swimmer after (T,) numbers of periods; path is NaN where there is no finer run."""
 
     name: str
     periods: np.ndarray
@@ -49,7 +48,7 @@ def swimmers() -> dict[str, tuple[Law, Scene]]:
 
 
 def drift_of(name: str, law: Law, scene: Scene, decades: int = DECADES, compared: int = COMPARED) -> Drift:
-    """Swim 10^`decades` periods of `law`, and 10^`compared` of them once more, finer."""
+    """Simulate 10^`decades` periods of `law`, and 10^`compared` of them again with finer settings."""
     periods = 10.0 ** np.arange(decades + 1)
     times = np.concatenate(([0.0], PERIOD * periods))
     swimmer, out, works = _swum(law, scene, Accuracy.of(ACCURACY).in_scene(scene), times)
@@ -77,7 +76,7 @@ def drift_of(name: str, law: Law, scene: Scene, decades: int = DECADES, compared
 
 
 def table(found: list[Drift]) -> str:
-    """As a Markdown table."""
+    """The drifts as a Markdown table."""
     lines = [
         "| swimmer | periods | ledger's residual, by the work | norm of the quaternion, less 1 | phase of the law "
         "(rad) | beat, by the hundredth | path, by a finer run | way (m) |",

@@ -1,8 +1,9 @@
 """A planar law in the kernel of space: does round-off grow out of the plane, and is that the model or its numbers?
 
 Out of the plane are the head's roll and pitch rates and its velocity along axis 3, (Omega1 l, Omega2 l, V3), however
-the head is turned: no weight tells up from down. A push of 1e-15 is let grow, and a line fitted to the logarithm of its
-size over whole periods, while it is small. A rate that hangs on neither accuracy nor push is one of the model.
+the head is turned: there is no weight, so no direction is special. A perturbation of 1e-15 grows, and a line is fitted
+to the logarithm of its size over whole periods while it is small. A growth rate that depends neither on the accuracy
+nor on the perturbation is a property of the model.
 """
 
 from dataclasses import dataclass
@@ -27,7 +28,7 @@ TURNED = np.array([0.15, 0.30, -0.08, np.sqrt(1.0 - 0.1189)])  # lies across all
 
 @dataclass(frozen=True)
 class Growth:
-    """How a push out of the plane goes: rate per period, direction (3,) of the mode (roll, pitch, vertical)."""
+    """Growth of a perturbation out of the plane: rate per period, direction (3,) (roll, pitch, vertical)."""
 
     rate: float
     mode: np.ndarray

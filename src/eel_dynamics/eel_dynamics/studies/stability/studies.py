@@ -11,31 +11,31 @@ from eel_dynamics.studies.stability.report import report
 
 @dataclass(frozen=True)
 class Study:
-    """What was found: `text` in Markdown, `pictures` by name: title, and what fills an empty figure."""
+    """The result of a study: `text` in Markdown; `pictures` by name: title, and a function that draws into a figure."""
 
     text: str
     pictures: dict[str, tuple[str, Callable]] = field(default_factory=dict)
 
 
 def maps(points: int) -> Study:
-    """Two numbers of a swim at a time: accurate, inaccurate, or stopped."""
+    """Maps of runs over two parameters: accurate, inaccurate, or stopped."""
     found = [measure(item) for item in maps_of(points)]
     return Study(report(found), {each.map.name: (each.map.title, _drawn(draw, each)) for each in found})
 
 
 def conditions(points: int) -> Study:
-    """Condition of the 6 x 6 matrix, and what becomes of singular bodies."""
+    """Condition of the 6 x 6 matrix, and runs of singular bodies."""
     found = condition.maps_of(points)
     return Study(condition.table(found), {each.name: (each.title, _drawn(draw_condition, each)) for each in found})
 
 
 def drifts(points: int) -> Study:
-    """What 100,000 periods gather."""
+    """Drift over 100,000 periods."""
     return Study(drift.table([drift.drift_of(name, *each) for name, each in drift.swimmers().items()]))
 
 
 def planes(points: int) -> Study:
-    """Whether round-off grows out of the plane of a planar law, and why."""
+    """Growth of round-off out of the plane of a planar law."""
     return Study(plane.table())
 
 

@@ -1,6 +1,6 @@
-"""Work spread over processes, on this machine or on others, by Dask.
+"""Distributes tasks over processes, on this machine or on others, by Dask.
 
-A worker that is lost takes nothing with it but time: its work is given to the others.
+The tasks of a worker that dies are given to the others.
 """
 
 import multiprocessing
@@ -13,7 +13,7 @@ EXTRA = "dask", "distributed", "xarray"
 
 
 def needed() -> dict:
-    """The modules that a sweep needs, by name; one `ImportError` that says how to install it."""
+    """Import the modules that a sweep needs; returns them by name. `ImportError` with the command to install them."""
     from importlib import import_module
 
     try:
@@ -63,8 +63,8 @@ def _check_semaphores():
 def spread(client, task: Callable, chunks: list, *settings) -> Iterator[tuple]:
     """`task(chunk, *settings)` for every chunk, on the workers of `client`.
 
-    Yields (chunk, result, None) as they come, or (chunk, None, error) for one that failed: the error is the task's own,
-    or tells that the chunk brought one worker after the other down.
+    Yields (chunk, result, None) in order of completion, or (chunk, None, error) for a failed chunk: the task's own
+    error, or one that says that the chunk killed several workers.
     """
     from distributed import as_completed
 

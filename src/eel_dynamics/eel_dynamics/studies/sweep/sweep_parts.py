@@ -1,4 +1,4 @@
-"""What is done of a sweep, on disk beside its output, so that it can go on after an end that was not planned."""
+"""Stores the partial results of a sweep on disk beside its output, so that an interrupted sweep can be resumed."""
 
 import contextlib
 import itertools
@@ -56,7 +56,7 @@ class Parts:
         raise ValueError(f"{self.out} exists and is not of this sweep: choose another out, or overwrite")
 
     def load(self) -> dict[int, dict]:
-        """What is there already; makes the folder. A part that cannot be read is done again, with a warning."""
+        """Load the stored results, by index; makes the folder. A damaged part is removed, with a warning."""
         done = {}
         if self.folder is not None:
             self.folder.mkdir(exist_ok=True)
@@ -71,7 +71,7 @@ class Parts:
         return done
 
     def keep(self, result: dict[int, dict]):
-        """Write one task's results; whole or not at all."""
+        """Write one task's results to a part, atomically."""
         if self.folder is None:
             return
         told = {
@@ -82,7 +82,7 @@ class Parts:
             draft.write_text(json.dumps(told))
 
     def finish(self, data):
-        """Write the whole, and drop the parts."""
+        """Write the complete sweep, and remove the parts."""
         if self.out is None:
             return
         with replacing(self.out) as draft:
@@ -90,7 +90,7 @@ class Parts:
         self._remove()
 
     def _part(self, path: Path) -> dict[int, dict]:
-        """The points of one part. `ValueError` for what `keep` has not written: text, NaN, nothing, half of it."""
+        """The points of one part. `ValueError` if `keep` cannot have written it: text, NaN, a truncated file."""
         found = json.loads(path.read_text(encoding="utf-8"), parse_constant=_infinity)
         if not isinstance(found, dict):
             raise ValueError("it holds no points")
@@ -104,7 +104,7 @@ class Parts:
         return points
 
     def _key_of_folder(self) -> str | None:
-        """The key of the sweep that the folder is of; None where it holds no parts."""
+        """The key of the folder's sweep; None if it holds no parts."""
         if not any(self.folder.glob("part-*.json")):
             return None
         try:
@@ -113,7 +113,7 @@ class Parts:
             return "unknown"
 
     def _remove(self):
-        """Remove the parts; what else there is in the folder stays."""
+        """Remove the parts; other files in the folder stay."""
         for pattern in OURS:
             for path in self.folder.glob(pattern):
                 path.unlink()
