@@ -143,7 +143,7 @@ def test_the_node_says_each_once_and_keeps_it_until_a_reset():
     swimmer.adopt(bent("yaw", 8.0))
     for sample in range(20):
         swimmer.advance(0.01 * sample)
-        monitor.add(swimmer.observe(), look=sample % 5 == 4)
+        monitor.add(swimmer.observe(), check=sample % 5 == 4)
     assert sorted(report.logged) == ["contact", "tail"]
     assert set(report.lasting) == {"contact", "tail"}
     monitor.restart()
