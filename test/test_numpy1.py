@@ -29,7 +29,7 @@ json.dump({"numpy": numpy.__version__, "position": run.position.tolist(), "torqu
 TALK = """
 import json, sys
 import numpy
-from eel_dynamics import messages
+from eel_dynamics.ros import messages
 from eel_gaits import falling
 from eel_gaits.messages import law_from_message, law_to_message
 from eel_msgs.msg import Backbone, CurvatureLaw
