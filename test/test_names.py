@@ -45,7 +45,7 @@ def test_names_are_only_names(start, fresh_domain, tmp_path, monkeypatch):
     before = files_in(tmp_path)
     visualiser = start("visualiser", "--ros-args", "-p", "sink:=[save]", "-p", "recording:=run.rrd")
     visualiser.wait_for_output("saving to", LIMIT)
-    dynamics = start("dynamics", "--ros-args", "-p", "wait_for_subscribers:=1")
+    dynamics = start("dynamics", "--ros-args", "-p", "wait_for_subscribers:=2")
     swim = SwimClient(domain=fresh_domain, topics=("curvature",))
     for name in NAMES:
         swim.laws.publish(law_to_message(Law(Term(amplitude=(0.1,), envelope=(Ramp(0.0, 1.0, 1.0),)), name=name)))

@@ -81,7 +81,9 @@ def test_executables_lie_where_ros2_run_looks(package):
     executables = {path.name for path in folder.iterdir() if os.access(path, os.X_OK)}
     assert executables == EXECUTABLES[package]
     for path in folder.iterdir():
-        interpreter = path.read_text().splitlines()[0].removeprefix("#!")
+        first, second = path.read_text().splitlines()[:2]
+        in_shell = second.removeprefix("'''exec' '").partition("' ")[0]  # where the path has a space
+        interpreter = in_shell if first == "#!/bin/sh" else first.removeprefix("#!")
         assert Path(interpreter).samefile(sys.executable)
 
 

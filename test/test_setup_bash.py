@@ -23,13 +23,13 @@ def test_brings_python_and_nodes():
         "command -v " + " ".join(NODES)
     )
     assert done.returncode == 0, done.stderr
-    found = done.stdout.split()
+    found = done.stdout.splitlines()
     assert [Path(path).name for path in found] == list(NODES)
     assert all(Path(path).is_relative_to(ROOT / "install") for path in found)
 
 
 def test_shadows_no_command_of_the_system():
-    done = shell(f"source '{ROOT}/setup.bash'; ls {ROOT}/install/bin")
+    done = shell(f"source '{ROOT}/setup.bash'; ls '{ROOT}/install/bin'")
     ours = done.stdout.split()
     assert ours
     assert [

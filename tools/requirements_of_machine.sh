@@ -18,11 +18,13 @@ wanted_python() {
 # Sets $python to one that runs (a version manager's shim may not), is 3.11 to 3.13, and has venv, pip and its C headers.
 find_python() {
     local candidate version without_venv="" without_headers="" others=""
+    local candidates=(python3.13 python3.12 python3.11 python3 /usr/bin/python3.13 /usr/bin/python3.12 /usr/bin/python3.11 /usr/bin/python3)
+    [ -z "${PYTHON-}" ] || candidates=("$PYTHON")
     [ "$(uname -s)-$(uname -m)" = Linux-x86_64 ] || {
         echo "[build] missing: x86-64 Linux (this is $(uname -s) on $(uname -m)); the ROS 2 wheels exist for nothing else" >&2
         exit 1
     }
-    for candidate in ${PYTHON:-python3.13 python3.12 python3.11 python3 /usr/bin/python3.13 /usr/bin/python3.12 /usr/bin/python3.11 /usr/bin/python3}; do
+    for candidate in "${candidates[@]}"; do
         version="$("$candidate" -I -c 'import sys; print("%d.%d" % sys.version_info[:2])' 2> /dev/null)" || continue
         case "$version" in 3.11 | 3.12 | 3.13) ;; *) others="$others $candidate ($version)"; continue ;; esac
         "$candidate" -I -c 'import ensurepip, venv' 2> /dev/null || { without_venv="${without_venv:-$version}"; continue; }

@@ -2,10 +2,10 @@
 # All tests but the long ones. Without arguments as four pytest processes side by side, each in ROS domains of its own:
 # they wait most of the time. Arguments go to one pytest.
 set -uo pipefail
-if [ $# -gt 0 ]; then exec python -m pytest -m "not soak" "$@"; fi
+if [ $# -gt 0 ]; then exec python -m pytest "$@"; fi
 
 # A test that hangs where Python's own time-out cannot reach, in compiled code, ends its pytest with all threads' stacks.
-pytest=(python -m pytest -m "not soak" -o faulthandler_timeout=420 -o faulthandler_exit_on_timeout=true)
+pytest=(python -m pytest -o faulthandler_timeout=420 -o faulthandler_exit_on_timeout=true)
 mkdir -p out
 declare -A beside
 stop() {

@@ -71,7 +71,7 @@ class ClockMonitor:
             state = "this node does not" if not allowed else "one of the two has to go"
             self._report.begin("clock", f"/clock is published by {names} already: {state}")
         else:
-            self._report.end("clock", "no other publisher of /clock any more")
+            self._report.end("clock", "" if others else "no other publisher of /clock any more")
         if allowed != self._offered:
             self._offered = allowed
             self._offer(allowed)

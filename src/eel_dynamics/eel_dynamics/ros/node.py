@@ -130,7 +130,11 @@ class DynamicsNode(Node):
 
     def _answer(self, response, request, state):
         response.success = request.done.wait(SERVICE_TIMEOUT)
-        response.message = f"{state} at t = {request.time:g} s" if response.success else "to be done soon"
+        response.message = (
+            f"{state} at t = {request.time:g} s"
+            if response.success
+            else f"not done within {SERVICE_TIMEOUT:g} s, still queued"
+        )
         return response
 
 

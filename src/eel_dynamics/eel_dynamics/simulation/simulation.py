@@ -84,7 +84,7 @@ class Simulation:
 
     @property
     def grid(self):
-        """The nodes along the body (`quadrature.Grid`)."""
+        """The nodes along the body (`model.grid.Grid`)."""
         return self._march.discretisation.grid
 
     @property

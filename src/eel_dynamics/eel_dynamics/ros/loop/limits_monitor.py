@@ -25,7 +25,7 @@ class LimitsMonitor:
         self._warn("slenderness", self._limits.of_body())
 
     def add(self, snapshot, check: bool):
-        """Takes in what is looked at over a while; `look`, now and then: has all limits looked at."""
+        """Add a snapshot; with `check`, compare all since the last check with the limits."""
         if snapshot.energy is not None:
             self._wake_power.append(float(snapshot.energy.wake_power))
         if check:

@@ -207,6 +207,11 @@ class RunLoop:
         self.pace.restart(self.samples_published, time.monotonic(), parameters.real_time_factor)
 
     def _reset(self):
+        try:
+            self._simulation.reset()
+        except ValueError as error:  # a law that could be blended into may not begin from the initial state
+            self._report.event("reset", f"reset refused: {error}", ERROR)
+            return
         now = time.monotonic()
         self.time, self.samples_published, self.totals = 0.0, 0, RunTotals()
         self._obstacles.failed, self._sample_begun = False, None
@@ -215,7 +220,6 @@ class RunLoop:
         self._report.end("stopped")
         self.pace.restart(0, now)
         self.laws.reset()
-        self._simulation.reset()
         self._report.info("reset to t = 0 s")
 
 

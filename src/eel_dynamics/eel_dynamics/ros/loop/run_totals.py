@@ -67,6 +67,5 @@ def _ratio(value, scale):
 
 
 def _not_finite(snapshot, name, values):
-    return SimulationStopped(
-        time=snapshot.time, quantity=name, value=float(np.ravel(values)[~np.isfinite(np.ravel(values))][0]), hint=""
-    )
+    first = float(np.ravel(values)[~np.isfinite(np.ravel(values))][0])
+    return SimulationStopped(snapshot.time, name, first, "take a gentler law")
