@@ -58,7 +58,7 @@ def speed() -> str:
         f"Errors are of the head's position at the end, by its path; friction is laminar ({link(falling)}).",
         f"One evaluation of the head's dynamics takes {evaluation.value('24 nodes'):.2g} us",
         f"at 24 nodes ({link(evaluation)}).",
-        "At equal error the paper's own scheme in the same language takes",
+        "At equal error the paper's own scheme takes, both compiled by numba,",
         f"{span(scheme.ratios('motion alone'))} for the motion alone ({link(scheme)}). On the same gait, at equal",
         "error against their own answers and with less physics of the water, MuJoCo (10 links) takes",
         f"{span(peers.ratios('10 links'))}, PyElastica",
