@@ -1,1 +1,1 @@
-"""The table of accuracy: settings measured to deliver each target."""
+"""Calibration: measures the table of accuracy, the settings that deliver each target."""

@@ -1,13 +1,15 @@
-"""Calibration of the targets of accuracy: what settings deliver which error, measured over gaits, bodies and scenes.
+"""Calibration of the targets of accuracy: measures which settings deliver which error, over gaits, bodies and scenes.
 
-Every case is swum once with far more points and far smaller steps than any setting has; the error of a setting is the
-greater of the head's position at the end and of the torque (`relative_errors`). Points along the body and steps in
-time are varied apart, since their errors add. For each target the table gets the cheapest settings whose worst error
-over all cases stays below it, also when all cases swim with them as they are: apart for cases that stay in a plane and
-others. Errors are relative to the difficulty of the swim (`difficulty.py`), as targets are when their settings are
-looked up. The cost is counted in evaluations of the head's dynamics; for runs with torque those of the ledger count
-too, a number per step that is measured here. The kinks of the drag are looked for where that is cheaper than further
-points and further steps (without it the drag is less smooth in time, too). What comes of it is fitted to many more laws
+Each case is simulated once as a reference, with far more points and far smaller steps than any setting. The error of a
+setting is the greater of two errors: of the head's position at the end, and of the torque (`relative_errors`). Points
+along the body and steps in time are varied separately, since their errors add. For each target the table gets the
+cheapest settings whose worst error over all cases stays below the target. This is checked with points and steps
+combined. Cases that stay in a plane have rows of their own.
+
+Errors are relative to the difficulty of the run (`difficulty.py`), and so are targets when their settings are looked
+up. The cost is counted in evaluations of the head's dynamics. For runs with torque the cost of the ledger is added: a
+number of evaluations per step, measured here. The kinks of the drag are located where that is cheaper than more points
+and more steps. Without it the drag is also less smooth in time. The settings found are then fitted to many more laws
 (`fitting`).
 """
 
@@ -53,35 +55,35 @@ RESOLUTIONS = (
 )
 TOLERANCES = tuple(10.0 ** (-k / 6.0) for k in range(12, 79))
 METHODS = (("adams", 4), ("adams", 5), ("adams", 6), ("dormand_prince", 5))
-FIXED_STEPS = tuple(float(round(8.0 * 10.0 ** (0.1 * k))) for k in range(21))  # by period, of the classical method
-ADAMS_LEAST = 1e-9  # tolerance below which Adams' steps are never the cheaper ones
+FIXED_STEPS = tuple(float(round(8.0 * 10.0 ** (0.1 * k))) for k in range(21))  # per period, classical Runge-Kutta
+ADAMS_LEAST = 1e-9  # tolerance below which Adams' method is never the cheaper one
 REFERENCE = Accuracy(name="reference of the calibration", resolution=300.0, tolerance=1e-13)
-DENSE, EXACT = 140.0, 1e-12  # resolution and tolerance of what is not varied
-SHARE = 0.7  # of the target for the worst case: laws and scenes that are not among the cases may be worse
-PART_OF_SPACE = 0.25  # of that, for the points along the body
-CHECKED = 0.85  # of the target, for the worst case with both
-FITTED = 0.7  # of the target, for the gaits and most of the many laws that the settings are fitted to
-MANY = range(6, 66)  # their seeds
-LONG = ("falling", "kern_fast"), 60.0  # gaits that count among them, and for how long [s]: the most sensitive to it
-WAIVED = 0.05  # part of the laws that may go over that, up to the target
-WAIVED_FREE = 3  # of them may miss the target where nothing damps the motion in space: `simulate` verifies such runs
-FINEST_IN_SPACE = 1e-8  # with drag: beyond, laws differ too much
-BESIDES = 22  # what an evaluation and its step cost whatever the nodes, in nodes that cost as much
-COARSE = 1e-4  # target, from which on points and steps are chosen together, and whether to look for kinks: below, their
-# errors differ too much from law to law
-FINER_STEPS, MOST_STEPS = 3, 10  # of the tolerances that are tried for these
-# what it costs to look for the drag's kinks, in nodes that cost as much; and where the motion stays in a plane
+DENSE, EXACT = 140.0, 1e-12  # resolution or tolerance while the other one is varied
+SHARE = 0.7  # of the target, allowed for the worst case: other laws and scenes may be worse than the cases
+PART_OF_SPACE = 0.25  # of `SHARE`, allowed for the points along the body
+CHECKED = 0.85  # of the target, allowed for the worst case with points and steps combined
+FITTED = 0.7  # of the target, allowed for the gaits and most of the many laws that the settings are fitted to
+MANY = range(6, 66)  # seeds of these laws
+LONG = ("falling", "kern_fast"), 60.0  # gaits among the many laws, and their duration [s]: the most sensitive to it
+WAIVED = 0.05  # fraction of the laws that may exceed it, up to the target
+WAIVED_FREE = 3  # laws that may miss the target where nothing damps the motion in space: `simulate` verifies such runs
+FINEST_IN_SPACE = 1e-8  # finest target with drag: below it, laws differ too much
+BESIDES = 22  # cost of an evaluation and its step without the nodes, in nodes of equal cost
+COARSE = 1e-4  # At this target and above, points, steps and the kinks to locate are chosen together. Below it, their
+# errors differ too much from law to law.
+FINER_STEPS, MOST_STEPS = 3, 10  # tolerances tried at these targets: finer ones per method, and in all
+# Cost of locating the drag's kinks, in nodes of equal cost: in space, and where the motion stays in a plane.
 COST_OF_KINKS = {"none": 0, "jumps": 5, "all": 13}, {"none": 0, "jumps": 15, "all": 30}
-# of the random laws, decadic logarithms, lowest and highest: of the bends and the pace of `random_law`, and of the time
-# [s] that they are swum for at that pace
+# Least and greatest decadic logarithms for the random laws: of the factors on the curvature and the pace of
+# `random_law`, and of the duration [s] before it is divided by the pace.
 BENDS, PACES, SECONDS = (-0.7, 0.3), (-0.4, 0.4), (0.4, 1.2)
-PRICED = 10  # of the laws, that tell what settings cost
-TURNS = 15  # in which runs with the ledger and without are timed
+PRICED = 10  # laws on which the cost of settings is measured
+TURNS = 15  # rounds of timing runs with and without the ledger
 
 
 @dataclass(frozen=True, kw_only=True)
 class Case:
-    """What is swum: a law by a body in a scene, for a time [s]."""
+    """One case to simulate: a law on a body in a scene, for `duration` [s]."""
 
     name: str
     law: Law
@@ -91,17 +93,20 @@ class Case:
 
     @property
     def plane(self) -> bool:
-        """The motion stays in a plane."""
+        """Whether the motion stays in a plane."""
         return self.law.in_plane
 
     def error_scale(self, torque: bool) -> float:
-        """What errors of position, or with `torque` of either, are taken by."""
+        """Scale that relative errors are divided by: of position, or with `torque` of position and torque."""
         difficulty = difficulty_of(self.law, self.body.length, self.duration)
         return difficulty.error_scale(self.scene.resistive, torque, self.plane)
 
 
 def random_law(seed: int, length: float, planar: bool = False) -> Law:
-    """A law with waves in yaw and pitch and a bend, begun over a time of its own."""
+    """A random law for a body of `length` [m]: per axis a wave and a constant bend, each with a random ramp.
+
+    The axes are yaw and pitch, or yaw alone if `planar`.
+    """
     rng = np.random.default_rng(seed)
     terms = []
     for axis in ("yaw",) if planar else ("yaw", "pitch"):
@@ -123,8 +128,11 @@ def random_law(seed: int, length: float, planar: bool = False) -> Law:
 
 
 def cases(drag: bool = True, seeds=range(6), seconds: float | None = None) -> list[Case]:
-    """The library's gaits (for so many `seconds`; None: 10, or 4 without drag, where motions get too sensitive to stand
-    for others) and random laws, on both bodies, in the scenes that differ most; with or without drag."""
+    """Cases with or without `drag`: gaits and random laws, on both bodies, in the scenes that differ most.
+
+    The gaits are the library's. seeds: of the random laws. seconds: duration of the gaits [s]; None: 10, or 4 without
+    drag. Without drag, longer motions are too sensitive to represent others.
+    """
     boyer, kern = Body.boyer2010(), Body.kern2006()
     names = ("falling", "straight", "turning", "rolling", "helix", "kern_fast", "backward")
     seconds = seconds or (10.0 if drag else 4.0)
@@ -152,14 +160,14 @@ def cases(drag: bool = True, seeds=range(6), seconds: float | None = None) -> li
 
 
 def _long() -> list[Case]:
-    """Gaits that swim for long."""
+    """Cases of the gaits in `LONG`, of long duration."""
     names, seconds = LONG
     some = [case for case in cases(True, (), seconds) if case.name.split(",")[0] in names]
     return [replace(case, name=f"{case.name}, {seconds:g} s") for case in some]
 
 
 def _of_seed(seed: int, drag: bool) -> tuple[str, Law, Body, float]:
-    """A random law, every third in the plane, the body that swims it, and for how long [s]."""
+    """Name, random law, body and duration [s] of a seed. Every third law is planar."""
     rng = np.random.default_rng(1000 + seed)
     bends, pace, seconds = 10.0 ** rng.uniform(*BENDS), 10.0 ** rng.uniform(*PACES), 10.0 ** rng.uniform(*SECONDS)
     law = varied(random_law(seed, 1.0, planar=seed % 3 == 2), bends, pace)
@@ -167,7 +175,7 @@ def _of_seed(seed: int, drag: bool) -> tuple[str, Law, Body, float]:
 
 
 def varied(law: Law, bends: float, pace: float) -> Law:
-    """The same with so many times the bends, at so many times the pace."""
+    """`law` with its curvature multiplied by `bends` and its pace by `pace`."""
     terms = [
         replace(
             term,
@@ -181,7 +189,10 @@ def varied(law: Law, bends: float, pace: float) -> Law:
 
 
 def swim(case: Case, accuracy) -> Run:
-    """The run of a case that errors are measured on."""
+    """Simulate a case for the measurement of errors: samples every 0.05 s, 31 stations.
+
+    `SimulationStopped` where the run cannot go on.
+    """
     return simulate(
         case.law,
         case.duration,
@@ -195,10 +206,13 @@ def swim(case: Case, accuracy) -> Run:
 
 
 def calibrate(path: Path | str | None = None, say: Callable = lambda text: None) -> list[dict]:
-    """Measure the table of targets anew and write it to `path` (by default the library's own). Returns its rows."""
+    """Measure the table of targets again and write it to `path` (None: the library's own table). Returns its rows.
+
+    say(text): called with a line of progress. `OSError` where the file cannot be written.
+    """
     rows, ledger = [], ledger_of_a_step()
     say(f"the ledger of a step costs {ledger:.2f} evaluations")
-    with ThreadPoolExecutor(os.cpu_count()) as pool:  # the loops run outside Python's lock
+    with ThreadPoolExecutor(os.cpu_count()) as pool:  # the loops release Python's lock
         for drag in (True, False):
             found = list(pool.map(lambda case: _measure(case, say), cases(drag)))
             many = cases(drag, MANY) + (_long() if drag else [])
@@ -221,12 +235,12 @@ def calibrate(path: Path | str | None = None, say: Callable = lambda text: None)
 
 
 def _key(case: Case) -> tuple[int, int]:
-    """Turbulent friction, and in the plane, 1 or 0: what has rows of its own."""
+    """(turbulent friction, motion in a plane), each 1 or 0. Each key has rows of its own."""
     return int(case.scene.resistive and case.scene.friction in TURBULENT), int(case.plane)
 
 
 def _fitting(many: list[tuple[Case, Run]], torque: bool, pool: ThreadPoolExecutor) -> Fitting:
-    """The swims of `many` cases, each with the run that it is compared with."""
+    """The `Fitting` to `many` cases, each with its reference run."""
 
     def error(swimmer: tuple[Case, Run], setting: Accuracy) -> float:
         case, reference = swimmer
@@ -248,8 +262,10 @@ def _fitting(many: list[tuple[Case, Run]], torque: bool, pool: ThreadPoolExecuto
 
 
 def ledger_of_a_step(turns: int = TURNS) -> float:
-    """What the energy ledger costs per step, in evaluations of the head's dynamics: from the CPU times of the same swim
-    with it and without."""
+    """Cost of the energy ledger per step, in evaluations of the head's dynamics.
+
+    Measured from the CPU times of the same run with and without the ledger, as the median of `turns` rounds.
+    """
     accuracy = Accuracy(name="timed", resolution=22.0, tolerance=1e-6)
     swimmers = [
         Simulation(scene=Scene(ledger=ledger), accuracy=accuracy, stations=2, law=falling()) for ledger in (False, True)
@@ -270,13 +286,13 @@ def ledger_of_a_step(turns: int = TURNS) -> float:
 
 @dataclass(frozen=True)
 class MeasuredErrors:
-    """Of one case: errors of position and torque, and for the steps in time what they cost."""
+    """Errors of position and torque of one case; for the steps in time also their cost."""
 
     case: Case
     reference: Run
     space: np.ndarray  # (kinds of kinks, resolutions, 2)
-    alone: np.ndarray  # (kinds of kinks, resolutions, 1): of position, on the coarser grids of runs without torque
-    time: np.ndarray  # (methods, tolerances, 4): errors, evaluations, steps
+    alone: np.ndarray  # (kinds of kinks, resolutions, 1): position, on the coarser grids of runs without torque
+    time: np.ndarray  # (methods, tolerances, 4): errors of position and torque, evaluations, steps
 
 
 def _measure(case: Case, say) -> MeasuredErrors:
@@ -298,7 +314,7 @@ def _measure(case: Case, say) -> MeasuredErrors:
 
 
 def _in_space(case: Case, reference: Run, setting: Accuracy, counted: int) -> np.ndarray:
-    """Errors (kinds of kinks, resolutions, `counted`) by the points along the body, of position and torque."""
+    """Errors (kinds of kinks, resolutions, `counted`) of position and torque, against the points along the body."""
     found = [
         [
             _of(case, reference, replace(setting, resolution=resolution, kinks=kinks))[:counted]
@@ -323,7 +339,7 @@ def _without_torque(case: Case) -> Case:
 
 
 def _rows(found: list[MeasuredErrors], torque: bool, ledger: float, fitting: Fitting, price: Callable):
-    """The rows of a table; `ledger`: evaluations that a step costs besides its own."""
+    """Yield the rows of a table. ledger: cost of the ledger per step, in evaluations."""
     counted = slice(0, 2 if torque else 1)
     by = [each.case.error_scale(torque) for each in found]
     space = np.max(
@@ -331,7 +347,7 @@ def _rows(found: list[MeasuredErrors], torque: bool, ledger: float, fitting: Fit
     )
     time = np.max([each.time[..., counted] / hard for each, hard in zip(found, by, strict=True)], axis=(0, 3))
     cost = np.mean([each.time[..., 2] + ledger * each.time[..., 3] for each in found], axis=0)
-    if torque:  # the ledger's works are integrals over steps: with Adams' longest ones they miss some hundredths
+    if torque:  # the ledger integrates works over steps: with Adams' longest steps they are off by some hundredths
         cost[[method == "adams" for method, _ in METHODS]] = np.inf
     numbers = FIXED_STEPS
     for target in TARGETS:
@@ -359,8 +375,10 @@ def _rows(found: list[MeasuredErrors], torque: bool, ledger: float, fitting: Fit
 
 
 def _steps(time: np.ndarray, cost: np.ndarray, allowed: float, finer: int = 0) -> list[Accuracy]:
-    """Methods and tolerances whose errors stay below what is `allowed`, the cheapest first: of each method the loosest
-    tolerance, and so many `finer` ones."""
+    """Methods and tolerances whose errors stay at or below `allowed`, the cheapest first.
+
+    Each method contributes its loosest tolerance and the next `finer` ones.
+    """
     choices = []
     for (method, order), worst, costs in zip(METHODS, time, cost, strict=True):
         good = _first(worst, allowed)
@@ -374,26 +392,28 @@ def _steps(time: np.ndarray, cost: np.ndarray, allowed: float, finer: int = 0) -
 
 
 def _grids(space: np.ndarray, kinds, allowed: float, torque: bool) -> list[tuple[float, str]]:
-    """Resolutions whose errors stay below what is `allowed`, one for each kind of kinks that are looked for."""
+    """Coarsest resolutions whose errors stay at or below `allowed`, one for each kind of kinks that are located."""
     points = [_first(worst, allowed) for worst in space]
     found = zip(points, kinds, strict=True)
     return [(_filled(RESOLUTIONS[point], torque), kinks) for point, kinks in found if point is not None]
 
 
 def _nodes(resolution: float, torque: bool) -> int:
-    """Of the paper's robot."""
+    """Number of nodes of the paper's robot."""
     return sum(panel.points for panel in panels_of(Body.boyer2010(), resolution, (), torque))
 
 
 def _filled(resolution: float, torque: bool) -> float:
-    """The finest resolution that costs the paper's robot no further eight nodes: a margin for laws of more waves."""
+    """The finest resolution with no more nodes on the paper's robot: a margin for laws of more waves."""
     most = _nodes(resolution, torque)
     return max(each for each in (resolution, *RESOLUTIONS) if _nodes(each, torque) <= most)
 
 
 def _price(many: list[tuple[Case, Run]], torque: bool, ledger: float, pool: ThreadPoolExecutor) -> Callable:
-    """What a setting costs some of `many` cases: evaluations, those of the ledger counted, times what one costs, in
-    nodes."""
+    """A function: cost of a setting over some of the `many` cases.
+
+    The cost is the number of evaluations, those for the ledger included, times the cost of one, in nodes.
+    """
     some = [case if torque else _without_torque(case) for case, _ in many[:: max(1, len(many) // PRICED)]]
     plane = some[0].plane
 
@@ -406,7 +426,7 @@ def _price(many: list[tuple[Case, Run]], torque: bool, ledger: float, pool: Thre
 
 
 def _swum(found: list[MeasuredErrors], torque: bool, setting: Accuracy, ledger: float) -> tuple[float, float]:
-    """The greatest error of all cases, as they are with a `setting`, and what they cost."""
+    """Greatest error of all cases with a `setting`, and the mean cost in evaluations."""
     lean = [each.case if torque else _without_torque(each.case) for each in found]
     swum = [_of(case, each.reference, setting) for case, each in zip(lean, found, strict=True)]
     counted = 2 if torque else 1
@@ -417,8 +437,10 @@ def _swum(found: list[MeasuredErrors], torque: bool, setting: Accuracy, ledger: 
 def _cheapest(
     found: list[MeasuredErrors], torque: bool, allowed: float, ledger: float, settings: list[Accuracy]
 ) -> Accuracy:
-    """The cheapest of the `settings` with which the errors of all cases stay below what is `allowed`; the last of them,
-    with all kinks, where none does."""
+    """The cheapest of the `settings` whose errors stay at or below `allowed` in all cases.
+
+    Where there is none: the last setting, with all kinks located.
+    """
     good = []
     for setting in settings:
         worst, evaluations = _swum(found, torque, setting, ledger)
@@ -429,8 +451,11 @@ def _cheapest(
 
 
 def _first(errors, allowed: float) -> int | None:
-    """The first setting from which on the errors, from the coarsest to the finest, stay below what is `allowed`: a
-    lucky one does not count. None where the finest are above it. Those not measured are inf, at one end."""
+    """Index of the first setting from which on all `errors` are at or below `allowed`; None where the finest is above.
+
+    errors: from the coarsest setting to the finest; inf at one end where not measured. A single small error among
+    greater ones does not count.
+    """
     finite = np.where(np.isfinite(errors), errors, 0.0)
     worst = np.where(np.isfinite(errors), np.maximum.accumulate(finite[::-1])[::-1], np.inf)
     good = np.flatnonzero(worst <= allowed)

@@ -1,8 +1,9 @@
-"""Second part of the calibration: settings that a few laws have led to, fitted to many.
+"""Second part of the calibration: fits settings found with a few laws to many laws.
 
-Laws differ in what a setting makes of them by a factor of thirty and more. So what the gaits and a few random laws ask
-for is swum by many others: with shorter steps or more points until all of them keep within the target, then with longer
-steps and fewer points for as long as they do; and by other methods and fewer points still, where that is cheaper.
+At the same setting, the errors of different laws differ by a factor of thirty and more. The settings found with the
+gaits and a few random laws are therefore tried on many others. First, steps are shortened or points added until all
+errors keep within the target. Then steps are lengthened and points removed for as long as the errors do. Last, other
+methods and still fewer points are tried where they are cheaper.
 """
 
 import math
@@ -12,18 +13,21 @@ from dataclasses import dataclass, replace
 
 from eel_dynamics.accuracy.accuracy import LOOSEST, Accuracy
 
-STEP = 10.0 ** (1.0 / 6.0)  # of the tolerance
-SHORTER = 2, 6  # so many of them: few of the loosest may leave the steps at their longest
-MOST_FINER = 14  # settings that are tried in place of one that is too coarse
-GRIDS_BELOW, MOST_LONGER, MOST_SHORTER = 2, 6, 3  # grids and tolerances that are tried for what is cheaper
-AT_ONCE = 8  # swims between two looks whether one has failed
+STEP = 10.0 ** (1.0 / 6.0)  # factor between tolerances
+SHORTER = 2, 6  # of these factors, tried at once: with few, a loose tolerance may leave the steps at their longest
+MOST_FINER = 14  # settings tried in place of one that is too coarse
+GRIDS_BELOW, MOST_LONGER, MOST_SHORTER = 2, 6, 3  # grids and tolerances tried for a cheaper setting
+AT_ONCE = 8  # runs between two checks for a failure
 
 
 @dataclass
 class Fitting:
-    """The many who swim. `error(swimmer, setting)`: of one of the `swimmers`; grids: resolutions [points per length]
-    that differ in their nodes, ascending; `waived`: how many of those that `may_miss` what is allowed do so, by no more
-    than a factor `at_most`."""
+    """Fits settings to many swimmers.
+
+    error(swimmer, setting): the error of one of the `swimmers`. grids: resolutions [points per body length] that differ
+    in their nodes, ascending. may_miss(swimmer): whether it may exceed the allowed error. waived: number of swimmers
+    that may exceed it in one setting, by no more than the factor `at_most`.
+    """
 
     swimmers: list
     error: Callable
@@ -34,12 +38,14 @@ class Fitting:
     may_miss: Callable = lambda swimmer: True
 
     def fitted(self, setting: Accuracy, allowed: float) -> Accuracy | None:
-        """The setting nearest to `setting` with which no error is above what is `allowed`, and that cannot be loosened;
-        None where none of those that were tried will do."""
+        """A setting near `setting` whose errors are within `allowed`, and that cannot be loosened further.
+
+        None where none of the settings tried is fine enough.
+        """
         for _ in range(MOST_FINER):
             if self._holds(setting, allowed):
                 return self._loosened(setting, allowed)
-            # the one that has failed leads: it tells what would help
+            # the swimmer that failed is first: its errors show which change helps most
             choices = [self._shorter(setting, steps) for steps in SHORTER]
             choices += [each for each in (self._finer(setting), self._looking(setting)) if each]
             errors = list(self.pool.map(lambda choice: self.error(self.swimmers[0], choice), choices))
@@ -47,8 +53,10 @@ class Fitting:
         return None
 
     def cheapest(self, setting: Accuracy, allowed: float, cost: Callable, methods) -> Accuracy:
-        """`setting`, or what costs less, as `cost(setting)` has it, and holds as the next tolerance below its own does:
-        by other `methods` (method, order), at other tolerances, on coarser grids, or with all kinks."""
+        """`setting`, or one of lower `cost(setting)` that keeps within `allowed`, also at the next finer tolerance.
+
+        Tries other `methods` (method, order), other tolerances, coarser grids, and all kinks located.
+        """
         grids = [each for each in self.grids if each <= setting.resolution][-GRIDS_BELOW - 1 :]
         found, least = setting, cost(setting)
         for kinks in dict.fromkeys((setting.kinks, "all")):
@@ -68,7 +76,7 @@ class Fitting:
         return found
 
     def fewest(self, setting: Accuracy, numbers: tuple[float, ...], allowed: float) -> float | None:
-        """The first of the `numbers` of fixed steps that holds on the grid of `setting`; None where none does."""
+        """The first of the `numbers` of fixed steps within `allowed` on the grid of `setting`; None where none is."""
         for number in numbers:
             fixed = Accuracy(name=setting.name, resolution=setting.resolution, kinks=setting.kinks, fixed=number)
             if self._holds(fixed, allowed):
@@ -83,7 +91,7 @@ class Fitting:
         return setting
 
     def _holds(self, setting: Accuracy, allowed: float) -> bool:
-        """Whether all keep within it, but for those that are waived. The one too many goes to the front."""
+        """Whether all errors are within `allowed`, except the waived ones. A swimmer that fails moves to the front."""
         missed = 0
         for begin in range(0, len(self.swimmers), AT_ONCE):
             some = self.swimmers[begin : begin + AT_ONCE]

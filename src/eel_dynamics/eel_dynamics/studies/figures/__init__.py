@@ -1,4 +1,4 @@
-"""The paper's figures made again from our own runs, and tables beside them: the command `figures`.
+"""The command `figures`: reproduces the paper's figures from our own runs, with tables beside them.
 
-Needs matplotlib, which is imported only to draw; nothing else in the library needs this package.
+It needs matplotlib, which is imported only for drawing. Nothing else in the library needs this package.
 """

@@ -1,4 +1,4 @@
-"""`figures`: the paper's figures 5 to 9 from our own runs, and more, with a page that says what they show.
+"""`figures`: the paper's figures 5 to 9 from our own runs, further figures, and a page that explains them.
 
 figures                       # into docs/figures
 figures --out out/figures --format png
@@ -33,8 +33,9 @@ FORMATS = ("svg", "png")
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Exit status 0; 1 where a file cannot be written to its end; 2 where the folder cannot be made, matplotlib is
-    missing or input is bad. One line says why."""
+    """Exit status 0; 1 where a file cannot be written to its end; 2 where the folder cannot be created, matplotlib is
+    missing or input is bad. An error prints one line with its reason.
+    """
     if arguments is None:
         end_on_interrupt()
     options = _parser().parse_args(arguments)
@@ -46,7 +47,7 @@ def main(arguments: list[str] | None = None) -> int:
     folder = Path(options.out)
     try:
         for reading in corrections.READINGS.values():
-            Accuracy.of(options.accuracy).in_scene(Scene(**reading))  # refused before there is a folder
+            Accuracy.of(options.accuracy).in_scene(Scene(**reading))  # refused before the folder exists
         folder.mkdir(exist_ok=True)
         readings = corrections.swim(accuracy=options.accuracy)
         print(corrections.table_of(readings))
@@ -68,7 +69,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def draw(drawings: dict, folder: Path, formats=FORMATS):
-    """Draw each of `drawings_of` into `folder`; yields the path of each file."""
+    """Draw each of the `drawings` (`drawings_of`) into `folder`; yields the path of each file."""
     import matplotlib
     from matplotlib.figure import Figure
 
@@ -84,7 +85,7 @@ def draw(drawings: dict, folder: Path, formats=FORMATS):
 
 
 def drawings_of(readings, errors) -> dict:
-    """Name of the file: what fills an empty matplotlib figure."""
+    """Functions that draw into an empty matplotlib figure, by the name of the file."""
     from eel_dynamics.studies.figures import further_drawings, paper_drawings
 
     runs = {row.label: row.run for row in readings}

@@ -1,7 +1,7 @@
-"""What the misprints of the paper do to its own run: perimeter, friction and added mass as printed and corrected.
+"""Effect of the paper's misprints on its own run: perimeter, friction and added mass as printed and as corrected.
 
-Each reading is a `Scene` over the same falling gait; the corrections without an option (sign of the loads on the nose,
-of the local Reynolds number) are not choices: without them the equations contradict each other.
+Each reading is a `Scene` for the same falling gait. Two corrections have no option: the sign of the loads on the nose
+and that of the local Reynolds number. Without them the equations contradict each other.
 """
 
 from dataclasses import dataclass
@@ -29,15 +29,15 @@ OWN, PRINTED = next(iter(READINGS)), list(READINGS)[-1]
 
 @dataclass(frozen=True)
 class Correction:
-    """One reading of the formulae over the same gait."""
+    """The run of one reading of the formulae."""
 
     label: str
     run: Run
-    apart: float  # m, of the head at the end from the library's own reading
+    apart: float  # m, distance of the head at the end from that of the library's own reading
 
     @property
     def mean_speed(self) -> float:
-        """U [m/s] over the later half of the run."""
+        """Mean speed U [m/s] over the later half of the run."""
         return self.run.analysis().mean_speed
 
     @property
@@ -47,7 +47,10 @@ class Correction:
 
 
 def swim(duration: float = 10.0, accuracy="fine", sample_period: float = 0.02, stations=101) -> list[Correction]:
-    """The falling gait under each reading of `READINGS`, the library's own first."""
+    """Simulate the falling gait with each reading of `READINGS`, the library's own first.
+
+    duration, sample_period: [s]. accuracy, stations: as in `simulate`.
+    """
     runs = {
         label: simulate(
             falling(),
@@ -64,7 +67,7 @@ def swim(duration: float = 10.0, accuracy="fine", sample_period: float = 0.02, s
 
 
 def table_of(rows: list[Correction]) -> str:
-    """The readings as a table in Markdown."""
+    """The readings as a Markdown table."""
     lines = [
         "| reading of the formulae | head at the end, x, y, z [m] | apart [m] | mean speed U [m/s] "
         "| peak torque [N m] | in the later half [N m] |",

@@ -1,4 +1,4 @@
-"""Figures beyond the paper's: each function fills one empty matplotlib figure, from runs of the falling gait."""
+"""Figures beyond the paper's. Each function draws runs of the falling gait into an empty matplotlib figure."""
 
 from itertools import product
 
@@ -11,7 +11,7 @@ PERIOD = 1.0  # s, of the falling gait
 
 
 def draw_torque_surface(figure, run):
-    """Internal torques C2 and C3 over time and X: a surface in space, and the same as a map."""
+    """Draw the internal torques C2 and C3 [N m] over time and X, each as a surface and as a map."""
     from matplotlib.ticker import MaxNLocator
 
     grid = figure.add_gridspec(2, 2, width_ratios=(1.0, 1.5))
@@ -31,7 +31,7 @@ def draw_torque_surface(figure, run):
 
 
 def _draw_surface(axes, run, values, size):
-    """Surface of `values` (M, T) [N m] in the `axes` in space, coarse enough for a small file."""
+    """Draw the surface of `values` (M, T) [N m] into 3D `axes`, coarse enough for a small file."""
     time, x = run.time[::4], run.x[::5]
     surface = axes.plot_surface(
         *np.meshgrid(time, x),
@@ -54,7 +54,7 @@ def _draw_surface(axes, run, values, size):
 
 
 def draw_head_path(figure, run):
-    """The head's path and the centre of mass, averaged over a period, from above and from the side."""
+    """Draw the paths of the head and of the centre of mass, averaged over a period, from above and from the side."""
     path, centre = run.position, run.center_of_mass
     each = round(PERIOD / (run.time[1] - run.time[0]))  # samples in a period
     averaged = np.array([centre[k : k + each].mean(axis=0) for k in range(len(centre) - each)])
@@ -85,7 +85,7 @@ def draw_head_path(figure, run):
 
 
 def draw_ledger(figure, run):
-    """Powers, works and the residual of the energy ledger."""
+    """Draw the powers [W], the works [J] and the residual [J] of the energy ledger over time."""
     energy = run.energy
     lines = (
         ("actuator", "actuators", BLUE, "-"),
@@ -113,7 +113,7 @@ def draw_ledger(figure, run):
 
 
 def draw_convergence(figure, space: dict[bool, ConvergenceErrors], time: dict[bool, ConvergenceErrors]):
-    """Errors against nodes and against the step, without (False) and with (True) drag of cross flow and roll."""
+    """Draw errors against nodes and against the step, without (False) and with (True) drag of cross flow and roll."""
     by_nodes, by_step = figure.subplots(1, 2)
     for axes, errors in ((by_nodes, space), (by_step, time)):
         for (drag, colour), (name, mark) in product(

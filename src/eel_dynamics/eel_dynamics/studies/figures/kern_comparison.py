@@ -1,5 +1,8 @@
-"""A second body and other people's numbers: the eel of Kern and Koumoutsakos, J. Exp. Biol. 209 (2006), 4841-4857,
-doi:10.1242/jeb.02526, whose flow was computed from the Navier-Stokes equations in three dimensions."""
+"""Comparison with published results for a second body: the eel of Kern and Koumoutsakos.
+
+J. Exp. Biol. 209 (2006), 4841-4857, doi:10.1242/jeb.02526. They computed the flow from the Navier-Stokes equations in
+three dimensions.
+"""
 
 from dataclasses import dataclass
 
@@ -11,14 +14,14 @@ from eel_gaits import kern_efficient, kern_fast
 
 VISCOSITY = 1.4e-4  # L^2/T of the computations: Reynolds numbers of some thousands
 VOLUME = 0.0059326  # L^3, of the published shape
-PUBLISHED_FASTER = 0.42  # the fast gait against the efficient one
+PUBLISHED_FASTER = 0.42  # excess of the fast gait over the efficient one
 PUBLISHED_LESS_EFFICIENT = 0.15
 PUBLISHED_SPEEDS = (0.26, 0.5)  # L per cycle, over the gaits computed
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """Both gaits after `periods` periods from rest, over the last half of them."""
+    """The analyses of both gaits, over the later half of runs from rest."""
 
     volume: float  # L^3
     fast: Analysis
@@ -26,16 +29,16 @@ class Comparison:
 
     @property
     def faster(self) -> float:
-        """How much faster the fast gait is."""
+        """Relative excess of the fast gait's mean speed over that of the efficient gait."""
         return self.fast.mean_speed / self.efficient.mean_speed - 1.0
 
     def less(self, efficiency: str) -> float:
-        """How much less efficient the fast gait is, by the `Analysis` property of that name."""
+        """Relative deficit of the fast gait in `efficiency`, the name of an `Analysis` property."""
         return 1.0 - getattr(self.fast, efficiency) / getattr(self.efficient, efficiency)
 
 
 def compare(periods: int = 20, accuracy="standard") -> Comparison:
-    """Swim both gaits from rest with L = 1 m, T = 1 s at the viscosity of the computations."""
+    """Simulate `periods` periods of both gaits from rest, with L = 1 m, T = 1 s and the published viscosity."""
     body, scene = Body.kern2006(), Scene(viscosity=VISCOSITY)
     fast, efficient = (
         simulate(gait(), float(periods), body=body, scene=scene, accuracy=accuracy).analysis()
@@ -45,7 +48,7 @@ def compare(periods: int = 20, accuracy="standard") -> Comparison:
 
 
 def table_of(comparison: Comparison) -> str:
-    """Ours beside theirs, in Markdown."""
+    """Our results beside the published ones, as a Markdown table."""
     low, high = PUBLISHED_SPEEDS
     rows = [
         ("volume [L^3]", f"{comparison.volume:.7f}", f"{comparison.volume:.7f}", f"{VOLUME}"),

@@ -1,5 +1,7 @@
-"""The page beside the figures: what the paper shows, what we show, and where we differ. Every number is read off the
-runs that were drawn."""
+"""The page beside the figures: what the paper shows, what we show, and where we differ.
+
+Every number is computed from the runs in the figures.
+"""
 
 import textwrap
 
@@ -9,7 +11,7 @@ from eel_dynamics.studies.figures import corrections, kern_comparison
 from eel_dynamics.studies.figures.paper_drawings import INSTANT, PLACE
 
 PRINTED_MASS = 1.94  # kg, section 7.2.1
-FINE = 4  # from which of the finer numbers of points on the order along the body is read
+FINE = 4  # index of the number of points from which on the order along the body is fitted
 TRANSITION = 8e4  # local Reynolds number at which the printed friction jumps
 
 CAVEAT = (
@@ -24,8 +26,11 @@ CAVEAT = (
 
 
 def page(readings, control, comparison, errors) -> str:
-    """The whole page in Markdown. `readings` of `corrections.swim`, `control`: the same wave without the bends in
-    pitch, `comparison` of `kern_comparison.compare`, `errors` of `orders` by rule and drag."""
+    """The whole page in Markdown.
+
+    readings: of `corrections.swim`. control: run of the same wave without the bends in pitch. comparison: of
+    `kern_comparison.compare`. errors: of `orders`, by rule and drag.
+    """
     runs = {row.label: row.run for row in readings}
     run, printed = runs[corrections.OWN], runs[corrections.PRINTED]
     title_along, title_in_time = f"Fig. 7, along the body at t = {INSTANT:g} s", f"Fig. 8, in time at X = {PLACE:g} m"

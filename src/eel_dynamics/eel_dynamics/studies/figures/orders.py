@@ -1,9 +1,8 @@
 """Errors against nodes along the body and against the step in time, with and without cross-flow drag.
 
-The drag across the body goes like V|V|, and that of its roll like Omega|Omega|: their second derivatives jump where V
-or Omega changes sign. Such a place lies inside a panel, and moves: it would cap the order that rules for smooth
-functions have, and is located therefore (`drag.py`). Laminar friction stays on, smooth for a swimmer that starts with
-some way on.
+Cross-flow drag is proportional to V|V|, and roll drag to Omega|Omega|. Their second derivatives jump where V or Omega
+changes sign. Such a place lies inside a panel and moves. It would limit the order of rules for smooth functions, and is
+therefore located (`drag.py`). Laminar friction stays on. It is smooth for a swimmer with an initial velocity.
 """
 
 from dataclasses import dataclass
@@ -21,11 +20,11 @@ NODES = (8.0, 12.0, 16.0, 24.0, 36.0, 54.0, 80.0, 120.0, 180.0)  # points per bo
 FINEST_NODES = 400.0
 STEPS = (0.05, 0.04, 0.025, 0.02, 0.0125, 0.01, 0.005)  # s, of the classical Runge-Kutta method
 FINEST_STEP = 0.001
-TWIST = (0.4, 0.1, -0.15, -0.5, 0.1, 0.05)  # rad/s, m/s: of a swimmer at speed
-AHEAD = (0.0, 0.0, 0.0, -0.3, 0.0, 0.0)  # m/s
+TWIST = (0.4, 0.1, -0.15, -0.5, 0.1, 0.05)  # rad/s, m/s: head twist of a swimmer at speed
+AHEAD = (0.0, 0.0, 0.0, -0.3, 0.0, 0.0)  # m/s: initial velocity ahead
 INSTANT = 7.3  # s, both waves and bend are on
 STATIONS = (0.1, 0.3, 0.5, 0.75, 0.9)
-ROUND_OFF = 1e-12  # error, below which the last digits rule: how far it falls then hangs on the processor
+ROUND_OFF = 1e-12  # error below which round-off dominates: its value then depends on the processor
 
 
 @dataclass(frozen=True)
@@ -33,18 +32,18 @@ class ConvergenceErrors:
     """Relative errors against points per body length, or against the step [s]."""
 
     against: np.ndarray  # (n,)
-    motion: np.ndarray  # (n,) of the head's acceleration, or of its position at the end
-    torque: np.ndarray  # (n,) of the internal torque at five stations
+    motion: np.ndarray  # (n,) error of the head's acceleration, or of its position at the end
+    torque: np.ndarray  # (n,) error of the internal torque at five stations
 
     def order(self, name: str, part: slice = slice(None)) -> float:
-        """Slope of the logarithm of the error called `name` over `part` of the points, where it is not round-off."""
+        """Order of the error `name`: slope in logarithms over `part` of the points, where it is not round-off."""
         against, error = self.against[part], getattr(self, name)[part]
         good = error > ROUND_OFF
         return float(np.polyfit(np.log(against[good]), np.log(error[good]), 1)[0])
 
 
 def body_of(cross_flow: bool) -> Body:
-    """The paper's robot, with its drag of cross flow and roll or without."""
+    """The paper's robot, with or without its drag of cross flow and roll."""
     robot = Body.boyer2010()
     drag = {} if cross_flow else {"lateral_drag": 0.0, "vertical_drag": 0.0, "roll_drag": 0.0}
     return Body(
@@ -59,7 +58,7 @@ def body_of(cross_flow: bool) -> Body:
 
 
 def in_space(cross_flow: bool) -> ConvergenceErrors:
-    """One evaluation of the falling gait at t = 7.3 s, against one with 400 points per body length."""
+    """Errors of one evaluation of the falling gait at t = 7.3 s, against one with 400 points per body length."""
     body = body_of(cross_flow)
 
     def evaluated(resolution):
@@ -79,7 +78,10 @@ def in_space(cross_flow: bool) -> ConvergenceErrors:
 
 
 def in_time(cross_flow: bool, duration: float = 2.5) -> ConvergenceErrors:
-    """The falling gait to 2.5 s in equal steps of the classical Runge-Kutta method, against steps of 1 ms."""
+    """Errors of the falling gait with equal steps of the classical Runge-Kutta method, against steps of 1 ms.
+
+    duration: [s].
+    """
     body = body_of(cross_flow)
 
     def swum(step):

@@ -1,4 +1,4 @@
-"""Figures 5 to 9 of the paper: each function fills one empty matplotlib figure, from runs of the falling gait."""
+"""Figures 5 to 9 of the paper. Each function draws runs of the falling gait into an empty matplotlib figure."""
 
 import numpy as np
 
@@ -12,8 +12,8 @@ SECTIONS = (0.05, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95)  # of the length, drawn in Fi
 
 
 def draw_body(figure, body: Body):
-    """Fig. 5: outlines from the side and from above, and sections in between at their true size."""
-    # points crowd at the nose, where the outline is round
+    """Draw Fig. 5: outlines from the side and from above, and cross-sections at their true size."""
+    # points are denser at the nose, where the outline is round
     x = body.length * np.concatenate((np.linspace(0.0, 0.05**0.5, 60) ** 2, np.linspace(0.05, 1.0, 200)[1:]))
     side, above, ellipses = figure.subplots(3, 1, sharex=True)
     for axes, half, name in (
@@ -37,11 +37,11 @@ def draw_body(figure, body: Body):
 
 
 def draw_configurations(figure, run):
-    """Fig. 6: the backbone twice a second, in space, from above and from the side."""
+    """Draw Fig. 6: the backbone twice a second, in space, from above and from the side (world axes [m])."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
 
-    figure.set_layout_engine("none")  # axes in space leave no room for what the engine would do
+    figure.set_layout_engine("none")  # the layout engine does not suit 3D axes
     space = figure.add_axes((-0.03, 0.14, 0.58, 0.88), projection="3d")
     above, side = figure.add_axes((0.64, 0.66, 0.35, 0.31)), figure.add_axes((0.64, 0.09, 0.35, 0.48))
     bar = figure.add_axes((0.09, 0.11, 0.4, 0.025))
@@ -70,7 +70,7 @@ def draw_configurations(figure, run):
 
 
 def draw_wrench_along_the_body(figure, run, printed):
-    """Fig. 7: N1, C2, C3 against X at t = 7 s."""
+    """Draw Fig. 7: N1 [N], C2 and C3 [N m] against X at t = 7 s, of our run and of the `printed` reading."""
     samples = [int(np.argmin(np.abs(each.time - INSTANT))) for each in (run, printed)]
     profiles = [
         {"force": each.force[k], "torque": each.torque[k]} for each, k in zip((run, printed), samples, strict=True)
@@ -79,7 +79,7 @@ def draw_wrench_along_the_body(figure, run, printed):
 
 
 def draw_wrench_in_time(figure, run, printed):
-    """Fig. 8: N1, C2, C3 against t at X = 0.5 m."""
+    """Draw Fig. 8: N1 [N], C2 and C3 [N m] against t at X = 0.5 m, of our run and of the `printed` reading."""
     station = int(np.argmin(np.abs(run.x - PLACE)))
     profiles = [{"force": each.force[:, station], "torque": each.torque[:, station]} for each in (run, printed)]
     _draw_wrench(figure, run.time, profiles, f"time t [s], at $X_1$ = {PLACE:g} m; grey: the body bends in pitch")
@@ -87,7 +87,7 @@ def draw_wrench_in_time(figure, run, printed):
 
 
 def _draw_wrench(figure, abscissa, profiles, name):
-    """N1, C2, C3, one under the other; `profiles`: force and torque (n, 3) against `abscissa`, ours and as printed."""
+    """Draw N1, C2 and C3 in a column. profiles: force and torque (n, 3) against `abscissa`, ours and as printed."""
     rows = (
         ("force", 0, "$N_1$ [N]\n(> 0: tension)"),
         ("torque", 1, "$C_2$ [N m]\n(pitch)"),
@@ -105,7 +105,7 @@ def _draw_wrench(figure, abscissa, profiles, name):
 
 
 def draw_head_velocity(figure, run, printed):
-    """Fig. 9: V1(0) and Omega1(0) against t."""
+    """Draw Fig. 9: V1(0) [m/s] and Omega1(0) [rad/s] against t, of our run and of the `printed` reading."""
     rows = ((3, "$V_1(0)$ [m/s]\n(< 0: ahead)"), (0, "$\\Omega_1(0)$ [rad/s]\n(roll)"))
     for axes, (column, label) in zip(figure.subplots(2, 1, sharex=True), rows, strict=True):
         for each, style in ((run, OWN), (printed, AS_PRINTED)):

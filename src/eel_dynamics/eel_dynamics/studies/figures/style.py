@@ -1,7 +1,7 @@
-"""How the figures look: colours, dashes, and the settings of matplotlib.
+"""Style of the figures: colours, dashes, and the settings of matplotlib.
 
-Colours are those of Okabe and Ito, distinct for colour-blind eyes, with another dash each for print without colour;
-maps of colour are perceptually even (cividis) or diverging without red and green (PuOr).
+Colours are those of Okabe and Ito, distinct for colour-blind readers. Each has its own dash for print without colour.
+Colour maps are perceptually uniform (cividis) or diverging without red and green (PuOr).
 """
 
 BLACK, BLUE, ORANGE, GREEN, PURPLE = "#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7"
@@ -14,21 +14,21 @@ SETTINGS = {
     "axes.spines.right": False,
     "legend.fontsize": "small",
     "mathtext.fontset": "dejavusans",
-    "svg.hashsalt": "eel",  # the same file each time
+    "svg.hashsalt": "eel",  # identical files from identical data
     "figure.dpi": 100,
     "savefig.dpi": 100,
 }
-PITCH_RAMPS = ((1.0, 3.0), (6.0, 8.0))  # s, while the falling gait bends in pitch: t1 to t3 and t4 to t6
+PITCH_RAMPS = ((1.0, 3.0), (6.0, 8.0))  # s, intervals in which the falling gait bends in pitch: t1 to t3 and t4 to t6
 
 
 def mark_pitch(panels):
-    """Shade the time in which the falling gait bends in pitch."""
+    """Shade the intervals in which the falling gait bends in pitch, in each of the `panels`."""
     for axes in panels:
         for start, end in PITCH_RAMPS:
             axes.axvspan(start, end, color=GREY, alpha=0.12, linewidth=0)
 
 
 def plain(axes):
-    """A grid, and no margin left and right."""
+    """Add a grid to `axes` and remove the left and right margins."""
     axes.grid(alpha=0.3)
     axes.margins(x=0.0)

@@ -1,1 +1,1 @@
-"""The command `stability`: maps of where the simulator is accurate, inaccurate, or stops with a message."""
+"""The command `stability`: maps of where the simulator is accurate, is inaccurate, or stops with a message."""

@@ -1,4 +1,4 @@
-"""`stability`: two numbers of a swim at a time, over more than any swimmer has; long runs, planes, singular bodies.
+"""`stability`: maps over two parameters beyond the range of any swimmer; long runs, planar laws, singular bodies.
 
 stability                       # every study; pictures into docs/images
 stability --study drift         # one of them: maps, condition, drift, plane
@@ -18,7 +18,10 @@ STUDIES = "maps", "condition", "drift", "plane"
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Exit status 0; 2 with one line where a folder cannot be written, matplotlib is missing or input is bad."""
+    """Exit status 0; 1 where a file cannot be written to its end; 2 where matplotlib is missing or input is bad.
+
+    An error prints one line with its reason.
+    """
     if arguments is None:
         end_on_interrupt()
     options = _parser().parse_args(arguments)
@@ -61,7 +64,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _check_page(page: str, studies):
-    """`OSError` or `ValueError` for a page that cannot be written, or has no place for one of the `studies`."""
+    """`ValueError` for a page that cannot be written, or lacks the marker lines of a study; `OSError`: not readable."""
     check_output("--page", page)
     text = Path(page).read_text(encoding="utf-8")
     for name in studies:
@@ -69,7 +72,10 @@ def _check_page(page: str, studies):
 
 
 def with_study(page: str, name: str, study) -> str:
-    """The page's text with the tables and pictures of the study `name` between its marker lines."""
+    """The text of the page with the tables and pictures of the study `name` between its marker lines.
+
+    `ValueError` where the marker lines are missing.
+    """
     before, first, last, after = _around(page, name)
     pictures = [f"![{title}](images/stability_{picture}.svg)" for picture, (title, _) in study.pictures.items()]
     text = "\n".join([study.text, *(["", *pictures] if pictures else [])])
@@ -77,7 +83,7 @@ def with_study(page: str, name: str, study) -> str:
 
 
 def _around(page: str, name: str) -> tuple[str, str, str, str]:
-    """The page's text before the study `name`, its marker lines, and the text behind it."""
+    """The text of the page before the study `name`, both marker lines, and the text after it."""
     first, last = BEGIN.format(name), END.format(name)
     before, begin, rest = page.partition(first)
     _, end, after = rest.partition(last)

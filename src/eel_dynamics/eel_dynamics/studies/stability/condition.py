@@ -1,7 +1,8 @@
-"""Condition of the 6 x 6 matrix of inertia, rotations by the body's length: by how much a solution magnifies round-off.
+"""Condition number of the 6 x 6 inertia matrix: the factor by which a solution magnifies round-off.
 
-Of the straight body over its density and slenderness, and of the paper's robot over its density and the amplitude of
-its wave, there the worst of some instants of a period. Singular bodies are refused before (`inertia.py`).
+Rotations are scaled by the body's length. One map is of the straight body, over its density and slenderness. The other
+is of the paper's robot, over its density and the amplitude of its wave, with the worst of some instants of a period.
+Singular bodies are refused beforehand (`inertia.py`).
 """
 
 from dataclasses import dataclass
@@ -18,13 +19,13 @@ from eel_dynamics.simulation.simulation import Simulation, SimulationStopped
 from eel_dynamics.studies.stability.maps import spindle
 from eel_gaits import falling, straight
 
-INSTANTS = 8  # of a period, the gait fully on
+INSTANTS = 8  # per period, after the ramps of the gait
 NEEDLES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7)  # greatest half-axes [m] of a round needle of 1 m
 
 
 @dataclass(frozen=True)
 class Conditions:
-    """A map of conditions: (len(y), len(x))."""
+    """A map of condition numbers. x, y: density ratio, and slenderness or amplitude ratio; value: (len(y), len(x))."""
 
     name: str
     title: str
@@ -36,7 +37,7 @@ class Conditions:
 
 
 def maps_of(points: int = 13) -> tuple[Conditions, ...]:
-    """Two maps, of `points` by `points` matrices each."""
+    """Two maps of `points` by `points` matrices each: of straight bodies, and of the swimming robot."""
     ratios = np.geomspace(1e-3, 1e3, points)
     slenderness, sizes = np.geomspace(5.0, 500.0, points), np.geomspace(1e-3, 4.0, points)
     bodies = [spindle(1.0, each) for each in slenderness]
@@ -63,26 +64,26 @@ def maps_of(points: int = 13) -> tuple[Conditions, ...]:
 
 
 def of_straight(body: Body, ratio: float) -> float:
-    """Condition for the straight `body` of `ratio` times the water's density."""
+    """Condition number for the straight `body` of `ratio` times the density of the water."""
     scene = _water(ratio)
     here = Simulation(body, scene, "draft", [0.0]).discretisation
     return condition_of(straight_inertia(here.grid, here.sections, nose_of(body, scene)[0], body.length))
 
 
 def of_bent(size: float, ratio: float) -> float:
-    """The worst condition for the paper's robot over a period of its wave, of `size` times the paper's amplitude."""
+    """Greatest condition number for the robot over a period of its wave, of `size` times the paper's amplitude."""
     law = straight(amplitude_0=size, amplitude_1=0.5 * size, amplitude_2=2.0 * size)
     swimmer = Simulation(Body.boyer2010(), _water(ratio), "draft", [0.0], law=law)
     return max(condition_of(inertia_at(swimmer, time)) for time in 2.0 + np.arange(INSTANTS) / INSTANTS)
 
 
 def inertia_at(swimmer: Simulation, time: float) -> np.ndarray:
-    """Matrix (6, 6) of inertia about the head, in its axes, of the shape at `time` [s]; body of 1 m."""
+    """Inertia matrix (6, 6) about the head, in head axes, for the shape at `time` [s]. The body is 1 m long."""
     return np.array(eel_core.Instant(swimmer.discretisation.swimmer).inertia(swimmer.tabulated_law, time))
 
 
 def needles() -> str:
-    """What becomes of ever thinner needles, as a Markdown table."""
+    """The outcome of runs of thinner and thinner needles, as a Markdown table."""
     lines = ["| half-axes of a needle of 1 m (m) | what happens to it in the falling gait |", "|---|---|"]
     for thickness in NEEDLES:
         try:
@@ -95,7 +96,7 @@ def needles() -> str:
 
 
 def needle(thickness: float) -> Body:
-    """A round body of 1 m, pointed at both ends, of half-axes `thickness` [m] in the middle."""
+    """A round body of 1 m, pointed at both ends, with half-axes of `thickness` [m] in the middle."""
 
     def half_axis(x):
         return 2.0 * thickness * np.sqrt(x * (1.0 - x))
@@ -104,7 +105,7 @@ def needle(thickness: float) -> Body:
 
 
 def table(maps: tuple[Conditions, ...]) -> str:
-    """The maps' least and greatest values, then the needles, as Markdown."""
+    """The least and greatest values of the maps, then the needles, as Markdown tables."""
     lines = ["| map | least | greatest |", "|---|---|---|"]
     lines += [f"| {each.title} | {each.value.min():.3g} | {each.value.max():.3g} |" for each in maps]
     lines += [

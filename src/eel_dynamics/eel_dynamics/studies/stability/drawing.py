@@ -1,16 +1,19 @@
-"""The maps as pictures: colour is the error by the target, a cross is a stop with a message, a dot a limit
-of the model that the run warns of, a plus a warning of its energy ledger."""
+"""The maps as pictures.
+
+Colour is the error relative to the target. A cross marks a stop with a message. A dot marks a warning of a limit of the
+model. A plus marks a warning of an open energy ledger.
+"""
 
 import numpy as np
 
 from eel_dynamics.studies.figures.style import BLACK
 from eel_dynamics.studies.stability.maps import STOPPED, Measured
 
-DECADES = 3.0  # of error above and below the target that the colours tell apart
+DECADES = 3.0  # range of the colours, above and below the target
 
 
 def draw(figure, measured: Measured):
-    """Fill an empty matplotlib figure with one map."""
+    """Draw one map into an empty matplotlib figure."""
     axes, item = figure.subplots(), measured.map
     size = np.log10(np.maximum(measured.size, 1e-300))
     mesh = axes.pcolormesh(
@@ -37,7 +40,7 @@ def draw(figure, measured: Measured):
 
 
 def draw_condition(figure, conditions):
-    """Fill an empty matplotlib figure with one map of conditions."""
+    """Draw one map of condition numbers into an empty matplotlib figure."""
     axes = figure.subplots()
     mesh = axes.pcolormesh(
         _edges(conditions.x), _edges(conditions.y), np.log10(conditions.value), cmap="cividis", edgecolors="none"
@@ -48,6 +51,6 @@ def draw_condition(figure, conditions):
 
 
 def _edges(values: np.ndarray) -> np.ndarray:
-    """Borders of the cells around `values`, which rise by equal factors."""
+    """Borders (n + 1,) of the cells around `values` (n,), which form a geometric sequence."""
     factor = np.sqrt(values[1] / values[0])
     return np.append(values / factor, values[-1] * factor)

@@ -1,9 +1,11 @@
 """Drift of long runs: of the energy ledger, the quaternion, the law's phase and the path, over decades of periods.
 
 The works of the ledger are integrated along with the motion, and only the samples are kept: memory does not grow with
-time. Phase of the law: change of its curvature at t = n T since the first period, relative to the greatest curvature;
-it is an angle. Beat: change of the head's velocity at t = n T since 100 periods, relative to its magnitude. Path: the
-head's distance from that of a finer run, relative to the distance from the start.
+time. The drifts are:
+
+phase: change of the law's curvature at t = n T since the first period, relative to the greatest curvature; an angle.
+beat: change of the head's velocity at t = n T since 100 periods, relative to its magnitude.
+path: distance of the head from that of a finer run, relative to its distance from the start.
 """
 
 from dataclasses import dataclass
@@ -19,28 +21,28 @@ from eel_gaits import helix, straight
 PERIOD = 0.7  # s, whose multiples are not exact in binary
 DECADES = 5
 SETTLED = 2  # decade from which on the motion is periodic
-COMPARED = 3  # decades over which a finer run is simulated too
+COMPARED = 3  # decades over which a finer run is simulated as well
 ACCURACY = "draft"
 STATIONS = 5  # at which the law's phase is evaluated
 
 
 @dataclass(frozen=True)
 class Drift:
-    """The drift of one swimmer after (T,) numbers of periods; path is NaN where there is no finer run."""
+    """The drift of one swimmer after (T,) numbers of periods; all arrays are (T,). path is NaN without a finer run."""
 
     name: str
     periods: np.ndarray
-    ledger: np.ndarray  # residual by the work of the actuators
+    ledger: np.ndarray  # residual relative to the work of the actuators
     norm: np.ndarray  # | |q| - 1 |
     phase: np.ndarray  # rad
     beat: np.ndarray  # relative; NaN before 100 periods
-    path: np.ndarray  # by the way, or the body's length, whichever is longer
-    way: np.ndarray  # m, of the head from the start
+    path: np.ndarray  # relative to `way`, or to the body's length if longer
+    way: np.ndarray  # m, distance of the head from the start
     steps: int
 
 
 def swimmers() -> dict[str, tuple[Law, Scene]]:
-    """A planar scene, and one in space."""
+    """Law and scene of each swimmer, by name: one in a planar scene and one in space."""
     return {
         "straight, planar": (straight(period=PERIOD), Scene(planar=True, internal_wrench=False)),
         "helix": (helix(period=PERIOD), Scene(internal_wrench=False)),
@@ -48,7 +50,10 @@ def swimmers() -> dict[str, tuple[Law, Scene]]:
 
 
 def drift_of(name: str, law: Law, scene: Scene, decades: int = DECADES, compared: int = COMPARED) -> Drift:
-    """Simulate 10^`decades` periods of `law`, and 10^`compared` of them again with finer settings."""
+    """Simulate 10^`decades` periods of `law`, and 10^`compared` of them again with finer settings.
+
+    `SimulationStopped` where a run cannot go on.
+    """
     periods = 10.0 ** np.arange(decades + 1)
     times = np.concatenate(([0.0], PERIOD * periods))
     swimmer, out, works = _swum(law, scene, Accuracy.of(ACCURACY).in_scene(scene), times)

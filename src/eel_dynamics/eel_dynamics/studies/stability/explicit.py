@@ -1,8 +1,8 @@
-"""Why the added mass stands in the matrix: the same push treated explicitly, which light bodies do not survive.
+"""Why the added mass is part of the inertia matrix: with an explicit treatment, light bodies are unstable.
 
-A straight body at rest feels a wrench w. Implicit: (I_b + I_f) a = w, solved at once. Explicit, as where the water's
-force comes from a solver of its own: I_b a[n+1] = w - I_f a[n], with the acceleration of the step before. The error
-grows by the greatest eigenvalue of I_b^-1 I_f with each step, however short the step is.
+A wrench w acts on a straight body at rest. Implicit treatment solves (I_b + I_f) a = w. Explicit treatment, as with a
+separate solver for the water, iterates I_b a[n+1] = w - I_f a[n] with the acceleration of the previous step. The error
+grows in each step by the greatest eigenvalue of I_b^-1 I_f, however short the step is.
 """
 
 from dataclasses import dataclass
@@ -18,8 +18,12 @@ STEPS = 20
 
 @dataclass(frozen=True)
 class Treated:
-    """One body: density by water's, growth of the explicit error per step, size of its acceleration by the right one
-    after `STEPS` steps, condition of the 6 x 6 matrix in units of the body's length."""
+    """Result for one body.
+
+    ratio: density relative to water. growth: factor of the explicit error per step. explicit: magnitude of the explicit
+    acceleration after `STEPS` steps, relative to the correct one. condition: of the 6 x 6 matrix, in units of the
+    body's length.
+    """
 
     ratio: float
     growth: float
@@ -28,7 +32,10 @@ class Treated:
 
 
 def treat(ratio: float, body: Body | None = None, fluid_density: float = 1000.0) -> Treated:
-    """Push the straight `body` (the paper's robot) of `ratio` times the water's density sideways and in roll."""
+    """Solve for the acceleration of a straight `body` under a wrench, with both treatments.
+
+    ratio: density of the body relative to water. body: None: the paper's robot. fluid_density: [kg/m^3].
+    """
     of_body, of_fluid = inertias(body or Body.boyer2010(), ratio * fluid_density, fluid_density)
     both = of_body + of_fluid
     wrench = np.array([1e-3, 1e-2, 1e-2, 1.0, 1.0, 1.0])
@@ -43,8 +50,10 @@ def treat(ratio: float, body: Body | None = None, fluid_density: float = 1000.0)
 
 
 def inertias(body: Body, density: float, fluid_density: float) -> tuple[np.ndarray, np.ndarray]:
-    """Inertia of the straight body and of its water, (6, 6) each, about the head, rotation first; rotations count by
-    the body's length, so that all entries are masses [kg]."""
+    """Inertia matrices (6, 6) of the straight body and of its added mass, about the head, rotation first.
+
+    Densities are in kg/m^3. Rotations are scaled by the body's length, so that all entries are masses [kg].
+    """
     grid = Grid.of(panels_of(body, 40.0))
     height, width = body.half_height(grid.x), body.half_width(grid.x)
     mass = density * np.pi * height * width
@@ -62,7 +71,7 @@ def inertias(body: Body, density: float, fluid_density: float) -> tuple[np.ndarr
 def _assemble(grid, length, linear, angular):
     matrix = np.zeros((6, 6))
     for x, weight, m, j in zip(grid.x / length, grid.weight, linear.T, angular.T / length**2, strict=True):
-        moved = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, -x], [0.0, x, 0.0]])  # velocity at X of a turning head
+        moved = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, -x], [0.0, x, 0.0]])  # velocity at X due to rotation of the head
         matrix[:3, :3] += weight * (np.diag(j) + moved.T @ np.diag(m) @ moved)
         matrix[:3, 3:] += weight * moved.T @ np.diag(m)
         matrix[3:, :3] += weight * np.diag(m) @ moved

@@ -1,8 +1,8 @@
-"""What is mapped: two numbers of a swim at a time, over more than any swimmer has, each swim beside a finer one.
+"""Maps of the error over two parameters of a run at a time, beyond the range of any swimmer.
 
-The error of a swim is the greatest distance of its head from the finer run's, over all samples, by the length of the
-head's path or of the body, whichever is longer; accurate is what keeps the target. Of what is inaccurate it is noted
-whether the run says so: by its warnings, and by its own estimate of its error.
+Each run is compared with a finer one. The error is the greatest distance between the two heads over all samples,
+relative to the length of the head's path or of the body, whichever is longer. A run is accurate if its error meets the
+target. For an inaccurate run the map records whether the run indicates it: by a warning, or by its error estimate.
 """
 
 from collections.abc import Callable
@@ -18,19 +18,22 @@ from eel_dynamics.simulation.simulation import SimulationStopped
 from eel_gaits import straight
 
 TARGET, FINER = 1e-3, 1e-6
-FINEST = Accuracy(name="finest", resolution=200.0, tolerance=1e-12)  # that finer presets are held against
-SAMPLES = 32  # eight in a period
+FINEST = Accuracy(name="finest", resolution=200.0, tolerance=1e-12)  # for comparison with the finer presets
+SAMPLES = 32  # eight per period
 LEAST_VISCOSITY = 1e-10  # m^2/s
 METHODS = (*(("adams", order) for order in ORDERS["adams"]), ("dormand_prince", 5))
 STATIONS = 33
-FIXED_RESOLUTION = 36.0  # points per body length where the step is fixed: error in space stays below the target
+FIXED_RESOLUTION = 36.0  # points per body length with a fixed step: the error in space stays below the target
 ACCURATE, INACCURATE, STOPPED = "accurate", "inaccurate", "stopped"
 
 
 @dataclass(frozen=True, kw_only=True)
 class Map:
-    """A sweep over `x` and `y`; swimmer(x, y): keywords of one swim, as `simulate_batch` has them in the plural, and
-    `duration` [s]. target: of the relative error, in each row; y_names: where y is no number."""
+    """A sweep over `x` and `y`.
+
+    swimmer(x, y): arguments of one run by their names in `simulate_batch`, and `duration` [s]. target: of the relative
+    error, one number or one per row. y_names: labels of the rows where y is not a number.
+    """
 
     name: str
     title: str
@@ -45,35 +48,35 @@ class Map:
 
 @dataclass(frozen=True)
 class Measured:
-    """A map filled in: (len(y), len(x)) arrays."""
+    """The results of a map: (len(y), len(x)) arrays."""
 
     map: Map
-    error: np.ndarray  # relative; NaN where the swim stopped
-    reason: np.ndarray  # text of the stop, empty where there was none
+    error: np.ndarray  # relative; NaN where the run stopped
+    reason: np.ndarray  # message of the stop, empty where there was none
     steps: np.ndarray  # in time
     limits: np.ndarray  # bool: the run warns of a limit of the model
     warned: np.ndarray  # bool: inaccurate, and the run warns of an open energy ledger
-    estimate: np.ndarray  # the run's own estimate of its error by its target, of those that are inaccurate; else NaN
+    estimate: np.ndarray  # error estimate of an inaccurate run relative to its target; else NaN
 
     @property
     def size(self) -> np.ndarray:
-        """Error by target."""
+        """Error relative to the target."""
         return self.error / np.reshape(self.map.target, (-1, 1))
 
     @property
     def outcome(self) -> np.ndarray:
-        """accurate, inaccurate or stopped."""
+        """`ACCURATE`, `INACCURATE` or `STOPPED` for each run."""
         kept = np.where(self.size <= 1.0, ACCURATE, INACCURATE)
         return np.where(self.reason != "", STOPPED, kept)
 
     @property
     def worst(self) -> float:
-        """Greatest error, by its target, of those that finished; NaN where none did."""
+        """Greatest error relative to the target among finished runs; NaN where none finished."""
         return float(np.nanmax(self.size)) if np.isfinite(self.error).any() else np.nan
 
 
 def measure(item: Map) -> Measured:
-    """Swim every point of the map, and once more for comparison."""
+    """Simulate every point of the map, and again with finer settings for comparison."""
     points = [item.swimmer(x, y) for y in item.y for x in item.x]
     shape = len(item.y), len(item.x)
     error, reason = np.full(len(points), np.nan), np.full(len(points), "", dtype=object)
@@ -108,7 +111,7 @@ def measure(item: Map) -> Measured:
 
 
 def maps_of(points: int = 13) -> tuple[Map, ...]:
-    """The maps, of `points` by `points` swims each."""
+    """The maps, of `points` by `points` runs each. Maps over presets or methods have one row for each of them."""
 
     def spread(low, high):
         return np.geomspace(low, high, points)
@@ -215,7 +218,7 @@ def maps_of(points: int = 13) -> tuple[Map, ...]:
 
 
 def _estimate(run) -> float:
-    """Of the run's error, by itself; infinite where the finer run for it stops."""
+    """The error estimate of a run; infinite where the finer run that it needs stops."""
     try:
         return run.error_estimate.worst
     except SimulationStopped:
@@ -223,7 +226,10 @@ def _estimate(run) -> float:
 
 
 def spindle(length: float, slenderness: float) -> Body:
-    """A round nose and a blunt tail half as high, twice as high as wide; semi-axes after the length [m]."""
+    """A body with a round nose and a blunt tail of half the height, twice as high as wide.
+
+    length: [m]. slenderness: length / (2 x greatest half-height).
+    """
     half = length / (2.0 * slenderness)
 
     def half_height(x):
@@ -236,7 +242,7 @@ def spindle(length: float, slenderness: float) -> Body:
 
 
 def _wave(period=1.0, wavelength=1.0, size=1.0, length=1.0):
-    """The paper's wave on a body of `length` [m]; wavelength in body lengths."""
+    """The paper's wave on a body of `length` [m]. period: [s]; wavelength: [body lengths]; size: amplitude ratio."""
     return straight(
         period=period,
         wavelength=wavelength * length,

@@ -1,9 +1,9 @@
-"""A planar law in the kernel of space: does round-off grow out of the plane, and is that the model or its numbers?
+"""A planar law in three dimensions: does round-off grow out of the plane, and is the cause the model or the numerics?
 
-Out of the plane are the head's roll and pitch rates and its velocity along axis 3, (Omega1 l, Omega2 l, V3), however
-the head is turned: there is no weight, so no direction is special. A perturbation of 1e-15 grows, and a line is fitted
-to the logarithm of its size over whole periods while it is small. A growth rate that depends neither on the accuracy
-nor on the perturbation is a property of the model.
+The components out of the plane are the head's roll and pitch rates and its velocity along axis 3, (Omega1 l, Omega2 l,
+V3). They do not depend on the orientation of the head: there is no weight, so no direction is special. A perturbation
+of 1e-15 grows. A line is fitted to the logarithm of its size over whole periods while it is small. A growth rate that
+depends neither on the accuracy nor on the perturbation is a property of the model.
 """
 
 from dataclasses import dataclass
@@ -16,14 +16,14 @@ from eel_dynamics.simulation.simulation import Simulation
 from eel_gaits import straight
 
 LONG = 10_000  # periods
-LOOKED_AT = 50  # times in a long run
+LOOKED_AT = 50  # instants of a long run that are evaluated
 ACCURACIES = (1e-2, 1e-4, 1e-6)
 PUSHES = (1e-15, 1e-12)  # rad/s, or m/s
 AXES = {"roll": 0, "pitch": 1, "vertical": 5}  # of the head's twist
-LONGEST = 40  # periods that a push is followed
-LINEAR = 1e-6  # m/s: below, a push grows by the linear law
-SETTLED = 6  # periods, after which it grows as the fastest mode does
-TURNED = np.array([0.15, 0.30, -0.08, np.sqrt(1.0 - 0.1189)])  # lies across all axes
+LONGEST = 40  # periods over which a perturbation is followed
+LINEAR = 1e-6  # m/s: below it, growth is linear in the perturbation
+SETTLED = 6  # periods after which the fastest mode dominates
+TURNED = np.array([0.15, 0.30, -0.08, np.sqrt(1.0 - 0.1189)])  # quaternion of a head turned about all axes
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,11 @@ class Growth:
 
 
 def out_of_plane(periods, *, push=0.0, axis="roll", accuracy=1e-4, orientation=None, body=None, **scene) -> np.ndarray:
-    """(Omega1 l, Omega2 l, V3) of the head (T, 3) [m/s] at the numbers of `periods` (T,) of the gait `straight`."""
+    """(Omega1 l, Omega2 l, V3) of the head (T, 3) [m/s], in head axes, at `periods` (T,) of the gait `straight`.
+
+    push: initial perturbation [rad/s or m/s] of the `axis` in `AXES`. orientation: initial quaternion. scene: fields of
+    `Scene`. `SimulationStopped` where the run cannot go on.
+    """
     twist = np.zeros(6)
     twist[AXES[axis]] = push
     swimmer = Simulation(
@@ -55,7 +59,7 @@ def out_of_plane(periods, *, push=0.0, axis="roll", accuracy=1e-4, orientation=N
 
 
 def growth(**swimmer) -> Growth:
-    """Fit the growth of a push; keywords of `out_of_plane`."""
+    """Fit the growth of a perturbation. swimmer: keywords of `out_of_plane`."""
     found = out_of_plane(np.arange(LONGEST + 1), **{"push": PUSHES[0], **swimmer})
     size = np.linalg.norm(found, axis=1)
     above = np.flatnonzero(size > LINEAR)
@@ -66,7 +70,7 @@ def growth(**swimmer) -> Growth:
 
 
 def table(long: int = LONG) -> str:
-    """Verdict and numbers as Markdown."""
+    """The result in words and numbers, as Markdown. long: periods of the run without a perturbation."""
     lines = [
         "| accuracy | pushed in roll | in pitch | along axis 3 | by round-off alone, head turned across all axes |",
         "|---|---|---|---|---|",
@@ -103,7 +107,7 @@ def table(long: int = LONG) -> str:
 
 
 def variants() -> dict[str, dict]:
-    """What the growth hangs on: keywords of `growth`."""
+    """Variants that the growth is compared over: keywords of `growth`, by name."""
     robot = Body.boyer2010()
 
     def shaped(half_width, half_height):

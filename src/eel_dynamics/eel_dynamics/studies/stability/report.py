@@ -1,4 +1,4 @@
-"""The maps in numbers, and the explicit treatment of the added mass, as Markdown tables."""
+"""The results of the maps, and the explicit treatment of the added mass, as Markdown tables."""
 
 import numpy as np
 
@@ -9,7 +9,7 @@ RATIOS = (1e-3, 1e-2, 1e-1, 0.5, 1.0, 10.0, 1e3)
 
 
 def report(maps) -> str:
-    """Counts and worst errors of the maps, then the explicit treatment of the added mass."""
+    """Counts and greatest errors of the maps, then the explicit treatment of the added mass, as Markdown."""
     lines = [
         "| map | accurate | inaccurate | of them warned of | of them told by the estimate | by neither | stopped | "
         "beyond a limit of the model, and warned of | worst error by target | most steps |",
@@ -45,5 +45,5 @@ def report(maps) -> str:
 
 
 def _reason(text: str) -> str:
-    """What failed, without time and value."""
+    """The reason in a stop's message, without time and value."""
     return text.partition("s: ")[2].partition(" (")[0]

@@ -1,4 +1,4 @@
-"""The studies by their names: each gives a text in Markdown and pictures."""
+"""The studies by name. Each returns a text in Markdown and pictures."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -18,24 +18,24 @@ class Study:
 
 
 def maps(points: int) -> Study:
-    """Maps of runs over two parameters: accurate, inaccurate, or stopped."""
+    """Maps of runs over two parameters, with `points` values of each: accurate, inaccurate, or stopped."""
     found = [measure(item) for item in maps_of(points)]
     return Study(report(found), {each.map.name: (each.map.title, _drawn(draw, each)) for each in found})
 
 
 def conditions(points: int) -> Study:
-    """Condition of the 6 x 6 matrix, and runs of singular bodies."""
+    """Maps of the condition number of the 6 x 6 matrix, with `points` values of each parameter; singular bodies."""
     found = condition.maps_of(points)
     return Study(condition.table(found), {each.name: (each.title, _drawn(draw_condition, each)) for each in found})
 
 
 def drifts(points: int) -> Study:
-    """Drift over 100,000 periods."""
+    """Drift over 100,000 periods; `points` has no effect."""
     return Study(drift.table([drift.drift_of(name, *each) for name, each in drift.swimmers().items()]))
 
 
 def planes(points: int) -> Study:
-    """Growth of round-off out of the plane of a planar law."""
+    """Growth of round-off out of the plane of a planar law; `points` has no effect."""
     return Study(plane.table())
 
 

@@ -1,1 +1,1 @@
-"""The command `sweep`: a grid of parameters on many processes."""
+"""The command `sweep`: simulates a grid of parameters on many processes."""

@@ -1,6 +1,6 @@
-"""Distributes tasks over processes, on this machine or on others, by Dask.
+"""Distributes tasks over processes, on this machine or on others, with Dask.
 
-The tasks of a worker that dies are given to the others.
+The tasks of a worker that dies are reassigned to the others.
 """
 
 import multiprocessing
@@ -13,7 +13,7 @@ EXTRA = "dask", "distributed", "xarray"
 
 
 def needed() -> dict:
-    """Import the modules that a sweep needs; returns them by name. `ImportError` with the command to install them."""
+    """Import the modules that a sweep needs; returns them by name. `ImportError` names the command to install them."""
     from importlib import import_module
 
     try:
@@ -26,10 +26,12 @@ def needed() -> dict:
 
 @contextmanager
 def connected(scheduler=None, workers: int | None = None):
-    """A Dask client: of the `scheduler` at an address ("tcp://host:8786") or given as client or cluster; None: of a
-    cluster of `workers` processes on this machine (one per core), which ends with the context.
+    """A Dask client of the `scheduler`: an address ("tcp://host:8786"), a client or a cluster.
 
-    `OSError` where this machine gives processes no semaphores: a container without /dev/shm."""
+    scheduler None: a cluster of `workers` processes on this machine (None: one per core), which ends with the context.
+    `ValueError` where the scheduler cannot be reached. `OSError` where processes of this machine have no semaphores: a
+    container without /dev/shm.
+    """
     from distributed import Client, LocalCluster
 
     if isinstance(scheduler, Client):
@@ -61,10 +63,10 @@ def _check_semaphores():
 
 
 def spread(client, task: Callable, chunks: list, *settings) -> Iterator[tuple]:
-    """`task(chunk, *settings)` for every chunk, on the workers of `client`.
+    """Run `task(chunk, *settings)` for every chunk on the workers of `client`.
 
-    Yields (chunk, result, None) in order of completion, or (chunk, None, error) for a failed chunk: the task's own
-    error, or one that says that the chunk killed several workers.
+    Yields (chunk, result, None) in order of completion, or (chunk, None, error) for a failed chunk. The
+    error is that of the task, or reports that the chunk killed several workers.
     """
     from distributed import as_completed
 

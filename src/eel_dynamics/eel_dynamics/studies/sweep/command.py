@@ -1,4 +1,4 @@
-"""`sweep`: swim a grid of parameters on all cores, or on a Dask cluster, into a NetCDF file of labelled arrays.
+"""`sweep`: simulate a grid of parameters on all cores or a Dask cluster; writes labelled arrays to a NetCDF file.
 
 sweep straight --vary period=0.5:2:16 --vary scene.friction=printed,laminar --out periods.nc
 sweep straight --vary body=boyer2010,kern2006 --vary wavelength=0.6:1.2:7 --scheduler tcp://host:8786 --out waves.nc
@@ -21,7 +21,8 @@ from eel_dynamics.studies.sweep.sweep import check_points, sweep
 
 def main(arguments: list[str] | None = None) -> int:
     """Exit status 0; 1 where the output cannot be written to its end; 2 for bad input or a missing package; 4 where
-    points could not be computed. One line says why."""
+    points could not be computed; 130 when interrupted. An error prints one line with its reason.
+    """
     options = _parser().parse_args(arguments)
     with one_line_warnings("sweep"):
         return _sweep(options)

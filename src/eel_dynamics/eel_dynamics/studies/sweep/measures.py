@@ -1,4 +1,4 @@
-"""What a sweep keeps of each run: one number per measure, with its unit and its definition."""
+"""The measures that a sweep stores for each run: one number per measure, with its unit and definition."""
 
 import numpy as np
 from eel_gaits.wording import shown
@@ -7,7 +7,7 @@ from eel_dynamics.runs.run import Run
 
 
 def _analysed(name: str):
-    """A property of the run's analysis; undefined where the gait has no period or the run is too short for one."""
+    """A measure: a property of the run's analysis. None where the gait has no period or the run is too short."""
 
     def measure(run: Run, analysis):
         try:
@@ -61,7 +61,7 @@ MEASURES = {  # name: (unit, description, function of the run and its analysis)
 
 
 def measures_of(run: Run) -> dict[str, float]:
-    """Every measure of `run`; NaN where it is undefined, or the run does not hold what it needs."""
+    """Every measure of `run` by name; NaN where it is undefined, or the run lacks the data for it."""
     try:
         analysis = run.analysis()
     except ValueError:
@@ -71,7 +71,7 @@ def measures_of(run: Run) -> dict[str, float]:
 
 
 def checked_point(found: dict) -> dict:
-    """What is kept of a point, as plain numbers. `ValueError` that names the measure that is none."""
+    """The measures of a point as plain numbers, and its "error". `ValueError` names a measure that is not a number."""
     if not isinstance(found.get("error"), str):
         raise ValueError(f"'error' must be the point's own, a text, and no measure, got {shown(found.get('error'))}")
     point = {}
@@ -86,7 +86,7 @@ def checked_point(found: dict) -> dict:
 
 
 def described(name: str) -> dict[str, str]:
-    """Unit and description of a measure, as attributes of a labelled array; none for one that is not ours."""
+    """Unit and description of a measure, as attributes of a labelled array; empty for a name not in `MEASURES`."""
     if name not in MEASURES:
         return {}
     unit, description, _ = MEASURES[name]

@@ -1,12 +1,12 @@
-"""A grid of parameters, swum point by point on many processes: `sweep`, with labelled results.
+"""Simulates a grid of parameters on many processes: `sweep`, with labelled results.
 
     data = sweep({"period": np.linspace(0.5, 2.0, 16), "scene.friction": ["laminar", "printed"]}, gait="straight",
                  duration=10.0, accuracy=1e-3, out="periods.nc")
     data.cruising_speed.sel({"scene.friction": "laminar"})       # an xarray of 16 speeds, with their periods
 
-Runs on the cores of this machine, or on any Dask scheduler. What is done is kept beside the output: a sweep that was
-broken off goes on where it was when it is called again. Needs `pip install 'eel_dynamics[cluster]'`. In a script, call
-it below `if __name__ == "__main__":`, as the workers import the script.
+It runs on the cores of this machine, or on any Dask scheduler. Finished points are stored beside the output: an
+interrupted sweep resumes when it is called again. It needs `pip install 'eel_dynamics[cluster]'`. In a script, call it
+below `if __name__ == "__main__":`, since the workers import the script.
 """
 
 import itertools
@@ -33,13 +33,13 @@ from eel_dynamics.studies.sweep.sweep_key import key_of
 from eel_dynamics.studies.sweep.sweep_parts import Parts
 
 LONGEST_CHUNK = 64  # points
-MOST_POINTS = 1_000_000  # of a grid, which is built as a whole before it swims
+MOST_POINTS = 1_000_000  # of a grid, which is built as a whole before the first run
 
 
 class Point(NamedTuple):
-    """What swims at one point of the grid."""
+    """One run of the grid."""
 
-    index: int  # of the flattened grid, the last parameter fastest
+    index: int  # in the flattened grid; the last parameter varies fastest
     law: Law
     body: Body
     scene: Scene
@@ -66,19 +66,19 @@ def sweep(
     overwrite: bool = False,
     most_evaluations: float = MOST_EVALUATIONS,
 ):
-    """Swim every combination of the values in `grid` and return an `xarray.Dataset` over its parameters.
+    """Simulate every combination of the values in `grid` and return an `xarray.Dataset` over its parameters.
 
     grid: name: values. A name is a number of the gait ("period"), "scene." and a field of `Scene`, "body" (`Body`s or
     names of the library), or "accuracy". gait: its name, or a function of `numbers` and the grid's that returns a law.
-    numbers: of the gait, the same for all points. duration, body, scene, accuracy, sample_period, stations,
+    numbers: of the gait, the same for all points. duration [s], body, scene, accuracy, sample_period [s], stations,
     most_evaluations: as in `simulate`. measure: run -> {name: number}; by default those of `measures`, over the later
-    half of the run. out: .nc file to keep the result in; parts of it lie in `out`.parts until it is complete.
-    scheduler: address of a Dask scheduler, client or cluster; None: `workers` processes on this machine. chunk: points
-    per task. progress(done, points). A point that stops has NaN, `stopped` and its `error`.
+    half of the run. out: .nc file for the result; its parts are stored in `out`.parts until it is complete. scheduler:
+    address of a Dask scheduler, client or cluster; None: `workers` processes on this machine. chunk: points per task.
+    progress(done, points): called after each chunk. overwrite: replace another sweep in `out` and its parts. A point
+    that stops has NaN for its measures, `stopped` is true, and `error` is its message.
 
-    overwrite: replace what `out` and its parts hold of another sweep. `ValueError` names the point or the measure that
-    does not fit; `OSError`: the output cannot be written to its end; `RuntimeError`: points could not be computed, with
-    the rest kept.
+    `ValueError` names the point or the measure that is invalid. `ImportError`: a package is missing. `OSError`: the
+    output cannot be written to its end. `RuntimeError`: points could not be computed; the others are kept.
     """
     xarray = needed()["xarray"]
     names, axes = _checked_grid(grid)
@@ -133,7 +133,10 @@ def sweep(
 
 
 def swim_points(points: list[Point], duration, sample_period, stations, measure, most_evaluations) -> dict[int, dict]:
-    """What a worker does: swim the points, and measure each. Index: measures, and "error", empty where it went well."""
+    """The task of a worker: simulate the points and measure each.
+
+    Returns the measures of each point by its index, with "error": the message of a point that stopped, else empty.
+    """
     batch = simulate_batch(
         [point.law for point in points],
         duration,
@@ -189,7 +192,7 @@ def check_points(name: str, count: int):
 
 
 def _label(value):
-    """How a value is called on its axis."""
+    """The label of a value on its axis."""
     if isinstance(value, (Body, Accuracy)):
         return value.name
     return value if isinstance(value, (bool, int, float, str)) else str(value)

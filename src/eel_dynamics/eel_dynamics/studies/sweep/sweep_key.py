@@ -1,4 +1,4 @@
-"""The key of a sweep: a name that changes with anything that the results depend on."""
+"""The key of a sweep: a hash of everything that the results depend on."""
 
 import hashlib
 import inspect
@@ -18,8 +18,11 @@ PACKAGES = (Path(eel_gaits.__file__).parent, Path(eel_dynamics.__file__).parent)
 
 
 def key_of(points, duration, sample_period, stations, measure, most_evaluations=MOST_EVALUATIONS) -> str:
-    """The key: of the points, the run's arguments, the measure's code and closure, and this software, its compiled core
-    included."""
+    """The key, 32 hexadecimal digits.
+
+    It is a hash of the points, the arguments of the runs, the measure's code and closure, and this software, including
+    its compiled core. `ValueError` for a function that cannot be hashed.
+    """
     content = hashlib.sha256(repr((duration, sample_period, most_evaluations)).encode())
     content.update(np.asarray(stations, dtype=float).tobytes())
     content.update(_sources())
@@ -43,9 +46,9 @@ def _sources() -> bytes:
 
 
 def _content_of_function(argument: str, function) -> bytes:
-    """What `function` computes with: its code and closure, or its whole file where others can import it from there.
+    """The code and closure of `function`, with the whole file of its module where that can be imported.
 
-    `ValueError` that names the argument for what cannot be told apart from others.
+    `ValueError` names the argument whose function cannot be hashed.
     """
     from dask.tokenize import TokenizationError, tokenize
 
@@ -62,7 +65,7 @@ def _content_of_function(argument: str, function) -> bytes:
 
 
 def _content_of_body(body: Body) -> bytes:
-    """Its numbers, its half-axes as they were given, and what these are at 201 points: a function may read anything."""
+    """The body's numbers, its half-axes as given, and their values at 201 points: a function may read other data."""
     x = np.linspace(0.0, body.length, 201)
     numbers = body.length, body.density, *body.nose, body.nose_added_mass, body.nose_drag
     drags = body.roll_drag, body.lateral_drag, body.vertical_drag

@@ -17,9 +17,9 @@ ABOUT, OURS = "sweep.json", ("sweep*.json", "part-*.json")
 
 
 class Parts:
-    """Results by index of a sweep `key` of `count` points, in the folder `out`.parts; of no sweep where `out` is None.
+    """Results by index of the sweep `key` of `count` points, in the folder `out`.parts; not stored if `out` is None.
 
-    `ValueError` where the output cannot be written, or it or the folder is of another sweep, unless `overwrite`.
+    `ValueError` where `out` is invalid, or where the file or the folder is of another sweep, unless `overwrite`.
     """
 
     def __init__(self, out, key: str, count: int, overwrite: bool):
@@ -40,7 +40,7 @@ class Parts:
             self._remove()
 
     def complete(self):
-        """The finished sweep, or None. `ValueError` for a file that is not of this sweep, unless it is overwritten."""
+        """The finished sweep, or None. `ValueError` for a file that is not of this sweep, unless `overwrite`."""
         if self.out is None or not self.out.exists():
             return None
         import xarray
@@ -56,7 +56,7 @@ class Parts:
         raise ValueError(f"{self.out} exists and is not of this sweep: choose another out, or overwrite")
 
     def load(self) -> dict[int, dict]:
-        """Load the stored results, by index; makes the folder. A damaged part is removed, with a warning."""
+        """Load the stored results, by index, and create the folder. A damaged part is removed, with a warning."""
         done = {}
         if self.folder is not None:
             self.folder.mkdir(exist_ok=True)
@@ -104,7 +104,7 @@ class Parts:
         return points
 
     def _key_of_folder(self) -> str | None:
-        """The key of the folder's sweep; None if it holds no parts."""
+        """The key of the sweep in the folder; None if there are no parts, "unknown" if the key cannot be read."""
         if not any(self.folder.glob("part-*.json")):
             return None
         try:
@@ -126,7 +126,7 @@ def _undefined(value) -> bool:
 
 
 def _infinity(text: str) -> float:
-    """A constant that JSON does not have; `keep` writes no NaN."""
+    """Parse an infinity, which JSON does not have. `ValueError` for NaN, which `keep` does not write."""
     if text == "NaN":
         raise ValueError("it holds NaN in place of a number")
     return float(text)

@@ -1,1 +1,1 @@
-"""What exactness costs, and what leaving physics out costs: `tradeoff` measures both for a gait, and draws them."""
+"""The command `tradeoff`: measures and draws the cost of accuracy and the error of simpler models for a gait."""

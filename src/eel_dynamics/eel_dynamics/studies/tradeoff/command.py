@@ -1,4 +1,4 @@
-"""`tradeoff`: what exactness costs for a gait, and what leaving physics out would cost, as table and picture.
+"""`tradeoff`: cost of accuracy for a gait, and error of models that leave physics out, as tables and pictures.
 
 tradeoff falling
 tradeoff falling straight turning --page docs/tradeoff.md --pictures docs/images
@@ -27,8 +27,10 @@ from eel_dynamics.studies.tradeoff.table import model_table, trade_table, write_
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Exit status 0; 1 where a file cannot be written to its end; 2 for bad input or a missing package. One line says
-    why."""
+    """Exit status 0; 1 where a file cannot be written to its end; 2 for bad input or a missing package.
+
+    An error prints one line with its reason.
+    """
     if arguments is None:
         end_on_interrupt()
     options = _parser().parse_args(arguments)
@@ -57,7 +59,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _calibrate() -> int:
-    """Measure anew which settings deliver which target, into the table that the presets are read from."""
+    """Measure again which settings deliver which target, and write the table that the presets are read from."""
     from eel_dynamics.accuracy.accuracy import TABLE_FILE
     from eel_dynamics.studies.calibration.calibration import calibrate
 

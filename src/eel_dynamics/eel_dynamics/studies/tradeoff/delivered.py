@@ -1,7 +1,7 @@
-"""What the targets deliver: the error of runs by their target, and what they estimate it to be by what it is.
+"""What the targets deliver: errors of runs relative to their targets, and error estimates relative to the errors.
 
-Over the gaits of the library and random laws that the calibration has not seen, on both bodies, in the scenes of the
-calibration. ErrorEstimate as in `errors`, against a run with far more points and far smaller steps.
+The runs cover the gaits of the library and random laws that the calibration does not use, on both bodies, in the scenes
+of the calibration. Errors are those of `relative_errors`, against a run with far more points and far smaller steps.
 """
 
 from collections.abc import Callable
@@ -16,10 +16,10 @@ from eel_dynamics.studies.calibration.calibration import REFERENCE, Case, cases,
 from eel_dynamics.studies.tradeoff.table import laid_out
 
 TARGETS = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9)  # each a tenth of the one before
-UNSEEN = range(100, 108)  # seeds of laws; the calibration has the first few
-FAR = 30.0  # below the target: time was wasted
-CLOSE = 10.0  # of the truth, for an estimate
-LEAST = 1e-11  # of an error, that a reference can tell
+UNSEEN = range(100, 108)  # seeds of laws that the calibration does not use
+FAR = 30.0  # factor below the target, beyond which the run was needlessly expensive
+CLOSE = 10.0  # factor between an estimate and the true error
+LEAST = 1e-11  # least error that a reference resolves
 HEAD = (
     *(
         "scene",
@@ -37,7 +37,7 @@ HEAD = (
 
 @dataclass(frozen=True)
 class Trial:
-    """One run at a target. `coarse`: the error of the coarsest settings that the table has for such runs."""
+    """One run at a target. Errors are relative. coarse: error with the coarsest settings of the table for such runs."""
 
     case: Case
     target: float
@@ -47,29 +47,29 @@ class Trial:
 
     @property
     def below(self) -> float:
-        """How many times the error is below the target."""
+        """The target divided by the error."""
         return self.target / max(self.error.worst, LEAST)
 
     @property
     def waived(self) -> bool:
-        """The coarsest settings meet the target already: nothing could be saved."""
+        """Whether the coarsest settings already meet the target, so that no cheaper ones exist."""
         return self.coarse <= self.target
 
     @property
     def far(self) -> bool:
-        """The error is farther below the target than it needs to be."""
+        """Whether the error is more than a factor `FAR` below the target, although coarser settings exist."""
         return self.below > FAR and not self.waived
 
     @property
     def misjudged(self) -> float:
-        """By what factor the estimate is off, of position or of torque, the worse."""
+        """Factor (>= 1) between estimate and error, the greater of position and torque."""
         pairs = (self.estimate.position, self.error.position), (self.estimate.torque, self.error.torque)
         ratios = [max(estimate, LEAST) / max(error, LEAST) for estimate, error in pairs if error is not None]
         return max(max(ratio, 1.0 / ratio) for ratio in ratios)
 
 
 def trials_of(case: Case, targets=TARGETS, reference=None) -> list[Trial]:
-    """The runs of a case at those of the `targets` that the table has, against a `reference` run."""
+    """The runs of a case at those `targets` that the table has, compared with a `reference` run (None: simulate it)."""
     rows = table()[key_of(case.scene, case.plane)]
     reference = reference or swim(case, REFERENCE)
     coarsest = Accuracy.of(rows[0]["target"]).in_scene(case.scene, case.plane).as_it_is()
@@ -82,7 +82,7 @@ def trials_of(case: Case, targets=TARGETS, reference=None) -> list[Trial]:
 
 
 def deliver(seeds=UNSEEN, targets=TARGETS, say: Callable = lambda text: None) -> list[Trial]:
-    """The trials of all cases, with drag and without."""
+    """The trials of all cases, with and without drag. seeds: of the random laws; say(text): called with progress."""
     found = []
     for drag in (True, False):
         for case in cases(drag, seeds):
@@ -94,7 +94,7 @@ def deliver(seeds=UNSEEN, targets=TARGETS, say: Callable = lambda text: None) ->
 
 
 def delivered_table(trials: list[Trial], *, markdown: bool = False) -> str:
-    """The distribution, a row for each kind of scene and motion, and one for all."""
+    """The distribution of the trials as a table: a row for each kind of scene and motion, and one for all."""
     groups = {}
     for trial in trials:
         scene = "with drag" if trial.case.scene.resistive else "without drag"
@@ -120,10 +120,11 @@ def _row(scene: str, motion: str, quantity: str, trials: list[Trial]) -> list[st
 
 @dataclass(frozen=True)
 class Scatter:
-    """How errors of different swims at one target, taken by the same settings of the table, lie about their mean.
+    """Scatter about their mean of the errors of different runs at one target, with the same settings of the table.
 
-    decades: standard deviation of their decadic logarithms. likeness: correlation of what is left of them, at a target
-    and at a tenth of it in the same swim: 1 if an easy swim is easy at all targets, 0 if each draws its luck anew.
+    decades: standard deviation of the decadic logarithms of the errors. likeness: correlation of the deviations from
+    the mean at a target and at a tenth of it in the same run. It is 1 if a run with small errors at one target has
+    small errors at all, and 0 if the deviations are independent.
     """
 
     decades: float
@@ -131,13 +132,15 @@ class Scatter:
 
     @property
     def sides(self) -> float:
-        """Standard deviations from the middle of a factor `FAR` to its ends."""
+        """Half the width of a factor `FAR`, in standard deviations."""
         return 0.5 * np.log10(FAR) / self.decades
 
 
 def scatter_of(trials: list[Trial]) -> Scatter:
-    """Over the trials whose settings could have been coarser, about the means of those of the same target, drag,
-    motion and quantity."""
+    """Scatter over the trials whose settings could have been coarser.
+
+    Means are taken over trials of the same target, drag, motion and quantity.
+    """
     groups, tenth = {}, dict(pairwise(TARGETS))
     for trial in trials:
         if not trial.waived:
@@ -160,7 +163,7 @@ def scatter_of(trials: list[Trial]) -> Scatter:
 
 
 def scatter_line(trials: list[Trial]) -> str:
-    """The same in words."""
+    """The scatter of the `trials`, in words."""
     found = scatter_of(trials)
     return (
         f"From swim to swim, errors at a target scatter by a factor of {10.0**found.decades:.1f} (standard deviation "
@@ -170,7 +173,7 @@ def scatter_line(trials: list[Trial]) -> str:
 
 
 def farthest(trials: list[Trial]) -> list[str]:
-    """The trials that are farther below their target than they need to be, the farthest first, in words."""
+    """The trials that are needlessly far below their target, the farthest first, in words."""
     far = sorted((trial for trial in trials if trial.far), key=lambda trial: -trial.below)
     return [f"{_said(trial)}: {trial.below:.0f}" for trial in far]
 

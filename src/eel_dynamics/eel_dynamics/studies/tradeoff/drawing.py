@@ -1,6 +1,6 @@
-"""The trade as a picture: error against times real time, both fronts, and what leaving physics out would cost.
+"""The trade-off as a picture: error against times real time, both Pareto fronts, and the errors of simpler models.
 
-Methods differ by colour (Okabe and Ito) and by mark, so that print without colour tells them apart.
+Methods differ in colour (Okabe and Ito) and in mark, so that they can be told apart in print without colour.
 """
 
 import numpy as np
@@ -13,11 +13,11 @@ from eel_dynamics.studies.tradeoff.settings import METHODS
 
 LOOKS = {"adams": (BLUE, "o"), "dormand_prince": (GREEN, "s"), "classical": (ORANGE, "^")}
 SIZE = 11.0, 5.4  # inches
-FLOOR = 3.0  # times the reference's own error: below, differences mean nothing
+FLOOR = 3.0  # times the reference's own error: differences below it are not significant
 
 
 def draw_trade(figure, trade: Trade, models: list[Model]):
-    """Fill an empty matplotlib figure: pose on the left, torque on the right."""
+    """Draw the trade-off into an empty matplotlib figure: error of pose on the left, of torque on the right."""
     figure.suptitle(
         f"Gait {trade.law.name!r}, {trade.duration:g} s: what exactness costs, and what a poorer model is off by"
     )
@@ -93,7 +93,7 @@ def _draw_panel(axes, trade: Trade, models: list[Model], quantity: str, floor: f
 
 
 def _draw_models(axes, models: list[Model], quantity: str, floor: float):
-    """A line for each poorer model, with its name at the right edge, moved apart where they would overlap."""
+    """A line for each simpler model, with its name at the right edge. Names that would overlap are moved apart."""
     shown = [model for model in models if model.run is not None and getattr(model, quantity) > floor]
     shown.sort(key=lambda model: getattr(model, quantity))
     low, high = np.log10(axes.get_ylim())
@@ -114,7 +114,7 @@ def _draw_models(axes, models: list[Model], quantity: str, floor: float):
 
 
 def _apart(heights: list[float], gap: float) -> list[float]:
-    """Rising `heights`, moved as little as it takes to lie `gap` apart: those that touch share one middle."""
+    """Ascending `heights`, moved as little as needed to lie `gap` apart. Labels that touch form one centred group."""
     groups = []  # [sum of heights, count]
     for height in heights:
         groups.append([height, 1])

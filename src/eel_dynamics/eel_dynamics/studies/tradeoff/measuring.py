@@ -1,9 +1,9 @@
-"""Error and cost of each setting, against a run that has converged.
+"""Error and cost of each setting, against a converged run.
 
-Errors as in `accuracy`: of the head's position at the end by the length of its path (or of the body, if longer), and of
-the torque field by its greatest magnitude. Times are of the processor, for one core: on an idle machine they are the
-wall's, on a busy one they still mean something. They are medians over repeats in which all settings take turns, so that
-a disturbance is no setting's fault.
+Errors are those of `accuracy`: of the head's position at the end relative to the length of its path (or of the body, if
+longer), and of the torque field relative to its greatest magnitude. Times are CPU times of one core: they equal wall
+times on an idle machine, and stay meaningful on a busy one. They are medians over repeats. In each repeat all settings
+take turns, so that a disturbance does not fall on a single setting.
 """
 
 import statistics
@@ -27,7 +27,7 @@ STATIONS = 51
 
 @dataclass(frozen=True)
 class Measured:
-    """A setting's error and cost. Times are for the motion alone (no ledger, no wrench, one sample at the end)."""
+    """Relative errors and cost of a setting. Times are for the motion alone: no ledger, no wrench, one sample."""
 
     accuracy: Accuracy
     nodes: int
@@ -35,15 +35,15 @@ class Measured:
     pose_error: float
     torque_error: float
     evaluations: int
-    microseconds: float  # per evaluation, of the march
-    seconds: float  # of one core for the whole run, set-up included
+    microseconds: float  # CPU time per evaluation, without set-up
+    seconds: float  # CPU time of the whole run on one core, set-up included
     times_real_time: float
     memory: int  # bytes that the loops work on
     run: Run
 
     @property
     def error(self) -> float:
-        """The worse of the two: what `accuracy` speaks of."""
+        """The greater of both errors: the one that `accuracy` refers to."""
         return max(self.pose_error, self.torque_error)
 
 
@@ -54,14 +54,14 @@ class Trade:
     law: Law
     duration: float  # s
     reference: Run
-    reference_error: tuple[float, float]  # of pose and torque, against a coarser one
+    reference_error: tuple[float, float]  # of pose and torque, compared with a coarser run
     rows: list[Measured]
     unstable: list[Accuracy]  # settings that diverged
     repeats: int
 
 
 def errors_of(run: Run, reference: Run) -> tuple[float, float]:
-    """Error of pose and of torque of `run`, sampled as `reference` is."""
+    """Relative errors of pose and torque of `run`, which has the same samples and stations as `reference`."""
     way = max(reference.path_length, reference.body.length)
     pose = float(np.linalg.norm(run.position[-1] - reference.position[-1])) / way
     size = float(np.max(np.linalg.norm(reference.torque, axis=2)))
@@ -69,7 +69,10 @@ def errors_of(run: Run, reference: Run) -> tuple[float, float]:
 
 
 def swim(law: Law, duration: float, body: Body, scene: Scene, accuracy: Accuracy) -> Run:
-    """A run whose errors can be told."""
+    """Simulate `duration` [s] with torque and without the ledger, for the measurement of errors.
+
+    `SimulationStopped` where the run cannot go on.
+    """
     return simulate(
         law,
         duration,
@@ -91,7 +94,11 @@ def measure(
     repeats: int = 5,
     say: Callable[[str], None] = lambda text: None,
 ) -> Trade:
-    """Swim `law` with every setting. `say` is told what goes on."""
+    """Simulate `duration` [s] of `law` with every setting and measure errors and times.
+
+    repeats: rounds of timing. say(text): called with a line of progress. Settings that diverge are listed in
+    `Trade.unstable`.
+    """
     say("the reference run, and a check of it")
     reference = swim(law, duration, body, scene, REFERENCE)
     reference_error = errors_of(swim(law, duration, body, scene, CHECK), reference)
@@ -138,7 +145,7 @@ def measure(
 
 
 def front(rows: list, error: Callable, cost: Callable) -> list:
-    """Those of `rows` that no other beats in error and cost at once, from the cheapest on (Pareto's front)."""
+    """The Pareto front: those `rows` that no other row beats in both error and cost, the cheapest first."""
     best, result = np.inf, []
     for row in sorted(rows, key=lambda row: (cost(row), error(row))):
         if error(row) < best:
@@ -148,6 +155,7 @@ def front(rows: list, error: Callable, cost: Callable) -> list:
 
 
 def nodes_of(swimmer: Simulation) -> int:
+    """Number of nodes along the body."""
     return len(swimmer.grid.x)
 
 

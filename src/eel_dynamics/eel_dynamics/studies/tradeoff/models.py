@@ -1,6 +1,6 @@
-"""What leaving physics out does to the answer: the error of a poorer model, solved exactly, against the full one.
+"""Errors of simpler models: the difference of a model that leaves physics out, solved exactly, from the full model.
 
-A discretisation error far below that of what the scene leaves out buys nothing: that is what a scene requires.
+A discretisation error far below the error of the model has no benefit. This sets the accuracy that a scene requires.
 """
 
 from collections.abc import Callable
@@ -31,12 +31,12 @@ VARIANTS: dict[str, dict] = {
 
 @dataclass(frozen=True)
 class Model:
-    """A poorer model's errors, against the full one."""
+    """Relative errors of a simpler model, compared with the full model; NaN where it stopped."""
 
     name: str
     pose_error: float
     torque_error: float
-    run: Run | None  # None: it could not go on
+    run: Run | None  # None where the simulation stopped
     stopped: str = ""
 
 
@@ -49,7 +49,10 @@ def compare(
     scene: Scene,
     say: Callable[[str], None] = lambda text: None,
 ) -> list[Model]:
-    """Every variant that changes `scene`, against the `reference` in it."""
+    """Compare every variant that changes `scene` with the `reference` run in `scene`, over `duration` [s].
+
+    say(text): called with a line of progress.
+    """
     found = []
     for name, changes in VARIANTS.items():
         changed = replace(scene, **changes)
@@ -67,5 +70,5 @@ def compare(
 
 
 def flattened(law: Law) -> Law:
-    """`law` without what bends the body out of the plane."""
+    """`law` with its terms in yaw alone, which bend the body in the plane."""
     return Law(*(term for term in law.terms if term.axis == "yaw"), name=law.name, transition=law.transition)

@@ -1,4 +1,4 @@
-"""docs/tradeoff.md: the tables, the picture, and how to read them."""
+"""Writes docs/tradeoff.md: the tables, the picture, and how to read them."""
 
 import platform
 from datetime import date
@@ -49,8 +49,11 @@ it would cost six tenths of what it is for. The estimate of a run's own error is
 
 
 def write_page(path: Path, found: list[tuple], picture: str | None, trials: list[Trial] | None = None):
-    """`found`: pairs of a trade and its models. `picture`: of the first gait, as the page refers to it. `trials`: of
-    what the targets deliver, where it was measured."""
+    """Write the page to `path`.
+
+    found: pairs of a trade and its models. picture: path of the first gait's picture, relative to the page; None: no
+    picture. trials: of what the targets deliver; None: not measured. `OSError` where the page cannot be written.
+    """
     gaits = " ".join(trade.law.name for trade, _ in found)
     text = HEAD.format(
         gaits=gaits,
@@ -77,7 +80,7 @@ def write_page(path: Path, found: list[tuple], picture: str | None, trials: list
 
 
 def reference_line(trade) -> str:
-    """How well the reference has converged."""
+    """The convergence of the reference run, in words."""
     pose, torque = trade.reference_error
     unstable = f" {len(trade.unstable)} settings diverged." if trade.unstable else ""
     check = f"{CHECK.resolution:g} points and {CHECK.tolerance:g}"
@@ -88,7 +91,7 @@ def reference_line(trade) -> str:
 
 
 def machine() -> str:
-    """What it was measured on, in words."""
+    """Processor, date and instruction set of the measurement, in words."""
     processor = platform.processor() or platform.machine()
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()

@@ -1,4 +1,4 @@
-"""The settings that the trade is measured over: points along the body, method and steps in time."""
+"""The settings of the trade-off: points along the body, method and steps in time."""
 
 from dataclasses import replace
 
@@ -10,7 +10,7 @@ RESOLUTIONS = (6.0, 8.0, 11.0, 16.0, 24.0, 36.0, 60.0, 110.0)  # points per body
 TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8, 1e-10)  # relative error per adaptive step
 STEPS = (0.1, 0.05, 0.02, 0.01, 0.005)  # s, of the classical method
 ADAMS_ORDERS = (3, 4, 5, 6)
-COARSE_POINTS, COARSE_TOLERANCE = 24.0, 1e-5  # up to and from which the drag's kinks are left out, too
+COARSE_POINTS, COARSE_TOLERANCE = 24.0, 1e-5  # at most and at least, for settings without kinks
 REFERENCE = Accuracy(name="reference run", resolution=240.0, tolerance=1e-12)
 CHECK = Accuracy(name="check of the reference", resolution=170.0, tolerance=1e-11)
 METHODS = {  # name in `Accuracy`: in words
@@ -23,8 +23,11 @@ METHODS = {  # name in `Accuracy`: in words
 def settings(
     scene: Scene, quick: bool = False, plane: bool = False, difficulty: Difficulty = NOMINAL
 ) -> list[Accuracy]:
-    """Every combination of points and steps, and the presets as they are in `scene`, for a motion that stays in a
-    `plane` or for any, of such `difficulty`; `quick`: every third of both, for a look."""
+    """Every combination of points and steps, and the presets as they apply in `scene`.
+
+    quick: every third value of points and of steps only. plane: the motion stays in a plane. difficulty: of the run,
+    for the presets.
+    """
     part = slice(None, None, 3) if quick else slice(None)
     rows = []
     for resolution in RESOLUTIONS[part]:
@@ -39,6 +42,6 @@ def settings(
                     rows.append(replace(rows[-1], name=f"{name}, no kinks", kinks="none"))
         for step in STEPS[part]:
             rows.append(Accuracy(name=f"{nodes}, step {step:g} s", resolution=resolution, step=step))
-    # The presets without their target, which would have them take other settings where the wrench is off, for timing.
+    # The presets lose their target: with it they would take other settings for timing, where the wrench is off.
     presets = [Accuracy.of(name).in_scene(scene, plane, difficulty) for name in PRESETS]
     return rows + [each.as_it_is() for each in presets]

@@ -1,4 +1,4 @@
-"""The trade as a Rerun recording: every run of a front side by side in time, the trade as points, the table as text."""
+"""The trade-off as a Rerun recording: the runs on the fronts in time, the settings as points, the tables as text."""
 
 import contextlib
 import warnings
@@ -16,7 +16,10 @@ COLOURS = {"adams": (0, 114, 178), "dormand_prince": (0, 158, 115), "classical":
 
 
 def stream(path: Path, found: list[tuple]):
-    """Write pairs of a trade and its models to `path` (.rrd). Timeline `time`: the runs' own."""
+    """Write `found`, pairs of a trade and its models, to `path` (.rrd). The timeline `time` is that of the runs [s].
+
+    `OSError` where the file is not complete.
+    """
     import rerun
 
     with replacing(path) as draft:
@@ -42,14 +45,14 @@ def _write(rerun, path: Path, found: list[tuple]):
             if model.run is not None:
                 _log_run(rerun, recording, [name, "models", model.name], model.run, GREY)
                 _log_error(rerun, recording, [name, "error", model.name], model.run, trade.reference)
-    with contextlib.suppress(RuntimeError):  # shows below
+    with contextlib.suppress(RuntimeError):  # `_check_complete` reports it
         recording.flush()
     recording.disconnect()
     _check_complete(path)
 
 
 def _check_complete(path: Path):
-    """`OSError` for a file without its end, which rerun only logs."""
+    """`OSError` for an incomplete file, which rerun only logs."""
     from rerun.chunk import RrdReader
 
     with warnings.catch_warnings():
@@ -61,7 +64,7 @@ def _check_complete(path: Path):
 
 
 def _log_points(rerun, recording, name: str, trade):
-    """Decimal logarithms: of times real time to the right, of the greater error downwards."""
+    """Log points of decadic logarithms: times real time to the right, the greater error downwards."""
     for method, colour in COLOURS.items():
         rows = [row for row in trade.rows if row.accuracy.method == method]
         places = [(np.log10(row.times_real_time), -np.log10(max(row.error, 1e-16))) for row in rows]
@@ -82,7 +85,7 @@ def _log_run(rerun, recording, entity: list[str], run, colour):
 
 
 def _log_error(rerun, recording, entity: list[str], run, reference):
-    """Distance [m] of the head from the converged run's, in time."""
+    """Log the distance [m] of the head from that of the `reference` run, over time."""
     distance = np.linalg.norm(run.position - reference.position, axis=1)
     recording.send_columns(
         rerun.new_entity_path(entity),

@@ -1,4 +1,4 @@
-"""The trade as text: aligned for a terminal, or as tables of Markdown."""
+"""The trade-off as text: aligned for a terminal, or as Markdown tables."""
 
 import csv
 from pathlib import Path
@@ -23,11 +23,11 @@ HEAD = (
     "times real time",
     "memory [kB]",
 )
-EXACT_ENOUGH = 0.1  # of a model's error, that a discretisation may add
+EXACT_ENOUGH = 0.1  # of a model's error, allowed for the discretisation
 
 
 def marks_of(trade: Trade) -> dict[int, str]:
-    """P, T: a row is on the front of pose, of torque, against time. By the row's identity."""
+    """Marks by the `id` of each row. P: on the front of pose error against time; T: on that of torque error."""
     marks = {id(row): "" for row in trade.rows}
     for letter, error in (("P", pose), ("T", torque)):
         for row in front(trade.rows, error, seconds):
@@ -36,18 +36,22 @@ def marks_of(trade: Trade) -> dict[int, str]:
 
 
 def pose(row: Measured) -> float:
+    """Relative error of pose."""
     return row.pose_error
 
 
 def torque(row: Measured) -> float:
+    """Relative error of torque."""
     return row.torque_error
 
 
 def seconds(row: Measured) -> float:
+    """CPU time of the run [s]."""
     return row.seconds
 
 
 def cells_of(row: Measured, mark: str) -> list[str]:
+    """The cells of a row, in the order of `HEAD`."""
     return [
         mark or "-",
         row.accuracy.name,
@@ -65,7 +69,7 @@ def cells_of(row: Measured, mark: str) -> list[str]:
 
 
 def trade_table(trade: Trade, *, everything: bool = False, markdown: bool = False) -> str:
-    """The fronts and the presets, cheapest first; `everything`: all that was measured."""
+    """A table of the fronts and the presets, the cheapest first; `everything`: of all settings."""
     marks = marks_of(trade)
     rows = [row for row in trade.rows if everything or marks[id(row)] or row.accuracy.name in PRESETS]
     rows.sort(key=seconds)
@@ -73,7 +77,7 @@ def trade_table(trade: Trade, *, everything: bool = False, markdown: bool = Fals
 
 
 def model_table(models: list[Model], trade: Trade, *, markdown: bool = False) -> str:
-    """Each poorer model's errors, and the cheapest setting whose own error is a tenth of them, or less."""
+    """A table of each simpler model's errors, and the cheapest setting whose own errors are a tenth of them or less."""
     head = "left out, or otherwise", "error of pose", "error of torque", "exact enough for it", "times real time"
     rows = []
     for model in sorted(models, key=lambda model: -max(model.pose_error, model.torque_error)):
@@ -86,7 +90,7 @@ def model_table(models: list[Model], trade: Trade, *, markdown: bool = False) ->
 
 
 def exact_enough(model: Model, trade: Trade) -> tuple[str, str]:
-    """The cheapest setting whose error is a tenth of the model's in pose and in torque, and its times real time."""
+    """Name and speed of the cheapest setting with at most a tenth of the model's errors, in times real time."""
     for row in sorted(trade.rows, key=seconds):
         if row.pose_error <= EXACT_ENOUGH * model.pose_error and row.torque_error <= EXACT_ENOUGH * model.torque_error:
             return row.accuracy.name, f"{row.times_real_time:.0f}"
@@ -94,7 +98,7 @@ def exact_enough(model: Model, trade: Trade) -> tuple[str, str]:
 
 
 def write_csv(trade: Trade, path: Path):
-    """Everything that was measured, one line per setting."""
+    """Write all measurements to `path`, one line per setting. `OSError` where the file cannot be written."""
     marks = marks_of(trade)
     with replacing(path) as draft, draft.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
@@ -103,7 +107,7 @@ def write_csv(trade: Trade, path: Path):
 
 
 def laid_out(head, rows, markdown: bool) -> str:
-    """A table as text, or of Markdown."""
+    """A table as aligned text, or in Markdown."""
     if markdown:
         lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
         return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows])
