@@ -1,4 +1,4 @@
-"""What every command and node does at its command line: one line for an error, output that any terminal takes."""
+"""The command line of every command and node: one line per error, and output that any terminal can show."""
 
 import argparse
 import sys
@@ -7,7 +7,7 @@ from eel_gaits.wording import one_line
 
 
 class Parser(argparse.ArgumentParser):
-    """An argument parser that says in one line what is wrong."""
+    """An argument parser that reports an error in one line."""
 
     def parse_args(self, *arguments, **options):
         write_on_any_terminal()
@@ -19,17 +19,17 @@ class Parser(argparse.ArgumentParser):
 
 
 def complain(program: str, error):
-    """Write one line to stderr: what `error` says."""
+    """Write one line to stderr: the program's name and the text of `error`."""
     sys.stderr.write(f"{program}: {one_line(error)}\n")
 
 
 def check_seconds(argument: str, value: float | None):
-    """ValueError that names the argument unless its value [s] is positive, or None."""
+    """`ValueError` that names the `argument`, unless its `value` [s] is positive or None."""
     if value is not None and not value > 0.0:
         raise ValueError(f"{argument} must be > 0 s, got {value:g}")
 
 
 def write_on_any_terminal():
-    """Have stdout write characters that its encoding lacks as escapes, as stderr does, instead of failing."""
+    """Let stdout write an escape for each character that its encoding lacks, as stderr does, instead of failing."""
     if hasattr(sys.stdout, "reconfigure"):
         sys.stdout.reconfigure(errors="backslashreplace")

@@ -1,6 +1,6 @@
-"""Gaits by name: each is a function that makes a `Law` from a few numbers, and swims from a standing start.
+"""Gaits by name. A gait is a function that makes a `Law` from a few numbers. Each gait starts from rest.
 
-The numbers of a gait are the fields of a frozen dataclass, with unit, default, bounds and description.
+The numbers of a gait are the fields of a frozen dataclass. Each has a unit, a default, bounds and a description.
 
     falling()                         # the paper's gait
     falling(period=2.0)               # with one number changed
@@ -38,7 +38,7 @@ def _instant(default, description):
 
 @dataclass(frozen=True, kw_only=True)
 class Wave(Quantities):
-    """A travelling wave whose amplitude is a2 X^2 + a1 X + a0 (eq. 65), started over some periods (eq. 63)."""
+    """A travelling wave of the amplitude a2 X^2 + a1 X + a0 (eq. 65). It starts smoothly over some periods (eq. 63)."""
 
     period: float = _period(1.0)
     wavelength: float = quantity(1.0, unit="m", description="wavelength of the wave", minimum=1e-4, maximum=1e4)
@@ -52,7 +52,7 @@ class Wave(Quantities):
     start_periods: float = _start_periods()
 
     def term(self, direction=1.0):
-        """The yaw wave; it runs to the tail (direction 1) or to the head (-1)."""
+        """The yaw wave. It runs to the tail (direction 1) or to the head (-1)."""
         return Term(
             axis="yaw",
             amplitude=(self.amplitude_0, self.amplitude_1, self.amplitude_2),
@@ -64,7 +64,7 @@ class Wave(Quantities):
 
 @dataclass(frozen=True, kw_only=True)
 class Dive(Wave):
-    """The forward wave with a bend in pitch, first one way, later the other: gamma(t) of eq. (66)."""
+    """The forward wave with a bend in pitch, first one way and later the other: gamma(t) of eq. (66)."""
 
     pitch_bend: float = _bend(0.5, "pitch curvature of the dive, K_c2")
     bend_start: float = _instant(1.0, "the bend begins, t1")
@@ -85,7 +85,7 @@ class Dive(Wave):
             _check_order(self, earlier, later)
 
     def bend(self, direction):
-        """The pitch term; direction 1 bends the tail down first, -1 up."""
+        """The pitch term. It first bends the tail down (direction 1) or up (-1)."""
         return Term(
             axis="pitch",
             amplitude=(direction * self.pitch_bend,),
@@ -124,7 +124,7 @@ class Roll(Quantities):
 
 @dataclass(frozen=True, kw_only=True)
 class Helix(Quantities):
-    """Two equal waves in pitch and yaw, a quarter of a period apart: a corkscrew that runs to the tail."""
+    """Equal waves in pitch and yaw, a quarter of a period apart: a corkscrew that runs to the tail."""
 
     period: float = _period(1.0)
     wavelength: float = quantity(1.0, unit="m", description="wavelength of the helix", minimum=1e-4, maximum=1e4)
@@ -140,7 +140,7 @@ def _scaled_bend(default, place):
 
 @dataclass(frozen=True, kw_only=True)
 class Kern(Quantities):
-    """A wave whose amplitude is a natural cubic spline through four values of K L, at 0, L/3, 2L/3 and L."""
+    """A wave whose amplitude is a natural cubic spline through four values of K L, at X = 0, L/3, 2L/3 and L."""
 
     length: float = quantity(1.0, unit="m", description="body length L", minimum=1e-4, maximum=1e3)
     period: float = _period(1.0)
@@ -154,7 +154,7 @@ class Kern(Quantities):
 
 @dataclass(frozen=True, kw_only=True)
 class EfficientKern(Kern):
-    """The same, with the numbers of the gait that was optimised for efficiency."""
+    """The numbers of `Kern` for the gait that was optimised for efficiency."""
 
     waves: float = quantity(1.72, unit="", description="waves on the body, tau", minimum=0.0, maximum=100.0)
     bend_nose: float = _scaled_bend(3.34, "the nose")
@@ -165,7 +165,7 @@ class EfficientKern(Kern):
 
 @register(Quantities)
 def still(numbers):
-    """The straight body, at rest in shape: to coast, or to be pushed."""
+    """The straight body, whose shape does not move. Use it to coast, or to push the body."""
     return ()
 
 
@@ -191,13 +191,13 @@ def turning(numbers):
 
 @register(Dive)
 def falling(numbers):
-    """The gait of section 7.2.2, eqs. (62) to (66): forward swimming, and a dive from one depth to a greater one."""
+    """The gait of section 7.2.2, eqs. (62) to (66): forward swimming and a dive to a greater depth."""
     return (numbers.term(), numbers.bend(1.0))
 
 
 @register(Dive)
 def rising(numbers):
-    """The falling gait upside down: forward swimming, and a climb."""
+    """The falling gait upside down: forward swimming and a climb."""
     return (numbers.term(), numbers.bend(-1.0))
 
 
@@ -244,7 +244,7 @@ def _pair(numbers, *, wavelength):
 
 
 def _kern_term(numbers):
-    """K(s) sin 2 pi (t/T - tau s/L), which is K(s) sin(2 pi (X/wavelength - t/T) + pi)."""
+    """The wave K(s) sin 2 pi (t/T - tau s/L), written as K(s) sin(2 pi (X/wavelength - t/T) + pi) with s = X."""
     length = numbers.length
     scaled = (numbers.bend_nose, numbers.bend_third, numbers.bend_two_thirds, numbers.bend_tail)
     return Term(

@@ -1,11 +1,11 @@
-"""Curvature laws: what the swimmer's body is told to do, with exact first and second time derivatives.
+"""Curvature laws: the commanded curvature of the body, with exact first and second time derivatives.
 
-A law is a sum of terms, each a wave in pitch (K2) or yaw (K3) of the backbone:
+A law is a sum of terms. Each term is a wave in pitch (K2) or yaw (K3) of the backbone:
 
     K(t, X) = sum over terms of  envelope(t) amplitude(X) sin(2 pi (X / wavelength - t / period) + phase)
 
-with each quotient dropped where its divisor is 0, and an envelope that is a sum of ramps. Equations (62) to (66) of
-Boyer, Porez and Leroyer, J. Nonlinear Sci. 20 (2010), 47-79, doi:10.1007/s00332-009-9050-5, are such a sum.
+A quotient is dropped where its divisor is 0. An envelope is a sum of ramps. Equations (62) to (66) of Boyer, Porez and
+Leroyer, J. Nonlinear Sci. 20 (2010), 47-79, doi:10.1007/s00332-009-9050-5, are such a sum.
 
 Section axes (the paper's): 1 along the backbone from head to tail, 2 lateral, 3 up. K2 > 0 bends the tail down,
 K3 > 0 bends it towards +2. X runs from 0 at the nose to the body's length at the tail.
@@ -28,7 +28,10 @@ MAXIMUM_NAME = 200  # characters
 
 @dataclass(frozen=True)
 class Ramp:
-    """`delta` times the C2 ramp f_r(t; start, end) of eq. (64): 0 before start, 1 after end, times in s."""
+    """`delta` times the C2 ramp f_r(t; start, end) of eq. (64), which is 0 before `start` and 1 after `end`, in s.
+
+    `ValueError` where `end` does not lie after `start`, or where a rate would not be finite.
+    """
 
     start: float
     end: float
@@ -44,7 +47,7 @@ class Ramp:
             raise ValueError(f"end must lie so after start ({self.start} s) that rates are finite, got {self.end}")
 
     def value(self, t):
-        """The ramp and its first and second time derivatives at t [s]: three arrays of t's shape."""
+        """The ramp and its first and second time derivatives at `t` [s]: three arrays of the shape of `t`."""
         duration = self.end - self.start
         s = np.clip((np.asarray(t, dtype=float) - self.start) / duration, 0.0, 1.0)
         moving = (s > 0.0) & (s < 1.0)  # the derivatives are exactly zero outside
@@ -59,15 +62,18 @@ class Ramp:
 class Term:
     """One wave or bend: envelope(t) amplitude(X) sin(2 pi (X / wavelength - t / period) + phase).
 
+    `ValueError` names an attribute that does not fit.
+
     Attributes:
         axis: "yaw" (K3) or "pitch" (K2).
-        amplitude: at most 1000 values; without knots, the coefficients of a polynomial in X [rad/m, rad/m^2, ...]; with
-            knots, the values [rad/m] there of a natural cubic spline, which goes on as a straight line beyond them.
-        knots: [m], strictly increasing, as many as amplitudes and at least 2; or none.
-        wavelength: [m]; 0: standing; negative: the wave runs towards the head.
-        period: [s]; 0: constant in time but for the envelope.
-        phase: [rad]; a constant bend has pi/2.
-        envelope: ramps, summed from 0; none: 1 at all times.
+        amplitude: at most 1000 values. Without knots, these are the coefficients of a polynomial in X [rad/m, rad/m^2,
+            ...]. With knots, they are the values [rad/m] at the knots of a natural cubic spline. Beyond the end knots
+            the spline continues as a straight line.
+        knots: [m], strictly increasing; none, or as many as amplitudes and at least 2.
+        wavelength: [m]; 0 for a standing term; negative for a wave that runs towards the head.
+        period: [s]; 0 for a term that is constant in time except for its envelope.
+        phase: [rad]; pi/2 for a constant bend.
+        envelope: ramps, whose sum starts from 0; without ramps the envelope is 1 at all times.
     """
 
     axis: str = "yaw"
@@ -124,7 +130,7 @@ class Term:
 
     @property
     def angular_frequency(self):
-        """2 pi / period [rad/s]; 0 for a term that is constant in time but for its envelope."""
+        """2 pi / period [rad/s]; 0 for a term that is constant in time except for its envelope."""
         return 2.0 * math.pi / self.period if self.period else 0.0
 
     def amplitude_at(self, x):
@@ -132,14 +138,17 @@ class Term:
         return amplitude_of(self.amplitude, self.knots, np.asarray(x, dtype=float))
 
     def envelope_at(self, t):
-        """The envelope [1] and its first and second time derivatives at t [s]: three arrays of t's shape."""
+        """The envelope [1] and its first and second time derivatives at `t` [s]: three arrays of the shape of `t`."""
         if not self.envelope:
             zero = np.zeros_like(np.asarray(t, dtype=float))
             return zero + 1.0, zero, zero
         return tuple(np.sum([ramp.value(t) for ramp in self.envelope], axis=0))
 
     def curvature(self, time, x):
-        """This term's curvature [rad/m], rate [rad/m/s] and acceleration [rad/m/s^2], each of shape (len(x),)."""
+        """Curvature [rad/m], its rate [rad/m/s] and its acceleration [rad/m/s^2], each of shape (len(x),).
+
+        time [s] is the law's own time. x [m], shape (len(x),): arc length from the nose.
+        """
         x = np.asarray(x, dtype=float)
         amplitude = self.amplitude_at(x)
         envelope, envelope_rate, envelope_acceleration = self.envelope_at(time)
@@ -156,12 +165,14 @@ class Term:
 
 @dataclass(frozen=True, init=False)
 class Law:
-    """A curvature law: the sum of its terms. No term at all: the straight body.
+    """A curvature law: the sum of its terms. A law without terms is the straight body.
+
+    `ValueError` names an attribute that does not fit.
 
     Attributes:
         terms: at most 1000.
-        name: what the law is called in messages and plots; at most 200 characters.
-        transition: [s], over which a running swimmer takes the law on; 0: the receiver's own default.
+        name: the law's name in messages and plots, at most 200 characters.
+        transition: [s], duration of the blend from a swimmer's present motion to the law; 0 for the receiver's default.
     """
 
     terms: tuple[Term, ...]
@@ -193,19 +204,19 @@ class Law:
 
     @property
     def in_plane(self) -> bool:
-        """Whether the body bends in yaw alone."""
+        """Whether the body bends only in yaw."""
         return all(term.axis == "yaw" for term in self.terms)
 
     def curvature(self, time, x):
-        """Curvature, its rate and its acceleration at one time.
+        """Curvature, its rate and its acceleration at one time. `ValueError` names an argument that is not finite.
 
         Args:
             time: [s], the law's own time.
             x: [m], shape (M,), arc length from the nose.
 
         Returns:
-            value [rad/m], rate [rad/m/s], acceleration [rad/m/s^2], each of shape (M, 3), section axes: column 0 is
-            zero, 1 is pitch (K2), 2 is yaw (K3).
+            value [rad/m], rate [rad/m/s], acceleration [rad/m/s^2], each of shape (M, 3), in section axes. Column 0 is
+            zero, column 1 is pitch (K2), column 2 is yaw (K3).
         """
         x = np.atleast_1d(numbers("x", x))
         if not np.all(np.isfinite(x)):
@@ -218,7 +229,7 @@ class Law:
 
 
 def amplitude_of(amplitude, knots, x):
-    """The amplitude [rad/m], shape (len(x),), of a term of such `amplitude` and `knots`, at the stations x [m]."""
+    """The amplitude [rad/m], shape (len(x),), at the stations x [m], of a term with this `amplitude` and `knots`."""
     if knots:
         return natural_spline(knots, amplitude, x)
     return np.polynomial.polynomial.polyval(x, amplitude)

@@ -1,7 +1,7 @@
 """Curvature laws as `eel_msgs/CurvatureLaw` messages, and back.
 
-Both sides use the paper's section axes, so nothing is turned here: K2 (pitch) > 0 bends the tail down, K3 (yaw) > 0 to
-the right. What a message holds is checked once, by `law_from_message`; its ValueError names the field and the value.
+Laws and messages use the paper's section axes, so nothing is turned here. K2 (pitch) > 0 bends the tail down. K3 (yaw)
+> 0 bends it to the right. `law_from_message` checks the message; its `ValueError` names the field and the value.
 """
 
 from builtin_interfaces.msg import Time
@@ -16,7 +16,7 @@ AXIS_NAMES = {number: name for name, number in AXIS_NUMBERS.items()}
 
 
 def law_to_message(law, *, stamp=None):
-    """The law as a message; `stamp` (builtin_interfaces/Time) is where its own t = 0 lies, none: zero."""
+    """The law as a message. stamp (builtin_interfaces/Time): the time of the law's own t = 0; zero by default."""
     return msg.CurvatureLaw(
         header=Header(stamp=stamp or Time(), frame_id=FRAME),
         name=law.name,
@@ -26,10 +26,10 @@ def law_to_message(law, *, stamp=None):
 
 
 def law_from_message(message):
-    """The `Law` that a message holds; its header is left to the caller.
+    """The `Law` in a message. The caller reads the header.
 
-    ValueError, such as "terms[2].period must be >= 0 s, got -1.0", where the law is not finite, its arrays do not fit,
-    a period is negative, an axis is unknown, or there are more than 1000 terms.
+    `ValueError`, such as "terms[2].period must be >= 0 s, got -1.0", where the law is not finite, its arrays do not
+    fit, a period is negative, an axis is unknown, or there are more than 1000 terms.
     """
     if len(message.terms) > MAXIMUM_TERMS:
         raise ValueError(f"terms must be at most {MAXIMUM_TERMS}, got {len(message.terms)}")

@@ -1,7 +1,8 @@
-"""The gait generator: publishes the curvature law of a gait, and a new one whenever a parameter is set.
+"""The gait generator. It publishes the curvature law of a gait, and a new one whenever a parameter is set.
 
-`curvature_law` is transient local: a receiver that comes later gets the law too. Its stamp is the simulation time at
-which the gait began. Parameters of the same gait leave that time alone; another gait begins at now.
+The topic `curvature_law` is transient local: a receiver that starts later gets the law too. The stamp of the law is the
+simulation time at which the gait began. A parameter of the same gait does not change that time. Another gait begins at
+the present time.
 """
 
 import sys
@@ -33,7 +34,7 @@ LOOK = 0.25  # s between two looks at whether time went back
 
 
 class GaitGenerator(Node):
-    """Parameters `gait`, `transition` and the gait's own numbers; topic `curvature_law`."""
+    """A node with the parameters `gait`, `transition` and the gait's own numbers, and the topic `curvature_law`."""
 
     def __init__(self):
         self._ticks = PolledGroup()
@@ -56,14 +57,15 @@ class GaitGenerator(Node):
         self._publish()
 
     def create_subscription(self, *args, **kwargs):
-        """The only subscription is rclpy's own, to /clock, which may tick thousands of times a second.
+        """Put a subscription into the group that the node polls.
 
-        The newest tick is enough, when the time is needed.
+        The only subscription is rclpy's own, to /clock, which may tick thousands of times per second. The node needs
+        only the newest tick, and only when it needs the time.
         """
         return super().create_subscription(*args, **kwargs, callback_group=self._ticks)
 
     def look_at_clock(self) -> bool:
-        """Take the newest tick of /clock, if there is one. True: the node goes on."""
+        """Take the newest tick of /clock, if there is one. Returns True: the node continues."""
         for ticks in self.subscriptions:
             with ticks.handle:
                 taken = ticks.handle.take_message(ticks.msg_type, ticks.raw)
@@ -79,7 +81,7 @@ class GaitGenerator(Node):
             declare(self, group, limits, changeable=True)
 
     def _plan_change(self, parameters):
-        """Before a set: work out the new settings, and give rclpy what it can store under the present gait."""
+        """Before a set: find the new settings, and give rclpy the parameters that the present gait can store."""
         ours = Settings.known_names()
         others = [each for each in parameters if each.name not in ours and self.has_parameter(each.name)]
         changes = {each.name: each.value for each in parameters if each not in others}
@@ -116,7 +118,7 @@ class GaitGenerator(Node):
         self._publish()
 
     def _follow_reset(self, jump):
-        """Time went back: the receiver's law now has its own t = 0 at 0, and so has what is published later."""
+        """After time went back, the receiver's law has its own t = 0 at 0. Laws published later have it too."""
         if self._stamp != Time():
             self._stamp = Time()
             self._publish()
@@ -130,7 +132,7 @@ class GaitGenerator(Node):
 
 
 def parameter_rows():
-    """Name, description and default of each parameter; those of a gait say of which."""
+    """Name, description and default of each parameter. The description names the gaits that have the parameter."""
     yield "gait", f"name of the gait, one of {', '.join(sorted(GAITS))}", Settings.gait
     gaits = {}  # of each number
     for kind, gait in [(Transition, None), *((make.numbers, name) for name, make in GAITS.items())]:
@@ -141,7 +143,7 @@ def parameter_rows():
 
 
 def main(args=None):
-    """Run the node; the exit status is 0 after SIGINT or SIGTERM, 2 if a parameter or a word is refused at start."""
+    """Run the node. The exit status is 0 after SIGINT or SIGTERM, and 2 if a parameter or word is refused at start."""
     words = sys.argv if args is None else args
     status = answer_words(NAME, ABOUT, parameter_rows(), words, complain)
     if status is not None:

@@ -1,7 +1,7 @@
-"""Output files: complete under their name, or not there.
+"""Output files: an output has its name only when it is complete.
 
-An output is written beside its name, `run.npz` as `run.part.npz`, and takes the name when it is complete. An older file
-stays as it was until then, whatever happens: a full disk, an error, a kill.
+An output is written beside its name: `run.npz` as `run.part.npz`. It takes its name when it is complete. Until then an
+older file stays as it was, whatever happens: a full disk, an error, a kill.
 """
 
 import contextlib
@@ -19,13 +19,13 @@ KINDS = {stat.S_IFLNK: "a symbolic link", stat.S_IFDIR: "a folder", stat.S_IFIFO
 
 
 class NotWritten(OSError):
-    """An output could not be written to its end; the text names it and says why."""
+    """An output could not be completed. The text names it and gives the reason."""
 
 
 class Draft:
-    """A new file at `path`, to be written; `complete` gives it its `name`, `discard` removes it.
+    """A new file at `path`, to be written. `complete` gives it its `name`; `discard` removes it.
 
-    `OSError` where `name` cannot be written or holds something else than an older output.
+    `OSError` where `name` cannot be written, or holds something other than an older output.
     """
 
     def __init__(self, name: str | os.PathLike[str]) -> None:
@@ -38,7 +38,7 @@ class Draft:
         self.path = self._made()
 
     def complete(self) -> None:
-        """Give the file its name, in place of an older one. `OSError` where that fails; the draft stays."""
+        """Give the file its name, in place of an older one. `OSError` where that fails; the draft then stays."""
         with self.path.open("rb") as file:
             os.fsync(file.fileno())
         self.path.replace(self.name)
@@ -48,7 +48,7 @@ class Draft:
         self.path.unlink(missing_ok=True)
 
     def _made(self) -> Path:
-        """A file that did not exist: another process, or a killed one, may have a draft of the same name."""
+        """The path of a new file. Another process, or a killed one, may have left a draft of the same name."""
         path = part_of(self.name)
         for number in itertools.count(2):
             try:
@@ -60,12 +60,12 @@ class Draft:
 
 
 def part_of(name: Path, mark: str = "part") -> Path:
-    """Where the output `name` lies until it is complete."""
+    """The path of the output `name` until it is complete."""
     return name.with_name(f"{name.stem}.{mark}{name.suffix}")
 
 
 def obstacle(name: str | os.PathLike[str]) -> str:
-    """Why the output `name` cannot be written; empty if it can. An older file of the same kind is no obstacle."""
+    """The reason why the output `name` cannot be written; empty if it can. An older file of its kind is no obstacle."""
     try:
         Draft(name).discard()
     except OSError as error:
@@ -82,9 +82,9 @@ def check_output(argument: str, name: str | os.PathLike[str]) -> None:
 
 @contextlib.contextmanager
 def replacing(name: str | os.PathLike[str]) -> Iterator[Path]:
-    """The path to write the output `name` to; it is complete when the context ends without an error.
+    """The path to which to write the output `name`. The output is complete when the context ends without an error.
 
-    `NotWritten` for any `OSError` in between.
+    `NotWritten` where an `OSError` occurs in the context.
     """
     with contextlib.ExitStack() as undo:
         try:
@@ -98,7 +98,7 @@ def replacing(name: str | os.PathLike[str]) -> Iterator[Path]:
 
 
 def _other_content(path: Path) -> str:
-    """What there is at `path`, in words, unless it is nothing, an empty file, or one that begins as its kind does."""
+    """What `path` holds, in words. Empty for nothing, an empty file, or a file that begins as its kind does."""
     try:
         mode = path.lstat().st_mode
     except FileNotFoundError:

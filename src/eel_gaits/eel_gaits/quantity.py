@@ -1,7 +1,7 @@
-"""A number with its unit, bounds and one-line description, declared once and checked on entry.
+"""Numbers with a unit, bounds and a one-line description. They are declared once and checked on entry.
 
-A parameter set is a frozen, keyword-only dataclass that derives from `Quantities` and whose fields are made by
-`quantity`. A ROS node declares its parameters from the same fields.
+A parameter set is a frozen, keyword-only dataclass. It derives from `Quantities`, and `quantity` makes its fields. A
+ROS node declares its parameters from the same fields.
 """
 
 import math
@@ -19,7 +19,7 @@ def quantity(default, *, unit, description, minimum, maximum):
 
 
 def limits(metadata) -> str:
-    """The bounds in a field's metadata in words, such as "> 0 Hz and <= 1000 Hz"; empty without bounds.
+    """The bounds in a field's metadata as text, such as "> 0 Hz and <= 1000 Hz". Empty without bounds.
 
     Metadata: minimum, maximum (each may be absent or None), exclusive (the minimum itself is refused), unit.
     """
@@ -29,7 +29,7 @@ def limits(metadata) -> str:
 
 
 def is_finite(value) -> bool:
-    """Whether `value` is one finite number; a text is none."""
+    """Whether `value` is one finite number. A text is not a number."""
     try:
         return math.isfinite(value) and not getattr(value, "ndim", 0)
     except (TypeError, ValueError, OverflowError):
@@ -37,7 +37,7 @@ def is_finite(value) -> bool:
 
 
 def number(name, value):
-    """`value` as a finite float; ValueError that names it otherwise. A bool or a text is not a number."""
+    """`value` as a finite float. `ValueError` names anything else. A bool or a text is not a number."""
     try:
         if isinstance(value, (bool, str, bytes)):
             raise TypeError
@@ -50,7 +50,7 @@ def number(name, value):
 
 
 def numbers(name, values):
-    """`values` as a new array of floats, of any shape; ValueError that names it where they are none, or complex."""
+    """`values` as a new array of floats, of any shape. `ValueError` names anything else, complex numbers too."""
     try:
         if np.iscomplexobj(values):
             raise TypeError
@@ -61,7 +61,7 @@ def numbers(name, values):
 
 @dataclass(frozen=True, kw_only=True)
 class Quantities:
-    """Base of parameter sets: every field becomes a float within its bounds, or a ValueError names it."""
+    """Base of parameter sets. Every field becomes a float within its bounds, or a `ValueError` names it."""
 
     def __post_init__(self):
         for entry in fields(self):

@@ -1,7 +1,7 @@
 """Gaits by name.
 
-A gait is written as a function that makes terms from its numbers; `register` turns it into one that takes the numbers
-as keywords and returns a `Law`, and lists it. `eel_gaits.gaits` holds the gaits themselves.
+A gait is written as a function that makes terms from its numbers. `register` lists it, and turns it into a function
+that takes the numbers as keywords and returns a `Law`. The gaits are in `eel_gaits.gaits`.
 """
 
 import functools
@@ -14,19 +14,22 @@ GAITS = {}  # name of the gait: its function, whose attribute `numbers` is the c
 
 
 def gait(name, *, transition=0.0, **numbers):
-    """The law of the gait called `name`; `numbers` replace its defaults. ValueError lists what there is."""
+    """The law of the gait called `name`. `numbers` replace its defaults.
+
+    transition [s]: that of the law. `ValueError` for an unknown gait lists the known ones.
+    """
     return find(name)(transition=transition, **numbers)
 
 
 def find(name):
-    """The function of the gait called `name`."""
+    """The function of the gait called `name`. `ValueError` for an unknown gait lists the known ones."""
     if not isinstance(name, str) or name not in GAITS:
         raise ValueError(f"unknown gait {shown(name)}, must be one of {', '.join(sorted(GAITS))}")
     return GAITS[name]
 
 
 def register(numbers_class):
-    """Decorator: list `terms_of(numbers) -> terms` as a gait, a function of keyword numbers that returns a Law."""
+    """Decorator: list `terms_of(numbers) -> terms` as a gait, which takes keyword numbers and returns a `Law`."""
 
     def decorate(terms_of):
         name = terms_of.__name__

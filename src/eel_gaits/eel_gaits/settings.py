@@ -1,7 +1,7 @@
-"""What the user of the gait generator has set: a gait, its numbers and the transition, and the law that follows.
+"""The settings of the gait generator: a gait, its numbers and the transition. They give the law.
 
-Settings never change; `changed` gives new ones, or a ValueError that says why not. Numbers are kept by name, so that
-one which the user has set carries over to another gait that has a number of that name; defaults do not.
+Settings never change. `changed` returns new ones, or raises a `ValueError` that gives the reason. Numbers are kept by
+name. A number that the user has set carries over to another gait that has a number of that name. Defaults do not.
 """
 
 from dataclasses import dataclass, field, fields
@@ -14,7 +14,7 @@ from eel_gaits.wording import shown
 
 @dataclass(frozen=True, kw_only=True)
 class Transition(Quantities):
-    """How a receiver that is already moving takes the law on."""
+    """How a receiver that is already moving takes over the law."""
 
     transition: float = quantity(
         0.0,
@@ -27,10 +27,11 @@ class Transition(Quantities):
 
 @dataclass(frozen=True, kw_only=True)
 class Settings:
-    """
+    """A gait and the numbers that the user has set. `ValueError` where they give no law.
+
     Attributes:
         gait: name of the gait.
-        chosen: what the user has set, by name; numbers of other gaits too.
+        chosen: the numbers that the user has set, by name, including those of other gaits.
     """
 
     gait: str = "falling"
@@ -42,18 +43,18 @@ class Settings:
 
     @classmethod
     def known_names(cls):
-        """Names of all that can be set, with any gait."""
+        """The names of all parameters of all gaits."""
         numbers = {entry.name for make in GAITS.values() for entry in fields(make.numbers)}
         return {"gait", "transition"} | numbers
 
     @classmethod
     def start(cls, overrides):
-        """Settings at start, from a mapping of name to value; names that no gait knows are left aside."""
+        """The settings at start, from a mapping of name to value. Names that no gait has are ignored."""
         known = {name: value for name, value in overrides.items() if name in cls.known_names()}
         return cls(gait=known.pop("gait", cls.gait), chosen=known)
 
     def changed(self, changes):
-        """Settings after the changes, a mapping of name to value, all or none of which are taken."""
+        """The settings after `changes`, a mapping of name to value. `ValueError` where one of them does not fit."""
         changes = dict(changes)
         gait = changes.pop("gait", self.gait)
         own_names = ["transition", *(entry.name for entry in fields(find(gait).numbers))]
@@ -63,7 +64,7 @@ class Settings:
         return Settings(gait=gait, chosen={**self.chosen, **changes})
 
     def groups(self):
-        """The transition and the gait's numbers: two `Quantities`, what the user has set over the defaults."""
+        """The transition and the gait's numbers: two `Quantities`. The user's numbers replace the defaults."""
         return tuple(
             kind(**{entry.name: self.chosen[entry.name] for entry in fields(kind) if entry.name in self.chosen})
             for kind in (Transition, find(self.gait).numbers)

@@ -1,12 +1,12 @@
-"""Natural cubic splines, for whole rows of values at once.
+"""Natural cubic splines through whole rows of values at once.
 
-Through the knots x_0 < ... < x_(n-1) runs the piecewise cubic s with continuous s, s', s'' and s'' = 0 at both end
-knots. Its second derivatives M_i at the knots ("moments") solve the tridiagonal system
+The spline s through the knots x_0 < ... < x_(n-1) is a piecewise cubic. s, s' and s'' are continuous, and s'' = 0 at
+both end knots. Its second derivatives M_i at the knots ("moments") solve the tridiagonal system
 
     h_(i-1) M_(i-1) + 2 (h_(i-1) + h_i) M_i + h_i M_(i+1) = 6 (d_i - d_(i-1)),   h_i = x_(i+1) - x_i,
     d_i = (s_(i+1) - s_i) / h_i,   i = 1 ... n-2,   M_0 = M_(n-1) = 0
 
-(de Boor, A Practical Guide to Splines, 1978, chapter IV). Beyond its end knots the spline goes on as a straight line.
+(de Boor, A Practical Guide to Splines, 1978, chapter IV). Beyond its end knots the spline continues as a straight line.
 """
 
 import numpy as np
@@ -16,15 +16,15 @@ from eel_gaits.wording import shown
 
 
 def natural_spline(knots, values, x):
-    """Evaluate the natural cubic splines through (knots, values) at x.
+    """Evaluate the natural cubic splines through (knots, values) at x. `ValueError` names what does not fit.
 
-    The result is linear in the values, so `natural_spline(knots, numpy.eye(n), x).T` is the matrix, shape (m, n), that
+    The result is linear in the values. So `natural_spline(knots, numpy.eye(n), x).T` is the matrix, shape (m, n), that
     takes values at the knots to values at x.
 
     Args:
         knots: [m], shape (n,), n >= 2, strictly increasing.
         values: [any], shape (..., n); one spline per row.
-        x: [m], shape (m,), where to evaluate; outside the knots too.
+        x: [m], shape (m,), points of evaluation, also outside the knots.
 
     Returns:
         [unit of the values], shape (..., m).

@@ -1,4 +1,4 @@
-"""How messages show what somebody gave: in one line, short, on any terminal."""
+"""How messages show a value or an error: short, in one line, on any terminal."""
 
 import re
 import reprlib
@@ -13,8 +13,10 @@ _brief.maxlist = _brief.maxtuple = 8
 
 
 def shown(value) -> str:
-    """`value` as Python writes it, in one line of at most `LONGEST` characters; the middle of a longer one is left
-    out."""
+    """`value` as Python writes it, in one line of at most `LONGEST` characters.
+
+    The middle of a longer text is left out.
+    """
     if hasattr(value, "typecode"):  # an array of a ROS message
         value = list(value[:LONGEST])
     try:
@@ -25,7 +27,7 @@ def shown(value) -> str:
 
 
 def one_line(error) -> str:
-    """The text of `error` in one line; the middle of long words, and of a long line, is left out."""
+    """The text of `error` in one line. The middle of long words, and of a long line, is left out."""
     if isinstance(error, OSError) and error.filename is not None:
         error = f"{error.strerror}: {shown(error.filename)}"
     line = _LONG_WORD.sub(lambda word: _shortened(word[0]), " ".join(str(error).split()))

@@ -9,7 +9,7 @@
 
 namespace eel_core {
 
-// Signs of the loads; times weights [m] of an integral, where the loads are integrated.
+// Signs (+-1), or signs times quadrature weights [m].
 template <Number T>
 struct LoadSigns {
     T laminar;  // 1: the friction by the laminar law always opposes V1
@@ -25,7 +25,8 @@ struct AxialFriction {
     Lanes above_transition;  // Re / 8e4 - 1
 };
 
-// Part of the turbulent law for the Reynolds number over 8e4: f_r(ln Re; ln 4e4, ln 1.6e5), eq. (64).
+// Share of the turbulent law, for ratio = Re / 8e4: the ramp f_r of eq. (64) in ln Re, from Re = 4e4 to 1.6e5; ours,
+// not the paper's.
 inline double blended_part(double ratio)
 {
     if (ratio <= 0.5) return 0.0;

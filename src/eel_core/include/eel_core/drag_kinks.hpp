@@ -12,7 +12,8 @@
 
 namespace eel_core {
 
-// A speed that changes its sign within this part of the tail's speed moves loads by the square of that: round-off.
+// A change of sign by less than this part of the tail's speed counts as round-off. It changes the loads by the square
+// of this part.
 inline constexpr double noise_of_speeds = 1e-7;
 
 // Value and derivative, at the fraction `t` of a panel, of the polynomial through the values of its nodes: the
@@ -194,9 +195,9 @@ void find_kinks(const Swimmer& swimmer, Workspace<M>& work)
     if (swimmer.friction == Friction::printed) find_kinks_of(swimmer, above_transition, -1.0, 0.0, work);
 }
 
-// Adds to integrals from the nose of the balance's density, at the points of `from_nose`, what its kinks change. The
-// density holds the resistance (minus the load) with the signs at the nodes. `known_have_kinks`: the integrals at the
-// nodes, which those at the points go on from, have them already.
+// Corrects `upto` for the kinks. `upto` holds the integrals of the balance's density from the nose to the points of
+// `from_nose`. The density holds the resistance (minus the load), with the signs that the speeds have at the nodes. The
+// integrals to the points continue those to the nodes. `known_have_kinks`: those to the nodes are corrected already.
 template <class M>
 void add_kinks(const Swimmer& swimmer, const FromNose& from_nose, bool known_have_kinks, Workspace<M>& work,
                Field<Wrench<M, double>>& upto)

@@ -46,8 +46,8 @@ inline void set_turning_acceleration(const Swimmer& swimmer, const Law& law, Wor
     }
 }
 
-// What the motion of the sections takes, per length, about the head, into `density`; returns its integral over the
-// body.
+// Writes to `density` the wrench per length that the motion of the sections takes, about the head. Returns the integral
+// of the density over the body. In section axes:
 //
 //     f_N = M Vdot + Omega x M V      f_C = J Omegadot + Omega x J Omega + V x M V
 template <class M>
@@ -121,7 +121,8 @@ void integrate_balance(const Swimmer& swimmer, Workspace<M>& work)
 }
 
 // THE WRENCH BEHIND A SECTION, w_tail - integral from X to the tail of the density, about the section and in its axes;
-// from the integral `upto` X. The tail's momentum flux through the section is still in it.
+// from the integral `upto` X. Still to be subtracted: the water's momentum flux through the section; see
+// show_internal_wrench in observe.hpp.
 template <class M>
 Wrench<M, Lanes> wrench_behind(const Workspace<M>& work, const Wrench<M, Lanes>& upto, const Frame<M, Lanes>& frame,
                                const Vector<M, Lanes>& position)

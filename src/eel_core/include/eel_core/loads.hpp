@@ -39,7 +39,8 @@ void set_tail_load(const Swimmer& swimmer, Workspace<M>& work)
 // Drag of the nose, along t1(0) [N].
 inline double nose_drag(const Swimmer& swimmer, double v1) { return -swimmer.nose_drag * v1 * std::abs(v1); }
 
-// The printed load of the nose, less what is the derivative of its momentum m_o V1 E1, and without its drag.
+// What is left of the printed load of the nose [N] without two of its parts: the time derivative of the nose's momentum
+// m_o V1 E1, and the nose's drag.
 template <class M>
 Vector<M, double> nose_turning_force(const Swimmer& swimmer, const Twist<M, double>& twist)
 {

@@ -8,7 +8,8 @@ namespace eel_core {
 
 enum class Friction { printed, laminar, blended };
 
-// Speeds of the sections that the drag goes with, and whose changes of sign are kinks of it.
+// Speeds of a section on which its drag depends: V1, V2, V3, Omega1 and Re / 8e4 - 1; `speeds` is their number. From
+// `lateral` on, the drag has a kink or a jump where the speed changes its sign.
 enum Speed : std::size_t { axial = 0, lateral = 1, vertical = 2, roll = 3, above_transition = 4, speeds = 5 };
 
 struct Swimmer {
@@ -16,7 +17,7 @@ struct Swimmer {
     Sections sections;
     Friction friction = Friction::printed;
     bool resistive = true;                // drag along the body
-    std::size_t first_watched = lateral;  // first of `Speed` whose changes of sign are integrated exactly
+    std::size_t first_watched = lateral;  // from this `Speed` on, changes of sign are integrated exactly
     double wake = 1.0;                    // 0 where no water is swept past the sections
     double nose_mass = 0.0;               // [kg], m_o
     double nose_drag = 0.0;               // [kg/m], 1/2 rho_f k_o

@@ -1,1 +1,1 @@
-"""How exact a run is to be: from a target or a budget of time to settings."""
+"""The accuracy of a run: settings from a target or from a budget of time."""

@@ -1,12 +1,18 @@
-"""How exact a run is: one word or one number, turned into nodes along the body, a method and steps in time.
+"""The accuracy of a run: one word or one number gives the nodes along the body, the method and the steps in time.
 
-A target is a relative error: of the head's position at the end by the length of its path (or of the body, if longer),
-and of the torque field by its own maximum. What delivers it was measured, and stands in `accuracy_table.csv`, which
-`calibration.calibrate` writes: apart for scenes with drag and without (free motion in space is sensitive: errors grow),
-with a friction law that has a turbulent part (the printed one jumps) and without, for runs with the internal wrench or
-the ledger and without, and for motions that stay in a plane (smoother: they need fewer steps) and others. It holds for
-a swim of nominal difficulty (`difficulty.py`); a harder one takes the settings of a finer target, an easier one those
-of a coarser target.
+A target is a relative error. The error of the head's position at the end is relative to the length of its path, or to
+the length of the body if that is longer. The error of the torque field is relative to its own maximum.
+
+The settings that deliver a target were measured. They stand in `accuracy_table.csv`, which `calibration.calibrate`
+writes. The table has separate rows for:
+
+- scenes with and without drag (free motion in space is sensitive: errors grow);
+- friction laws with and without a turbulent part (the printed law jumps);
+- runs with the internal wrench or the ledger, and runs without;
+- motions that stay in a plane (they are smoother and need fewer steps), and others.
+
+The table holds for a swim of nominal difficulty (`difficulty.py`). A harder swim takes the settings of a finer target.
+An easier swim takes those of a coarser target.
 """
 
 import csv
@@ -26,7 +32,7 @@ from eel_dynamics.model.section_data import WATCHED
 
 
 class Key(NamedTuple):
-    """What has rows of its own in the `table`."""
+    """A case that has its own rows in the `table`."""
 
     drag: bool
     turbulent: bool  # friction
@@ -44,29 +50,43 @@ FIXED = "fixed steps"
 KINKS = tuple(WATCHED)
 ORDERS = {"adams": (1, 2, 3, 4, 5, 6), "dormand_prince": (5,), "classical": (4,)}
 FINEST_TOLERANCE = 1e-13  # below, round-off
-LOOSEST_TOLERANCE = 1e-4  # of the pair, and of what an estimate compares with: above, a gait's longest step rules,
-# and a light body that the water stops has steps by it alone
+# The loosest tolerance of the embedded pair, and of the run that an error estimate compares with. With a looser one, a
+# gait's longest step limits the steps. The tolerance alone limits those of a light body that the water stops.
+LOOSEST_TOLERANCE = 1e-4
 LOOSEST = {"adams": 1e-2, "dormand_prince": LOOSEST_TOLERANCE}
-LOOSENED = 0.8  # power of what may be more than a row's target, that its tolerance grows with: errors may grow faster
-LEAST_SCALED = 3e-8  # target: beyond, errors are of the places of kinks and of round-off, which gentle swims have too
-MORE_POINTS, MORE_STEPS = 0.2, 0.25  # powers that points and fixed steps grow with beyond the finest row
+# For a target looser than a row's, the row's tolerance grows with this power of their ratio. Errors may grow faster.
+LOOSENED = 0.8
+# Below this target an easier swim takes no coarser settings. The errors are then those of the places of kinks and of
+# round-off, which gentle swims have too.
+LEAST_SCALED = 3e-8
+# Beyond the finest row, points and fixed steps grow with these powers of the ratio of the targets.
+MORE_POINTS, MORE_STEPS = 0.2, 0.25
 BEST = {"resolution": 200.0, "tolerance": 1e-11}  # of the preset reference, where its target cannot be promised
 ANY = {"resolution": 30.0}  # until the scene is known
-FURTHER_POINTS = 9.0  # per length, with which a grid is finer for certain: the last eight nodes are always filled
+FURTHER_POINTS = 9.0  # more points per length, which make any grid finer: the last eight nodes are always filled
 WAVES_POWER = 0.85  # points grow with this power of the number of waves on the body
-BENT = 1.5  # waves on the body, that no law of the table's has
-BENT_POWER, BENT_LEAST = 1.5, 0.01  # of the waves beyond, that the tolerance falls with, and how far
-SPARED = 8.0  # points per length, of those that the panels have to spare, that grow too
+BENT = 1.5  # waves on the body; every law of the table has fewer
+# Above BENT waves, the tolerance falls with this power of their number, but not below this factor.
+BENT_POWER, BENT_LEAST = 1.5, 0.01
+SPARED = 8.0  # points per length that grow with the waves too, of those that the panels have to spare
 
 
 @dataclass(frozen=True, kw_only=True)
 class Accuracy:
-    """Settings of a run. `resolution`: points per body length; `kinks`: which of the drag's along the body (where cross
-    flow or roll change their sign, V|V| has a kink; the printed friction law jumps) are found and integrated exactly,
-    "all", the "jumps" alone, or "none"; `tolerance`: relative error per adaptive step; `method` "dormand_prince" (order
-    5) or "adams" (`order` 1 to 6; 5 where none is given); `step` [s]: where given, steps of the classical Runge-Kutta
-    method (order 4) of this length instead; `fixed`: where given, that many of them by the shortest period of the law
-    (or second). `target`: the relative error that the settings are for, None where they were given one by one."""
+    """Settings of a run. `ValueError` names a setting that does not fit.
+
+    Attributes:
+        name: what messages call the settings.
+        resolution: points per body length, 1 to 1000.
+        tolerance: relative error per adaptive step.
+        step: [s]; where given, the steps are those of the classical Runge-Kutta method (order 4), of this length.
+        method: "dormand_prince" (order 5) or "adams" (order 1 to 6), or "classical" where the steps are fixed.
+        order: of the method; 5 where none is given ("classical": 4).
+        target: the relative error that the settings are for; None where they were given one by one.
+        fixed: where given, so many steps of the classical method per shortest period of the law (or per second).
+        kinks: which kinks of the drag along the body are found and integrated exactly: "all", the "jumps" alone, or
+            "none". V|V| has a kink where cross flow or roll change their sign; the printed friction law jumps.
+    """
 
     name: str
     resolution: float
@@ -113,12 +133,15 @@ class Accuracy:
             raise ValueError(f"accuracy fixed must be > 0 steps by period, and no step given, got {shown(self.fixed)}")
 
     def points_per_length(self, waves: float) -> float:
-        """Points per body length for a shape of `waves` waves on the body; one wave or less needs `resolution`."""
+        """Points per body length for `waves` waves on the body. One wave or less needs `resolution`."""
         return min(1000.0, (self.resolution + SPARED) * max(1.0, waves) ** WAVES_POWER - SPARED)
 
     def in_scene(self, scene, plane: bool = False, difficulty: Difficulty = NOMINAL) -> "Accuracy":
-        """The settings that deliver the target in `scene` for a swim of such `difficulty`, for a motion that stays in
-        a `plane` or for any; the same where they were given one by one."""
+        """The settings that deliver the target in `scene`, in a swim of this `difficulty`.
+
+        plane: the motion stays in a plane. Settings that were given one by one stay the same. `ValueError` where the
+        table has no settings for the target.
+        """
         if self.target is None:
             return self
         key = key_of(scene, plane)
@@ -126,15 +149,21 @@ class Accuracy:
         return _from_target(self.name, self.target, key, self.fixed is not None, target_scale)
 
     def for_waves(self, waves: float) -> "Accuracy":
-        """The same target for a shape of `waves` waves on the body, where those are more than the laws of the table
-        have: a body that is rolled up carries its head about, and takes steps by their error, not by their longest."""
+        """The settings for the same target with `waves` waves on the body.
+
+        They differ where the waves are more than the laws of the table have. A rolled-up body carries its head about:
+        the error limits its steps, not the longest step.
+        """
         if self.target is None or self.fixed is not None or waves <= BENT:
             return self
         return replace(self, tolerance=self.tolerance * max(BENT_LEAST, (BENT / waves) ** BENT_POWER))
 
     def for_fast_start(self) -> "Accuracy":
-        """The same target for a large initial velocity. The table was measured with gaits that start from rest. In a
-        fast spin the errors of Adams' steps add up to ten times more; those of the embedded pair do not."""
+        """The settings for the same target with a large initial velocity.
+
+        The table was measured with gaits that start from rest. In a fast spin the errors of Adams' steps add up to ten
+        times more. Those of the embedded pair do not.
+        """
         if self.target is None:
             return self
         exact = replace(self, kinks="all")
@@ -143,11 +172,11 @@ class Accuracy:
         return replace(exact, method="dormand_prince", order=5, tolerance=min(self.tolerance, LOOSEST_TOLERANCE))
 
     def as_it_is(self) -> "Accuracy":
-        """The same settings, for no target: no scene and no motion changes them."""
+        """The same settings without a target. No scene and no motion changes them."""
         return replace(self, target=None)
 
     def finer(self) -> "Accuracy":
-        """Settings that are at least some ten times as exact: what an estimate of the error compares with."""
+        """Settings that are at least some ten times as exact. An estimate of the error compares with them."""
         resolution = min(1000.0, max(1.4 * self.resolution + 2.0, self.resolution + FURTHER_POINTS))
         in_space = {"resolution": resolution, "kinks": "all", "target": None}
         if self.step is not None:
@@ -159,9 +188,12 @@ class Accuracy:
 
     @staticmethod
     def of(value: "str | float | Accuracy") -> "Accuracy":
-        """The settings for a preset's name, a target relative error, either with ", fixed steps" behind it, or a budget
-        of time such as "fastest within 5 ms per second" (`budget`), or what is such settings or a budget already.
-        `ValueError` says what is possible."""
+        """The settings, or the `Budget`, that `value` asks for.
+
+        value: a preset's name or a target relative error, either with ", fixed steps" behind it; or a budget of time
+        such as "fastest within 5 ms per second". Settings and budgets are returned as they are. `ValueError` says what
+        is possible.
+        """
         if isinstance(value, Accuracy):
             return value
         return _of_number(value) if type(value) is float else Accuracy._of(value)
@@ -202,9 +234,11 @@ _of_number = lru_cache(maxsize=64)(Accuracy._of)
 def within_budget(
     budget: Budget, scene, plane: bool, difficulty: Difficulty, swim_time: Callable[[object, float], float]
 ) -> Accuracy:
-    """The finest settings of the table that keep within the `budget` in `scene`, for a motion that stays in a `plane`
-    or for any, with the target that they deliver in a swim of such `difficulty`. `ValueError` where none does.
-    swim_time(scene, target): wall time [s] by simulated second."""
+    """The finest settings of the table that keep within the `budget` in `scene`. `ValueError` where none do.
+
+    plane: the motion stays in a plane. Their target is what they deliver in a swim of this `difficulty`.
+    swim_time(scene, target): wall time [s] per simulated second.
+    """
     targets = [row["target"] for row in table()[key_of(scene)]]
     best = budget.finest(targets, lambda target: swim_time(scene, target))
     key = key_of(scene, plane)
@@ -213,7 +247,7 @@ def within_budget(
 
 
 def key_of(scene, plane: bool = False) -> Key:
-    """The rows of the `table` for `scene`, and for a motion that stays in a `plane` or for any."""
+    """The key of the `table` for `scene`. plane: the motion stays in a plane."""
     drag = bool(scene.resistive)
     turbulent = drag and scene.friction in TURBULENT
     return Key(drag, turbulent, bool(scene.internal_wrench or scene.ledger), bool(scene.planar or plane))
@@ -221,8 +255,10 @@ def key_of(scene, plane: bool = False) -> Key:
 
 @cache
 def table() -> dict[Key, tuple[dict, ...]]:
-    """Rows of the table of targets, from the coarsest to the finest. `fixed`: steps of the classical method by period,
-    None where no number of them delivers the target."""
+    """The rows of the table for each key, from the coarsest target to the finest.
+
+    fixed: steps of the classical method per period; None where no number of them delivers the target.
+    """
     with open(TABLE_FILE, newline="") as file:
         rows = [
             {"target": float(row["target"])}
@@ -257,8 +293,11 @@ def _from_target(name: str, target: float, key: Key, fixed: bool, target_scale: 
 
 
 def _scaled(row: dict, coarser: dict, by: float, fixed: bool, **named) -> Accuracy:
-    """The settings of a `row` of the table for `by` times its target, no looser than those of the `coarser` row; finer
-    ones, of the finest row, if that is less than 1."""
+    """The settings for `by` times the target of a `row` of the table.
+
+    Where `by` is more than 1, the tolerance is looser than the row's, but no looser than that of the `coarser` row.
+    Where `by` is less than 1, the row is the finest of the table, and the settings are finer than the row's.
+    """
     resolution = min(1000.0, row["resolution"] * max(1.0, by**-MORE_POINTS))
     if fixed:
         return Accuracy(resolution=resolution, fixed=row["fixed"] * max(1.0, by**-MORE_STEPS), **named)

@@ -12,14 +12,14 @@ PATTERN = re.compile(r"fastest within\s+([0-9.eE+-]+)\s*(us|ms|s) per second")
 
 @dataclass(frozen=True)
 class Budget:
-    """Wall time by simulated time, at most."""
+    """The most wall time per simulated time [s/s] that a run may take."""
 
     name: str
     seconds_per_second: float
 
     @staticmethod
     def of(text: str) -> "Budget":
-        """The budget that a text such as "fastest within 5 ms per second" gives. `ValueError` where it does not."""
+        """The budget in a text such as "fastest within 5 ms per second". `ValueError` for any other text."""
         found = PATTERN.fullmatch(text.strip())
         try:
             seconds = float(found.group(1)) * UNITS[found.group(2)] if found else 0.0
@@ -33,8 +33,10 @@ class Budget:
         return Budget(text.strip(), seconds)
 
     def finest(self, targets: Iterable[float], seconds_per_second: Callable[[float], float]) -> float:
-        """The finest of the `targets`, coarsest first, whose swim keeps within the budget. `ValueError` where none
-        does. seconds_per_second(target): wall time [s] by simulated second."""
+        """The finest of the `targets` whose swim keeps within the budget. `ValueError` where none does.
+
+        targets: relative errors, the coarsest first. seconds_per_second(target): wall time [s] per simulated second.
+        """
         best = fastest = None
         for target in targets:
             seconds = seconds_per_second(target)

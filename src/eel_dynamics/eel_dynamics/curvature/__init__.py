@@ -1,1 +1,1 @@
-"""The curvature law K(t, X) that the body follows: its needs, its tables on a grid, blends, samples of a controller."""
+"""The curvature law K(t, X) of the body: its needs, its tables on a grid, its blends, and a controller's samples."""

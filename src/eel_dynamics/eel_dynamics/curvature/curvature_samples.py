@@ -1,4 +1,4 @@
-"""Samples of a controller: curvature along the body at one instant each, and the queue of those that lie ahead."""
+"""A controller's samples and their queue. A sample is the curvature along the body at one instant."""
 
 from bisect import bisect_left, bisect_right
 from operator import attrgetter
@@ -26,8 +26,10 @@ def check_points(count: int):
 
 
 class CurvatureSample(NamedTuple):
-    """Curvature `values` (2, 3, n) [rad/m, /s, /s^2], pitch and yaw, value, rate and acceleration, at the points x (n,)
-    [m], at `time` [s]."""
+    """The curvature at `time` [s] at the points x (n,) [m].
+
+    values (2, 3, n): pitch and yaw; of each the value [rad/m], the rate [rad/m/s] and the acceleration [rad/m/s^2].
+    """
 
     time: float
     x: np.ndarray
@@ -35,8 +37,11 @@ class CurvatureSample(NamedTuple):
 
     @staticmethod
     def checked(time, x, rows, *, length: float, planar: bool, now: float) -> "CurvatureSample":
-        """From rows (6, n), named as in `QUANTITIES`, for a body of `length` [m] at the time `now` [s]. `ValueError`
-        names what does not fit."""
+        """A sample from its arguments. `ValueError` names the one that does not fit.
+
+        time [s]; x (n,) [m]; rows (6, n): as in `QUANTITIES`. length [m]: of the body. planar: of the scene. now [s]:
+        the present time.
+        """
         x = checked_row("curvature samples x", x, None)
         if len(x) < 2 or np.any(np.diff(x) <= 0.0):
             raise ValueError(f"curvature samples x must rise over 2 points or more, got {len(x)} points")
@@ -55,7 +60,7 @@ class CurvatureSample(NamedTuple):
 
     @property
     def waves(self) -> float:
-        """Waves on the body that its points resolve."""
+        """The number of waves on the body that the points resolve."""
         return (len(self.x) - 1) / POINTS_PER_WAVE
 
 
@@ -70,7 +75,7 @@ class SampleQueue:
         return len(self._samples)
 
     def check_space(self, points: int):
-        """`ValueError` where a sample of so many points is one too many."""
+        """`ValueError` where the queue has no space for a sample of so many `points`."""
         if len(self._samples) >= MOST_AHEAD or self._points + points > MOST_POINTS_AHEAD:
             raise ValueError(
                 f"curvature samples ahead of the simulation must be at most {MOST_AHEAD}, of {MOST_POINTS_AHEAD} "
@@ -78,7 +83,7 @@ class SampleQueue:
             )
 
     def add(self, sample: CurvatureSample, driving: bool):
-        """One sample more. `ValueError` for one that comes too late, while the samples are `driving`, or twice."""
+        """Add a sample. `ValueError` for one that comes twice, or too late while the samples are `driving`."""
         time, place = sample.time, bisect_left(self._samples, sample.time, key=TIME_OF)
         if driving and place < 2:
             ahead = f"the instant being approached ({self._samples[1].time:.6f} s)"
@@ -89,16 +94,16 @@ class SampleQueue:
         self._points += len(sample.x)
 
     def drop_first(self):
-        """Forget the first sample."""
+        """Remove the first sample."""
         self._points -= len(self._samples.pop(0).x)
 
     def drop_until(self, now: float):
-        """Forget all samples that lie before the one before `now` [s]."""
+        """Remove all samples before the last one that is not later than `now` [s]."""
         while len(self._samples) > 1 and self._samples[1].time <= now:
             self.drop_first()
 
     def begun(self, now: float) -> bool:
-        """Whether two samples bracket `now` [s], where `drop_until` has been called for it."""
+        """Whether two samples bracket `now` [s]. Call `drop_until` for it first."""
         return len(self._samples) > 1 and self._samples[0].time <= now
 
     @property
@@ -108,7 +113,7 @@ class SampleQueue:
 
     @property
     def next_ones(self) -> list[CurvatureSample]:
-        """Those that a grid is chosen for."""
+        """The samples for which a grid is chosen."""
         return self._samples[:AHEAD]
 
     @property

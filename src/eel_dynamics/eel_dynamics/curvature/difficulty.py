@@ -1,10 +1,10 @@
-"""How difficult a swim is: the errors of a run grow with how far its law moves the sections.
+"""The difficulty of a swim. The errors of a run grow with the distance by which its law moves the sections.
 
-At the same settings the error of the head's position grows with the path of the sections in the whole swim (up to some
-body lengths; beyond, the head's path, which the error is relative to, grows as well). The error of the torque grows
-with their stroke in one period. Both exponents were measured over laws of a tenth to twice the nominal bends, at a
-third of to three times the nominal pace, in swims of 1 to 60 s. Stroke and path are in body lengths: root mean squares
-over the sections about the body's mean place, as if the body lay still.
+At the same settings the error of the head's position grows with the path of the sections in the whole swim. This holds
+up to some body lengths. Beyond, the head's path grows as well, and the error is relative to it. The error of the torque
+grows with the stroke of the sections in one period. Both exponents were measured with laws of a tenth to twice the
+nominal bends, at a third of to three times the nominal pace, in swims of 1 to 60 s. Stroke and path are in body
+lengths. They are root mean squares over the sections about the body's mean place, as if the body lay still.
 """
 
 import math
@@ -34,25 +34,28 @@ LEVELS = 12  # of the target scale, to a decade
 
 
 class Difficulty(NamedTuple):
-    """Root mean square stroke in a period and path in the swim [body lengths]."""
+    """Root mean squares of the stroke in a period and of the path in the swim [body lengths]."""
 
     stroke_rms: float
     path_rms: float
 
     def at_least(self, other: "Difficulty") -> "Difficulty":
-        """The greater of either."""
+        """The difficulty with the greater stroke and the greater path of the two."""
         return Difficulty(max(self.stroke_rms, other.stroke_rms), max(self.path_rms, other.path_rms))
 
     def error_scale(self, drag: bool, torque: bool, plane: bool) -> float:
-        """Errors at the same settings, relative to those of the nominal swim: of the position or, with `torque`, the
-        greater of both. drag: the scene has drag; plane: the motion stays in a plane."""
+        """The error at the same settings, relative to that of the nominal swim.
+
+        It is the error of the position or, with `torque`, the greater of the errors of position and torque. drag: the
+        scene has drag. plane: the motion stays in a plane.
+        """
         scale = _grown(self.path_rms / PATH_RMS, PATH_POWERS[drag, plane][torque], PATH_POWER_ABOVE)
         if torque:
             scale = max(scale, _grown(self.stroke_rms / STROKE_RMS, STROKE_POWER, STROKE_POWER_ABOVE))
         return min(max(scale, EASIEST), HARDEST) if scale == scale else HARDEST
 
     def target_scale(self, drag: bool, torque: bool, plane: bool) -> float:
-        """Factor of a target for which its settings are looked up: 1/`error_scale`, rounded towards finer targets."""
+        """Factor of the target in the look-up of its settings: 1/`error_scale`, rounded towards finer targets."""
         return 10.0 ** (math.floor(1e-9 - LEVELS * math.log10(self.error_scale(drag, torque, plane))) / LEVELS)
 
 
@@ -65,8 +68,10 @@ NOMINAL = Difficulty(STROKE_RMS, PATH_RMS)
 
 
 class GroupMotion(NamedTuple):
-    """Root mean square stroke [body lengths] of the terms of one group, in the `time` [s] of a period, or once in that
-    of a ramp."""
+    """Root mean square stroke [body lengths] of the terms of one group.
+
+    time [s]: the period or, where the group moves `once`, the duration of a ramp.
+    """
 
     stroke_rms: float
     time: float
@@ -74,8 +79,11 @@ class GroupMotion(NamedTuple):
 
 
 def difficulty_of(law: Law, length: float, duration: float) -> Difficulty:
-    """Of a swim of `duration` [s] (infinite where it is not known) by `law`, for a body of `length` [m]. A bend counts
-    in every period of the waves, for it turns the swimmer as long as it lasts."""
+    """The difficulty of a swim by `law`, for a body of `length` [m].
+
+    duration [s]: of the swim, infinite where it is not known. A bend counts in every period of the waves, because it
+    turns the swimmer as long as it lasts.
+    """
     motions = motions_of(law, length)
     shortest = min((each.time for each in motions if not each.once), default=None)
     periods = max(1.0, min(duration / shortest, LONGEST)) if shortest else 1.0
@@ -90,7 +98,7 @@ def speed_of(law: Law, length: float) -> float:
 
 @lru_cache(maxsize=4096)
 def motions_of(law: Law, length: float) -> tuple[GroupMotion, ...]:
-    """Motions of the terms of `law`, grouped by axis, period and envelope."""
+    """Motions of the terms of `law` on a body of `length` [m], grouped by axis, period and envelope."""
     found = []
     for (_, period, envelope), terms in groups_of(law).items():
         stroke_rms = math.sqrt(0.5 * _moved(tuple(terms), period > 0.0, length)) / length * _height(envelope)

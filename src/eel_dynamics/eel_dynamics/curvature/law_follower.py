@@ -1,8 +1,8 @@
-"""The law or the samples that the body follows, and the smooth passage from one to the next.
+"""The law or the samples that the body follows, and the smooth change from one to the next.
 
-When a new law or controller takes over, the difference between the present motion and the new one (value, rate and
-acceleration) dies out as a quintic over a transition, added to the new one: the curvature, its rate and its
-acceleration never jump. When a controller's samples run out, the shape comes to rest by the same means.
+A new law or controller takes over with a blend. The difference between the present motion and the new one (value, rate
+and acceleration) is added to the new one, and dies out as a quintic over a transition. So the curvature, its rate and
+its acceleration never jump. When a controller's samples run out, the shape comes to rest in the same way.
 """
 
 from collections.abc import Callable
@@ -19,8 +19,10 @@ from eel_dynamics.curvature.tabulated_law import TabulatedLaw, Tabulation
 
 
 class Blend(NamedTuple):
-    """Difference (6, width) between two motions at `start` [s], for each axis value, rate and acceleration, which dies
-    out until `end` [s]."""
+    """The difference (6, width) between two motions at `start` [s]. It dies out until `end` [s].
+
+    The rows are the value, the rate and the acceleration for each axis.
+    """
 
     difference: np.ndarray
     start: float
@@ -28,10 +30,10 @@ class Blend(NamedTuple):
 
 
 class LawFollower:
-    """The present source of curvature and its blend, and the `tabulated_law` of both for the compiled mechanics.
+    """The present source of curvature and its blend. `tabulated_law` holds both for the compiled mechanics.
 
-    default_transition [s]: for samples. law: the first, whose own t = 0 lies at `origin` [s]; without one the body is
-    straight.
+    default_transition [s]: of blends to samples and to rest. law: the first law, whose own t = 0 lies at `origin` [s].
+    Without a law the body is straight.
     """
 
     def __init__(self, tabulation: Tabulation, default_transition: float, law: Law | None = None, origin: float = 0.0):
@@ -46,8 +48,11 @@ class LawFollower:
         self.tabulated_law = self._with_blend()
 
     def move(self, tabulation: Tabulation, values_at_nodes):
-        """Go over to another grid. `values_at_nodes(rows)` takes fields at the old nodes (..., n) to the new points:
-        what remains of samples and blends are values at the old nodes; a law is tabulated anew."""
+        """Change to the grid of another `tabulation`.
+
+        A law is tabulated anew. Samples and blends remain as values at the old nodes: `values_at_nodes(rows)` takes
+        fields at the old nodes (..., n) to the new points.
+        """
         nodes = self._tabulation.nodes
 
         def convert(rows):
@@ -68,16 +73,19 @@ class LawFollower:
     # -- samples of a controller
 
     def add(self, sample: CurvatureSample):
-        """One sample more. `ValueError` for one that comes too late, or twice."""
+        """Add a sample. `ValueError` for one that comes too late, or twice."""
         self.samples.add(sample, self.sampled)
 
     def next_event(self, now: float) -> float:
-        """Time [s] at which the source changes by itself, inf where it does not."""
+        """The next time [s] at which the source changes by itself; inf where there is none."""
         return self.samples.first_two[1].time if self.sampled else self.samples.next_bracket(now)
 
     def pass_event(self, now: float, prepare: Callable[[list[CurvatureSample]], None]):
-        """Change the source as due at `now` [s]: to samples that bracket the time, to their next interval, or to rest.
-        prepare(samples) is called before samples drive, with them and the next ones, and may `move`."""
+        """Change the source where that is due at `now` [s].
+
+        The new source is the samples that bracket the time, their next interval, or rest. prepare(samples) is called
+        with these samples and the next ones before they drive the shape. It may call `move`.
+        """
         if self.sampled and now >= self.next_event(now):
             self.samples.drop_first()
             if len(self.samples) > 1:
@@ -108,29 +116,33 @@ class LawFollower:
 
     @property
     def between_samples(self) -> bool:
-        """The curvature is a quintic between two samples of a controller."""
+        """Whether the curvature is a quintic between two samples of a controller."""
         return self._source.segment is not None
 
     @property
     def time_scale(self) -> float:
-        """Shortest period [s] of the law; inf where it has none. Ramps, blends and samples begin and end on steps
-        anyway."""
+        """Shortest period [s] of the law; inf where it has none.
+
+        Ramps, blends and samples do not count, because they begin and end on steps.
+        """
         return self._source.shortest_period
 
     def speed(self, length: float) -> float:
-        """Order of magnitude of the speed [m/s] that the law gives to a body of `length` [m]; 0 for samples and at
-        rest."""
+        """Order of magnitude of the speed [m/s] that the law gives to a body of `length` [m].
+
+        It is 0 for samples and at rest.
+        """
         return speed_of(self._source.law, length) if self._source.law is not None else 0.0
 
     # -- blends
 
     @property
     def blending(self) -> bool:
-        """The motion before dies out, or has come to rest: its finer waves are still there."""
+        """Whether the last motion dies out or has come to rest. Its finer waves are then still there."""
         return self._blend is not None or self.resting
 
     def end_blend(self, now: float):
-        """Drop a blend that is over, so that it costs nothing."""
+        """Remove a blend that is over at `now` [s], so that it costs nothing."""
         if self._blend is not None and now >= self._blend.end:
             self._blend = None
             self._follow(self._source)
@@ -154,7 +166,7 @@ class LawFollower:
         return result
 
     def _segment(self) -> TabulatedLaw:
-        """Between the two samples that bracket the present."""
+        """The quintic between the two samples that bracket the present."""
         first, second = self.samples.first_two
         rows = np.stack((self._tabulated(first), self._tabulated(second)), axis=1).reshape(12, -1)
         return TabulatedLaw.between(rows, first.time, second.time)

@@ -1,4 +1,4 @@
-"""A law along the body: the waveforms of its terms, the waves that they bend it into, the knots of their splines."""
+"""A law along the body: the waveforms of its terms, its number of waves, and the knots of its splines."""
 
 from functools import lru_cache
 
@@ -17,7 +17,7 @@ SHORTEST_RAMP = 1e-9  # s, or of the time that it ends at: below, steps of time 
 
 
 def groups_of(law: Law) -> dict:
-    """Waveforms of the terms of `law` by what they have in common: axis, period [s] and envelope."""
+    """Waveforms of the terms of `law`, grouped by axis, period [s] and envelope."""
     groups: dict = {}
     for term in law.terms:
         groups.setdefault((term.axis, term.period, term.envelope), []).append(waveform(term))
@@ -25,16 +25,16 @@ def groups_of(law: Law) -> dict:
 
 
 def waveform(term: Term) -> tuple:
-    """What a term is along the body: amplitude and its knots, wave number, phase."""
+    """The shape of a term along the body: amplitude and knots, wave number [rad/m], phase [rad]."""
     return term.amplitude, term.knots, term.wave_number, term.phase
 
 
 def waves_of_law(law: Law, length: float) -> float:
-    """How many waves a law bends a body of `length` [m] into, at most; a spline counts an eighth of its intervals, and
-    an amplitude the waves that it has itself, where they are shortest.
+    """The largest number of waves into which a law bends a body of `length` [m].
 
-    A turn of the backbone is a wave too, as its direction goes once around: turns are counted by the term that turns it
-    most, and by three quarters of what all do together where the body is bent most.
+    A spline counts as an eighth of its intervals. An amplitude counts as the waves that it has itself, where they are
+    shortest. A turn of the backbone is a wave too, because its direction goes once around. The turns are those of the
+    term that turns it most, or three quarters of those of all terms together where the body is bent most.
     """
     return _waves(tuple((term.axis, waveform(term)) for term in law.terms), length)
 
@@ -55,9 +55,11 @@ def _waves(waveforms: tuple, length: float) -> float:
 
 @lru_cache(maxsize=4096)
 def _wiggles(amplitude: tuple, knots: tuple, length: float) -> float:
-    """Waves on a body of `length` [m] of an amplitude itself, by its turning points: of all, or as if there were as
-    many everywhere as where they are closest. They are sharper than sines, and count half again. Splines of few knots
-    have none: panels are cut at these."""
+    """The number of waves that an amplitude itself has on a body of `length` [m], by its turning points.
+
+    It counts all of them, or as many everywhere as where they are closest. These waves are sharper than sines, so each
+    counts as one and a half. A spline of few knots has none, because the panels are cut at its knots.
+    """
     if len(amplitude) <= 2 or 0 < len(knots) <= FEW_KNOTS:
         return 0.0
     steps = np.diff(amplitude_of(amplitude, knots, np.linspace(0.0, length, WIGGLE_POINTS + 1)))
@@ -67,8 +69,10 @@ def _wiggles(amplitude: tuple, knots: tuple, length: float) -> float:
 
 
 def check_law(law: Law, length: float) -> float:
-    """Waves on a body of `length` [m]; `ValueError` for a law whose waves no grid carries, or with a ramp that is a
-    jump."""
+    """The number of waves of `law` on a body of `length` [m].
+
+    `ValueError` for a law with more waves than any grid carries, or with a ramp so short that it is a jump.
+    """
     with np.errstate(over="ignore", invalid="ignore"):
         waves = waves_of_law(law, length)
     if not waves <= MOST_WAVES:
@@ -87,6 +91,6 @@ def check_law(law: Law, length: float) -> float:
 
 
 def knots_of_law(law: Law) -> tuple[float, ...]:
-    """X [m] inside the splines of `law`, where their third derivative jumps; none where there are many."""
+    """Inner knots X [m] of the splines of `law`: their third derivatives jump there. None where they are many."""
     knots = sorted({knot for term in law.terms for knot in term.knots[1:-1]})
     return tuple(knots) if len(knots) <= MOST_KNOTS else ()

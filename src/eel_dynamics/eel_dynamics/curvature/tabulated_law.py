@@ -5,7 +5,7 @@ Every law is a sum of fields of X times functions of time alone,
     K_d(t, X) = sum_m c_m(t) row_m(X),
 
 since sin(kX + phase - wt) = sin(kX + phase) cos wt - cos(kX + phase) sin wt. The rows are tabulated once: at the nodes,
-at the stations, and as the Magnus moments of the intervals that lead to both; an instant needs the factors c_m only.
+at the stations, and as the Magnus moments of the intervals that lead to both. An instant needs only the factors c_m.
 The difference between a motion and the law that takes over, and the quintic between two samples of a controller, are of
 the same form. `eel_core.Law` holds both and evaluates them.
 """
@@ -60,7 +60,7 @@ class Tabulation:
         )
 
     def __deepcopy__(self, memo: dict) -> "Tabulation":
-        """Itself, for it never changes."""
+        """The same object, because it never changes."""
         return self
 
     def law_tables(self, rows: np.ndarray, axis) -> eel_core.LawTables:
@@ -73,7 +73,7 @@ class Tabulation:
 
 
 class TabulatedLaw(NamedTuple):
-    """A source of curvature: m rows on the grid, and what their factors are made of. It never changes."""
+    """A source of curvature: m rows on the grid, and the data of their factors. It never changes."""
 
     rows: np.ndarray  # (m, width), as `Tabulation.columns` has them
     axis: np.ndarray  # (m,) of the rows, 0 pitch, 1 yaw
@@ -94,7 +94,7 @@ class TabulatedLaw(NamedTuple):
 
     @staticmethod
     def constant(value: np.ndarray) -> "TabulatedLaw":
-        """A shape that stands still: value (2, width)."""
+        """A shape that does not move. value (2, width): its rows in pitch and yaw."""
         return TabulatedLaw(np.array(value), np.arange(2), waves=tuple((0.0, None, row, row) for row in range(2)))
 
     @staticmethod

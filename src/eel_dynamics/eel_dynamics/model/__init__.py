@@ -1,1 +1,1 @@
-"""What swims in what: body, scene, sections, the grid along the body, initial state, and checks of arguments."""
+"""The model: body, scene, section data, the grid along the body, the initial state, and checks of arguments."""

@@ -1,4 +1,4 @@
-"""Checks at the entry: `ValueError` names the argument that does not fit, and what it got."""
+"""Checks of arguments. `ValueError` names the argument that does not fit, and its value."""
 
 import math
 from functools import lru_cache
@@ -9,13 +9,14 @@ from eel_gaits.wording import shown
 
 
 def checked_instance(name: str, value, kind: type):
+    """`value`, if it is a `kind`."""
     if not isinstance(value, kind):
         raise ValueError(f"{name} must be a {kind.__name__}, got {shown(value)}")
     return value
 
 
 def checked_number(name: str, value, unit: str, *, zero: bool = False) -> float:
-    """`value` as a finite float > 0, or >= 0 where `zero` may be."""
+    """`value` as a finite float > 0, or >= 0 where `zero` is true."""
     if not is_finite(value) or value < 0.0 or (value == 0.0 and not zero):
         rule = f"finite and {'>=' if zero else '>'} 0 {unit}".rstrip()
         raise ValueError(f"{name} must be {rule}, got {shown(value)}")
@@ -23,7 +24,7 @@ def checked_number(name: str, value, unit: str, *, zero: bool = False) -> float:
 
 
 def checked_row(name: str, values, size: int | None) -> np.ndarray:
-    """`values` as (size,) finite floats; any size where it is None."""
+    """`values` as an array (size,) of finite floats. Any size fits where `size` is None."""
     if type(values) is tuple and all(type(value) is float for value in values):
         return _checked_tuple(name, values, size).copy()
     return _checked_row(name, values, size)
@@ -45,6 +46,7 @@ def _checked_row(name: str, values, size: int | None) -> np.ndarray:
 
 
 def checked_quaternion(name: str, quaternion) -> np.ndarray:
+    """`quaternion` (x, y, z, w) as an array (4,), normalised. Its norm must be 1 to within 1e-6."""
     array = checked_row(name, quaternion, 4)
     size = math.hypot(*array.tolist())
     if abs(size - 1.0) > 1e-6:
@@ -54,11 +56,12 @@ def checked_quaternion(name: str, quaternion) -> np.ndarray:
 
 @lru_cache(maxsize=64)
 def equidistant(length: float, count: int) -> np.ndarray:
-    """X [m] of so many stations from the nose to the tail."""
+    """X (count,) [m] of `count` equidistant stations from the nose to the tail."""
     return np.linspace(0.0, length, count)
 
 
 def checked_stations(stations, length: float) -> np.ndarray:
+    """X (M,) [m] of the stations: a number of equidistant ones, or X that rise within 0 to `length` [m]."""
     if isinstance(stations, (int, np.integer)) and not isinstance(stations, bool):
         if not 2 <= stations <= 100_000:
             raise ValueError(f"stations must be 2 or more, or their X in m, got {shown(stations)}")

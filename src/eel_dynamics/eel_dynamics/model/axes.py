@@ -1,8 +1,8 @@
 """The two sets of axes, and the half turn about z between them.
 
 Library (the paper's) axes: at rest the body lies along +x from the head and swims towards -x.
-ROS (REP-103) axes: the eel swims towards +x, y is left, z up. Each is the other turned by half a turn about z, applied
-to the world and to every section alike, so one function is its own inverse.
+ROS (REP-103) axes: the eel swims towards +x, y is left, z up. A half turn about z takes each set into the other. It is
+applied to the world and to every section alike. So each function here is its own inverse.
 """
 
 import numpy as np
@@ -18,7 +18,7 @@ def turn_vector(vector: np.ndarray) -> np.ndarray:
 def turn_quaternion(quaternion: np.ndarray) -> np.ndarray:
     """Orientation `quaternion`, shape (..., 4), order x y z w, in the other set of axes. Its own inverse.
 
-    Both the world's and the body's axes are turned, R -> Q R Q^T with Q = diag(-1, -1, 1).
+    The axes of the world and of the body are both turned: R -> Q R Q^T with Q = diag(-1, -1, 1).
     """
     return np.asarray(quaternion, dtype=float) * QUATERNION
 

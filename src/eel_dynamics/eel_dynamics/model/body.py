@@ -1,7 +1,7 @@
-"""The body: elliptic sections along a straight reference line, homogeneous (sections 3.3 and 7.2.1 of the paper).
+"""The body: homogeneous, with elliptic sections along a straight reference line (sections 3.3 and 7.2.1).
 
 A section at X has the half-height a(X) along E3 (its major axis on the paper's robot) and the half-width b(X) along E2.
-X runs from 0 at the nose to the length at the tail. The nose is pointed, a(0) = b(0) = 0: it sheds no wake.
+X runs from 0 at the nose to the length at the tail. The nose is pointed, a(0) = b(0) = 0, so it sheds no wake.
 """
 
 import os
@@ -26,14 +26,21 @@ SHARP = 1e-3  # of the body's greatest half-axis: a half-axis at the tail that c
 class Body:
     """Geometry and density of a swimmer, and the coefficients of its drag. Immutable.
 
-    length: [m]. half_width, half_height: functions of X [m] that return m, or arrays [m] with `x=` [m] (rising from 0
-    to the length; interpolated in their squares by a monotone cubic between kinks). kinks: X [m] inside (0, length)
-    where a half-axis or one of its derivatives jumps. nose: half-axes and length (a_o, b_o, c_o) [m] of the cap in
-    m_o = rho_f pi k a_o b_o c_o and k_o = pi c_p a_o b_o; by default those at the end of the first panel, and its
-    length. density: [kg/m^3]. nose_added_mass: k. nose_drag: c_p. roll_drag, lateral_drag, vertical_drag: c_1, c_2,
-    c_3.
+    `ValueError` names the argument that does not fit, and its value.
 
-    `ValueError` names the argument that does not fit, and what it got.
+    Args:
+        half_width, half_height: functions of X [m] that return m, or arrays [m] at `x`. A monotone cubic between the
+            kinks interpolates the squares of arrays.
+        length: [m]; with arrays it is the last `x`.
+        x: [m], shape (M,), M >= 4, rising from 0 to the length; with arrays only.
+        kinks: X [m] inside (0, length) where a half-axis or one of its derivatives jumps.
+        nose: half-axes and length (a_o, b_o, c_o) [m] of the cap in m_o = rho_f pi k a_o b_o c_o and
+            k_o = pi c_p a_o b_o; by default the half-axes at the end of the first panel, and its length.
+        density: [kg/m^3].
+        nose_added_mass: k.
+        nose_drag: c_p.
+        roll_drag, lateral_drag, vertical_drag: c_1, c_2, c_3.
+        name: what messages call the body.
     """
 
     def __init__(
@@ -96,11 +103,11 @@ class Body:
 
     @property
     def half_axes(self) -> dict:
-        """Width and height as they were given: functions of X, or arrays (2, M) of X and half-axis [m]."""
+        """The half-axes as they were given: functions of X, or arrays (2, M) of X and half-axis [m]."""
         return {"half_width": self._half_width.given, "half_height": self._half_height.given}
 
     def squares(self, x) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """a^2, b^2 [m^2] and their derivatives by X [m] at `x` (M,) [m]; a kink takes the derivative ahead of it."""
+        """a^2, b^2 [m^2] and their derivatives by X [m] at `x` (M,) [m]. A kink has the derivative ahead of it."""
         x = np.asarray(x, dtype=float)
         return (
             self._half_height.square(x),
@@ -111,7 +118,7 @@ class Body:
 
     @cached_property
     def pointed_tail(self) -> bool:
-        """The tail ends in an edge or a point: a half-axis goes to nothing there, and the perimeter like its root."""
+        """Whether the tail ends in an edge or a point. A half-axis is zero there; the perimeter goes like its root."""
         squares = np.array(self.squares(np.array([0.5 * self.length, self.length]))[:2])
         return bool(np.min(squares[:, 1]) <= SHARP**2 * np.max(squares))
 
@@ -183,7 +190,7 @@ class Body:
 
     @staticmethod
     def named(name: str) -> "Body":
-        """A body of the library by its name: boyer2010, kern2006."""
+        """The body called `name`: boyer2010 or kern2006. `ValueError` for another name."""
         if name not in NAMED:
             raise ValueError(f"body must be one of {', '.join(NAMED)} or a file, got {shown(name)}")
         return getattr(Body, name)()

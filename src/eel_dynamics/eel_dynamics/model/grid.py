@@ -1,13 +1,13 @@
 """Nodes along the body, and the matrices that integrate from the nose to each of them.
 
 The body is cut into panels at its kinks, so that every field is smooth inside a panel. A panel carries `p` right Radau
-points: the last one is the panel's end, so the tail is a node, and each panel starts where the one before ended. The
+points. The last one is the panel's end. So the tail is a node, and each panel starts where the one before ended. The
 integral of the polynomial through the points (collocation; Hairer and Wanner, Solving Ordinary Differential Equations
 II, section IV.5) is exact to degree 2p - 2 over a panel, and to degree p - 1 up to a point inside it.
 
-The half-axes grow like sqrt(X) at a rounded nose: the first panel is integrated in u with X = X_1 u^2, in which fields
-that hold sqrt(X) are smooth. A tail that ends in an edge or a point has such roots too, in its perimeter or half-axes:
-there X = l - length (1 - u)^2.
+The half-axes grow like sqrt(X) at a rounded nose. So the first panel is integrated in u with X = X_1 u^2: fields that
+contain sqrt(X) are smooth in u. A tail that ends in an edge or a point has such roots too, in its perimeter or its
+half-axes. There X = l - length (1 - u)^2.
 """
 
 from dataclasses import dataclass
@@ -20,8 +20,11 @@ from numpy.polynomial import legendre
 
 @dataclass(frozen=True, kw_only=True)
 class Panel:
-    """Part of the body between two kinks. `graded` "start": integrated in u, X = start + length u^2; "end": X = end -
-    length (1 - u)^2; "": in X."""
+    """Part of the body between two kinks, with `points` nodes.
+
+    graded: the variable of integration; "start": u in X = start + length u^2; "end": u in X = end - length (1 - u)^2;
+    "": X itself.
+    """
 
     start: float
     end: float
@@ -29,7 +32,7 @@ class Panel:
     graded: str = ""
 
     def locate(self, fraction):
-        """X [m] of the panel's variable in (0, 1), and dX by it."""
+        """X [m] at the panel's variable `fraction` in (0, 1), and the derivative [m] of X by it."""
         fraction = np.asarray(fraction, dtype=float)
         length = self.end - self.start
         if self.graded == "start":
@@ -47,7 +50,7 @@ class Panel:
 
 
 class PanelPoints(NamedTuple):
-    """M points along the body, each within the panel of its own: rows that integrate up to it."""
+    """M points along the body, and for each the row that integrates over its panel up to it."""
 
     matrix: np.ndarray  # (M, p_max) m: the integral from the panel's start is sum_j matrix[i, j] f[first[i] + j]
     first: np.ndarray  # (M,) unsigned, first node of the panel
@@ -79,6 +82,7 @@ class Grid:
 
     @staticmethod
     def of(panels: tuple[Panel, ...]) -> "Grid":
+        """The grid of these `panels`, which follow one another from the nose to the tail."""
         total = sum(panel.points for panel in panels)
         widest = max(panel.points for panel in panels)
         x, weight, matrix = np.empty(total), np.empty(total), np.zeros((total, widest))
@@ -104,20 +108,20 @@ class Grid:
         return PanelPoints(*self.rows_at(x, "integral"), self.fraction_at(x))
 
     def panel_at(self, x) -> np.ndarray:
-        """Index of the panel that holds X = `x` (M,) [m]; a kink belongs to the panel that it ends."""
+        """Index (M,) of the panel that holds X = `x` (M,) [m]. A kink belongs to the panel that it ends."""
         ends = np.array([panel.end for panel in self.panels])
         return np.minimum(np.searchsorted(ends, x, side="left"), len(ends) - 1)
 
     def fraction_at(self, x) -> np.ndarray:
-        """The variable of the panel that holds X = `x` (M,) [m]."""
+        """The variable (M,) of the panel that holds X = `x` (M,) [m]."""
         home = self.panel_at(x)
         return np.array([float(self.panels[k].fraction(here)) for k, here in zip(home, np.asarray(x), strict=True)])
 
     def rows_at(self, x, kind: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Rows that turn nodal values into values at X = `x` (M,) [m].
 
-        kind "integral": from the start of the panel to X [m]; kind "value": of the interpolating polynomial.
-        Returns (M, p_max), the index of the first node of each row's panel (M,), and its number of points (M,).
+        kind "integral": the integral from the start of the panel to X [m]. kind "value": the interpolating polynomial.
+        Returns the rows (M, p_max), and for each its panel's first node (M,) and number of points (M,).
         """
         maker = {"integral": integration_matrix, "value": interpolation_matrix}[kind]
         x = np.asarray(x, dtype=float)
@@ -157,8 +161,10 @@ def collocation_matrix(points: int) -> np.ndarray:
 
 @cache
 def barycentric_weights(points: int) -> np.ndarray:
-    """Weights (points,) of the Radau points in the barycentric formula (Berrut and Trefethen, SIAM Review 46 (2004)),
-    to a common factor."""
+    """Weights (points,) of the Radau points in the barycentric formula, up to a common factor.
+
+    Berrut and Trefethen, SIAM Review 46 (2004).
+    """
     at = radau_points(points)
     distance = 4.0 * (at[:, None] - at[None, :]) + np.eye(points)  # in quarters: the products stay within range
     return 1.0 / np.prod(distance, axis=1)

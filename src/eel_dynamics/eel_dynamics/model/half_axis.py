@@ -1,6 +1,6 @@
 """One half-axis of the body along X: its square and the derivative of its square.
 
-Squares, because a half-axis grows like sqrt(X) at a rounded nose, where only its square is smooth.
+A half-axis grows like sqrt(X) at a rounded nose. Only its square is smooth there.
 """
 
 from functools import cached_property
@@ -14,7 +14,7 @@ DEGREE = 48  # of the polynomial through the square on each panel, for its deriv
 
 
 class FunctionHalfAxis:
-    """A half-axis given as a function of X [m]; smooth between the `bounds` (0, kinks, length) [m]."""
+    """A half-axis given as a function of X [m]. It is smooth between the `bounds` (0, kinks, length) [m]."""
 
     def __init__(self, name: str, function, bounds):
         if not callable(function):
@@ -66,7 +66,7 @@ class FunctionHalfAxis:
 
 
 class ArrayHalfAxis:
-    """A half-axis given at points: a monotone cubic through its squares (Fritsch and Butland), apart between kinks."""
+    """A half-axis given at points: monotone cubics through its squares (Fritsch and Butland), one between two kinks."""
 
     def __init__(self, name: str, x: np.ndarray, values: np.ndarray, bounds):
         from scipy.interpolate import PchipInterpolator

@@ -1,8 +1,8 @@
-"""Inertia of the straight body with its water, (6, 6), and the refusal of bodies for which it is singular.
+"""Inertia (6, 6) of the straight body with its water, and the refusal of bodies for which it is singular.
 
-Rotations count by the body's length, so that all entries are masses [kg] and the condition has no unit. The straight
-shape has the least inertia in roll: a bent one turns its own arms. A condition above `MOST` leaves less than four
-digits of an acceleration in double precision, and counts as singular.
+Rotations are scaled by the body's length, so that all entries are masses [kg] and the condition number has no unit. The
+straight shape has the least inertia in roll: a bent shape turns its own arms. A condition number above `MOST` leaves
+less than four digits of an acceleration in double precision, and counts as singular.
 """
 
 import numpy as np
@@ -14,8 +14,10 @@ PLANE = 2, 3, 4
 
 
 def straight_inertia(grid, sections, nose_mass: float, length: float) -> np.ndarray:
-    """(6, 6) [kg] about the head, rotation first, of a body of `length` [m] by the `sections` (`SectionData`) at the
-    nodes of `grid`; nose_mass: m_o [kg]."""
+    """Inertia (6, 6) [kg] of a straight body about the head, rotation first.
+
+    sections: `SectionData` at the nodes of `grid`. nose_mass: m_o [kg]. length [m]: of the body.
+    """
     x, weight = grid.x / length, grid.weight
     roll, pitch, yaw = (
         float(weight @ each) / length**2 for each in (sections.inertia1, sections.inertia2, sections.inertia3)
@@ -37,13 +39,13 @@ def straight_inertia(grid, sections, nose_mass: float, length: float) -> np.ndar
 
 
 def condition_of(matrix: np.ndarray) -> float:
-    """Greatest eigenvalue of a symmetric positive `matrix` by the least; infinite where it is singular."""
+    """The greatest eigenvalue of a symmetric positive `matrix` over the least; infinite where it is singular."""
     value = np.linalg.eigvalsh(matrix)
     return float(value[-1] / value[0]) if value[0] > 0.0 else np.inf
 
 
 def check_inertia(grid, sections, nose_mass: float, length: float, planar: bool):
-    """`ValueError` that names the degrees of freedom in which a body has no inertia; as `straight_inertia` has it."""
+    """`ValueError` that names the degrees of freedom without inertia. Arguments as in `straight_inertia`."""
     free = list(PLANE) if planar else list(range(6))
     matrix = straight_inertia(grid, sections, nose_mass, length)[np.ix_(free, free)]
     if not np.isfinite(matrix).all():

@@ -1,4 +1,4 @@
-"""The initial state of the head, and what its velocity means for the run."""
+"""The initial state of the head, and what follows from its velocity."""
 
 import math
 from typing import NamedTuple
@@ -27,21 +27,23 @@ class InitialState(NamedTuple):
 
 
 def time_scale(twist: np.ndarray, length: float) -> float:
-    """Time [s] in which a `twist` (6,) carries a body over its `length` [m], or turns it by 1 rad."""
+    """The shorter time [s] in which a `twist` (6,) moves a body by its `length` [m] or turns it by 1 rad."""
     a, b, c, u, v, w = twist.tolist()
     speed, spin = math.hypot(u, v, w), math.hypot(a, b, c)
     return min(length / speed if speed else np.inf, 1.0 / spin if spin else np.inf)
 
 
 def starts_fast(law: Law | None, scale: float) -> bool:
-    """Whether an initial velocity of the time `scale` [s] is large compared with the swimming speed of `law`."""
+    """Whether an initial velocity of the time scale `scale` [s] is large against the swimming speed of `law`."""
     periods = [term.period for term in law.terms if term.period] if isinstance(law, Law) else []
     return scale < FAST_START * min(periods, default=1.0)
 
 
 def stays_in_plane(law: Law | None, relative: np.ndarray) -> bool:
-    """Whether a swim stays in the plane of the head's axes 1 and 2: the law bends in yaw alone, and the head's twist
-    `relative` to the water lies in the plane."""
+    """Whether a swim stays in the plane of the head's axes 1 and 2.
+
+    It does where the law bends only in yaw and the head's twist `relative` (6,) to the water lies in the plane.
+    """
     if law is None or not law.in_plane:
         return False
     return not (relative[0] or relative[1] or relative[5])

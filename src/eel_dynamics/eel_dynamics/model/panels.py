@@ -1,4 +1,4 @@
-"""The panels of a body's grid: where it is cut along X, and how many points each part gets."""
+"""The panels of a body's grid: where the body is cut along X, and how many points each part has."""
 
 import math
 from dataclasses import replace
@@ -14,11 +14,13 @@ CLOSEST = 1e-3  # lengths between a kink of the body and a knot of a law that st
 
 
 def panels_of(body, resolution: float, knots: tuple[float, ...] = (), wrench: bool = True) -> tuple[Panel, ...]:
-    """Panels between the kinks of `body` and the `knots` [m] of a law's splines, with about `resolution` points per
-    length of the body, and three to spare each; where the internal `wrench` is wanted more in the first, in which the
-    body and its loads go like roots of X (they weigh little there), and in the last where they do so at the tail.
+    """Panels between the kinks of `body` and the `knots` [m] of a law's splines.
 
-    Processors take up to eight nodes at once: these are filled, by points for the panels that would have them next.
+    Together they have about `resolution` points per body length, and each has three to spare. Where the internal
+    `wrench` is wanted, the first panel has more: the body and its loads go like roots of X there (they weigh little).
+    So has the last panel where they do so at the tail.
+
+    Processors take up to eight nodes at once. The grid fills these: the panels that would have a point next get one.
     """
     least = CLOSEST * body.length
     kinks = np.array([0.0, *body.panel_ends])
@@ -47,5 +49,5 @@ def _next_resolution(panel: Panel, length: float) -> float:
 
 
 def nearest(count: float) -> int:
-    """The nearest whole number, halves upwards: the last bit of `count` differs between versions of numpy."""
+    """The nearest whole number, halves upwards. The last bit of `count` differs between versions of numpy."""
     return math.floor(count + 0.5 + 1e-9)

@@ -1,13 +1,13 @@
-"""Which physics a run models, and the water it swims in. What is off costs nothing.
+"""The physics that a run models, and the water. A part that is off costs nothing.
 
 The switches name the parts of the model of Boyer, Porez and Leroyer (2010): reactive (added mass, wake: eq. 36-37, 60),
 resistive (section 7.2.1), nose (section 7.2.1), and the readings of its printed formulae.
 
-Without `wake` each section keeps its own water: what sweeps past the body is left out of the strips' balance (50), the
-terms d/dX of V1 sigma_f and of V1 p_f - T_f t1, and so is what they come to at the tail, the flux of momentum and the
-pressure of eq. (51) and (60). That is a chain of bodies in a perfect fluid (Kirchhoff), which sheds nothing: the
-momentum of body and water changes by drag alone (and by the printed load of the nose), and the thrust of Lighthill's
-theory is gone. It tells how much of a motion the wake makes; it is no model of a fish.
+Without `wake` each section keeps its own water. The balance of the strips (50) then leaves out the terms d/dX of
+V1 sigma_f and of V1 p_f - T_f t1. It also leaves out their sum at the tail: the momentum flux and the pressure of eq.
+(51) and (60). The model is then a chain of bodies in a perfect fluid (Kirchhoff), which sheds nothing. Only drag, and
+the printed load of the nose, change the momentum of body and water, and the thrust of Lighthill's theory is gone. Such
+a run shows how much of a motion is due to the wake. It is no model of a fish.
 """
 
 from dataclasses import dataclass, field, fields

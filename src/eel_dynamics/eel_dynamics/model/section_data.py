@@ -1,9 +1,13 @@
 """Section data of the body and the water at the nodes and the stations (sections 3.3, 4.2 and 7.2.1 of the paper).
 
-Half-axes a along E3, b along E2. Body: m_b = rho_b pi a b, J2 = rho_b pi a^3 b/4, J3 = rho_b pi a b^3/4, J1 = J2 + J3.
-Water: J_f1 = rho_f pi/8 (a^2 - b^2)^2, M_f = rho_f pi diag(0, a^2, b^2) (eq. 37 with its semi-axes exchanged: the added
-mass for motion along an axis of an ellipse goes with the square of the other half-axis; Lamb; section 4.3 of the
-paper).
+The half-axis a lies along E3, b along E2.
+
+Body: m_b = rho_b pi a b, J2 = rho_b pi a^3 b/4, J3 = rho_b pi a b^3/4, J1 = J2 + J3.
+Water: J_f1 = rho_f pi/8 (a^2 - b^2)^2, M_f = rho_f pi diag(0, a^2, b^2).
+
+The printed eq. (37) exchanges the half-axes a and b in M_f. This is corrected here: the added mass of an ellipse that
+moves along one axis is proportional to the square of the other half-axis (Lamb; section 4.3 of the paper). The scene's
+`added_mass="printed"` keeps the printed form.
 """
 
 from typing import NamedTuple
@@ -21,7 +25,10 @@ TRANSITION = 8.0e4  # Reynolds number at which the printed friction law jumps fr
 
 
 def added_masses(body: Body, scene: Scene, a_squared, b_squared):
-    """M_f along E2 and E3 [kg/m], J_f1 [kg m]; zero where the scene has no reactive water."""
+    """Added masses of a section: M_f along E2 and E3 [kg/m], and J_f1 [kg m] (eq. 37).
+
+    They are zero where the scene is not reactive. a_squared, b_squared: squares of the half-axes [m^2].
+    """
     rho = scene.fluid_density if scene.reactive else 0.0
     along2, along3 = (a_squared, b_squared) if scene.added_mass == "corrected" else (b_squared, a_squared)
     return rho * np.pi * along2, rho * np.pi * along3, rho * np.pi / 8.0 * (a_squared - b_squared) ** 2
@@ -45,13 +52,13 @@ class SectionData(NamedTuple):
     reynolds: np.ndarray  # s/m, Re/8e4 per |V1|
 
     def of_water(self) -> "SectionData":
-        """The same without the body: its mass and inertia are zero."""
+        """The section data of the water alone: the mass and inertia of the body are zero."""
         none = np.zeros_like(self.mass)
         return self._replace(mass=none, inertia1=self.added_roll, inertia2=none, inertia3=none)
 
 
 class StationData(NamedTuple):
-    """Where profiles are given, M stations."""
+    """Data of the M stations, at which profiles are given."""
 
     sections: SectionData
     points: PanelPoints

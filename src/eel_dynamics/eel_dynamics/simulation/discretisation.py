@@ -1,4 +1,4 @@
-"""A body in a scene on a grid: its section data at the nodes and the stations, shared by all runs of the same."""
+"""A body in a scene on a grid: its section data at the nodes and the stations. Equal runs share it."""
 
 from functools import lru_cache
 from typing import NamedTuple
@@ -25,11 +25,11 @@ class GridSettings(NamedTuple):
 
     @staticmethod
     def of(accuracy: Accuracy, waves: float, knots: tuple[float, ...]) -> "GridSettings":
-        """Of a grid that an `accuracy` needs for `waves` on the body and the `knots` [m] of a law."""
+        """The settings that an `accuracy` needs for `waves` on the body and the `knots` [m] of a law."""
         return GridSettings(accuracy.points_per_length(waves), accuracy.kinks, knots)
 
     def at_least(self, other: "GridSettings") -> "GridSettings":
-        """These, where they are fine enough for `other`; else those of `other`, and no coarser than these."""
+        """These settings where they are fine enough for `other`. Else those of `other`, but no coarser than these."""
         resolution = max(self.resolution, other.resolution)
         fine_enough = resolution <= self.resolution * (1.0 + 1e-9) and set(other.knots) <= set(self.knots)
         return self if fine_enough and self.kinks == other.kinks else other._replace(resolution=resolution)
@@ -50,8 +50,10 @@ class Discretisation(NamedTuple):
 
 @lru_cache(maxsize=256)
 def discretise(body: Body, scene: Scene, settings: GridSettings, stations: bytes) -> Discretisation:
-    """Tabulate `body` in `scene` on a grid of such `settings`, and at the `stations` (the bytes of the array of their X
-    [m]). `ValueError` for a body without inertia in some direction."""
+    """Tabulate `body` in `scene` on a grid of these `settings`, and at the `stations`.
+
+    stations: the bytes of the array of their X [m]. `ValueError` for a body without inertia in some direction.
+    """
     x = np.frombuffer(stations)
     grid = Grid.of(panels_of(body, settings.resolution, settings.knots, scene.internal_wrench or scene.ledger))
     sections = sections_of(body, scene, grid.x)

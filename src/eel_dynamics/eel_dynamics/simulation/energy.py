@@ -2,8 +2,9 @@
 
     d/dt (kinetic_body + kinetic_fluid) = actuator_power + wake_power + nose_power + drag_power
 
-Powers are into body and water. The wake's is V1(l) T_f(l): it feeds energy in where the tail leads, a limit of the
-theory. The nose's holds its added mass, so 1/2 m_o V1^2 is not part of kinetic_fluid; the drag's is without the nose.
+A positive power feeds energy into body and water. The power of the wake is V1(l) T_f(l). It is positive where the tail
+leads, which is a limit of the theory. The power of the nose includes that of its added mass, so kinetic_fluid does not
+include 1/2 m_o V1^2. The power of the drag does not include the nose.
 """
 
 from dataclasses import dataclass, fields
@@ -13,7 +14,7 @@ import numpy as np
 
 @dataclass(frozen=True)
 class EnergyLedger:
-    """One instant (floats) or a run ((T,) arrays). Relative to the water where there is a current."""
+    """The ledger of one instant (floats) or of a run ((T,) arrays). In a current it is relative to the water."""
 
     kinetic_body: np.ndarray  # J
     kinetic_fluid: np.ndarray  # J
@@ -39,7 +40,11 @@ class EnergyLedger:
 
     @staticmethod
     def of(kinetic: np.ndarray, powers: np.ndarray, works: np.ndarray, start: float) -> "EnergyLedger":
-        """From kinetic energies (..., 2), powers (..., 4), works (..., 4), and the kinetic energy at the start [J]."""
+        """A ledger from its numbers.
+
+        kinetic (..., 2) [J]: of body and water. powers (..., 4) [W] and works (..., 4) [J]: of actuators, wake, nose
+        and drag. start [J]: the kinetic energy at the start.
+        """
         if kinetic.ndim == 1:  # an instant, for a node at real time
             kinetic, powers, works = kinetic.tolist(), powers.tolist(), works.tolist()
             return EnergyLedger(*kinetic, *powers, sum(kinetic) - start - sum(works), *works)

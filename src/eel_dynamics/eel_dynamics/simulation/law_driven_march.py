@@ -1,4 +1,4 @@
-"""The march in time of a swimmer under a law: the grid follows the law's needs, the steps its breakpoints."""
+"""The march in time of a swimmer under a law. The law's needs give the grid, its breakpoints the steps."""
 
 import math
 from collections.abc import Callable
@@ -17,14 +17,14 @@ from eel_dynamics.simulation.simulation_setup import MotionNeeds, ShapeNeeds, Si
 from eel_dynamics.simulation.step_bounds import step_bounds_of
 from eel_dynamics.simulation.stopping import SimulationStopped, not_begun, remedy, stopped_by
 
-MUCH_FINER = 1.5  # times the resolution that is needed: such a grid gives way to a coarser one
+MUCH_FINER = 1.5  # times the resolution that is needed: a coarser grid replaces such a grid
 MARCHED, SINGULAR, UNFINISHED = (eel_core.STATUSES.index(name) for name in ("marched", "singular", "unfinished"))
 
 
 class LawDrivenMarch:
-    """Marches from the initial state of a `setup` on, with the settings of an `accuracy`, on a grid of such `settings`,
-    under the law of the `follower` that is made for it (`law`, from `origin` [s] on; None: straight).
+    """A march from the initial state of a `setup`, with an `accuracy`, on a grid of these `settings`.
 
+    The `follower` follows `law`, whose own t = 0 lies at `origin` [s]. Without a law the body is straight.
     `SimulationStopped` where the initial state has no finite energy.
     """
 
@@ -43,16 +43,20 @@ class LawDrivenMarch:
     # -- law, accuracy and grid
 
     def adopt(self, law: Law, origin: float, transition: float, needs: MotionNeeds, last: MotionNeeds):
-        """Follow `law`, whose own t = 0 lies at `origin` [s], from now on; blend over `transition` [s]. The settings
-        are for its `needs` and those of the `last` law."""
+        """Follow `law` from now on, with a blend over `transition` [s].
+
+        origin [s]: the time of the law's own t = 0. The settings fit its `needs` and those of the `last` law.
+        """
         accuracy = self._setup.accuracy_for(needs.in_blend(last))
         self.refine(accuracy, needs.shape)
         self.follower.adopt(law, origin=origin, time=self.time, transition=transition)
         self.follow(accuracy)
 
     def add_sample(self, sample: CurvatureSample, needs: MotionNeeds):
-        """One sample of a controller more; the settings are for the `needs`. `ValueError` for a sample that comes too
-        late, or twice."""
+        """Add a controller's sample. The settings fit the `needs`.
+
+        `ValueError` for a sample that comes too late, or twice.
+        """
         accuracy = self._setup.accuracy_for(needs)
         if accuracy != self.accuracy:
             self.refine(accuracy, ShapeNeeds(needs.shape.waves, self.settings.knots))
@@ -60,18 +64,20 @@ class LawDrivenMarch:
         self.follower.add(sample)
 
     def follow(self, accuracy: Accuracy | None = None, smoothly: bool = False):
-        """Go on under the follower's present law, with another `accuracy` if one is given; the next step begins anew,
-        unless the motion goes on `smoothly`."""
+        """Continue under the follower's present law, with another `accuracy` if one is given.
+
+        The next step begins anew, unless the motion continues `smoothly`.
+        """
         self._go_on(self.discretisation, self.accuracy if accuracy is None else accuracy, smoothly)
 
     def refine(self, accuracy: Accuracy, needs: ShapeNeeds):
-        """Have a grid that is fine enough for the `needs` at an `accuracy`; the head's motion goes on as it is."""
+        """Make the grid fine enough for the `needs` at an `accuracy`. The head's motion does not change."""
         settings = self.settings.at_least(GridSettings.of(accuracy, *needs))
         if settings is not self.settings:
             self._change_grid(settings, accuracy)
 
     def fit(self, needs: ShapeNeeds):
-        """Have a grid that is fine enough for the `needs`, and, once no finer motion is left, not much finer."""
+        """Make the grid fine enough for the `needs` and, once no finer motion is left, not much finer."""
         wanted = GridSettings.of(self.accuracy, *needs)
         if self.settings.resolution > MUCH_FINER * wanted.resolution and not self.follower.blending:
             self._change_grid(wanted, self.accuracy)
@@ -162,7 +168,7 @@ class LawDrivenMarch:
     # -- observe
 
     def observe(self, out: Observations, wrench: bool, load: bool):
-        """Write what the present instant shows into `out`."""
+        """Write the observations of the present instant into `out`."""
         if not self._march.observe(out.whole, wrench, load):
             raise self._stopped(SINGULAR)
 
@@ -184,7 +190,7 @@ class LawDrivenMarch:
 
     @property
     def _energy_floor(self) -> float:
-        """As `first_bad_sample` has it; infinite where steps are chosen by their error, which is a check by itself."""
+        """The floor [J] for `first_bad_sample`; infinite where the steps follow from their error, a check by itself."""
         checked = self._setup.scene.ledger and self.accuracy.method == "classical"
         return self._bounds.momentum_floor**2 / self.discretisation.mass if checked else np.inf
 
@@ -219,8 +225,10 @@ class LawDrivenMarch:
 def march_from_start(
     setup: SimulationSetup, needs: MotionNeeds, law: Law | None, origin: float = 0.0, grid: GridSettings | None = None
 ) -> LawDrivenMarch:
-    """A march from the initial state under `law` with the settings that its `needs` ask for, on the `grid` or a finer
-    one. `ValueError` where the law cannot be begun."""
+    """A march from the initial state under `law`, with the settings for its `needs`, on the `grid` or a finer one.
+
+    origin [s]: the time of the law's own t = 0. `ValueError` where the law cannot be begun.
+    """
     accuracy = setup.accuracy_for(needs)
     wanted = GridSettings.of(accuracy, *needs.shape)
     settings = wanted if grid is None else grid.at_least(wanted)

@@ -1,4 +1,4 @@
-"""What samples show: arrays for poses, velocities, energies, and the profiles along the body at the stations."""
+"""Arrays of a run's samples: poses, velocities, energies, and profiles along the body at the stations."""
 
 from functools import lru_cache
 from typing import NamedTuple
@@ -35,15 +35,17 @@ class Observations(NamedTuple):
 def empty_observations(
     samples: int, stations: int, wrench: bool = True, load: bool = True, swimmers: tuple[int, ...] = ()
 ) -> Observations:
-    """Space for `samples` instants at `stations` stations; the profiles that are not asked for have no instants.
-    swimmers: (B,) for so many of them, a first axis."""
+    """Space for `samples` instants at `stations` stations.
+
+    The profiles that are not asked for have no instants. swimmers: (B,) adds a first axis for B swimmers.
+    """
     places = _places(samples, stations, bool(wrench), bool(load))
     whole = np.zeros((*swimmers, places[-1][1]))
     return Observations(*(whole[..., begin:end].reshape(*swimmers, *shape) for begin, end, shape in places), whole)
 
 
 def size_of(samples: int, stations: int, wrench: bool, load: bool) -> int:
-    """Numbers in the profiles of so many samples and stations."""
+    """How many numbers the profiles of so many samples and stations hold."""
     return _places(samples, stations, bool(wrench), bool(load))[-1][1]
 
 

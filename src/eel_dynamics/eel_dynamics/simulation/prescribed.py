@@ -20,8 +20,10 @@ FINE = Accuracy(name="prescribed", resolution=100.0)
 
 @dataclass(frozen=True)
 class HydrodynamicWrench:
-    """Wrenches (torque, force) (6,) [N m, N] of the water on the body, about the head, in its axes. `numpy.asarray`
-    gives the sum of the parts."""
+    """Wrenches (torque, force) (6,) [N m, N] of the water on the body, about the head, in the head's axes.
+
+    `numpy.asarray` gives the sum of the parts.
+    """
 
     inertia: np.ndarray  # (6,) - d/dt of the water's momentum along the body
     wake: np.ndarray  # (6,) momentum and pressure through the plane of the tail
@@ -50,11 +52,11 @@ class HydrodynamicWrench:
 def hydrodynamic_wrench(
     body: Body, law: Law, time: float, twist, twist_rate, scene: Scene | None = None
 ) -> HydrodynamicWrench:
-    """The water's wrench on `body` bent by `law` at `time` [s], its head moving with `twist` (6,) = (Omega, V) [rad/s,
-    m/s] and `twist_rate` (6,) = (Omegadot, Vdot), the rates of these components in the head's axes.
+    """The water's wrench on `body`, bent by `law` at `time` [s] (eq. 61 with the resistive and nose loads).
 
-    A current of the scene is taken along the head's axes (head and world coincide). `ValueError` names what does not
-    fit.
+    The head moves with `twist` (6,) = (Omega, V) [rad/s, m/s] and `twist_rate` (6,) = (Omegadot, Vdot) [rad/s^2,
+    m/s^2], the rates of these components in the head's axes. Head and world coincide, so a current of the scene is
+    along the head's axes. `ValueError` names what does not fit.
     """
     twist, twist_rate = checked_row("twist", twist, 6), checked_row("twist_rate", twist_rate, 6)
     if not is_finite(time):

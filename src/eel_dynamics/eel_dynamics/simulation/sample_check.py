@@ -1,9 +1,9 @@
-"""Checks the samples of a run before they are returned: all are finite, and the energy ledger closes.
+"""Checks of a run's samples before they are returned: all are finite, and the energy ledger closes.
 
-A step of fixed length that is too long does not fail by itself: the motion grows, and every number looks like one. The
-ledger (eq. 60 times the head's twist) knows: what the kinetic energy gained beyond the powers' integral came from
-nowhere. Where that is more than a share of all energy that was there or passed, the motion is not the model's. A motion
-too small for the body's scale to ask steps for (`floor`) is let go: its error counts by the length of the body.
+A fixed step that is too long does not fail by itself: the motion grows, but every number stays finite. The ledger (eq.
+60 times the head's twist) shows the error: the kinetic energy gains more than the integral of the powers. Where this
+excess is more than a share of all energy that was there or passed, the motion is not that of the model. A motion below
+`floor`, too small on the body's scale to need steps of its own, passes: its error is relative to the body's length.
 """
 
 import math
@@ -14,9 +14,11 @@ OPEN = 0.2  # share of the energy; at twice the longest useful step of the robot
 
 
 def first_bad_sample(out, works: np.ndarray, done: int, start: float, floor: float) -> tuple[int, str, float] | None:
-    """The first of the `done` samples of `out` (`Observations`) and `works` (T, 4) [J] that cannot be handed out: its
-    index, the quantity and its value. start: kinetic energy at the start [J]; floor: energy that counts as none [J],
-    infinite: the ledger is not looked at. None: all are good."""
+    """The first bad sample of the first `done` ones: its index, the quantity and its value. None where all are good.
+
+    out: `Observations`. works (T, 4) [J]. start [J]: the kinetic energy at the start. floor [J]: energy that counts as
+    none; where it is infinite, the ledger is not checked.
+    """
     with np.errstate(over="ignore", invalid="ignore"):
         failures = []
         if not math.isfinite(np.add.reduce(out.whole) + np.add.reduce(works, axis=None)):

@@ -1,4 +1,4 @@
-"""A swimmer in water, marched in time and observed: the algorithm of section 7.1 of Boyer, Porez and Leroyer (2010)."""
+"""The march in time of a swimmer in water: the algorithm of section 7.1 of Boyer, Porez and Leroyer (2010)."""
 
 import math
 import time as clock
@@ -28,12 +28,21 @@ from eel_dynamics.simulation.stopping import SimulationStopped
 class Simulation:
     """One swimmer, from its initial state on. Adopt a law (or add samples), advance, observe.
 
-    body, scene: what swims in what. accuracy: preset, target relative error, or `Accuracy`. stations: how many, or
-    their X (M,) [m]. position [m], orientation (x y z w, world from head), twist ((Omega, V) [rad/s, m/s], head's
-    axes): the initial state, in the library's axes. default_transition [s]: of blends where a law gives none. law: the
-    first to adopt. horizon [s]: how long a swim a target of accuracy is for, by default however long.
-    most_evaluations: of the head's dynamics by simulated second; what takes more is refused, or stopped.
     `ValueError` names the argument that does not fit.
+
+    Args:
+        body: the swimmer; by default that of the paper.
+        scene: the physics and the water.
+        accuracy: a preset, a target relative error, a budget of time, or `Accuracy`.
+        stations: how many, or their X (M,) [m].
+        position: (3,) [m], of the head at the start, in the world frame.
+        orientation: (4,) x y z w, world from head, at the start.
+        twist: (6,) (Omega, V) [rad/s, m/s], of the head at the start, in its axes. The axes are the library's.
+        default_transition: [s], duration of a blend where a law gives none.
+        law: the first law to adopt.
+        horizon: [s], duration of the swim for which a target of accuracy holds; by default any.
+        most_evaluations: of the head's dynamics per simulated second. A law that needs more is refused, or the run
+            stops.
     """
 
     def __init__(
@@ -101,7 +110,7 @@ class Simulation:
 
     @property
     def tabulated_law(self) -> eel_core.Law:
-        """What drives the body, on the grid."""
+        """The law or the samples that drive the body, on the grid."""
         return self._march.tabulated_law
 
     @property
@@ -111,19 +120,19 @@ class Simulation:
 
     @property
     def sampled(self) -> bool:
-        """A controller's samples drive the shape at present."""
+        """Whether a controller's samples drive the shape at present."""
         return self._march.follower.sampled
 
     @property
     def resting(self) -> bool:
-        """A controller's samples have run out: the shape comes to rest."""
+        """Whether a controller's samples have run out, so that the shape comes to rest."""
         return self._march.follower.resting
 
     def adopt(self, law: Law, origin: float = 0.0, transition: float | None = None):
-        """Follow `law` from the present time on; `origin` [s] is the simulation time of its own t = 0.
+        """Follow `law` from the present time on. `origin` [s] is the simulation time of its own t = 0.
 
-        The first law, before the start, needs no blend; a later one takes over during `transition` [s], or the law's
-        own, or the default. `ValueError` for a law that the scene does not allow.
+        The first law, before the start, needs no blend. A later law takes over during `transition` [s], or during its
+        own transition, or during the default one. `ValueError` for a law that the scene does not allow.
         """
         needs = self._setup.motion_needs(law, self._needs.plane)
         if not is_finite(origin):
@@ -136,11 +145,12 @@ class Simulation:
         self._needs, self.ready = needs, True
 
     def add_samples(self, time, x, pitch, pitch_rate, pitch_accel, yaw, yaw_rate, yaw_accel):
-        """One instant of a controller: curvature [rad/m], its rate and acceleration at the points `x` [m], `time` [s]
-        ahead.
+        """Add a controller's curvature at the instant `time` [s], which lies ahead.
 
-        Natural cubic splines in X; between instants the quintic that meets value, rate and acceleration at both. It
-        takes over as soon as two instants bracket the present. `ValueError` names what does not fit.
+        The rows hold the curvature [rad/m], its rate [rad/m/s] and its acceleration [rad/m/s^2] at the points `x` (n,)
+        [m]. They are interpolated by natural cubic splines in X, and between two instants by the quintic that meets
+        value, rate and acceleration at both. The samples take over as soon as two instants bracket the present.
+        `ValueError` names what does not fit.
         """
         check_points(len(x))
         self._march.follower.samples.check_space(len(x))
@@ -154,11 +164,11 @@ class Simulation:
     # -- march
 
     def advance(self, time: float, interrupted: Callable[[], bool] | None = None) -> bool:
-        """March to `time` [s]; whether it was reached. Raises `SimulationStopped` where it cannot; the state stays the
-        last good one.
+        """March to `time` [s]. Returns whether it was reached.
 
-        interrupted(): asked every few milliseconds. Once it is true the march ends where it has come to, and another
-        `advance` goes on as if nothing had been.
+        Raises `SimulationStopped` where the march cannot continue; the state is then the last good one. interrupted()
+        is called every few milliseconds. Once it returns true the march ends where it is. Another `advance` continues
+        as if there had been no interruption.
         """
         if not self.ready:
             raise RuntimeError("no law has been adopted")
@@ -168,7 +178,7 @@ class Simulation:
         return self._march.advance(float(time), interrupted)
 
     def reset(self):
-        """State and time to the start; the last law kept, with its own t = 0 at 0."""
+        """Reset state and time to the start. The last law stays, with its own t = 0 at 0."""
         law, setup = self.law, self._setup
         self._needs = setup.motion_needs(law, self._needs.plane)
         grid = GridSettings.of(self.accuracy, *self._needs.shape)  # it may be finer than needed, for samples
@@ -178,8 +188,10 @@ class Simulation:
     # -- observe
 
     def observe(self, wrench: bool = True, load: bool = True) -> Snapshot:
-        """What the present instant shows; `wrench` and `load` ask for the internal wrench and the water's load along
-        the body."""
+        """The snapshot of the present instant.
+
+        wrench, load: whether it holds the internal wrench, and the water's load along the body.
+        """
         wrench, load = bool(wrench and self.scene.internal_wrench), bool(load)
         out = empty_observations(1, len(self.x), wrench, load)
         self._march.observe(out, wrench, load)
@@ -188,9 +200,12 @@ class Simulation:
     def record(
         self, times: np.ndarray, wrench: bool, load: bool, look: Callable[[float], None] | None = None
     ) -> tuple[Observations, np.ndarray, int, SimulationStopped | None]:
-        """March through `times` (T,) [s] under the law in force, observing each: the observations, the works (T, 4) [J]
-        of actuators, wake, nose and drag, how many instants are good, and what stopped it, if anything did; look(time
-        [s]) is called every few milliseconds. Behind a bad instant it must be reset."""
+        """March through `times` (T,) [s] under the law in force, and observe each.
+
+        Returns the observations, the works (T, 4) [J] of actuators, wake, nose and drag, the number of good instants,
+        and what stopped the march, or None. look(time [s]) is called every few milliseconds. After a bad instant the
+        simulation must be reset.
+        """
         out, works = empty_observations(len(times), len(self.x), wrench, load), np.zeros((len(times), 4))
         return out, works, *self.record_into(np.array(times, dtype=float), out, works, wrench, load, look)
 
@@ -213,7 +228,7 @@ class Simulation:
 
     @property
     def evaluations(self) -> tuple[int, int, int]:
-        """Steps, rejected steps and evaluations of the head's dynamics so far."""
+        """Numbers of steps, rejected steps and evaluations of the head's dynamics so far."""
         return self._march.counts
 
     @property
@@ -224,8 +239,11 @@ class Simulation:
 
 @cache
 def swim_time(scene: Scene, target: float) -> float:
-    """Wall time [s] by simulated second of the falling gait (straight in the plane) at a `target` in `scene`, the least
-    of some swims of two seconds with samples every 0.05 s."""
+    """Wall time [s] per simulated second of the falling gait at a `target` in `scene`.
+
+    In a planar scene the gait is straight. The time is the least of some swims of two seconds with samples every
+    0.05 s.
+    """
     law = straight() if scene.planar else falling()
     settings = Accuracy.of(target).in_scene(scene).as_it_is()
     duration, best = 2.0, math.inf

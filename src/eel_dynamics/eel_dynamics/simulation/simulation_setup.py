@@ -1,4 +1,4 @@
-"""The set-up of a simulation: its arguments, checked, and what they mean for accuracy and grid."""
+"""The set-up of a simulation: its checked arguments, and the accuracy and grid that follow from them."""
 
 import math
 from collections.abc import Callable
@@ -32,32 +32,32 @@ from eel_dynamics.simulation.step_bounds import check_cost
 
 
 class ShapeNeeds(NamedTuple):
-    """What a curvature along the body needs of a grid: waves on the body, and the knots [m] of splines."""
+    """The properties of a curvature that its grid must fit: waves on the body, and knots [m] of splines."""
 
     waves: float = 1.0
     knots: tuple[float, ...] = ()
 
 
 class MotionNeeds(NamedTuple):
-    """What a swim needs of the accuracy's settings."""
+    """The properties of a swim that the settings of the accuracy must fit."""
 
     plane: bool  # the motion stays in a plane
     shape: ShapeNeeds
     difficulty: Difficulty
 
     def in_blend(self, last: "MotionNeeds") -> "MotionNeeds":
-        """These, while the `last` law's motion dies out; the law after this one need not care for the last."""
+        """These needs while the motion of the `last` law dies out. The law after this one no longer depends on it."""
         shape = self.shape._replace(waves=max(last.shape.waves, self.shape.waves))
         return MotionNeeds(self.plane, shape, last.difficulty.at_least(self.difficulty))
 
     def with_samples(self) -> "MotionNeeds":
-        """These, where a controller may lead the body anywhere."""
+        """These needs where a controller drives the body, which may lead it anywhere."""
         return MotionNeeds(False, self.shape, self.difficulty.at_least(NOMINAL))
 
 
 @dataclass(frozen=True)
 class SimulationSetup:
-    """What does not change during a simulation, nor by a reset. `of` checks arguments."""
+    """The part of a simulation that neither a march nor a reset changes. `of` checks the arguments."""
 
     body: Body
     scene: Scene
@@ -84,8 +84,10 @@ class SimulationSetup:
         most_evaluations: float,
         swim_time: Callable[[Scene, float], float],
     ) -> "SimulationSetup":
-        """From the arguments of `Simulation`; initial_state: (position, orientation, twist). `ValueError` names the one
-        that does not fit."""
+        """The set-up from the arguments of `Simulation`. `ValueError` names the one that does not fit.
+
+        initial_state: (position, orientation, twist).
+        """
         body = Body.boyer2010() if body is None else checked_instance("body", body, Body)
         scene = Scene() if scene is None else checked_instance("scene", scene, Scene)
         accuracy, x = Accuracy.of(accuracy), checked_stations(stations, body.length)
@@ -110,27 +112,29 @@ class SimulationSetup:
 
     @cached_property
     def current(self) -> np.ndarray:
-        """(3,) m/s, of the water, world."""
+        """Velocity (3,) [m/s] of the water, in the world frame."""
         return np.array(self.scene.current)
 
     @cached_property
     def initial_twist(self) -> np.ndarray:
-        """(6,) rad/s, m/s, of the head relative to the water, head's axes."""
+        """Initial twist (6,) [rad/s, m/s] of the head relative to the water, in the head's axes."""
         return self.initial_state.in_water(self.current)
 
     @cached_property
     def time_scale(self) -> float:
-        """s, of the initial velocity."""
+        """Time scale [s] of the initial velocity."""
         return time_scale(self.initial_twist, self.body.length)
 
     @cached_property
     def starts_fast(self) -> bool:
-        """The initial velocity is large compared with the swimming speed."""
+        """Whether the initial velocity is large against the swimming speed."""
         return starts_fast(self.law, self.time_scale)
 
     def shape_needs(self, law: Law | None) -> ShapeNeeds:
-        """What `law` needs of a grid. `ValueError` for one that the scene or the limit of evaluations does not
-        allow."""
+        """The needs of `law` for a grid.
+
+        `ValueError` for a law that the scene or the limit of evaluations does not allow.
+        """
         if law is None:
             return ShapeNeeds()
         checked_instance("law", law, Law)
@@ -140,13 +144,13 @@ class SimulationSetup:
         return ShapeNeeds(check_law(law, self.body.length), knots_of_law(law))
 
     def first_needs(self) -> MotionNeeds:
-        """What a swim by the first law, from the initial state on, needs."""
+        """The needs of a swim by the first law from the initial state."""
         shape = self.shape_needs(self.law)
         plane = stays_in_plane(self.law, self.initial_twist) and not self.starts_fast
         return MotionNeeds(plane, shape, self._difficulty(self.law))
 
     def motion_needs(self, law: Law | None, plane: bool) -> MotionNeeds:
-        """What a swim by `law` needs whose head moved in a `plane`, or not, before. `ValueError` as `shape_needs`."""
+        """The needs of a swim by `law`. plane: the head moved in a plane before. `ValueError` as in `shape_needs`."""
         shape = self.shape_needs(law)
         return MotionNeeds(plane and law is not None and law.in_plane, shape, self._difficulty(law))
 
@@ -158,15 +162,17 @@ class SimulationSetup:
         return float(blend)
 
     def _difficulty(self, law: Law | None) -> Difficulty:
-        """Of a swim by `law` until the horizon; at least nominal where the head moves from the start, or no law is
-        known."""
+        """The difficulty of a swim by `law` until the horizon.
+
+        It is at least nominal where the head moves from the start, and nominal where no law is known.
+        """
         if law is None:
             return NOMINAL
         difficulty = difficulty_of(law, self.body.length, self.horizon)
         return difficulty.at_least(NOMINAL) if self.initial_twist.any() else difficulty
 
     def accuracy_for(self, needs: MotionNeeds) -> Accuracy:
-        """The settings that deliver the accuracy in a swim of such `needs`."""
+        """The settings that deliver the accuracy in a swim of these `needs`."""
         if isinstance(self.accuracy, Budget):
             accuracy = within_budget(self.accuracy, self.scene, needs.plane, needs.difficulty, self.swim_time)
         else:
@@ -176,5 +182,5 @@ class SimulationSetup:
         return accuracy.for_waves(needs.shape.waves)
 
     def discretise(self, settings: GridSettings) -> Discretisation:
-        """Body, scene and stations on a grid of such `settings`."""
+        """Body, scene and stations on a grid of these `settings`."""
         return discretise(self.body, self.scene, settings, self.x.tobytes())

@@ -1,4 +1,4 @@
-"""What one instant of a simulation shows."""
+"""The quantities of one instant of a simulation."""
 
 from dataclasses import dataclass
 
@@ -10,7 +10,7 @@ from eel_dynamics.simulation.observations import Observations
 
 @dataclass(frozen=True)
 class Snapshot:
-    """One instant, library axes, SI units; M stations. Its arrays are views of work space: copy what is to be kept."""
+    """One instant, in library axes and SI units, at M stations. Its arrays are views: copy what is to be kept."""
 
     time: float
     position: np.ndarray  # (3,) m, head, world
@@ -39,8 +39,10 @@ class Snapshot:
     def of(
         out: Observations, time: float, x: np.ndarray, works: np.ndarray | None, kinetic_at_start: float
     ) -> "Snapshot":
-        """From `out`, observed once at `time` [s] at the stations x (M,) [m]. works (4,) [J]: of actuators, wake, nose
-        and drag since the start, None without a ledger; kinetic_at_start [J]."""
+        """A snapshot from `out`, observed once at `time` [s] at the stations x (M,) [m].
+
+        works (4,) [J]: of actuators, wake, nose and drag since the start; None without a ledger. kinetic_at_start [J].
+        """
         wrench, load, ledger = len(out.torque) > 0, len(out.fluid_force) > 0, works is not None
         return Snapshot(
             time=time,

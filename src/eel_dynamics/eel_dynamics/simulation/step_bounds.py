@@ -1,4 +1,4 @@
-"""Bounds of the steps in time: from the accuracy, the times of law and initial velocity, and the body."""
+"""Bounds of the steps in time. They follow from the accuracy, the law, the initial velocity and the body."""
 
 from eel_gaits.law import Law
 from eel_gaits.wording import shown
@@ -9,22 +9,33 @@ from eel_dynamics.curvature.law_follower import LawFollower
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.simulation.discretisation import Discretisation
 
-LONGEST_STEP = 0.1  # of the shortest time over which the shape changes: works are integrals of what goes on within it
-MOST_EVALUATIONS = 500_000.0  # by simulated second: seconds of wall time; the most exact runs need a tenth of it
-SPARE_STEPS = 200_000.0  # beyond these, at any time of a run, with up to
-SPARE_POINTS = 30.0  # points along the body; with more so many fewer, for a step costs as much more,
-LEAST_SPARE = 6_000.0  # but not less than these
-SLOWEST = 1e-3  # body lengths per time scale, below which the head counts as at rest
-PART_OF_SPEED = 0.5  # of the speed that the shape gives the body: momenta below need not be exact to the last digit
-PART_OF_SPAN = 0.25  # between two breakpoints of the shape, that a step may take
-PART_OF_RAMP = 0.125  # the same for the ledger: of what a sudden ramp puts in, most comes back, and little may be left
+# A step takes at most this part of the shortest time over which the shape changes. The works are integrals over it.
+LONGEST_STEP = 0.1
+# A run takes at most so many evaluations per simulated second. They take seconds of wall time. The most exact runs need
+# a tenth of them.
+MOST_EVALUATIONS = 500_000.0
+# A run may take so many steps beyond that limit, at any time, on a body of at most SPARE_POINTS points.
+SPARE_STEPS = 200_000.0
+# With more points than these along the body, the spare steps decrease as the cost of a step increases.
+SPARE_POINTS = 30.0
+# A run always has at least so many spare steps.
+LEAST_SPARE = 6_000.0
+# The head counts as at rest below this speed, in body lengths per time scale.
+SLOWEST = 1e-3
+# Momenta below this part of the speed that the law gives to the body need not be exact to the last digit.
+PART_OF_SPEED = 0.5
+# A step takes at most this part of the time between two breakpoints of the shape.
+PART_OF_SPAN = 0.25
+# This part holds instead where there is a ledger. Most of the energy that a sudden ramp puts in comes back, and little
+# may be left over.
+PART_OF_RAMP = 0.125
 
 
 EVALUATIONS = {"adams": 1, "dormand_prince": 6, "classical": 4}  # in a step: its last is the first of the next
 
 
 def check_cost(law: Law, most_evaluations: float):
-    """`ValueError` for a law of a period so short that `most_evaluations` by simulated second do not resolve it."""
+    """`ValueError` where the period of `law` is too short for `most_evaluations` per simulated second to resolve it."""
     shortest = min((term.period for term in law.terms if term.period), default=None)
     if shortest is None:
         return
@@ -46,8 +57,10 @@ def step_bounds_of(
     scale: float,
     most_evaluations: float,
 ) -> eel_core.StepBounds:
-    """The bounds for a body of `length` [m] on its `discretisation`, whose initial velocity has the time `scale` [s],
-    under the law of the `follower`; `most_evaluations` by simulated second."""
+    """The bounds of the steps for a body on its `discretisation` under the law of the `follower`.
+
+    length [m]: of the body. scale [s]: time scale of the initial velocity. most_evaluations: per simulated second.
+    """
     scale = min(follower.time_scale, scale)
     longest = LONGEST_STEP * min(scale, 10.0)
     fixed = accuracy.step or (accuracy.fixed and min(scale, 1.0) / accuracy.fixed)

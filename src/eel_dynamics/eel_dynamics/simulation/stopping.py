@@ -1,4 +1,4 @@
-"""Why a march could not go on, and what to change."""
+"""The reasons why a march could not continue, and what to change."""
 
 import numpy as np
 from eel_gaits.law import Law
@@ -9,7 +9,7 @@ from eel_dynamics.accuracy.accuracy import Accuracy
 
 
 class SimulationStopped(RuntimeError):
-    """The march could not go on. `time` [s], `quantity` and `value` that failed, `hint`: what to change."""
+    """The march could not continue. `quantity` failed with `value` at `time` [s]. `hint` says what to change."""
 
     def __init__(self, time: float, quantity: str, value: float, hint: str):
         super().__init__(f"stopped at t = {time:.6g} s: {quantity} ({value:.3g}); {hint}")
@@ -18,8 +18,10 @@ class SimulationStopped(RuntimeError):
 
 
 def stopped_by(status: int, time: float, bounds: eel_core.StepBounds, accuracy: Accuracy) -> SimulationStopped:
-    """What the `status` of a march at an `accuracy`, that stopped at `time` [s] with steps within `bounds`, says
-    in words."""
+    """The error for the `status` of a march that stopped at `time` [s].
+
+    bounds, accuracy: the bounds of its steps, and its settings.
+    """
     if eel_core.STATUSES[status] == "singular":
         quantity, value = "inertia of body and water is not positive definite", np.nan
         return SimulationStopped(time, quantity, value, "check the body's section data")
@@ -36,7 +38,7 @@ def stopped_by(status: int, time: float, bounds: eel_core.StepBounds, accuracy: 
 
 
 def remedy(accuracy: Accuracy) -> str:
-    """What to change where numbers have grown beyond reason."""
+    """What to change where the numbers of a run have diverged."""
     if accuracy.step is not None:
         return "take a smaller step, or an accuracy in its place"
     if accuracy.fixed is not None:
@@ -45,5 +47,5 @@ def remedy(accuracy: Accuracy) -> str:
 
 
 def not_begun(law: Law, stopped: SimulationStopped) -> ValueError:
-    """That a swim by `law` cannot begin, for what `stopped` it."""
+    """The error for a swim by `law` that cannot begin, with the quantity that `stopped` it."""
     return ValueError(f"law {shown(law.name)} cannot be begun: {stopped.quantity}")
