@@ -360,3 +360,24 @@ def test_a_request_knows_when_it_was_carried_out(wanted, done_at):
     run.run()
     assert stamps[-1] == 10**9 and run.time == 1.0
     assert requests[0].done.is_set() and requests[0].time == done_at
+
+
+def test_a_reset_that_the_law_refuses_leaves_the_run_as_it_is(monkeypatch):
+    """No law is known that can be blended into and cannot begin; the march refuses here in its place."""
+    stamps, log = [], Log()
+
+    def refuse(*_, **__):
+        raise ValueError("law 'x' cannot be begun: kinetic energy")
+
+    def publish(snapshot, nanoseconds):
+        stamps.append(nanoseconds)
+        if nanoseconds == 250_000_000:
+            monkeypatch.setattr("eel_dynamics.simulation.simulation.march_from_start", refuse)
+            run.reset()
+
+    publishers = SimpleNamespace(wanted_parts=dict, publish=publish, tick=lambda nanoseconds: None)
+    simulation = Simulation(law=falling(), accuracy=1e-2)
+    run = RunLoop(simulation, DynamicsParameters(real_time_factor=0.0, duration=1.0), publishers, Report(log))
+    run.run()
+    assert stamps == sorted(set(stamps)) and stamps[-1] == 10**9 and not run.given_up
+    assert ("error", "reset refused: law 'x' cannot be begun: kinetic energy") in log.lines

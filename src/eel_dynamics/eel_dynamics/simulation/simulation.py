@@ -178,11 +178,14 @@ class Simulation:
         return self._march.advance(float(time), interrupted)
 
     def reset(self):
-        """Reset state and time to the start. The last law stays, with its own t = 0 at 0."""
+        """Reset state and time to the start. The last law stays, with its own t = 0 at 0.
+
+        `ValueError` for a law that cannot begin from the initial state; the simulation then stays as it is.
+        """
         law, setup = self.law, self._setup
-        self._needs = setup.motion_needs(law, self._needs.plane)
-        grid = GridSettings.of(self.accuracy, *self._needs.shape)  # it may be finer than needed, for samples
-        self._march = march_from_start(setup, self._needs, law, grid=grid)
+        needs = setup.motion_needs(law, self._needs.plane)
+        grid = GridSettings.of(self.accuracy, *needs.shape)  # it may be finer than needed, for samples
+        self._march, self._needs = march_from_start(setup, needs, law, grid=grid), needs
         self.ready, self._started = law is not None, False
 
     # -- observe

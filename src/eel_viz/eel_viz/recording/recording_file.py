@@ -96,7 +96,7 @@ class FileDestination(Destination):
         if not self._keeps_partial:
             draft.discard()
             self.discard()
-            raise NotWritten(f"recording {shown(str(draft.name))} cannot be written: {reason}")
+            raise NotWritten(_problem(draft.name, reason))
         self._incomplete = True
         size = cut_to_whole_messages(path) if path.exists() else 0
         self.log_warning(
@@ -142,12 +142,12 @@ class FileDestination(Destination):
         draft = self._drafts.pop(number)
         draft.discard()
         if not self._keeps_partial:
-            raise NotWritten(f"recording {shown(str(draft.name))} cannot be written: {reason}")
+            raise NotWritten(_problem(draft.name, reason))
         self._refuse(number, draft.name, reason)
 
     def _refuse(self, number: int, path: pathlib.Path, reason: str) -> None:
         """Raise, or warn that nothing is saved: once per recording, then every `REMINDER` seconds."""
-        problem = f"recording {shown(str(path))} cannot be written: {reason}"
+        problem = _problem(path, reason)
         if self._retry_from is None or number < self._retry_from:
             raise ValueError(problem)
         self._incomplete = True
@@ -155,6 +155,10 @@ class FileDestination(Destination):
         if number != last or time.monotonic() - when > REMINDER:
             self._reminded = number, time.monotonic()
             self.log_warning(f"{problem}: nothing of this run is saved; it is tried again while running")
+
+
+def _problem(path: pathlib.Path, reason: str) -> str:
+    return f"recording {shown(str(path))} cannot be written: {reason}"
 
 
 def new_file() -> pathlib.Path:

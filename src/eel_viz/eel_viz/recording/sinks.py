@@ -24,17 +24,19 @@ LIVE_TICK = 0.16  # s: short enough for smooth motion in a viewer
 ANSWER_LIMIT = 1.0  # s until a listening viewer must answer
 
 
-class ServerDestination(Destination):
+class LiveDestination(Destination):
+    """A viewer that shows the data as they come."""
+
+    def __init__(self, settings: Settings, log_info: LogFunction, log_warning: LogFunction) -> None:
+        rates = Rates(numbers=settings.rate, drawings=settings.rate, tick=LIVE_TICK)
+        super().__init__(settings, rates, log_info, log_warning, live=True)
+
+
+class ServerDestination(LiveDestination):
     """A gRPC server on a port of this machine, for viewers that come and go."""
 
     def __init__(self, settings: Settings, log_info: LogFunction, log_warning: LogFunction) -> None:
-        super().__init__(
-            settings,
-            Rates(numbers=settings.rate, drawings=settings.rate, tick=LIVE_TICK),
-            log_info,
-            log_warning,
-            live=True,
-        )
+        super().__init__(settings, log_info, log_warning)
         port, self._web_viewer = settings.port, None
         address = ipaddress.IPv4Address(settings.address)
         self._here = "127.0.0.1" if address.is_unspecified else settings.address
@@ -87,17 +89,11 @@ class ServerDestination(Destination):
         self.log_info(f"look at it in a browser: http://{self._name}:{port}/?url={self._shown_uri}")
 
 
-class ViewerDestination(Destination):
+class ViewerDestination(LiveDestination):
     """A viewer that another process has started; while it is absent or closed, nothing is sent."""
 
     def __init__(self, settings: Settings, log_info: LogFunction, log_warning: LogFunction) -> None:
-        super().__init__(
-            settings,
-            Rates(numbers=settings.rate, drawings=settings.rate, tick=LIVE_TICK),
-            log_info,
-            log_warning,
-            live=True,
-        )
+        super().__init__(settings, log_info, log_warning)
         address = urlsplit(settings.viewer)
         if address.hostname is None or address.port is None:
             raise ValueError(f"viewer must look like rerun+http://127.0.0.1:9876/proxy, got {shown(settings.viewer)}")
