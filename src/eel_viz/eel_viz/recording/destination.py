@@ -2,6 +2,7 @@
 
 import contextlib
 import pathlib
+import threading
 from collections.abc import Callable
 
 import rerun as rr
@@ -94,7 +95,15 @@ class Destination:
 
 
 def close_stream(stream: rr.RecordingStream) -> None:
-    """Flush the stream within `CLOSE_TIMEOUT` and close it, which completes a file."""
+    """Flush and close the stream, which completes a file; each within `CLOSE_TIMEOUT`.
+
+    Rerun may wait without end for the thread of a file that has ended with a write error. Such a stream is abandoned,
+    and Rerun's flush of all streams at the end of the process, which would wait for it too, is left out.
+    """
     with contextlib.suppress(RuntimeError):  # the viewer has gone; a file is complete all the same
         stream.flush(timeout_sec=CLOSE_TIMEOUT)
-    stream.disconnect()
+    closing = threading.Thread(target=stream.disconnect, name="close recording", daemon=True)
+    closing.start()
+    closing.join(CLOSE_TIMEOUT)
+    if closing.is_alive():
+        rr.unregister_shutdown()
