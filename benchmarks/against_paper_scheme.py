@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
-from eel_dynamics.studies.calibration.calibration import REFERENCE
+from eel_dynamics.studies.tradeoff.settings import REFERENCE
 from measuring import times_in_turn
 from peer_processes import environment, measured
 

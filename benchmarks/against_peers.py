@@ -49,7 +49,9 @@ class Ours:
 
     def run(self, duration: float):
         """The finest run."""
-        return simulate(self.law, duration, body=self.body, scene=self.scene, accuracy=1e-6, sample_period=0.01)
+        return simulate(
+            self.law, duration, body=self.body, scene=self.scene, accuracy=1e-6, sample_period=0.01, estimate=False
+        )
 
     def cheapest(self, error: float, duration: float) -> tuple[float, float]:
         """CPU seconds per simulated second of the cheapest target with no greater error; that error."""

@@ -47,11 +47,11 @@ def batch():
 
 def _one_by_one(laws):
     for law in laws:
-        simulate(law, DURATION, scene=LEAN, stations=2, **MOTION)
+        simulate(law, DURATION, scene=LEAN, stations=2, **MOTION, estimate=False)
 
 
 def _together(laws, threads: int):
-    if simulate_batch(laws, DURATION, scenes=LEAN, threads=threads, **MOTION).stopped.any():
+    if simulate_batch(laws, DURATION, scenes=LEAN, threads=threads, **MOTION, estimate=False).stopped.any():
         raise RuntimeError("a swimmer of the batch stopped")
 
 

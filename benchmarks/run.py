@@ -15,7 +15,7 @@ import numpy as np
 from against_paper_scheme import paper_scheme
 from against_peers import peers
 from batch import batch
-from eel_dynamics.studies.calibration.calibration import REFERENCE
+from eel_dynamics.studies.tradeoff.settings import REFERENCE
 from growth import growth
 from integrators import integrators
 from measuring import median_ratio, times_in_turn
@@ -56,11 +56,12 @@ def falling_gait():
     """10 s of the falling gait, laminar friction: times real time, and the error of the head's position by its path
     (against a finer run)."""
     lean = Scene(friction="laminar", ledger=False, internal_wrench=False)
-    finest = simulate(falling(), body=BODY, accuracy=REFERENCE, scene=lean)
+    finest = simulate(falling(), body=BODY, accuracy=REFERENCE, scene=lean, estimate=False)
     all_of_it = Scene(friction="laminar")
     for name, scene, period in (("motion alone", lean, 10.0), ("ledger, wrench, 201 samples", all_of_it, 0.05)):
         for accuracy in (1e-2, 1e-3, 1e-4, 1e-6):
             swim = partial(simulate, falling(), body=BODY, accuracy=accuracy, scene=scene, sample_period=period)
+            swim, estimated = partial(swim, estimate=False), swim
             run = swim()
             seconds = median_seconds(swim)
             error = np.linalg.norm(run.position[-1] - finest.position[-1]) / finest.path_length
@@ -68,6 +69,11 @@ def falling_gait():
                 f"{name}, target {accuracy:g}",
                 10.0 / seconds,
                 f"times real time, error {error:.1e}, {run.evaluations} evaluations",
+            )
+            yield (
+                f"with the error estimate, {name}, target {accuracy:g}",
+                median_seconds(estimated) / seconds,
+                "times as long as the bare run",
             )
 
 
@@ -93,7 +99,7 @@ def start():
     """A fresh process: import of the library, and the first step and sample."""
     code = (
         "import time; a = time.perf_counter(); from eel_dynamics import simulate; from eel_gaits import falling; "
-        "b = time.perf_counter(); simulate(falling(), 0.05); print(b - a, time.perf_counter() - b)"
+        "b = time.perf_counter(); simulate(falling(), 0.05, estimate=False); print(b - a, time.perf_counter() - b)"
     )
     runs = [
         tuple(map(float, subprocess.check_output([sys.executable, "-c", code], text=True).split())) for _ in range(5)

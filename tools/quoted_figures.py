@@ -12,7 +12,12 @@ from collections.abc import Callable
 from reports import ROOT, Report
 
 VALIDATION = ROOT / "docs" / "validation.md"
-WRITTEN_WHOLE = ("docs/validation.md", "docs/tradeoff.md", "docs/figures/README.md")  # by commands of their own
+WRITTEN_WHOLE = (
+    "docs/validation.md",
+    "docs/tradeoff.md",
+    "docs/accuracy.md",
+    "docs/figures/README.md",
+)  # by commands of their own
 MARKED = re.compile(r"<!-- ([a-z]+): written by `(.*?)`.*? -->\n(.*?)<!-- end of \1 -->", re.DOTALL)
 MEASURED = re.compile(  # what looks like a figure that somebody has measured
     r"\d (?:[un]s|evaluations|times (?:real time|more|cheaper|as fast))\b|\d\.\d+e-\d|[2-9]e-\d|factor of \d"
@@ -53,9 +58,15 @@ def speed() -> str:
     def span(ratios: list[float]) -> str:
         return f"{min(ratios):,.0f} to {max(ratios):,.0f} times as long"
 
+    cases = [
+        f"with the error estimate, {case}, target {target}" for case in ("motion alone", ALL) for target in TARGETS
+    ]
+    longer = [falling.value(case) for case in cases]
     lines += [
         "",
-        f"Errors are of the head's position at the end, by its path; friction is laminar ({link(falling)}).",
+        f"Errors are of the head's position at the end, by its path; friction is laminar ({link(falling)}). These are",
+        "bare runs (`estimate=False`). A run that measures its own error, as `simulate` does by default, takes",
+        f"{min(longer):.1f} to {max(longer):.1f} times as long ([docs/accuracy.md](docs/accuracy.md)).",
         f"One evaluation of the head's dynamics takes {evaluation.value('24 nodes'):.2g} us",
         f"at 24 nodes ({link(evaluation)}).",
         "At equal error the paper's own scheme takes, both compiled by numba,",

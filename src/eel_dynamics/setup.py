@@ -4,7 +4,6 @@ setup(
     name="eel_dynamics",
     version="0.1.0",
     packages=find_packages(),
-    package_data={"eel_dynamics.accuracy": ["accuracy_table.csv"]},
     data_files=[
         ("share/ament_index/resource_index/packages", ["resource/eel_dynamics"]),
         ("share/eel_dynamics", ["package.xml"]),

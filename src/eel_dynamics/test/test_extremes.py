@@ -203,7 +203,7 @@ def test_light_bodies_that_the_water_stops_in_the_plane_keep_the_target(length, 
 def test_a_body_that_is_rolled_up_keeps_the_target():
     """Three turns of the backbone are as three waves: the model has left its limits, the numbers have not."""
     law = straight(wavelength=50.0, amplitude_0=10.0, amplitude_1=5.0, amplitude_2=20.0)
-    run = simulate(law, 2.0, accuracy=1e-3, verify=False)
+    run = simulate(law, 2.0, accuracy=1e-3)
     assert run.error_estimate.position < 1e-3
     assert any("touches itself" in text for text in run.warnings)
 

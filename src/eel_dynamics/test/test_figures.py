@@ -227,11 +227,11 @@ def test_bad_input(tmp_path, capsys):
     occupied = tmp_path / "file"
     occupied.write_text("")
     assert command.main(["--out", str(occupied)]) == 2
-    for accuracy in ("splendid", "1e-10"):
+    for accuracy in ("splendid", "1e-12"):
         assert command.main(["--out", str(tmp_path / "new" / "folder"), "--accuracy", accuracy]) == 2
         assert not (tmp_path / "new").exists()
     said = capsys.readouterr().err.splitlines()
-    assert len(said) == 3 and "file" in said[0] and "splendid" in said[1] and "1e-10" in said[2]
+    assert len(said) == 3 and "file" in said[0] and "splendid" in said[1] and "1e-12" in said[2]
     with pytest.raises(SystemExit):
         command.main(["--format", "gif"])
 

@@ -31,7 +31,7 @@ def test_ten_seconds_are_1001_samples_on_every_topic(start, client, measured):
     assert len(heard.heard["body"]) == 1
     assert "WARN" not in node.output() and "ERROR" not in node.output()
 
-    simulation = Simulation(law=falling(), horizon=10.0)
+    simulation = Simulation(law=falling())
     for k in range(0, 1001, 50):
         simulation.advance(k / 100)
         snapshot = simulation.observe()

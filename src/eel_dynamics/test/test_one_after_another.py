@@ -90,7 +90,7 @@ def test_one_that_stops_leaves_nothing_behind():
 
 
 def test_a_whole_number_of_seconds_will_do():
-    swimmer = Simulation(law=straight(), horizon=1)
+    swimmer = Simulation(law=straight())
     swimmer.advance(1)
     assert swimmer.time == 1.0
     np.testing.assert_array_equal(swimmer.observe().position, simulate(straight(), 1, sample_period=1).position[-1])

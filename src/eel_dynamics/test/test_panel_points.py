@@ -20,12 +20,12 @@ def test_halves_go_up():
 
 @pytest.mark.parametrize("body", [Body.boyer2010(), Body.kern2006()], ids=["robot", "eel"])
 @pytest.mark.parametrize("wrench", [True, False])
-def test_the_last_eight_nodes_are_filled_and_finer_settings_have_eight_more(body, wrench):
+def test_the_last_eight_nodes_are_filled_and_further_points_have_eight_more(body, wrench):
     for resolution in np.geomspace(1.0, 150.0, 60):
         accuracy = Accuracy(name="test", resolution=float(resolution))
         nodes = [
             sum(panel.points for panel in panels_of(body, each.resolution, (), wrench))
-            for each in (accuracy, accuracy.finer())
+            for each in (accuracy, accuracy.with_other_points())
         ]
         assert nodes[0] % 8 == nodes[1] % 8 == 0 and nodes[1] >= nodes[0] + 8
 

@@ -115,7 +115,7 @@ def test_a_batch_takes_the_limit_as_a_single_run_does():
     refused = simulate_batch(laws, **times)
     assert "most_evaluations is 5e+05" in str(refused.error[0]) and refused.error[1] is None
     batch, run = (
-        simulate_batch(laws, **times, most_evaluations=1e8),
+        simulate_batch(laws, **times, most_evaluations=1e8, stations=51),
         simulate(laws[0], **times, most_evaluations=1e8),
     )
     assert not batch.stopped.any()

@@ -7,7 +7,7 @@ import pytest
 from eel_dynamics.runs.error_estimate import ErrorEstimate
 from eel_dynamics.studies.tradeoff import measuring, models, table
 from eel_dynamics.studies.tradeoff.command import main
-from eel_dynamics.studies.tradeoff.delivered import Trial, scatter_of
+from eel_dynamics.studies.tradeoff.delivered import Trial, delivered_table
 from eel_dynamics.studies.tradeoff.drawing import _apart
 from eel_dynamics.studies.tradeoff.settings import REFERENCE, settings
 
@@ -135,30 +135,21 @@ def test_bad_input_is_named(words, named, capsys):
     assert named in capsys.readouterr().err
 
 
-def test_calibrate_writes_the_table_of_the_presets(monkeypatch, capsys):
-    from eel_dynamics.accuracy import accuracy
-    from eel_dynamics.studies.calibration import calibration
+def test_the_counts_of_delivered_errors():
+    """Errors and estimates that are given here: one swim misses its target in silence, one is told, one is unknown."""
 
-    asked = []
-    monkeypatch.setattr(calibration, "calibrate", lambda path, say: asked.append(path))
-    assert main(["--calibrate"]) == 0
-    assert asked == [accuracy.TABLE_FILE] and str(accuracy.TABLE_FILE) in capsys.readouterr().out
+    def trial(error, estimate, told=False):
+        known = None if error is None else ErrorEstimate(error, None)
+        return Trial({"accuracy": 1e-3}, known, ErrorEstimate(estimate, None), told, 1.5)
+
+    trials = [trial(1e-5, 1e-4), trial(4e-3, 1e-3), trial(5e-3, 6e-3, told=True), trial(None, 1e-2, told=True)]
+    assert [each.missed for each in trials] == [False, True, False, False]
+    row = delivered_table(trials, markdown=True).splitlines()[2]
+    cells = [cell.strip() for cell in row.split("|")[1:-1]]
+    assert cells == ["position, motion alone", "4", "3", "2", "1", "1", "1", "1", "0.833", "4.00", "0", "1.50"]
 
 
-@pytest.mark.parametrize("next_luck", [1.0, -0.5])
-def test_scatter_is_about_the_mean_of_each_target(next_luck):
-    """Swims of known luck, in decades; one target is met by far more than another, which is no scatter."""
-    luck = np.array([-0.3, -0.1, 0.1, 0.3])
-    scene = SimpleNamespace(resistive=True, friction="laminar", internal_wrench=True)
-    trials = []
-    for name, decades in zip("abcd", luck, strict=True):
-        case = SimpleNamespace(name=name, scene=scene, plane=False)
-        for target, below in ((1e-3, 2.0 + decades), (1e-4, 1.0 + next_luck * decades)):
-            error = ErrorEstimate(target / 10.0**below, None)
-            trials.append(Trial(case, target, error, error, coarse=1.0))
-        trials.append(Trial(case, 1e-2, ErrorEstimate(1e-9, None), error, coarse=1e-3))  # waived: does not count
-    found = scatter_of(trials)
-    both = np.concatenate((luck, next_luck * luck))
-    assert found.decades == pytest.approx(np.sqrt(np.sum(both**2) / 6.0))
-    assert found.likeness == pytest.approx(np.sign(next_luck))
-    assert found.sides == pytest.approx(0.5 * np.log10(30.0) / found.decades)
+@pytest.mark.parametrize("words, named", [("--count 0", "--count"), ("--seed -1", "--seed")])
+def test_bad_numbers_of_random_swims_are_named(words, named, capsys):
+    assert main(["--delivered", *words.split()]) == 2
+    assert named in capsys.readouterr().err

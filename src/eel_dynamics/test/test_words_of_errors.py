@@ -80,7 +80,7 @@ def calls():
         yield f"batch {name}", lambda bad, name=name: simulate_batch([straight()], **{"duration": 0.1, name: bad})
     yield "batch laws", lambda bad: simulate_batch(bad, 0.1)
     yield "batch threads", lambda bad: simulate_batch([straight()] * 3, 0.1, threads=bad)
-    for name in ("default_transition", "horizon", "stations", "position", "twist", "accuracy"):
+    for name in ("default_transition", "stations", "position", "twist", "accuracy"):
         yield f"Simulation {name}", lambda bad, name=name: simulation(**{name: bad})
     yield "Simulation advance", lambda bad: simulation().advance(bad)
     yield "Simulation adopt origin", lambda bad: simulation().adopt(falling(), origin=bad)

@@ -39,7 +39,8 @@ def differences(
     """What is not the same in both, in words; the recordings' own properties apart, and `texts` only on demand.
 
     `until`: what comes after it [ns] is not looked at. `tolerance`: of numbers, relative to the greatest of their kind;
-    with it one in a hundred of the colours, which are rounded to integers, may be the next one.
+    with it three in a hundred of the colours, which are rounded to integers, may be the next one: nose and tail carry
+    no torque, and its colour lies on an edge of the rounding.
     """
     first, second = contents(one, until), contents(other, until)
     said = [f"{key} is in one alone" for key in sorted(first.keys() ^ second.keys())]
@@ -61,7 +62,7 @@ def near(values: pa.Array, other: pa.Array, tolerance: float) -> bool:
     if one is None or one.shape != two.shape or one.dtype.kind not in "iuf":
         return False
     if one.dtype.kind != "f":
-        return bool(np.mean(one != two) < 0.01)
+        return bool(np.mean(one != two) < 0.03)
     return bool(np.all(np.abs(one - two) <= tolerance * np.abs(one).max(initial=0.0)))
 
 

@@ -1,74 +1,54 @@
 """The accuracy of a run: one word or one number gives the nodes along the body, the method and the steps in time.
 
-A target is a relative error. The error of the head's position at the end is relative to the length of its path, or to
-the length of the body if that is longer. The error of the torque field is relative to its own maximum.
+A target is a relative error. The error of the head's position is relative to the length of its path, or to the length
+of the body if that is longer. The error of the torque field is relative to its own maximum.
 
-The settings that deliver a target were measured. They stand in `accuracy_table.csv`, which `calibration.calibrate`
-writes. The table has separate rows for:
+One rule leads from a target to settings, and `simulate` measures the error that they deliver (`error_estimate.py`):
 
-- scenes with and without drag (free motion in space is sensitive: errors grow);
-- friction laws with and without a turbulent part (the printed law jumps);
-- runs with the internal wrench or the ledger, and runs without;
-- motions that stay in a plane (they are smoother and need fewer steps), and others.
-
-The table holds for a swim of nominal difficulty (`difficulty.py`). A harder swim takes the settings of a finer target.
-An easier swim takes those of a coarser target.
+- The tolerance per step is the target divided by `STEPS_ERRORS`. A swim takes hundreds of steps, whose errors add up.
+- The points per body length grow by `POINTS_PER_DECADE` for each decade of the target. Gauss points in panels without
+  kinks converge exponentially, so a further decade costs a fixed number of points.
+- Runs with the internal wrench or the ledger march by the embedded pair: each step costs a quadrature of the works, so
+  few long steps are cheaper. Runs of the motion alone march by Adams' method: one evaluation in a step.
+- Fixed steps of the classical method, of order 4, grow in number with the fourth root of the target.
 """
 
-import csv
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cache, lru_cache
-from pathlib import Path
-from typing import NamedTuple
+from functools import lru_cache
 
 import numpy as np
 from eel_gaits.quantity import is_finite
 from eel_gaits.wording import shown
 
 from eel_dynamics.accuracy.budget import Budget
-from eel_dynamics.curvature.difficulty import NOMINAL, Difficulty
 from eel_dynamics.model.section_data import WATCHED
-
-
-class Key(NamedTuple):
-    """A case that has its own rows in the `table`."""
-
-    drag: bool
-    turbulent: bool  # friction
-    torque: bool  # the internal wrench or the ledger
-    plane: bool
-
 
 PRESETS = {"draft": 1e-2, "standard": 1e-4, "fine": 1e-6, "reference": 1e-8}
 COARSEST, FINEST = 0.1, 1e-10
-TABLE_FILE = Path(__file__).with_name("accuracy_table.csv")
-FIELDS = (*Key._fields, "target", "resolution", "kinks", "tolerance", "method", "order", "fixed")
-CHOSEN = "kinks", "tolerance", "method", "order"  # for steps that are not fixed
-TURBULENT = "printed", "blended"  # laws of friction
+STEPS_ERRORS = 1000.0  # errors of steps that add up in a swim
+POINTS_PER_DECADE = 8.0  # per body length: one block of nodes, which processors take at once
+LEAST_POINTS = 4.0  # per body length
+FIXED_STEPS = 12.0  # per period, of the classical method at a target of 1e-2
+BUDGET_TARGETS = tuple(10.0 ** (-0.5 * k) for k in range(2, 19))  # 0.1 to 1e-9, among which a budget of time chooses
 FIXED = "fixed steps"
 KINKS = tuple(WATCHED)
 ORDERS = {"adams": (1, 2, 3, 4, 5, 6), "dormand_prince": (5,), "classical": (4,)}
 FINEST_TOLERANCE = 1e-13  # below, round-off
-# The loosest tolerance of the embedded pair, and of the run that an error estimate compares with. With a looser one, a
-# gait's longest step limits the steps. The tolerance alone limits those of a light body that the water stops.
-LOOSEST_TOLERANCE = 1e-4
-LOOSEST = {"adams": 1e-2, "dormand_prince": LOOSEST_TOLERANCE}
-# For a target looser than a row's, the row's tolerance grows with this power of their ratio. Errors may grow faster.
-LOOSENED = 0.8
-# Below this target an easier swim takes no coarser settings. The errors are then those of the places of kinks and of
-# round-off, which gentle swims have too.
-LEAST_SCALED = 3e-8
-# Beyond the finest row, points and fixed steps grow with these powers of the ratio of the targets.
-MORE_POINTS, MORE_STEPS = 0.2, 0.25
-BEST = {"resolution": 200.0, "tolerance": 1e-11}  # of the preset reference, where its target cannot be promised
+LONGEST_STEP = 0.1  # of the shortest time over which the shape changes. The works are integrals over it
 ANY = {"resolution": 30.0}  # until the scene is known
 FURTHER_POINTS = 9.0  # more points per length, which make any grid finer: the last eight nodes are always filled
 WAVES_POWER = 0.85  # points grow with this power of the number of waves on the body
-BENT = 1.5  # waves on the body; every law of the table has fewer
-# Above BENT waves, the tolerance falls with this power of their number, but not below this factor.
-BENT_POWER, BENT_LEAST = 1.5, 0.01
 SPARED = 8.0  # points per length that grow with the waves too, of those that the panels have to spare
+# The companion of a run, with which it measures its error: some ten times the error, at about a third of the cost.
+# Half of the points tell the error of the grid even where it falls as slowly as with the first power of the points.
+# The longest step differs too, because it alone may limit the steps of both.
+LOOSER, FEWER_POINTS, LONGER_STEPS = 30.0, 0.5, 1.5
+# What a tightened run changes with the ratio r < 1 of the wanted error to the measured one: the tolerance with r^1.2,
+# the points with r^-0.2, the longest steps with r^0.2. Orders 5 to 6 lose r or more in each of them.
+TIGHTER, DENSER, SHORTER = 1.2, 0.2, 0.2
+LEAST_TIGHTENED = 0.01  # least ratio in one go: a saturated error says little of the settings
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -86,6 +66,7 @@ class Accuracy:
         fixed: where given, so many steps of the classical method per shortest period of the law (or per second).
         kinks: which kinks of the drag along the body are found and integrated exactly: "all", the "jumps" alone, or
             "none". V|V| has a kink where cross flow or roll change their sign; the printed friction law jumps.
+        longest_step: of adaptive steps, relative to the shortest time over which the shape changes; up to 1.
     """
 
     name: str
@@ -97,6 +78,7 @@ class Accuracy:
     target: float | None = None
     fixed: float | None = None
     kinks: str = "all"
+    longest_step: float = LONGEST_STEP
 
     def __post_init__(self):
         if self.step is not None or self.fixed is not None:
@@ -124,6 +106,8 @@ class Accuracy:
             raise ValueError(f"accuracy kinks must be one of {', '.join(KINKS)}, got {shown(self.kinks)}")
         if not (is_finite(self.tolerance) and self.tolerance > 0.0):
             raise ValueError(f"accuracy tolerance must be > 0, got {shown(self.tolerance)}")
+        if not (is_finite(self.longest_step) and 0.0 < self.longest_step <= 1.0):
+            raise ValueError(f"accuracy longest_step must be > 0 and at most 1, got {shown(self.longest_step)}")
         if self.step is not None and not (is_finite(self.step) and self.step > 0.0):
             raise ValueError(f"accuracy step must be > 0 s, got {shown(self.step)}")
         unknown = self.fixed == 0.0 and self.target is not None  # until the scene is known
@@ -136,55 +120,48 @@ class Accuracy:
         """Points per body length for `waves` waves on the body. One wave or less needs `resolution`."""
         return min(1000.0, (self.resolution + SPARED) * max(1.0, waves) ** WAVES_POWER - SPARED)
 
-    def in_scene(self, scene, plane: bool = False, difficulty: Difficulty = NOMINAL) -> "Accuracy":
-        """The settings that deliver the target in `scene`, in a swim of this `difficulty`.
-
-        plane: the motion stays in a plane. Settings that were given one by one stay the same. `ValueError` where the
-        table has no settings for the target.
-        """
+    def in_scene(self, scene) -> "Accuracy":
+        """The settings for the target in `scene`. Settings that were given one by one stay the same."""
         if self.target is None:
             return self
-        key = key_of(scene, plane)
-        target_scale = difficulty.target_scale(key.drag, key.torque, key.plane)
-        return _from_target(self.name, self.target, key, self.fixed is not None, target_scale)
-
-    def for_waves(self, waves: float) -> "Accuracy":
-        """The settings for the same target with `waves` waves on the body.
-
-        They differ where the waves are more than the laws of the table have. A rolled-up body carries its head about:
-        the error limits its steps, not the longest step.
-        """
-        if self.target is None or self.fixed is not None or waves <= BENT:
-            return self
-        return replace(self, tolerance=self.tolerance * max(BENT_LEAST, (BENT / waves) ** BENT_POWER))
-
-    def for_fast_start(self) -> "Accuracy":
-        """The settings for the same target with a large initial velocity.
-
-        The table was measured with gaits that start from rest. In a fast spin the errors of Adams' steps add up to ten
-        times more. Those of the embedded pair do not.
-        """
-        if self.target is None:
-            return self
-        exact = replace(self, kinks="all")
-        if self.method != "adams":
-            return exact
-        return replace(exact, method="dormand_prince", order=5, tolerance=min(self.tolerance, LOOSEST_TOLERANCE))
+        resolution = max(LEAST_POINTS, POINTS_PER_DECADE * math.log10(1.0 / self.target))
+        if self.fixed is not None:
+            return replace(self, resolution=resolution, fixed=FIXED_STEPS * (1e-2 / self.target) ** 0.25)
+        method = "dormand_prince" if scene.internal_wrench or scene.ledger else "adams"
+        tolerance = max(FINEST_TOLERANCE, self.target / STEPS_ERRORS)
+        return replace(self, resolution=resolution, tolerance=tolerance, method=method, order=5)
 
     def as_it_is(self) -> "Accuracy":
         """The same settings without a target. No scene and no motion changes them."""
         return replace(self, target=None)
 
-    def finer(self) -> "Accuracy":
-        """Settings that are at least some ten times as exact. An estimate of the error compares with them."""
-        resolution = min(1000.0, max(1.4 * self.resolution + 2.0, self.resolution + FURTHER_POINTS))
-        in_space = {"resolution": resolution, "kinks": "all", "target": None}
-        if self.step is not None:
-            return replace(self, **in_space, step=0.5 * self.step)
-        if self.fixed is not None:
-            return replace(self, **in_space, fixed=2.0 * self.fixed)
-        tolerance = max(self.tolerance / 30.0, min(self.tolerance, FINEST_TOLERANCE))
-        return replace(self, **in_space, tolerance=min(tolerance, LOOSEST_TOLERANCE))
+    def coarser(self) -> "Accuracy":
+        """Settings with some ten times the error, for the companion with which a run measures its own error."""
+        return self._changed(LOOSER, FEWER_POINTS, LONGER_STEPS)
+
+    def tightened(self, ratio: float) -> "Accuracy":
+        """Settings for an error of `ratio` (< 1) times the error with these. These settings suit their companion."""
+        ratio = max(ratio, LEAST_TIGHTENED)
+        looser, denser, longer = ratio**TIGHTER, ratio**-DENSER, ratio**SHORTER
+        changes = min(looser, 1.0 / LOOSER), max(denser, 1.0 / FEWER_POINTS), min(longer, 1.0 / LONGER_STEPS)
+        return replace(self._changed(*changes), kinks="all")
+
+    def with_other_points(self) -> "Accuracy":
+        """The same settings with so many more points that the grid is another one for certain."""
+        return replace(self, resolution=min(1000.0, max(1.4 * self.resolution + 2.0, self.resolution + FURTHER_POINTS)))
+
+    def _changed(self, looser: float, denser: float, longer: float) -> "Accuracy":
+        tolerance = max(self.tolerance * looser, min(self.tolerance, FINEST_TOLERANCE))
+        resolution, longest = self.resolution * denser, self.longest_step * longer
+        return replace(
+            self,
+            resolution=min(max(resolution, 1.0), 1000.0),
+            tolerance=min(tolerance, 1.0),
+            longest_step=min(longest, 1.0),
+            step=self.step and self.step * longer,
+            fixed=self.fixed and self.fixed / longer,
+            target=None,
+        )
 
     @staticmethod
     def of(value: "str | float | Accuracy") -> "Accuracy":
@@ -231,79 +208,10 @@ class Accuracy:
 _of_number = lru_cache(maxsize=64)(Accuracy._of)
 
 
-def within_budget(
-    budget: Budget, scene, plane: bool, difficulty: Difficulty, swim_time: Callable[[object, float], float]
-) -> Accuracy:
-    """The finest settings of the table that keep within the `budget` in `scene`. `ValueError` where none do.
+def within_budget(budget: Budget, scene, swim_time: Callable[[object, float], float]) -> Accuracy:
+    """The finest settings of the `BUDGET_TARGETS` that keep within the `budget` in `scene`. `ValueError` if none do.
 
-    plane: the motion stays in a plane. Their target is what they deliver in a swim of this `difficulty`.
     swim_time(scene, target): wall time [s] per simulated second.
     """
-    targets = [row["target"] for row in table()[key_of(scene)]]
-    best = budget.finest(targets, lambda target: swim_time(scene, target))
-    key = key_of(scene, plane)
-    target_scale = difficulty.target_scale(key.drag, key.torque, key.plane)
-    return replace(Accuracy.of(best).in_scene(scene, plane), name=budget.name, target=best / target_scale)
-
-
-def key_of(scene, plane: bool = False) -> Key:
-    """The key of the `table` for `scene`. plane: the motion stays in a plane."""
-    drag = bool(scene.resistive)
-    turbulent = drag and scene.friction in TURBULENT
-    return Key(drag, turbulent, bool(scene.internal_wrench or scene.ledger), bool(scene.planar or plane))
-
-
-@cache
-def table() -> dict[Key, tuple[dict, ...]]:
-    """The rows of the table for each key, from the coarsest target to the finest.
-
-    fixed: steps of the classical method per period; None where no number of them delivers the target.
-    """
-    with open(TABLE_FILE, newline="") as file:
-        rows = [
-            {"target": float(row["target"])}
-            | {name: row[name] == "1" for name in Key._fields}
-            | {"resolution": float(row["resolution"]), "tolerance": float(row["tolerance"])}
-            | {"method": row["method"], "order": int(row["order"]), "kinks": row["kinks"]}
-            | {"fixed": float(row["fixed"]) if row["fixed"] else None}
-            for row in csv.DictReader(file)
-        ]
-    found = {}
-    for row in sorted(rows, key=lambda row: -row["target"]):
-        found.setdefault(Key(*(row[name] for name in Key._fields)), []).append(row)
-    return {key: tuple(rows) for key, rows in found.items()}
-
-
-@cache
-def _from_target(name: str, target: float, key: Key, fixed: bool, target_scale: float) -> Accuracy:
-    rows = [row for row in table()[key] if not fixed or row["fixed"] is not None]
-    if rows[-1]["target"] > target * (1.0 + 1e-9):
-        if name == "reference":
-            return Accuracy(name=name, **BEST)
-        drag = ("with drag and turbulent friction" if key.turbulent else "with drag") if key.drag else "without drag"
-        finest = rows[-1]["target"]
-        raise ValueError(
-            f"accuracy {name} cannot be had {drag}: the finest that was measured to be delivered is {finest:g}"
-        )
-    target_scale = min(target_scale, 1.0) if target < LEAST_SCALED else target_scale
-    fitting = [row for row in rows if row["target"] <= target * target_scale * (1.0 + 1e-9)]
-    row = fitting[0] if fitting else rows[-1]
-    coarser = rows[max(0, len(rows) - len(fitting) - 1)]
-    return _scaled(row, coarser, target * target_scale / row["target"], fixed, name=name, target=target)
-
-
-def _scaled(row: dict, coarser: dict, by: float, fixed: bool, **named) -> Accuracy:
-    """The settings for `by` times the target of a `row` of the table.
-
-    Where `by` is more than 1, the tolerance is looser than the row's, but no looser than that of the `coarser` row.
-    Where `by` is less than 1, the row is the finest of the table, and the settings are finer than the row's.
-    """
-    resolution = min(1000.0, row["resolution"] * max(1.0, by**-MORE_POINTS))
-    if fixed:
-        return Accuracy(resolution=resolution, fixed=row["fixed"] * max(1.0, by**-MORE_STEPS), **named)
-    chosen = {each: row[each] for each in CHOSEN}
-    alike = all(row[each] == coarser[each] for each in ("method", "order")) and coarser is not row
-    loosest = coarser["tolerance"] if alike else LOOSEST[row["method"]]
-    tolerance = row["tolerance"] * (by**LOOSENED if by > 1.0 else by)
-    chosen["tolerance"] = max(min(tolerance, loosest), FINEST_TOLERANCE)
-    return Accuracy(resolution=resolution, **chosen, **named)
+    best = budget.finest(BUDGET_TARGETS, lambda target: swim_time(scene, target))
+    return replace(Accuracy.of(best).in_scene(scene), name=budget.name)

@@ -94,7 +94,14 @@ def _of_the_torque(a: Analysis) -> list[str]:
 
 
 def _of_the_cost(run) -> list[str]:
-    return [f"cost                {run.steps} steps, {run.evaluations} evaluations of the head's dynamics"]
+    lines = [f"cost                {run.steps} steps, {run.evaluations} evaluations of the head's dynamics"]
+    error = run.error_estimate
+    if error is not None:
+        torque = "" if error.torque is None else f", of the torque {error.torque:.1e}"
+        lines.append(
+            f"estimated error     of the position {error.position:.1e}{torque}; it took {error.evaluations} evaluations"
+        )
+    return lines
 
 
 def _of_the_limits(run) -> list[str]:

@@ -14,7 +14,7 @@ from eel_gaits.spline import natural_spline
 
 import eel_core
 from eel_dynamics.curvature.curvature_samples import CurvatureSample, SampleQueue
-from eel_dynamics.curvature.difficulty import speed_of
+from eel_dynamics.curvature.law_speed import speed_of
 from eel_dynamics.curvature.tabulated_law import TabulatedLaw, Tabulation
 
 

@@ -4,11 +4,8 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from eel_gaits.law import Law
 
 from eel_dynamics.model.axes import matrix_of
-
-FAST_START = 0.2  # periods of the law: a head that covers a body length, or turns by 1 rad, in less starts fast
 
 
 class InitialState(NamedTuple):
@@ -31,19 +28,3 @@ def time_scale(twist: np.ndarray, length: float) -> float:
     a, b, c, u, v, w = twist.tolist()
     speed, spin = math.hypot(u, v, w), math.hypot(a, b, c)
     return min(length / speed if speed else np.inf, 1.0 / spin if spin else np.inf)
-
-
-def starts_fast(law: Law | None, scale: float) -> bool:
-    """Whether an initial velocity of the time scale `scale` [s] is large against the swimming speed of `law`."""
-    periods = [term.period for term in law.terms if term.period] if isinstance(law, Law) else []
-    return scale < FAST_START * min(periods, default=1.0)
-
-
-def stays_in_plane(law: Law | None, relative: np.ndarray) -> bool:
-    """Whether a swim stays in the plane of the head's axes 1 and 2.
-
-    It does where the law bends only in yaw and the head's twist `relative` (6,) to the water lies in the plane.
-    """
-    if law is None or not law.in_plane:
-        return False
-    return not (relative[0] or relative[1] or relative[5])

@@ -1,6 +1,5 @@
 """Makes the simulation (in the library's frames) from the node's parameters (in REP-103 frames)."""
 
-import math
 from dataclasses import replace
 from pathlib import Path
 
@@ -24,7 +23,6 @@ def simulation_from_parameters(parameters: DynamicsParameters, scene: Scene) -> 
         twist=turn_vector([twist[:3], twist[3:]]).ravel(),
         default_transition=parameters.default_transition,
         most_evaluations=parameters.most_evaluations,
-        horizon=parameters.duration or math.inf,
     )
 
 

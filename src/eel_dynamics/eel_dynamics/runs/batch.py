@@ -23,10 +23,10 @@ from eel_dynamics.model.arguments import checked_stations
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.broadcast import swimmers_of
-from eel_dynamics.runs.run import Run, check_memory, checked_times, run_of
+from eel_dynamics.runs.error_estimate import ErrorEstimate, with_error_estimate
+from eel_dynamics.runs.run import Run, SwimRequest, check_memory, checked_times, run_of
 from eel_dynamics.simulation.energy import EnergyLedger
 from eel_dynamics.simulation.observations import Observations, empty_observations
-from eel_dynamics.simulation.simulation import Simulation
 from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.simulation.stopping import SimulationStopped
 
@@ -51,6 +51,8 @@ class Batch:
     error: tuple[SimulationStopped | None, ...]  # why each swimmer stopped: time, quantity, value, hint
     steps: np.ndarray  # (B,) int, accepted steps in time
     evaluations: np.ndarray  # (B,) int, of the head's dynamics, for the motion alone
+    nodes: np.ndarray  # (B,) int, along the body
+    error_estimates: tuple[ErrorEstimate | None, ...]  # None where none was wanted, or the swimmer stopped
     position: np.ndarray  # (B, T, 3) m, head, world
     orientation: np.ndarray  # (B, T, 4) x y z w, world from head
     twist: np.ndarray  # (B, T, 6) (Omega, V) rad/s, m/s, head's axes
@@ -80,8 +82,14 @@ class Batch:
         """(B,) bool: swimmers that stopped before the end."""
         return np.array([error is not None for error in self.error])
 
+    @property
+    def above_target(self) -> np.ndarray:
+        """(B,) bool: swimmers whose estimated error exceeds their target."""
+        pairs = zip(self.error_estimates, self.accuracies, strict=True)
+        return np.array([bool(error and error.missed(each.target, float(self.time[-1]))) for error, each in pairs])
+
     def __getitem__(self, index: int) -> Run:
-        """SwimmerArguments `index` as a `Run`, with the samples that it has."""
+        """Swimmer `index` as a `Run`, with the samples that it has."""
         index = range(len(self))[index]
         out, works, start = self._out
         scene, done = self.scenes[index], self.samples[index]
@@ -100,6 +108,8 @@ class Batch:
             load=self.fluid_force is not None,
             steps=int(self.steps[index]),
             evaluations=int(self.evaluations[index]),
+            nodes=int(self.nodes[index]),
+            error_estimate=self.error_estimates[index],
         )
 
 
@@ -116,6 +126,7 @@ def simulate_batch(
     orientations=(0.0, 0.0, 0.0, 1.0),
     twists=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
     load: bool = False,
+    estimate: bool = True,
     threads: int | None = None,
     progress: Callable[[int, int], None] | None = None,
     most_evaluations: float = MOST_EVALUATIONS,
@@ -125,16 +136,17 @@ def simulate_batch(
     laws, bodies, scenes, accuracy: one for all, or a sequence of B. positions (3,) [m], orientations (4,), twists (6,):
     one row for all, or (B, .). All sequences have the same length B; one of length 1 counts as one for all. stations:
     number per body, or their X [m], for the profiles along the body; None: no profiles, only motion and energies.
-    threads: None for one per available core. progress(done, B): called after each swimmer. most_evaluations: of each,
-    as in `simulate`.
+    estimate: measure each swimmer's error, as in `simulate`; `Batch.above_target` tells those that stay above their
+    target. threads: None for one per available core. progress(done, B): called after each swimmer. most_evaluations:
+    of each, as in `simulate`.
 
-    Each swimmer's result equals that of `simulate` with verify=False to the last bit. A swimmer that stops, or cannot
-    start, keeps its samples until then, with a `SimulationStopped` in `error`; the others are not affected.
+    Each swimmer's result equals that of `simulate` with the same stations to the last bit. A swimmer that stops, or
+    cannot start, keeps its samples until then, with a `SimulationStopped` in `error`; the others are not affected.
     `ValueError` names an argument that does not fit, with the number of the swimmer.
     """
     times = checked_times(duration, sample_period)
     accuracy = accuracy.tolist() if isinstance(accuracy, np.ndarray) else accuracy
-    swimmers = swimmers_of(laws, bodies, scenes, accuracy, positions, orientations, twists, duration, most_evaluations)
+    swimmers = swimmers_of(laws, bodies, scenes, accuracy, positions, orientations, twists, most_evaluations)
     along = [0.0] if stations is None else stations
     x_of = {length: checked_stations(along, length) for length in dict.fromkeys(each.body.length for each in swimmers)}
     x = [x_of[each.body.length] for each in swimmers]
@@ -142,34 +154,33 @@ def simulate_batch(
     count, load = len(x), bool(load) and stations is not None
     out = _space(count, len(times), len(x[0]), any(wrench), load)
     works, start = np.zeros((count, len(times), 4)), np.zeros(count)
-    samples, steps, evaluations = np.zeros((3, count), dtype=int)
-    settings, errors = [each.accuracy for each in swimmers], [None] * count
+    samples, *_ = counts = np.zeros((4, count), dtype=int)
+    settings, errors, estimates = [each.accuracy for each in swimmers], [None] * count, [None] * count
 
     def swim(index: int):
+        request = SwimRequest(swimmers[index], x[index], times, wrench[index], load)
         try:
-            simulation = Simulation(stations=x[index], **swimmers[index]._asdict())
+            found = request.swim()
+            found = with_error_estimate(found, request) if estimate else found
         except (SimulationStopped, ValueError) as error:
             errors[index] = _stopped_at_start(error)
             return
-        one = (
-            empty_observations(len(times), len(x[index]), wrench[index], load) if any(wrench) > wrench[index] else None
-        )
-        into = _of_one(out, index) if one is None else one
-        samples[index], errors[index] = simulation.record_into(times, into, works[index], wrench[index], load)
-        if one is not None:
-            _copy(one, out, index)
-        settings[index], start[index] = simulation.accuracy, simulation.kinetic_at_start
-        steps[index], _, evaluations[index] = simulation.evaluations
+        run = found.run
+        _copy(found.out, out, index)
+        works[index], start[index], errors[index] = found.works, found.kinetic_at_start, found.stopped
+        settings[index], estimates[index] = run.accuracy, run.error_estimate
+        counts[:, index] = len(run.time), run.steps, run.evaluations, run.nodes
 
     _for_each(swim, count, threads, progress)
     for index in np.flatnonzero(samples < len(times)):
         for array in (*_of_one(out, index)[:-1], works[index]):
             array[samples[index] :] = 0.0
-    counts = steps, evaluations
-    return _batch_of(swimmers, settings, times, samples, errors, counts, x, out, works, start, wrench, load, stations)
+    found = settings, errors, estimates, counts
+    return _batch_of(swimmers, found, times, x, out, works, start, wrench, load, stations)
 
 
-def _batch_of(swimmers, settings, times, samples, errors, counts, x, out, works, start, wrench, load, stations):
+def _batch_of(swimmers, found, times, x, out, works, start, wrench, load, stations):
+    settings, errors, estimates, (samples, steps, evaluations, nodes) = found
     along = {name: getattr(out, name) if stations is not None else None for name in ALONG}
     if not all(wrench):
         along |= {"torque": None, "force": None}
@@ -184,8 +195,10 @@ def _batch_of(swimmers, settings, times, samples, errors, counts, x, out, works,
         time=times,
         samples=samples,
         error=tuple(errors),
-        steps=counts[0],
-        evaluations=counts[1],
+        steps=steps,
+        evaluations=evaluations,
+        nodes=nodes,
+        error_estimates=tuple(estimates),
         position=out.position,
         orientation=out.orientation,
         twist=out.twist,

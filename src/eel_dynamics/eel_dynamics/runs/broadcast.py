@@ -32,12 +32,11 @@ class SwimmerArguments(NamedTuple):
     position: np.ndarray  # (3,) m, head, world
     orientation: np.ndarray  # (4,) x y z w, world from head
     twist: np.ndarray  # (6,) (Omega, V) rad/s, m/s, head's axes
-    horizon: float  # s, duration of the run
     most_evaluations: float = MOST_EVALUATIONS  # per simulated second
 
     @staticmethod
     def of(
-        law, body, scene, accuracy, position, orientation, twist, duration, most_evaluations=MOST_EVALUATIONS
+        law, body, scene, accuracy, position, orientation, twist, most_evaluations=MOST_EVALUATIONS
     ) -> "SwimmerArguments":
         """Check the arguments of `simulate`. `ValueError` names what does not fit."""
         swimmer = SwimmerArguments(
@@ -48,7 +47,6 @@ class SwimmerArguments(NamedTuple):
             checked_row("position", position, 3),
             checked_quaternion("orientation", orientation),
             checked_row("twist", twist, 6),
-            float(duration),
             checked_number("most_evaluations", most_evaluations, "per simulated second"),
         )
         if swimmer.scene.planar:
@@ -62,9 +60,9 @@ class SwimmerArguments(NamedTuple):
 
 
 def swimmers_of(
-    laws, bodies, scenes, accuracy, positions, orientations, twists, duration, most_evaluations=MOST_EVALUATIONS
+    laws, bodies, scenes, accuracy, positions, orientations, twists, most_evaluations=MOST_EVALUATIONS
 ) -> list[SwimmerArguments]:
-    """The arguments of B swimmers, for `duration` [s], with `most_evaluations` per simulated second.
+    """The arguments of B swimmers, with `most_evaluations` per simulated second.
 
     Each other argument is one for all, or a sequence of B (for the last three the rows of an array (B, .)); a sequence
     of length 1 counts as one for all. `ValueError` names what does not fit, and the swimmer's number.
@@ -79,7 +77,7 @@ def swimmers_of(
         twists=_rows("twists", twists, lambda name, row: checked_row(name, row, 6)),
     )
     most_evaluations = checked_number("most_evaluations", most_evaluations, "per simulated second")
-    swimmers = [SwimmerArguments(*row, float(duration), most_evaluations) for row in zip(*columns, strict=True)]
+    swimmers = [SwimmerArguments(*row, most_evaluations) for row in zip(*columns, strict=True)]
     for index, swimmer in enumerate(swimmers):
         if swimmer.scene.planar:
             _check_planar(index, swimmer)

@@ -90,6 +90,7 @@ def _swim(options, out: Path | None) -> int:
             sample_period=options.sample_period,
             stations=options.stations,
             load=options.load,
+            estimate=not options.bare,
             most_evaluations=options.most_evaluations,
             progress=Progress(options.duration),
         )
@@ -132,6 +133,9 @@ def _parser() -> Parser:
     parser.add_argument("--duration", type=float, default=10.0, help="s (10)")
     parser.add_argument(
         "--accuracy", default="standard", help=f"{', '.join(PRESETS)}, or a target relative error (standard)"
+    )
+    parser.add_argument(
+        "--bare", action="store_true", help="do not measure the run's own error; --accuracy is not kept"
     )
     parser.add_argument(
         "--body",
@@ -195,10 +199,15 @@ def _write(run: Run, path: Path):
         run.to_rerun(path)
         return
     energy = {} if run.energy is None else vars(run.energy)
+    error = run.error_estimate
+    errors = {} if error is None else {"error_position": error.position, "error_growth_rate": error.growth_rate}
+    errors |= {} if error is None or error.torque is None else {"error_torque": error.torque}
     if path.suffix == ".npz":
         arrays = {name: getattr(run, name) for name in ARRAYS if getattr(run, name) is not None}
         with replacing(path) as draft:
-            np.savez_compressed(draft, **arrays, **{f"energy_{name}": values for name, values in energy.items()})
+            np.savez_compressed(
+                draft, **arrays, **{f"energy_{name}": values for name, values in energy.items()}, **errors
+            )
         return
     columns = {"time": run.time}
     groups = (("position", "xyz"), ("orientation", "xyzw"), ("center_of_mass", "xyz"))
@@ -209,8 +218,9 @@ def _write(run: Run, path: Path):
     }
     with replacing(path) as draft, draft.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
-        writer.writerow([*columns, *energy])
-        writer.writerows(np.column_stack([*columns.values(), *energy.values()]).tolist())
+        columns |= energy | {name: np.full(len(run.time), value) for name, value in errors.items()}
+        writer.writerow(columns)
+        writer.writerows(np.column_stack([*columns.values()]).tolist())
 
 
 if __name__ == "__main__":

@@ -1,74 +1,161 @@
-"""Estimates the discretisation error of a run from a finer run, and finds a stable step.
+"""Every run measures its own error: the distance from a companion, a run of the same swimmer with coarser settings.
 
-The errors are those of the accuracy targets: of the head's position at the end, relative to the length of its path (or
-of the body, if longer), and of the torque at samples and stations, relative to its maximum. The finer run's errors are
-some ten times smaller, so the difference is the error to about ten per cent. It costs about twice the run.
+The companion has another grid, a looser tolerance and longer longest steps, and so some ten times the error of the run.
+Their distance is thus an estimate of the run's error that lies on the safe side. It is not scaled by an order of
+convergence: observed orders are 2.3 to 4.9. It sees the growth of errors, which no error of a single step does.
+
+Where the estimate exceeds the target, the run becomes the next companion of a finer one, up to `MOST_REFINEMENTS`
+times. What then is still above the target is told.
 """
 
 from dataclasses import dataclass, replace
-from functools import partial
-from sys import float_info
 
 import numpy as np
 
-from eel_dynamics.accuracy.accuracy import FINEST_TOLERANCE
+from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.simulation.stopping import SimulationStopped
 
-MORE_STEPS = 1.4  # ratio of steps that a finer run must have: coarse tolerances may leave the steps at their bound
-MOST_FINER = 3  # attempts to get that many steps
+ACCEPTED = 1.5  # factor of the target by which an estimate must lie below it
+MOST_REFINEMENTS = 3  # of a run whose error is above its target
+ROUND_OFF = 2e-16  # relative error of the arithmetic, which grows with the motion's sensitivity
+ROUND_OFF_SHARE = 0.1  # of the target that grown round-off may take
+# Part of body length and path beyond which the distance of two runs is no longer small, so that it no longer grows.
+SMALL = 0.03
+SETTLED = 0.2  # share of a run in which the distance grows from nothing, and says nothing of the sensitivity
+LEAST_SAMPLES = 5  # of a fit of the growth rate
+# Torques below this part of m (l/T)^2 count by it: m mass, l length, T the shortest period or the run's duration.
+TORQUE_FLOOR = 1e-3
 HALVINGS = 8  # of an unstable step, at most, in the search for a stable one
 
 
 @dataclass(frozen=True)
 class ErrorEstimate:
-    """Relative errors of position and torque; `torque` is None for a run without internal wrench."""
+    """Relative errors of position and torque, as accuracy targets define them; infinite where they are not known.
+
+    torque is None for a run without internal wrench or stations. growth_rate [1/s]: the distance of two runs grows by
+    a factor of e in 1/growth_rate; 0 where it does not grow, or not seen. evaluations: of the head's dynamics that the
+    estimate took, beside those of the run; cost: the same, each times the nodes along the body.
+    """
 
     position: float
     torque: float | None
+    growth_rate: float = 0.0
+    evaluations: int = 0
+    cost: int = 0
 
     @property
     def worst(self) -> float:
         """The greater of the two."""
         return max(self.position, self.torque or 0.0)
 
+    def round_off(self, duration: float) -> float:
+        """The relative error that round-off has grown to after `duration` [s] at the `growth_rate`."""
+        with np.errstate(over="ignore"):
+            return float(ROUND_OFF * np.exp(self.growth_rate * duration))
+
+    def hopeless(self, target: float, duration: float) -> bool:
+        """Whether grown round-off alone takes more of the `target` than `ROUND_OFF_SHARE`: no settings help."""
+        return self.round_off(duration) > ROUND_OFF_SHARE * target
+
+    def missed(self, target: float | None, duration: float) -> str:
+        """One line if the error is above the `target`, else an empty text."""
+        if target is None or self.worst <= target:
+            return ""
+        if not np.isfinite(self.worst):
+            return f"the error is not known: a run with coarser settings stopped; the target is {target:g}"
+        line = f"the error is estimated at {self.worst:.1e}, above the target {target:g}"
+        if self.growth_rate * duration < 1.0:
+            return line
+        line += f": the motion is sensitive, and errors grow by a factor of e in {1.0 / self.growth_rate:.2g} s"
+        if self.hopeless(target, duration):
+            line += ", so that round-off alone may spoil it"
+        return line
+
 
 def relative_errors(run, reference) -> ErrorEstimate:
-    """Errors of `run` relative to `reference`, a run of the same swimmer with the same samples and stations."""
+    """Distance of `run` from `reference`, a run of the same swimmer with the same samples and stations.
+
+    Of the head's position: the greatest over the later half of the samples, relative to the length of the path, or of
+    the body if that is longer. Of the torque: the greatest over samples and stations, relative to its own maximum,
+    which counts for no less than `TORQUE_FLOOR` says. growth_rate: of the distance of the heads.
+    """
+    distance = np.linalg.norm(run.position - reference.position, axis=1)
     scale = max(reference.path_length, reference.body.length)
-    position = float(np.linalg.norm(run.position[-1] - reference.position[-1])) / scale
+    later = distance[run.time >= 0.5 * run.time[-1]]
+    position, rate = float(later.max()) / scale, _growth_rate(run.time, distance, SMALL * scale)
     if run.torque is None or reference.torque is None:
-        return ErrorEstimate(position, None)
-    size = np.linalg.norm(reference.torque, axis=2).max()
-    difference = np.linalg.norm(run.torque - reference.torque, axis=2).max()
-    return ErrorEstimate(position, float(difference / size) if size > 0.0 else 0.0)
+        return ErrorEstimate(position, None, rate)
+    size = max(np.linalg.norm(reference.torque, axis=2).max(), _least_torque(run))
+    return ErrorEstimate(position, float(np.linalg.norm(run.torque - reference.torque, axis=2).max() / size), rate)
 
 
-def refined(run, simulate):
-    """The same run, by `simulate`, with a finer grid and shorter steps."""
-    period = float(run.time[1] - run.time[0]) if len(run.time) > 1 else 1.0
-    again = partial(
-        simulate,
-        run.law,
-        float(run.time[-1]),
-        body=run.body,
-        scene=run.scene,
-        sample_period=period,
-        stations=run.x,
-        position=run.position[0],
-        orientation=run.orientation[0] / np.linalg.norm(run.orientation[0]),
-        twist=run.twist[0],
-        load=run.fluid_force is not None,
-        verify=False,
-        most_evaluations=float_info.max,  # the run itself was within its limit
-    )
-    accuracy = run.accuracy.finer()
-    finer = again(accuracy=accuracy)
-    for _ in range(MOST_FINER):
-        if finer.steps >= MORE_STEPS * run.steps or accuracy.tolerance <= FINEST_TOLERANCE:
+def _least_torque(run) -> float:
+    time = min((term.period for term in run.law.terms if term.period), default=max(float(run.time[-1]), 1.0))
+    return TORQUE_FLOOR * run.body_mass * (run.body.length / time) ** 2
+
+
+def _growth_rate(time: np.ndarray, distance: np.ndarray, small: float) -> float:
+    """Slope [1/s] of the logarithm of the `distance` (T,) over `time` (T,), where it is settled and `small`; or 0."""
+    counts = (time >= SETTLED * time[-1]) & (distance > 0.0) & (distance < small)
+    if counts.sum() < LEAST_SAMPLES:
+        counts = (distance > 0.0) & (distance < small)  # it has grown within the first part
+    if counts.sum() < LEAST_SAMPLES:
+        return 0.0
+    return max(0.0, float(np.polyfit(time[counts], np.log(distance[counts]), 1)[0]))
+
+
+def with_error_estimate(swim, request):
+    """The `swim` of a `request` (`SwimRequest`) with the `error_estimate` of its run; or a finer one, for the target.
+
+    Nothing is estimated for a run that stopped before its end. Without a target nothing is made finer.
+    """
+    others = []
+    target = getattr(request.swimmer.accuracy, "target", None)  # a budget of time has none
+    if swim.stopped is not None or len(request.times) < 2:
+        return swim
+    coarser = swim.run.accuracy.coarser()
+    if _nodes(request, coarser) == swim.run.nodes:
+        coarser = coarser.with_other_points()
+    companion = _finished(request, coarser)
+    for refinement in range(MOST_REFINEMENTS + 1):
+        error = ErrorEstimate(np.inf, None) if companion is None else relative_errors(swim.run, companion.run)
+        others += [] if companion is None else [companion.run]
+        evaluations, cost = (
+            sum(each.evaluations for each in others),
+            sum(each.evaluations * each.nodes for each in others),
+        )
+        error = replace(error, evaluations=evaluations, cost=cost)
+        swim = swim._replace(run=replace(swim.run, error_estimate=error))
+        if target is None or error.worst <= target / ACCEPTED or refinement == MOST_REFINEMENTS:
             break
-        accuracy = replace(accuracy, tolerance=accuracy.finer().tolerance)
-        finer = again(accuracy=accuracy)
-    return finer
+        if refinement and error.hopeless(target, float(swim.run.time[-1])):  # the first pair may be far apart
+            break
+        finer = _finished(request, swim.run.accuracy.tightened(target / ACCEPTED / error.worst))
+        if finer is None:
+            break
+        companion, swim = swim, _for_target(finer, target)
+    return swim
+
+
+def _for_target(swim, target: float | None):
+    return swim._replace(run=replace(swim.run, accuracy=replace(swim.run.accuracy, target=target))) if target else swim
+
+
+def _nodes(request, accuracy: Accuracy) -> int | None:
+    """Number of nodes along the body with the settings `accuracy`; None where the swim cannot begin."""
+    try:
+        return len(request.simulation(accuracy).grid.x)
+    except (SimulationStopped, ValueError):
+        return None
+
+
+def _finished(request, accuracy: Accuracy):
+    """The swim with the settings `accuracy`; None where it does not come to its end."""
+    try:
+        swim = request.swim(accuracy)
+    except (SimulationStopped, ValueError):
+        return None
+    return swim if swim.stopped is None else None
 
 
 def stable_step(swim, accuracy) -> float | None:

@@ -7,10 +7,10 @@ from contextvars import ContextVar
 from dataclasses import dataclass
 from functools import cached_property, partial
 from importlib.metadata import entry_points
+from typing import NamedTuple
 
 import numpy as np
 from eel_gaits.law import Law
-from eel_gaits.wording import shown
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.analysis.actuators import Actuators, actuators_of
@@ -21,7 +21,7 @@ from eel_dynamics.model.arguments import checked_number, checked_stations
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.broadcast import SwimmerArguments
-from eel_dynamics.runs.error_estimate import ErrorEstimate, refined, relative_errors, stable_step
+from eel_dynamics.runs.error_estimate import ErrorEstimate, stable_step, with_error_estimate
 from eel_dynamics.runs.progress_monitor import ProgressMonitor
 from eel_dynamics.runs.records import records
 from eel_dynamics.simulation.energy import EnergyLedger
@@ -30,7 +30,6 @@ from eel_dynamics.simulation.simulation import Simulation
 from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.simulation.stopping import SimulationStopped
 
-MOST_REFINEMENTS = 3  # of a run whose error is above its target
 MOST_SAMPLES = 10_000_000  # of a run: the motion alone takes gigabytes
 MOST_MEMORY = 0.8  # share of the machine's memory for the samples
 _searching = ContextVar("searching", default=False)  # whether a stable step is searched for
@@ -66,6 +65,8 @@ class Run:
     closure_force: np.ndarray | None  # (T,) N, of the internal force left over there, less the load on the nose
     steps: int  # accepted steps in time
     evaluations: int  # of the head's dynamics, for the motion alone
+    nodes: int  # along the body
+    error_estimate: ErrorEstimate | None = None  # None where none was wanted, or for fewer than two samples
 
     def __post_init__(self):
         if not (self.time[1:] > self.time[:-1]).all():
@@ -118,8 +119,9 @@ class Run:
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
-        """The model's limits that the run exceeded, one line each (`model_limits.py`)."""
-        return warnings_of(self)
+        """One line each: an error above the target, and the model's limits that were exceeded (`model_limits.py`)."""
+        missed = self.error_estimate and self.error_estimate.missed(self.accuracy.target, float(self.time[-1]))
+        return (missed, *warnings_of(self)) if missed else warnings_of(self)
 
     def to_rerun(self, target, compare: "Run | None" = None, **settings) -> None:
         """Record the run to Rerun, as the visualiser shows a swimmer.
@@ -138,16 +140,6 @@ class Run:
         to_rerun(
             target, [records(run) for run in runs], [f"{run.law.name} {run.accuracy.name}" for run in runs], **settings
         )
-
-    @cached_property
-    def refined(self) -> "Run":
-        """The same run with finer settings, simulated on first access."""
-        return refined(self, simulate)
-
-    @property
-    def error_estimate(self) -> ErrorEstimate:
-        """Estimate of the run's errors, as defined for accuracy targets, from the finer run."""
-        return relative_errors(self, self.refined)
 
     @property
     def body_mass(self) -> float:
@@ -168,7 +160,7 @@ def simulate(
     orientation=(0.0, 0.0, 0.0, 1.0),
     twist=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
     load: bool = False,
-    verify: bool | None = None,
+    estimate: bool = True,
     most_evaluations: float = MOST_EVALUATIONS,
     progress: Callable[[float, float], None] | None = None,
 ) -> Run:
@@ -176,8 +168,8 @@ def simulate(
 
     stations: number of equidistant stations, or their X (M,) [m]. position (3,) [m], orientation (4,) (x y z w), twist
     (6,) ((Omega, V) in the head's axes): the head's initial state. load: compute the water's load along the body too.
-    The steps in time do not depend on the sampling. verify: estimate the error (`Run.error_estimate`); if it exceeds
-    the target, return a finer run, or warn. None: only for sensitive motions, in space without drag. most_evaluations:
+    The steps in time do not depend on the sampling. estimate: measure the error (`Run.error_estimate`); where it
+    exceeds the target, return a finer run, or warn if none is fine enough. False: the bare run. most_evaluations:
     of the head's dynamics per simulated second; a law that needs more is refused, or stopped. progress(time, left):
     called once a second with the simulation time reached [s] and the remaining wall time [s]; without it, a run longer
     than a minute gives a warning. `ValueError` names what does not fit; `SimulationStopped` carries the samples so far
@@ -196,56 +188,73 @@ def simulate(
         orientation=orientation,
         twist=twist,
         load=load,
+        estimate=False,
         most_evaluations=most_evaluations,
-        progress=progress,
     )
-    swimmer = SwimmerArguments.of(law, body, scene, accuracy, position, orientation, twist, duration, most_evaluations)
+    swimmer = SwimmerArguments.of(law, body, scene, accuracy, position, orientation, twist, most_evaluations)
     x, wrench = checked_stations(stations, swimmer.body.length), swimmer.scene.internal_wrench
-    check_memory(1, len(times), len(x), wrench, bool(load))
-    simulation = Simulation(stations=x, **swimmer._asdict())
-    monitor = ProgressMonitor(swimmer.horizon, progress)
-    out, works, done, stopped = simulation.record(times, wrench, bool(load), monitor.update)
-    steps, _, evaluations = simulation.evaluations
-    run = run_of(
-        law=law,
-        body=swimmer.body,
-        scene=swimmer.scene,
-        accuracy=simulation.accuracy,
-        x=x,
-        times=times[:done],
-        out=out,
-        works=works[:done],
-        kinetic_at_start=simulation.kinetic_at_start,
-        wrench=wrench,
-        load=load,
-        steps=steps,
-        evaluations=evaluations,
-    )
-    if stopped is not None:
-        stopped.run = run
-        if run.accuracy.step is not None and not _searching.get():
-            stopped = _with_stable_step(stopped, again, run.accuracy)
+    check_memory(1, len(times), len(x), wrench, bool(load), runs=2 if estimate else 1)
+    request = SwimRequest(swimmer, x, times, wrench, bool(load))
+    look = ProgressMonitor(float(duration), progress).update
+    swim = request.swim(look=look)
+    if swim.stopped is not None:
+        stopped, settings = swim.stopped, swim.run.accuracy
+        stopped.run = swim.run
+        if settings.step is not None and not _searching.get():
+            stopped = _with_stable_step(stopped, again, settings)
         raise stopped
-    sensitive = run.accuracy.target is not None and not (run.scene.resistive or run.scene.planar)
-    return _verified(run) if verify or (verify is None and sensitive and done > 1) else run
-
-
-def _verified(run: Run) -> Run:
-    """`run`, or a finer one if its estimated error exceeds its target; a warning if none is fine enough."""
-    target = run.accuracy.target
-    if target is None:
-        raise ValueError(f"verify needs an accuracy that is a target, got {shown(run.accuracy.name)}")
-    for _ in range(MOST_REFINEMENTS):
-        if run.error_estimate.worst <= target:
-            return run
-        run = run.refined
-    if run.error_estimate.worst > target:
-        warnings.warn(
-            f"the error is estimated at {run.error_estimate.worst:.1e}, above the target {target:g}: the motion is too "
-            f"sensitive, or the target too fine",
-            stacklevel=3,
-        )
+    run = (with_error_estimate(swim, request) if estimate else swim).run
+    if run.error_estimate is not None and (missed := run.error_estimate.missed(run.accuracy.target, duration)):
+        warnings.warn(missed, stacklevel=2)
     return run
+
+
+class Swim(NamedTuple):
+    """A run, what it was made from, and why it stopped before its end, if it did."""
+
+    run: Run
+    out: Observations
+    works: np.ndarray  # (T, 4) J
+    kinetic_at_start: float  # J
+    stopped: SimulationStopped | None
+
+
+class SwimRequest(NamedTuple):
+    """A swimmer, its stations x (M,) [m], the times (T,) [s] of its samples, and whether to record wrench and load."""
+
+    swimmer: SwimmerArguments
+    x: np.ndarray
+    times: np.ndarray
+    wrench: bool
+    load: bool
+
+    def simulation(self, accuracy: Accuracy | None = None) -> Simulation:
+        """A simulation at its start, with other settings if `accuracy` is given."""
+        swimmer = self.swimmer if accuracy is None else self.swimmer._replace(accuracy=accuracy)
+        return Simulation(stations=self.x, **swimmer._asdict())
+
+    def swim(self, accuracy: Accuracy | None = None, look=None) -> Swim:
+        """Simulate it, with other settings if `accuracy` is given. look(time [s]) is called every few milliseconds."""
+        simulation = self.simulation(accuracy)
+        out, works, done, stopped = simulation.record(self.times, self.wrench, self.load, look)
+        steps, _, evaluations = simulation.evaluations
+        run = run_of(
+            law=self.swimmer.law,
+            body=self.swimmer.body,
+            scene=self.swimmer.scene,
+            accuracy=simulation.accuracy,
+            x=self.x,
+            times=self.times[:done],
+            out=out,
+            works=works[:done],
+            kinetic_at_start=simulation.kinetic_at_start,
+            wrench=self.wrench,
+            load=self.load,
+            steps=steps,
+            evaluations=evaluations,
+            nodes=len(simulation.grid.x),
+        )
+        return Swim(run, out, works, simulation.kinetic_at_start, stopped)
 
 
 def _with_stable_step(stopped: SimulationStopped, again, accuracy: Accuracy) -> SimulationStopped:
@@ -274,9 +283,9 @@ def checked_times(duration, sample_period) -> np.ndarray:
     return np.arange(int(steps) + 1) * sample_period
 
 
-def check_memory(swimmers: int, samples: int, stations: int, wrench: bool, load: bool):
-    """`ValueError` if the profiles would not fit into memory."""
-    needed = 8.0 * swimmers * size_of(samples, stations, wrench, load)
+def check_memory(swimmers: int, samples: int, stations: int, wrench: bool, load: bool, runs: int = 1):
+    """`ValueError` if the profiles of so many `runs` of each swimmer would not fit into memory."""
+    needed = 8.0 * runs * swimmers * size_of(samples, stations, wrench, load)
     there = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") * MOST_MEMORY
     if needed > there:
         raise ValueError(
@@ -286,7 +295,22 @@ def check_memory(swimmers: int, samples: int, stations: int, wrench: bool, load:
 
 
 def run_of(
-    *, law, body, scene, accuracy, x, times, out, works, kinetic_at_start, wrench, load, steps, evaluations
+    *,
+    law,
+    body,
+    scene,
+    accuracy,
+    x,
+    times,
+    out,
+    works,
+    kinetic_at_start,
+    wrench,
+    load,
+    steps,
+    evaluations,
+    nodes,
+    error_estimate=None,
 ) -> Run:
     """The `Run` of observations `out` and `works`, cut to the samples at `times`, which were reached."""
     if len(times) < len(out.position):
@@ -319,6 +343,8 @@ def run_of(
         closure_force=out.closure[:, 1] if wrench else None,
         steps=steps,
         evaluations=evaluations,
+        nodes=nodes,
+        error_estimate=error_estimate,
     )
 
 

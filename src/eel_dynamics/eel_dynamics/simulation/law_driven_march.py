@@ -7,13 +7,12 @@ import numpy as np
 from eel_gaits.law import Law
 
 import eel_core
-from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.curvature.curvature_samples import CurvatureSample
 from eel_dynamics.curvature.law_follower import LawFollower
 from eel_dynamics.simulation.discretisation import Discretisation, GridSettings
 from eel_dynamics.simulation.observations import Observations
 from eel_dynamics.simulation.sample_check import first_bad_sample
-from eel_dynamics.simulation.simulation_setup import MotionNeeds, ShapeNeeds, SimulationSetup
+from eel_dynamics.simulation.simulation_setup import ShapeNeeds, SimulationSetup
 from eel_dynamics.simulation.step_bounds import step_bounds_of
 from eel_dynamics.simulation.stopping import SimulationStopped, not_begun, remedy, stopped_by
 
@@ -22,15 +21,15 @@ MARCHED, SINGULAR, UNFINISHED = (eel_core.STATUSES.index(name) for name in ("mar
 
 
 class LawDrivenMarch:
-    """A march from the initial state of a `setup`, with an `accuracy`, on a grid of these `settings`.
+    """A march from the initial state of a `setup`, on a grid of these `settings`.
 
     The `follower` follows `law`, whose own t = 0 lies at `origin` [s]. Without a law the body is straight.
     `SimulationStopped` where the initial state has no finite energy.
     """
 
-    def __init__(self, setup: SimulationSetup, accuracy: Accuracy, settings: GridSettings, law=None, origin=0.0):
+    def __init__(self, setup: SimulationSetup, settings: GridSettings, law=None, origin=0.0):
         self._setup, self.settings = setup, settings
-        self.accuracy, self.discretisation, self.time = accuracy, setup.discretise(settings), 0.0
+        self.accuracy, self.discretisation, self.time = setup.settings, setup.discretise(settings), 0.0
         self.follower = LawFollower(self.discretisation.tabulation, setup.default_transition, law, origin)
         self.tabulated_law, self._bounds = self.follower.tabulated_law, self._step_bounds()
         self._march = eel_core.March(self.discretisation.swimmer, *self._method)
@@ -42,54 +41,46 @@ class LawDrivenMarch:
 
     # -- law, accuracy and grid
 
-    def adopt(self, law: Law, origin: float, transition: float, needs: MotionNeeds, last: MotionNeeds):
+    def adopt(self, law: Law, origin: float, transition: float, needs: ShapeNeeds, last: ShapeNeeds):
         """Follow `law` from now on, with a blend over `transition` [s].
 
-        origin [s]: the time of the law's own t = 0. The settings fit its `needs` and those of the `last` law.
+        origin [s]: the time of the law's own t = 0. The grid fits the `needs` of the law and of the `last` one.
         """
-        accuracy = self._setup.accuracy_for(needs.in_blend(last))
-        self.refine(accuracy, needs.shape)
+        self.refine(ShapeNeeds(max(last.waves, needs.waves), needs.knots))
         self.follower.adopt(law, origin=origin, time=self.time, transition=transition)
-        self.follow(accuracy)
+        self.follow()
 
-    def add_sample(self, sample: CurvatureSample, needs: MotionNeeds):
-        """Add a controller's sample. The settings fit the `needs`.
-
-        `ValueError` for a sample that comes too late, or twice.
-        """
-        accuracy = self._setup.accuracy_for(needs)
-        if accuracy != self.accuracy:
-            self.refine(accuracy, ShapeNeeds(needs.shape.waves, self.settings.knots))
-            self.follow(accuracy)
+    def add_sample(self, sample: CurvatureSample):
+        """Add a controller's sample. `ValueError` for a sample that comes too late, or twice."""
         self.follower.add(sample)
 
-    def follow(self, accuracy: Accuracy | None = None, smoothly: bool = False):
-        """Continue under the follower's present law, with another `accuracy` if one is given.
+    def follow(self, smoothly: bool = False):
+        """Continue under the follower's present law.
 
-        The next step begins anew, unless the motion continues `smoothly`.
+        The next step begins anew, unless the motion goes on `smoothly`.
         """
-        self._go_on(self.discretisation, self.accuracy if accuracy is None else accuracy, smoothly)
+        self._go_on(self.discretisation, smoothly)
 
-    def refine(self, accuracy: Accuracy, needs: ShapeNeeds):
-        """Make the grid fine enough for the `needs` at an `accuracy`. The head's motion does not change."""
-        settings = self.settings.at_least(GridSettings.of(accuracy, *needs))
+    def refine(self, needs: ShapeNeeds):
+        """Make the grid fine enough for the `needs`. The head's motion does not change."""
+        settings = self.settings.at_least(GridSettings.of(self.accuracy, *needs))
         if settings is not self.settings:
-            self._change_grid(settings, accuracy)
+            self._change_grid(settings)
 
     def fit(self, needs: ShapeNeeds):
         """Make the grid fine enough for the `needs` and, once no finer motion is left, not much finer."""
         wanted = GridSettings.of(self.accuracy, *needs)
         if self.settings.resolution > MUCH_FINER * wanted.resolution and not self.follower.blending:
-            self._change_grid(wanted, self.accuracy)
+            self._change_grid(wanted)
         else:
-            self.refine(self.accuracy, needs)
+            self.refine(needs)
 
     def _fit_samples(self, samples: list[CurvatureSample]):
         """Have a grid for `samples` of a controller; in few sizes, for each is kept."""
         waves = max(sample.waves for sample in samples)
         self.fit(ShapeNeeds(2.0 ** math.ceil(math.log2(max(1.0, waves)))))
 
-    def _change_grid(self, settings: GridSettings, accuracy: Accuracy):
+    def _change_grid(self, settings: GridSettings):
         old, twist = self.discretisation.grid, self._twist()
         self.settings, discretisation = settings, self._setup.discretise(settings)
         rows, first, _ = old.rows_at(discretisation.tabulation.x, "value")
@@ -101,14 +92,13 @@ class LawDrivenMarch:
             )
 
         self.follower.move(discretisation.tabulation, values)
-        self._go_on(discretisation, accuracy)
+        self._go_on(discretisation)
         self._march.set_twist(twist)
 
-    def _go_on(self, discretisation: Discretisation, accuracy: Accuracy, smoothly: bool = False):
-        changed = discretisation is not self.discretisation or accuracy != self.accuracy
-        self.discretisation, self.accuracy, self.tabulated_law = discretisation, accuracy, self.follower.tabulated_law
-        if changed:
+    def _go_on(self, discretisation: Discretisation, smoothly: bool = False):
+        if discretisation is not self.discretisation:
             self._march.change(discretisation.swimmer, *self._method)
+        self.discretisation, self.tabulated_law = discretisation, self.follower.tabulated_law
         self._bounds = self._step_bounds()
         self._hand_over_law(smoothly)
 
@@ -173,7 +163,7 @@ class LawDrivenMarch:
             raise self._stopped(SINGULAR)
 
     def record(self, times, out: Observations, works, wrench: bool, load: bool, look) -> tuple:
-        """As `Simulation.record_into`."""
+        """As `Simulation.record`, into `out` and `works` (T, 4)."""
         done, status = 0, UNFINISHED
         while status == UNFINISHED:
             done, status = self._march.record(times, done, out.whole, works, bool(wrench), bool(load))
@@ -223,17 +213,16 @@ class LawDrivenMarch:
 
 
 def march_from_start(
-    setup: SimulationSetup, needs: MotionNeeds, law: Law | None, origin: float = 0.0, grid: GridSettings | None = None
+    setup: SimulationSetup, needs: ShapeNeeds, law: Law | None, origin: float = 0.0, grid: GridSettings | None = None
 ) -> LawDrivenMarch:
-    """A march from the initial state under `law`, with the settings for its `needs`, on the `grid` or a finer one.
+    """A march from the initial state under `law`, on a grid for its `needs`: `grid`, or a finer one.
 
     origin [s]: the time of the law's own t = 0. `ValueError` where the law cannot be begun.
     """
-    accuracy = setup.accuracy_for(needs)
-    wanted = GridSettings.of(accuracy, *needs.shape)
+    wanted = GridSettings.of(setup.settings, *needs)
     settings = wanted if grid is None else grid.at_least(wanted)
     try:
         with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is reported
-            return LawDrivenMarch(setup, accuracy, settings, law, origin)
+            return LawDrivenMarch(setup, settings, law, origin)
     except SimulationStopped as stopped:
         raise stopped if law is None else not_begun(law, stopped) from None

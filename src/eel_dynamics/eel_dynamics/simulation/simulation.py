@@ -40,7 +40,6 @@ class Simulation:
         twist: (6,) (Omega, V) [rad/s, m/s], of the head at the start, in its axes. The axes are the library's.
         default_transition: [s], duration of a blend where a law gives none.
         law: the first law to adopt.
-        horizon: [s], duration of the swim for which a target of accuracy holds; by default any.
         most_evaluations: of the head's dynamics per simulated second. A law that needs more is refused, or the run
             stops.
     """
@@ -56,7 +55,6 @@ class Simulation:
         twist=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
         default_transition: float = 1.0,
         law: Law | None = None,
-        horizon: float = math.inf,
         most_evaluations: float = MOST_EVALUATIONS,
     ):
         self._setup = setup = SimulationSetup.of(
@@ -67,12 +65,11 @@ class Simulation:
             initial_state=(position, orientation, twist),
             default_transition=default_transition,
             law=law,
-            horizon=horizon,
             most_evaluations=most_evaluations,
             swim_time=swim_time,
         )
         self.body, self.scene, self.x = setup.body, setup.scene, setup.x
-        self._needs = setup.first_needs()
+        self._needs = setup.shape_needs(law)
         self._march = march_from_start(setup, self._needs, law)
         self.ready, self._started = law is not None, False
 
@@ -134,7 +131,7 @@ class Simulation:
         The first law, before the start, needs no blend. A later law takes over during `transition` [s], or during its
         own transition, or during the default one. `ValueError` for a law that the scene does not allow.
         """
-        needs = self._setup.motion_needs(law, self._needs.plane)
+        needs = self._setup.shape_needs(law)
         if not is_finite(origin):
             raise ValueError(f"law origin must be finite, got {shown(origin)} s")
         blend = self._setup.transition_to(law, transition)
@@ -157,8 +154,7 @@ class Simulation:
         rows = pitch, pitch_rate, pitch_accel, yaw, yaw_rate, yaw_accel
         length, planar = self.body.length, self.scene.planar
         sample = CurvatureSample.checked(time, x, rows, length=length, planar=planar, now=self.time)
-        self._needs = self._needs.with_samples()
-        self._march.add_sample(sample, self._needs)
+        self._march.add_sample(sample)
         self.ready = True
 
     # -- march
@@ -183,8 +179,8 @@ class Simulation:
         `ValueError` for a law that cannot begin from the initial state; the simulation then stays as it is.
         """
         law, setup = self.law, self._setup
-        needs = setup.motion_needs(law, self._needs.plane)
-        grid = GridSettings.of(self.accuracy, *needs.shape)  # it may be finer than needed, for samples
+        needs = setup.shape_needs(law)
+        grid = GridSettings.of(self.accuracy, *needs)  # it may be finer than needed, for samples
         self._march, self._needs = march_from_start(setup, needs, law, grid=grid), needs
         self.ready, self._started = law is not None, False
 
@@ -210,14 +206,8 @@ class Simulation:
         simulation must be reset.
         """
         out, works = empty_observations(len(times), len(self.x), wrench, load), np.zeros((len(times), 4))
-        return out, works, *self.record_into(np.array(times, dtype=float), out, works, wrench, load, look)
-
-    def record_into(
-        self, times, out: Observations, works, wrench: bool, load: bool, look=None
-    ) -> tuple[int, SimulationStopped | None]:
-        """As `record`, into the space of `out` and `works`."""
         self._started = True
-        return self._march.record(times, out, works, wrench, load, look)
+        return out, works, *self._march.record(np.array(times, dtype=float), out, works, wrench, load, look)
 
     @property
     def kinetic_at_start(self) -> float:

@@ -1,6 +1,5 @@
 """The set-up of a simulation: its checked arguments, and the accuracy and grid that follow from them."""
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
@@ -13,7 +12,6 @@ from eel_gaits.wording import shown
 
 from eel_dynamics.accuracy.accuracy import Accuracy, within_budget
 from eel_dynamics.accuracy.budget import Budget
-from eel_dynamics.curvature.difficulty import NOMINAL, Difficulty, difficulty_of
 from eel_dynamics.curvature.law_waves import check_law, knots_of_law
 from eel_dynamics.model.arguments import (
     check_planar,
@@ -25,7 +23,7 @@ from eel_dynamics.model.arguments import (
     checked_stations,
 )
 from eel_dynamics.model.body import Body
-from eel_dynamics.model.initial_state import InitialState, starts_fast, stays_in_plane, time_scale
+from eel_dynamics.model.initial_state import InitialState, time_scale
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.simulation.discretisation import Discretisation, GridSettings, discretise
 from eel_dynamics.simulation.step_bounds import check_cost
@@ -38,23 +36,6 @@ class ShapeNeeds(NamedTuple):
     knots: tuple[float, ...] = ()
 
 
-class MotionNeeds(NamedTuple):
-    """The properties of a swim that the settings of the accuracy must fit."""
-
-    plane: bool  # the motion stays in a plane
-    shape: ShapeNeeds
-    difficulty: Difficulty
-
-    def in_blend(self, last: "MotionNeeds") -> "MotionNeeds":
-        """These needs while the motion of the `last` law dies out. The law after this one no longer depends on it."""
-        shape = self.shape._replace(waves=max(last.shape.waves, self.shape.waves))
-        return MotionNeeds(self.plane, shape, last.difficulty.at_least(self.difficulty))
-
-    def with_samples(self) -> "MotionNeeds":
-        """These needs where a controller drives the body, which may lead it anywhere."""
-        return MotionNeeds(False, self.shape, self.difficulty.at_least(NOMINAL))
-
-
 @dataclass(frozen=True)
 class SimulationSetup:
     """The part of a simulation that neither a march nor a reset changes. `of` checks the arguments."""
@@ -65,7 +46,6 @@ class SimulationSetup:
     x: np.ndarray  # (M,) m, stations
     initial_state: InitialState
     default_transition: float  # s
-    horizon: float  # s
     most_evaluations: float  # by simulated second
     law: Law | None  # the first
     swim_time: Callable[[Scene, float], float]  # s of wall time by simulated second, of a scene and a target
@@ -80,7 +60,6 @@ class SimulationSetup:
         initial_state: tuple,
         default_transition: float,
         law: Law | None,
-        horizon: float,
         most_evaluations: float,
         swim_time: Callable[[Scene, float], float],
     ) -> "SimulationSetup":
@@ -101,11 +80,9 @@ class SimulationSetup:
             check_planar(*start)
         if not (is_finite(default_transition) and default_transition > 0.0):
             raise ValueError(f"default_transition must be finite and > 0 s, got {shown(default_transition)}")
-        if not (horizon == math.inf or is_finite(horizon)) or horizon < 0.0:
-            raise ValueError(f"horizon must be >= 0 s, got {shown(horizon)}")
         most_evaluations = checked_number("most_evaluations", most_evaluations, "per simulated second")
-        transition, horizon = float(default_transition), float(horizon)
-        return SimulationSetup(body, scene, accuracy, x, start, transition, horizon, most_evaluations, law, swim_time)
+        transition = float(default_transition)
+        return SimulationSetup(body, scene, accuracy, x, start, transition, most_evaluations, law, swim_time)
 
     def __deepcopy__(self, memo: dict) -> "SimulationSetup":
         return self
@@ -125,11 +102,6 @@ class SimulationSetup:
         """Time scale [s] of the initial velocity."""
         return time_scale(self.initial_twist, self.body.length)
 
-    @cached_property
-    def starts_fast(self) -> bool:
-        """Whether the initial velocity is large against the swimming speed."""
-        return starts_fast(self.law, self.time_scale)
-
     def shape_needs(self, law: Law | None) -> ShapeNeeds:
         """The needs of `law` for a grid.
 
@@ -143,17 +115,6 @@ class SimulationSetup:
         check_cost(law, self.most_evaluations)
         return ShapeNeeds(check_law(law, self.body.length), knots_of_law(law))
 
-    def first_needs(self) -> MotionNeeds:
-        """The needs of a swim by the first law from the initial state."""
-        shape = self.shape_needs(self.law)
-        plane = stays_in_plane(self.law, self.initial_twist) and not self.starts_fast
-        return MotionNeeds(plane, shape, self._difficulty(self.law))
-
-    def motion_needs(self, law: Law | None, plane: bool) -> MotionNeeds:
-        """The needs of a swim by `law`. plane: the head moved in a plane before. `ValueError` as in `shape_needs`."""
-        shape = self.shape_needs(law)
-        return MotionNeeds(plane and law is not None and law.in_plane, shape, self._difficulty(law))
-
     def transition_to(self, law: Law, transition: float | None) -> float:
         """Time [s] of the blend to `law`: `transition`, the law's own, or the default."""
         blend = transition or law.transition or self.default_transition
@@ -161,25 +122,12 @@ class SimulationSetup:
             raise ValueError(f"transition must be finite and > 0 s, got {shown(transition)}")
         return float(blend)
 
-    def _difficulty(self, law: Law | None) -> Difficulty:
-        """The difficulty of a swim by `law` until the horizon.
-
-        It is at least nominal where the head moves from the start, and nominal where no law is known.
-        """
-        if law is None:
-            return NOMINAL
-        difficulty = difficulty_of(law, self.body.length, self.horizon)
-        return difficulty.at_least(NOMINAL) if self.initial_twist.any() else difficulty
-
-    def accuracy_for(self, needs: MotionNeeds) -> Accuracy:
-        """The settings that deliver the accuracy in a swim of these `needs`."""
+    @cached_property
+    def settings(self) -> Accuracy:
+        """The settings of the accuracy in this scene."""
         if isinstance(self.accuracy, Budget):
-            accuracy = within_budget(self.accuracy, self.scene, needs.plane, needs.difficulty, self.swim_time)
-        else:
-            accuracy = self.accuracy.in_scene(self.scene, needs.plane, needs.difficulty)
-        if self.starts_fast:
-            accuracy = accuracy.for_fast_start()
-        return accuracy.for_waves(needs.shape.waves)
+            return within_budget(self.accuracy, self.scene, self.swim_time)
+        return self.accuracy.in_scene(self.scene)
 
     def discretise(self, settings: GridSettings) -> Discretisation:
         """Body, scene and stations on a grid of these `settings`."""

@@ -4,13 +4,11 @@ from eel_gaits.law import Law
 from eel_gaits.wording import shown
 
 import eel_core
-from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.accuracy.accuracy import LONGEST_STEP, Accuracy
 from eel_dynamics.curvature.law_follower import LawFollower
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.simulation.discretisation import Discretisation
 
-# A step takes at most this part of the shortest time over which the shape changes. The works are integrals over it.
-LONGEST_STEP = 0.1
 # A run takes at most so many evaluations per simulated second. They take seconds of wall time. The most exact runs need
 # a tenth of them.
 MOST_EVALUATIONS = 500_000.0
@@ -24,7 +22,7 @@ LEAST_SPARE = 6_000.0
 SLOWEST = 1e-3
 # Momenta below this part of the speed that the law gives to the body need not be exact to the last digit.
 PART_OF_SPEED = 0.5
-# A step takes at most this part of the time between two breakpoints of the shape.
+# A step takes at most this part of the time between two breakpoints of the shape, where longest_step is LONGEST_STEP.
 PART_OF_SPAN = 0.25
 # This part holds instead where there is a ledger. Most of the energy that a sudden ramp puts in comes back, and little
 # may be left over.
@@ -62,8 +60,9 @@ def step_bounds_of(
     length [m]: of the body. scale [s]: time scale of the initial velocity. most_evaluations: per simulated second.
     """
     scale = min(follower.time_scale, scale)
-    longest = LONGEST_STEP * min(scale, 10.0)
+    longest = accuracy.longest_step * min(scale, 10.0)
     fixed = accuracy.step or (accuracy.fixed and min(scale, 1.0) / accuracy.fixed)
+    part_of_span = PART_OF_RAMP if scene.ledger and not follower.between_samples else PART_OF_SPAN
     slowest = max(SLOWEST * length / min(scale, 10.0), PART_OF_SPEED * follower.speed(length))
     return eel_core.StepBounds(
         tolerance=accuracy.tolerance,
@@ -71,7 +70,7 @@ def step_bounds_of(
         smallest=1e-11 * min(scale, 1.0),
         length=length,
         momentum_floor=discretisation.mass * slowest,
-        part_of_span=PART_OF_RAMP if scene.ledger and not follower.between_samples else PART_OF_SPAN,
+        part_of_span=min(1.0, part_of_span * accuracy.longest_step / LONGEST_STEP),
         most_steps=most_evaluations / EVALUATIONS[accuracy.method],
         spare_steps=max(LEAST_SPARE, SPARE_STEPS * min(1.0, SPARE_POINTS / len(discretisation.grid.x))),
     )

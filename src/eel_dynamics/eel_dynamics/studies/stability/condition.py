@@ -87,7 +87,7 @@ def needles() -> str:
     lines = ["| half-axes of a needle of 1 m (m) | what happens to it in the falling gait |", "|---|---|"]
     for thickness in NEEDLES:
         try:
-            run = simulate(falling(), 2.0, body=needle(thickness), accuracy=1e-3, stations=2, verify=False)
+            run = simulate(falling(), 2.0, body=needle(thickness), accuracy=1e-3, stations=2, estimate=False)
             told = f"swims {run.path_length:.3g} m, greatest residual of the ledger {_open(run):.1g} of what passed"
         except (ValueError, SimulationStopped) as error:
             told = f"refused: {error}" if isinstance(error, ValueError) else str(error)

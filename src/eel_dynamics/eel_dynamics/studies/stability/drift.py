@@ -63,7 +63,7 @@ def drift_of(name: str, law: Law, scene: Scene, decades: int = DECADES, compared
     beat[SETTLED:] = np.linalg.norm(speed[SETTLED:] - speed[SETTLED : SETTLED + 1], axis=1)
     beat[SETTLED:] /= np.linalg.norm(speed[SETTLED : SETTLED + 1])
     way = np.linalg.norm(out.position[1:], axis=1)
-    _, finer, _ = _swum(law, scene, swimmer.accuracy.finer(), times[: compared + 2])
+    _, finer, _ = _swum(law, scene, swimmer.accuracy.tightened(0.1), times[: compared + 2])
     apart = np.linalg.norm(out.position[: compared + 2] - finer.position, axis=1)[1:]
     path = np.full(len(periods), np.nan)
     path[: compared + 1] = apart / np.maximum(way[: compared + 1], swimmer.body.length)

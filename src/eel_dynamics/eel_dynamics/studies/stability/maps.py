@@ -14,7 +14,6 @@ from eel_dynamics.accuracy.accuracy import ORDERS, PRESETS, Accuracy
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.batch import simulate_batch
-from eel_dynamics.simulation.simulation import SimulationStopped
 from eel_gaits import straight
 
 TARGET, FINER = 1e-3, 1e-6
@@ -90,7 +89,7 @@ def measure(item: Map) -> Measured:
         keywords = {name: [swim[name] for swim in swims] for name in swims[0]}
         batch = simulate_batch(**shared, **keywords, stations=STATIONS)
         finest = [FINER if each >= TARGET else FINEST for each in target[chosen]]
-        finer = simulate_batch(**shared, **{**keywords, "accuracy": finest})
+        finer = simulate_batch(**shared, **{**keywords, "accuracy": finest}, estimate=False)
         for place, index in enumerate(chosen):
             steps[index] = batch.steps[place]
             stop = batch.error[place] or finer.error[place]
@@ -105,7 +104,7 @@ def measure(item: Map) -> Measured:
             limits[index] = len(run.warnings) > len(ledger)
             if error[index] > target[index]:
                 warned[index] = bool(ledger)
-                estimate[index] = _estimate(run) / target[index]
+                estimate[index] = run.error_estimate.worst / target[index]
     found = error, reason, steps, limits, warned, estimate
     return Measured(item, *(each.reshape(shape) for each in found))
 
@@ -215,14 +214,6 @@ def maps_of(points: int = 13) -> tuple[Map, ...]:
             swimmer=lambda tolerance, row: _swim(_wave(), 4.0, accuracy=_method(round(np.log2(row)), tolerance)),
         ),
     )
-
-
-def _estimate(run) -> float:
-    """The error estimate of a run; infinite where the finer run that it needs stops."""
-    try:
-        return run.error_estimate.worst
-    except SimulationStopped:
-        return np.inf
 
 
 def spindle(length: float, slenderness: float) -> Body:

@@ -22,6 +22,13 @@ def _torque(run: Run, analysis):
     return None if run.torque is None else run.greatest_torque()[0]
 
 
+def _error(name: str):
+    def measure(run: Run, _):
+        return None if run.error_estimate is None else getattr(run.error_estimate, name)
+
+    return measure
+
+
 def _residual(run: Run, analysis):
     return None if run.energy is None else float(np.max(np.abs(run.energy.residual)))
 
@@ -56,6 +63,9 @@ MEASURES = {  # name: (unit, description, function of the run and its analysis)
     ),
     "greatest_torque": ("N m", "greatest internal torque over the run and the body", _torque),
     "ledger_residual": ("J", "greatest residual of the energy ledger", _residual),
+    "error_position": ("", "estimated relative error of the head's position", _error("position")),
+    "error_torque": ("", "estimated relative error of the internal torque", _error("torque")),
+    "error_growth_rate": ("1/s", "rate at which errors grow", _error("growth_rate")),
     "evaluations": ("", "evaluations of the head's dynamics", lambda run, _: run.evaluations),
 }
 

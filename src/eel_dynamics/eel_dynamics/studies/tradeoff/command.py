@@ -3,10 +3,10 @@
 tradeoff falling
 tradeoff falling straight turning --page docs/tradeoff.md --pictures docs/images
 tradeoff straight --set period=0.7 --quick --rerun trade.rrd
-tradeoff --delivered
-tradeoff --calibrate
+tradeoff --delivered --seed 7 --page docs/accuracy.md --pictures docs/images
 """
 
+import os
 import sys
 from pathlib import Path
 
@@ -14,13 +14,14 @@ from eel_gaits.command_line import Parser, complain
 from eel_gaits.output_file import NotWritten, check_output, replacing
 from eel_gaits.registry import GAITS, gait
 
-from eel_dynamics.curvature.difficulty import difficulty_of
 from eel_dynamics.model.body import NAMED, Body
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.interrupt import end_on_interrupt
 from eel_dynamics.runs.named_values import set_numbers
 from eel_dynamics.studies.tradeoff import measuring, models
-from eel_dynamics.studies.tradeoff.delivered import deliver, delivered_table, exceeding, farthest, scatter_line
+from eel_dynamics.studies.tradeoff.delivered import COUNT, SEED, deliver, delivered_table
+from eel_dynamics.studies.tradeoff.delivered_page import write_delivered_page
+from eel_dynamics.studies.tradeoff.drawing import DELIVERED_SIZE, SIZE, draw_delivered, draw_trade
 from eel_dynamics.studies.tradeoff.page import reference_line, write_page
 from eel_dynamics.studies.tradeoff.settings import settings
 from eel_dynamics.studies.tradeoff.table import model_table, trade_table, write_csv
@@ -34,16 +35,13 @@ def main(arguments: list[str] | None = None) -> int:
     if arguments is None:
         end_on_interrupt()
     options = _parser().parse_args(arguments)
-    if options.calibrate:
-        return _calibrate()
-    if options.delivered:
-        trials = deliver(say=_say)
-        print(delivered_table(trials))
-        print(scatter_line(trials))
-        print(f"farther below the target than 30: {'; '.join(farthest(trials)) or 'none'}")
-        print(f"above the target: {'; '.join(exceeding(trials)) or 'none'}")
-        return 0
     try:
+        if options.delivered:
+            if options.count < 1:
+                raise ValueError(f"--count must be 1 or more, got {options.count}")
+            if options.seed < 0:
+                raise ValueError(f"--seed must be 0 or more, got {options.seed}")
+            return _deliver(options)
         found = _measure_all(options)
         for trade, poorer in found:
             print(f"\n{trade.law.name}, {trade.duration:g} s. {reference_line(trade)}\n")
@@ -58,17 +56,20 @@ def main(arguments: list[str] | None = None) -> int:
     return 0
 
 
-def _calibrate() -> int:
-    """Measure again which settings deliver which target, and write the table that the presets are read from."""
-    from eel_dynamics.accuracy.accuracy import TABLE_FILE
-    from eel_dynamics.studies.calibration.calibration import calibrate
-
-    try:
-        calibrate(TABLE_FILE, say=_say)
-    except OSError as error:
-        complain("tradeoff", error)
-        return 2
-    print(f"written to {TABLE_FILE}")
+def _deliver(options) -> int:
+    """Measure what the targets deliver; print it, and write page and picture if they are asked for."""
+    if options.page:
+        check_output("--page", options.page)
+    trials = deliver(options.count, options.seed, _say)
+    print(delivered_table(trials))
+    if options.page:
+        page = Path(options.page)
+        folder = Path(options.pictures or page.parent)
+        for path in _save(lambda figure: draw_delivered(figure, trials), DELIVERED_SIZE, folder / "delivered"):
+            print(f"written to {path}")
+        picture = os.path.relpath(folder / "delivered.png", page.parent)
+        write_delivered_page(page, trials, options.count, options.seed, picture)
+        print(f"written to {page}")
     return 0
 
 
@@ -99,7 +100,7 @@ def _measure_all(options) -> list[tuple]:
     for law in laws:
         fixed = {"duration": options.duration, "body": body, "scene": Scene(), "say": _say}
         _say(f"gait {law.name}")
-        rows = settings(fixed["scene"], options.quick, law.in_plane, difficulty_of(law, body.length, options.duration))
+        rows = settings(fixed["scene"], options.quick)
         trade = measuring.measure(law, rows, repeats=options.repeats, **fixed)
         found.append((trade, models.compare(law, trade.reference, **fixed)))
     return found
@@ -118,8 +119,7 @@ def _write_all(options, found):
         page = Path(options.page)
         picture = (folder / f"tradeoff_{found[0][0].law.name}.png").resolve()
         beside = picture.is_relative_to(page.resolve().parent)
-        trials = None if options.quick else deliver(say=_say)
-        write_page(page, found, str(picture.relative_to(page.resolve().parent)) if beside else None, trials)
+        write_page(page, found, str(picture.relative_to(page.resolve().parent)) if beside else None)
         yield page
     if options.rerun:
         from eel_dynamics.studies.tradeoff.stream import stream
@@ -129,17 +129,21 @@ def _write_all(options, found):
 
 
 def _draw(trade, poorer, folder: Path):
+    return _save(lambda figure: draw_trade(figure, trade, poorer), SIZE, folder / f"tradeoff_{trade.law.name}")
+
+
+def _save(draw, size, stem: Path):
+    """Draw with `draw(figure)` into `stem` with .png and .svg; yields the paths."""
     import matplotlib
     from matplotlib.figure import Figure
 
     from eel_dynamics.studies.figures.style import SETTINGS
-    from eel_dynamics.studies.tradeoff.drawing import SIZE, draw_trade
 
     with matplotlib.rc_context(SETTINGS):
-        figure = Figure(figsize=SIZE, layout="constrained")
-        draw_trade(figure, trade, poorer)
+        figure = Figure(figsize=size, layout="constrained")
+        draw(figure)
         for suffix in ("png", "svg"):
-            path = folder / f"tradeoff_{trade.law.name}.{suffix}"
+            path = stem.with_name(f"{stem.name}.{suffix}")
             with replacing(path) as draft:
                 figure.savefig(draft, metadata={"Date": None} if suffix == "svg" else {"Software": None})
             yield path
@@ -168,15 +172,11 @@ def _parser() -> Parser:
     parser.add_argument(
         "--delivered",
         action="store_true",
-        help="instead: measure what the targets deliver over gaits, bodies and scenes, and how well runs judge their "
-        "own error (a minute or two); a page has it too, unless it is quick",
+        help="instead: measure what the targets deliver over random swims, and how well runs judge their own error "
+        "(a minute or two); --page writes docs/accuracy.md",
     )
-    parser.add_argument(
-        "--calibrate",
-        action="store_true",
-        help="instead of all this: measure which settings deliver which target over gaits, bodies and scenes, and "
-        "write the table that the presets are read from (minutes)",
-    )
+    parser.add_argument("--count", type=int, default=COUNT, help=f"of the random swims ({COUNT})")
+    parser.add_argument("--seed", type=int, default=SEED, help=f"of the random swims ({SEED})")
     return parser
 
 

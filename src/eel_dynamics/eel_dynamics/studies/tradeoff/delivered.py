@@ -1,188 +1,153 @@
-"""What the targets deliver: errors of runs relative to their targets, and error estimates relative to the errors.
+"""Measures what the targets deliver, and how well runs judge their own error, over random swims.
 
-The runs cover the gaits of the library and random laws that the calibration does not use, on both bodies, in the scenes
-of the calibration. Errors are those of `relative_errors`, against a run with far more points and far smaller steps.
+Swims are drawn from bends in space and in the plane, periods of 0.2 to 3 s, densities of 200 to 8,000 kg/m^3, every
+friction law, three bodies, heads at rest and moving, and durations of 1 to 16 s. The true error is the distance from a
+reference: two methods on two grids that agree to a tenth of the target.
 """
 
+import os
+import warnings
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from itertools import pairwise
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
 
 import numpy as np
+from eel_gaits.law import Law, Ramp, Term
 
-from eel_dynamics.accuracy.accuracy import Accuracy, key_of, table
+from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.model.body import Body
+from eel_dynamics.model.scene import FRICTION, Scene
 from eel_dynamics.runs.error_estimate import ErrorEstimate, relative_errors
-from eel_dynamics.studies.calibration.calibration import REFERENCE, Case, cases, swim
+from eel_dynamics.runs.run import simulate
+from eel_dynamics.simulation.stopping import SimulationStopped
 from eel_dynamics.studies.tradeoff.table import laid_out
 
-TARGETS = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9)  # each a tenth of the one before
-UNSEEN = range(100, 108)  # seeds of laws that the calibration does not use
-FAR = 30.0  # factor below the target, beyond which the run was needlessly expensive
-CLOSE = 10.0  # factor between an estimate and the true error
-LEAST = 1e-11  # least error that a reference resolves
-HEAD = (
-    *(
-        "scene",
-        "motion",
-        "error of",
-        "trials",
-        "above the target",
-        "within 30 below it",
-        "coarsest setting meets it",
-        "farther",
-    ),
-    *("target by error, median", "greatest", "estimates within 10 of the truth", "worst"),
+TARGETS = 1e-2, 1e-3, 1e-4, 1e-5, 1e-6
+REFERENCES = (
+    Accuracy(name="pair", resolution=70.0, tolerance=1e-11),
+    Accuracy(name="adams", resolution=90.0, tolerance=3e-12, method="adams", order=6),
 )
+AGREED = 0.1  # of the target, to which the references must agree
+LEAST = 1e-11  # least error that a reference resolves
+COUNT, SEED = 500, 1
+PERIODS, DURATIONS, DENSITIES = (0.2, 3.0), (1.0, 16.0), (200.0, 8000.0)  # s, s, kg/m^3
+SPEED = 0.3  # m/s and rad/s, of heads that move at the start
 
 
 @dataclass(frozen=True)
 class Trial:
-    """One run at a target. Errors are relative. coarse: error with the coarsest settings of the table for such runs."""
+    """One swim at a target.
 
-    case: Case
-    target: float
-    error: ErrorEstimate
+    error: its true error; None where the references do not agree. told: whether the run says that it misses its target.
+    cost: nodes times evaluations of all that was swum, relative to those of the delivered run alone.
+    """
+
+    swim: dict
+    error: ErrorEstimate | None
     estimate: ErrorEstimate
-    coarse: float
+    told: bool
+    cost: float
 
     @property
-    def below(self) -> float:
-        """The target divided by the error."""
-        return self.target / max(self.error.worst, LEAST)
+    def target(self) -> float:
+        """The relative error that was asked for."""
+        return self.swim["accuracy"]
 
     @property
-    def waived(self) -> bool:
-        """Whether the coarsest settings already meet the target, so that no cheaper ones exist."""
-        return self.coarse <= self.target
+    def missed(self) -> bool:
+        """Whether the error is above the target, or not known, and the run does not say so."""
+        return not self.told and self.error is not None and self.error.worst > self.target
 
     @property
-    def far(self) -> bool:
-        """Whether the error is more than a factor `FAR` below the target, although coarser settings exist."""
-        return self.below > FAR and not self.waived
-
-    @property
-    def misjudged(self) -> float:
-        """Factor (>= 1) between estimate and error, the greater of position and torque."""
-        pairs = (self.estimate.position, self.error.position), (self.estimate.torque, self.error.torque)
-        ratios = [max(estimate, LEAST) / max(error, LEAST) for estimate, error in pairs if error is not None]
-        return max(max(ratio, 1.0 / ratio) for ratio in ratios)
+    def underestimated(self) -> float:
+        """The true error divided by its estimate."""
+        return max(self.error.worst, LEAST) / max(self.estimate.worst, LEAST)
 
 
-def trials_of(case: Case, targets=TARGETS, reference=None) -> list[Trial]:
-    """The runs of a case at those `targets` that the table has, compared with a `reference` run (None: simulate it)."""
-    rows = table()[key_of(case.scene, case.plane)]
-    reference = reference or swim(case, REFERENCE)
-    coarsest = Accuracy.of(rows[0]["target"]).in_scene(case.scene, case.plane).as_it_is()
-    coarse = relative_errors(swim(case, coarsest), reference).worst
-    found = []
-    for target in (each for each in targets if each >= rows[-1]["target"]):
-        run = swim(case, target)
-        found.append(Trial(case, target, relative_errors(run, reference), run.error_estimate, coarse))
-    return found
+def drawn(rng: np.random.Generator) -> dict:
+    """Arguments of `simulate` for one swim."""
 
+    def between(low: float, high: float) -> float:
+        return float(np.exp(rng.uniform(np.log(low), np.log(high))))
 
-def deliver(seeds=UNSEEN, targets=TARGETS, say: Callable = lambda text: None) -> list[Trial]:
-    """The trials of all cases, with and without drag. seeds: of the random laws; say(text): called with progress."""
-    found = []
-    for drag in (True, False):
-        for case in cases(drag, seeds):
-            say(f"what the targets deliver: {case.name}")
-            reference = swim(case, REFERENCE)
-            lean = replace(case, scene=replace(case.scene, internal_wrench=False))
-            found += trials_of(case, targets, reference) + trials_of(lean, targets, reference)
-    return found
-
-
-def delivered_table(trials: list[Trial], *, markdown: bool = False) -> str:
-    """The distribution of the trials as a table: a row for each kind of scene and motion, and one for all."""
-    groups = {}
-    for trial in trials:
-        scene = "with drag" if trial.case.scene.resistive else "without drag"
-        motion = "in a plane" if trial.case.plane else "in space"
-        quantity = "position and torque" if trial.case.scene.internal_wrench else "position, motion alone"
-        groups.setdefault((scene, motion, quantity), []).append(trial)
-    groups = {key: groups[key] for key in sorted(groups)} | {("all", "all", "all"): trials}
-    return laid_out(HEAD, [_row(*key, part) for key, part in groups.items()], markdown)
-
-
-def _row(scene: str, motion: str, quantity: str, trials: list[Trial]) -> list[str]:
-    below = np.array([trial.below for trial in trials])
-    counted = np.array([trial.below for trial in trials if not trial.waived])
-    misjudged = np.array([trial.misjudged for trial in trials])
-    within = sum(1.0 <= trial.below <= FAR for trial in trials)
-    waived = sum(trial.waived and trial.below > FAR for trial in trials)
-    return [
-        *(scene, motion, quantity, str(len(trials)), str(int(np.sum(below < 1.0))), str(within), str(waived)),
-        *(str(sum(trial.far for trial in trials)), f"{np.median(below):.0f}", f"{np.max(counted, initial=0.0):.0f}"),
-        *(f"{np.sum(misjudged <= CLOSE)}", f"{np.max(misjudged):.1f}"),
-    ]
-
-
-@dataclass(frozen=True)
-class Scatter:
-    """Scatter about their mean of the errors of different runs at one target, with the same settings of the table.
-
-    decades: standard deviation of the decadic logarithms of the errors. likeness: correlation of the deviations from
-    the mean at a target and at a tenth of it in the same run. It is 1 if a run with small errors at one target has
-    small errors at all, and 0 if the deviations are independent.
-    """
-
-    decades: float
-    likeness: float
-
-    @property
-    def sides(self) -> float:
-        """Half the width of a factor `FAR`, in standard deviations."""
-        return 0.5 * np.log10(FAR) / self.decades
-
-
-def scatter_of(trials: list[Trial]) -> Scatter:
-    """Scatter over the trials whose settings could have been coarser.
-
-    Means are taken over trials of the same target, drag, motion and quantity.
-    """
-    groups, tenth = {}, dict(pairwise(TARGETS))
-    for trial in trials:
-        if not trial.waived:
-            scene = trial.case.scene
-            kind = trial.target, scene.resistive, scene.friction, scene.internal_wrench, trial.case.plane
-            groups.setdefault(kind, {})[trial.case.name] = np.log10(trial.below)
-    left = {
-        (name, *kind): value - np.mean(list(group.values()))
-        for kind, group in groups.items()
-        for name, value in group.items()
+    body = (Body.boyer2010(), Body.kern2006(), Body.kern2006(0.3))[rng.integers(3)]
+    length, period = body.length, between(*PERIODS)
+    envelope = (Ramp(0.0, period * rng.uniform(0.5, 2.0), 1.0),)
+    amplitude = rng.uniform(0.2, 1.5, 3) / length ** np.arange(1, 4)
+    wave = {"wavelength": float(length * rng.uniform(0.7, 2.0)), "period": period, "envelope": envelope}
+    terms = [Term(axis="yaw", amplitude=tuple(amplitude.tolist()), **wave)]
+    kind, bend = rng.integers(3), (float(rng.uniform(-1.0, 1.0)) / length,)
+    if kind == 1:
+        terms.append(Term(axis="pitch", amplitude=bend, phase=0.5 * np.pi, envelope=envelope))
+    elif kind == 2:
+        terms.append(Term(axis="pitch", amplitude=bend, **wave))
+    wrench = bool(rng.integers(2))
+    water = {"density": between(*DENSITIES), "friction": str(rng.choice(FRICTION))}
+    return {
+        "law": Law(*terms, name="drawn"),
+        "duration": between(*DURATIONS),
+        "body": body,
+        "scene": Scene(**water, internal_wrench=wrench, ledger=False),
+        "accuracy": float(rng.choice(TARGETS)),
+        "twist": rng.normal(size=6) * SPEED * (rng.random() < 0.3),
+        "stations": 11,
     }
-    pairs = [
-        (value, left[beside])
-        for (name, target, *kind), value in left.items()
-        if (beside := (name, tenth.get(target), *kind)) in left
-    ]
-    freedom = len(left) - len(groups)
-    decades = np.sqrt(sum(value**2 for value in left.values()) / freedom)
-    return Scatter(float(decades), float(np.corrcoef(np.transpose(pairs))[0, 1]))
 
 
-def scatter_line(trials: list[Trial]) -> str:
-    """The scatter of the `trials`, in words."""
-    found = scatter_of(trials)
-    return (
-        f"From swim to swim, errors at a target scatter by a factor of {10.0**found.decades:.1f} (standard deviation "
-        f"of the logarithm: {found.decades:.2f} decades; correlation of a swim's luck at a target and at a tenth of "
-        f"it: {found.likeness:.2f}), so a factor of {FAR:g} is {found.sides:.1f} standard deviations to either side."
+def trial_of(swim: dict) -> Trial | None:
+    """The trial of one swim; None for a swim that stops before its end, with its reason."""
+    try:
+        run = simulate(**swim)
+        references = [simulate(**{**swim, "accuracy": each}, estimate=False) for each in REFERENCES]
+    except SimulationStopped:
+        return None
+    agree = relative_errors(*references).worst <= AGREED * swim["accuracy"]
+    estimate = run.error_estimate
+    return Trial(
+        swim=swim,
+        error=relative_errors(run, references[0]) if agree else None,
+        estimate=estimate,
+        told=bool(estimate.missed(swim["accuracy"], float(run.time[-1]))),
+        cost=1.0 + estimate.cost / (run.nodes * run.evaluations),
     )
 
 
-def farthest(trials: list[Trial]) -> list[str]:
-    """The trials that are needlessly far below their target, the farthest first, in words."""
-    far = sorted((trial for trial in trials if trial.far), key=lambda trial: -trial.below)
-    return [f"{_said(trial)}: {trial.below:.0f}" for trial in far]
+def deliver(count: int = COUNT, seed: int = SEED, say: Callable = lambda text: None) -> list[Trial]:
+    """The trials of `count` swims that `seed` draws. say(text): called with progress."""
+    say(f"what the targets deliver: {count} swims of seed {seed}")
+    swims = [drawn(np.random.default_rng([seed, index])) for index in range(count)]
+    with warnings.catch_warnings(), ThreadPoolExecutor(os.cpu_count()) as pool:
+        warnings.simplefilter("ignore")  # a trial keeps whether its run was told to miss its target
+        return [each for each in pool.map(trial_of, swims) if each is not None]
 
 
-def exceeding(trials: list[Trial]) -> list[str]:
-    """The trials that miss their target, in words."""
-    missed = (trial for trial in trials if trial.below < 1.0)
-    return [f"{_said(trial)}: {trial.error.worst:.1e}" for trial in missed]
+def delivered_table(trials: list[Trial], *, markdown: bool = False) -> str:
+    """The counts of the trials as a table: a row for the motion alone, for runs with torque, and for all."""
+    groups = {
+        "position, motion alone": [each for each in trials if each.estimate.torque is None],
+        "position and torque": [each for each in trials if each.estimate.torque is not None],
+        "all": trials,
+    }
+    head = (
+        *("error of", "swims", "with a reference", "above the target", "of these not told", "told without a reference"),
+        *("estimate below the error", "by more than 2", "error by estimate, median", "greatest"),
+        *("target by error, median", "cost, median"),
+    )
+    return laid_out(head, [_row(name, part) for name, part in groups.items()], markdown)
 
 
-def _said(trial: Trial) -> str:
-    return f"{trial.case.name}{'' if trial.case.scene.internal_wrench else ', motion alone,'} at {trial.target:g}"
+def _row(name: str, trials: list[Trial]) -> list[str]:
+    known = [each for each in trials if each.error is not None]
+    above = [each for each in known if each.error.worst > each.target]
+    ratios = np.array([each.underestimated for each in known] or [np.nan])
+    below = np.array([each.target / max(each.error.worst, LEAST) for each in known] or [np.nan])
+    counts = (
+        *(len(trials), len(known), len(above), sum(each.missed for each in known)),
+        *(
+            sum(each.told for each in trials if each.error is None),
+            int(np.sum(ratios > 1.0)),
+            int(np.sum(ratios > 2.0)),
+        ),
+    )
+    figures = f"{np.median(ratios):.3f}", f"{np.max(ratios):.2f}", f"{np.median(below):.0f}"
+    return [name, *map(str, counts), *figures, f"{np.median([each.cost for each in trials] or [np.nan]):.2f}"]

@@ -7,11 +7,13 @@ import numpy as np
 
 from eel_dynamics.accuracy.accuracy import PRESETS
 from eel_dynamics.studies.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE
+from eel_dynamics.studies.tradeoff.delivered import LEAST
 from eel_dynamics.studies.tradeoff.measuring import Trade, front
 from eel_dynamics.studies.tradeoff.models import Model
 from eel_dynamics.studies.tradeoff.settings import METHODS
 
 LOOKS = {"adams": (BLUE, "o"), "dormand_prince": (GREEN, "s"), "classical": (ORANGE, "^")}
+DELIVERED_SIZE = (4.5, 3.6)  # inches
 SIZE = 11.0, 5.4  # inches
 FLOOR = 3.0  # times the reference's own error: differences below it are not significant
 
@@ -128,3 +130,19 @@ def _apart(heights: list[float], gap: float) -> list[float]:
 def _edge(group: list, gap: float) -> float:
     """Upper edge of a group of labels, or its lower one for a negative gap."""
     return group[0] / group[1] + 0.5 * gap * group[1]
+
+
+def draw_delivered(figure, trials):
+    """True errors against estimates, both relative to the target."""
+    axes = figure.subplots()
+    kinds = ("motion alone", False, "o"), ("with torque", True, "s")
+    for label, torque, marker in kinds:
+        known = [each for each in trials if each.error is not None and (each.estimate.torque is not None) is torque]
+        estimate = [max(each.estimate.worst, LEAST) / each.target for each in known]
+        error = [max(each.error.worst, LEAST) / each.target for each in known]
+        axes.loglog(estimate, error, marker, markersize=3, alpha=0.6, label=label)
+    ends = [1e-4, 10.0]
+    axes.plot(ends, ends, "k-", linewidth=0.8)
+    axes.axhline(1.0, color="0.5", linewidth=0.8, linestyle="--")
+    axes.set(xlabel="estimated error / target", ylabel="true error / target", xlim=ends, ylim=[1e-6, 10.0])
+    axes.legend()

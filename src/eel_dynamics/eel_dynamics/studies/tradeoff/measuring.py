@@ -81,6 +81,7 @@ def swim(law: Law, duration: float, body: Body, scene: Scene, accuracy: Accuracy
         accuracy=accuracy,
         sample_period=SAMPLE_PERIOD,
         stations=STATIONS,
+        estimate=False,
     )
 
 

@@ -7,7 +7,6 @@ from pathlib import Path
 from eel_gaits.output_file import replacing
 
 import eel_core
-from eel_dynamics.studies.tradeoff.delivered import FAR, Trial, delivered_table, exceeding, farthest, scatter_line
 from eel_dynamics.studies.tradeoff.models import Model
 from eel_dynamics.studies.tradeoff.settings import CHECK, REFERENCE
 from eel_dynamics.studies.tradeoff.table import model_table, trade_table
@@ -31,28 +30,11 @@ out of its scene.
 """
 
 
-DELIVERED = """
-## What the targets deliver
-
-Each target of 1e-2 to 1e-9 that the table of accuracy has, on {cases} cases: the gaits of the library and random laws
-that the calibration has not seen, both bodies, laminar and printed friction and no drag. Error: the greater of the
-head's position and the torque, or of the position where no torque was asked for. Gaits swim for 10 s (4 s without
-drag), random laws of a fifth of the usual bends to twice these and 0.4 to 2.5 times the usual pace for 3 to 16 s at
-that pace. The settings are the table's for a swim as hard (`difficulty.py`). What is left is luck: errors of many
-steps and panels cancel more or less, and the place where a swim ends is one of many where its error could be read.
-Nearly all swims are to keep within their target, so many get more than they asked for, and no table can have all of
-them within 30 below it. Nor could a pilot run: the luck at ten times the target tells little of that at the target, and
-it would cost six tenths of what it is for. The estimate of a run's own error is the difference from a finer run
-(`run.error_estimate`).
-
-"""
-
-
-def write_page(path: Path, found: list[tuple], picture: str | None, trials: list[Trial] | None = None):
+def write_page(path: Path, found: list[tuple], picture: str | None):
     """Write the page to `path`.
 
     found: pairs of a trade and its models. picture: path of the first gait's picture, relative to the page; None: no
-    picture. trials: of what the targets deliver; None: not measured. `OSError` where the page cannot be written.
+    picture. `OSError` where the page cannot be written.
     """
     gaits = " ".join(trade.law.name for trade, _ in found)
     text = HEAD.format(
@@ -69,12 +51,6 @@ def write_page(path: Path, found: list[tuple], picture: str | None, trials: list
         text += f"\n## {trade.law.name}, {trade.duration:g} s\n\n{reference_line(trade)}\n\n"
         text += trade_table(trade, markdown=True) + "\n\n"
         text += model_table(models, trade, markdown=True) + "\n"
-    if trials:
-        text += DELIVERED.format(cases=len({trial.case.name for trial in trials}))
-        text += delivered_table(trials, markdown=True) + "\n"
-        text += f"\n{scatter_line(trials)}\n"
-        text += f"\nFarther than {FAR:g} below the target: {'; '.join(farthest(trials)) or 'none'}.\n"
-        text += f"\nAbove the target: {'; '.join(exceeding(trials)) or 'none'}.\n"
     with replacing(path) as draft:
         draft.write_text(text, encoding="utf-8")
 

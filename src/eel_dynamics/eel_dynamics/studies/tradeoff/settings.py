@@ -3,7 +3,6 @@
 from dataclasses import replace
 
 from eel_dynamics.accuracy.accuracy import PRESETS, Accuracy
-from eel_dynamics.curvature.difficulty import NOMINAL, Difficulty
 from eel_dynamics.model.scene import Scene
 
 RESOLUTIONS = (6.0, 8.0, 11.0, 16.0, 24.0, 36.0, 60.0, 110.0)  # points per body length
@@ -20,13 +19,10 @@ METHODS = {  # name in `Accuracy`: in words
 }
 
 
-def settings(
-    scene: Scene, quick: bool = False, plane: bool = False, difficulty: Difficulty = NOMINAL
-) -> list[Accuracy]:
+def settings(scene: Scene, quick: bool = False) -> list[Accuracy]:
     """Every combination of points and steps, and the presets as they apply in `scene`.
 
-    quick: every third value of points and of steps only. plane: the motion stays in a plane. difficulty: of the run,
-    for the presets.
+    quick: every third value of points and of steps only.
     """
     part = slice(None, None, 3) if quick else slice(None)
     rows = []
@@ -43,5 +39,5 @@ def settings(
         for step in STEPS[part]:
             rows.append(Accuracy(name=f"{nodes}, step {step:g} s", resolution=resolution, step=step))
     # The presets lose their target: with it they would take other settings for timing, where the wrench is off.
-    presets = [Accuracy.of(name).in_scene(scene, plane, difficulty) for name in PRESETS]
+    presets = [Accuracy.of(name).in_scene(scene) for name in PRESETS]
     return rows + [each.as_it_is() for each in presets]

@@ -1,1 +1,0 @@
-"""Calibration: measures the table of accuracy, the settings that deliver each target."""
