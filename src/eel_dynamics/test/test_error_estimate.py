@@ -90,6 +90,14 @@ def test_settings_that_were_given_are_kept_and_their_error_is_measured():
     assert simulate(falling(), 0.0).error_estimate is None
 
 
+def test_a_refined_run_has_a_smaller_error():
+    swim = {"duration": 3.0, "scene": Scene(ledger=False), "stations": 11, "twist": (0.0, 0.1, 0.0, 0.1, 0.0, 0.0)}
+    run = simulate(straight(), **swim, accuracy=1e-3, estimate=False)
+    true = simulate(straight(), **swim, accuracy=FINE, estimate=False)
+    assert relative_errors(run.refined, true).worst < 0.5 * relative_errors(run, true).worst
+    np.testing.assert_array_equal(run.refined.time, run.time)
+
+
 @pytest.mark.parametrize(
     ("body", "wrench"), [(Body.boyer2010(), True), (Body.boyer2010(), False), (Body.kern2006(), True)]
 )

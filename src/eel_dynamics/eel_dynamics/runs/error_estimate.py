@@ -120,11 +120,8 @@ def with_error_estimate(swim, request):
     for refinement in range(MOST_REFINEMENTS + 1):
         error = ErrorEstimate(np.inf, None) if companion is None else relative_errors(swim.run, companion.run)
         others += [] if companion is None else [companion.run]
-        evaluations, cost = (
-            sum(each.evaluations for each in others),
-            sum(each.evaluations * each.nodes for each in others),
-        )
-        error = replace(error, evaluations=evaluations, cost=cost)
+        cost = sum(each.evaluations * each.nodes for each in others)
+        error = replace(error, evaluations=sum(each.evaluations for each in others), cost=cost)
         swim = swim._replace(run=replace(swim.run, error_estimate=error))
         if target is None or error.worst <= target / ACCEPTED or refinement == MOST_REFINEMENTS:
             break
