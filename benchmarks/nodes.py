@@ -1,5 +1,5 @@
 """What the nodes cost and how soon they answer: `python benchmarks/run.py nodes`. The dynamics at 100 Hz and at the
-clock's pace, 51 stations, with all topics heard; real processes on a domain of their own."""
+clock's rate, 51 stations, with a subscriber on every topic; real processes on a domain of their own."""
 
 import math
 import os
@@ -114,13 +114,13 @@ def _spent(swimming) -> np.ndarray:
 def _delay(client: SwimClient, k: int) -> float:
     """Seconds from publishing another bend to the arrival of the first sample that moves by it."""
     client.spin(0.2 + 0.003 * (k % 9))
-    heard = client.heard["curvature"]
-    before, seen, sent = heard[-1].yaw[25], len(heard), time.monotonic()
+    received = client.received["curvature"]
+    before, seen, sent = received[-1].yaw[25], len(received), time.monotonic()
     bend = Term(axis="yaw", amplitude=(1.0 + k % 2,), phase=math.pi / 2)
     client.laws.publish(law_to_message(Law(bend, name=f"bend {k}", transition=0.05)))
 
     def moved():
-        return (j for j in range(seen, len(heard)) if abs(heard[j].yaw[25] - before) > 1e-9)
+        return (j for j in range(seen, len(received)) if abs(received[j].yaw[25] - before) > 1e-9)
 
     client.until(lambda: next(moved(), None) is not None, "change")
     return client.arrivals["curvature"][next(moved())] - sent

@@ -1,4 +1,4 @@
-"""What showing a run costs: `python benchmarks/run.py visualiser`. A real run of the falling gait at the clock's pace,
+"""What showing a run costs: `python benchmarks/run.py visualiser`. A real run of the falling gait at the clock's rate,
 three processes, and the CPU time of the visualiser alone while the swimmer swims."""
 
 import os

@@ -1,4 +1,4 @@
-"""A long run of the three nodes as fast as they go, every topic heard, and the memory that each process takes.
+"""A long run of the three nodes as fast as possible, with subscribers, and the memory of each process.
 
 Memory is what a process has for itself in RAM, without what is mapped from files (Linux's `RssAnon`): the pages
 of libraries come and go with the machine's own needs.
@@ -37,7 +37,7 @@ executor.add_node(node)
 wanted = int(sys.argv[1])
 while min(counts.values()) < wanted:
     executor.spin_once(timeout_sec=0.5)
-print("heard", counts, flush=True)
+print("received", counts, flush=True)
 """
 NODES = ("dynamics", "gait_generator", "visualiser")
 
@@ -85,14 +85,14 @@ def soak(start, duration: float, *, limit: float, memory_limit: str = "32MiB") -
         "dynamics", "--ros-args", "-p", f"duration:={duration}", "-p", f"rate:={RATE}", "-p", "real_time_factor:=0",
         "-p", "wait_for_subscribers:=2", "-p", "subscriber_timeout:=60",
     )  # fmt: skip
-    dynamics.wait_for_output("taken on")
+    dynamics.wait_for_output("adopted")
     began = time.monotonic()
     processes = dict(zip(NODES, (dynamics, gait, visualiser), strict=True))
     clock = Clock()
     times, memory = [], {node: [] for node in NODES}
     while dynamics.status is None:
         assert time.monotonic() - began < limit, f"at {clock.time:g} s after {limit:g} s"
-        clock.hear(LOOK)
+        clock.receive(LOOK)
         try:
             looked = {name: anonymous_memory(node.process.pid) for name, node in processes.items()}
         except (OSError, IndexError):  # one has just ended
@@ -106,8 +106,8 @@ def soak(start, duration: float, *, limit: float, memory_limit: str = "32MiB") -
     for node in (dynamics, visualiser, listener):
         assert node.wait(120.0) == 0, node.output()
     assert "stuck" not in dynamics.output(), dynamics.output()
-    heard = listener.output().split("heard ")[1].strip()
-    counts = {word.split(":")[0].strip(" '{}"): int(word.split(":")[1].strip(" }")) for word in heard.split(",")}
+    received = listener.output().split("received ")[1].strip()
+    counts = {word.split(":")[0].strip(" '{}"): int(word.split(":")[1].strip(" }")) for word in received.split(",")}
     return Soak(np.array(times), {node: np.array(values) for node, values in memory.items()}, counts, wall)
 
 
@@ -138,7 +138,7 @@ class Clock:
     def _take(self, message):
         self.time = message.clock.sec + 1e-9 * message.clock.nanosec
 
-    def hear(self, seconds: float):
+    def receive(self, seconds: float):
         """Waits so long, then takes the newest tick."""
         time.sleep(seconds)
         self._executor.spin_once(timeout_sec=0.1)

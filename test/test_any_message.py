@@ -1,4 +1,4 @@
-"""No message ends a node, whatever it holds: every subscription hears the extremes of each field, over DDS."""
+"""No message ends a node, whatever it holds: every subscription receives the extremes of each field, over DDS."""
 
 import time
 
@@ -37,20 +37,20 @@ def wait_for_subscriber(publisher) -> None:
     """Until there is one."""
     deadline = time.monotonic() + LIMIT
     while not publisher.get_subscription_count():
-        assert time.monotonic() < deadline, f"nobody hears {publisher.topic_name}"
+        assert time.monotonic() < deadline, f"nobody subscribes to {publisher.topic_name}"
         time.sleep(0.02)
 
 
 def send_extremes(network, node, name, least) -> None:
-    """To each topic that the node `name`, the process `node`, hears; to those in `least` at least."""
+    """To each topic that the node `name`, the process `node`, subscribes to; to those in `least` at least."""
     deadline = time.monotonic() + LIMIT
-    heard = {}
-    while not set(least) <= heard.keys():
-        assert time.monotonic() < deadline, f"{name} does not hear {least}: {heard}"
+    received = {}
+    while not set(least) <= received.keys():
+        assert time.monotonic() < deadline, f"{name} does not subscribe to {least}: {received}"
         if name in network.get_node_names():
-            heard = dict(network.get_subscriber_names_and_types_by_node(name, "/"))
+            received = dict(network.get_subscriber_names_and_types_by_node(name, "/"))
         time.sleep(0.1)
-    for topic, (kind, *_) in heard.items():
+    for topic, (kind, *_) in received.items():
         publisher = network.create_publisher(get_message(kind), topic, ANYBODY)
         wait_for_subscriber(publisher)
         for message in [*extremes(get_message(kind)), *broken(get_message(kind))]:
@@ -74,9 +74,9 @@ def test_the_dynamics_node_stands_any_message(start, network, fresh_domain):
     send_extremes(network, node, "dynamics", {"/curvature_law", "/curvature_samples", "/clock"})
     assert swim.reset().success
     swim.laws.publish(law_to_message(falling(period=0.9)))
-    swim.until(lambda: node.output().count("law 'falling' taken on") > 1, "the next law")
+    swim.until(lambda: node.output().count("law 'falling' adopted") > 1, "the next law")
     swim.until_time(0.5)
-    assert all(is_finite(message) for topic in ("head_pose", "curvature") for message in swim.heard[topic])
+    assert all(is_finite(message) for topic in ("head_pose", "curvature") for message in swim.received[topic])
     swim.until(lambda: swim.diagnosis()[1] == "swimming", "good diagnostics")
     swim.close()
     assert node.interrupt() == 0 and "Traceback" not in node.output()

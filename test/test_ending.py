@@ -34,13 +34,13 @@ def test_signal_ends_a_node(start, tmp_path, monkeypatch, executable, sent):
 
 
 @pytest.mark.fault(
-    "ending", "SIGINT or SIGTERM when a law has just been taken on", "prompt exit, status 0, no traceback"
+    "ending", "SIGINT or SIGTERM when a law has just been adopted", "prompt exit, status 0, no traceback"
 )
 @pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
 def test_signal_ends_a_swim(start, fresh_domain, sent):
     start("gait_generator")
     node = start("dynamics")
-    node.wait_for_output("taken on")
+    node.wait_for_output("adopted")
     assert ends_well(node, sent)
 
 

@@ -49,11 +49,11 @@ def test_names_are_only_names(start, fresh_domain, tmp_path, monkeypatch):
     swim = SwimClient(domain=fresh_domain, topics=("curvature",))
     for name in NAMES:
         swim.laws.publish(law_to_message(Law(Term(amplitude=(0.1,), envelope=(Ramp(0.0, 1.0, 1.0),)), name=name)))
-        swim.until(lambda name=name: f"law {shown(name)} taken on" in dynamics.output(), f"law {name!r}")
-    swim.until(lambda: swim.heard["/diagnostics"] and swim.diagnosis()[2]["law"] == NAMES[-1], "the last name")
+        swim.until(lambda name=name: f"law {shown(name)} adopted" in dynamics.output(), f"law {name!r}")
+    swim.until(lambda: swim.received["/diagnostics"] and swim.diagnosis()[2]["law"] == NAMES[-1], "the last name")
     swim.laws.publish(CurvatureLaw(name=TOO_LONG))
     swim.until(lambda: "name must have at most 200 characters, got 1000000" in dynamics.output(), "the refusal")
-    swim.until(lambda: swim.heard["/diagnostics"] and swim.diagnosis()[0] == 2, "the refusal in the diagnostics")
+    swim.until(lambda: swim.received["/diagnostics"] and swim.diagnosis()[0] == 2, "the refusal in the diagnostics")
     swim.until_time(1.5, "curvature")
     swim.close()
     for node in (visualiser, dynamics):

@@ -1,4 +1,4 @@
-"""Two eels on one network: each node in a namespace hears and says its own; only /clock and /diagnostics are shared."""
+"""Two eels on one network: each node has the topics of its namespace; only /clock and /diagnostics are shared."""
 
 import json
 import subprocess
@@ -38,7 +38,9 @@ rclpy.shutdown()
 
 
 @pytest.mark.fault(
-    "neighbours", "two eels in two namespaces", "each hears and says its own; only /clock and /diagnostics are shared"
+    "neighbours",
+    "two eels in two namespaces",
+    "each receives and publishes its own; only /clock and /diagnostics are shared",
 )
 def test_two_eels(start, fresh_domain, tmp_path):
     listener = start(sys.executable, "-c", LISTEN)
@@ -48,11 +50,11 @@ def test_two_eels(start, fresh_domain, tmp_path):
         start("gait_generator", *remap, "-p", f"gait:={gait}")
         start("dynamics", *remap, "-p", "duration:=3.0", "-p", "real_time_factor:=0", "-p", "wait_for_subscribers:=1")
     assert listener.wait(120.0) == 0, listener.output()
-    heard = json.loads([line for line in listener.output().splitlines() if line.startswith("{")][-1])
-    assert heard["count"] == {"/left": 301, "/right": 301}
-    assert heard["end"]["/left"] != heard["end"]["/right"]
-    assert {"/left/head_pose", "/right/head_pose", "/clock", "/diagnostics"} <= set(heard["topics"])
-    assert "/head_pose" not in heard["topics"] and "/left/clock" not in heard["topics"]
+    received = json.loads([line for line in listener.output().splitlines() if line.startswith("{")][-1])
+    assert received["count"] == {"/left": 301, "/right": 301}
+    assert received["end"]["/left"] != received["end"]["/right"]
+    assert {"/left/head_pose", "/right/head_pose", "/clock", "/diagnostics"} <= set(received["topics"])
+    assert "/head_pose" not in received["topics"] and "/left/clock" not in received["topics"]
 
 
 def test_a_name_of_its_own(start, fresh_domain):

@@ -62,7 +62,7 @@ def test_what_is_killed_leaves_what_it_had(start, fresh_domain, tmp_path):
     node.wait_for_output("saving to")
     recorder.wait_for_output("recording to")
     dynamics = swim(start, "real_time_factor:=1", "wait_for_subscribers:=2")
-    dynamics.wait_for_output("taken on")
+    dynamics.wait_for_output("adopted")
     clock = Clock()
 
     def newest_in_the_bag():
@@ -88,7 +88,7 @@ def test_what_is_killed_leaves_what_it_had(start, fresh_domain, tmp_path):
         found = seen(newest)
         while clock.time < 3.0 or clock.time - found > 1.5:
             assert time.monotonic() < deadline, (clock.time, found)
-            clock.hear(0.05)
+            clock.receive(0.05)
             found = seen(newest)
         before.append(found)
     for each in (node, recorder):

@@ -1,4 +1,4 @@
-"""Nodes that are killed and come back while the others run, resets heard by all, and systems side by side."""
+"""Nodes that are killed and come back while the others run, resets seen by all, and systems side by side."""
 
 import signal
 import time
@@ -83,18 +83,18 @@ def test_nodes_die_and_come_back(start, fresh_domain, tmp_path, monkeypatch):
     """Over UDP: SIGKILL may leave Fast DDS's shared memory locked (README.md), and then no data comes at all."""
     monkeypatch.setenv("FASTDDS_BUILTIN_TRANSPORTS", "UDPv4")
     swim = SwimClient(domain=fresh_domain, topics=("curvature",))
-    heard = swim.heard["curvature"]
+    received = swim.received["curvature"]
 
     def on(more):
         """Spins until the simulation is so much further [s]; its time then."""
-        target = (seconds(heard[-1]) if heard else 0.0) + more
+        target = (seconds(received[-1]) if received else 0.0) + more
         swim.until_time(target, "curvature")
         return target
 
     def from_the_start():
-        count = len(heard)
-        swim.until(lambda: any(seconds(message) < 0.3 for message in heard[count:]), "samples from the start")
-        del heard[: next(k for k in range(count, len(heard)) if seconds(heard[k]) < 0.3)]
+        count = len(received)
+        swim.until(lambda: any(seconds(message) < 0.3 for message in received[count:]), "samples from the start")
+        del received[: next(k for k in range(count, len(received)) if seconds(received[k]) < 0.3)]
 
     def recorded(name):
         deadline = time.monotonic() + LIMIT
@@ -113,7 +113,7 @@ def test_nodes_die_and_come_back(start, fresh_domain, tmp_path, monkeypatch):
     on(1.0)
     start("gait_generator").wait_for_output("published on", LIMIT)
     on(1.0)
-    assert dynamics.output().count("taken on") == 1, dynamics.output()
+    assert dynamics.output().count("adopted") == 1, dynamics.output()
 
     first.process.send_signal(signal.SIGKILL)
     first.wait(LIMIT)
@@ -121,7 +121,7 @@ def test_nodes_die_and_come_back(start, fresh_domain, tmp_path, monkeypatch):
     on(0.5)
     second = visualise(start, tmp_path / "second.rrd")
     recorded("second.rrd")
-    for message in heard[::20]:
+    for message in received[::20]:
         assert np.allclose(message.yaw, falling().curvature(seconds(message), np.array(message.x))[0][:, 2], atol=1e-9)
 
     assert swim.reset().success
@@ -136,7 +136,7 @@ def test_nodes_die_and_come_back(start, fresh_domain, tmp_path, monkeypatch):
     late = visualise(start, tmp_path / "late.rrd")
     recorded("late.rrd")
     recorded("second-3.rrd")
-    for message in heard[::20]:
+    for message in received[::20]:
         assert np.allclose(message.yaw, falling().curvature(seconds(message), np.array(message.x))[0][:, 2], atol=1e-9)
     swim.close()
     for node in (second, late, again):
@@ -156,11 +156,11 @@ def test_nodes_die_and_come_back(start, fresh_domain, tmp_path, monkeypatch):
 )
 def test_a_dynamics_node_that_is_found_late_begins_a_new_recording(start, fresh_domain, tmp_path):
     swim = SwimClient(domain=fresh_domain, topics=("curvature",))
-    heard = swim.heard["curvature"]
+    received = swim.received["curvature"]
     start("gait_generator")
     node = visualise(start, tmp_path / "run.rrd")
     first = start("dynamics", "--ros-args", "-p", "real_time_factor:=2", "-p", "wait_for_subscribers:=2")
-    swim.until(lambda: heard and seconds(heard[-1]) > 1.0, "a second of the first run")
+    swim.until(lambda: received and seconds(received[-1]) > 1.0, "a second of the first run")
     deadline = time.monotonic() + LIMIT
     while not times(tmp_path / "run.rrd").size:
         assert time.monotonic() < deadline, node.output()
@@ -170,15 +170,15 @@ def test_a_dynamics_node_that_is_found_late_begins_a_new_recording(start, fresh_
         first.process.send_signal(signal.SIGKILL)
         first.wait(LIMIT)
         second = start("dynamics", "--ros-args", "-p", "real_time_factor:=2", "-p", "wait_for_subscribers:=1")
-        swim.until(lambda: any(np.diff([seconds(message) for message in heard]) < 0.0), "the second run")
-        begun = int(np.argmax(np.diff([seconds(message) for message in heard]) < 0.0)) + 1
-        last = seconds(heard[begun - 1])
-        del heard[:begun]
+        swim.until(lambda: any(np.diff([seconds(message) for message in received]) < 0.0), "the second run")
+        begun = int(np.argmax(np.diff([seconds(message) for message in received]) < 0.0)) + 1
+        last = seconds(received[begun - 1])
+        del received[:begun]
         swim.until_time(last + 3.0, "curvature")
     finally:
         node.process.send_signal(signal.SIGCONT)
     node.wait_for_output("a new recording begins", LIMIT)
-    swim.until_time(seconds(heard[-1]) + 1.0, "curvature")
+    swim.until_time(seconds(received[-1]) + 1.0, "curvature")
     swim.close()
     for each in (second, node):
         assert each.interrupt() == 0, each.output()
@@ -194,34 +194,34 @@ def test_a_dynamics_node_that_is_found_late_begins_a_new_recording(start, fresh_
 def test_two_systems_in_two_domains(start, fresh_domain, monkeypatch, request):
     other = reserve_domain()
     request.addfinalizer(other.claim.close)
-    ears, nodes = {}, {}
+    clients, nodes = {}, {}
     for name, number in (("falling", fresh_domain), ("straight", other.number)):
-        ears[name] = SwimClient(domain=number, topics=("curvature", "head_pose"), clock=True)
-        request.addfinalizer(ears[name].close)
+        clients[name] = SwimClient(domain=number, topics=("curvature", "head_pose"), clock=True)
+        request.addfinalizer(clients[name].close)
         monkeypatch.setenv("ROS_DOMAIN_ID", str(number))
         start("gait_generator", "--ros-args", "-p", f"gait:={name}")
         nodes[name] = start(
             "dynamics", "--ros-args", "-p", "duration:=3", "-p", "real_time_factor:=0", "-p", "wait_for_subscribers:=1"
         )
-    for (name, ear), law in zip(ears.items(), (falling(), straight()), strict=True):
-        ear.until(
-            lambda ear=ear: min(len(ear.heard[topic]) for topic in ("curvature", "head_pose")) >= 301,
+    for (name, client), law in zip(clients.items(), (falling(), straight()), strict=True):
+        client.until(
+            lambda client=client: min(len(client.received[topic]) for topic in ("curvature", "head_pose")) >= 301,
             f"301 samples of {name}",
         )
         assert nodes[name].wait(LIMIT) == 0, nodes[name].output()
-        assert [nanoseconds(message.header.stamp) for message in ear.heard["head_pose"]] == [
+        assert [nanoseconds(message.header.stamp) for message in client.received["head_pose"]] == [
             k * 10_000_000 for k in range(301)
         ]
-        for message in ear.heard["curvature"][::50]:
+        for message in client.received["curvature"][::50]:
             expected = law.curvature(seconds(message), np.array(message.x))[0]
             assert np.allclose(message.yaw, expected[:, 2], atol=1e-9)
             assert np.allclose(message.pitch, expected[:, 1], atol=1e-9)
-        ticks = [nanoseconds(message.clock) for message in ear.heard["/clock"]]
+        ticks = [nanoseconds(message.clock) for message in client.received["/clock"]]
         assert ticks == sorted(ticks)
-        assert {message.status[0].name for message in ear.heard["/diagnostics"]} == {"/dynamics"}
+        assert {message.status[0].name for message in client.received["/diagnostics"]} == {"/dynamics"}
         assert "already" not in nodes[name].output()  # of /clock
-        ear.until(  # it may be found after the samples that it brought about
-            lambda ear=ear: ear.node.count_publishers("curvature_law") >= 2,
+        client.until(  # it may be found after the samples that it brought about
+            lambda client=client: client.node.count_publishers("curvature_law") >= 2,
             f"the gait generator of {name}",
         )
-        assert ear.node.count_publishers("curvature_law") == 2  # the gait generator's and this test's own
+        assert client.node.count_publishers("curvature_law") == 2  # the gait generator's and this test's own

@@ -1,6 +1,6 @@
 """Swim the paper's eel for 10 s through the three nodes, as three processes, into Rerun; then say what happened.
 
-With a display the viewer opens and the run keeps pace with the clock; without one it goes as fast as it can, and a
+With a display the viewer opens and the run keeps pace with the clock; without one it goes as fast as possible, and a
 picture is drawn where the machine can draw one.
 """
 
@@ -64,7 +64,7 @@ def swim() -> dict[str, list]:
     sink = "[spawn, save]" if display else "[save]"
     say(
         f"three nodes on ROS domain {domain.number}, "
-        + ("at real time, in the viewer" if display else "as fast as they go (no display)")
+        + ("at real time, in the viewer" if display else "as fast as possible (no display)")
     )
     reception = Reception(domain.number)
     nodes: list[NodeProcess] = []

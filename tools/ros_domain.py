@@ -1,4 +1,4 @@
-"""A ROS domain that no other program on this machine uses, so that runs side by side do not hear each other."""
+"""A ROS domain that no other program on this machine uses, so that runs side by side do not discover each other."""
 
 import os
 import random
@@ -20,7 +20,7 @@ class Domain:
     claim: socket.socket
 
     def environment(self) -> dict[str, str]:
-        """This process's environment variables, with the domain and nothing heard from other machines."""
+        """This process's environment variables, with the domain and no discovery of other machines."""
         kept = {name: value for name, value in os.environ.items() if name != "ROS_LOCALHOST_ONLY"}
         return kept | {"ROS_DOMAIN_ID": str(self.number), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
 

@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "eel_core/march.hpp"
+#include "eel_core/march/march.hpp"
 
 namespace eel_core {
 

@@ -4,7 +4,7 @@
 #include <atomic>
 
 #include "eel_core/build_info.hpp"
-#include "eel_core/instant.hpp"
+#include "eel_core/march/instant.hpp"
 #include "from_python.hpp"
 
 namespace py = pybind11;

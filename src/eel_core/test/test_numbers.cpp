@@ -1,7 +1,7 @@
 // Functions of numbers and lanes, to round-off.
 #include <gtest/gtest.h>
 
-#include "eel_core/numbers.hpp"
+#include "eel_core/algebra/numbers.hpp"
 
 using namespace eel_core;
 

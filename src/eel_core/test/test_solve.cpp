@@ -3,7 +3,7 @@
 
 #include <random>
 
-#include "eel_core/solve.hpp"
+#include "eel_core/algebra/solve.hpp"
 
 using eel_core::Factored;
 

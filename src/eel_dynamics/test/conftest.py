@@ -1,4 +1,4 @@
-"""For the tests of the mechanics, `measured`; for those of the dynamics node, a client that hears it."""
+"""For the tests of the mechanics, `measured`; for those of the dynamics node, a client that subscribes to it."""
 
 import pytest
 from validation import Checks

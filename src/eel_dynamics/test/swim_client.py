@@ -1,4 +1,4 @@
-"""A ROS node for tests: hears a dynamics node without loss, publishes laws and samples, calls services."""
+"""A ROS node for tests: receives a dynamics node's topics without loss, publishes laws and samples, calls services."""
 
 import re
 import time
@@ -55,7 +55,7 @@ def is_finite(message) -> bool:
 
 
 class SwimClient:
-    """Hears the topics `topics` of the dynamics node in `namespace`; messages are in `heard[topic]`, in order."""
+    """Subscribes to `topics` of the dynamics node in `namespace`; messages are in `received[topic]`, in order."""
 
     def __init__(self, *, domain, topics=tuple(SAMPLES), namespace="", clock=False):
         self.context = Context()
@@ -63,7 +63,7 @@ class SwimClient:
         self.node = Node("swim_client", namespace=namespace, context=self.context, start_parameter_services=False)
         self.executor = SingleThreadedExecutor(context=self.context)
         self.executor.add_node(self.node)
-        self.heard = defaultdict(list)
+        self.received = defaultdict(list)
         self.arrivals = defaultdict(list)  # s, steady clock
         self._subscriptions, self._services = [], {}
         for topic in topics:
@@ -81,18 +81,18 @@ class SwimClient:
         self.context.try_shutdown()
 
     def listen(self, topic, kind, quality=LOSSLESS, name=None):
-        """Hears a topic; its messages are in `heard[name]`, by default the topic's."""
+        """Subscribes to a topic; its messages are in `received[name]`, by default the topic's."""
         name = name or topic
 
         def keep(message):
-            self.heard[name].append(message)
+            self.received[name].append(message)
             self.arrivals[name].append(time.monotonic())
 
         self._subscriptions.append(self.node.create_subscription(kind, topic, keep, quality))
 
     def turn(self):
         """Serves what has come. The executor takes one message of a topic at a time, and is slower at that than a node
-        without a pace: the others that are there are taken in one go."""
+        that runs as fast as possible: the others that are there are taken in one go."""
         self.executor.spin_once(timeout_sec=0.02)
         for each in self._subscriptions:
             for _ in range(MOST_AT_ONCE):
@@ -115,13 +115,13 @@ class SwimClient:
             self.turn()
 
     def latest(self, topic):
-        self.until(lambda: self.heard[topic], f"message on {topic}")
-        return self.heard[topic][-1]
+        self.until(lambda: self.received[topic], f"message on {topic}")
+        return self.received[topic][-1]
 
     def until_time(self, seconds, topic="head_pose"):
         """Spins until a sample at that simulation time or later has come."""
         self.until(
-            lambda: self.heard[topic] and nanoseconds(self.heard[topic][-1].header.stamp) >= seconds * 1e9,
+            lambda: self.received[topic] and nanoseconds(self.received[topic][-1].header.stamp) >= seconds * 1e9,
             f"{topic} at {seconds} s",
         )
 
@@ -149,10 +149,12 @@ class SwimClient:
             assert "soon" in answer.message, answer.message
         time_of = float(re.search(r"t = (\S+) s", answer.message)[1])  # of six digits
         self.until(
-            lambda: self.heard[topic] and nanoseconds(self.heard[topic][-1].header.stamp) >= (time_of - 1e-5) * 1e9,
+            lambda: (
+                self.received[topic] and nanoseconds(self.received[topic][-1].header.stamp) >= (time_of - 1e-5) * 1e9
+            ),
             f"{topic} at {time_of} s",
         )
-        return nanoseconds(self.heard[topic][-1].header.stamp) / 1e9
+        return nanoseconds(self.received[topic][-1].header.stamp) / 1e9
 
     def deliver(self, messages):
         """Publishes samples of a controller, and waits until the node has taken them: between two answers to questions

@@ -41,7 +41,7 @@ def check_smooth(time, curvature, rate):
     assert jumps < 0.03 * np.abs(acceleration).max()
 
 
-def test_a_law_taken_on_in_mid_swim_and_another_in_mid_blend():
+def test_a_law_adopted_in_mid_swim_and_another_in_mid_blend():
     simulation = Simulation(stations=X)
     simulation.adopt(law_of(1))
     before = record(simulation, 0.5)

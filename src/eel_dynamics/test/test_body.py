@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from cases import kern_body
 from draws import few, numbers
+from eel_dynamics.model.section_data import sections_of
 from hypothesis import given
 from library_state import Body, Scene, hydrodynamic_wrench, momentum
 from reference import boyer_body
@@ -37,6 +38,16 @@ def test_added_mass_of_the_robot(measured):
         scene = Scene(resistive=False, nose=False, added_mass=choice)
         wrench = hydrodynamic_wrench(Body.boyer2010(), Law(), 0.0, np.zeros(6), np.eye(6)[4], scene)
         measured(f"lateral added mass of the robot, {choice}", -wrench.force[1], 5e-4, wanted=wanted, unit="kg")
+
+
+def test_perimeter_of_a_circle():
+    """Blasius' friction on a body of revolution: 1/2 rho 0.664 sqrt(nu / (|V1| X)) |V1| V1 on 2 pi r; in print half."""
+    body = Body(length=1.0, half_height=lambda x: 0.1 * np.sqrt(x), half_width=lambda x: 0.1 * np.sqrt(x))
+    x = np.linspace(0.1, 1.0, 10)
+    wanted = 500.0 * 0.664 * np.sqrt(1e-6 / x) * 2.0 * np.pi * 0.1 * np.sqrt(x)
+    for choice, share in (("ellipse", 1.0), ("printed", 0.5)):
+        got = sections_of(body, Scene(perimeter=choice), x).laminar
+        np.testing.assert_allclose(got, share * wanted, rtol=1e-12)
 
 
 @few(15)

@@ -1,4 +1,4 @@
-"""The command `figures`: what is drawn is what was swum, what the page says is what was read off, bad input."""
+"""The command `figures`: what is drawn is what was simulated, what the page says is what was read off, bad input."""
 
 import os
 import re

@@ -109,7 +109,7 @@ def test_reynolds_number_counts_the_speed_over_the_water():
     assert any("Reynolds number" in text for text in slow.warnings)
 
 
-def test_the_tail_leads_in_a_body_thrown_backwards():
+def test_the_tail_leads_in_a_body_that_starts_backwards():
     run = swum(still(), 1.0, twist=(0.0, 0.0, 0.0, 0.5, 0.1, 0.0))
     assert any("the tail leads" in text for text in run.warnings)
     assert not swum(still(), 1.0, twist=(0.0, 0.0, 0.0, -0.5, 0.1, 0.0)).warnings

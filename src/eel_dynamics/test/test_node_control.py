@@ -25,23 +25,23 @@ def seconds(message):
 def test_clock_ticks_while_waiting_and_while_paused(start, client):
     swim = client(topics=("head_pose",), clock=True)
     start("dynamics", "--ros-args")
-    swim.until(lambda: len(swim.heard["/clock"]) > 10, "clock while waiting for a law")
-    assert {seconds(message) for message in swim.heard["/clock"]} == {0.0} and not swim.heard["head_pose"]
+    swim.until(lambda: len(swim.received["/clock"]) > 10, "clock while waiting for a law")
+    assert {seconds(message) for message in swim.received["/clock"]} == {0.0} and not swim.received["head_pose"]
     swim.laws.publish(law_to_message(falling()))
     swim.until_time(0.3)
     stands = swim.stop_the_clock("head_pose")
-    swim.until(lambda: seconds(swim.heard["/clock"][-1]) == stands, "the clock's standing")
-    ticks = len(swim.heard["/clock"])
-    swim.until(lambda: len(swim.heard["/clock"]) > ticks + 5, "clock while paused")
-    assert seconds(swim.heard["head_pose"][-1]) == stands
-    assert {seconds(message) for message in swim.heard["/clock"][ticks:]} == {stands}
+    swim.until(lambda: seconds(swim.received["/clock"][-1]) == stands, "the clock's standing")
+    ticks = len(swim.received["/clock"])
+    swim.until(lambda: len(swim.received["/clock"]) > ticks + 5, "clock while paused")
+    assert seconds(swim.received["head_pose"][-1]) == stands
+    assert {seconds(message) for message in swim.received["/clock"][ticks:]} == {stands}
     resumed = time.monotonic()
     assert swim.pause(False).success
     swim.until_time(stands + 0.3)
     assert time.monotonic() - resumed > 0.25  # it does not hurry after the time that it stood
-    stamps = [nanoseconds(message.header.stamp) for message in swim.heard["head_pose"]]
+    stamps = [nanoseconds(message.header.stamp) for message in swim.received["head_pose"]]
     assert stamps == sorted(set(stamps))
-    assert np.all(np.diff([seconds(message) for message in swim.heard["/clock"]]) >= 0.0)
+    assert np.all(np.diff([seconds(message) for message in swim.received["/clock"]]) >= 0.0)
 
 
 @pytest.mark.fault(
@@ -56,19 +56,19 @@ def test_reset_begins_again_with_the_same_law(start, client):
     answer = swim.reset()
     assert answer.success and answer.message == "reset at t = 0 s"
 
-    heard, again = swim.heard["head_pose"], 1
+    received, again = swim.received["head_pose"], 1
 
     def second_has_begun():
         """Whether the sample `again` is its first one, which may come thousands of samples after the answer."""
         nonlocal again
-        while again < len(heard) and seconds(heard[again]) > seconds(heard[again - 1]):
+        while again < len(received) and seconds(received[again]) > seconds(received[again - 1]):
             again += 1
-        return again < len(heard)
+        return again < len(received)
 
     swim.until(second_has_begun, "the second run")
-    swim.until(lambda: seconds(heard[-1]) > 2.0, "as much of the second run")
-    first = {seconds(m): m.pose for m in heard[:again]}
-    second = {seconds(m): m.pose for m in heard[again:]}
+    swim.until(lambda: seconds(received[-1]) > 2.0, "as much of the second run")
+    first = {seconds(m): m.pose for m in received[:again]}
+    second = {seconds(m): m.pose for m in received[again:]}
     assert min(first) == min(second) == 0.0
     common = [t for t in first if t in second]
     assert len(common) > 200 and max(common) > 2.0
@@ -147,21 +147,21 @@ def test_law_that_cannot_be_swum_stops_once_and_reset_starts_again(start, client
     swim.laws.publish(law_to_message(monster))
     node = start("dynamics", "--ros-args")
     node.wait_for_output("stopped at t =", LIMIT)
-    ticks = len(swim.heard["/clock"])
-    swim.until(lambda: len(swim.heard["/clock"]) > ticks + 10, "clock after the stop")
-    samples = len(swim.heard["head_pose"])
-    swim.until(lambda: len(swim.heard["/clock"]) > ticks + 20, "more of it")
-    assert len(swim.heard["head_pose"]) == samples
+    ticks = len(swim.received["/clock"])
+    swim.until(lambda: len(swim.received["/clock"]) > ticks + 10, "clock after the stop")
+    samples = len(swim.received["head_pose"])
+    swim.until(lambda: len(swim.received["/clock"]) > ticks + 20, "more of it")
+    assert len(swim.received["head_pose"]) == samples
     swim.until(lambda: swim.diagnosis()[0] == 2, "error in the diagnostics")
     for topic in ("head_pose", "internal_wrench", "energy"):
-        assert all(is_finite(message) for message in swim.heard[topic])
+        assert all(is_finite(message) for message in swim.received[topic])
     assert (
         node.output().count("simulation stopped at t =") == 1
         and "Traceback" not in node.output()
         and node.status is None
     )
     swim.laws.publish(law_to_message(falling()))
-    swim.until(lambda: "law 'falling' taken on" in node.output(), "the next law")
+    swim.until(lambda: "law 'falling' adopted" in node.output(), "the next law")
     assert swim.reset().success
     swim.until_time(0.5)
     swim.until(lambda: swim.diagnosis()[0] == 0, "good diagnostics")
@@ -175,7 +175,7 @@ def test_law_that_cannot_be_begun_is_refused(start, client):
     node.wait_for_output("law 'beyond' refused: law 'beyond' bends the body into", LIMIT)
     swim.laws.publish(law_to_message(falling()))
     swim.until_time(0.3)
-    assert all(is_finite(message) for message in swim.heard["head_pose"])
+    assert all(is_finite(message) for message in swim.received["head_pose"])
 
 
 @pytest.mark.fault(
@@ -188,7 +188,7 @@ def test_late_run_says_so_seldom(start, client):
     swim.laws.publish(law_to_message(falling()))
     node = start("dynamics", "--ros-args", "-p", "real_time_factor:=100000")
     swim.until(
-        lambda: swim.heard["/diagnostics"] and float(swim.diagnosis()[2]["late"]) > 0.0, "late in the diagnostics"
+        lambda: swim.received["/diagnostics"] and float(swim.diagnosis()[2]["late"]) > 0.0, "late in the diagnostics"
     )
     began = time.monotonic()
     said = node.output().count("late by")

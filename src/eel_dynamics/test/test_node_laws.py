@@ -39,12 +39,12 @@ def test_laws_in_mid_blend_never_make_the_curvature_jump(start, client):
     swim.until_time(0.5, "curvature")
     for amplitude, period, name in ((3.0, 0.7, "second"), (-2.0, 1.3, "third"), (4.0, 0.9, "fourth")):
         swim.laws.publish(law_to_message(wave(amplitude, period, name, 0.6)))
-        swim.until(lambda name=name: f"law '{name}' taken on" in node.output(), f"the {name} law")
+        swim.until(lambda name=name: f"law '{name}' adopted" in node.output(), f"the {name} law")
         swim.until_time(nanoseconds(swim.latest("curvature").header.stamp) / 1e9 + 0.12, "curvature")
     end = nanoseconds(swim.latest("curvature").header.stamp) / 1e9 + 0.7
     swim.until_time(end, "curvature")
 
-    messages = swim.heard["curvature"]
+    messages = swim.received["curvature"]
     step = 1.0 / 200
     stamps = np.array([nanoseconds(message.header.stamp) for message in messages])
     pair = np.diff(stamps) == round(1e9 * step)  # at real time, a listener on a busy machine may miss some samples
@@ -73,13 +73,13 @@ def test_stamp_is_where_the_laws_own_time_begins(start, client):
     swim.laws.publish(message)
     start("dynamics", "--ros-args")
     swim.until_time(1.5, "curvature")
-    for heard in swim.heard["curvature"][::10]:
-        t = nanoseconds(heard.header.stamp) / 1e9
-        assert np.allclose(heard.yaw, falling().curvature(t - 0.5, np.array(heard.x))[0][:, 2], atol=1e-9)
+    for received in swim.received["curvature"][::10]:
+        t = nanoseconds(received.header.stamp) / 1e9
+        assert np.allclose(received.yaw, falling().curvature(t - 0.5, np.array(received.x))[0][:, 2], atol=1e-9)
 
 
-@pytest.mark.fault("laws", "the same law published over and over", "taken on once, its blend does not begin anew")
-def test_a_volatile_publisher_is_heard_and_repeating_changes_nothing(start, client):
+@pytest.mark.fault("laws", "the same law published over and over", "adopted once, its blend does not begin anew")
+def test_a_volatile_publisher_is_received_and_repeating_changes_nothing(start, client):
     """As `ros2 topic pub -r 20` does it: default quality of service, the same law over and over."""
     swim = client(topics=("curvature",))
     publisher = swim.node.create_publisher(CurvatureLaw, "curvature_law", QoSProfile(depth=10))
@@ -89,7 +89,9 @@ def test_a_volatile_publisher_is_heard_and_repeating_changes_nothing(start, clie
 
     def said_until(seconds):
         deadline = time.monotonic() + LIMIT
-        while not (swim.heard["curvature"] and nanoseconds(swim.heard["curvature"][-1].header.stamp) > seconds * 1e9):
+        while not (
+            swim.received["curvature"] and nanoseconds(swim.received["curvature"][-1].header.stamp) > seconds * 1e9
+        ):
             assert time.monotonic() < deadline
             publisher.publish(message)
             swim.spin(0.05)
@@ -98,7 +100,7 @@ def test_a_volatile_publisher_is_heard_and_repeating_changes_nothing(start, clie
     message = law_to_message(bend(-1.0, name="other", transition=0.3))
     said_until(nanoseconds(swim.latest("curvature").header.stamp) / 1e9 + 1.0)
     assert np.allclose(swim.latest("curvature").yaw, -1.0)  # repeating did not begin the blend anew
-    assert node.output().count("taken on") == 2, node.output()
+    assert node.output().count("adopted") == 2, node.output()
     assert "incompatible" not in node.output()
 
 
@@ -157,12 +159,12 @@ def test_bad_laws_leave_the_good_one_in_force(start, client):
     assert len(errors) == len(laws), node.output()
     for line, (what, (_, words)) in zip(errors, laws.items(), strict=True):
         assert all(word in line for word in (*words, "'bad'", "refused")), (what, line)
-    assert all(np.allclose(message.yaw, 0.5) for message in swim.heard["curvature"])
+    assert all(np.allclose(message.yaw, 0.5) for message in swim.received["curvature"])
     for topic in ("head_pose", "internal_wrench", "energy"):
-        assert all(is_finite(message) for message in swim.heard[topic])
+        assert all(is_finite(message) for message in swim.received[topic])
     assert node.status is None
     swim.laws.publish(law_to_message(bend(0.7, name="next", transition=0.1)))
-    swim.until(lambda: np.allclose(swim.heard["curvature"][-1].yaw, 0.7), "the next good law")
+    swim.until(lambda: np.allclose(swim.received["curvature"][-1].yaw, 0.7), "the next good law")
 
 
 @pytest.mark.fault("laws", "a law with pitch in a planar scene", "refused; the next law is taken")
@@ -201,10 +203,10 @@ def test_the_law_may_come_before_or_after_the_node(start, client, early):
     if early:
         swim.laws.publish(law_to_message(bend(0.5, name="only")))
     node = start("dynamics", "--ros-args")
-    node.wait_for_output("taken on" if early else "waiting for a law", LIMIT)
+    node.wait_for_output("adopted" if early else "waiting for a law", LIMIT)
     swim.laws.publish(law_to_message(bend(0.5, name="only")))
     swim.until_time(0.1)
-    assert node.output().count("waiting for a law") <= 1 and node.output().count("'only' taken on") == 1
+    assert node.output().count("waiting for a law") <= 1 and node.output().count("'only' adopted") == 1
 
 
 @pytest.mark.fault(
@@ -225,14 +227,14 @@ def test_a_flood_of_laws_and_one_without_terms(start, client):
             swim.turn()  # takes what the run publishes meanwhile
     swim.until_time(before / 1e9 + 1.0, "curvature")
     swim.laws.publish(law_to_message(bend(0.25, name="last", transition=0.1)))
-    swim.until(lambda: np.allclose(swim.heard["curvature"][-1].yaw, 0.25), "the last law")
-    assert swim.diagnosis()[0] < 2 and node.output().count("taken on") < 22 * (time.monotonic() - began + 2.0)
+    swim.until(lambda: np.allclose(swim.received["curvature"][-1].yaw, 0.25), "the last law")
+    assert swim.diagnosis()[0] < 2 and node.output().count("adopted") < 22 * (time.monotonic() - began + 2.0)
 
     swim.laws.publish(law_to_message(Law(name="nothing", transition=0.5)))
-    swim.until(lambda: not np.any(swim.heard["curvature"][-1].yaw), "a straight body")
-    K = np.array([message.yaw[25] for message in swim.heard["curvature"]])
-    rates = np.array([message.yaw_rate[25] for message in swim.heard["curvature"]])
-    stamps = np.array([nanoseconds(message.header.stamp) for message in swim.heard["curvature"]])
+    swim.until(lambda: not np.any(swim.received["curvature"][-1].yaw), "a straight body")
+    K = np.array([message.yaw[25] for message in swim.received["curvature"]])
+    rates = np.array([message.yaw_rate[25] for message in swim.received["curvature"]])
+    stamps = np.array([nanoseconds(message.header.stamp) for message in swim.received["curvature"]])
     steps = np.diff(stamps) / 1e9
     assert np.all(steps > 0.0)
     slope = np.abs(rates).max()  # from one sample to the next K goes no further than its greatest rate allows

@@ -1,4 +1,4 @@
-"""A sample that takes long: the node hears what is asked of it on the way, says that it hangs, and ends at once."""
+"""A sample that takes long: the node answers requests meanwhile, says that it hangs, and ends at once."""
 
 import math
 
@@ -37,21 +37,21 @@ def test_a_law_that_costs_too_much_is_refused(start, client):
 @pytest.mark.fault(
     "laws",
     "a sample that takes minutes",
-    "ERROR in /diagnostics after 3 s; pause, reset, another law and signals are heard on the way to it",
+    "ERROR in /diagnostics after 3 s; pause, reset, another law and signals take effect meanwhile",
 )
 def test_a_sample_that_takes_minutes_holds_nothing_up(start, client):
     """Ten milliseconds of a law with a period of a tenth of a nanosecond."""
     swim = client(topics=("head_pose",))
     swim.laws.publish(law_to_message(quick(1e-10)))
     node = start("dynamics", *WITHOUT_LIMIT)
-    swim.until(lambda: swim.heard["/diagnostics"] and swim.diagnosis()[0] == 2, "ERROR in the diagnostics")
+    swim.until(lambda: swim.received["/diagnostics"] and swim.diagnosis()[0] == 2, "ERROR in the diagnostics")
     assert "no sample for" in swim.diagnosis()[1] and "after t = 0 s" in swim.diagnosis()[1]
     assert swim.pause(True).success
     swim.until(lambda: swim.diagnosis()[1] == "paused at t = 0 s", "the pause in the diagnostics")
     assert swim.pause(False).success and swim.reset().success
     swim.until(lambda: swim.diagnosis()[0] == 2, "ERROR in the diagnostics again")
     swim.laws.publish(law_to_message(falling()))
-    swim.until(lambda: "law 'falling' taken on" in node.output(), "another law")
+    swim.until(lambda: "law 'falling' adopted" in node.output(), "another law")
     assert swim.reset().success
     swim.until_time(0.5)
     swim.until(lambda: swim.diagnosis()[0] == 0, "good diagnostics")
@@ -62,6 +62,6 @@ def test_a_signal_ends_the_node_on_the_way_to_a_sample(start, client):
     swim = client(topics=())
     swim.laws.publish(law_to_message(quick(1e-10)))
     node = start("dynamics", *WITHOUT_LIMIT)
-    swim.until(lambda: swim.heard["/diagnostics"] and "no sample for" in swim.diagnosis()[1], "ERROR", LIMIT)
+    swim.until(lambda: swim.received["/diagnostics"] and "no sample for" in swim.diagnosis()[1], "ERROR", LIMIT)
     assert node.time_to_end() < 2.0
     assert node.status == 0 and "Traceback" not in node.output()

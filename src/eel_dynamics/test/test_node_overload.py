@@ -41,13 +41,13 @@ def test_overload_falls_behind_and_skips_no_physics(start, client):
         "taskset", "-c", "0", "dynamics", "--ros-args", "-p", f"rate:={RATE}", "-p", f"stations:={STATIONS}",
         "-p", f"wait_for_subscribers:={SUBSCRIBERS}",
     )  # fmt: skip
-    swim.until(lambda: swim.heard["head_pose"], "a first sample")
+    swim.until(lambda: swim.received["head_pose"], "a first sample")
     swim.until(lambda: swim.diagnosis()[0] == 1 and "late by" in swim.diagnosis()[1], "a warning of the delay")
 
     def further_diagnosis():
         """The values of the second from now on, so of what has happened by now."""
-        before = len(swim.heard["/diagnostics"])
-        swim.until(lambda: len(swim.heard["/diagnostics"]) > before + 1, "two more diagnostics")
+        before = len(swim.received["/diagnostics"])
+        swim.until(lambda: len(swim.received["/diagnostics"]) > before + 1, "two more diagnostics")
         return swim.diagnosis()[2]
 
     values = further_diagnosis()
@@ -60,22 +60,22 @@ def test_overload_falls_behind_and_skips_no_physics(start, client):
     # A listener may miss samples, on each topic others; those that it has are where they belong, and right.
     simulation = Simulation(stations=STATIONS)
     simulation.adopt(falling())
-    heard = {
-        topic: {nanoseconds(message.header.stamp): message for message in swim.heard[topic]}
+    received = {
+        topic: {nanoseconds(message.header.stamp): message for message in swim.received[topic]}
         for topic in ("head_pose", "internal_wrench")
     }
     chosen = set()
-    for topic, messages in heard.items():
-        stamps = np.array([nanoseconds(message.header.stamp) for message in swim.heard[topic]])
+    for topic, messages in received.items():
+        stamps = np.array([nanoseconds(message.header.stamp) for message in swim.received[topic]])
         k = np.round(stamps * 1e-9 * RATE).astype(int)
         assert len(stamps) and np.array_equal(stamps, np.round(k * 1e9 / RATE)) and np.all(np.diff(k) > 0), topic
         chosen.update(list(messages)[:: max(1, len(messages) // 20)])
     for stamp in sorted(chosen):
         simulation.advance(round(stamp * 1e-9 * RATE) / RATE)
         snapshot = simulation.observe()
-        if stamp in heard["head_pose"]:
-            pose = heard["head_pose"][stamp].pose.position
+        if stamp in received["head_pose"]:
+            pose = received["head_pose"][stamp].pose.position
             assert np.allclose((-pose.x, -pose.y, pose.z), snapshot.position, rtol=0, atol=1e-12)
-        if stamp in heard["internal_wrench"]:
-            torque = heard["internal_wrench"][stamp].torque_3
+        if stamp in received["internal_wrench"]:
+            torque = received["internal_wrench"][stamp].torque_3
             assert np.allclose(torque, snapshot.torque[:, 2], rtol=0, atol=1e-10)

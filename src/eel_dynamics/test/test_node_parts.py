@@ -5,9 +5,10 @@ from dataclasses import fields
 from types import SimpleNamespace
 
 import pytest
-from eel_dynamics.ros.clock_arbiter import ClockArbiter
+from eel_dynamics.ros import clock_arbiter
+from eel_dynamics.ros.clock_arbiter import ClockArbiter, ClockMonitor
 from eel_dynamics.ros.diagnostics import ERROR, OK, WARN, Report
-from eel_dynamics.ros.loop.law_feed import LawFeed
+from eel_dynamics.ros.loop.law_feed import LawAdopter, LawFeed
 from eel_dynamics.ros.loop.pacing import Pace
 from eel_dynamics.ros.loop.run_loop import RunLoop
 from eel_dynamics.ros.parameters import DynamicsParameters, checked, from_values
@@ -167,6 +168,34 @@ def test_the_clock_comes_back_when_the_other_is_gone():
     assert right.judge(1.0, (), set())
 
 
+def test_a_node_that_stops_publishing_the_clock_logs_it_once(monkeypatch):
+    now, publishers, log = [0.0], {}, Log()
+    monkeypatch.setattr(clock_arbiter.time, "monotonic", lambda: now[0])
+    node = SimpleNamespace(
+        get_publishers_info_by_topic=lambda topic: list(publishers.values()),
+        get_name=lambda: "dynamics",
+        get_namespace=lambda: "/",
+    )
+
+    def publisher(number, name):
+        return SimpleNamespace(endpoint_gid=(number,), node_namespace="/", node_name=name)
+
+    def offer(publishing):
+        publishers.pop(2, None)
+        if publishing:
+            publishers[2] = publisher(2, "dynamics")
+
+    monitor = ClockMonitor(node, offer, Report(log, lambda: now[0]))
+    monitor.look(True)
+    publishers[1] = publisher(1, "simulator")
+    for _ in range(100):
+        now[0] += 0.25
+        monitor.look(True)
+    stops = [entry for entry in log.lines if "stops" in entry[1]]
+    assert stops == [("warning", "this node stops publishing /clock, which /simulator publishes too")]
+    assert 2 not in publishers
+
+
 # reports
 
 
@@ -216,7 +245,7 @@ def test_patience_is_one_account_for_all_topics():
     assert not patience.over(109.0, 5.0)
 
 
-# laws as heard
+# laws as received
 
 
 class FakeRun:
@@ -242,11 +271,11 @@ def info(number):
     return {"source_timestamp": 1000 + number, "publication_sequence_number": number}
 
 
-def test_a_law_delivered_twice_is_taken_once():
+def test_a_law_delivered_twice_is_adopted_once():
     run = FakeRun()
-    heard = feed(run, Log())
+    law_feed = feed(run, Log())
     for number, name in ((1, "a"), (2, "b"), (1, "a"), (2, "b"), (3, "a")):
-        heard.receive_law(message(name), info(number))
+        law_feed.receive_law(message(name), info(number))
     assert [law.name for law, _ in run.laws] == ["a", "b", "a"]
 
 
@@ -284,10 +313,29 @@ def test_bad_law_is_one_error_that_names_the_field():
         raise ValueError("terms[0].period must be >= 0 s, got -1.0")
 
     run, log = FakeRun(), Log()
-    heard = feed(run, log, refuse)
-    heard.receive_law(message("jump"), info(1))
+    law_feed = feed(run, log, refuse)
+    law_feed.receive_law(message("jump"), info(1))
     assert not run.laws
     assert log.lines == [("error", "law 'jump' refused: terms[0].period must be >= 0 s, got -1.0")]
+
+
+@pytest.mark.fault(
+    "samples",
+    "a law that arrives while samples drive the body",
+    "the law is adopted; one warning names the samples lost",
+)
+@pytest.mark.parametrize("last", [0.0, 0.5])
+def test_a_law_that_replaces_samples_says_which_it_drops(last):
+    simulation, log = Simulation(scene=Scene(planar=True)), Log()
+    adopter = LawAdopter(simulation, Report(log))
+    rows = {name: [0.0, 0.0] for name in ("pitch", "pitch_rate", "pitch_accel", "yaw", "yaw_rate", "yaw_accel")}
+    adopter.adopt(falling(pitch_bend=0.0), 0.0)
+    for time in (0.1, 0.2, last) if last else ():
+        adopter.add_samples({"time": time, "x": [0.0, 1.0], **rows})
+    adopter.adopt(Law(name="next"), 0.0)
+    warnings = [text for level, text in log.lines if level == "warning"]
+    assert warnings == ["curvature samples up to t = 0.5 s are dropped: law 'next' is newer"][: bool(last)]
+    assert log.lines[-1 - bool(last)] == ("info", "law 'next' adopted at t = 0 s")
 
 
 # topics
@@ -297,9 +345,9 @@ def test_bad_law_is_one_error_that_names_the_field():
     "subscribers", "a subscriber of a costly topic that comes while a sample is made", "it gets the next sample"
 )
 def test_a_subscriber_that_comes_after_the_snapshot_was_taken(monkeypatch):
-    """Nobody hears when it is asked what to compute; somebody does when it is published."""
+    """Nobody subscribes when it is asked what to compute; somebody does when it is published."""
     monkeypatch.setattr("eel_dynamics.ros.publishers.COUNT_PERIOD", 0.0)
-    heard, audience = [], {"internal_wrench": 0, "hydrodynamic_load": 0, "energy": 0}
+    received, audience = [], {"internal_wrench": 0, "hydrodynamic_load": 0, "energy": 0}
     sample = SimpleNamespace(
         kinds=dict.fromkeys(audience, str),
         set_time=lambda nanoseconds: None,
@@ -307,7 +355,7 @@ def test_a_subscriber_that_comes_after_the_snapshot_was_taken(monkeypatch):
     )
 
     def create(kind, topic, depth):
-        return SimpleNamespace(get_subscription_count=lambda: audience[topic], publish=heard.append)
+        return SimpleNamespace(get_subscription_count=lambda: audience[topic], publish=received.append)
 
     publishers = Publishers(
         sample, create=create, destroy=None, received=None, publish_error=RuntimeError, values=DynamicsParameters,
@@ -316,10 +364,10 @@ def test_a_subscriber_that_comes_after_the_snapshot_was_taken(monkeypatch):
     assert publishers.wanted_parts() == {"wrench": False, "load": False}
     audience.update(dict.fromkeys(audience, 1))
     publishers.publish(SimpleNamespace(torque=None, fluid_force=None), 0)
-    assert heard == []
+    assert received == []
     assert publishers.wanted_parts() == {"wrench": True, "load": True}
     publishers.publish(SimpleNamespace(torque=1, fluid_force=2), 0)
-    assert [name for name, *_ in heard] == ["internal_wrench", "hydrodynamic_load", "energy"]
+    assert [name for name, *_ in received] == ["internal_wrench", "hydrodynamic_load", "energy"]
 
 
 def test_who_was_given_up_does_not_cost_the_others_the_end_of_a_run(monkeypatch):

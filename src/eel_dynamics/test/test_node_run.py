@@ -1,4 +1,4 @@
-"""A run without a pace, over DDS: every sample once, equal to what the library computes, and a good end."""
+"""A run as fast as possible, over DDS: every sample once, equal to what the library computes, and a good end."""
 
 import numpy as np
 import pytest
@@ -15,32 +15,34 @@ FLAT_OUT = ("-p", "real_time_factor:=0", "-p", "wait_for_subscribers:=1")
 
 @pytest.mark.identity("Energy ledger")
 def test_ten_seconds_are_1001_samples_on_every_topic(start, client, measured):
-    heard = client(clock=True)
+    listener = client(clock=True)
     node = start("dynamics", "--ros-args", *FLAT_OUT, "-p", "duration:=10", "-p", "subscriber_timeout:=60")
-    heard.until(lambda: heard.heard["/clock"], "clock before the start")  # else its first ticks may be missed
-    heard.laws.publish(law_to_message(falling()))
-    heard.until(lambda: all(len(heard.heard[topic]) >= 1001 for topic in SAMPLES), "1001 samples on every topic")
+    listener.until(lambda: listener.received["/clock"], "clock before the start")  # else its first ticks may be missed
+    listener.laws.publish(law_to_message(falling()))
+    listener.until(
+        lambda: all(len(listener.received[topic]) >= 1001 for topic in SAMPLES), "1001 samples on every topic"
+    )
     assert node.wait(LIMIT) == 0, node.output()
-    heard.until(lambda: nanoseconds(heard.heard["/clock"][-1].clock) == 10**10, "the last tick")
-    heard.until(lambda: heard.diagnosis()[1] == "finished", "the last diagnostics")
+    listener.until(lambda: nanoseconds(listener.received["/clock"][-1].clock) == 10**10, "the last tick")
+    listener.until(lambda: listener.diagnosis()[1] == "finished", "the last diagnostics")
     stamps = [round(k * 1e9 / 100) for k in range(1001)]
     for topic in SAMPLES:
-        assert [nanoseconds(message.header.stamp) for message in heard.heard[topic]] == stamps, topic
-    ticks = [nanoseconds(message.clock) for message in heard.heard["/clock"]]
+        assert [nanoseconds(message.header.stamp) for message in listener.received[topic]] == stamps, topic
+    ticks = [nanoseconds(message.clock) for message in listener.received["/clock"]]
     assert ticks == sorted(ticks) and set(ticks) == set(stamps)
-    assert len(heard.heard["body"]) == 1
+    assert len(listener.received["body"]) == 1
     assert "WARN" not in node.output() and "ERROR" not in node.output()
 
     simulation = Simulation(law=falling())
     for k in range(0, 1001, 50):
         simulation.advance(k / 100)
         snapshot = simulation.observe()
-        pose, wrench = heard.heard["head_pose"][k].pose, heard.heard["internal_wrench"][k]
+        pose, wrench = listener.received["head_pose"][k].pose, listener.received["internal_wrench"][k]
         position = np.array([-pose.position.x, -pose.position.y, pose.position.z])
         assert np.allclose(position, snapshot.position, rtol=0, atol=1e-12)
         assert np.allclose(wrench.torque_3, snapshot.torque[:, 2], rtol=0, atol=1e-11)
 
-    field = lambda name: np.array([getattr(message, name) for message in heard.heard["energy"]])  # noqa: E731
+    field = lambda name: np.array([getattr(message, name) for message in listener.received["energy"]])  # noqa: E731
     kinetic, powers = field("kinetic_body") + field("kinetic_fluid"), sum(field(f"{name}_power") for name in POWERS)
     work = np.trapezoid(np.abs(field("actuator_power")), dx=0.01)
     measured("residual that the live node publishes (by the actuators' work)", np.abs(field("residual")) / work, 1e-3)
@@ -48,7 +50,7 @@ def test_ten_seconds_are_1001_samples_on_every_topic(start, client, measured):
     again = kinetic - kinetic[0] - CubicSpline(np.array(stamps) / 1e9, powers).antiderivative()(np.array(stamps) / 1e9)
     measured("that residual against the published energies and powers", np.abs(again - field("residual")) / work, 1e-5)
 
-    level, text, values = heard.diagnosis()
+    level, text, values = listener.diagnosis()
     assert (level, text) == (0, "finished")
     assert values["law"] == "falling" and values["accuracy"] == "standard" and values["samples_published"] == "1001"
     assert float(values["time"]) == 10.0 and float(values["real_time_factor"]) > 0.0
@@ -59,71 +61,85 @@ def test_ten_seconds_are_1001_samples_on_every_topic(start, client, measured):
 
 
 def test_rate_that_does_not_divide_a_second(start, client):
-    heard = client(topics=("head_pose",))
-    heard.laws.publish(law_to_message(falling()))
+    listener = client(topics=("head_pose",))
+    listener.laws.publish(law_to_message(falling()))
     node = start("dynamics", "--ros-args", *FLAT_OUT, "-p", "duration:=1", "-p", "rate:=30")
     assert node.wait(LIMIT) == 0, node.output()
-    heard.until(lambda: len(heard.heard["head_pose"]) >= 31, "31 samples")
-    stamps = [nanoseconds(message.header.stamp) for message in heard.heard["head_pose"]]
+    listener.until(lambda: len(listener.received["head_pose"]) >= 31, "31 samples")
+    stamps = [nanoseconds(message.header.stamp) for message in listener.received["head_pose"]]
     assert stamps == [round(k * 1e9 / 30) for k in range(31)]
 
 
 def test_heavy_topics_alone_and_frames_by_parameter(start, client):
-    heard = client(topics=("hydrodynamic_load", "odom"))
-    heard.laws.publish(law_to_message(falling()))
+    listener = client(topics=("hydrodynamic_load", "odom"))
+    listener.laws.publish(law_to_message(falling()))
     more = ("-p", "duration:=1", "-p", "stations:=7", "-p", "world_frame:=map", "-p", "head_frame:=eel/head")
     assert start("dynamics", "--ros-args", *FLAT_OUT, *more).wait(LIMIT) == 0
-    heard.until(lambda: len(heard.heard["odom"]) >= 101 and len(heard.heard["hydrodynamic_load"]) >= 101, "101 samples")
-    assert len(heard.heard["hydrodynamic_load"][-1].force_2) == 7 and any(heard.heard["hydrodynamic_load"][-1].force_2)
-    assert heard.heard["hydrodynamic_load"][-1].header.frame_id == "eel/head"
-    assert (heard.heard["odom"][-1].header.frame_id, heard.heard["odom"][-1].child_frame_id) == ("map", "eel/head")
+    listener.until(
+        lambda: len(listener.received["odom"]) >= 101 and len(listener.received["hydrodynamic_load"]) >= 101,
+        "101 samples",
+    )
+    assert len(listener.received["hydrodynamic_load"][-1].force_2) == 7 and any(
+        listener.received["hydrodynamic_load"][-1].force_2
+    )
+    assert listener.received["hydrodynamic_load"][-1].header.frame_id == "eel/head"
+    assert (listener.received["odom"][-1].header.frame_id, listener.received["odom"][-1].child_frame_id) == (
+        "map",
+        "eel/head",
+    )
 
 
 def test_start_in_ros_frames(start, client):
-    heard = client(topics=("head_pose", "head_twist"))
-    heard.laws.publish(law_to_message(falling()))
+    listener = client(topics=("head_pose", "head_twist"))
+    listener.laws.publish(law_to_message(falling()))
     begin = ("-p", "initial_position:=[1.0, 2.0, -0.5]", "-p", "initial_orientation:=[0.0, 0.0, 0.7071068, 0.7071068]")
     motion = ("-p", "initial_linear_velocity:=[1, 0, 0]", "-p", "duration:=0.5", "-p", "scene.current:=[0, 2, 0]")
     assert start("dynamics", "--ros-args", *FLAT_OUT, *begin, *motion).wait(LIMIT) == 0
-    heard.until(lambda: len(heard.heard["head_pose"]) >= 51, "51 samples")
-    first, last = heard.heard["head_pose"][0].pose.position, heard.heard["head_pose"][-1].pose.position
+    listener.until(lambda: len(listener.received["head_pose"]) >= 51, "51 samples")
+    first, last = listener.received["head_pose"][0].pose.position, listener.received["head_pose"][-1].pose.position
     assert (first.x, first.y, first.z) == pytest.approx((1.0, 2.0, -0.5), abs=1e-12)
-    assert heard.heard["head_twist"][0].twist.linear.x == pytest.approx(1.0, abs=1e-9)
+    assert listener.received["head_twist"][0].twist.linear.x == pytest.approx(1.0, abs=1e-9)
     # heads along +y (a quarter turn to the left), in water that flows along +y twice as fast: it is carried along
     assert last.y - first.y > 0.5 and abs(last.x - first.x) < 0.1
 
 
 def test_two_eels_in_namespaces(start, client):
-    ears = {name: client(topics=("head_pose",), namespace=name) for name in ("left", "right")}
+    clients = {name: client(topics=("head_pose",), namespace=name) for name in ("left", "right")}
     for name, amplitude in (("left", 1.0), ("right", 2.0)):
-        ears[name].laws.publish(law_to_message(falling(pitch_bend=amplitude)))
-    nodes = [start("dynamics", "--ros-args", "-r", f"__ns:=/{name}", *FLAT_OUT, "-p", "duration:=2") for name in ears]
+        clients[name].laws.publish(law_to_message(falling(pitch_bend=amplitude)))
+    nodes = [
+        start("dynamics", "--ros-args", "-r", f"__ns:=/{name}", *FLAT_OUT, "-p", "duration:=2") for name in clients
+    ]
     for node in nodes:
         assert node.wait(LIMIT) == 0, node.output()
-    for name, ear in ears.items():
-        ear.until(lambda ear=ear: len(ear.heard["head_pose"]) >= 201, "201 samples")
-        ear.until(
-            lambda ear=ear, name=name: any(m.status[0].name == f"/{name}/dynamics" for m in ear.heard["/diagnostics"]),
+    for name, client in clients.items():
+        client.until(lambda client=client: len(client.received["head_pose"]) >= 201, "201 samples")
+        client.until(
+            lambda client=client, name=name: any(
+                m.status[0].name == f"/{name}/dynamics" for m in client.received["/diagnostics"]
+            ),
             "diagnostics",
         )
-    ends = [ear.heard["head_pose"][-1].pose for ear in ears.values()]
+    ends = [client.received["head_pose"][-1].pose for client in clients.values()]
     assert ends[0] != ends[1]
 
 
 @pytest.mark.fault(
     "laws",
-    "a law that no body can swim, in a run with a duration and without a pace",
+    "a law that no body can swim, in a run with a duration, as fast as possible",
     "ERROR in /diagnostics, the last good state stays the last; status 1, as nobody is there to reset it",
 )
 def test_a_batch_run_that_cannot_go_on_ends_with_status_1(start, client):
-    heard = client(topics=("head_pose", "internal_wrench"))
-    heard.laws.publish(law_to_message(Law(Term(amplitude=(1e3,), period=1.0), name="monster")))
+    listener = client(topics=("head_pose", "internal_wrench"))
+    listener.laws.publish(law_to_message(Law(Term(amplitude=(1e3,), period=1.0), name="monster")))
     node = start("dynamics", "--ros-args", *FLAT_OUT, "-p", "duration:=5")
     assert node.wait(LIMIT) == 1, node.output()
-    heard.until(lambda: heard.heard["/diagnostics"] and heard.diagnosis()[0] == 2, "error in the diagnostics")
-    _, text, values = heard.diagnosis()
+    listener.until(
+        lambda: listener.received["/diagnostics"] and listener.diagnosis()[0] == 2, "error in the diagnostics"
+    )
+    _, text, values = listener.diagnosis()
     assert "stopped at t =" in text and "this run ends here, with status 1" in text
     assert node.output().count("[ERROR]") == 1 and "Traceback" not in node.output()
-    poses = heard.heard["head_pose"]
-    assert poses and all(is_finite(message) for message in poses + heard.heard["internal_wrench"])
+    poses = listener.received["head_pose"]
+    assert poses and all(is_finite(message) for message in poses + listener.received["internal_wrench"])
     assert nanoseconds(poses[-1].header.stamp) == round(float(values["time"]) * 1e9) < 5e9

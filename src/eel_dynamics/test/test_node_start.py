@@ -137,7 +137,7 @@ def test_body_from_a_file_and_numbers_of_every_kind(start, client, tmp_path):
 
 
 @pytest.mark.fault(
-    "ending", "SIGINT or SIGTERM in mid-run, at real time and as fast as it goes", "prompt exit, status 0"
+    "ending", "SIGINT or SIGTERM in mid-run, at real time and as fast as possible", "prompt exit, status 0"
 )
 @pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
 @pytest.mark.parametrize("factor", [1, 0])

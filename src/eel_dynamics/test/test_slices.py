@@ -72,7 +72,7 @@ def test_an_interrupted_march_goes_on_as_if_nothing_had_been(monkeypatch):
     assert cut.evaluations == whole.evaluations
 
 
-def test_another_law_can_be_taken_on_where_a_march_was_interrupted(monkeypatch):
+def test_another_law_can_be_adopted_where_a_march_was_interrupted(monkeypatch):
     step_by_step(monkeypatch)
     swimmer = Simulation(law=falling())
     assert not swimmer.advance(1.0, lambda: True)

@@ -1,4 +1,4 @@
-"""The command `stability`: its studies hold what was swum, its page what was measured, and bad input is one line."""
+"""The command `stability`: studies hold what was simulated, the page what was measured, bad input is one line."""
 
 from dataclasses import replace
 
@@ -21,7 +21,7 @@ def test_maps_keep_the_target_and_tell_what_stops():
     coarse = replace(items.pop("method"), x=np.array([1e-2, 1.0]))
     items.pop("preset")  # seconds for what test_accuracy shows
     measured = {name: measure(item) for name, item in items.items()}
-    for name in ("gait", "wave", "water", "viscosity", "thrown", "body"):
+    for name in ("gait", "wave", "water", "viscosity", "velocity", "body"):
         assert measured[name].worst < 1.0 and not (measured[name].outcome == STOPPED).any(), name
     step = measured["step"]
     assert (step.outcome[:, 0] == ACCURATE).all()  # a hundredth of a period

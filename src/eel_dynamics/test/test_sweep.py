@@ -52,7 +52,7 @@ def test_labelled_and_equal_to_single_runs(client, tmp_path):
     assert kept.attrs["sweep"] == data.attrs["sweep"] and kept.head_x.equals(data.head_x)
     assert list(kept["scene.friction"].values) == ["laminar", "none"]
     assert not out.with_name("periods.nc.parts").exists()
-    # what is complete is not swum again
+    # what is complete is not simulated again
     assert sweep(grid, scheduler="tcp://127.0.0.1:1", out=out, **SHORT).head_x.equals(data.head_x)
 
 
@@ -122,7 +122,7 @@ def test_goes_on_where_it_was_broken_off(client, tmp_path):
 @pytest.mark.fault(
     "names",
     "parts of a sweep that hold text, NaN or half of what they held, or nothing",
-    "said in one line; their points are swum again, the others are kept",
+    "said in one line; their points are simulated again, the others are kept",
 )
 def test_damaged_parts_are_done_again(client, tmp_path, capsys):
     grid, out = {"period": [0.5, 0.6, 0.7, 0.8, 0.9]}, tmp_path / "sweep.nc"
@@ -180,7 +180,7 @@ def test_an_output_that_is_overwritten_stays_until_the_new_one_is_complete(clien
         with pytest.raises(OSError, match=r"sweep\.nc' cannot be written: No space left on device"):
             sweep({"period": [0.6]}, scheduler=client, out=out, overwrite=True, **SHORT)
     assert out.read_bytes() == older and not list(tmp_path.glob("*.part.*"))
-    told = []  # what was swum before is kept
+    told = []  # what was simulated before is kept
     sweep(
         {"period": [0.6]}, scheduler=client, out=out, overwrite=True, progress=lambda *pair: told.append(pair), **SHORT
     )

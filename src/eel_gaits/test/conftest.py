@@ -9,7 +9,7 @@ settings.load_profile("eel")
 
 @pytest.fixture
 def client(ros_domain):
-    """A node that hears laws, ticks /clock and sets parameters; gone when the test ends."""
+    """A node that receives laws, ticks /clock and sets parameters; gone when the test ends."""
     from gait_client import GaitClient
 
     watcher = GaitClient(domain=ros_domain)

@@ -1,4 +1,4 @@
-"""A ROS node for tests: hears curvature laws, ticks /clock, and calls the parameter services of the gait generator."""
+"""A ROS node for tests: receives curvature laws, ticks /clock, calls the gait generator's parameter services."""
 
 import time
 

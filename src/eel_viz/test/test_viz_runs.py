@@ -36,7 +36,7 @@ sys.stdin.read()
 """
 
 
-class Ears:
+class Console:
     """What was said."""
 
     def __init__(self):
@@ -44,13 +44,13 @@ class Ears:
 
 
 @pytest.fixture
-def ears():
-    return Ears()
+def console():
+    return Console()
 
 
 @pytest.fixture
-def file(tmp_path, ears):
-    return FileDestination(Settings(recording=str(tmp_path / "run.rrd")), ears.said.append, ears.warned.append)
+def file(tmp_path, console):
+    return FileDestination(Settings(recording=str(tmp_path / "run.rrd")), console.said.append, console.warned.append)
 
 
 def send(made, stamp, topics=None):
@@ -65,17 +65,17 @@ def send(made, stamp, topics=None):
     "time that jumps back again and again, at the visualiser",
     "at most 10 recordings a minute, and said; the last of them takes what comes until the minute is over",
 )
-def test_recordings_are_few_however_often_time_jumps_back(ears, tmp_path, monkeypatch):
+def test_recordings_are_few_however_often_time_jumps_back(console, tmp_path, monkeypatch):
     now = 1000.0
     monkeypatch.setattr(recordings, "time", type("Clock", (), {"monotonic": lambda: now}))
-    file = FileDestination(Settings(recording=str(tmp_path / "run.rrd")), ears.said.append, ears.warned.append)
-    made = Recordings([file], "eel", ears.warned.append)
+    file = FileDestination(Settings(recording=str(tmp_path / "run.rrd")), console.said.append, console.warned.append)
+    made = Recordings([file], "eel", console.warned.append)
     cycles = 3 * recordings.MAXIMUM_RECORDINGS
     for cycle in range(cycles):
         for stamp in (0, SECOND, 2 * SECOND + cycle):
             send(made, stamp, {"head_pose"})
     assert len(list(tmp_path.iterdir())) == recordings.MAXIMUM_RECORDINGS
-    assert sum("goes into the present one" in text for text in ears.warned) == 1
+    assert sum("goes into the present one" in text for text in console.warned) == 1
     now += recordings.MINUTE + 1.0
     send(made, SECOND, {"head_pose"})
     made.close()
@@ -92,8 +92,8 @@ def test_recordings_are_few_however_often_time_jumps_back(ears, tmp_path, monkey
     "time that jumps back, at the visualiser",
     "a new recording begins, with a number before its suffix; each is complete",
 )
-def test_a_stamp_that_goes_back_begins_a_new_recording(file, ears, tmp_path):
-    made = Recordings([file], "eel", ears.warned.append)
+def test_a_stamp_that_goes_back_begins_a_new_recording(file, console, tmp_path):
+    made = Recordings([file], "eel", console.warned.append)
     made.body(body())
     made.law("falling")
     for stamp in (0, SECOND, 2 * SECOND, 0, SECOND):
@@ -104,13 +104,13 @@ def test_a_stamp_that_goes_back_begins_a_new_recording(file, ears, tmp_path):
             np.testing.assert_array_equal(read(tmp_path / name, entity).stamps, stamps)
         assert read(tmp_path / name, entities.SKIN, static=True)["triangle_indices"].shape[1] > 100
         assert read(tmp_path / name, entities.LOG)["text"][0][0] == "law 'falling' published"
-    assert [line for line in ears.warned if "went back" in line] == [
+    assert [line for line in console.warned if "went back" in line] == [
         "stamps of head_pose went back from 2 s to 0 s: a new recording begins"
     ]
 
 
-def test_topics_may_reach_a_reset_at_different_times(file, ears, tmp_path):
-    made = Recordings([file], "eel", ears.warned.append)
+def test_topics_may_reach_a_reset_at_different_times(file, console, tmp_path):
+    made = Recordings([file], "eel", console.warned.append)
     early, late = ("head_pose", "backbone"), ("internal_wrench", "energy")
     send(made, 0, late)
     for stamp in (0, SECOND, 0, SECOND):  # two runs
@@ -127,18 +127,18 @@ def test_topics_may_reach_a_reset_at_different_times(file, ears, tmp_path):
 @pytest.mark.fault(
     "neighbours", "two simulations on the same topics", "one warning; the visualiser leaves the older stamps out"
 )
-def test_two_publishers_do_not_begin_a_recording_with_every_message(file, ears, tmp_path):
-    made = Recordings([file], "eel", ears.warned.append, has_several_publishers=lambda topic: True)
+def test_two_publishers_do_not_begin_a_recording_with_every_message(file, console, tmp_path):
+    made = Recordings([file], "eel", console.warned.append, has_several_publishers=lambda topic: True)
     for k in range(50):
         send(made, 100 * SECOND + k, ("head_pose",))
         send(made, k, ("head_pose",))
     made.close()
     assert len(list(tmp_path.iterdir())) <= recordings.RESETS + 1
-    assert sum("more than one publisher" in line for line in ears.warned) == 1
+    assert sum("more than one publisher" in line for line in console.warned) == 1
 
 
-def test_resets_in_quick_succession_are_taken(file, ears, tmp_path):
-    made = Recordings([file], "eel", ears.warned.append)
+def test_resets_in_quick_succession_are_taken(file, console, tmp_path):
+    made = Recordings([file], "eel", console.warned.append)
     for _ in range(6):
         for stamp in (0, SECOND):
             send(made, stamp, ("head_pose",))
@@ -153,8 +153,8 @@ def test_resets_in_quick_succession_are_taken(file, ears, tmp_path):
     ]
 
 
-def test_diagnostics_at_their_own_time_or_at_the_newest_if_that_is_wall_time(file, ears, tmp_path):
-    made = Recordings([file], "eel", ears.warned.append)
+def test_diagnostics_at_their_own_time_or_at_the_newest_if_that_is_wall_time(file, console, tmp_path):
+    made = Recordings([file], "eel", console.warned.append)
     for stamp in (0, 3 * SECOND):
         send(made, stamp, ("head_pose",))
     for stamp, state in ((2 * SECOND, "swimming"), (1_795_234_285 * SECOND, "elsewhere")):
@@ -166,25 +166,25 @@ def test_diagnostics_at_their_own_time_or_at_the_newest_if_that_is_wall_time(fil
     assert {row[0] for row in log["level"]} == {"WARN"}
 
 
-def test_a_late_start_shows_the_present(file, ears, tmp_path):
-    made = Recordings([file], "eel", ears.warned.append)
+def test_a_late_start_shows_the_present(file, console, tmp_path):
+    made = Recordings([file], "eel", console.warned.append)
     for stamp in (500 * SECOND, 501 * SECOND):
         send(made, stamp)
     made.close()
-    assert not ears.warned
+    assert not console.warned
     np.testing.assert_array_equal(read(tmp_path / "run.rrd", entities.SPEED).time, [500.0, 501.0])
 
 
 @pytest.mark.fault(
     "names", "a `recording` that is there already", "said at the start; replaced once the new one is complete"
 )
-def test_a_file_that_is_there_is_replaced_when_the_new_one_is_complete(file, ears, tmp_path):
+def test_a_file_that_is_there_is_replaced_when_the_new_one_is_complete(file, console, tmp_path):
     (tmp_path / "run.rrd").write_bytes(b"RRF2 of yesterday")
-    made = Recordings([file], "eel", ears.warned.append)
-    assert ears.warned == [
+    made = Recordings([file], "eel", console.warned.append)
+    assert console.warned == [
         f"{tmp_path / 'run.rrd'} is there already and is replaced by the new recording when that is complete"
     ]
-    assert ears.said == [f"saving to {tmp_path / 'run.rrd'}; until it is complete, to run.part.rrd"]
+    assert console.said == [f"saving to {tmp_path / 'run.rrd'}; until it is complete, to run.part.rrd"]
     send(made, SECOND)
     assert (tmp_path / "run.rrd").read_bytes() == b"RRF2 of yesterday"
     made.close()
@@ -197,10 +197,10 @@ def test_a_file_that_is_there_is_replaced_when_the_new_one_is_complete(file, ear
     "the disk is full when the visualiser completes a recording",
     "one warning with the reason; what there is opens as `run.part.rrd`, an older `run.rrd` stays; status 1",
 )
-def test_a_recording_that_cannot_be_completed_stays_a_part(ears, tmp_path, limit_of_files):
+def test_a_recording_that_cannot_be_completed_stays_a_part(console, tmp_path, limit_of_files):
     (tmp_path / "run.rrd").write_bytes(b"RRF2 of yesterday")
     file = FileDestination(
-        Settings(recording=str(tmp_path / "run.rrd")), ears.said.append, ears.warned.append, retry_from=2
+        Settings(recording=str(tmp_path / "run.rrd")), console.said.append, console.warned.append, retry_from=2
     )
     stream, part = file.open(1, "eel"), tmp_path / "run.part.rrd"
     for k in range(3):
@@ -210,15 +210,17 @@ def test_a_recording_that_cannot_be_completed_stays_a_part(ears, tmp_path, limit
     with limit_of_files(part.stat().st_size + 100):  # the index does not fit any more
         file.close_recording(stream)
     assert file.incomplete and (tmp_path / "run.rrd").read_bytes() == b"RRF2 of yesterday"
-    (told,) = (line for line in ears.warned if "cannot be written any more" in line)
+    (told,) = (line for line in console.warned if "cannot be written any more" in line)
     assert f"recording {str(part)!r} cannot be written any more: File too large; it ends here" in told
     assert read(part, entities.SPEED).stamps.tolist() == [0, SECOND, 2 * SECOND]
 
 
-def test_a_folder_that_is_not_there_is_not_made(tmp_path, ears):
+def test_a_folder_that_is_not_there_is_not_made(tmp_path, console):
     path = tmp_path / "mistyped" / "run.rrd"
     with pytest.raises(ValueError, match=r"run\.rrd' cannot be written: there is no folder '.*/mistyped'"):
-        Recordings([FileDestination(Settings(recording=str(path)), ears.said.append, ears.warned.append)], "eel", print)
+        Recordings(
+            [FileDestination(Settings(recording=str(path)), console.said.append, console.warned.append)], "eel", print
+        )
     assert not os.listdir(tmp_path)
 
 
@@ -229,10 +231,10 @@ def test_a_recording_of_another_kind_is_refused():
 
 
 @pytest.mark.parametrize("path", ["/proc/none.rrd", "/dev/null/run.rrd", "{folder}/taken.rrd"])
-def test_a_path_that_cannot_be_written(path, tmp_path, ears):
+def test_a_path_that_cannot_be_written(path, tmp_path, console):
     (tmp_path / "taken.rrd").mkdir()
     path = path.format(folder=tmp_path)
-    file = FileDestination(Settings(recording=path), ears.said.append, ears.warned.append)
+    file = FileDestination(Settings(recording=path), console.said.append, console.warned.append)
     with pytest.raises(ValueError, match=r"recording .* cannot be written"):
         Recordings([file], "eel", print)
 
@@ -242,11 +244,11 @@ def test_a_path_that_cannot_be_written(path, tmp_path, ears):
     "a `recording` that cannot be written, beside other sinks or from a later run on",
     "said at once and every 30 s: nothing is written elsewhere, the others go on, it is tried again; then status 1",
 )
-def test_a_file_that_cannot_be_written_is_said_again_and_again_and_tried_again(tmp_path, ears, monkeypatch):
+def test_a_file_that_cannot_be_written_is_said_again_and_again_and_tried_again(tmp_path, console, monkeypatch):
     path, place = tmp_path / "taken" / "run.rrd", tmp_path / "taken"
     place.write_text("where the folder should be")
-    file = FileDestination(Settings(recording=str(path)), ears.said.append, ears.warned.append, retry_from=1)
-    made = Recordings([file], "eel", ears.warned.append)
+    file = FileDestination(Settings(recording=str(path)), console.said.append, console.warned.append, retry_from=1)
+    made = Recordings([file], "eel", console.warned.append)
     made.body(body())
     monkeypatch.setattr(recordings, "RETRY", 0.0)
     now = time.monotonic()
@@ -256,7 +258,7 @@ def test_a_file_that_cannot_be_written_is_said_again_and_again_and_tried_again(t
         made.poll()
     told = f"recording {str(path)!r} cannot be written: there is no folder {str(place)!r}: "
     told += "nothing of this run is saved; "
-    assert ears.warned == [told + "it is tried again while running"] * 2
+    assert console.warned == [told + "it is tried again while running"] * 2
     assert list(tmp_path.iterdir()) == [place]
     place.unlink()
     place.mkdir()
@@ -264,35 +266,37 @@ def test_a_file_that_cannot_be_written_is_said_again_and_again_and_tried_again(t
     made.poll()
     send(made, 99 * SECOND)
     made.close()
-    assert made.incomplete and len(ears.warned) == 2
+    assert made.incomplete and len(console.warned) == 2
     np.testing.assert_array_equal(read(path, entities.SPEED).stamps, [99 * SECOND])
     assert read(path, entities.BODY_NUMBERS, static=True)["mass"].size == 1
 
 
-def test_a_later_run_that_cannot_be_written_is_not_the_end(tmp_path, ears):
+def test_a_later_run_that_cannot_be_written_is_not_the_end(tmp_path, console):
     (tmp_path / "run-2.rrd").mkdir()
     file = FileDestination(
-        Settings(recording=str(tmp_path / "run.rrd")), ears.said.append, ears.warned.append, retry_from=2
+        Settings(recording=str(tmp_path / "run.rrd")), console.said.append, console.warned.append, retry_from=2
     )
-    made = Recordings([file], "eel", ears.warned.append)
+    made = Recordings([file], "eel", console.warned.append)
     for stamp in (0, SECOND, 0, SECOND):
         send(made, stamp)
     made.close()
-    assert made.incomplete and sum("run-2.rrd' cannot be written: it is a folder" in line for line in ears.warned) == 1
+    assert (
+        made.incomplete and sum("run-2.rrd' cannot be written: it is a folder" in line for line in console.warned) == 1
+    )
     assert len(read(tmp_path / "run.rrd", entities.SPEED).stamps) == 2
 
 
 @pytest.mark.parametrize(("sink", "allowed"), [(("save",), False), (("save", "serve"), True)])
-def test_the_only_sink_must_be_writable_at_the_start(sink, allowed, tmp_path, ears):
+def test_the_only_sink_must_be_writable_at_the_start(sink, allowed, tmp_path, console):
     (tmp_path / "taken.rrd").mkdir()
     settings = Settings(sink=sink, recording=str(tmp_path / "taken.rrd"))
-    made = destinations(settings, ears.said.append, ears.warned.append, live=True)
+    made = destinations(settings, console.said.append, console.warned.append, live=True)
     if allowed:
-        Recordings(made, "eel", ears.warned.append).close()
-        assert sum("recording" in line for line in ears.warned) == 1
+        Recordings(made, "eel", console.warned.append).close()
+        assert sum("recording" in line for line in console.warned) == 1
     else:
         with pytest.raises(ValueError, match=r"recording .* cannot be written: it is a folder"):
-            Recordings(made, "eel", ears.warned.append)
+            Recordings(made, "eel", console.warned.append)
 
 
 @pytest.mark.fault(
@@ -300,8 +304,8 @@ def test_the_only_sink_must_be_writable_at_the_start(sink, allowed, tmp_path, ea
     "a dynamics node killed and started again, found by the visualiser when its time has passed the first one's",
     "another publisher: a new recording begins",
 )
-def test_a_successor_begins_a_new_recording_whatever_its_stamps(file, ears, tmp_path):
-    made = Recordings([file], "eel", ears.warned.append)
+def test_a_successor_begins_a_new_recording_whatever_its_stamps(file, console, tmp_path):
+    made = Recordings([file], "eel", console.warned.append)
     made.body(body())
     send(made, SECOND)
     for stamp in (2 * SECOND, 3 * SECOND):
@@ -313,7 +317,7 @@ def test_a_successor_begins_a_new_recording_whatever_its_stamps(file, ears, tmp_
     for entity in (entities.POSITION, entities.WRENCH_NUMBERS, entities.POWER):
         np.testing.assert_array_equal(read(tmp_path / "run-2.rrd", entity).stamps, [2 * SECOND, 3 * SECOND])
     assert read(tmp_path / "run-2.rrd", entities.BODY_NUMBERS, static=True)["mass"].size == 1
-    begun = [line for line in ears.warned if "a new recording begins" in line]
+    begun = [line for line in console.warned if "a new recording begins" in line]
     assert begun == ["another node publishes head_pose from 2 s on: a new recording begins"]
 
 
@@ -345,16 +349,16 @@ def test_succession_is_told_by_counts_pauses_and_who_is_there():
     assert not topic.changes(None, 4 * 10**9)
 
 
-def test_without_a_name_the_file_is_called_after_the_time(tmp_path, ears, monkeypatch):
+def test_without_a_name_the_file_is_called_after_the_time(tmp_path, console, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    Recordings([FileDestination(Settings(), ears.said.append, ears.warned.append)], "eel", print).close()
+    Recordings([FileDestination(Settings(), console.said.append, console.warned.append)], "eel", print).close()
     (made,) = os.listdir(tmp_path)
     assert made.startswith("eel-20")
     assert made.endswith(".rrd")
-    assert not ears.warned  # the file's place was taken by itself
+    assert not console.warned  # the file's place was taken by itself
 
 
-def test_two_processes_that_begin_in_the_same_second_write_two_files(ears, monkeypatch):
+def test_two_processes_that_begin_in_the_same_second_write_two_files(console, monkeypatch):
     class Clock(datetime.datetime):
         @classmethod
         def now(cls):
@@ -362,7 +366,7 @@ def test_two_processes_that_begin_in_the_same_second_write_two_files(ears, monke
 
     monkeypatch.setattr("eel_viz.recording.recording_file.datetime.datetime", Clock)
     monkeypatch.setattr("eel_viz.recording.recording_file.os.getpid", iter((17, 18)).__next__)
-    files = [FileDestination(Settings(), ears.said.append, ears.warned.append).path(1) for _ in range(2)]
+    files = [FileDestination(Settings(), console.said.append, console.warned.append).path(1) for _ in range(2)]
     assert [str(path) for path in files] == ["eel-20260102-030405-17.rrd", "eel-20260102-030405-18.rrd"]
 
 
@@ -376,23 +380,23 @@ def taken():
 
 
 @pytest.mark.fault("neighbours", "the visualiser's port in use", "another one is taken, and said")
-def test_a_port_in_use_is_said_and_another_one_taken(taken, ears):
-    served = ServerDestination(Settings(port=taken), ears.said.append, ears.warned.append)
+def test_a_port_in_use_is_said_and_another_one_taken(taken, console):
+    served = ServerDestination(Settings(port=taken), console.said.append, console.warned.append)
     served.close()
-    assert len(ears.warned) == 1
-    assert f"port {taken} is in use, taking " in ears.warned[0]
+    assert len(console.warned) == 1
+    assert f"port {taken} is in use, taking " in console.warned[0]
     assert str(taken) not in served.uri
 
 
 @pytest.mark.fault(
     "subscribers", "no viewer at the address to connect to", "said once, tried again; the file is complete"
 )
-def test_a_viewer_that_is_absent_is_said_once_and_found_later(ears, tmp_path, monkeypatch):
+def test_a_viewer_that_is_absent_is_said_once_and_found_later(console, tmp_path, monkeypatch):
     from eel_viz.viewer import free_port
 
     port = free_port()
     settings = Settings(viewer=f"rerun+http://127.0.0.1:{port}/proxy", recording=str(tmp_path / "run.rrd"))
-    say, warn = ears.said.append, ears.warned.append
+    say, warn = console.said.append, console.warned.append
     file, viewer = FileDestination(settings, say, warn), ViewerDestination(settings, say, warn)
     made = Recordings([file, viewer], "eel", warn)
     monkeypatch.setattr(recordings, "RETRY", 0.0)
@@ -400,24 +404,26 @@ def test_a_viewer_that_is_absent_is_said_once_and_found_later(ears, tmp_path, mo
     for k in range(3):
         send(made, k * SECOND)
         made.poll()
-    assert len(ears.warned) == 1
-    assert "no viewer listens at" in ears.warned[0]
-    host = ServerDestination(Settings(port=port), ears.said.append, ears.warned.append)  # stands in for the viewer
+    assert len(console.warned) == 1
+    assert "no viewer listens at" in console.warned[0]
+    host = ServerDestination(
+        Settings(port=port), console.said.append, console.warned.append
+    )  # stands in for the viewer
     made.poll()
     send(made, 3 * SECOND)
     made.close()
     host.close()
-    assert f"connected to the viewer at {settings.viewer}" in ears.said
+    assert f"connected to the viewer at {settings.viewer}" in console.said
     assert len(read(tmp_path / "run.rrd", entities.SPEED).stamps) == 4
 
 
 @pytest.mark.fault("subscribers", "a viewer that is closed and opened again", "said once; it gets the present again")
-def test_a_viewer_that_is_closed_and_opened_again(ears, tmp_path, monkeypatch):
+def test_a_viewer_that_is_closed_and_opened_again(console, tmp_path, monkeypatch):
     from eel_viz.viewer import free_port, listening
 
     port = free_port()
     settings = Settings(viewer=f"rerun+http://127.0.0.1:{port}/proxy", recording=str(tmp_path / "run.rrd"))
-    say, warn = ears.said.append, ears.warned.append
+    say, warn = console.said.append, console.warned.append
     monkeypatch.setattr(recordings, "RETRY", 0.0)
     monkeypatch.setattr(sinks, "ANSWER_LIMIT", 60.0)  # a busy machine takes its time
 
@@ -449,10 +455,10 @@ def test_a_viewer_that_is_closed_and_opened_again(ears, tmp_path, monkeypatch):
     finally:
         viewer.kill()
         viewer.wait()
-    assert [line for line in ears.warned if "viewer" in line] == [
+    assert [line for line in console.warned if "viewer" in line] == [
         f"the viewer at {settings.viewer} has gone: it is tried again while running"
     ]
-    assert ears.said.count(f"connected to the viewer at {settings.viewer}") == 2
+    assert console.said.count(f"connected to the viewer at {settings.viewer}") == 2
     np.testing.assert_array_equal(read(tmp_path / "run.rrd", entities.SPEED).time, range(5))
 
 
@@ -461,32 +467,32 @@ def test_a_viewer_s_address_that_is_none():
         ViewerDestination(Settings(viewer="somewhere"), print, print)
 
 
-def test_auto_saves_without_a_display_and_opens_a_window_with_one(monkeypatch, tmp_path, ears):
+def test_auto_saves_without_a_display_and_opens_a_window_with_one(monkeypatch, tmp_path, console):
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("DISPLAY", raising=False)
     monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
-    (chosen,) = destinations(Settings(), ears.said.append, ears.warned.append)
+    (chosen,) = destinations(Settings(), console.said.append, console.warned.append)
     assert isinstance(chosen, FileDestination)
     monkeypatch.setenv("DISPLAY", ":99")
     opened = []
     monkeypatch.setattr(ServerDestination, "show_in_window", lambda self: opened.append(self.uri))
-    (chosen,) = destinations(Settings(), ears.said.append, ears.warned.append)
+    (chosen,) = destinations(Settings(), console.said.append, console.warned.append)
     chosen.close()
     assert opened == [chosen.uri]
 
 
-def test_spawn_without_a_display_warns_and_serves(monkeypatch, ears):
+def test_spawn_without_a_display_warns_and_serves(monkeypatch, console):
     monkeypatch.delenv("DISPLAY", raising=False)
     monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
-    (chosen,) = destinations(Settings(sink=("spawn",)), ears.said.append, ears.warned.append)
+    (chosen,) = destinations(Settings(sink=("spawn",)), console.said.append, console.warned.append)
     chosen.close()
-    assert "there is no display: no viewer is opened" in ears.warned
+    assert "there is no display: no viewer is opened" in console.warned
 
 
-def test_a_torn_file_is_read_up_to_its_last_whole_message(file, ears, tmp_path):
+def test_a_torn_file_is_read_up_to_its_last_whole_message(file, console, tmp_path):
     from eel_viz.recording.rrd_frames import cut_to_whole_messages, end_of_whole_messages
 
-    made = Recordings([file], "eel", ears.warned.append)
+    made = Recordings([file], "eel", console.warned.append)
     send(made, 0)
     made.poll()
     time.sleep(CHECK_PERIOD)
@@ -506,11 +512,11 @@ def test_a_torn_file_is_read_up_to_its_last_whole_message(file, ears, tmp_path):
     assert end_of_whole_messages(torn) == size
 
 
-def test_a_file_is_read_while_it_grows(file, ears, tmp_path):
+def test_a_file_is_read_while_it_grows(file, console, tmp_path):
     from eel_viz.recording.rrd_frames import complete_file, end_of_whole_messages
     from rerun.chunk import RrdReader
 
-    made = Recordings([file], "eel", ears.warned.append)
+    made = Recordings([file], "eel", console.warned.append)
     send(made, 0)
     made.close()
     complete, growing = (tmp_path / "run.rrd").read_bytes(), tmp_path / "growing.rrd"

@@ -5,7 +5,7 @@
 // Where a speed changes its sign within a panel, the load has a kink there; `drag_kinks` integrates it exactly.
 #pragma once
 
-#include "eel_core/workspace.hpp"
+#include "eel_core/model/workspace.hpp"
 
 namespace eel_core {
 

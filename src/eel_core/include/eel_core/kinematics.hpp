@@ -5,7 +5,7 @@
 // in the axes of the head, about the head: R = 1, r = omega = v = 0 at the nose.
 #pragma once
 
-#include "eel_core/workspace.hpp"
+#include "eel_core/model/workspace.hpp"
 
 namespace eel_core {
 

@@ -10,7 +10,7 @@
 #include <numbers>
 #include <vector>
 
-#include "eel_core/field.hpp"
+#include "eel_core/algebra/field.hpp"
 
 namespace eel_core {
 

@@ -66,8 +66,8 @@ class ClockMonitor:
         allowed = wanted and self._arbiter.judge(time.monotonic(), self._own, set(others))
         if not wanted:
             self._arbiter = ClockArbiter()
+        names = ", ".join(sorted(_full_name(*each) for each in others.values()))
         if wanted and others:
-            names = ", ".join(sorted(_full_name(*each) for each in others.values()))
             state = "this node does not" if not allowed else "one of the two has to go"
             self._report.begin("clock", f"/clock is published by {names} already: {state}")
         else:
@@ -75,6 +75,8 @@ class ClockMonitor:
         if allowed != self._offered:
             self._offered = allowed
             self._offer(allowed)
+            if wanted and not allowed:
+                self._report.event("clock stopped", f"this node stops publishing /clock, which {names} publishes too")
 
 
 def _full_name(namespace: str, name: str) -> str:

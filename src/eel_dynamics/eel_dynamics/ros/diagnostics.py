@@ -127,7 +127,7 @@ class Status:
             self._report.begin(
                 "overdue",
                 f"no sample for {run.overdue:.0f} s after t = {run.time:g} s, which takes too many steps: another "
-                "law, reset and pause are heard",
+                "law, reset and pause are served",
                 ERROR,
             )
         else:

@@ -50,7 +50,7 @@ class Publishers:
         self._values, self._stopped, self._report = values, stopped, report
         self._lossless = values().real_time_factor == 0.0
         self._channels = {name: Channel(create, kind, name, self._lossless) for name, kind in sample.kinds.items()}
-        self._subscribed, self._last_count = (), -math.inf  # topics that someone hears, and s: when that was found
+        self._subscribed, self._last_count = (), -math.inf  # topics with subscribers, and s: when that was found
         self._clock = None
         self._wait_budget = WaitBudget()
         self._subscriber_counts, self._counts_since = None, 0.0

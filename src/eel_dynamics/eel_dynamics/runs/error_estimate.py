@@ -5,7 +5,7 @@ Their distance is thus an estimate of the run's error that lies on the safe side
 convergence: observed orders are 2.3 to 4.9. It sees the growth of errors, which no error of a single step does.
 
 Where the estimate exceeds the target, the run becomes the next companion of a finer one, up to `MOST_REFINEMENTS`
-times. What then is still above the target is told.
+times. A warning names what is then still above the target.
 """
 
 from dataclasses import dataclass, replace

@@ -104,14 +104,20 @@ class LawAdopter:
         driven = simulation.law is not None and simulation.samples_until is None and not simulation.resting
         if driven and law == simulation.law and origin == self._origin:
             return  # published again: nothing to blend
+        until = simulation.samples_until
         try:
             simulation.adopt(law, origin=origin)
         except REFUSALS as error:
             self._report.event("law", f"law {shown(law.name)} refused: {error}", ERROR, differing=True)
-        else:
-            self._origin = origin
-            self._report.end("resting")
-            self._report.note("law taken on", f"law {shown(law.name)} taken on at t = {simulation.time:g} s")
+            return
+        self._origin = origin
+        self._report.end("resting")
+        self._report.note("law adopted", f"law {shown(law.name)} adopted at t = {simulation.time:g} s")
+        if until is not None and until > simulation.time:
+            self._report.event(
+                "samples dropped",
+                f"curvature samples up to t = {until:g} s are dropped: law {shown(law.name)} is newer",
+            )
 
     def add_samples(self, samples: dict):
         """Add one instant of a law: the arguments of `Simulation.add_samples`."""

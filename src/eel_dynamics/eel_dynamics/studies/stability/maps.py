@@ -157,8 +157,8 @@ def maps_of(points: int = 13) -> tuple[Map, ...]:
             ),
         ),
         Map(
-            name="thrown",
-            title="thrown in, and spinning about three axes: 0.2 s",
+            name="velocity",
+            title="initial velocity, and spin about three axes: 0.2 s",
             x_label="speed (m/s)",
             y_label="spin (turns/s)",
             x=spread(1e-2, 100.0),

@@ -11,7 +11,7 @@ RATIOS = (1e-3, 1e-2, 1e-1, 0.5, 1.0, 10.0, 1e3)
 def report(maps) -> str:
     """Counts and greatest errors of the maps, then the explicit treatment of the added mass, as Markdown."""
     lines = [
-        "| map | accurate | inaccurate | of them warned of | of them told by the estimate | by neither | stopped | "
+        "| map | accurate | inaccurate | of them warned of | of them shown by the estimate | by neither | stopped | "
         "beyond a limit of the model, and warned of | worst error by target | most steps |",
         "|---|---|---|---|---|---|---|---|---|---|",
     ]

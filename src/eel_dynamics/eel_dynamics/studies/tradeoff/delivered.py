@@ -39,7 +39,7 @@ class Trial:
     """One swim at a target.
 
     error: its true error; None where the references do not agree. told: whether the run says that it misses its target.
-    cost: nodes times evaluations of all that was swum, relative to those of the delivered run alone.
+    cost: nodes times evaluations of all its runs, relative to those of the delivered run alone.
     """
 
     swim: dict
@@ -129,7 +129,14 @@ def delivered_table(trials: list[Trial], *, markdown: bool = False) -> str:
         "all": trials,
     }
     head = (
-        *("error of", "swims", "with a reference", "above the target", "of these not told", "told without a reference"),
+        *(
+            "error of",
+            "swims",
+            "with a reference",
+            "above the target",
+            "of these not reported",
+            "reported without a reference",
+        ),
         *("estimate below the error", "by more than 2", "error by estimate, median", "greatest"),
         *("target by error, median", "cost, median"),
     )

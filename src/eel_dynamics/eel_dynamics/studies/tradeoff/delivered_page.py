@@ -44,7 +44,7 @@ samples of a controller between two instants. Tests of their own compare these w
 {swims} random swims: bends in space and in the plane, periods of 0.2 to 3 s, densities of 200 to 8,000 kg/m^3,
 every friction law, three bodies, heads at rest and moving, 1 to 16 s, targets of 1e-2 to 1e-6. The true error is
 the distance from a reference: {first:g} points with a tolerance of {tolerance:g}, trusted where another method with
-{second:g} points agrees to a tenth of the target. The cost is nodes times evaluations of all that was swum,
+{second:g} points agrees to a tenth of the target. The cost is nodes times evaluations of all its runs,
 relative to the delivered run's.
 
 {table}

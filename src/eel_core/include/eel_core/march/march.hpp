@@ -5,7 +5,7 @@
 #include <optional>
 #include <variant>
 
-#include "eel_core/observe.hpp"
+#include "eel_core/march/observe.hpp"
 #include "eel_core/steppers/stepper.hpp"
 
 namespace eel_core {

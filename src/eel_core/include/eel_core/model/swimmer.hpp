@@ -1,8 +1,8 @@
 // What a run never writes: body and water at the nodes and stations, and which physics is on.
 #pragma once
 
-#include "eel_core/grid.hpp"
-#include "eel_core/section.hpp"
+#include "eel_core/model/grid.hpp"
+#include "eel_core/model/section.hpp"
 
 namespace eel_core {
 

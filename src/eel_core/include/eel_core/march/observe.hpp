@@ -4,7 +4,7 @@
 #pragma once
 
 #include "eel_core/algorithm.hpp"
-#include "eel_core/profiles.hpp"
+#include "eel_core/march/profiles.hpp"
 
 namespace eel_core {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "eel_core/field.hpp"
+#include "eel_core/algebra/field.hpp"
 
 namespace eel_core {
 

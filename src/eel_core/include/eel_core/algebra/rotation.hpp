@@ -1,7 +1,7 @@
 // Rotations of neighbouring sections: R' = R hat(K) by a Magnus series, and the product of quaternions.
 #pragma once
 
-#include "eel_core/motion.hpp"
+#include "eel_core/algebra/motion.hpp"
 
 namespace eel_core {
 

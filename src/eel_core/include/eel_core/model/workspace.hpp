@@ -3,10 +3,10 @@
 
 #include <cmath>
 
+#include "eel_core/algebra/rotation.hpp"
+#include "eel_core/algebra/solve.hpp"
 #include "eel_core/law.hpp"
-#include "eel_core/rotation.hpp"
-#include "eel_core/solve.hpp"
-#include "eel_core/swimmer.hpp"
+#include "eel_core/model/swimmer.hpp"
 
 namespace eel_core {
 

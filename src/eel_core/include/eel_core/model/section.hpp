@@ -5,7 +5,7 @@
 // (pi/8) (a^2 - b^2)^2.
 #pragma once
 
-#include "eel_core/field.hpp"
+#include "eel_core/algebra/field.hpp"
 
 namespace eel_core {
 

@@ -4,7 +4,7 @@
 // is a vector in space and a number in the plane. Every formula of the mechanics is written once over both.
 #pragma once
 
-#include "eel_core/numbers.hpp"
+#include "eel_core/algebra/numbers.hpp"
 
 namespace eel_core {
 

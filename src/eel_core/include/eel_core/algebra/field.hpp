@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "eel_core/motion.hpp"
+#include "eel_core/algebra/motion.hpp"
 
 namespace eel_core {
 
