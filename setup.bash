@@ -37,12 +37,12 @@ _eel_setup() {
     done
 
     local prefixes=() modules=()
-    local libraries=("$root/install/eel_msgs/lib" "$root/.venv/lib" "$root/.venv/$site"/ros_*.libs)
+    local libraries=("$root"/install/{eel_msgs,tf2_msgs}/lib "$root/.venv/lib" "$root/.venv/$site"/ros_*.libs)
     for package in eel_viz eel_dynamics eel_gaits eel_ros; do
         prefixes+=("$root/install/$package")
         modules+=("$root/build/$package" "$root/install/$package/$site")
     done
-    for package in eel_core eel_msgs; do
+    for package in eel_core eel_msgs tf2_msgs; do
         prefixes+=("$root/install/$package")
         modules+=("$root/install/$package/$site")
     done

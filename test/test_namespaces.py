@@ -1,10 +1,15 @@
-"""Two eels on one network: each node has the topics of its namespace; only /clock and /diagnostics are shared."""
+"""Two eels on one network: each node has the topics and frames of its namespace; /clock, /diagnostics and /tf are
+shared."""
 
 import json
 import subprocess
 import sys
 
 import pytest
+from eel_gaits.messages import law_to_message
+from swim_client import SwimClient, nanoseconds
+
+from eel_gaits import falling
 
 LISTEN = """
 import json, sys, time
@@ -12,25 +17,30 @@ import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseStamped
 from rclpy.qos import QoSProfile, HistoryPolicy
+from tf2_msgs.msg import TFMessage
 rclpy.init()
 node = rclpy.create_node("listener")
 every = QoSProfile(history=HistoryPolicy.KEEP_ALL, depth=1)
-poses, statuses = {"/left": [], "/right": []}, []
+poses, statuses, transforms = {"/left": [], "/right": []}, [], []
 for space in poses:
     node.create_subscription(PoseStamped, space + "/head_pose", poses[space].append, every)
+node.create_subscription(TFMessage, "/tf", lambda m: transforms.extend(m.transforms), every)
 node.create_subscription(DiagnosticArray, "/diagnostics", statuses.append, every)
 print("ready", flush=True)
 deadline = time.monotonic() + 90
 while time.monotonic() < deadline:
     rclpy.spin_once(node, timeout_sec=0.1)
     names = {s.name for a in statuses for s in a.status}
-    if all(len(p) == 301 for p in poses.values()) and all(any(space in name for name in names) for space in poses):
+    complete = len(transforms) == 602 and all(len(p) == 301 for p in poses.values())
+    if complete and all(any(space in name for name in names) for space in poses):
         break
 clocks = node.get_publishers_info_by_topic("/clock")
 print(json.dumps({
     "count": {k: len(v) for k, v in poses.items()},
     "end": {k: [v[-1].pose.position.x, v[-1].pose.position.y] for k, v in poses.items() if v},
     "names": sorted(names),
+    "frames": {k: sorted({m.header.frame_id for m in v}) for k, v in poses.items()},
+    "transforms": {t.child_frame_id: [t.header.frame_id, t.transform.translation.x] for t in transforms},
     "topics": sorted(n for n, _ in node.get_topic_names_and_types()),
 }))
 rclpy.shutdown()
@@ -40,7 +50,7 @@ rclpy.shutdown()
 @pytest.mark.fault(
     "neighbours",
     "two eels in two namespaces",
-    "each receives and publishes its own; only /clock and /diagnostics are shared",
+    "each receives and publishes its own, in frames of its own; only /clock, /diagnostics and /tf are shared",
 )
 def test_two_eels(start, fresh_domain, tmp_path):
     listener = start(sys.executable, "-c", LISTEN)
@@ -53,6 +63,10 @@ def test_two_eels(start, fresh_domain, tmp_path):
     received = json.loads([line for line in listener.output().splitlines() if line.startswith("{")][-1])
     assert received["count"] == {"/left": 301, "/right": 301}
     assert received["end"]["/left"] != received["end"]["/right"]
+    assert received["frames"] == {"/left": ["left/odom"], "/right": ["right/odom"]}
+    assert received["transforms"] == {
+        f"{space}/base_link": [f"{space}/odom", received["end"][f"/{space}"][0]] for space in ("left", "right")
+    }
     assert {"/left/head_pose", "/right/head_pose", "/clock", "/diagnostics"} <= set(received["topics"])
     assert "/head_pose" not in received["topics"] and "/left/clock" not in received["topics"]
 
@@ -67,3 +81,38 @@ def test_a_name_of_its_own(start, fresh_domain):
         capture_output=True, text=True, timeout=90,
     )  # fmt: skip
     assert "('brain', '/left')" in nodes.stdout, nodes.stdout + nodes.stderr
+
+
+@pytest.mark.fault(
+    "neighbours",
+    "two dynamics nodes with the same topics",
+    "the later one publishes nothing; both say ERROR, with the other's name, host, process and start",
+)
+def test_two_dynamics_nodes_with_the_same_topics(start, fresh_domain):
+    swim = SwimClient(domain=fresh_domain, topics=("head_pose",), clock=True)
+    swim.laws.publish(law_to_message(falling()))
+
+    def status(name):
+        """(level, message, values) of the newest status of the node `name`; level 0 while there is none."""
+        newest = [each for array in swim.received["/diagnostics"] for each in array.status if each.name == name][-1:]
+        return next(((s.level[0], s.message, {v.key: v.value for v in s.values}) for s in newest), (0, "", {}))
+
+    first = start("dynamics", "--ros-args", "-r", "__node:=first")
+    swim.until_time(0.1)
+    second = start("dynamics", "--ros-args", "-r", "__node:=second")
+    swim.until(lambda: status("/first")[0] == status("/second")[0] == 2, "an ERROR of both")
+    texts = {name: status(name)[1] for name in ("/first", "/second")}
+    assert "publishes /head_pose already: this node waits" in texts["/second"], texts
+    for name, node, other in (("/first", first, "/second"), ("/second", second, "/first")):
+        values = status(other)[2]
+        told = f"{other} (host {values['host']}, process {values['process']}, started {values['started']})"
+        assert told in texts[name] and node.output().count(told) == 1, node.output()
+    stands = status("/second")[2]["samples_published"]
+    before = len(swim.received["head_pose"])
+    swim.until(lambda: len(swim.received["head_pose"]) > before + 50, "samples of the first node")
+    stamps = [nanoseconds(message.header.stamp) for message in swim.received["head_pose"][before:]]
+    assert stamps == sorted(set(stamps)), "two swims on one topic"
+    clocks = {nanoseconds(message.clock) for message in swim.received["/clock"][-20:]}
+    assert min(clocks) > 0, "the node that waits ticks /clock"
+    assert status("/second")[2]["samples_published"] == stands
+    swim.close()

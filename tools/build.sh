@@ -63,7 +63,7 @@ say_progress() {   # of what uv or pip prints; uv names large packages alone
 
 build_packages() {
     local key
-    key="$(find src -type f ! -path '*/__pycache__/*' ! -path '*.egg-info/*' ! -path 'src/*/test/*' \
+    key="$(find src tools/tf2_msgs -type f ! -path '*/__pycache__/*' ! -path '*.egg-info/*' ! -path 'src/*/test/*' \
         \( ! -name '*.py' -o -name setup.py \) -print0 | sort -z | xargs -0 sha256sum tools/build.sh |
         key_of "$(cat .venv/stamp)" "$(.venv/bin/python -I src/eel_core/eel_core/processor.py)")"
     stamped install/stamp "$key" && return
@@ -72,7 +72,7 @@ build_packages() {
     rm -f install/stamp
     # With MAKEFLAGS, or colcon lets make start nothing beside while the machine has other work.
     PATH="$root/.venv/bin:$PATH" AMENT_PREFIX_PATH="$root/.venv" CMAKE_PREFIX_PATH="$root/.venv" MAKEFLAGS="-j$(nproc)" \
-        .venv/bin/python .venv/bin/colcon build --symlink-install --cmake-args -Wno-unused-cli \
+        .venv/bin/python .venv/bin/colcon build --base-paths src tools/tf2_msgs --symlink-install --cmake-args -Wno-unused-cli \
         "-DPython3_EXECUTABLE=$root/.venv/bin/python" -DEEL_MSGS_WITHOUT_CPP=ON -DBUILD_TESTING=OFF 9>&- ||
         { say "colcon failed; its output is in log/latest_build"; exit 1; }
     link_executables

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from eel_dynamics.ros.messages import Sample, body_message, diagnostic_array, samples_from_message
 from eel_dynamics.ros.parameters import DynamicsParameters
-from eel_dynamics.ros.serialised_message import SerialisedMessage
+from eel_dynamics.ros.serialised_message import MARKED_TIME, SerialisedMessage
 from eel_dynamics.ros.simulation_from_parameters import simulation_from_parameters
 from geometry_msgs.msg import PoseStamped
-from nav_msgs.msg import Odometry, Path
+from nav_msgs.msg import Odometry
 from rclpy.serialization import deserialize_message, serialize_message
 
 from eel_dynamics import Body, Scene, Simulation
@@ -48,7 +48,7 @@ def swum():
     simulation.adopt(falling())
     simulation.advance(2.3)
     snapshot = simulation.observe()
-    sample = Sample(simulation.x, simulation.scene, "odom", "base_link")
+    sample = Sample(simulation.x, simulation.scene, DynamicsParameters())
     sample.set_time(2_300_000_000)
     return snapshot, {name: filled(sample, name, snapshot) for name in sample.kinds}
 
@@ -59,8 +59,9 @@ def test_headers(swum):
         if name == "/tf":
             continue
         assert (message.header.stamp.sec, message.header.stamp.nanosec) == (2, 300_000_000)
-        world = name in ("head_pose", "odom", "backbone", "energy")
-        assert message.header.frame_id == ("odom" if world else "base_link"), name
+        own_axes = {"curvature", "internal_wrench", "hydrodynamic_load"}
+        frame = "section" if name in own_axes else "base_link" if name == "head_twist" else "odom"
+        assert message.header.frame_id == frame, name
     assert messages["odom"].child_frame_id == "base_link"
 
 
@@ -131,7 +132,7 @@ def test_refilling_replaces_all_that_was_there(swum):
     snapshot, messages = swum
     simulation = Simulation(stations=17)
     simulation.adopt(falling())
-    sample = Sample(simulation.x, simulation.scene, "odom", "base_link")
+    sample = Sample(simulation.x, simulation.scene, DynamicsParameters())
     for name in sample.kinds:
         sample.fill(name, simulation.observe())
     sample.set_time(2_300_000_000)
@@ -140,7 +141,7 @@ def test_refilling_replaces_all_that_was_there(swum):
 
 
 def test_what_the_scene_leaves_out_is_not_offered():
-    kinds = Sample(np.linspace(0, 1, 5), Scene(internal_wrench=False, ledger=False), "odom", "base_link").kinds
+    kinds = Sample(np.linspace(0, 1, 5), Scene(internal_wrench=False, ledger=False), DynamicsParameters()).kinds
     assert "internal_wrench" not in kinds and "energy" not in kinds and "curvature" in kinds
 
 
@@ -157,7 +158,7 @@ def test_start_is_given_in_ros_frames_and_published_back():
     assert simulation.scene.current == (-0.5, -0.25, 0.0)
     snapshot = simulation.observe()
     assert snapshot.twist[3] == pytest.approx(-0.4)  # library: forward is V1 < 0
-    sample = Sample(simulation.x, simulation.scene, "odom", "base_link")
+    sample = Sample(simulation.x, simulation.scene, DynamicsParameters())
     pose = filled(sample, "head_pose", snapshot).pose
     twist = filled(sample, "head_twist", snapshot).twist
     assert np.allclose(xyz(pose.position), (1.0, 2.0, 3.0), rtol=0, atol=1e-15)
@@ -168,7 +169,7 @@ def test_start_is_given_in_ros_frames_and_published_back():
 
 def test_body_has_its_outline_and_mass():
     body = Body.boyer2010()
-    message = body_message(body, Scene(), np.linspace(0.0, 1.0, 11), "base_link")
+    message = body_message(body, Scene(), np.linspace(0.0, 1.0, 11), "section")
     x = np.array(message.x)
     assert x[0] == 0.0 and x[-1] == body.length and np.all(np.diff(x) > 0.0)
     assert set(np.linspace(0.0, 1.0, 11)) <= set(x)
@@ -176,7 +177,7 @@ def test_body_has_its_outline_and_mass():
     assert np.array_equal(message.half_width, body.half_width(x)) and np.array_equal(
         message.half_height, body.half_height(x)
     )
-    assert body_message(body, Scene(density=500.0), x, "base_link").mass == pytest.approx(0.5 * message.mass)
+    assert body_message(body, Scene(density=500.0), x, "section").mass == pytest.approx(0.5 * message.mass)
 
 
 def test_samples_keep_their_names():
@@ -206,7 +207,7 @@ def test_diagnostics_are_text():
 def test_zero_is_never_minus_zero():
     simulation = Simulation(stations=5)
     simulation.adopt(Law(name="still"))
-    sample = Sample(simulation.x, simulation.scene, "odom", "base_link")
+    sample = Sample(simulation.x, simulation.scene, DynamicsParameters())
     for name in ("head_pose", "head_twist", "odom"):
         assert "-0.0" not in repr(filled(sample, name, simulation.observe()))
     assert "-0.0" not in repr(list(filled(sample, "backbone", simulation.observe()).orientation))
@@ -228,10 +229,32 @@ def test_serialised_message_changes_as_its_fields_do():
         for name, value in zip(names, row, strict=True):
             setattr(target, name, value)
         wire.numbers[path][:] = row
-    message.header.stamp.sec, message.header.stamp.nanosec = wire.stamp[:] = 7, 999_999_999
+    message.header.stamp.sec, message.header.stamp.nanosec = wire.stamps[0][:] = 7, 999_999_999
     assert deserialize_message(wire.data(), Odometry) == message
 
 
 def test_a_message_whose_places_are_not_sure_is_refused():
-    with pytest.raises(RuntimeError, match="Path is not serialised as it was expected"):
-        SerialisedMessage(Path(poses=[PoseStamped()]))  # has two times
+    message = PoseStamped()
+    message.header.frame_id = np.array(MARKED_TIME, dtype="<i4").tobytes().decode()  # looks like the time
+    with pytest.raises(RuntimeError, match="PoseStamped is not serialised as it was expected"):
+        SerialisedMessage(message)
+
+
+def test_transforms_of_the_stations_turn_section_axes_into_the_world(swum):
+    """What a listener to tf2 makes of a torque in section axes is the torque turned by the library, in REP-103 axes."""
+    snapshot, messages = swum
+    assert [each.child_frame_id for each in messages["/tf"].transforms] == ["base_link"]
+    x = snapshot.x
+    parameters = DynamicsParameters(publish_tf_stations=True, section_frame="eel1/section", world_frame="eel1/odom")
+    sample = Sample(x, Scene(), parameters)
+    sample.set_time(2_300_000_000)
+    head, *stations = filled(sample, "/tf", snapshot).transforms
+    assert head.child_frame_id == "base_link" and head.transform == messages["/tf"].transforms[0].transform
+    assert [each.child_frame_id for each in stations] == [f"eel1/section_{k}" for k in range(len(x))]
+    backbone = messages["backbone"]
+    for k, each in enumerate(stations):
+        assert (each.header.frame_id, each.header.stamp) == ("eel1/odom", messages["odom"].header.stamp)
+        assert np.array_equal(xyz(each.transform.translation), backbone.position[3 * k : 3 * k + 3])
+        turned = matrix(xyzw(each.transform.rotation)) @ snapshot.torque[k]
+        expected = TURN @ matrix(snapshot.section_orientation[k]) @ snapshot.torque[k]
+        assert np.allclose(turned, expected, rtol=0, atol=1e-15)

@@ -13,6 +13,7 @@ from eel_dynamics.ros.loop.pacing import Pace
 from eel_dynamics.ros.loop.run_loop import RunLoop
 from eel_dynamics.ros.parameters import DynamicsParameters, checked, from_values
 from eel_dynamics.ros.publishers import Publishers, WaitBudget
+from eel_dynamics.ros.swimmer_arbiter import Identity, SwimmerArbiter
 from eel_ros.parameters import default_of
 
 from eel_dynamics import Scene, Simulation
@@ -194,6 +195,58 @@ def test_a_node_that_stops_publishing_the_clock_logs_it_once(monkeypatch):
     stops = [entry for entry in log.lines if "stops" in entry[1]]
     assert stops == [("warning", "this node stops publishing /clock, which /simulator publishes too")]
     assert 2 not in publishers
+
+
+# swimmers
+
+
+class Network:
+    """Arbiters that get each other's diagnostics, once a second."""
+
+    def __init__(self, *identities):
+        self.time = 0.0
+        self.logs = [Log() for _ in identities]
+        self.held = [[] for _ in identities]
+        self.arbiters = [
+            SwimmerArbiter(each, "/head_pose", Report(log), held.append, lambda: self.time)
+            for each, log, held in zip(identities, self.logs, self.held, strict=True)
+        ]
+
+    def run(self, seconds, present):
+        for _ in range(seconds):
+            self.time += 1.0
+            for sender in present:
+                for each in self.arbiters:
+                    each.receive("/dynamics", self.arbiters[sender].values())
+            for each in self.arbiters:
+                each.look()
+
+
+def test_of_two_nodes_with_the_same_topics_the_later_one_waits_until_the_other_has_gone():
+    first, second = Identity("2026-01-01T00:00:00", "a", "7"), Identity("2026-01-01T00:00:01", "a", "8")
+    network = Network(second, first)
+    network.run(3, present=(0, 1))
+    later, earlier = network.arbiters
+    assert later.waits and not earlier.waits
+    assert network.held == [["waiting until /dynamics has gone"], []]
+    ((level, text),) = network.logs[0].lines
+    assert level == "error" and "process 7" in text and "this node waits" in text
+    ((level, text),) = network.logs[1].lines
+    assert level == "error" and "/dynamics (host a, process 8, started 2026-01-01T00:00:01)" in text
+    network.run(4, present=(0,))
+    assert later.waits
+    network.run(2, present=(0,))
+    assert not later.waits and network.held == [["waiting until /dynamics has gone", ""], []]
+    assert network.logs[0].lines[1:] == [("info", "no other node publishes /head_pose any more")]
+
+
+def test_a_node_ignores_itself_other_swimmers_and_statuses_of_other_kinds():
+    arbiter = SwimmerArbiter(Identity("b", "b", "2"), "/head_pose", Report(Log()), lambda reason: None)
+    arbiter.receive("/dynamics", arbiter.values())
+    arbiter.receive("/eel2/dynamics", {"swimmer": "/eel2/head_pose", "started": "a", "host": "a", "process": "1"})
+    arbiter.receive("/camera", {"swimmer": "/head_pose", "started": "a"})
+    arbiter.look()
+    assert not arbiter.waits
 
 
 # reports

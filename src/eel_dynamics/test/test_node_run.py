@@ -82,7 +82,7 @@ def test_heavy_topics_alone_and_frames_by_parameter(start, client):
     assert len(listener.received["hydrodynamic_load"][-1].force_2) == 7 and any(
         listener.received["hydrodynamic_load"][-1].force_2
     )
-    assert listener.received["hydrodynamic_load"][-1].header.frame_id == "eel/head"
+    assert listener.received["hydrodynamic_load"][-1].header.frame_id == "section"
     assert (listener.received["odom"][-1].header.frame_id, listener.received["odom"][-1].child_frame_id) == (
         "map",
         "eel/head",

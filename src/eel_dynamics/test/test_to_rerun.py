@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from eel_dynamics.ros.messages import Sample, body_message, diagnostic_array
+from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.runs.command import main
 from eel_dynamics.runs.records import records
 from rclpy.serialization import deserialize_message
@@ -27,10 +28,10 @@ def run():
 
 def node_messages(run, statuses):
     """Topics and ROS messages, as the node fills and sends them."""
-    yield "body", body_message(run.body, run.scene, run.x, "base_link")
+    yield "body", body_message(run.body, run.scene, run.x, "section")
     yield "curvature_law", CurvatureLaw(name=run.law.name)
     yield "diagnostics", statuses[0]
-    sample = Sample(run.x, run.scene, "odom", "base_link")
+    sample = Sample(run.x, run.scene, DynamicsParameters())
     for k, time in enumerate(run.time):
         sample.set_time(round(time * 1e9))
         energy = SimpleNamespace(**{name: run.energy[name][k] for name in run.energy.keys()})  # noqa: SIM118

@@ -10,15 +10,18 @@ from std_msgs.msg import Header
 from eel_gaits.law import MAXIMUM_TERMS, Law, Ramp, Term
 from eel_msgs import msg
 
-FRAME = "base_link"
+FRAME = "section"  # axes of the section itself
 AXIS_NUMBERS = {"pitch": msg.CurvatureTerm.PITCH, "yaw": msg.CurvatureTerm.YAW}
 AXIS_NAMES = {number: name for name, number in AXIS_NUMBERS.items()}
 
 
-def law_to_message(law, *, stamp=None):
-    """The law as a message. stamp (builtin_interfaces/Time): the time of the law's own t = 0; zero by default."""
+def law_to_message(law, *, stamp=None, frame=FRAME):
+    """The law as a message.
+
+    stamp (builtin_interfaces/Time): the time of the law's own t = 0; zero by default. frame: id of the section axes.
+    """
     return msg.CurvatureLaw(
-        header=Header(stamp=stamp or Time(), frame_id=FRAME),
+        header=Header(stamp=stamp or Time(), frame_id=frame),
         name=law.name,
         terms=[_term_to_message(term) for term in law.terms],
         transition=law.transition,

@@ -10,6 +10,7 @@ from dataclasses import fields
 
 from builtin_interfaces.msg import Time
 from eel_ros.command_line import USE_SIM_TIME, answer_words
+from eel_ros.frames import frame_in
 from eel_ros.parameters import declare, described, take_overrides, warn_of_unknown
 from eel_ros.qos import latched
 from eel_ros.run_node import run_node
@@ -21,7 +22,7 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from eel_gaits.command_line import complain
-from eel_gaits.messages import law_to_message
+from eel_gaits.messages import FRAME, law_to_message
 from eel_gaits.quantity import limits
 from eel_gaits.registry import GAITS
 from eel_gaits.settings import Settings, Transition
@@ -124,7 +125,8 @@ class GaitGenerator(Node):
             self._publish()
 
     def _publish(self):
-        self._publisher.publish(law_to_message(self._settings.law(), stamp=self._stamp))
+        frame = frame_in(self.get_namespace(), FRAME)
+        self._publisher.publish(law_to_message(self._settings.law(), stamp=self._stamp, frame=frame))
         began = self._stamp.sec + 1e-9 * self._stamp.nanosec
         self.get_logger().info(
             f"gait {shown(self._settings.gait)}, t = 0 at {began:.3f} s, published on {self._publisher.topic_name}"

@@ -27,7 +27,7 @@ def test_every_gait_passes(name):
 
 def test_header_and_axes():
     message = law_to_message(falling())
-    assert (message.header.frame_id, message.header.stamp.sec, message.header.stamp.nanosec) == ("base_link", 0, 0)
+    assert (message.header.frame_id, message.header.stamp.sec, message.header.stamp.nanosec) == ("section", 0, 0)
     assert [term.axis for term in message.terms] == [CurvatureTerm.YAW, CurvatureTerm.PITCH]
 
 

@@ -30,7 +30,7 @@ def test_a_late_subscriber_gets_the_law(generator, client):
     generator()
     client.listen()
     assert client.law(0) == (falling(), 0.0)
-    assert client.messages[0].header.frame_id == "base_link"
+    assert client.messages[0].header.frame_id == "section"
 
 
 def test_a_volatile_subscriber_that_was_there_first_gets_it_too(start, client):

@@ -2,7 +2,8 @@
 
 Library (the paper's) axes: at rest the body lies along +x from the head and swims towards -x.
 ROS (REP-103) axes: the eel swims towards +x, y is left, z up. A half turn about z takes each set into the other. It is
-applied to the world and to every section alike. So each function here is its own inverse.
+applied to the world and to every section alike, where a function does not say otherwise: such a function is its own
+inverse.
 """
 
 import numpy as np
@@ -21,6 +22,15 @@ def turn_quaternion(quaternion: np.ndarray) -> np.ndarray:
     The axes of the world and of the body are both turned: R -> Q R Q^T with Q = diag(-1, -1, 1).
     """
     return np.asarray(quaternion, dtype=float) * QUATERNION
+
+
+def turn_world(quaternion: np.ndarray) -> np.ndarray:
+    """Orientation `quaternion`, shape (..., 4), order x y z w, with the axes of the world turned and the body's kept.
+
+    R -> Q R: the unit quaternion of Q, half a turn about z, times `quaternion`.
+    """
+    x, y, z, w = np.moveaxis(np.asarray(quaternion, dtype=float), -1, 0)
+    return np.stack([-y, x, w, -z], axis=-1)
 
 
 def matrix_of(quaternion: np.ndarray) -> np.ndarray:

@@ -66,7 +66,7 @@ class ClockMonitor:
         allowed = wanted and self._arbiter.judge(time.monotonic(), self._own, set(others))
         if not wanted:
             self._arbiter = ClockArbiter()
-        names = ", ".join(sorted(_full_name(*each) for each in others.values()))
+        names = ", ".join(sorted(self._called(*each) for each in others.values()))
         if wanted and others:
             state = "this node does not" if not allowed else "one of the two has to go"
             self._report.begin("clock", f"/clock is published by {names} already: {state}")
@@ -78,7 +78,9 @@ class ClockMonitor:
             if wanted and not allowed:
                 self._report.event("clock stopped", f"this node stops publishing /clock, which {names} publishes too")
 
-
-def _full_name(namespace: str, name: str) -> str:
-    """A node's full name; a publisher may be discovered before the name of its node."""
-    return "a node just discovered" if "UNKNOWN" in name else f"{namespace.rstrip('/')}/{name}"
+    def _called(self, namespace: str, name: str) -> str:
+        """A node's full name; a publisher may be discovered before the name of its node."""
+        if "UNKNOWN" in name:
+            return "a node just discovered"
+        another = (namespace, name) == (self._node.get_namespace(), self._node.get_name())
+        return f"{'another ' if another else ''}{namespace.rstrip('/')}/{name}"

@@ -3,12 +3,13 @@
 from dataclasses import fields, replace
 
 from eel_gaits.quantity import limits
+from eel_ros.frames import frame_in
 from eel_ros.parameters import declare, default_of, take_overrides, warn_of_unknown
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.parameter import Parameter
 
 from eel_dynamics.model.scene import Scene
-from eel_dynamics.ros.parameters import DynamicsParameters, checked, from_values
+from eel_dynamics.ros.parameters import FRAMES, DynamicsParameters, checked, from_values
 
 
 class Declaration:
@@ -24,7 +25,9 @@ class Declaration:
     def __init__(self, node, changed):
         self._changed = changed
         overrides = take_overrides(node)
-        self.values: DynamicsParameters = _declared(node, DynamicsParameters, overrides, "")
+        space = node.get_namespace()
+        frames = {name: frame_in(space, getattr(DynamicsParameters, name)) for name in FRAMES}
+        self.values: DynamicsParameters = _declared(node, DynamicsParameters, frames | overrides, "")
         self.scene: Scene = _declared(node, Scene, overrides, "scene.")
         warn_of_unknown(node, overrides, [name for name in overrides if node.has_parameter(name)])
         self._fields = {item.name: item for item in fields(DynamicsParameters)}

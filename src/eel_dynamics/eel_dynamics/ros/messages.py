@@ -1,7 +1,7 @@
 """Converts between snapshots and messages: fills serialised sample messages, and reads laws and samples of laws.
 
 The paper's frames, which the library uses, are converted to REP-103 frames by `turn_vector` and `turn_quaternion`.
-Fields in section axes (1 = -x, 2 = -y, 3 = +z of base_link) stay unchanged.
+Fields in section axes (1 = -x, 2 = -y, 3 = +z of base_link when straight) stay unchanged.
 """
 
 import array
@@ -16,10 +16,12 @@ from geometry_msgs.msg import PoseStamped, TransformStamped, TwistStamped
 from nav_msgs.msg import Odometry
 from rclpy.serialization import deserialize_message
 from rosgraph_msgs.msg import Clock
+from tf2_msgs.msg import TFMessage
 
 from eel_dynamics.curvature.curvature_samples import check_points
-from eel_dynamics.model.axes import QUATERNION, VECTOR, turn_quaternion, turn_vector
+from eel_dynamics.model.axes import QUATERNION, VECTOR, turn_quaternion, turn_vector, turn_world
 from eel_dynamics.model.scene import Scene
+from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.ros.serialised_message import SerialisedMessage
 from eel_dynamics.runs.records import outline
 from eel_msgs.msg import (
@@ -32,11 +34,6 @@ from eel_msgs.msg import (
     HydrodynamicLoad,
     InternalWrench,
 )
-
-try:
-    from tf2_msgs.msg import TFMessage
-except ImportError:  # not part of every ROS 2 installation
-    TFMessage = None
 
 SECOND = 1_000_000_000  # ns
 
@@ -56,12 +53,12 @@ class Sample:
 
     clock = Clock
 
-    def __init__(self, x: np.ndarray, scene: Scene, world_frame: str, head_frame: str):
+    def __init__(self, x: np.ndarray, scene: Scene, parameters: DynamicsParameters):
         self._nanoseconds = 0, 0
         messages = {
             "head_pose": PoseStamped(),
             "head_twist": TwistStamped(),
-            "odom": Odometry(child_frame_id=head_frame),
+            "odom": Odometry(child_frame_id=parameters.head_frame),
             "backbone": Backbone(),
             "curvature": Curvature(),
             "internal_wrench": InternalWrench(),
@@ -71,14 +68,16 @@ class Sample:
         for name, computed in (("internal_wrench", scene.internal_wrench), ("energy", scene.ledger)):
             if not computed:
                 del messages[name]
-        in_world = ("head_pose", "odom", "backbone", "energy")
+        in_section = ("curvature", "internal_wrench", "hydrodynamic_load")
+        frames = dict.fromkeys(in_section, parameters.section_frame) | {"head_twist": parameters.head_frame}
         for name, message in messages.items():
-            message.header.frame_id = world_frame if name in in_world else head_frame
+            message.header.frame_id = frames.get(name, parameters.world_frame)
             _lengthen(message, np.asarray(x, dtype=float))
-        if TFMessage is not None:
-            transform = TransformStamped(child_frame_id=head_frame)
-            transform.header.frame_id = world_frame
-            messages["/tf"] = TFMessage(transforms=[transform])
+        stations = len(x) if parameters.publish_tf_stations else 0
+        children = [parameters.head_frame, *(f"{parameters.section_frame}_{k}" for k in range(stations))]
+        messages["/tf"] = TFMessage(transforms=[TransformStamped(child_frame_id=child) for child in children])
+        for transform in messages["/tf"].transforms:
+            transform.header.frame_id = parameters.world_frame
         self.kinds = {name: type(message) for name, message in messages.items()}
         self._serialised = {name: SerialisedMessage(message) for name, message in messages.items()}
         self._clock = SerialisedMessage(Clock())
@@ -113,7 +112,8 @@ class Sample:
         return self._sealed(message)
 
     def _sealed(self, message: SerialisedMessage) -> bytes:
-        message.stamp[:] = self._nanoseconds
+        for stamp in message.stamps:
+            stamp[:] = self._nanoseconds
         return message.data()
 
     def _fill_pose(self, numbers, snapshot):
@@ -130,8 +130,14 @@ class Sample:
         numbers["twist.twist.angular"][:], numbers["twist.twist.linear"][:] = self._head[ANGULAR], self._head[LINEAR]
 
     def _fill_transform(self, numbers, snapshot):
-        numbers["transforms.transform.translation"][:] = self._head[POSITION]
-        numbers["transforms.transform.rotation"][:] = self._head[ORIENTATION]
+        numbers["transforms[0].transform.translation"][:] = self._head[POSITION]
+        numbers["transforms[0].transform.rotation"][:] = self._head[ORIENTATION]
+        if "transforms[1].transform.rotation" not in numbers:
+            return
+        positions, rotations = turn_vector(snapshot.backbone), turn_world(snapshot.section_orientation)
+        for k, (position, rotation) in enumerate(zip(positions, rotations, strict=True), start=1):
+            numbers[f"transforms[{k}].transform.translation"][:] = position
+            numbers[f"transforms[{k}].transform.rotation"][:] = rotation
 
     def _fill_backbone(self, numbers, snapshot):
         numbers["position"][:] = (turn_vector(snapshot.backbone) + 0.0).ravel()
@@ -172,10 +178,10 @@ TORQUES, FORCES, RESISTANCES = (
 ENERGY_FIELDS = tuple(name for name, kind in EnergyLedger.get_fields_and_field_types().items() if kind == "double")
 
 
-def body_message(body, scene: Scene, x: np.ndarray, head_frame: str) -> BodyGeometry:
+def body_message(body, scene: Scene, x: np.ndarray, section_frame: str) -> BodyGeometry:
     """The body's outline at the stations `x` (M,) [m] and at points in between, which are denser at the nose."""
     message = BodyGeometry(length=float(body.length), mass=float((scene.density or body.density) * body.volume))
-    message.header.frame_id = head_frame
+    message.header.frame_id = section_frame
     for name, values in outline(body, x).items():
         setattr(message, name, array.array("d", values.tolist()))
     return message
@@ -227,3 +233,8 @@ def diagnostic_array(time: float, name: str, level: int, text: str, values: dict
     message = DiagnosticArray(status=[status])
     message.header.stamp.sec, message.header.stamp.nanosec = divmod(round(time * SECOND), SECOND)
     return message
+
+
+def values_of_status(status: DiagnosticStatus) -> dict[str, str]:
+    """The values of a status by key."""
+    return {pair.key: pair.value for pair in status.values}

@@ -34,10 +34,18 @@ from eel_dynamics.ros.declaration import Declaration
 from eel_dynamics.ros.diagnostics import Report, Status
 from eel_dynamics.ros.loop.law_feed import LawFeed
 from eel_dynamics.ros.loop.run_loop import RunLoop
-from eel_dynamics.ros.messages import Sample, body_message, diagnostic_array, parse_law, samples_from_message
+from eel_dynamics.ros.messages import (
+    Sample,
+    body_message,
+    diagnostic_array,
+    parse_law,
+    samples_from_message,
+    values_of_status,
+)
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.ros.publishers import Publishers
 from eel_dynamics.ros.simulation_from_parameters import simulation_from_parameters
+from eel_dynamics.ros.swimmer_arbiter import Identity, SwimmerArbiter
 from eel_dynamics.runs.one_line_warnings import one_line_warnings
 from eel_msgs.msg import BodyGeometry, CurvatureLaw, CurvatureSamples
 
@@ -60,7 +68,7 @@ class DynamicsNode(Node):
         values, scene = self.parameters.values, self.parameters.scene
         simulation = simulation_from_parameters(values, scene)
         self.sample_publishers = Publishers(
-            Sample(simulation.x, scene, values.world_frame, values.head_frame),
+            Sample(simulation.x, scene, values),
             create=lambda kind, topic, depth: self.create_publisher(kind, topic, depth or LOSSLESS),
             destroy=self.destroy_publisher,
             received=lambda publisher, seconds: publisher.wait_for_all_acked(Duration(seconds=seconds)),
@@ -75,7 +83,7 @@ class DynamicsNode(Node):
         self.status = Status(self.run_loop, report, values.accuracy)
         self._diagnostics = self.create_publisher(DiagnosticArray, "/diagnostics", 10)
         self._body = self.create_publisher(BodyGeometry, "body", LATCHED)
-        self._body.publish(body_message(simulation.body, scene, simulation.x, values.head_frame))
+        self._body.publish(body_message(simulation.body, scene, simulation.x, values.section_frame))
 
         feed = LawFeed(self.run_loop, report, parse=parse_law, law_of=law_from_message, samples_of=samples_from_message)
         # The first also gets earlier messages, the second matches any publisher.
@@ -95,19 +103,23 @@ class DynamicsNode(Node):
             self, lambda offered: self.run_loop.request(lambda: self.sample_publishers.enable_clock(offered)), report
         )
         clock.look(values.clock)
+        topic = self.resolve_topic_name("head_pose")
+        self._arbiter = SwimmerArbiter(Identity.own(), topic, report, self.run_loop.hold)
+        self.create_subscription(DiagnosticArray, "/diagnostics", self._receive_diagnostics, 10)
 
         def on_timer():
-            """Check both in one timer: waking the executor costs more than the checks."""
+            """Check all in one timer: waking the executor costs more than the checks."""
+            self._arbiter.look()
             if self.status.due():
                 self.publish_diagnostics()
-            clock.look(self.parameters.values.clock)
+            clock.look(self.parameters.values.clock and not self._arbiter.waits)
 
         self.create_timer(TIMER_PERIOD, on_timer, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     def publish_diagnostics(self, final: bool = False):
         """Publish /diagnostics; `final`: at the end of the run."""
         level, text, values = self.status.collect(self.count_publishers("curvature_law"), final)
-        name = self.get_fully_qualified_name()
+        name, values = self.get_fully_qualified_name(), values | self._arbiter.values()
         self._diagnostics.publish(diagnostic_array(self.run_loop.time, name, level, text, values))
 
     def wait_until_received(self, interrupted, longest: float = math.inf):
@@ -121,6 +133,10 @@ class DynamicsNode(Node):
     def _wait_for_body_received(self):
         """Wait until the present subscribers have received the body: they need it for the samples."""
         self._body.wait_for_all_acked(Duration(seconds=SERVICE_TIMEOUT))
+
+    def _receive_diagnostics(self, message):
+        for status in message.status:
+            self._arbiter.receive(status.name, values_of_status(status))
 
     def _reset(self, request, response):
         return self._answer(response, self.run_loop.reset(), "reset")

@@ -1,7 +1,8 @@
 """The dynamics node's parameters with default, unit, bounds and description.
 
 The node declares its ROS parameters from these fields (and from `Scene`'s, as `scene.*`) and applies the user's
-overrides. Poses and velocities are in ROS (REP-103) frames: world `odom`, head `base_link`.
+overrides. Poses and velocities are in ROS (REP-103) frames: world `odom`, head `base_link`. Where the node has a
+namespace, the defaults of its frames begin with it.
 """
 
 import math
@@ -11,6 +12,8 @@ from eel_gaits.quantity import is_finite, limits
 from eel_gaits.wording import shown
 
 from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
+
+FRAMES = ("world_frame", "head_frame", "section_frame")
 
 
 def _parameter(default, description, unit="", **bounds):
@@ -64,10 +67,16 @@ class DynamicsParameters:
     initial_angular_velocity: tuple = _parameter(
         (0.0, 0.0, 0.0), "of the head at the start, in the head frame", "rad/s"
     )
-    world_frame: str = _parameter("odom", "frame id of the world")
-    head_frame: str = _parameter("base_link", "frame id of the head")
+    world_frame: str = _parameter("odom", "frame id of the world; by default below the namespace, as in eel1/odom")
+    head_frame: str = _parameter("base_link", "frame id of the head; by default below the namespace")
+    section_frame: str = _parameter(
+        "section", "frame id of values in the axes of their own section; by default below the namespace"
+    )
     clock: bool = _parameter(True, "publish /clock, unless another publisher of it is on the network", changeable=True)
-    publish_tf: bool = _parameter(True, "publish world to head on /tf, where tf2_msgs is installed", changeable=True)
+    publish_tf: bool = _parameter(True, "publish world to head on /tf", changeable=True)
+    publish_tf_stations: bool = _parameter(
+        False, "publish a frame of section axes for each station too, as section_0, section_1, ... (see section_frame)"
+    )
     wait_for_subscribers: int = _parameter(
         0, "subscribers to wait for before the first sample", minimum=0, maximum=1000
     )
@@ -81,7 +90,7 @@ class DynamicsParameters:
     )
 
     def __post_init__(self):
-        for name in ("world_frame", "head_frame"):
+        for name in FRAMES:
             if not getattr(self, name):
                 raise ValueError(f"{name} must not be empty")
         norm = math.sqrt(math.fsum(value * value for value in self.initial_orientation))

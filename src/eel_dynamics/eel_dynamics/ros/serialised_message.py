@@ -23,20 +23,22 @@ class SerialisedMessage:
 
     Attributes:
         numbers: views of its float64 numbers, by the path of a sequence ("torque_1"), or of a message with float
-            fields ("pose.position", "" for the message itself).
-        stamp: view (2,) of the seconds and nanoseconds of its time.
+            fields ("pose.position", "transforms[0].transform.rotation", "" for the message itself).
+        stamps: views (2,) of the seconds and nanoseconds of its times.
     """
 
     def __init__(self, message):
         self.kind, data, marked = type(message), serialize_message(message), deepcopy(message)
-        blocks = dict(_marked(marked, (MARK * k for k in count(1))))
+        times = count(MARKED_TIME[0])
+        blocks = dict(_marked(marked, (MARK * k for k in count(1)), times))
         where = serialize_message(marked)
         space = np.empty(len(data) + 8, dtype=np.uint8)
         begin = -(space.__array_interface__["data"][0] + HEAD) % 8
         self._data = space[begin : begin + len(data)]
         self._data[:] = np.frombuffer(data, dtype=np.uint8)
         self.numbers = {path: self._view(where, np.array(values)) for path, values in blocks.items()}
-        self.stamp = self._view(where, np.array(MARKED_TIME, dtype=np.int32))
+        seconds = range(MARKED_TIME[0], next(times))
+        self.stamps = [self._view(where, np.array((second, MARKED_TIME[1]), dtype=np.int32)) for second in seconds]
 
     def _view(self, where: bytes, marks: np.ndarray) -> np.ndarray:
         place = where.find(marks.tobytes())
@@ -49,10 +51,10 @@ class SerialisedMessage:
         return self._data.tobytes()
 
 
-def _marked(message, marks: Iterator[float], path: str = "") -> Iterator[tuple[str, list[float]]]:
-    """Put `marks` into the numbers, and `MARKED_TIME` into the time; yields path and marks of each contiguous block."""
+def _marked(message, marks: Iterator[float], times: Iterator[int], path: str = "") -> Iterator[tuple[str, list[float]]]:
+    """Put `marks` into the numbers and `times` [s] into the times; yields path and marks of each contiguous block."""
     if isinstance(message, Time):
-        message.sec, message.nanosec = MARKED_TIME
+        message.sec, message.nanosec = next(times), MARKED_TIME[1]
 
     fields = message.get_fields_and_field_types()
     numbers = [name for name, kind in fields.items() if kind == "double"]
@@ -67,6 +69,7 @@ def _marked(message, marks: Iterator[float], path: str = "") -> Iterator[tuple[s
             values = list(islice(marks, len(value)))
             setattr(message, name, array.array("d", values))
             yield below, values
-        for each in value if isinstance(value, list) else [value]:
+        several = isinstance(value, list)
+        for k, each in enumerate(value if several else [value]):
             if hasattr(each, "get_fields_and_field_types"):
-                yield from _marked(each, marks, below)
+                yield from _marked(each, marks, times, f"{below}[{k}]" if several else below)

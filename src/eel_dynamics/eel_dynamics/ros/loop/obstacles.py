@@ -1,4 +1,4 @@
-"""Finds what keeps a run from its next sample: a failure, no law, missing subscribers, or a pause."""
+"""Finds what keeps a run from its next sample: another node, a failure, no law, missing subscribers, or a pause."""
 
 import time
 from collections.abc import Callable
@@ -13,6 +13,7 @@ class Obstacles:
     Attributes:
         failed: the simulation has stopped and waits for a reset.
         paused: the user has paused the run.
+        held: why another node has the topics; empty if none has.
     """
 
     def __init__(self, simulation, publishers, wanted: int, on_subscribers_complete: Callable[[], None]):
@@ -20,9 +21,12 @@ class Obstacles:
         self._wanted, self._on_subscribers_complete = wanted, on_subscribers_complete
         self._subscribers_complete = wanted == 0
         self.failed = self.paused = False
+        self.held = ""
 
     def find(self, simulation_time: float) -> str:
         """The first obstacle as text, at `simulation_time` [s]; empty if there is none."""
+        if self.held:
+            return self.held
         if self.failed:
             return f"stopped at t = {simulation_time:g} s until it is reset"
         if not self._simulation.ready:
@@ -37,3 +41,7 @@ class Obstacles:
     def pause(self, paused: bool):
         """Pause the run, or continue it."""
         self.paused = paused
+
+    def hold(self, reason: str):
+        """Hold the run for a `reason`; continue it with an empty one."""
+        self.held = reason

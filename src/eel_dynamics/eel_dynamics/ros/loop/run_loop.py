@@ -76,6 +76,10 @@ class RunLoop:
         """Pause the run, or continue it."""
         return self.request(lambda: self._obstacles.pause(paused), urgent=True)
 
+    def hold(self, reason: str):
+        """Hold the run for a `reason`, before its next sample; continue it with an empty one."""
+        self.request(lambda: self._obstacles.hold(reason), urgent=True)
+
     def change(self, parameters):
         """Apply `parameters`; only the changeable ones may differ."""
         self.request(lambda: self._change(parameters))

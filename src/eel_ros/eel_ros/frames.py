@@ -1,0 +1,6 @@
+"""Frame ids below a namespace, so that two robots in two namespaces do not share a frame."""
+
+
+def frame_in(namespace: str, frame: str) -> str:
+    """`frame` below the `namespace` of a node, such as eel1/odom; without a leading slash, which tf2 refuses."""
+    return f"{namespace}/{frame}".strip("/")
