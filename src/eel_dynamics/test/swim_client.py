@@ -15,6 +15,7 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter, parameter_value_to_python
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
 from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import JointState
 from std_srvs.srv import SetBool, Trigger
 
 from eel_msgs.msg import (
@@ -26,6 +27,7 @@ from eel_msgs.msg import (
     EnergyLedger,
     HydrodynamicLoad,
     InternalWrench,
+    SwimState,
 )
 
 LIMIT = 90.0  # s; discovery was seen to take 2.75 s on a machine at rest, and this is for busy ones
@@ -43,6 +45,7 @@ SAMPLES = {
     "hydrodynamic_load": HydrodynamicLoad,
     "energy": EnergyLedger,
 }
+FURTHER = {"joint_states": JointState, "swim_state": SwimState}
 
 
 def nanoseconds(stamp) -> int:
@@ -67,7 +70,7 @@ class SwimClient:
         self.arrivals = defaultdict(list)  # s, steady clock
         self._subscriptions, self._services = [], {}
         for topic in topics:
-            self.listen(topic, SAMPLES[topic])
+            self.listen(topic, {**SAMPLES, **FURTHER}[topic])
         self.listen("body", BodyGeometry, LATCHED)
         self.listen("/diagnostics", DiagnosticArray)
         if clock:

@@ -10,7 +10,7 @@ from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import Odometry
 from rclpy.serialization import deserialize_message, serialize_message
 
-from eel_dynamics import Body, Scene, Simulation
+from eel_dynamics import Body, Scene, Simulation, simulate
 from eel_gaits import Law, falling
 from eel_msgs.msg import CurvatureSamples
 
@@ -50,6 +50,8 @@ def swum():
     snapshot = simulation.observe()
     sample = Sample(simulation.x, simulation.scene, DynamicsParameters())
     sample.set_time(2_300_000_000)
+    assert np.isnan(filled(sample, "swim_state", snapshot).estimated_error)
+    sample.estimated_error = 1e-5
     return snapshot, {name: filled(sample, name, snapshot) for name in sample.kinds}
 
 
@@ -114,6 +116,36 @@ def test_profiles_keep_section_axes(swum):
     assert np.any(curvature.yaw) and np.any(wrench.torque_3) and np.any(load.force_2)
 
 
+def test_swim_state_repeats_the_other_topics_as_scalars(swum):
+    snapshot, messages = swum
+    state, pose, wrench = messages["swim_state"], messages["head_pose"].pose, messages["internal_wrench"]
+    assert state.speed == pytest.approx(np.linalg.norm(xyz(messages["head_twist"].twist.linear)))
+    assert state.depth == -pose.position.z
+    ahead = matrix(xyzw(pose.orientation)) @ [1.0, 0.0, 0.0]
+    assert np.allclose((np.cos(state.heading), np.sin(state.heading)), ahead[:2] / np.linalg.norm(ahead[:2]))
+    assert state.greatest_torque == max(np.abs(getattr(wrench, f"torque_{axis}")).max() for axis in (1, 2, 3)) > 0.0
+    assert state.actuator_work == snapshot.actuator_work and state.estimated_error == 1e-5
+
+
+def test_joint_states_are_the_actuators_of_the_library():
+    law, duration = falling(), 2.0
+    run = simulate(law, duration=duration, sample_period=duration, accuracy="standard", estimate=False)
+    simulation = Simulation(accuracy="standard")
+    simulation.adopt(law)
+    simulation.advance(duration)
+    snapshot = simulation.observe()
+    sample = Sample(simulation.x, simulation.scene, DynamicsParameters(yaw_joints=5, pitch_joints=3))
+    message = filled(sample, "joint_states", snapshot)
+    assert message.name == [*(f"yaw_{k}" for k in range(1, 6)), *(f"pitch_{k}" for k in range(1, 4))]
+    yaw, pitch = run.actuators(5).yaw, run.actuators(3).pitch
+    for field, name in (("position", "angle"), ("velocity", "speed"), ("effort", "torque")):
+        expected = np.concatenate((getattr(yaw, name)[-1], getattr(pitch, name)[-1]))
+        assert np.allclose(getattr(message, field), expected, rtol=1e-6, atol=1e-9) and np.any(expected), field
+    without = Sample(simulation.x, Scene(internal_wrench=False), DynamicsParameters(yaw_joints=1))
+    assert not filled(without, "joint_states", snapshot).effort
+    assert "joint_states" not in Sample(simulation.x, Scene(), DynamicsParameters()).kinds
+
+
 def test_energy_has_every_field(swum):
     snapshot, messages = swum
     names = [name for name in messages["energy"].get_fields_and_field_types() if name != "header"]
@@ -136,6 +168,7 @@ def test_refilling_replaces_all_that_was_there(swum):
     for name in sample.kinds:
         sample.fill(name, simulation.observe())
     sample.set_time(2_300_000_000)
+    sample.estimated_error = 1e-5
     for name in sample.kinds:
         assert filled(sample, name, snapshot) == messages[name], name
 

@@ -25,6 +25,8 @@ BAD = {
     "unknown body": (("body:=whale",), ("body", "whale", "boyer2010")),
     "missing body file": (("body:=/nowhere/fish.csv",), ("body", "/nowhere/fish.csv")),
     "long quaternion": (("initial_orientation:=[0.0, 0.0, 0.0, 2.0]",), ("initial_orientation", "unit", "2")),
+    "joints on three stations": (("yaw_joints:=2", "stations:=3"), ("stations must be 4 or more", "3")),
+    "too many joints": (("pitch_joints:=1001",), ("pitch_joints", "1001")),
     "one station": (("stations:=1",), ("stations", "1")),
 }
 

@@ -9,6 +9,8 @@ OWN = {  # relative: below the swimmer's namespace
     "internal_wrench": "eel_msgs/msg/InternalWrench",
     "hydrodynamic_load": "eel_msgs/msg/HydrodynamicLoad",
     "energy": "eel_msgs/msg/EnergyLedger",
+    "swim_state": "eel_msgs/msg/SwimState",
+    "joint_states": "sensor_msgs/msg/JointState",
     "body": "eel_msgs/msg/BodyGeometry",
     "curvature_law": "eel_msgs/msg/CurvatureLaw",
     "curvature_samples": "eel_msgs/msg/CurvatureSamples",

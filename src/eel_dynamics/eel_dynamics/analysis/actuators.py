@@ -42,8 +42,36 @@ class Motors:
         return {name: np.sqrt(np.mean(getattr(self, name) ** 2, axis=0)) for name in QUANTITIES}
 
 
-MOST = 1000  # motors per axis
+MOST_JOINTS = 1000  # per axis
 QUANTITIES = ("angle", "speed", "torque", "power")
+
+
+class Joints:
+    """`count` joints of a body of `length` [m], from values at the stations x (M,) [m]: at least 4, from nose to tail.
+
+    Values between the stations are those of a cubic spline, which is linear in the values: each result is one matrix
+    times the values.
+
+    Attributes:
+        x: positions of the joints (count,) [m].
+    """
+
+    def __init__(self, x: np.ndarray, length: float, count: int):
+        from scipy.interpolate import CubicSpline
+
+        ends = np.linspace(0.0, length, count + 1)
+        self.x = 0.5 * (ends[1:] + ends[:-1])
+        spline = CubicSpline(x, np.eye(len(x)))
+        self._integral = np.diff(spline.antiderivative()(ends), axis=0)  # (count, M)
+        self._value = spline(self.x)  # (count, M)
+
+    def angle(self, curvature: np.ndarray) -> np.ndarray:
+        """Angles (..., count, 3) [rad] of a curvature (..., M, 3) [rad/m], or speeds [rad/s] of its rate."""
+        return self._integral @ curvature
+
+    def motor_torque(self, torque: np.ndarray) -> np.ndarray:
+        """Torques of the motors (..., count, 3) [N m] from the internal torque (..., M, 3) [N m]."""
+        return -(self._value @ torque)
 
 
 @dataclass(frozen=True)
@@ -89,30 +117,22 @@ class Actuators:
 def actuators_of(run, joints: int) -> Actuators:
     """The demand of `run` on a robot of `joints` motors per axis.
 
-    Splines in X through the stations. `ValueError` for a number below 1, for a run without internal wrench, or with
+    `ValueError` for a number below 1, for a run without internal wrench, or with
     stations that do not reach from nose to tail or are fewer than 4.
     """
-    from scipy.interpolate import CubicSpline
-
-    if isinstance(joints, bool) or not isinstance(joints, (int, np.integer)) or not 1 <= joints <= MOST:
-        raise ValueError(f"joints must be a whole number from 1 to {MOST}, got {shown(joints)}")
+    if isinstance(joints, bool) or not isinstance(joints, (int, np.integer)) or not 1 <= joints <= MOST_JOINTS:
+        raise ValueError(f"joints must be a whole number from 1 to {MOST_JOINTS}, got {shown(joints)}")
     if run.torque is None:
         raise ValueError("actuators needs a run with scene internal_wrench on")
     density = power_density(run)
     if len(run.x) < 4:
         raise ValueError(f"actuators needs a run of 4 stations or more, got {len(run.x)}")
-    ends = np.linspace(0.0, run.body.length, int(joints) + 1)
-    x = 0.5 * (ends[1:] + ends[:-1])
-
-    def of_segments(values):
-        integral = CubicSpline(run.x, values, axis=1).antiderivative()
-        return np.diff(integral(ends), axis=1)
-
-    angle, speed = of_segments(run.curvature), of_segments(run.curvature_rate)
-    torque = -CubicSpline(run.x, run.torque, axis=1)(x)
+    robot = Joints(run.x, run.body.length, int(joints))
+    angle, speed = robot.angle(run.curvature), robot.angle(run.curvature_rate)
+    torque = robot.motor_torque(run.torque)
     return Actuators(
         time=run.time,
-        x=x,
+        x=robot.x,
         pitch=Motors(angle[..., 1], speed[..., 1], torque[..., 1]),
         yaw=Motors(angle[..., 2], speed[..., 2], torque[..., 2]),
         continuous_power=area(density, run.x),

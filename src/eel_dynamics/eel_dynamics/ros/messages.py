@@ -5,6 +5,7 @@ Fields in section axes (1 = -x, 2 = -y, 3 = +z of base_link when straight) stay 
 """
 
 import array
+import math
 import struct
 from collections.abc import Callable
 
@@ -16,10 +17,12 @@ from geometry_msgs.msg import PoseStamped, TransformStamped, TwistStamped
 from nav_msgs.msg import Odometry
 from rclpy.serialization import deserialize_message
 from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import JointState
 from tf2_msgs.msg import TFMessage
 
+from eel_dynamics.analysis.actuators import Joints
 from eel_dynamics.curvature.curvature_samples import check_points
-from eel_dynamics.model.axes import QUATERNION, VECTOR, turn_quaternion, turn_vector, turn_world
+from eel_dynamics.model.axes import QUATERNION, VECTOR, matrix_of, turn_quaternion, turn_vector, turn_world
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.ros.serialised_message import SerialisedMessage
@@ -33,6 +36,7 @@ from eel_msgs.msg import (
     EnergyLedger,
     HydrodynamicLoad,
     InternalWrench,
+    SwimState,
 )
 
 SECOND = 1_000_000_000  # ns
@@ -49,12 +53,13 @@ class Sample:
     Attributes:
         kinds: message type by topic.
         clock: message type of /clock.
+        estimated_error: what swim_state gives as such [-]; NaN while there is no estimate.
     """
 
     clock = Clock
 
     def __init__(self, x: np.ndarray, scene: Scene, parameters: DynamicsParameters):
-        self._nanoseconds = 0, 0
+        self._nanoseconds, self.estimated_error = (0, 0), math.nan
         messages = {
             "head_pose": PoseStamped(),
             "head_twist": TwistStamped(),
@@ -64,6 +69,7 @@ class Sample:
             "internal_wrench": InternalWrench(),
             "hydrodynamic_load": HydrodynamicLoad(),
             "energy": EnergyLedger(),
+            "swim_state": SwimState(),
         }
         for name, computed in (("internal_wrench", scene.internal_wrench), ("energy", scene.ledger)):
             if not computed:
@@ -78,6 +84,13 @@ class Sample:
         messages["/tf"] = TFMessage(transforms=[TransformStamped(child_frame_id=child) for child in children])
         for transform in messages["/tf"].transforms:
             transform.header.frame_id = parameters.world_frame
+        robots = {"yaw": (2, parameters.yaw_joints), "pitch": (1, parameters.pitch_joints)}  # section axis, joints
+        self._joints = [(axis, Joints(x, float(x[-1]), count)) for axis, count in robots.values() if count]
+        if self._joints:
+            names = [f"{name}_{k + 1}" for name, (_, count) in robots.items() for k in range(count)]
+            zeros = [0.0] * len(names)
+            effort = zeros if scene.internal_wrench else []
+            messages["joint_states"] = JointState(name=names, position=zeros, velocity=zeros, effort=effort)
         self.kinds = {name: type(message) for name, message in messages.items()}
         self._serialised = {name: SerialisedMessage(message) for name, message in messages.items()}
         self._clock = SerialisedMessage(Clock())
@@ -90,6 +103,8 @@ class Sample:
             "internal_wrench": self._fill_wrench,
             "hydrodynamic_load": self._fill_load,
             "energy": self._fill_energy,
+            "swim_state": self._fill_state,
+            "joint_states": self._fill_joints,
             "/tf": self._fill_transform,
         }
         self._of = self._head = None  # a snapshot, and the head's position, orientation and twist in it
@@ -160,6 +175,26 @@ class Sample:
 
     def _fill_energy(self, numbers, snapshot):
         numbers[""][:] = [getattr(snapshot.energy, name) for name in ENERGY_FIELDS]
+
+    def _fill_state(self, numbers, snapshot):
+        ahead = matrix_of(self._head[ORIENTATION])[:, 0]
+        numbers[""][:] = (  # in the order of the fields
+            np.linalg.norm(self._head[LINEAR]),
+            -self._head[POSITION][2],
+            math.atan2(ahead[1], ahead[0]),
+            math.nan if snapshot.torque is None else np.max(np.abs(snapshot.torque)),
+            math.nan if snapshot.actuator_work is None else snapshot.actuator_work,
+            self.estimated_error,
+        )
+
+    def _fill_joints(self, numbers, snapshot):
+        def put(name, values_of):
+            numbers[name][:] = np.concatenate([values_of(joints)[:, axis] for axis, joints in self._joints])
+
+        put("position", lambda joints: joints.angle(snapshot.curvature))
+        put("velocity", lambda joints: joints.angle(snapshot.curvature_rate))
+        if "effort" in numbers:
+            put("effort", lambda joints: joints.motor_torque(snapshot.torque))
 
 
 def _lengthen(message, x: np.ndarray):

@@ -11,6 +11,7 @@ from dataclasses import Field, dataclass, field, fields
 from eel_gaits.quantity import is_finite, limits
 from eel_gaits.wording import shown
 
+from eel_dynamics.analysis.actuators import MOST_JOINTS
 from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
 
 FRAMES = ("world_frame", "head_frame", "section_frame")
@@ -77,6 +78,10 @@ class DynamicsParameters:
     publish_tf_stations: bool = _parameter(
         False, "publish a frame of section axes for each station too, as section_0, section_1, ... (see section_frame)"
     )
+    yaw_joints: int = _parameter(
+        0, "joints in yaw of a robot whose motors are on joint_states; 0: none", minimum=0, maximum=MOST_JOINTS
+    )
+    pitch_joints: int = _parameter(0, "joints in pitch, likewise", minimum=0, maximum=MOST_JOINTS)
     wait_for_subscribers: int = _parameter(
         0, "subscribers to wait for before the first sample", minimum=0, maximum=1000
     )
@@ -93,6 +98,8 @@ class DynamicsParameters:
         for name in FRAMES:
             if not getattr(self, name):
                 raise ValueError(f"{name} must not be empty")
+        if max(self.yaw_joints, self.pitch_joints) > 0 and self.stations < 4:
+            raise ValueError(f"stations must be 4 or more where there are joints, got {self.stations}")
         norm = math.sqrt(math.fsum(value * value for value in self.initial_orientation))
         if abs(norm - 1.0) > 1e-3:
             raise ValueError(

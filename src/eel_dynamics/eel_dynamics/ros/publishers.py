@@ -17,7 +17,9 @@ LOSSLESS_END_TIMEOUT = 30.0  # s: where no sample may be lost: time for a slow s
 SLICE = 0.2  # s between two checks whether such a wait is interrupted
 QUIET_TIME = 1.0  # s without a change, after which the subscribers that some topics have are considered complete
 COUNT_PERIOD = 0.1  # s of wall time between two counts of subscribers: a count costs as much as a short message
-HEAVY = {"internal_wrench": "wrench", "hydrodynamic_load": "load"}  # topic: its part in Simulation.observe
+PARTS = {"wrench": ("internal_wrench", "joint_states", "swim_state"), "load": ("hydrodynamic_load",)}
+# of Simulation.observe, and the topics that need them
+NOT_AWAITED = ("/tf", "joint_states", "swim_state")  # topics that the run does not wait for subscribers of
 
 
 class Channel:
@@ -69,7 +71,7 @@ class Publishers:
         """Which costly parts of the next snapshot have subscribers: the flags of `Simulation.observe`."""
         if self._lossless or time.monotonic() - self._last_count >= COUNT_PERIOD:
             self._count_subscribers()
-        return {part: name in self._subscribed for name, part in HEAVY.items()}
+        return {part: any(name in self._subscribed for name in topics) for part, topics in PARTS.items()}
 
     def publish(self, snapshot, nanoseconds: int):
         """Publish /clock and one sample at simulation time `nanoseconds` [ns].
@@ -99,7 +101,7 @@ class Publishers:
 
         now: time [s, steady clock].
         """
-        own = [channel for name, channel in self._channels.items() if not name.startswith("/")]
+        own = [channel for name, channel in self._channels.items() if name not in NOT_AWAITED]
         counts = [channel.publisher.get_subscription_count() for channel in own]
         if counts != self._subscriber_counts:
             self._subscriber_counts, self._counts_since = counts, now

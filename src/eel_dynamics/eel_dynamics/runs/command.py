@@ -19,7 +19,7 @@ from eel_gaits.registry import GAITS, gait
 from eel_gaits.wording import shown
 
 from eel_dynamics.accuracy.accuracy import PRESETS
-from eel_dynamics.analysis.actuators import MOST as MOST_JOINTS
+from eel_dynamics.analysis.actuators import MOST_JOINTS
 from eel_dynamics.model.body import NAMED, Body
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.interrupt import end_on_interrupt
