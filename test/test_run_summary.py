@@ -40,7 +40,6 @@ def test_numbers():
     summary = summarise(messages())
     assert (summary.law, summary.published, summary.received) == ("straight", 3, 3)
     assert summary.path_length == pytest.approx(1.0)
-    assert summary.mean_speed == pytest.approx(0.5)
     assert (summary.torque, summary.torque_x, summary.torque_time) == pytest.approx((0.2, 0.4, 2.0))
     assert (summary.work, summary.wake, summary.drag, summary.kinetic) == pytest.approx((2.0, -0.2, -1.0, 0.75))
     assert summary.residual == pytest.approx(1e-4)

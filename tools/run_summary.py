@@ -19,7 +19,6 @@ class RunSummary:
     position: np.ndarray  # m, (3,) head at the end
     orientation: np.ndarray  # [-], (4,) head at the end, x y z w
     path_length: float  # m, of the head
-    mean_speed: float  # m/s, path length over duration
     torque: float  # N m, greatest internal torque
     torque_x: float  # m, where along the body
     torque_time: float  # s, when
@@ -86,7 +85,6 @@ def summarise(messages: dict[str, list]) -> RunSummary:
         position=head[-1],
         orientation=np.array([turn.x, turn.y, turn.z, turn.w]),
         path_length=path,
-        mean_speed=path / duration if duration > 0.0 else 0.0,
         torque=float(torque.max()),
         torque_x=wrenches[when].x[where],
         torque_time=seconds(wrenches[when]),
@@ -107,8 +105,7 @@ def describe(summary: RunSummary) -> str:
     facts = {
         "law": summary.law,
         "final pose": f"x {x:+.4f}  y {y:+.4f}  z {z:+.4f} m,  quaternion x y z w {turn}",
-        "path of the head": f"{summary.path_length:.4f} m in {summary.duration:g} s, "
-        f"mean speed {summary.mean_speed:.4f} m/s",
+        "path of the head": f"{summary.path_length:.4f} m in {summary.duration:g} s",
         "greatest torque": f"{summary.torque:.4f} N m at X = {summary.torque_x:.3f} m, t = {summary.torque_time:.2f} s",
         "energy": f"actuators {summary.work:+.4f} J, wake {summary.wake:+.4f} J, drag {summary.drag:+.4f} J, "
         f"kinetic at the end {summary.kinetic:.4f} J",

@@ -4,6 +4,7 @@ setup(
     name="eel_gaits",
     version="0.1.0",
     packages=find_packages(),
+    package_data={"eel_gaits": ["py.typed"]},
     data_files=[
         ("share/ament_index/resource_index/packages", ["resource/eel_gaits"]),
         ("share/eel_gaits", ["package.xml"]),

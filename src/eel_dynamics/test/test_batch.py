@@ -70,13 +70,16 @@ def test_every_swimmer_is_its_single_run_to_the_last_bit(threads):
     assert batch.torque is None and batch.energy is None and batch.fluid_force.shape == (6, 9, 9, 3)
 
 
+COARSE = {"accuracy": 1e-2, "stations": 5, "sample_period": 0.05}
+
+
 def test_one_for_all_and_a_sequence_of_one():
     laws = [falling(period=period) for period in (0.8, 1.0, 1.2)]
-    batch = simulate_batch(laws, 0.4, bodies=[KERN], twists=np.zeros((1, 6)), accuracy=1e-2, stations=5)
+    batch = simulate_batch(laws, 0.4, bodies=[KERN], twists=np.zeros((1, 6)), **COARSE)
     assert batch.position.shape == (3, 9, 3) and batch.torque.shape == (3, 9, 5, 3)
     assert batch.energy.kinetic_body.shape == (3, 9) and batch.x.shape == (3, 5)
     assert all(body is KERN for body in batch.bodies)
-    assert_same(batch[-1], simulate_of_last := simulate(laws[2], 0.4, body=KERN, accuracy=1e-2, stations=5, load=False))
+    assert_same(batch[-1], simulate_of_last := simulate(laws[2], 0.4, body=KERN, load=False, **COARSE))
     assert simulate_of_last.fluid_force is None and batch.fluid_force is None
 
 

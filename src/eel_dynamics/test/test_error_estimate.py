@@ -14,7 +14,12 @@ from eel_dynamics import Accuracy, Body, Scene, simulate, simulate_batch
 from eel_gaits import falling, straight
 
 FINE = Accuracy(name="fine settings", resolution=70.0, tolerance=1e-11)
-SENSITIVE = {"law": falling(period=0.4), "duration": 9.0, "scene": Scene(density=3000.0, friction="laminar")}
+SENSITIVE = {
+    "law": falling(period=0.4),
+    "duration": 9.0,
+    "scene": Scene(density=3000.0, friction="laminar"),
+    "sample_period": 0.05,
+}
 
 
 def run_at(position, time, torque=None):
@@ -77,7 +82,9 @@ def test_a_sensitive_swim_converges_or_is_told():
     with pytest.warns(UserWarning, match="above the target 1e-06: the motion is sensitive"):
         lost = simulate(**longer, accuracy=1e-6)
     assert lost.warnings[0].startswith("the error is estimated at")
-    batch = simulate_batch([falling(), longer["law"]], 25.0, scenes=longer["scene"], accuracy=1e-6, stations=51)
+    batch = simulate_batch(
+        [falling(), longer["law"]], 25.0, scenes=longer["scene"], accuracy=1e-6, stations=51, sample_period=0.05
+    )
     assert batch.above_target.tolist() == [False, True]
     assert batch.error_estimates[1] == lost.error_estimate
 

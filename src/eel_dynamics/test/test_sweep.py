@@ -1,4 +1,4 @@
-"""Sweeps over a grid of parameters on Dask: labelled, equal to single runs, whole after a lost worker or an end."""
+"""Sweeps over grids of parameters, in threads or on Dask: labelled, equal to single runs, whole after a lost worker."""
 
 import errno
 import json
@@ -10,10 +10,10 @@ import threading
 
 import numpy as np
 import pytest
+from eel_dynamics.analysis.measures import measures_of
+from eel_dynamics.studies.points import Point, SwimSettings
 from eel_dynamics.studies.sweep import command as sweep_command
 from eel_dynamics.studies.sweep.command import main
-from eel_dynamics.studies.sweep.measures import measures_of
-from eel_dynamics.studies.sweep.sweep import Point
 from eel_dynamics.studies.sweep.sweep_key import key_of
 
 from eel_dynamics import Accuracy, Body, Scene, simulate, sweep
@@ -43,10 +43,10 @@ def test_labelled_and_equal_to_single_runs(client, tmp_path):
     point = data.sel({"period": 0.8, "scene.friction": "none", "body": "kern2006"})
     run = simulate(straight(period=0.8), body=Body.kern2006(), scene=Scene(friction="none"), **SHORT)
     alone = measures_of(run)
-    assert alone["cruising_speed"] == run.analysis().mean_speed and alone["greatest_torque"] > 0.0
+    assert alone["mean_speed"] == run.analysis().mean_speed and alone["greatest_torque"] > 0.0
     for name, value in alone.items():
         assert np.array_equal(float(point[name]), value, equal_nan=True), name
-    assert data.cruising_speed.attrs["units"] == "m/s" and data.attrs["gait"] == "straight"
+    assert data.mean_speed.attrs["units"] == "m/s" and data.attrs["gait"] == "straight"
     assert not data.stopped.any()
     kept = xarray.load_dataset(out, engine="scipy")
     assert kept.attrs["sweep"] == data.attrs["sweep"] and kept.head_x.equals(data.head_x)
@@ -90,6 +90,7 @@ def test_a_lost_worker_costs_time_only(client):
             os.kill(victims[0], signal.SIGKILL)
 
     again = sweep(grid, scheduler=client, chunk=1, progress=kill_one, **SHORT)
+    assert "sweep" not in again.attrs  # its key costs time, and serves the output alone
     assert told == list(range(13))
     assert victims[0] not in client.run(os.getpid).values()
     assert again.identical(whole)
@@ -114,7 +115,7 @@ def test_goes_on_where_it_was_broken_off(client, tmp_path):
     told = []
     data = sweep(grid, scheduler=client, out=out, chunk=1, progress=lambda *pair: told.append(pair), **SHORT)
     assert told == [(2, 4), (3, 4), (4, 4)]
-    assert data.identical(whole)
+    assert data.equals(whole)
     with pytest.raises(ValueError, match="another out"):
         sweep({"period": [0.5, 0.6]}, scheduler=client, out=out, **SHORT)
 
@@ -145,7 +146,7 @@ def test_damaged_parts_are_done_again(client, tmp_path, capsys):
     told = []
     with pytest.warns(UserWarning, match="is damaged .* its points are done again") as warned:
         again = sweep(grid, scheduler=client, out=out, progress=lambda *pair: told.append(pair), **SHORT)
-    assert told[0] == (1, 5) and again.identical(whole)
+    assert told[0] == (1, 5) and again.equals(whole)
     said = [str(each.message) for each in warned]
     for part, reason in zip(parts, ("measure 'head_x' must be a real number, got 'far'", "NaN", "", ""), strict=False):
         assert sum(str(part) in line and reason in line for line in said) == 1
@@ -204,7 +205,8 @@ def test_the_key_changes_with_whatever_the_results_depend_on():
     bodies += [Body(length=1.0, half_width=lambda x, k=k: k * np.sqrt(x), half_height=np.sqrt) for k in (0.01, 0.02)]
 
     def key(measure=measures_of, body=bodies[0]):
-        return key_of([Point(0, straight(), body, Scene(), Accuracy.of("draft"))], 1.0, 0.1, 11, measure)
+        how = SwimSettings(1.0, 0.1, 11, measure)
+        return key_of([Point(0, straight(), body, Scene(), Accuracy.of("draft"))], how)
 
     keys = [key(body=body) for body in bodies]
     keys += [key(measure) for measure in (measure_of(1.0), measure_of(2.0), lambda run: {"far": 1.0})]
@@ -219,10 +221,10 @@ def test_the_key_is_the_same_in_another_process(tmp_path):
     script = tmp_path / "script.py"
     script.write_text(
         "from eel_dynamics import Accuracy, Body, Scene\nfrom eel_dynamics.studies.sweep.sweep_key import key_of\n"
-        "from eel_dynamics.studies.sweep.sweep import Point\nfrom eel_gaits import straight\nLIMIT = 0.3\n"
+        "from eel_dynamics.studies.points import Point, SwimSettings\nfrom eel_gaits import straight\nLIMIT = 0.3\n"
         "def measure(run):\n    return {'far': run.path_length > LIMIT, 'near': run.path_length < LIMIT}\n"
         "point = Point(0, straight(), Body.kern2006(), Scene(), Accuracy.of('draft'))\n"
-        "print(key_of([point], 1.0, 0.1, 11, measure))\n"
+        "print(key_of([point], SwimSettings(1.0, 0.1, 11, measure)))\n"
     )
 
     def key():
@@ -278,7 +280,9 @@ def test_points_that_cannot_be_computed_are_told_and_the_rest_is_kept(client, tm
 
 def test_command_with_a_cluster_of_its_own(tmp_path, capsys):
     out = tmp_path / "command.nc"
-    words = f"straight --vary period=0.5:1:3 --duration 1.2 --accuracy 1e-2 --workers 1 --out {out}"
+    words = (
+        f"straight --vary period=0.5:1:3 --duration 1.2 --accuracy 1e-2 --scheduler processes --workers 1 --out {out}"
+    )
     assert main(words.split()) == 0
     assert "3, of which 0 stopped" in capsys.readouterr().out
     data = xarray.load_dataset(out, engine="scipy")
@@ -301,7 +305,9 @@ def test_command_with_a_cluster_of_its_own(tmp_path, capsys):
         (["--vary", "period=1", "--duration", "1e9"], "2e+10 samples"),
         (["--vary", "tail=1"], "tail"),
         (["--vary", "period=-1,1"], "period=-1.0"),
-        (["--vary", "scene.colour=red"], "colour"),
+        (["--vary", "scene.colour=red"], "scene has no field 'colour'"),
+        (["--vary", "body.colour=1"], "body has no field 'colour', it has: density"),
+        (["--vary", "initial.x=1"], "initial has no field 'x', it has: position_x"),
         (["--vary", "scene.friction=sticky"], "sticky"),
         (["--vary", "period=1,1"], "twice"),
         (["--vary", "period=1", "--scheduler", "nowhere"], "nowhere"),
@@ -324,7 +330,78 @@ def test_out_of_memory_is_one_line(tmp_path, monkeypatch, capsys):
     assert capsys.readouterr().err == "sweep: it does not fit into memory: 72 GiB\n"
 
 
-def test_missing_extra_is_one_clear_error(monkeypatch):
-    monkeypatch.setitem(sys.modules, "distributed", None)
-    with pytest.raises(ImportError, match=r"pip install 'eel_dynamics\[cluster\]'"):
-        sweep({"period": [1.0]})
+@pytest.mark.parametrize(
+    "name, extra, given", [("xarray", "data", {}), ("distributed", "cluster", {"scheduler": "processes"})]
+)
+def test_missing_extra_is_one_clear_error(name, extra, given, monkeypatch):
+    monkeypatch.setitem(sys.modules, name, None)
+    with pytest.raises(ImportError, match=rf"needs {name} .* pip install 'eel_dynamics\[{extra}\]'"):
+        sweep({"period": [1.0]}, **given)
+
+
+def test_threads_serve_a_script_without_a_main_guard(tmp_path):
+    script = tmp_path / "script.py"
+    script.write_text(
+        "import sys\nfrom eel_dynamics import sweep\n"
+        "data = sweep({'period': [0.5 + 0.1 * k for k in range(15)]}, accuracy=1e-2, duration=2.0, progress=True,\n"
+        "             measure=lambda run: {'way': run.path_length})\n"
+        "print(float(data.way.min()) > 0.0, data.sizes['period'], 'distributed' in sys.modules)\n"
+    )
+    done = subprocess.run([sys.executable, script], capture_output=True, text=True, timeout=200, check=True)
+    assert done.stdout == "True 15 False\n"
+    assert "15 of 15 points" in done.stderr and done.stderr.endswith("\n")
+
+
+def test_threads_give_what_processes_give(client, tmp_path):
+    grid = {"period": [0.3, 0.8], "body.lateral_drag": [1.0, 1.98], "initial.v_1": [-0.2]}
+    told = []
+    here = sweep(grid, progress=lambda *pair: told.append(pair), out=tmp_path / "here.nc", chunk=1, **SHORT)
+    assert told[0] == (0, 4) and told[-1] == (4, 4)
+    assert here.equals(sweep(grid, scheduler=client, progress=False, **SHORT))
+    run = simulate(
+        straight(period=0.3), body=Body.boyer2010().changed(lateral_drag=1.0), twist=(0, 0, 0, -0.2, 0, 0), **SHORT
+    )
+    assert float(here.mean_speed[0, 0, 0]) == run.mean_speed  # sampled for its own period
+    assert sweep(grid, out=tmp_path / "here.nc", **SHORT).equals(here)  # read, not swum
+    with pytest.raises(ValueError, match="not of this sweep"):
+        sweep(grid, out=tmp_path / "here.nc", estimate=False, **SHORT)
+
+
+def test_an_interrupted_sweep_in_threads_begins_nothing_more(tmp_path):
+    def interrupt(done, points):
+        if done:
+            raise KeyboardInterrupt
+
+    before = threading.active_count()
+    with pytest.raises(KeyboardInterrupt):
+        sweep({"period": np.linspace(0.5, 1.0, 40)}, progress=interrupt, chunk=1, out=tmp_path / "a.nc", **SHORT)
+    assert threading.active_count() == before
+    assert len(list((tmp_path / "a.nc.parts").glob("part-*.json"))) == 1
+
+
+def test_runs_without_an_error_estimate(tmp_path, capsys):
+    bare = sweep({"period": [0.5]}, estimate=False, **SHORT)
+    assert "error_position" not in bare and "mean_speed" in bare
+    assert float(bare.evaluations[0]) == simulate(straight(period=0.5), estimate=False, **SHORT).evaluations
+    both = sweep({"period": [0.5]}, estimate=False, measure=("mean_speed", "greatest_torque"), **SHORT)
+    assert set(both) == {"mean_speed", "greatest_torque", "stopped", "error"}
+    for name in ("error_position", "error_torque", "error_growth_rate"):
+        with pytest.raises(ValueError, match=f"measure {name} needs the error estimate, which is off"):
+            sweep({"period": [0.5]}, estimate=False, measure=(name,), **SHORT)
+    words = [
+        "--vary",
+        "period=0.5",
+        "--duration",
+        "0.5",
+        "--accuracy",
+        "1e-2",
+        "--out",
+        str(tmp_path / "out.nc"),
+        "--bare",
+    ]
+    assert main([*words, "--measures", "head_x,error_torque"]) == 2
+    assert "measure error_torque needs the error estimate" in capsys.readouterr().err
+    assert main([*words, "--measures", "head_x,tail"]) == 2
+    assert "measure must be of head_x," in capsys.readouterr().err
+    assert main([*words, "--measures", "head_x"]) == 0
+    assert "head_x" in capsys.readouterr().out

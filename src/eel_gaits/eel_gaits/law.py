@@ -167,7 +167,7 @@ class Term:
 class Law:
     """A curvature law: the sum of its terms. A law without terms is the straight body.
 
-    `ValueError` names an attribute that does not fit.
+    Law(one, two) and Law([one, two]) are the same law of two terms. `ValueError` names an attribute that does not fit.
 
     Attributes:
         terms: at most 1000.
@@ -180,6 +180,8 @@ class Law:
     transition: float
 
     def __init__(self, *terms, name="law", transition=0.0):
+        if len(terms) == 1 and isinstance(terms[0], (list, tuple)):
+            (terms,) = terms
         if len(terms) > MAXIMUM_TERMS:
             raise ValueError(f"terms must be at most {MAXIMUM_TERMS}, got {len(terms)}")
         for index, term in enumerate(terms):
@@ -201,6 +203,10 @@ class Law:
 
     def __getstate__(self):
         return {name: value for name, value in self.__dict__.items() if name != "_hash"}  # of this process's strings
+
+    def __repr__(self):
+        count = f"{len(self.terms)} term{'' if len(self.terms) == 1 else 's'}"
+        return f"Law({shown(self.name)}, {count}{f', transition={self.transition:g} s' if self.transition else ''})"
 
     @property
     def in_plane(self) -> bool:

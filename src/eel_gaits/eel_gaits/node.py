@@ -24,8 +24,8 @@ from rclpy.parameter import Parameter
 from eel_gaits.command_line import complain
 from eel_gaits.messages import FRAME, law_to_message
 from eel_gaits.quantity import limits
-from eel_gaits.registry import GAITS
-from eel_gaits.settings import Settings, Transition
+from eel_gaits.registry import GAITS, Transition
+from eel_gaits.settings import Settings
 from eel_gaits.wording import shown
 from eel_msgs.msg import CurvatureLaw
 

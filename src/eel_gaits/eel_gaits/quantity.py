@@ -28,6 +28,25 @@ def limits(metadata) -> str:
     return " and ".join(f"{sign} {bound:g}{unit}" for sign, bound in bounds if bound is not None)
 
 
+def described_fields(kind) -> str:
+    """One line for each field of the dataclass `kind`: name, default, description, unit, and bounds or choices."""
+    lines = []
+    for item in fields(kind):
+        about = item.metadata
+        allowed = "one of " + ", ".join(about["choices"]) if "choices" in about else limits(about)
+        unit = f" [{about['unit']}]" if about["unit"] else ""
+        lines.append(
+            f"    {item.name} = {item.default!r}: {about['description']}{unit}{f'; {allowed}' if allowed else ''}"
+        )
+    return "\n".join(lines)
+
+
+def documented(kind):
+    """Decorator: append the `described_fields` to the docstring of the dataclass `kind`."""
+    kind.__doc__ = f"{kind.__doc__.rstrip()}\n\n{described_fields(kind)}\n"
+    return kind
+
+
 def is_finite(value) -> bool:
     """Whether `value` is one finite number. A text is not a number."""
     try:

@@ -6,9 +6,25 @@ that takes the numbers as keywords and returns a `Law`. The gaits are in `eel_ga
 
 import functools
 import inspect
+from dataclasses import dataclass
 
 from eel_gaits.law import Law
+from eel_gaits.quantity import Quantities, described_fields, quantity
 from eel_gaits.wording import shown
+
+
+@dataclass(frozen=True, kw_only=True)
+class Transition(Quantities):
+    """How a receiver that is already moving takes over the law."""
+
+    transition: float = quantity(
+        0.0,
+        unit="s",
+        description="duration of the blend into the law; 0: the receiver's default",
+        minimum=0.0,
+        maximum=1e4,
+    )
+
 
 GAITS = {}  # name of the gait: its function, whose attribute `numbers` is the class of its numbers
 
@@ -49,6 +65,10 @@ def register(numbers_class):
             [keyword, *inspect.signature(numbers_class).parameters.values()], return_annotation=Law
         )
         make.numbers = numbers_class
+        make.__doc__ = (
+            f"{inspect.getdoc(terms_of)}\n\nNumbers, with default, meaning, unit and bounds:\n"
+            f"{described_fields(Transition)}\n{described_fields(numbers_class)}\n"
+        )
         GAITS[name] = make
         return make
 

@@ -7,22 +7,8 @@ name. A number that the user has set carries over to another gait that has a num
 from dataclasses import dataclass, field, fields
 from types import MappingProxyType
 
-from eel_gaits.quantity import Quantities, quantity
-from eel_gaits.registry import GAITS, find
+from eel_gaits.registry import GAITS, Transition, find
 from eel_gaits.wording import shown
-
-
-@dataclass(frozen=True, kw_only=True)
-class Transition(Quantities):
-    """How a receiver that is already moving takes over the law."""
-
-    transition: float = quantity(
-        0.0,
-        unit="s",
-        description="duration of the blend into the law; 0: the receiver's default",
-        minimum=0.0,
-        maximum=1e4,
-    )
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -15,6 +15,7 @@ from eel_dynamics.analysis.averaging_window import AveragingWindow
 from eel_dynamics.analysis.friction_power import drag_powers
 
 GRAVITY = 9.80665  # m/s^2, standard
+SETTLED = 0.01  # change of the speed within the window, relative
 AT_REST = 1e-9  # of the body's length in a period: slower is round-off, and no motion
 
 
@@ -42,6 +43,25 @@ class Analysis:
         time = window.instants(window.start, window.end - period)
         way = window.center_of_mass(time + period) - window.center_of_mass(time)
         return float(area(np.linalg.norm(way, axis=1), time)) / period / (time[-1] - time[0])
+
+    @cached_property
+    def speed_change(self) -> float | None:
+        """Change of the speed over one period, from the first period of the window to its last, relative to U.
+
+        A window of one period is compared with the period before it. Undefined where there is none, and at rest.
+        """
+        window, period = self.window, self.window.period
+        first = window.start if window.periods > 1 else window.start - period
+        if first < self.run.time[0] - 1e-9 * period or not self.moves:
+            return None
+        start = np.array([first, window.end - period])
+        before, after = np.linalg.norm(window.center_of_mass(start + period) - window.center_of_mass(start), axis=1)
+        return float(abs(after - before) / period / self.mean_speed)
+
+    @property
+    def settled(self) -> bool:
+        """Whether the gait has settled: a `speed_change` of at most 1 %."""
+        return self.speed_change is not None and self.speed_change <= SETTLED
 
     @property
     def moves(self) -> bool:

@@ -23,7 +23,7 @@ def _of_the_run(run) -> list[str]:
         f"final position      {row(run.position[-1])} m",
         f"final orientation   {row(run.orientation[-1])} x y z w",
         f"head's path         {run.path_length:.4f} m",
-        f"start to end        {run.mean_speed:.4f} m/s, centre of mass in a straight line",
+        f"start to end        {np.linalg.norm(run.center_of_mass[-1] - run.center_of_mass[0]):.4f} m, centre of mass",
     ]
     if run.torque is not None:
         size, x, time = run.greatest_torque()
@@ -51,6 +51,7 @@ def _of_the_gait(run, periods: int | None) -> list[str]:
     lines = [
         f"over the last       {window.periods} x {window.period:g} s, {window.start:g} to {window.end:g} s",
         f"mean speed U        {shown(a.mean_speed, '.4f', 'm/s')}, period-averaged centre of mass over the water",
+        f"gait                {_of_settling(a)}",
         f"stride U T/l        {shown(a.stride)}, slip U T/lambda {shown(a.slip)}",
     ]
     try:
@@ -61,6 +62,14 @@ def _of_the_gait(run, periods: int | None) -> list[str]:
     except ValueError as error:
         lines.append(f"Strouhal f A/U      undefined: {error}")
     return [*lines, *_of_the_power(a), *_of_the_torque(a)]
+
+
+def _of_settling(a: Analysis) -> str:
+    if a.speed_change is None:
+        return "one period alone does not tell whether it has settled" if a.moves else "at rest"
+    return (
+        f"{'settled' if a.settled else 'NOT settled'}: the speed changes by {a.speed_change:.2%} within these periods"
+    )
 
 
 def _of_the_power(a: Analysis) -> list[str]:

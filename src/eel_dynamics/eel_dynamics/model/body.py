@@ -14,12 +14,15 @@ from eel_gaits.wording import shown
 
 from eel_dynamics.model.arguments import checked_instance, checked_number, checked_row
 from eel_dynamics.model.body_file import columns_of
+from eel_dynamics.model.equality import same
 from eel_dynamics.model.grid import Grid
 from eel_dynamics.model.half_axis import ArrayHalfAxis, FunctionHalfAxis
 from eel_dynamics.model.panels import panels_of
+from eel_dynamics.model.shapes import KINKS, NamedHalfAxis
 
 PANEL_OF_NOSE = 0.05  # of the length, where a body names no kinks
 LONGEST = 100.0  # m, of a body from a file; one that is longer may be in mm
+NUMBERS = ("density", "nose_added_mass", "nose_drag", "roll_drag", "lateral_drag", "vertical_drag")
 SHARP = 1e-3  # of the body's greatest half-axis: a half-axis at the tail that counts as none
 
 
@@ -92,6 +95,8 @@ class Body:
         self.roll_drag = checked_number("body roll_drag", roll_drag, "", zero=True)
         self.lateral_drag = checked_number("body lateral_drag", lateral_drag, "", zero=True)
         self.vertical_drag = checked_number("body vertical_drag", vertical_drag, "", zero=True)
+        numbers = tuple(getattr(self, name) for name in NUMBERS)
+        self._hash = hash((self.name, self.length, self.kinks, self.nose, numbers))
 
     def half_width(self, x) -> np.ndarray:
         """b(X) [m] along E2 at `x` [m]."""
@@ -133,6 +138,31 @@ class Body:
         """Mass [kg] at the body's own density."""
         return self.density * self.volume
 
+    @property
+    def arguments(self) -> dict:
+        """The arguments of an equal body."""
+        shape = self.half_axes
+        if isinstance(self._half_width, ArrayHalfAxis):
+            shape = {"x": shape["half_width"][0], **{name: values[1] for name, values in shape.items()}}
+        names = ("length", "kinks", "nose", *NUMBERS, "name")
+        return shape | {name: getattr(self, name) for name in names}
+
+    def changed(self, **changes) -> "Body":
+        """The same body with other `arguments`."""
+        unknown = [name for name in changes if name not in self.arguments]
+        if unknown:
+            raise ValueError(f"body has no {shown(unknown[0])}, it has: {', '.join(self.arguments)}")
+        return Body(**self.arguments | changes)
+
+    def __reduce__(self):
+        return _body_of, (self.arguments,)
+
+    def __eq__(self, other) -> bool:
+        return self is other or (isinstance(other, Body) and same(self.arguments, other.arguments))
+
+    def __hash__(self) -> int:
+        return self._hash
+
     def __repr__(self) -> str:
         return f"Body({self.name!r}, length={self.length} m, density={self.density} kg/m^3)"
 
@@ -140,25 +170,7 @@ class Body:
     @cache
     def boyer2010() -> "Body":
         """The eel-like robot of section 7.2.1: 1 m long, 1.944 kg."""
-
-        def radius(x):
-            return 0.05 * np.sqrt(np.maximum(0.0, 1.0 - np.maximum(0.0, 1.0 - np.asarray(x) / 0.05) ** 2))
-
-        def half_width(x):
-            return radius(x) * (0.5 - (np.sin(np.pi * x - np.pi / 2) + 1.0) / 6.0 - x**2 / 8.0)
-
-        def half_height(x):
-            part = np.clip((20.0 * np.asarray(x) - 4.0) / 11.0, 0.0, 1.0)
-            return radius(x) * (1.0 - (np.sin(np.pi * part - np.pi / 2) + 1.0) / 5.0)
-
-        return Body(
-            length=1.0,
-            half_width=half_width,
-            half_height=half_height,
-            kinks=(0.05, 0.2, 0.75),
-            nose=(0.025, 0.05, 0.05),
-            name="boyer2010",
-        )
+        return Body(**_named_shape("boyer2010", 1.0), nose=(0.025, 0.05, 0.05))
 
     @staticmethod
     def kern2006(length: float = 1.0) -> "Body":
@@ -168,25 +180,7 @@ class Body:
     @staticmethod
     @lru_cache(maxsize=64)
     def _kern2006(length: float) -> "Body":
-        head, width_tail, tail, middle, height = 0.04, 0.01, 0.95, 0.51, 0.08
-
-        def half_width(x):
-            s = np.asarray(x, dtype=float) / length
-            front = np.sqrt(np.maximum(0.0, 2.0 * head * s - s**2))
-            trunk = head - (head - width_tail) * ((s - head) / (tail - head)) ** 2
-            return length * np.where(s < head, front, np.where(s < tail, trunk, width_tail * (1.0 - s) / (1.0 - tail)))
-
-        def half_height(x):
-            s = np.asarray(x, dtype=float) / length
-            return length * height * np.sqrt(np.maximum(0.0, 1.0 - ((s - middle) / middle) ** 2))
-
-        return Body(
-            length=length,
-            half_width=half_width,
-            half_height=half_height,
-            kinks=(head * length, tail * length),
-            name="kern2006",
-        )
+        return Body(**_named_shape("kern2006", length))
 
     @staticmethod
     def named(name: str) -> "Body":
@@ -222,4 +216,13 @@ class Body:
         return tuple(values.tolist())
 
 
-NAMED = ("boyer2010", "kern2006")
+def _named_shape(name: str, length: float) -> dict:
+    half_axes = {axis: NamedHalfAxis(name, axis, length) for axis in ("half_width", "half_height")}
+    return {"name": name, "length": length, "kinks": tuple(kink * length for kink in KINKS[name]), **half_axes}
+
+
+def _body_of(arguments: dict) -> Body:
+    return Body(**arguments)
+
+
+NAMED = tuple(KINKS)

@@ -13,6 +13,7 @@ a run shows how much of a motion is due to the wake. It is no model of a fish.
 from dataclasses import dataclass, field, fields
 
 import numpy as np
+from eel_gaits.quantity import documented
 from eel_gaits.wording import shown
 
 from eel_dynamics.model.arguments import checked_number, checked_row
@@ -31,9 +32,12 @@ def _choice(default, choices, description):
     return field(default=default, metadata={"unit": "", "description": description, "choices": choices})
 
 
-@dataclass(frozen=True, kw_only=True)
+@documented
+@dataclass(frozen=True, kw_only=True, repr=False)
 class Scene:
-    """Physics of a run. Immutable; every field has a default. `ValueError` names a field that does not fit."""
+    """Physics of a run. Immutable; every field has a default. `ValueError` names a field that does not fit.
+
+    Fields, with default, meaning, unit, and bounds or choices:"""
 
     planar: bool = _switch(
         False, "motion in the plane z = 0 only: one angle in place of a rotation; a pitch term is refused"
@@ -58,7 +62,11 @@ class Scene:
     )
     current: tuple[float, float, float] = field(
         default=(0.0, 0.0, 0.0),
-        metadata={"unit": "m/s", "description": "uniform velocity of the water, in the world frame"},
+        metadata={
+            "unit": "m/s",
+            "description": "uniform velocity (x, y, z) of the water in the world frame; "
+            "the library's eel swims towards -x, that of the nodes (REP-103) towards +x, with y reversed too",
+        },
     )
     density: float | None = field(
         default=None,
@@ -75,6 +83,10 @@ class Scene:
     viscosity: float = field(
         default=1e-6, metadata={"unit": "m^2/s", "description": "kinematic viscosity of the water", "minimum": 0.0}
     )
+
+    def __repr__(self) -> str:
+        others = [item for item in fields(self) if getattr(self, item.name) != item.default]
+        return f"Scene({', '.join(f'{item.name}={getattr(self, item.name)!r}' for item in others)})"
 
     def __post_init__(self):
         for item in fields(self):

@@ -13,18 +13,26 @@ import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from eel_gaits.law import Law
 from eel_gaits.wording import shown
 
 from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.analysis.measures import MEASURES, measures_of
 from eel_dynamics.model.arguments import checked_stations
 from eel_dynamics.model.body import Body
+from eel_dynamics.model.equality import same_fields
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.broadcast import swimmers_of
 from eel_dynamics.runs.error_estimate import ErrorEstimate, with_error_estimate
-from eel_dynamics.runs.run import Run, SwimRequest, check_memory, checked_times, run_of
+from eel_dynamics.runs.run import Run, SwimRequest, check_memory, checked_times, default_sample_period, run_of
+from eel_dynamics.runs.storage import plain
+from eel_dynamics.runs.storage.netcdf import loaded, write
+from eel_dynamics.runs.storage.run_contents import contents_of_batch, observed_of_batch, with_warnings
+from eel_dynamics.runs.storage.tables import dataset_of, frame_of_all, needed
+from eel_dynamics.runs.storage.variables import Contents
 from eel_dynamics.simulation.energy import EnergyLedger
 from eel_dynamics.simulation.observations import Observations, empty_observations
 from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
@@ -34,12 +42,12 @@ ALONG = "backbone", "section_orientation", "curvature", "curvature_rate", "torqu
 MOST_THREADS = 1000
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Batch:
     """B swimmers, T samples, M stations, in the axes and units of `Run`.
 
     Values after the last valid sample of a swimmer that stopped are 0, see `valid`. Profiles are None without stations;
-    wrench and energy are None unless every scene has them.
+    wrench and energy are None unless every scene has them. Two batches are equal where all their fields are.
     """
 
     laws: tuple[Law, ...]
@@ -71,6 +79,21 @@ class Batch:
 
     def __len__(self) -> int:
         return len(self.laws)
+
+    def __eq__(self, other) -> bool:
+        return self is other or same_fields(self, other)
+
+    def __hash__(self) -> int:
+        return hash((self.laws, self.bodies, self.scenes))
+
+    def __reduce__(self):  # each array once
+        return _batch_from, (contents_of_batch(self, *self._out), self.laws, self.bodies, self.scenes)
+
+    def __repr__(self) -> str:
+        return (
+            f"Batch({len(self)} swimmers, {len(self.time)} samples, {self.x.shape[1]} stations, "
+            f"{np.count_nonzero(self.stopped)} stopped)"
+        )
 
     @property
     def valid(self) -> np.ndarray:
@@ -112,6 +135,34 @@ class Batch:
             error_estimate=self.error_estimates[index],
         )
 
+    def save(self, path) -> None:
+        """Write the whole batch to a netCDF file (.nc), as `Run.save` does a run."""
+        write(with_warnings(self, contents_of_batch(self, *self._out)), path)
+
+    @staticmethod
+    def load(path) -> "Batch":
+        """The batch that `save` wrote. `ValueError` in one line as in `Run.load`."""
+        return loaded(path, "batch", _batch_from)
+
+    def to_xarray(self):
+        """An `xarray.Dataset` as `Run.to_xarray` gives it, with a first dimension `swimmer`."""
+        return dataset_of(with_warnings(self, contents_of_batch(self, *self._out)))
+
+    def to_dataframe(self):
+        """A `pandas.DataFrame` as `Run.to_dataframe` gives it, by swimmer and time; valid samples alone."""
+        return frame_of_all(self[index] for index in range(len(self)))
+
+    def analysis(self):
+        """A `pandas.DataFrame` with a row for each swimmer: its measures, and the `error` that stopped it, or "".
+
+        The measures are those of a sweep (`eel_dynamics.analysis.measures`): NaN where one is undefined, and for a
+        swimmer that stopped.
+        """
+        pandas = needed("pandas", "analysis")
+        rows = [{} if error else measures_of(self[index]) for index, error in enumerate(self.error)]
+        frame = pandas.DataFrame(rows, columns=list(MEASURES), index=pandas.RangeIndex(len(self), name="swimmer"))
+        return frame.assign(error=[str(error or "") for error in self.error])
+
 
 def simulate_batch(
     laws,
@@ -120,7 +171,7 @@ def simulate_batch(
     bodies=None,
     scenes=None,
     accuracy="standard",
-    sample_period: float = 0.05,
+    sample_period: float | None = None,
     stations: "int | np.ndarray | None" = None,
     positions=(0.0, 0.0, 0.0),
     orientations=(0.0, 0.0, 0.0, 1.0),
@@ -133,20 +184,22 @@ def simulate_batch(
 ) -> Batch:
     """Simulate B swimmers for `duration` [s] each, with samples every `sample_period` [s] from t = 0 on.
 
-    laws, bodies, scenes, accuracy: one for all, or a sequence of B. positions (3,) [m], orientations (4,), twists (6,):
-    one row for all, or (B, .). All sequences have the same length B; one of length 1 counts as one for all. stations:
-    number per body, or their X [m], for the profiles along the body; None: no profiles, only motion and energies.
-    estimate: measure each swimmer's error, as in `simulate`; `Batch.above_target` tells those that stay above their
-    target. threads: None for one per available core. progress(done, B): called after each swimmer. most_evaluations:
-    of each, as in `simulate`.
+    sample_period: None for the default of `simulate` for the fastest of the laws. laws, bodies, scenes, accuracy: one
+    for all, or a sequence of B. positions (3,) [m], orientations (4,), twists (6,): one row for all, or (B, .). All
+    sequences have the same length B; one of length 1 counts as one for all. stations: number per body, or their X [m],
+    for the profiles along the body; None: no profiles, only motion and energies. estimate: measure each swimmer's
+    error, as in `simulate`; `Batch.above_target` tells those that stay above their target. threads: None for one per
+    available core. progress(done, B): called after each swimmer. most_evaluations: of each, as in `simulate`.
 
     Each swimmer's result equals that of `simulate` with the same stations to the last bit. A swimmer that stops, or
     cannot start, keeps its samples until then, with a `SimulationStopped` in `error`; the others are not affected.
     `ValueError` names an argument that does not fit, with the number of the swimmer.
     """
-    times = checked_times(duration, sample_period)
     accuracy = accuracy.tolist() if isinstance(accuracy, np.ndarray) else accuracy
     swimmers = swimmers_of(laws, bodies, scenes, accuracy, positions, orientations, twists, most_evaluations)
+    if sample_period is None:
+        sample_period = default_sample_period({each.law for each in swimmers}, duration)
+    times = checked_times(duration, sample_period)
     along = [0.0] if stations is None else stations
     x_of = {length: checked_stations(along, length) for length in dict.fromkeys(each.body.length for each in swimmers)}
     x = [x_of[each.body.length] for each in swimmers]
@@ -211,10 +264,47 @@ def _batch_of(swimmers, found, times, x, out, works, start, wrench, load, statio
     )
 
 
+class _Swum(NamedTuple):
+    law: Law
+    body: Body
+    scene: Scene
+
+
+def _batch_from(contents: Contents, laws=None, bodies=None, scenes=None) -> Batch:
+    """The batch of these contents; laws, bodies and scenes too, where they are at hand."""
+    values, arrays = contents.values, contents.arrays
+    laws = laws or plain.row_of(values["laws"], plain.law_of)
+    bodies = bodies or plain.row_of(values["bodies"], plain.body_of)
+    scenes = scenes or plain.row_of(values["scenes"], plain.scene_of)
+    settings = plain.row_of(values["accuracies"], plain.accuracy_of)
+    errors = [plain.stop_of(each) for each in values["errors"]]
+    estimates = [plain.error_estimate_of(each) for each in values["error_estimates"]]
+    counts = [arrays[name].astype(int) for name in ("samples", "steps", "evaluations", "nodes")]
+    out, works = observed_of_batch(contents)
+    stations = values["stations"] or None
+    wrench = [scene.internal_wrench and stations is not None for scene in scenes]
+    return _batch_of(
+        list(map(_Swum, laws, bodies, scenes)),
+        (settings, errors, estimates, counts),
+        arrays["time"],
+        list(arrays["x"]),
+        out,
+        works,
+        arrays["kinetic_at_start"],
+        wrench,
+        "fluid_force" in arrays,
+        stations,
+    )
+
+
+def available_cores() -> int:
+    """The number of cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
+
+
 def _for_each(swim, count: int, threads: int | None, progress):
     """Call `swim(index)` for all indices below `count`, in `threads` threads."""
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
-    threads = cores if threads is None else threads
+    threads = available_cores() if threads is None else threads
     if isinstance(threads, bool) or not isinstance(threads, (int, np.integer)) or not 1 <= threads <= MOST_THREADS:
         raise ValueError(f"threads must be a whole number from 1 to {MOST_THREADS}, got {shown(threads)}")
     with ThreadPoolExecutor(threads, thread_name_prefix="swimmer") as pool:

@@ -26,30 +26,12 @@ from eel_dynamics.runs.interrupt import end_on_interrupt
 from eel_dynamics.runs.named_values import scene_of, set_numbers
 from eel_dynamics.runs.one_line_warnings import one_line_warnings
 from eel_dynamics.runs.run import Run, simulate
+from eel_dynamics.runs.storage.run_contents import contents_of_run
+from eel_dynamics.runs.storage.tables import columns_of
 from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.simulation.stopping import SimulationStopped
 
-ARRAYS = [
-    "time",
-    "position",
-    "orientation",
-    "twist",
-    "head_acceleration",
-    "center_of_mass",
-    "x",
-    "backbone",
-    "section_orientation",
-    "curvature",
-    "curvature_rate",
-    "torque",
-    "force",
-    "fluid_force",
-    "resistive_force",
-    "tail_force",
-    "nose_force",
-    "closure_torque",
-    "closure_force",
-]
+SUFFIXES = (".nc", ".npz", ".csv", ".rrd")
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -145,7 +127,9 @@ def _parser() -> Parser:
     parser.add_argument(
         "--scene", action="append", default=[], metavar="NAME=VALUE", help=f"physics: {scene}; may be repeated"
     )
-    parser.add_argument("--sample-period", type=float, default=0.05, help="s (0.05)")
+    parser.add_argument(
+        "--sample-period", type=float, help="s (0.05, or a 20th of the gait's period where that is less)"
+    )
     parser.add_argument("--stations", type=int, default=51, help="points along the body (51)")
     parser.add_argument(
         "--most-evaluations",
@@ -164,7 +148,7 @@ def _parser() -> Parser:
     parser.add_argument(
         "--out",
         metavar="FILE",
-        help=".npz: every array of the run; .csv: head, energies, one line "
+        help=".nc: the whole run, for Run.load; .npz: its arrays; .csv: head, energies, one line "
         "per sample; .rrd: for Rerun's viewer, as the visualiser shows it (needs eel_viz)",
     )
     return parser
@@ -184,8 +168,8 @@ def _checked_out(out: str | None) -> Path | None:
     if out is None:
         return None
     path = Path(out)
-    if path.suffix not in (".npz", ".csv", ".rrd"):
-        raise ValueError(f"--out must end in .npz, .csv or .rrd, got {shown(out)}")
+    if path.suffix not in SUFFIXES:
+        raise ValueError(f"--out must end in {', '.join(SUFFIXES)}, got {shown(out)}")
     if path.suffix == ".rrd" and find_spec("eel_viz") is None:
         raise ValueError("--out .rrd needs the package eel_viz, with rerun-sdk, which is not installed")
     check_output("--out", path)
@@ -198,27 +182,19 @@ def _write(run: Run, path: Path):
     if path.suffix == ".rrd":
         run.to_rerun(path)
         return
-    energy = {} if run.energy is None else vars(run.energy)
+    if path.suffix == ".nc":
+        run.save(path)
+        return
     error = run.error_estimate
     errors = {} if error is None else {"error_position": error.position, "error_growth_rate": error.growth_rate}
     errors |= {} if error is None or error.torque is None else {"error_torque": error.torque}
     if path.suffix == ".npz":
-        arrays = {name: getattr(run, name) for name in ARRAYS if getattr(run, name) is not None}
         with replacing(path) as draft:
-            np.savez_compressed(
-                draft, **arrays, **{f"energy_{name}": values for name, values in energy.items()}, **errors
-            )
+            np.savez_compressed(draft, **contents_of_run(run).arrays, **errors)
         return
-    columns = {"time": run.time}
-    groups = (("position", "xyz"), ("orientation", "xyzw"), ("center_of_mass", "xyz"))
-    columns |= {f"{name}_{axis}": getattr(run, name)[:, k] for name, axes in groups for k, axis in enumerate(axes)}
-    columns |= {
-        f"{name}_{axis}": run.twist[:, k]
-        for k, (name, axis) in enumerate((name, axis) for name in ("omega", "v") for axis in "123")
-    }
+    columns = columns_of(run) | {name: np.full(len(run.time), value) for name, value in errors.items()}
     with replacing(path) as draft, draft.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
-        columns |= energy | {name: np.full(len(run.time), value) for name, value in errors.items()}
         writer.writerow(columns)
         writer.writerows(np.column_stack([*columns.values()]).tolist())
 

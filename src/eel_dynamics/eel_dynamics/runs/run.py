@@ -4,26 +4,31 @@ import os
 import warnings
 from collections.abc import Callable
 from contextvars import ContextVar
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property, partial
 from importlib.metadata import entry_points
 from typing import NamedTuple
 
 import numpy as np
 from eel_gaits.law import Law
+from eel_gaits.quantity import is_finite
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.analysis.actuators import Actuators, actuators_of
 from eel_dynamics.analysis.analysis import Analysis
 from eel_dynamics.analysis.model_limits import warnings_of
 from eel_dynamics.analysis.run_summary import describe
-from eel_dynamics.model.arguments import checked_number, checked_stations
+from eel_dynamics.model.arguments import checked_instance, checked_number, checked_stations
 from eel_dynamics.model.body import Body
+from eel_dynamics.model.equality import same_fields
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.broadcast import SwimmerArguments
 from eel_dynamics.runs.error_estimate import ErrorEstimate, stable_step, with_error_estimate
 from eel_dynamics.runs.progress_monitor import ProgressMonitor
 from eel_dynamics.runs.records import records
+from eel_dynamics.runs.storage.netcdf import loaded, write
+from eel_dynamics.runs.storage.run_contents import contents_of_run, fields_of_run
+from eel_dynamics.runs.storage.tables import dataset_of, frame_of
 from eel_dynamics.simulation.energy import EnergyLedger
 from eel_dynamics.simulation.observations import Observations, size_of
 from eel_dynamics.simulation.simulation import Simulation
@@ -31,13 +36,19 @@ from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 MOST_SAMPLES = 10_000_000  # of a run: the motion alone takes gigabytes
+SAMPLE_PERIOD = 0.05  # s, where the gait is no faster than a period of 1 s
+SAMPLES_OF_PERIOD = 20  # by default, of the law's shortest period
+MOST_DEFAULT_SAMPLES = 20_000  # of a run whose sample period follows from the law
 MOST_MEMORY = 0.8  # share of the machine's memory for the samples
 _searching = ContextVar("searching", default=False)  # whether a stable step is searched for
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Run:
-    """A run: T samples at M stations, in SI units. The body lies along +x from the head and swims towards -x."""
+    """A run: T samples at M stations, in SI units. The body lies along +x from the head and swims towards -x.
+
+    Two runs are equal where all their fields are, to the last bit.
+    """
 
     law: Law
     body: Body
@@ -68,6 +79,22 @@ class Run:
     nodes: int  # along the body
     error_estimate: ErrorEstimate | None = None  # None where none was wanted, or for fewer than two samples
 
+    def __eq__(self, other) -> bool:
+        return self is other or same_fields(self, other)
+
+    def __hash__(self) -> int:
+        return hash((self.law, self.body, self.scene, self.steps, self.evaluations, self.nodes))
+
+    def __getstate__(self) -> dict:  # without what can be computed again
+        return {item.name: getattr(self, item.name) for item in fields(self)}
+
+    def __repr__(self) -> str:
+        end = f"{self.time[-1]:g} s" if len(self.time) else "no time"
+        return (
+            f"Run({self.law.name!r}, {self.body.name!r}, {end}, {len(self.time)} samples, {len(self.x)} stations, "
+            f"accuracy {self.accuracy.name!r})"
+        )
+
     def __post_init__(self):
         if not (self.time[1:] > self.time[:-1]).all():
             falls = np.flatnonzero(np.diff(self.time) <= 0.0)
@@ -90,9 +117,11 @@ class Run:
 
     @property
     def mean_speed(self) -> float:
-        """Distance of the centre of mass from first to last sample, divided by the time [m/s]; 0 for one sample."""
-        duration = self.time[-1] - self.time[0]
-        return float(np.linalg.norm(self.center_of_mass[-1] - self.center_of_mass[0]) / duration) if duration else 0.0
+        """`analysis().mean_speed` [m/s]: of the period-averaged centre of mass over the water, in the later half.
+
+        `ValueError` where the gait has no period, or the run does not hold one.
+        """
+        return self.analysis().mean_speed
 
     def greatest_torque(self) -> tuple[float, float, float]:
         """Greatest magnitude [N m] of the internal torque over the run, with its X [m] and its time [s]."""
@@ -122,6 +151,33 @@ class Run:
         """One line each: an error above the target, and the model's limits that were exceeded (`model_limits.py`)."""
         missed = self.error_estimate and self.error_estimate.missed(self.accuracy.target, float(self.time[-1]))
         return (missed, *warnings_of(self)) if missed else warnings_of(self)
+
+    def save(self, path) -> None:
+        """Write the whole run to a netCDF file (.nc), which `load` reads, as do xarray and others.
+
+        It holds all fields, the warnings and the software's version. A body given by functions of your own is kept as
+        polynomials through the squares of its half-axes. `ValueError` for a path that does not fit.
+        """
+        write(contents_of_run(self), path)
+
+    @staticmethod
+    def load(path) -> "Run":
+        """The run that `save` wrote. `ValueError` in one line for a damaged or foreign file, or another version's."""
+        return loaded(path, "run", lambda contents: Run(**fields_of_run(contents)))
+
+    def to_xarray(self):
+        """An `xarray.Dataset` of all arrays with dimensions and units. Its attributes are those of a file of `save`.
+
+        `ImportError` without xarray.
+        """
+        return dataset_of(contents_of_run(self))
+
+    def to_dataframe(self):
+        """A `pandas.DataFrame` by time: head, centre of mass, twist, and energies where there is a ledger.
+
+        `ImportError` without pandas.
+        """
+        return frame_of(self)
 
     def to_rerun(self, target, compare: "Run | None" = None, **settings) -> None:
         """Record the run to Rerun, as the visualiser shows a swimmer.
@@ -172,7 +228,7 @@ def simulate(
     body: Body | None = None,
     scene: Scene | None = None,
     accuracy: "str | float | Accuracy" = "standard",
-    sample_period: float = 0.05,
+    sample_period: float | None = None,
     stations=51,
     position=(0.0, 0.0, 0.0),
     orientation=(0.0, 0.0, 0.0, 1.0),
@@ -184,8 +240,9 @@ def simulate(
 ) -> Run:
     """Simulate `law` for `duration` [s], with samples every `sample_period` [s] from t = 0 on.
 
-    stations: number of equidistant stations, or their X (M,) [m]. position (3,) [m], orientation (4,) (x y z w), twist
-    (6,) ((Omega, V) in the head's axes): the head's initial state. load: compute the water's load along the body too.
+    sample_period: None for 0.05 s, or a 20th of the law's shortest period where that is less. stations: number of
+    equidistant stations, or their X (M,) [m]. position (3,) [m], orientation (4,) (x y z w), twist (6,) ((Omega, V) in
+    the head's axes): the head's initial state. load: compute the water's load along the body too.
     The steps in time do not depend on the sampling. estimate: measure the error (`Run.error_estimate`); where it
     exceeds the target, return a finer run, or warn if none is fine enough. False: the bare run. most_evaluations:
     of the head's dynamics per simulated second; a law that needs more is refused, or stopped. progress(time, left):
@@ -193,6 +250,8 @@ def simulate(
     than a minute gives a warning. `ValueError` names what does not fit; `SimulationStopped` carries the samples so far
     as `run`.
     """
+    checked_instance("law", law, Law)
+    sample_period = default_sample_period([law], duration) if sample_period is None else sample_period
     times = checked_times(duration, sample_period)
     again = partial(
         simulate,
@@ -286,6 +345,16 @@ def _with_stable_step(stopped: SimulationStopped, again, accuracy: Accuracy) -> 
     told = SimulationStopped(stopped.time, stopped.quantity, stopped.value, f"{hint}; it was {accuracy.step:.3g} s")
     told.run, told.diverged = stopped.run, True
     return told
+
+
+def default_sample_period(laws, duration) -> float:
+    """The sample period [s] for which none is given: `SAMPLE_PERIOD`, or fine enough to analyse the fastest of `laws`.
+
+    A run of more than `MOST_DEFAULT_SAMPLES` is not made by default.
+    """
+    shortest = min((term.period for law in laws for term in law.terms if term.period), default=np.inf)
+    fine = min(SAMPLE_PERIOD, shortest / SAMPLES_OF_PERIOD)
+    return fine if is_finite(duration) and duration <= MOST_DEFAULT_SAMPLES * fine else SAMPLE_PERIOD
 
 
 def checked_times(duration, sample_period) -> np.ndarray:

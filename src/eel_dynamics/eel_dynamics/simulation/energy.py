@@ -11,8 +11,10 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
+from eel_dynamics.model.equality import same_fields
 
-@dataclass(frozen=True)
+
+@dataclass(frozen=True, eq=False)
 class EnergyLedger:
     """The ledger of one instant (floats) or of a run ((T,) arrays). In a current it is relative to the water."""
 
@@ -27,6 +29,11 @@ class EnergyLedger:
     wake_work: np.ndarray  # J
     nose_work: np.ndarray  # J
     drag_work: np.ndarray  # J
+
+    def __eq__(self, other) -> bool:
+        return same_fields(self, other)
+
+    __hash__ = None  # it holds arrays
 
     def __getitem__(self, name: str):
         if name not in self.keys():

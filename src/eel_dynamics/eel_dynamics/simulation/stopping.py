@@ -16,6 +16,9 @@ class SimulationStopped(RuntimeError):
         self.time, self.quantity, self.value, self.hint = time, quantity, value, hint
         self.diverged = False  # the steps were too long
 
+    def __reduce__(self):
+        return SimulationStopped, (self.time, self.quantity, self.value, self.hint), self.__dict__
+
 
 def stopped_by(status: int, time: float, bounds: eel_core.StepBounds, accuracy: Accuracy) -> SimulationStopped:
     """The error for the `status` of a march that stopped at `time` [s].

@@ -13,6 +13,7 @@ from eel_gaits.output_file import NotWritten
 from eel_gaits.registry import GAITS
 
 from eel_dynamics.accuracy.accuracy import PRESETS
+from eel_dynamics.analysis.measures import MEASURES
 from eel_dynamics.model.body import NAMED, Body
 from eel_dynamics.runs.named_values import check_names, named_texts, set_numbers, varied_values
 from eel_dynamics.runs.one_line_warnings import one_line_warnings
@@ -45,7 +46,8 @@ def _sweep(options) -> int:
             out=options.out,
             scheduler=options.scheduler,
             workers=options.workers,
-            progress=_say_progress if sys.stderr.isatty() else None,
+            estimate=not options.bare,
+            measure=options.measures and options.measures.split(","),
             overwrite=options.overwrite,
         )
     except NotWritten as error:
@@ -95,18 +97,18 @@ def _parser() -> Parser:
     parser.add_argument("--duration", type=float, default=10.0, help="s (10)")
     parser.add_argument("--accuracy", default="standard", help=f"{', '.join(PRESETS)}, or a target (standard)")
     parser.add_argument("--body", default="boyer2010", help=f"{', '.join(NAMED)}, or a file as for simulate")
-    parser.add_argument("--sample-period", type=float, default=0.05, help="s (0.05)")
+    parser.add_argument(
+        "--bare", action="store_true", help="do not measure the runs' own errors; --accuracy is not kept"
+    )
+    parser.add_argument("--measures", metavar="NAMES", help=f"what to keep, with commas: {', '.join(MEASURES)} (all)")
+    parser.add_argument(
+        "--sample-period", type=float, help="s (0.05, or a 20th of a point's period where that is less)"
+    )
     parser.add_argument("--out", required=True, metavar="FILE.nc", help="NetCDF file; parts lie in FILE.nc.parts")
     parser.add_argument("--overwrite", action="store_true", help="replace what the output holds of another sweep")
-    parser.add_argument(
-        "--scheduler", metavar="ADDRESS", help="of a Dask scheduler; without: processes of this machine"
-    )
-    parser.add_argument("--workers", type=int, metavar="N", help="processes on this machine (one per core)")
+    parser.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask scheduler, or processes; without: threads")
+    parser.add_argument("--workers", type=int, metavar="N", help="threads, or processes (one per core)")
     return parser
-
-
-def _say_progress(done: int, points: int):
-    print(f"\r{done} of {points} points", end="" if done < points else "\n", file=sys.stderr, flush=True)
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 import hashlib
 import inspect
 import sys
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
@@ -12,27 +13,30 @@ import eel_core
 import eel_dynamics
 import eel_gaits
 from eel_dynamics.model.body import Body
-from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
+from eel_dynamics.model.shapes import NamedHalfAxis
+from eel_dynamics.runs.storage.tables import needed
 
 PACKAGES = (Path(eel_gaits.__file__).parent, Path(eel_dynamics.__file__).parent)
 
 
-def key_of(points, duration, sample_period, stations, measure, most_evaluations=MOST_EVALUATIONS) -> str:
+def key_of(points, how) -> str:
     """The key, 32 hexadecimal digits.
 
-    It is a hash of the points, the arguments of the runs, the measure's code and closure, and this software, including
-    its compiled core. `ValueError` for a function that cannot be hashed.
+    It is a hash of the points, their `SwimSettings`, the measure's code and closure, and this software, including its
+    compiled core. `ValueError` for a function that cannot be hashed.
     """
-    content = hashlib.sha256(repr((duration, sample_period, most_evaluations)).encode())
-    content.update(np.asarray(stations, dtype=float).tobytes())
+    content = hashlib.sha256(repr((how.duration, how.sample_period, how.estimate, how.most_evaluations)).encode())
+    content.update(np.asarray(how.stations, dtype=float).tobytes())
     content.update(_sources())
-    content.update(_content_of_function("measure", measure))
+    measure = how.measure
+    content.update(_content_of_function("measure", measure) if callable(measure) else repr(measure).encode())
     bodies = {}
     for point in points:
         if id(point.body) not in bodies:
             bodies[id(point.body)] = _content_of_body(point.body)
         content.update(bodies[id(point.body)])
-        content.update(repr((point.law, point.scene, point.accuracy)).encode())
+        content.update(repr((asdict(point.law), point.scene, point.accuracy)).encode())
+        content.update(np.concatenate(point.start).tobytes())
     return content.hexdigest()[:32]
 
 
@@ -50,6 +54,9 @@ def _content_of_function(argument: str, function) -> bytes:
 
     `ValueError` names the argument whose function cannot be hashed.
     """
+    if isinstance(function, NamedHalfAxis):
+        return repr(function).encode()
+    needed("dask", f"the key of a sweep with a {argument} of your own", "cluster")
     from dask.tokenize import TokenizationError, tokenize
 
     try:

@@ -11,7 +11,7 @@ from pathlib import Path
 from eel_gaits.output_file import check_output, replacing
 from eel_gaits.wording import shown
 
-from eel_dynamics.studies.sweep.measures import checked_point
+from eel_dynamics.analysis.measures import checked_point
 
 ABOUT, OURS = "sweep.json", ("sweep*.json", "part-*.json")
 

@@ -1,51 +1,58 @@
-"""The measures that a sweep stores for each run: one number per measure, with its unit and definition."""
+"""The measures of a run: one number per measure, with its unit and definition."""
+
+from functools import cache
 
 import numpy as np
 from eel_gaits.wording import shown
 
-from eel_dynamics.runs.run import Run
+from eel_dynamics.analysis.analysis import Analysis
 
 
 def _analysed(name: str):
     """A measure: a property of the run's analysis. None where the gait has no period or the run is too short."""
 
-    def measure(run: Run, analysis):
+    def measure(run, analysis):
         try:
-            return None if analysis is None else getattr(analysis, name)
+            return None if analysis() is None else getattr(analysis(), name)
         except ValueError:  # the scene has no ledger or no wrench
             return None
 
     return measure
 
 
-def _torque(run: Run, analysis):
+def _torque(run, _):
     return None if run.torque is None else run.greatest_torque()[0]
 
 
 def _error(name: str):
-    def measure(run: Run, _):
+    def measure(run, _):
         return None if run.error_estimate is None else getattr(run.error_estimate, name)
 
     return measure
 
 
-def _residual(run: Run, analysis):
+def _residual(run, _):
     return None if run.energy is None else float(np.max(np.abs(run.energy.residual)))
 
 
-MEASURES = {  # name: (unit, description, function of the run and its analysis)
+def _work(run, _):
+    return None if run.energy is None else run.energy.actuator_work[-1]
+
+
+MEASURES = {  # name: (unit, description, function of the run and of a function that returns its analysis)
     "head_x": ("m", "head at the end, world axes", lambda run, _: run.position[-1, 0]),
     "head_y": ("m", "head at the end, world axes", lambda run, _: run.position[-1, 1]),
     "head_z": ("m", "head at the end, world axes", lambda run, _: run.position[-1, 2]),
     "path_length": ("m", "length of the head's path through the samples", lambda run, _: run.path_length),
-    "mean_speed": ("m/s", "distance of the centre of mass from its start by the time", lambda run, _: run.mean_speed),
-    "cruising_speed": ("m/s", "speed over whole periods of the later half", _analysed("mean_speed")),
+    "mean_speed": ("m/s", "U: period-averaged centre of mass over the water, later half", _analysed("mean_speed")),
+    "speed_change": ("", "change of U within the later half, relative: settled below 0.01", _analysed("speed_change")),
     "stride": ("", "body lengths per period, later half", _analysed("stride")),
-    "slip": ("", "speed by that of the wave along the body, later half", _analysed("slip")),
+    "slip": ("", "speed relative to that of the wave along the body, later half", _analysed("slip")),
     "tail_excursion": ("m", "peak-to-peak excursion of the tail, later half", _analysed("tail_excursion")),
     "strouhal": ("", "frequency times excursion by speed, later half", _analysed("strouhal")),
     "reynolds": ("", "speed times length by viscosity, later half", _analysed("reynolds")),
     "actuator_power": ("W", "mean power of the actuators, later half", _analysed("actuator_power")),
+    "actuator_work": ("J", "work of the actuators over the run", _work),
     "cost_of_transport": (
         "J/(kg m)",
         "work of the actuators by mass and way, later half",
@@ -68,16 +75,40 @@ MEASURES = {  # name: (unit, description, function of the run and its analysis)
     "error_growth_rate": ("1/s", "rate at which errors grow", _error("growth_rate")),
     "evaluations": ("", "evaluations of the head's dynamics", lambda run, _: run.evaluations),
 }
+OF_ESTIMATE = ("error_position", "error_torque", "error_growth_rate")  # need the run's error estimate
 
 
-def measures_of(run: Run) -> dict[str, float]:
-    """Every measure of `run` by name; NaN where it is undefined, or the run lacks the data for it."""
-    try:
-        analysis = run.analysis()
-    except ValueError:
-        analysis = None
-    found = {name: function(run, analysis) for name, (_, _, function) in MEASURES.items()}
+def measures_of(run, names=tuple(MEASURES), periods: int | None = None) -> dict[str, float]:
+    """The measures `names` of `run`; NaN where one is undefined, or the run lacks the data for it.
+
+    periods: whole periods at the run's end in place of its later half.
+    """
+
+    @cache
+    def analysis():
+        try:
+            return Analysis(run, periods)
+        except ValueError:
+            return None
+
+    found = {name: MEASURES[name][2](run, analysis) for name in names}
     return {name: float("nan") if value is None else float(value) for name, value in found.items()}
+
+
+def checked_measures(argument: str, names, estimate: bool = True) -> tuple[str, ...]:
+    """The `names` of measures as a tuple; None: all that a run with or without error estimate has.
+
+    `ValueError` that names the `argument` for an unknown measure, and for one of the error without an estimate.
+    """
+    if names is None:
+        return tuple(name for name in MEASURES if estimate or name not in OF_ESTIMATE)
+    names = (names,) if isinstance(names, str) else tuple(names)
+    for name in names:
+        if not isinstance(name, str) or name not in MEASURES:
+            raise ValueError(f"{argument} must be of {', '.join(MEASURES)}, got {shown(name)}")
+        if name in OF_ESTIMATE and not estimate:
+            raise ValueError(f"{argument} {name} needs the error estimate, which is off")
+    return names
 
 
 def checked_point(found: dict) -> dict:
@@ -103,4 +134,4 @@ def described(name: str) -> dict[str, str]:
     return {"units": unit or "1", "long_name": description}
 
 
-__all__ = ["MEASURES", "checked_point", "described", "measures_of"]
+__all__ = ["MEASURES", "checked_measures", "checked_point", "described", "measures_of"]

@@ -1,0 +1,96 @@
+"""Half-axes along X as functions that compare equal by value, and that files can hold: by name, or as polynomials.
+
+Sources: boyer2010 after section 7.2.1 of Boyer, Porez and Leroyer (2010); kern2006 after Kern and Koumoutsakos,
+J. Exp. Biol. 209 (2006).
+"""
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+KERN_HEAD, KERN_TAIL, KERN_WIDTH_OF_TAIL = 0.04, 0.95, 0.01  # of the length
+KERN_MIDDLE, KERN_HEIGHT = 0.51, 0.08
+KINKS = {"boyer2010": (0.05, 0.2, 0.75), "kern2006": (KERN_HEAD, KERN_TAIL)}  # of the length
+
+
+@dataclass(frozen=True)
+class NamedHalfAxis:
+    """The half-axis `name` ("half_width" or "half_height") of the library's body `body`, `length` [m] long."""
+
+    body: str
+    name: str
+    length: float
+
+    def __call__(self, x) -> np.ndarray:
+        """[m] at `x` [m]."""
+        return FUNCTIONS[self.body, self.name](np.asarray(x, dtype=float), self.length)
+
+
+@dataclass(frozen=True)
+class PolynomialHalfAxis:
+    """A half-axis whose square is a Chebyshev polynomial between two of the `bounds` (0, kinks, length) [m].
+
+    coefficients [m^2]: one row for each panel.
+    """
+
+    bounds: tuple[float, ...]
+    coefficients: tuple[tuple[float, ...], ...]
+
+    def __call__(self, x) -> np.ndarray:
+        """[m] at `x` [m]; 0 at the nose."""
+        x = np.asarray(x, dtype=float)
+        home = np.clip(np.searchsorted(self.bounds, x, side="left") - 1, 0, len(self.coefficients) - 1)
+        square = np.empty(x.shape)
+        for panel, row in enumerate(self.coefficients):
+            here = home == panel
+            square[here] = self._series(panel, row)(x[here])
+        square -= np.where(home == 0, self._series(0, self.coefficients[0])(0.0), 0.0)
+        least = np.finfo(float).tiny  # no section inside is singular by round-off
+        return np.sqrt(np.where(x > 0.0, np.maximum(square, least), 0.0))
+
+    def _series(self, panel: int, row) -> chebyshev.Chebyshev:
+        return chebyshev.Chebyshev(row, domain=self.bounds[panel : panel + 2])
+
+
+def _boyer_radius(x):
+    return 0.05 * np.sqrt(np.maximum(0.0, 1.0 - np.maximum(0.0, 1.0 - x / 0.05) ** 2))
+
+
+def _boyer_half_width(x, length):
+    return _boyer_radius(x) * (0.5 - (np.sin(np.pi * x - np.pi / 2) + 1.0) / 6.0 - x**2 / 8.0)
+
+
+def _boyer_half_height(x, length):
+    part = np.clip((20.0 * x - 4.0) / 11.0, 0.0, 1.0)
+    return _boyer_radius(x) * (1.0 - (np.sin(np.pi * part - np.pi / 2) + 1.0) / 5.0)
+
+
+def _kern_half_width(x, length):
+    s, head, tail, width = x / length, KERN_HEAD, KERN_TAIL, KERN_WIDTH_OF_TAIL
+    front = np.sqrt(np.maximum(0.0, 2.0 * head * s - s**2))
+    trunk = head - (head - width) * ((s - head) / (tail - head)) ** 2
+    return length * np.where(s < head, front, np.where(s < tail, trunk, width * (1.0 - s) / (1.0 - tail)))
+
+
+def _kern_half_height(x, length):
+    s = x / length
+    return length * KERN_HEIGHT * np.sqrt(np.maximum(0.0, 1.0 - ((s - KERN_MIDDLE) / KERN_MIDDLE) ** 2))
+
+
+FUNCTIONS = {
+    ("boyer2010", "half_width"): _boyer_half_width,
+    ("boyer2010", "half_height"): _boyer_half_height,
+    ("kern2006", "half_width"): _kern_half_width,
+    ("kern2006", "half_height"): _kern_half_height,
+}
+
+
+def polynomials_through(half_axis, bounds: tuple[float, ...], degree: int = 48) -> PolynomialHalfAxis:
+    """Polynomials through the square of a `half_axis` (function of X [m] that returns m) between the `bounds` [m]."""
+    series = [
+        chebyshev.Chebyshev.interpolate(lambda x: half_axis(x) ** 2, degree, domain=[start, end])
+        for start, end in pairwise(bounds)
+    ]
+    return PolynomialHalfAxis(tuple(bounds), tuple(tuple(each.coef.tolist()) for each in series))

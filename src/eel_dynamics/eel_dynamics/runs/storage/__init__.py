@@ -1,0 +1,1 @@
+"""Runs and batches as data: netCDF files, labelled arrays, tables."""

@@ -1,0 +1,140 @@
+"""Laws, bodies, scenes, settings, errors and their estimates as values that JSON can hold, and back.
+
+A body whose half-axes are functions of the user's own becomes one of polynomials through their squares: no file holds
+code. All else comes back equal.
+"""
+
+import warnings
+from collections.abc import Callable
+from dataclasses import asdict
+
+import numpy as np
+from eel_gaits.law import Law, Ramp, Term
+
+from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.accuracy.budget import Budget
+from eel_dynamics.model.body import Body
+from eel_dynamics.model.scene import Scene
+from eel_dynamics.model.shapes import NamedHalfAxis, PolynomialHalfAxis, polynomials_through
+from eel_dynamics.runs.error_estimate import ErrorEstimate
+from eel_dynamics.simulation.stopping import SimulationStopped
+
+HALF_AXES = ("half_width", "half_height")
+FUNCTIONS = {"named": NamedHalfAxis, "polynomial": PolynomialHalfAxis}
+AS_EXACT = 1e-9  # of the body's length, by which a polynomial may miss a half-axis without a warning
+
+
+def plain_law(law: Law) -> dict:
+    """A law as plain values."""
+    return asdict(law)
+
+
+def law_of(plain: dict) -> Law:
+    """The law of `plain_law`."""
+    terms = [Term(**term | {"envelope": tuple(Ramp(**ramp) for ramp in term["envelope"])}) for term in plain["terms"]]
+    return Law(*terms, name=plain["name"], transition=plain["transition"])
+
+
+def plain_body(body: Body) -> dict:
+    """A body as plain values. A half-axis that no polynomial meets to `AS_EXACT` gives a warning."""
+    plain = body.arguments
+    for name in HALF_AXES:
+        value = plain[name]
+        if isinstance(value, np.ndarray):
+            plain[name] = value.tolist()
+            continue
+        kind = next((kind for kind, each in FUNCTIONS.items() if type(value) is each), None)
+        if kind is None:
+            kind, value = "polynomial", _polynomial(body, name)
+        plain[name] = {"kind": kind, **asdict(value)}
+    if "x" in plain:
+        plain["x"] = plain["x"].tolist()
+    return plain
+
+
+def body_of(plain: dict) -> Body:
+    """The body of `plain_body`."""
+    arguments = dict(plain)
+    for name in HALF_AXES:
+        if isinstance(plain[name], dict):
+            given = dict(plain[name])
+            kind = FUNCTIONS[given.pop("kind")]
+            arguments[name] = kind(**{key: _tuples(value) for key, value in given.items()})
+    return Body(**arguments)
+
+
+def plain_scene(scene: Scene) -> dict:
+    """A scene as plain values."""
+    return asdict(scene)
+
+
+def scene_of(plain: dict) -> Scene:
+    """The scene of `plain_scene`."""
+    return Scene(**plain)
+
+
+def plain_accuracy(accuracy: Accuracy | Budget) -> dict:
+    """Settings, or a budget of time, as plain values."""
+    return {"budget": accuracy.name} if isinstance(accuracy, Budget) else asdict(accuracy)
+
+
+def accuracy_of(plain: dict) -> Accuracy | Budget:
+    """The settings of `plain_accuracy`."""
+    return Budget.of(plain["budget"]) if "budget" in plain else Accuracy(**plain)
+
+
+def plain_error_estimate(estimate: ErrorEstimate | None) -> dict | None:
+    """An error estimate as plain values."""
+    return None if estimate is None else asdict(estimate)
+
+
+def error_estimate_of(plain: dict | None) -> ErrorEstimate | None:
+    """The estimate of `plain_error_estimate`."""
+    return None if plain is None else ErrorEstimate(**plain)
+
+
+def plain_stop(error: SimulationStopped | None) -> dict | None:
+    """Why a swimmer stopped, as plain values."""
+    return (
+        None
+        if error is None
+        else {name: vars(error)[name] for name in ("time", "quantity", "value", "hint", "diverged")}
+    )
+
+
+def stop_of(plain: dict | None) -> SimulationStopped | None:
+    """The error of `plain_stop`."""
+    if plain is None:
+        return None
+    error = SimulationStopped(plain["time"], plain["quantity"], plain["value"], plain["hint"])
+    error.diverged = plain["diverged"]
+    return error
+
+
+def told_once(values: tuple, plain: Callable) -> dict:
+    """A row of values, of which many may be equal, as plain values."""
+    places = {value: place for place, value in enumerate(dict.fromkeys(values))}
+    return {"values": [plain(value) for value in places], "places": [places[value] for value in values]}
+
+
+def row_of(told: dict, made: Callable) -> tuple:
+    """The row of `told_once`."""
+    values = [made(value) for value in told["values"]]
+    return tuple(values[place] for place in told["places"])
+
+
+def _polynomial(body: Body, name: str) -> PolynomialHalfAxis:
+    found = polynomials_through(getattr(body, name), (0.0, *body.panel_ends))
+    x = np.linspace(0.0, body.length, 1001)
+    missed = float(np.max(np.abs(found(x) - getattr(body, name)(x))))
+    if missed > AS_EXACT * body.length:
+        warnings.warn(
+            f"body {name} is saved as a polynomial that misses it by up to {missed:.2g} m: name its kinks, or give "
+            "arrays",
+            stacklevel=5,
+        )
+    return found
+
+
+def _tuples(value):
+    return tuple(_tuples(each) for each in value) if isinstance(value, list) else value

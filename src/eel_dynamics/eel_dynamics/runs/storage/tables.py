@@ -1,0 +1,54 @@
+"""Contents of runs and batches as labelled arrays (xarray) and tables (pandas), which are needed for these alone."""
+
+from importlib import import_module
+
+import numpy as np
+
+from eel_dynamics.runs.storage.netcdf import attributes_of
+from eel_dynamics.runs.storage.variables import LABELS, LEDGER, Contents
+
+COLUMNS = {"position": "xyz", "orientation": "xyzw", "center_of_mass": "xyz"}
+
+
+def needed(name: str, by: str, extra: str = "data"):
+    """The module `name`, which `by` needs. `ImportError` names the `extra` that brings it."""
+    try:
+        return import_module(name)
+    except ImportError as error:
+        raise ImportError(
+            f"{by} needs {name} ({error}); install it with: pip install 'eel_dynamics[{extra}]'"
+        ) from None
+
+
+def dataset_of(contents: Contents):
+    """An `xarray.Dataset` of all arrays, with units, and the file's attributes."""
+    xarray = needed("xarray", "to_xarray")
+    variables = {}
+    for name, values in contents.arrays.items():
+        about = contents.variable(name)
+        variables[name] = about.dimensions, values, {"units": about.unit, "long_name": about.description}
+    used = {dimension for dimensions, *_ in variables.values() for dimension in dimensions}
+    coordinates = {name: variables.pop(name) for name in ("time", "x")}
+    coordinates |= {name: list(labels) for name, labels in LABELS.items() if name in used}
+    return xarray.Dataset(variables, coordinates, attributes_of(contents))
+
+
+def columns_of(run) -> dict[str, np.ndarray]:
+    """The columns (T,) of a run's table by name: time, head, centre of mass, and the ledger where there is one."""
+    columns = {"time": run.time}
+    columns |= {
+        f"{name}_{axis}": getattr(run, name)[:, k] for name, axes in COLUMNS.items() for k, axis in enumerate(axes)
+    }
+    columns |= {name: run.twist[:, k] for k, name in enumerate(LABELS["component"])}
+    return columns | ({} if run.energy is None else {name: run.energy[name] for name in LEDGER})
+
+
+def frame_of(run):
+    """A `pandas.DataFrame` of `columns_of` a run, by time."""
+    return needed("pandas", "to_dataframe").DataFrame(columns_of(run)).set_index("time")
+
+
+def frame_of_all(runs):
+    """The frames of several runs, one below the other, by swimmer and time."""
+    pandas = needed("pandas", "to_dataframe")
+    return pandas.concat({index: frame_of(run) for index, run in enumerate(runs)}, names=["swimmer"])

@@ -1,0 +1,271 @@
+"""Runs and batches as data: files, pickles, labelled arrays and tables hold them whole."""
+
+import json
+import pickle
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+from eel_dynamics.analysis.measures import measures_of
+from eel_dynamics.runs import command
+from eel_dynamics.runs.storage import netcdf
+
+from eel_dynamics import Accuracy, Batch, Body, Run, Scene, SimulationStopped, simulate, simulate_batch
+from eel_gaits import Law, Ramp, Term, falling, kern_fast, straight, turning
+
+SHORT = {"accuracy": 1e-2, "sample_period": 0.1, "stations": 7}
+
+
+def by_functions() -> Body:
+    """A body whose half-axes are functions of the user's own, of which no file can hold the code."""
+    return Body(
+        length=0.8,
+        half_width=lambda x: 0.04 * np.sqrt(np.sin(np.pi * np.minimum(x, 0.8) / 0.82)),
+        half_height=lambda x: 0.09 * np.sqrt(x * (0.9 - x)),
+        density=950.0,
+        name="mine",
+    )
+
+
+def by_arrays() -> Body:
+    x = np.linspace(0.0, 1.2, 40)
+    return Body(
+        x=x, half_width=0.05 * np.sqrt(x * (1.3 - x)), half_height=0.06 * np.sqrt(x), kinks=(0.3,), nose_drag=0.1
+    )
+
+
+@pytest.fixture(scope="module")
+def run() -> Run:
+    scene = Scene(friction="laminar", current=(0.1, 0.0, -0.2), density=990.0)
+    return simulate(
+        falling(period=0.7), 2.0, scene=scene, body=by_arrays(), load=True, twist=(0, 0, 0, -0.2, 0, 0), **SHORT
+    )
+
+
+@pytest.fixture(scope="module")
+def batch() -> Batch:
+    scenes = [Scene(), Scene(internal_wrench=False), Scene(ledger=False), Scene(density=10.0, reactive=False)]
+    settings = [*["draft"] * 3, Accuracy(name="long steps", resolution=10.0, step=0.05)]
+    laws = [straight(), turning(), kern_fast(), straight()]
+    return simulate_batch(laws, 2.0, scenes=scenes, accuracy=settings, sample_period=0.1, stations=5)
+
+
+def test_a_saved_run_is_loaded_equal(run, tmp_path):
+    run.save(tmp_path / "run.nc")
+    again = Run.load(tmp_path / "run.nc")
+    assert again == run and hash(again) == hash(run) and again.warnings == run.warnings
+    assert all(type(getattr(again, item.name)) is type(getattr(run, item.name)) for item in fields(Run))
+    assert again.summary() == run.summary() and again.refined == run.refined
+    changed = run.position.copy()
+    changed[-1, 2] = np.nextafter(changed[-1, 2], 1.0)
+    assert replace(run, position=changed) != run and replace(run, steps=run.steps + 1) != run
+
+
+@pytest.mark.parametrize(
+    "scene, stations",
+    [(Scene(internal_wrench=False, ledger=False, planar=True), 2), (Scene(friction="none"), [0.2, 0.7])],
+)
+def test_what_a_run_lacks_stays_away(scene, stations, tmp_path):
+    run = simulate(straight(), 0.5, scene=scene, stations=stations, accuracy=1e-2, estimate=False)
+    run.save(tmp_path / "run.nc")
+    assert Run.load(tmp_path / "run.nc") == run and run.error_estimate is None and run.fluid_force is None
+
+
+def test_a_body_of_functions_is_saved_as_polynomials(tmp_path):
+    run = simulate(straight(), 0.5, body=by_functions(), **SHORT)
+    run.save(tmp_path / "run.nc")
+    again = Run.load(tmp_path / "run.nc")
+    x = np.linspace(0.0, 0.8, 301)
+    assert again.body.half_width(x) == pytest.approx(run.body.half_width(x), abs=1e-12)
+    assert again.body.half_height(x) == pytest.approx(run.body.half_height(x), abs=1e-12)
+    swum = simulate(straight(), 0.5, body=again.body, **SHORT)
+    assert np.abs(swum.position - run.position).max() < 1e-9
+    swum.save(tmp_path / "again.nc")
+    assert Run.load(tmp_path / "again.nc") == swum
+    kinked = Body(length=1.0, half_width=lambda x: 0.05 * np.minimum(np.sqrt(x), 0.4), half_height=np.sqrt)
+    with pytest.warns(UserWarning, match="body half_width is saved as a polynomial that misses it by up to .* kinks"):
+        simulate(straight(), 0.1, body=kinked, **SHORT).save(tmp_path / "kinked.nc")
+
+
+@pytest.mark.parametrize(
+    "thing",
+    [
+        *(
+            Body.boyer2010(),
+            Body.kern2006(0.7),
+            by_arrays(),
+            Scene(friction="none", planar=True),
+            falling(),
+            kern_fast(),
+        ),
+        Accuracy.of("fine"),
+        Law(Term(amplitude=(1.0,), envelope=(Ramp(0.0, 1.0, 1.0),)), name="mine", transition=2.0),
+    ],
+    ids=str,
+)
+def test_a_pickle_is_equal(thing):
+    again = pickle.loads(pickle.dumps(thing))
+    assert again == thing and hash(again) == hash(thing) and len(repr(thing)) < 300
+
+
+def test_pickled_runs_and_batches_are_equal(run, batch):
+    assert pickle.loads(pickle.dumps(run)) == run
+    again = pickle.loads(pickle.dumps(batch))
+    assert again == batch and all(again[index] == batch[index] for index in range(len(batch)))
+    stopped = pickle.loads(pickle.dumps(batch.error[3]))
+    assert isinstance(stopped, SimulationStopped) and str(stopped) == str(batch.error[3]) and stopped.time > 0.0
+
+
+def test_bodies_are_equal_by_value_alone():
+    assert by_arrays() == by_arrays() and by_arrays() != by_arrays().changed(nose_drag=0.2)
+    assert Body.boyer2010() != Body.boyer2010().changed(name="other") and by_functions() != by_functions()
+    assert Body.boyer2010().changed(lateral_drag=1.0).lateral_drag == 1.0
+    with pytest.raises(ValueError, match="body has no 'colour', it has: half_width"):
+        Body.boyer2010().changed(colour="red")
+
+
+def test_a_saved_batch_is_loaded_equal(batch, tmp_path):
+    batch.save(tmp_path / "batch.nc")
+    again = Batch.load(tmp_path / "batch.nc")
+    assert again == batch and again.stopped.tolist() == [False, False, False, True]
+    assert [again[index] for index in range(4)] == [batch[index] for index in range(4)]
+    motion = simulate_batch([straight(), turning()], 0.4, accuracy=1e-2)
+    motion.save(tmp_path / "motion.nc")
+    assert Batch.load(tmp_path / "motion.nc") == motion and motion.backbone is None
+
+
+def test_a_batch_is_a_table(batch):
+    pytest.importorskip("pandas")
+    table = batch.analysis()
+    for index in range(3):
+        wanted, row = measures_of(batch[index]), table.loc[index]
+        assert all(np.array_equal(row[name], value, equal_nan=True) for name, value in wanted.items())
+        assert row["error"] == ""
+    assert np.isnan(table.head_x[3]) and table.error[3] == str(batch.error[3])
+    frame = batch.to_dataframe()
+    assert frame.loc[1].index.tolist() == batch.time.tolist() and len(frame.loc[3]) == batch.samples[3] < len(
+        batch.time
+    )
+
+
+def test_labelled_arrays_and_columns(run, batch):
+    pytest.importorskip("xarray")
+    data = run.to_xarray()
+    assert np.array_equal(data.position.sel(world="z", time=run.time[-1]), run.position[-1, 2])
+    assert np.array_equal(data.torque.sel(section="3").isel(station=2), run.torque[:, 2, 2])
+    assert data.torque.attrs["units"] == "N m" and data.attrs["software"].startswith("eel_dynamics")
+    assert json.loads(data.attrs["eel"])["law"]["name"] == "falling"
+    assert np.array_equal(batch.to_xarray().backbone[1], batch.backbone[1])
+    frame = run.to_dataframe()
+    assert np.array_equal(frame.v_1, run.twist[:, 3]) and np.array_equal(frame.wake_work, run.energy.wake_work)
+
+
+def test_xarray_opens_what_was_saved(run, tmp_path):
+    xarray = pytest.importorskip("xarray")
+    run.save(tmp_path / "run.nc")
+    with xarray.open_dataset(tmp_path / "run.nc", engine="scipy") as data:
+        assert np.array_equal(data.fluid_force, run.fluid_force) and data.fluid_force.attrs["units"] == "N/m"
+
+
+@pytest.mark.parametrize("name, method", [("xarray", "to_xarray"), ("pandas", "to_dataframe")])
+def test_a_missing_package_is_one_line(run, name, method, monkeypatch):
+    monkeypatch.setitem(__import__("sys").modules, name, None)
+    with pytest.raises(ImportError, match=rf"{method} needs {name} .* pip install 'eel_dynamics\[data\]'"):
+        getattr(run, method)()
+
+
+def cut(data: bytes, part: float) -> bytes:
+    return data[: int(part * len(data))]
+
+
+@pytest.mark.fault(
+    "names",
+    "a file of a run that is truncated, of another kind or another version",
+    "refused in one line that names it",
+)
+def test_files_that_are_no_runs_are_refused_in_one_line(run, batch, tmp_path, monkeypatch):
+    path = tmp_path / "run.nc"
+
+    def refused(words):
+        with pytest.raises(ValueError, match=words) as error:
+            Run.load(path)
+        assert str(error.value).count("\n") == 0 and str(path)[:20] in str(error.value)
+
+    refused("there is no such file")
+    run.save(path)
+    whole = path.read_bytes()
+    for part in (0.0, 0.001, 0.01, 0.1, 0.5, 0.999):
+        path.write_bytes(cut(whole, part))
+        refused("cannot be read")
+    path.write_bytes(b"CDF\x02" + np.random.default_rng(5).bytes(4000))
+    refused("cannot be read")
+    path.write_text("time,position\n")
+    refused("cannot be read")
+    path.write_bytes(whole.replace(b'"friction": "laminar"', b'"friction": "syrupy!"'))
+    refused("friction must be one of")
+    path.write_bytes(whole.replace(b'"nodes"', b'"modes"'))
+    refused("cannot be read: 'nodes'")
+    path.unlink()
+    batch.save(path)
+    refused("holds a batch, not a run")
+    monkeypatch.setattr(netcdf, "FORMAT", 7)
+    run.save(path)
+    monkeypatch.undo()
+    refused("has format 7, of eel_dynamics .* reads format 1")
+    with pytest.raises(ValueError, match=r"path must be that of a \.nc file, got 3"):
+        Run.load(3)
+
+
+def test_paths_that_do_not_fit_are_refused(run, tmp_path):
+    for path, words in (
+        (tmp_path / "run.txt", "must be a path that ends in .nc"),
+        (tmp_path / "no" / "run.nc", "no folder"),
+    ):
+        with pytest.raises(ValueError, match=words):
+            run.save(path)
+    (tmp_path / "other.nc").write_text("a diary")
+    with pytest.raises(ValueError, match="a file of another kind"):
+        run.save(tmp_path / "other.nc")
+    empty = replace(run, **{item.name: getattr(run, item.name)[:0] for item in fields(Run) if item.name == "time"})
+    with pytest.raises(ValueError, match="without samples"):
+        empty.save(tmp_path / "empty.nc")
+
+
+def test_the_command_saves_a_run(tmp_path, capsys):
+    out = tmp_path / "run.nc"
+    assert command.main(f"straight --duration 1 --accuracy 1e-2 --stations 5 --out {out}".split()) == 0
+    assert Run.load(out) == simulate(straight(), 1.0, accuracy="1e-2", stations=5)
+    assert command.main(f"--out {tmp_path}/run.nv".split()) == 2
+    assert "must end in .nc, .npz, .csv, .rrd" in capsys.readouterr().err
+
+
+def test_the_default_sampling_suits_any_gait():
+    for period, sample in ((0.05, 0.0025), (0.2, 0.01), (1.0, 0.05), (3.0, 0.05)):
+        run = simulate(straight(period=period), 2.0 * period, accuracy=1e-2, stations=5, estimate=False)
+        assert run.time[1] == pytest.approx(sample) and run.mean_speed == run.analysis().mean_speed > 0.0
+    assert len(simulate(Law(), 0.1, stations=2).time) == 3
+    both = simulate_batch([straight(period=0.2), straight()], 1.0, accuracy=1e-2, stations=5)
+    assert both.time[1] == pytest.approx(0.01)
+    long = simulate(straight(period=1e-2), 0.06, accuracy=0.1, stations=2, estimate=False, sample_period=0.05)
+    with pytest.raises(ValueError, match="8 samples or more"):
+        _ = long.mean_speed
+
+
+def test_a_gait_that_has_not_settled_is_told():
+    run = simulate(straight(), 12.0, accuracy=1e-2, stations=5)
+    early, late = replace_time(run, 4.0).analysis(), run.analysis(2)
+    assert (
+        not early.settled and early.speed_change > 0.05 and "NOT settled: the speed changes by" in early.run.summary()
+    )
+    assert late.speed_change < early.speed_change and late.settled == (late.speed_change <= 0.01)
+    centre = run.center_of_mass
+    change = np.linalg.norm(centre[240] - centre[220]) - np.linalg.norm(centre[220] - centre[200])
+    assert late.speed_change == pytest.approx(abs(change) / late.mean_speed, rel=1e-6)
+    one = replace_time(run, 1.0)
+    assert one.analysis().speed_change is None and not one.analysis().settled
+    assert "one period alone" in one.summary()
+
+
+def replace_time(run: Run, end: float) -> Run:
+    """The run until `end` [s]."""
+    return simulate(run.law, end, accuracy=1e-2, stations=5)
