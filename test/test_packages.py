@@ -15,7 +15,7 @@ PYTHON_PACKAGES = ("eel_ros", "eel_gaits", "eel_dynamics", "eel_viz")
 EXECUTABLES = {
     "eel_gaits": {"gait_generator"},
     "eel_dynamics": {"dynamics", "simulate", "figures", "sweep", "stability", "tradeoff"},
-    "eel_viz": {"visualiser", "record", "echo", "replay", "render"},
+    "eel_viz": {"visualiser", "markers", "record", "echo", "replay", "render"},
 }
 ROSDEP_KEY = {
     "numpy": "python3-numpy",

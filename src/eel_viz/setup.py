@@ -18,6 +18,7 @@ setup(
     entry_points={
         "console_scripts": [
             "visualiser = eel_viz.ros.node:main",
+            "markers = eel_viz.ros.markers:main",
             "record = eel_viz.bags.record:main",
             "echo = eel_viz.bags.echo:main",
             "replay = eel_viz.bags.replay:main",

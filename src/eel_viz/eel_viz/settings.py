@@ -1,7 +1,8 @@
-"""The visualiser's settings with unit, default, bounds and description; the node declares its parameters from them."""
+"""The nodes' settings with unit, default, bounds and description; the nodes declare their parameters from them."""
 
 import ipaddress
 from dataclasses import dataclass, field, fields
+from typing import Self
 
 from eel_gaits.quantity import is_finite, limits
 from eel_gaits.wording import shown
@@ -20,7 +21,35 @@ BLUEPRINTS = ("overview", "torques", "motion", "compare")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Settings:
+class Drawing:
+    """What every node that draws has."""
+
+    colour_limit: float = setting(0.25, "torque C3 from which on colours are deepest", unit="N m", minimum=1e-9)
+    load_scale: float = setting(0.06, "length of the arrow of a load of 1 N/m", unit="m^2/N", minimum=0.0)
+    end_force_scale: float = setting(
+        0.8, "length of the arrow of a force of 1 N at nose or tail", unit="m/N", minimum=0.0
+    )
+
+    @classmethod
+    def from_values(cls, values: dict) -> Self:
+        """Settings from a user's values by name; floats may be integers, lists may be one text with commas.
+
+        `ValueError` names the setting, what it must be, and what it got.
+        """
+        return cls(**{item.name: _checked(item, values[item.name]) for item in fields(cls) if item.name in values})
+
+
+@dataclass(frozen=True, kw_only=True)
+class MarkerSettings(Drawing):
+    """Parameters of the node `markers`, read at start. `ValueError` names one that does not fit."""
+
+    rate: float = setting(
+        25.0, "markers and paths per second of wall time, at most", unit="Hz", minimum=0.1, maximum=1000.0
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Settings(Drawing):
     """Parameters of the visualiser, read at start. `ValueError` names one that does not fit."""
 
     sink: tuple[str, ...] = setting(
@@ -62,16 +91,11 @@ class Settings:
         "end a file with an index of what it holds, kept in memory until then: 1 MB for each 4 MB of file; without it "
         "memory stays as it is, and `rerun rrd optimize` adds the index",
     )
-    colour_limit: float = setting(0.25, "torque C3 from which on colours are deepest", unit="N m", minimum=1e-9)
     torque_limit: float = setting(
         0.6, "torque at the plot's edge; grows if need be, like those below", unit="N m", minimum=1e-9
     )
     force_limit: float = setting(2.0, "force at the plot's edge", unit="N", minimum=1e-9)
     curvature_limit: float = setting(5.0, "curvature at the plot's edge", unit="rad/m", minimum=1e-9)
-    load_scale: float = setting(0.06, "length of the arrow of a load of 1 N/m", unit="m^2/N", minimum=0.0)
-    end_force_scale: float = setting(
-        0.8, "length of the arrow of a force of 1 N at nose or tail", unit="m/N", minimum=0.0
-    )
     memory_limit: str = setting("1GiB", "memory that served data may take before the oldest are dropped")
     stop_with_publisher: bool = setting(
         False,
@@ -95,14 +119,6 @@ class Settings:
             ipaddress.IPv4Address(self.address)
         except ValueError:
             raise ValueError(f"address must be an IPv4 address such as 127.0.0.1, got {shown(self.address)}") from None
-
-    @classmethod
-    def from_values(cls, values: dict) -> "Settings":
-        """Settings from a user's values by name; floats may be integers, lists may be one text with commas.
-
-        `ValueError` names the setting, what it must be, and what it got.
-        """
-        return cls(**{item.name: _checked(item, values[item.name]) for item in fields(cls) if item.name in values})
 
 
 def _checked(item, value):

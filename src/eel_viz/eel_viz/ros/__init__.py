@@ -1,1 +1,1 @@
-"""The node `visualiser`."""
+"""The nodes `visualiser` and `markers`."""

@@ -7,14 +7,12 @@ publishers have gone.
 
 import sys
 import time
-from dataclasses import fields
 
 from diagnostic_msgs.msg import DiagnosticArray
 from eel_gaits.command_line import complain
-from eel_gaits.quantity import limits
 from eel_gaits.wording import shown
 from eel_ros.command_line import USE_SIM_TIME, answer_words
-from eel_ros.parameters import declare, default_of, help_rows, take_overrides, warn_of_unknown
+from eel_ros.parameters import help_rows
 from eel_ros.qos import keep_all
 from eel_ros.run_node import run_node
 from geometry_msgs.msg import PoseStamped, TwistStamped
@@ -27,6 +25,7 @@ from eel_viz.recording.delivery import exit_despite_blocked
 from eel_viz.recording.dispatcher import Dispatcher
 from eel_viz.recording.recordings import ComparedRecordings, Recordings
 from eel_viz.recording.sinks import destinations
+from eel_viz.ros.declared_settings import declared_settings
 from eel_viz.ros.polled_subscriptions import PolledSubscriptions
 from eel_viz.settings import Settings
 from eel_viz.topics import SWIMMER
@@ -54,7 +53,7 @@ class Visualiser(Node):
 
     def __init__(self):
         super().__init__(NAME, automatically_declare_parameters_from_overrides=True)
-        self.settings = self._declare_settings()
+        self.settings = declared_settings(self, Settings)
         own = self.get_namespace().rstrip("/")
         other = f"/{self.settings.compare.strip('/')}".rstrip("/")  # empty: the swimmer without a namespace
         told = other or "/"
@@ -78,15 +77,6 @@ class Visualiser(Node):
                 log_warning=lambda text: self._log_warning(f"{told}: {text}"),
             )
             self._subscribe_swimmer(other, dispatcher)
-
-    def _declare_settings(self) -> Settings:
-        """Declare a read-only parameter for each setting; `ValueError` names one that does not fit."""
-        overrides = take_overrides(self)
-        values = {item.name: overrides.get(item.name, default_of(item)) for item in fields(Settings)}
-        settings = Settings.from_values(values)
-        declare(self, settings, limits)
-        warn_of_unknown(self, overrides, values)
-        return settings
 
     def poll(self) -> bool:
         """Poll the recordings; False once the swimmer has gone, with `stop_with_publisher`."""

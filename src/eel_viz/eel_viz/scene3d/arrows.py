@@ -12,11 +12,8 @@ from eel_viz import entities
 from eel_viz.batched_stream import BatchedStream
 from eel_viz.messages import Backbone, Load
 from eel_viz.scene3d import colours
-from eel_viz.scene3d.centre_line import Resampling
-from eel_viz.scene3d.orientation import world_from_section
-from eel_viz.stations import same
+from eel_viz.scene3d.load_vectors import LoadVectors
 
-ALONG = 24  # arrows between nose and tail
 MAXIMUM_WAITING = 512  # backbones, or loads; the oldest is dropped
 
 
@@ -24,8 +21,7 @@ class Arrows:
     """Draws the arrows; their lengths are `load_scale` [m per N/m] and `end_scale` [m per N]."""
 
     def __init__(self, stream: BatchedStream, *, load_scale: float, end_scale: float) -> None:
-        self._stream, self._load_scale, self._end_scale = stream, load_scale, end_scale
-        self._along: tuple[np.ndarray, np.ndarray] | None = None  # all stations, and which have an arrow
+        self._stream, self._vectors = stream, LoadVectors(load_scale=load_scale, end_scale=end_scale)
         self._backbones: OrderedDict[int, Backbone] = OrderedDict()
         self._loads: OrderedDict[int, Load] = OrderedDict()
         stream.log_static(entities.LOAD, rr.Arrows3D.from_fields(colors=[colours.TEAL], radii=[0.0022]))
@@ -48,22 +44,8 @@ class Arrows:
             self._draw(stamp, backbone, load)
 
     def _draw(self, stamp: int, backbone: Backbone, load: Load) -> None:
-        along = self._stations(backbone.x)
-        x, force = backbone.x[along], load.profiles.together("force_1", "force_2", "force_3")
-        alike = same(load.profiles.x, backbone.x)
-        force = force[along] if alike else Resampling(load.profiles.x, x).linear(force)
-        vectors = world_from_section(backbone.orientation[along], force) * self._load_scale
-        self._log(stamp, entities.LOAD, backbone.position[along], vectors)
-        ends = [0, -1]
-        forces = world_from_section(backbone.orientation[ends], np.stack([load.nose, load.tail]))
-        self._log(stamp, entities.LOAD_ENDS, backbone.position[ends], forces * self._end_scale)
-
-    def _stations(self, x: np.ndarray) -> np.ndarray:
-        """Indices of the stations that have an arrow, evenly spaced along the body as far as stations allow."""
-        if self._along is None or not same(self._along[0], x):
-            wanted = np.linspace(x[0], x[-1], ALONG + 2)[1:-1]
-            self._along = x, np.unique(np.searchsorted(x, wanted - 1e-9))
-        return self._along[1]
+        self._log(stamp, entities.LOAD, *self._vectors.along(backbone, load))
+        self._log(stamp, entities.LOAD_ENDS, *self._vectors.ends(backbone, load))
 
     def _log(self, stamp: int, path: str, origins: np.ndarray, vectors: np.ndarray) -> None:
         self._stream.add_row(

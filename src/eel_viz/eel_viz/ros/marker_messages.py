@@ -1,0 +1,84 @@
+"""Makes markers and a path, which RViz and Foxglove show, of the swimmer's messages."""
+
+import numpy as np
+from geometry_msgs.msg import Point, PoseStamped, Vector3
+from nav_msgs.msg import Path
+from std_msgs.msg import ColorRGBA, Header
+from visualization_msgs.msg import Marker
+
+from eel_viz.messages import Backbone, Body, Load, Profiles
+from eel_viz.scene3d import colours
+from eel_viz.scene3d.load_vectors import ALONG, LoadVectors
+from eel_viz.scene3d.skin import Skin
+from eel_viz.settings import MarkerSettings
+
+SHAFT, HEAD, END_SHAFT, END_HEAD = 0.0044, 0.011, 0.008, 0.018  # m: diameters of the arrows' parts
+
+
+class SkinMarker:
+    """The skin of one `body` as triangles, coloured by the torque C3: blue at -`colour_limit` [N m], red at +."""
+
+    def __init__(self, body: Body, colour_limit: float) -> None:
+        self._skin, self._colour_limit = Skin(body.x, body.half_width, body.half_height), colour_limit
+        self._corners = self._skin.triangles.ravel()
+        self._palette = [_colour(entry) for entry in colours.DIVERGING]
+
+    def marker(self, header: Header, backbone: Backbone, wrench: Profiles | None) -> Marker:
+        """The marker of a shape; grey without a wrench."""
+        vertices, _ = self._skin.place(backbone.x, backbone.position, backbone.orientation)
+        points = [_point(each) for each in vertices.tolist()]
+        marker = Marker(header=header, ns="skin", type=Marker.TRIANGLE_LIST, scale=Vector3(x=1.0, y=1.0, z=1.0))
+        marker.pose.orientation.w, marker.color = 1.0, _colour(colours.GREY)
+        marker.points = [points[corner] for corner in self._corners]
+        if wrench is not None:
+            torque = self._skin.spread(wrench.x, wrench.values["torque_3"])
+            shades = [self._palette[k] for k in colours.diverging_index(torque, self._colour_limit)]
+            marker.colors = [shades[corner] for corner in self._corners]
+        return marker
+
+
+class ForceMarkers:
+    """The fluid's force on the body as arrows: per length along it in teal, at nose and tail in magenta."""
+
+    def __init__(self, settings: MarkerSettings) -> None:
+        self._vectors = LoadVectors(load_scale=settings.load_scale, end_scale=settings.end_force_scale)
+
+    def markers(self, header: Header, backbone: Backbone, load: Load) -> list[Marker]:
+        """One marker for each arrow; those that a shape with more stations had are deleted."""
+        along = _arrows(header, "load", self._vectors.along(backbone, load), colours.TEAL, (SHAFT, HEAD))
+        ends = _arrows(header, "end_force", self._vectors.ends(backbone, load), colours.MAGENTA, (END_SHAFT, END_HEAD))
+        gone = [Marker(header=header, ns="load", id=k, action=Marker.DELETE) for k in range(len(along), ALONG)]
+        return [*along, *gone, *ends]
+
+
+def midline(header: Header, backbone: Backbone) -> Path:
+    """The backbone as a path: one pose, in REP-103 axes, for each station."""
+    path = Path(header=header)
+    for position, orientation in zip(backbone.position.tolist(), backbone.orientation.tolist(), strict=True):
+        pose = PoseStamped(header=header)
+        pose.pose.position = _point(position)
+        turn = pose.pose.orientation
+        turn.x, turn.y, turn.z, turn.w = orientation
+        path.poses.append(pose)
+    return path
+
+
+def _arrows(header: Header, space: str, arrows: tuple[np.ndarray, np.ndarray], colour, size) -> list[Marker]:
+    origins, vectors = arrows
+    shaft, head = size
+    markers = []
+    for k, (begin, end) in enumerate(zip(origins.tolist(), (origins + vectors).tolist(), strict=True)):
+        marker = Marker(header=header, ns=space, id=k, type=Marker.ARROW, scale=Vector3(x=shaft, y=head))
+        marker.pose.orientation.w, marker.color = 1.0, _colour(colour)
+        marker.points = [_point(begin), _point(end)]
+        markers.append(marker)
+    return markers
+
+
+def _point(values: list[float]) -> Point:
+    return Point(x=values[0], y=values[1], z=values[2])
+
+
+def _colour(values) -> ColorRGBA:
+    red, green, blue = (float(value) / 255.0 for value in values)
+    return ColorRGBA(r=red, g=green, b=blue, a=1.0)

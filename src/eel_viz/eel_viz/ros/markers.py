@@ -1,0 +1,122 @@
+"""The node `markers`: publishes the swimmer as `visualization_msgs/MarkerArray` and `nav_msgs/Path`.
+
+RViz and Foxglove show them. Skin and arrows need messages of one stamp; a sample is drawn when all of its topics that
+have publishers have come. Rerun is not needed.
+"""
+
+import sys
+import time
+from collections import OrderedDict
+
+from eel_gaits.command_line import complain
+from eel_ros.command_line import USE_SIM_TIME, answer_words
+from eel_ros.parameters import help_rows
+from eel_ros.qos import latched
+from eel_ros.run_node import run_node
+from nav_msgs.msg import Path
+from rclpy.node import Node
+from visualization_msgs.msg import MarkerArray
+
+from eel_msgs.msg import Backbone, BodyGeometry, HydrodynamicLoad, InternalWrench
+from eel_viz.messages import BadMessage, read_backbone, read_body, read_load, read_wrench, stamp_of
+from eel_viz.ros.declared_settings import declared_settings
+from eel_viz.ros.marker_messages import ForceMarkers, SkinMarker, midline
+from eel_viz.settings import MarkerSettings
+
+NAME = "markers"
+ABOUT = "Publishes a swimmer as markers and its midline as a path, for RViz and Foxglove."
+TOPICS = {
+    "backbone": (Backbone, read_backbone),
+    "internal_wrench": (InternalWrench, read_wrench),
+    "hydrodynamic_load": (HydrodynamicLoad, read_load),
+}
+DEPTH = 10  # samples that wait for the rest of their topics
+LOOK = 0.5  # s between two look-ups of the publishers
+
+
+class Markers(Node):
+    """Joins the messages of one stamp, and publishes at most `rate` of them per second of wall time."""
+
+    def __init__(self) -> None:
+        super().__init__(NAME, automatically_declare_parameters_from_overrides=True)
+        self._settings = declared_settings(self, MarkerSettings)
+        self._skin: SkinMarker | None = None
+        self._forces = ForceMarkers(self._settings)
+        self._waiting: OrderedDict[int, dict] = OrderedDict()  # stamp [ns]: messages by topic
+        self._expected: set[str] = set(TOPICS)
+        self._drawn = self._looked = 0.0  # s, steady clock
+        self._reported: set[tuple[str, str]] = set()  # topic and field of messages that cannot be shown
+        self._markers = self.create_publisher(MarkerArray, "markers", 10)
+        self._midline = self.create_publisher(Path, "midline", 10)
+        self.create_subscription(BodyGeometry, "body", self._receive_body, latched(1))
+        for topic, (kind, _) in TOPICS.items():
+            self.create_subscription(kind, topic, lambda message, topic=topic: self._receive(topic, message), DEPTH)
+
+    def poll(self) -> bool:
+        """Look up which topics have publishers; True: the node continues."""
+        if time.monotonic() - self._looked > LOOK:
+            self._looked = time.monotonic()
+            self._expected = {"backbone"} | {topic for topic in TOPICS if self.count_publishers(topic)}
+        return True
+
+    def _receive_body(self, message: BodyGeometry) -> None:
+        try:
+            self._skin = SkinMarker(read_body(message), self._settings.colour_limit)
+        except BadMessage as problem:
+            self._warn_once("body", problem)
+
+    def _receive(self, topic: str, message) -> None:
+        try:
+            stamp = stamp_of(message)
+        except BadMessage as problem:
+            self._warn_once(topic, problem)
+            return
+        sample = self._waiting.setdefault(stamp, {})
+        sample[topic] = message
+        if self._expected <= sample.keys():
+            del self._waiting[stamp]
+            now = time.monotonic()
+            if now - self._drawn >= 1.0 / self._settings.rate:
+                self._drawn = now
+                self._draw(sample)
+        elif len(self._waiting) > DEPTH:
+            self._waiting.popitem(last=False)
+
+    def _draw(self, sample: dict) -> None:
+        """Publish the `sample`, messages by topic, without those that cannot be shown."""
+        values = {}
+        for topic, message in sample.items():
+            try:
+                values[topic] = TOPICS[topic][1](message)
+            except BadMessage as problem:
+                self._warn_once(topic, problem)
+        backbone, load = values.get("backbone"), values.get("hydrodynamic_load")
+        if backbone is None:
+            return
+        header, markers = sample["backbone"].header, []
+        if self._markers.get_subscription_count():
+            if self._skin is not None:
+                markers.append(self._skin.marker(header, backbone, values.get("internal_wrench")))
+            if load is not None:
+                markers.extend(self._forces.markers(header, backbone, load))
+            self._markers.publish(MarkerArray(markers=markers))
+        if self._midline.get_subscription_count():
+            self._midline.publish(midline(header, backbone))
+
+    def _warn_once(self, topic: str, problem: BadMessage) -> None:
+        if (topic, problem.field) not in self._reported:
+            self._reported.add((topic, problem.field))
+            self.get_logger().warning(f"{topic}: {problem}: left out, and those like it")
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run the node. Exit status: 0 after SIGINT or SIGTERM; 2 if a parameter or an argument is refused at start."""
+    given = sys.argv if arguments is None else [NAME, *arguments]
+    status = answer_words(NAME, ABOUT, help_rows(MarkerSettings), given, complain)
+    if status is not None:
+        return status
+    return run_node(NAME, [*USE_SIM_TIME, *given], Markers, Markers.poll, complain=complain)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
