@@ -94,7 +94,7 @@ def test_markers_are_the_swimmer(show, sample):
 
 
 @pytest.mark.fault(
-    "load",
+    "neighbours",
     "a backbone with values that are not finite, for the node markers",
     "a warning that names the field, once; good samples are drawn",
 )
