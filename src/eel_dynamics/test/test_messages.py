@@ -6,6 +6,7 @@ from eel_dynamics.ros.messages import Sample, body_message, diagnostic_array, sa
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.ros.serialised_message import MARKED_TIME, SerialisedMessage
 from eel_dynamics.ros.simulation_from_parameters import simulation_from_parameters
+from eel_gaits.settings import Settings
 from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import Odometry
 from rclpy.serialization import deserialize_message, serialize_message
@@ -291,3 +292,13 @@ def test_transforms_of_the_stations_turn_section_axes_into_the_world(swum):
         turned = matrix(xyzw(each.transform.rotation)) @ snapshot.torque[k]
         expected = TURN @ matrix(snapshot.section_orientation[k]) @ snapshot.torque[k]
         assert np.allclose(turned, expected, rtol=0, atol=1e-15)
+
+
+def test_a_left_bend_of_the_gait_generator_swims_to_the_left():
+    law = Settings(gait="turning", chosen={"left_bend": 0.5}).law()
+    simulation = Simulation(accuracy="draft", stations=2)
+    simulation.adopt(law)
+    simulation.advance(4.0)
+    sample = Sample(simulation.x, simulation.scene, DynamicsParameters())
+    position = filled(sample, "head_pose", simulation.observe()).pose.position
+    assert position.x > 0.5 and position.y > 0.2

@@ -25,7 +25,7 @@ from eel_gaits.command_line import complain
 from eel_gaits.messages import FRAME, law_to_message
 from eel_gaits.quantity import limits
 from eel_gaits.registry import GAITS, Transition
-from eel_gaits.settings import Settings
+from eel_gaits.settings import Settings, numbers_of
 from eel_gaits.wording import shown
 from eel_msgs.msg import CurvatureLaw
 
@@ -137,7 +137,7 @@ def parameter_rows():
     """Name, description and default of each parameter. The description names the gaits that have the parameter."""
     yield "gait", f"name of the gait, one of {', '.join(sorted(GAITS))}", Settings.gait
     gaits = {}  # of each number
-    for kind, gait in [(Transition, None), *((make.numbers, name) for name, make in GAITS.items())]:
+    for kind, gait in [(Transition, None), *((numbers_of(name), name) for name in GAITS)]:
         for entry in fields(kind):
             gaits.setdefault((entry.name, described(entry), entry.default), []).append(gait)
     for (name, description, default), names in gaits.items():

@@ -1,14 +1,21 @@
 """The settings of the gait generator: a gait, its numbers and the transition. They give the law.
 
+Numbers have the names that the gaits give them, except turns. The paper's `yaw_bend` is positive to the right; the node
+has `left_bend`, which is positive to the left, as REP-103 asks.
+
 Settings never change. `changed` returns new ones, or raises a `ValueError` that gives the reason. Numbers are kept by
 name. A number that the user has set carries over to another gait that has a number of that name. Defaults do not.
 """
 
-from dataclasses import dataclass, field, fields
+from dataclasses import Field, dataclass, field, fields, make_dataclass
+from functools import cache
 from types import MappingProxyType
 
+from eel_gaits.quantity import Quantities
 from eel_gaits.registry import GAITS, Transition, find
 from eel_gaits.wording import shown
+
+TURNS = {"left_bend": "yaw_bend"}  # number of the node: that of the gait, which has the opposite sign
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -30,7 +37,7 @@ class Settings:
     @classmethod
     def known_names(cls):
         """The names of all parameters of all gaits."""
-        numbers = {entry.name for make in GAITS.values() for entry in fields(make.numbers)}
+        numbers = {entry.name for name in GAITS for entry in fields(numbers_of(name))}
         return {"gait", "transition"} | numbers
 
     @classmethod
@@ -43,7 +50,7 @@ class Settings:
         """The settings after `changes`, a mapping of name to value. `ValueError` where one of them does not fit."""
         changes = dict(changes)
         gait = changes.pop("gait", self.gait)
-        own_names = ["transition", *(entry.name for entry in fields(find(gait).numbers))]
+        own_names = ["transition", *(entry.name for entry in fields(numbers_of(gait)))]
         for name in changes:
             if name not in own_names:
                 raise ValueError(f"gait {shown(gait)} has no parameter {shown(name)}, it has: {', '.join(own_names)}")
@@ -53,7 +60,7 @@ class Settings:
         """The transition and the gait's numbers: two `Quantities`. The user's numbers replace the defaults."""
         return tuple(
             kind(**{entry.name: self.chosen[entry.name] for entry in fields(kind) if entry.name in self.chosen})
-            for kind in (Transition, find(self.gait).numbers)
+            for kind in (Transition, numbers_of(self.gait))
         )
 
     def numbers(self):
@@ -62,4 +69,28 @@ class Settings:
 
     def law(self):
         """The law of this gait with these numbers."""
-        return find(self.gait)(**self.numbers())
+        numbers = self.numbers()
+        for name, opposite in TURNS.items():
+            if name in numbers:
+                numbers[opposite] = -numbers.pop(name)
+        return find(self.gait)(**numbers)
+
+
+@cache
+def numbers_of(gait):
+    """The class of the node's numbers of a `gait`. `ValueError` for an unknown gait."""
+    kind = find(gait).numbers
+    entries = [(entry.name, float, entry) for entry in map(_as_ros_expects, fields(kind))]
+    return make_dataclass(kind.__name__, entries, bases=(Quantities,), frozen=True, kw_only=True)
+
+
+def _as_ros_expects(entry: Field) -> Field:
+    """The field of a number of the node, from that of the gait."""
+    for name, opposite in TURNS.items():
+        if entry.name == opposite:
+            metadata = entry.metadata | {"minimum": -entry.metadata["maximum"], "maximum": -entry.metadata["minimum"]}
+            metadata["description"] = "yaw curvature of the turn; positive: to the left, negative: to the right"
+            turned = field(default=-entry.default, metadata=metadata)
+            turned.name = name
+            return turned
+    return entry

@@ -54,7 +54,7 @@ def test_parameters_at_start_take_integers_and_tell_what_they_are(generator, cli
 def test_a_params_file_in_a_namespace(generator, client, tmp_path):
     file = tmp_path / "parameters.yaml"
     file.write_text(
-        "/**:\n  ros__parameters:\n    gait: turning\n    yaw_bend: -1\n    rate: 100\n    use_sim_time: false\n"
+        "/**:\n  ros__parameters:\n    gait: turning\n    left_bend: 1\n    rate: 100\n    use_sim_time: false\n"
     )
     generator("--params-file", str(file), "-r", "__ns:=/second")
     client.listen("second/curvature_law")
@@ -78,11 +78,11 @@ def test_a_parameter_of_the_same_gait_keeps_the_time_another_gait_starts_at_now(
     client.tick_until(12.5, turns_at_the_ticked_time, "law with the ticked time")
     assert client.latest() == (turning(wavelength=0.8), 12.5)
     values = client.values()
-    assert values["gait"] == "turning" and values["yaw_bend"] == 0.5 and "pitch_bend" not in values
+    assert values["gait"] == "turning" and values["left_bend"] == -0.5 and "pitch_bend" not in values
 
     count = len(client.messages)
     client.tick(20.0)
-    assert client.set(yaw_bend=-1)[0].successful
+    assert client.set(left_bend=1)[0].successful
     assert client.law(count) == (turning(wavelength=0.8, yaw_bend=-1.0), 12.5)
     assert client.set(transition=2)[0].successful
     assert client.law(count + 1) == (turning(wavelength=0.8, yaw_bend=-1.0, transition=2.0), 12.5)
@@ -118,7 +118,7 @@ def test_before_any_clock_another_gait_has_a_zero_stamp(generator, client):
 
 
 def test_what_the_user_set_carries_over(generator, client):
-    generator("-p", "yaw_bend:=0.25")  # of a gait that is not on yet
+    generator("-p", "left_bend:=-0.25")  # of a gait that is not on yet
     client.listen()
     assert client.law(0)[0] == falling()
     assert all(result.successful for result in client.set(period=3, wavelength=0.7, gait="turning"))
@@ -133,9 +133,9 @@ def test_a_gait_and_its_numbers_set_together(generator, client):
     generator()
     client.listen()
     client.law(0)
-    assert client.set_together(gait="turning", yaw_bend=-2, period=1.5).successful
+    assert client.set_together(gait="turning", left_bend=2, period=1.5).successful
     assert client.law(1)[0] == turning(yaw_bend=-2.0, period=1.5)
-    assert client.values()["yaw_bend"] == -2.0
+    assert client.values()["left_bend"] == 2.0
     assert client.set_together(bend_start=5, bend_full=6).successful
     assert client.law(2)[0] == turning(yaw_bend=-2.0, period=1.5, bend_start=5.0, bend_full=6.0)
 
@@ -161,7 +161,7 @@ def test_a_refused_set_says_why_and_changes_nothing(generator, client):
         ({"period": None}, "period must be a number, got None"),
         ({"period": [1.0, 2.0]}, "period must be a number, got"),
         ({"bend_full": 0.5}, "bend_full must be > bend_start (1 s), got 0.5"),
-        ({"yaw_bend": 1.0}, "gait 'falling' has no parameter 'yaw_bend', it has: transition, period"),
+        ({"left_bend": 1.0}, "gait 'falling' has no parameter 'left_bend', it has: transition, period"),
         ({"transition": -1}, "transition must be >= 0 s, got -1.0"),
     ):
         result = client.set(**values)[0]
@@ -192,10 +192,10 @@ def test_bad_parameters_at_start_are_one_line_each_and_status_2(start_in_turn):
 
 def test_a_bad_params_file_ends_it_with_status_2(start, tmp_path):
     file = tmp_path / "parameters.yaml"
-    file.write_text("gait_generator:\n  ros__parameters:\n    gait: turning\n    yaw_bend: 1e9\n")
+    file.write_text("gait_generator:\n  ros__parameters:\n    gait: turning\n    left_bend: 1e9\n")
     process = start("gait_generator", "--ros-args", "--params-file", str(file))
     assert process.wait(90.0) == 2
-    assert process.output() == "gait_generator: yaw_bend must be <= 100000 rad/m, got 1000000000.0\n"
+    assert process.output() == "gait_generator: left_bend must be <= 100000 rad/m, got 1000000000.0\n"
     process = start("gait_generator", "--ros-args", "--params-file", str(tmp_path / "missing.yaml"))
     assert process.wait(90.0) == 2
     assert "missing.yaml" in process.output() and "Traceback" not in process.output()
@@ -218,14 +218,14 @@ def test_help_tells_every_parameter(start):
     for name in Settings.known_names():
         assert f"\n  {name} " in process.output()
     assert (
-        "yaw curvature of the turn; positive: to the right, negative: to the left [rad/m], of turning (default 0.5)"
+        "yaw curvature of the turn; positive: to the left, negative: to the right [rad/m], of turning (default -0.5)"
         in (process.output())
     )
 
 
 @pytest.mark.fault("names", "a parameter of the gait generator that there is not", "a warning that names it")
 def test_overrides_that_are_no_parameters_are_named(generator):
-    process = generator("-p", "perod:=0.5", "-p", "yaw_bend:=1", "-p", "qos_overrides./a.publisher.depth:=2")
+    process = generator("-p", "perod:=0.5", "-p", "left_bend:=1", "-p", "qos_overrides./a.publisher.depth:=2")
     assert process.output().count("WARN") == 1
     assert "not parameters of this node, ignored: 'perod'\n" in process.output()
 

@@ -31,6 +31,10 @@ from eel_dynamics.runs.storage.tables import columns_of
 from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.simulation.stopping import SimulationStopped
 
+CURRENT = (
+    "current=x,y,z is in the library's world frame, in which the eel swims towards -x, y is right and z up: 0.1,0,0 "
+    "flows against it (scene.current of the node dynamics has x and y the other way)"
+)
 SUFFIXES = (".nc", ".npz", ".csv", ".rrd")
 
 
@@ -125,7 +129,11 @@ def _parser() -> Parser:
         help=f"{', '.join(NAMED)}, or a .csv or .npz file with columns x, half_width, half_height [m]",
     )
     parser.add_argument(
-        "--scene", action="append", default=[], metavar="NAME=VALUE", help=f"physics: {scene}; may be repeated"
+        "--scene",
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        help=f"physics: {scene}; may be repeated; {CURRENT}",
     )
     parser.add_argument(
         "--sample-period", type=float, help="s (0.05, or a 20th of the gait's period where that is less)"
