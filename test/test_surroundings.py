@@ -26,11 +26,13 @@ def end(process):
     process.send_signal(2)
     said, _ = process.communicate(timeout=seconds)
     return process.returncode, said
-visualiser = begin("visualiser", "--ros-args", "-p", "sink:=[save]", "-p", f"recording:={recording}")
+kept = ("sink:=[save]", f"recording:={recording}", "stop_with_publisher:=true")
+visualiser = begin("visualiser", "--ros-args", *(word for each in kept for word in ("-p", each)))
 gait = begin("gait_generator")
 swim = ("duration:=1.0", "real_time_factor:=0.0", "wait_for_subscribers:=1")
 dynamics = begin("dynamics", "--ros-args", *(word for each in swim for word in ("-p", each)))
 dynamics.wait(seconds)
+visualiser.wait(seconds)  # a signal would end it before it has taken all messages
 for process in (dynamics, visualiser, gait):
     status, said = end(process) if process.poll() is None else (process.returncode, process.stdout.read())
     print(status, said)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from eel_dynamics.accuracy.accuracy import BUDGET_TARGETS
-from eel_dynamics.runs.error_estimate import relative_errors
+from eel_dynamics.runs.companion import relative_errors
 from eel_gaits.law import Law, Term
 
 from eel_dynamics import Accuracy, Scene, Simulation, SimulationStopped, simulate, simulate_batch

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from draws import few, numbers
-from eel_dynamics.runs.error_estimate import relative_errors
+from eel_dynamics.runs.companion import relative_errors
 from eel_dynamics.simulation.sample_check import first_bad_sample
 from hypothesis import given
 from hypothesis import strategies as st

@@ -58,6 +58,30 @@ def test_ten_seconds_are_1001_samples_on_every_topic(start, client, measured):
     assert abs(float(values["energy_residual"])) < 1e-3 * float(values["actuator_work"])
     assert 0.0 <= float(values["closure_force_relative"]) < 1e-10
     assert 0.0 <= float(values["closure_torque_relative"]) < 1e-10
+    assert 0.0 < float(values["error_position"]) < 1e-4 and 0.0 < float(values["error_torque"]) < 1e-4
+
+
+def test_a_sensitive_swim_that_misses_its_target_is_told(start, client):
+    heard = client(topics=("head_pose",))
+    heard.laws.publish(law_to_message(falling(period=0.4)))
+    scene = ("-p", "scene.density:=3000", "-p", "scene.friction:=laminar", "-p", "accuracy:=1e-3")
+    node = start("dynamics", "--ros-args", *FLAT_OUT, "-p", "duration:=9", *scene)
+    assert node.wait(LIMIT) == 0, node.output()
+    heard.until(lambda: heard.diagnosis()[1] != "swimming" and float(heard.diagnosis()[2]["time"]) == 9.0, "the end")
+    level, _, values = heard.diagnosis()
+    assert level == 1 and "above the target 0.001: the motion is sensitive" in values["warnings"]
+    assert "errors have grown so far" in values["warnings"]
+    assert node.output().count("above the target 0.001") == 1
+    assert float(values["error_since"]) > 1.0 and float(values["error_growth_rate"]) > 0.5
+
+
+def test_no_error_is_measured_where_none_is_wanted(start, client):
+    heard = client(topics=("head_pose",))
+    heard.laws.publish(law_to_message(falling()))
+    node = start("dynamics", "--ros-args", *FLAT_OUT, "-p", "duration:=1", "-p", "estimate_error:=false")
+    assert node.wait(LIMIT) == 0, node.output()
+    heard.until(lambda: heard.diagnosis()[1] == "finished", "the last diagnostics")
+    assert not [name for name in heard.diagnosis()[2] if name.startswith("error_")]
 
 
 def test_rate_that_does_not_divide_a_second(start, client):

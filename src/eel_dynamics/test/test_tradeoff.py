@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from eel_dynamics.runs.error_estimate import ErrorEstimate
+from eel_dynamics.accuracy.error_estimate import ErrorEstimate
 from eel_dynamics.studies.tradeoff import measuring, models, table
 from eel_dynamics.studies.tradeoff.command import main
 from eel_dynamics.studies.tradeoff.delivered import Trial, delivered_table

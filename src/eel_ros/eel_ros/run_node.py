@@ -13,7 +13,7 @@ from eel_ros.start import start
 
 POLL_PERIOD = 0.1  # s between two calls of `poll`
 PAUSE = 0.1  # s after a call of `take_messages` that found none: messages in bursts cost less
-DRAIN_LIMIT = 0.25  # s at most, at the end, to take messages that have arrived
+DRAIN_LIMIT = 1.0  # s at most, at the end, to take messages that have arrived: a busy machine needs it
 EMPTY_TIMEOUT = 0.005  # s that the executor waits for a message there; after three time-outs there is none
 
 

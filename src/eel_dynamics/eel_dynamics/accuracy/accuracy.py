@@ -3,7 +3,7 @@
 A target is a relative error. The error of the head's position is relative to the length of its path, or to the length
 of the body if that is longer. The error of the torque field is relative to its own maximum.
 
-One rule leads from a target to settings, and `simulate` measures the error that they deliver (`error_estimate.py`):
+One rule leads from a target to settings, and `simulate` measures the error that they deliver (`companion.py`):
 
 - The tolerance per step is the target divided by `STEPS_ERRORS`. A swim takes hundreds of steps, whose errors add up.
 - The points per body length grow by `POINTS_PER_DECADE` for each decade of the target. Gauss points in panels without

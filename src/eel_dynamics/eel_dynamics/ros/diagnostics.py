@@ -143,6 +143,7 @@ class Status:
             "real_time_factor": max(0.0, simulated) / wall if wall > 0.0 else 0.0,
             "late": run.pace.lost,
             **run.totals.values(),
+            **run.errors,
             "samples_published": run.samples_published,
             "publishers_of_laws": publishers_of_laws,
             "warnings": "; ".join(warnings),

@@ -56,6 +56,9 @@ class DynamicsParameters:
         minimum=0.0,
         exclusive=True,
     )
+    estimate_error: bool = _parameter(
+        True, "measure the run's own error by a companion with coarser settings; shown in /diagnostics"
+    )
     body: str = _parameter(
         "boyer2010", "name of a body, or a .csv or .npz file with columns x, half_width, half_height [m]"
     )

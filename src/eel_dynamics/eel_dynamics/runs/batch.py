@@ -20,13 +20,14 @@ from eel_gaits.law import Law
 from eel_gaits.wording import shown
 
 from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.accuracy.error_estimate import ErrorEstimate
 from eel_dynamics.analysis.measures import MEASURES, measures_of
 from eel_dynamics.model.arguments import checked_stations
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.equality import same_fields
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.broadcast import swimmers_of
-from eel_dynamics.runs.error_estimate import ErrorEstimate, with_error_estimate
+from eel_dynamics.runs.companion import with_error_estimate
 from eel_dynamics.runs.run import Run, SwimRequest, check_memory, checked_times, default_sample_period, run_of
 from eel_dynamics.runs.storage import plain
 from eel_dynamics.runs.storage.netcdf import loaded, write

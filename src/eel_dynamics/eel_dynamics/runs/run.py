@@ -14,6 +14,7 @@ from eel_gaits.law import Law
 from eel_gaits.quantity import is_finite
 
 from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.accuracy.error_estimate import ErrorEstimate
 from eel_dynamics.analysis.actuators import Actuators, actuators_of
 from eel_dynamics.analysis.analysis import Analysis
 from eel_dynamics.analysis.model_limits import warnings_of
@@ -23,7 +24,7 @@ from eel_dynamics.model.body import Body
 from eel_dynamics.model.equality import same_fields
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.broadcast import SwimmerArguments
-from eel_dynamics.runs.error_estimate import ErrorEstimate, stable_step, with_error_estimate
+from eel_dynamics.runs.companion import stable_step, with_error_estimate
 from eel_dynamics.runs.progress_monitor import ProgressMonitor
 from eel_dynamics.runs.records import records
 from eel_dynamics.runs.storage.netcdf import loaded, write

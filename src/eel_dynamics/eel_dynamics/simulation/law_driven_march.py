@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from copy import deepcopy
 
 import numpy as np
 from eel_gaits.law import Law
@@ -38,6 +39,14 @@ class LawDrivenMarch:
         self.kinetic_at_start = self._march.start(position, orientation, setup.initial_twist)
         if not np.isfinite(self.kinetic_at_start):
             raise SimulationStopped(0.0, "kinetic energy", self.kinetic_at_start, "start slower")
+
+    def copy_with(self, setup: SimulationSetup) -> "LawDrivenMarch":
+        """A copy in the present state, on a grid for the accuracy of `setup`, which differs in that alone."""
+        copied, finer = deepcopy(self), setup.settings.resolution / self.accuracy.resolution
+        copied._setup, copied.accuracy = setup, setup.settings
+        resolution = max(1.0, finer * self.settings.resolution)
+        copied._change_grid(GridSettings(resolution, setup.settings.kinks, self.settings.knots))
+        return copied
 
     # -- law, accuracy and grid
 

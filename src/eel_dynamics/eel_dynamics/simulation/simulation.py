@@ -13,6 +13,7 @@ from eel_gaits.wording import shown
 
 import eel_core
 from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.accuracy.error_estimate import ErrorEstimate
 from eel_dynamics.curvature.curvature_samples import CurvatureSample, check_points
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
@@ -157,6 +158,24 @@ class Simulation:
         self._march.add_sample(sample)
         self.ready = True
 
+    def copy_with(self, accuracy: Accuracy) -> "Simulation":
+        """A copy in the present state that continues with the settings `accuracy`."""
+        position, orientation, twist = self._setup.initial_state
+        other = Simulation(
+            body=self.body,
+            scene=self.scene,
+            accuracy=accuracy,
+            stations=self.x,
+            position=position,
+            orientation=orientation,
+            twist=twist,
+            default_transition=self._setup.default_transition,
+            most_evaluations=self._setup.most_evaluations,
+        )
+        other._march = self._march.copy_with(other._setup)
+        other._needs, other.ready, other._started = self._needs, self.ready, self._started
+        return other
+
     # -- march
 
     def advance(self, time: float, interrupted: Callable[[], bool] | None = None) -> bool:
@@ -223,6 +242,11 @@ class Simulation:
     def evaluations(self) -> tuple[int, int, int]:
         """Numbers of steps, rejected steps and evaluations of the head's dynamics so far."""
         return self._march.counts
+
+    @property
+    def error_estimate(self) -> ErrorEstimate | None:
+        """None: a `MeasuredSimulation` has one."""
+        return None
 
     @property
     def memory(self) -> int:

@@ -13,11 +13,18 @@ MAXIMUM_AGE = 2_000_000_000  # ns: older diagnostics are not shown as the presen
 LABELS = {  # key of the diagnostics: its label
     "warnings": "**warnings:**",
     "accuracy": "accuracy",
+    "error_position": "estimated error of the position",
+    "error_torque": "of the torque",
     "real_time_factor": "real-time factor",
     "closure_torque_relative": "closure",
     "energy_residual_worst": "worst residual [J]",
 }
-COMPARED = ("accuracy", "real_time_factor", "energy_residual_worst")  # keys shown in the comparison of two runs
+COMPARED = (
+    "accuracy",
+    "error_position",
+    "real_time_factor",
+    "energy_residual_worst",
+)  # keys shown in the comparison of two runs
 LONGEST_NAME, LONGEST_TEXT = 60, 400  # characters
 VOLATILE = ("warnings", "real_time_factor")  # keys that are shown only while they are fresh
 

@@ -9,6 +9,7 @@ import math
 import time
 
 from eel_dynamics.ros.diagnostics import ERROR
+from eel_dynamics.ros.loop.error_monitor import ErrorMonitor
 from eel_dynamics.ros.loop.law_feed import LawAdopter
 from eel_dynamics.ros.loop.limits_monitor import LimitsMonitor
 from eel_dynamics.ros.loop.obstacles import Obstacles
@@ -43,6 +44,7 @@ class RunLoop:
         self.pace = Pace(1.0 / parameters.rate, parameters.real_time_factor)
         self._controller, self.wall_time = ControllerWait(), Stopwatch()
         self.laws, self._monitor = LawAdopter(simulation, report), LimitsMonitor(simulation, report)
+        self._errors = ErrorMonitor(simulation, report)
         self._last_tick = -math.inf  # s, steady clock: last message on /clock
         self._sample_begun = None  # s, steady clock: when the computation of the next sample began
         self._whole_snapshot_due = True
@@ -102,6 +104,11 @@ class RunLoop:
         """Wall time [s] that the computation of the next sample has taken so far; 0 in a run as fast as possible."""
         since = self._sample_begun
         return time.monotonic() - since if since is not None and self.pace.factor > 0.0 else 0.0
+
+    @property
+    def errors(self) -> dict[str, float]:
+        """Figures of the error estimate, by name; empty where none is wanted."""
+        return self._errors.values
 
     @property
     def given_up(self) -> bool:
@@ -169,6 +176,8 @@ class RunLoop:
             )
             self.totals.add(snapshot)
             self._monitor.add(snapshot, check=whole)
+            if whole:
+                self._errors.check()
         except SimulationStopped as error:
             self._fail(error)
             return
@@ -220,6 +229,7 @@ class RunLoop:
         self.time, self.samples_published, self.totals = 0.0, 0, RunTotals()
         self._obstacles.failed, self._sample_begun = False, None
         self._monitor.restart()
+        self._errors.restart()
         self.wall_time.restart(now)
         self._report.end("stopped")
         self.pace.restart(0, now)

@@ -16,7 +16,7 @@ from eel_dynamics.accuracy.budget import Budget
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.model.shapes import NamedHalfAxis, PolynomialHalfAxis, polynomials_through
-from eel_dynamics.runs.error_estimate import ErrorEstimate
+from eel_dynamics.accuracy.error_estimate import ErrorEstimate
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 HALF_AXES = ("half_width", "half_height")

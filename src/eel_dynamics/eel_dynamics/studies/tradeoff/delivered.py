@@ -15,9 +15,10 @@ import numpy as np
 from eel_gaits.law import Law, Ramp, Term
 
 from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.accuracy.error_estimate import ErrorEstimate
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import FRICTION, Scene
-from eel_dynamics.runs.error_estimate import ErrorEstimate, relative_errors
+from eel_dynamics.runs.companion import relative_errors
 from eel_dynamics.runs.run import simulate
 from eel_dynamics.simulation.stopping import SimulationStopped
 from eel_dynamics.studies.tradeoff.table import laid_out

@@ -20,7 +20,7 @@ because a swim takes hundreds of steps; the body gets eight points per length fo
 Gauss points in panels without kinks converge exponentially. Runs with torque or ledger march by an embedded pair of
 orders 5(4), runs of the motion alone by Adams' method of order 5.
 
-**Each run measures its own error** (`error_estimate.py`). A companion swims the same with 30 times the tolerance,
+**Each run measures its own error** (`companion.py`). A companion swims the same with 30 times the tolerance,
 half of the points (always on another grid) and longest steps of 1.5 times the length. Their distance is
 `run.error_estimate`. It is the companion's error more than the run's, so it lies on the safe side, and it is not
 scaled by an order. It sees how errors grow in a sensitive motion, which the error of a single step does not.
@@ -32,9 +32,15 @@ target, it is said too. `simulate_batch` tells it as `batch.above_target`, `swee
 and error_torque.
 
 **Without it**: `estimate=False` gives the bare run. Settings that were given one by one are kept, and their error
-is measured and not judged; so is a budget of time. The node `dynamics` and `Simulation` march once, with the
-settings of the rule: what is published cannot be made finer. With the samples of a controller only a second run of
-the whole loop would tell its error.
+is measured and not judged; so is a budget of time. `Simulation` measures nothing.
+
+**In the node** `dynamics` (and `MeasuredSimulation` in Python) a companion follows the simulation as it goes. It gets
+the same laws and samples. What is published cannot be made finer, so a missed target is told: WARN in the log and in
+`/diagnostics`, which has `error_position`, `error_torque`, `error_growth_rate` [1/s] and `error_since` [s]. In a
+sensitive motion the distance grows until it says nothing more; this is told once, and the companion begins again from
+the present state at `error_since`. The parameter `estimate_error` turns it off. A controller that answers to what it
+observes closes a loop: the estimate knows the error that the same curvature leads to, not what the controller would
+have done with a truer observation. Only a second run of the whole loop tells that.
 
 **What both runs share**, no companion sees: the body's half-axes between given points, the law's splines, and the
 samples of a controller between two instants. Tests of their own compare these with exact values.

@@ -1,75 +1,20 @@
 """Every run measures its own error: the distance from a companion, a run of the same swimmer with coarser settings.
 
-The companion has another grid, a looser tolerance and longer longest steps, and so some ten times the error of the run.
-Their distance is thus an estimate of the run's error that lies on the safe side. It is not scaled by an order of
-convergence: observed orders are 2.3 to 4.9. It sees the growth of errors, which no error of a single step does.
-
 Where the estimate exceeds the target, the run becomes the next companion of a finer one, up to `MOST_REFINEMENTS`
 times. A warning names what is then still above the target.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.accuracy.error_estimate import SMALL, ErrorEstimate, growth_rate_of, least_torque
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 ACCEPTED = 1.5  # factor of the target by which an estimate must lie below it
 MOST_REFINEMENTS = 3  # of a run whose error is above its target
-ROUND_OFF = 2e-16  # relative error of the arithmetic, which grows with the motion's sensitivity
-ROUND_OFF_SHARE = 0.1  # of the target that grown round-off may take
-# Part of body length and path beyond which the distance of two runs is no longer small, so that it no longer grows.
-SMALL = 0.03
-SETTLED = 0.2  # share of a run in which the distance grows from nothing, and says nothing of the sensitivity
-LEAST_SAMPLES = 5  # of a fit of the growth rate
-# Torques below this part of m (l/T)^2 count by it: m mass, l length, T the shortest period or the run's duration.
-TORQUE_FLOOR = 1e-3
 HALVINGS = 8  # of an unstable step, at most, in the search for a stable one
-
-
-@dataclass(frozen=True)
-class ErrorEstimate:
-    """Relative errors of position and torque, as accuracy targets define them; infinite where they are not known.
-
-    torque is None for a run without internal wrench or stations. growth_rate [1/s]: the distance of two runs grows by
-    a factor of e in 1/growth_rate; 0 where it does not grow, or not seen. evaluations: of the head's dynamics that the
-    estimate took, beside those of the run; cost: the same, each times the nodes along the body.
-    """
-
-    position: float
-    torque: float | None
-    growth_rate: float = 0.0
-    evaluations: int = 0
-    cost: int = 0
-
-    @property
-    def worst(self) -> float:
-        """The greater of the two."""
-        return max(self.position, self.torque or 0.0)
-
-    def round_off(self, duration: float) -> float:
-        """The relative error that round-off has grown to after `duration` [s] at the `growth_rate`."""
-        with np.errstate(over="ignore"):
-            return float(ROUND_OFF * np.exp(self.growth_rate * duration))
-
-    def hopeless(self, target: float, duration: float) -> bool:
-        """Whether grown round-off alone takes more of the `target` than `ROUND_OFF_SHARE`: no settings help."""
-        return self.round_off(duration) > ROUND_OFF_SHARE * target
-
-    def missed(self, target: float | None, duration: float) -> str:
-        """One line if the error is above the `target`, else an empty text."""
-        if target is None or self.worst <= target:
-            return ""
-        if not np.isfinite(self.worst):
-            return f"the error is not known: a run with coarser settings stopped; the target is {target:g}"
-        line = f"the error is estimated at {self.worst:.1e}, above the target {target:g}"
-        if self.growth_rate * duration < 1.0:
-            return line
-        line += f": the motion is sensitive, and errors grow by a factor of e in {1.0 / self.growth_rate:.2g} s"
-        if self.hopeless(target, duration):
-            line += ", so that round-off alone may spoil it"
-        return line
 
 
 def relative_errors(run, reference) -> ErrorEstimate:
@@ -77,31 +22,17 @@ def relative_errors(run, reference) -> ErrorEstimate:
 
     Of the head's position: the greatest over the later half of the samples, relative to the length of the path, or of
     the body if that is longer. Of the torque: the greatest over samples and stations, relative to its own maximum,
-    which counts for no less than `TORQUE_FLOOR` says. growth_rate: of the distance of the heads.
+    which counts for no less than `least_torque`. growth_rate: of the distance of the heads.
     """
     distance = np.linalg.norm(run.position - reference.position, axis=1)
     scale = max(reference.path_length, reference.body.length)
     later = distance[run.time >= 0.5 * run.time[-1]]
-    position, rate = float(later.max()) / scale, _growth_rate(run.time, distance, SMALL * scale)
+    position, rate = float(later.max()) / scale, growth_rate_of(run.time, distance, SMALL * scale)
     if run.torque is None or reference.torque is None:
         return ErrorEstimate(position, None, rate)
-    size = max(np.linalg.norm(reference.torque, axis=2).max(), _least_torque(run))
+    least = least_torque(run.law, run.body_mass, run.body.length, float(run.time[-1]))
+    size = max(np.linalg.norm(reference.torque, axis=2).max(), least)
     return ErrorEstimate(position, float(np.linalg.norm(run.torque - reference.torque, axis=2).max() / size), rate)
-
-
-def _least_torque(run) -> float:
-    time = min((term.period for term in run.law.terms if term.period), default=max(float(run.time[-1]), 1.0))
-    return TORQUE_FLOOR * run.body_mass * (run.body.length / time) ** 2
-
-
-def _growth_rate(time: np.ndarray, distance: np.ndarray, small: float) -> float:
-    """Slope [1/s] of the logarithm of the `distance` (T,) over `time` (T,), where it is settled and `small`; or 0."""
-    counts = (time >= SETTLED * time[-1]) & (distance > 0.0) & (distance < small)
-    if counts.sum() < LEAST_SAMPLES:
-        counts = (distance > 0.0) & (distance < small)  # it has grown within the first part
-    if counts.sum() < LEAST_SAMPLES:
-        return 0.0
-    return max(0.0, float(np.polyfit(time[counts], np.log(distance[counts]), 1)[0]))
 
 
 def with_error_estimate(swim, request):

@@ -1,0 +1,82 @@
+"""An estimate of the error of a run, from its distance to a companion: the same swimmer with coarser settings.
+
+The companion has another grid, a looser tolerance and longer longest steps, and so some ten times the error of the run.
+Their distance is thus an estimate of the run's error that lies on the safe side. It is not scaled by an order of
+convergence: observed orders are 2.3 to 4.9. It sees the growth of errors, which no error of a single step does.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+ROUND_OFF = 2e-16  # relative error of the arithmetic, which grows with the motion's sensitivity
+ROUND_OFF_SHARE = 0.1  # of the target that grown round-off may take
+# Part of body length and path beyond which the distance of two runs is no longer small, so that it no longer grows.
+SMALL = 0.03
+SETTLED = 0.2  # share of a run in which the distance grows from nothing, and says nothing of the sensitivity
+LEAST_SAMPLES = 5  # of a fit of the growth rate
+# Torques below this part of m (l/T)^2 count by it: m mass, l length, T the shortest period or the run's duration.
+TORQUE_FLOOR = 1e-3
+
+
+@dataclass(frozen=True)
+class ErrorEstimate:
+    """Relative errors of position and torque, as accuracy targets define them; infinite where they are not known.
+
+    torque is None for a run without internal wrench or stations. growth_rate [1/s]: the distance of two runs grows by
+    a factor of e in 1/growth_rate; 0 where it does not grow, or not seen. evaluations: of the head's dynamics that the
+    estimate took, beside those of the run; cost: the same, each times the nodes along the body.
+    """
+
+    position: float
+    torque: float | None
+    growth_rate: float = 0.0
+    evaluations: int = 0
+    cost: int = 0
+
+    @property
+    def worst(self) -> float:
+        """The greater of the two."""
+        return max(self.position, self.torque or 0.0)
+
+    def round_off(self, duration: float) -> float:
+        """The relative error that round-off has grown to after `duration` [s] at the `growth_rate`."""
+        with np.errstate(over="ignore"):
+            return float(ROUND_OFF * np.exp(self.growth_rate * duration))
+
+    def hopeless(self, target: float, duration: float) -> bool:
+        """Whether grown round-off alone takes more of the `target` than `ROUND_OFF_SHARE`: no settings help."""
+        return self.round_off(duration) > ROUND_OFF_SHARE * target
+
+    def missed(self, target: float | None, duration: float) -> str:
+        """One line if the error is above the `target`, else an empty text."""
+        if target is None or self.worst <= target:
+            return ""
+        if not np.isfinite(self.worst):
+            return f"the error is not known: a run with coarser settings stopped; the target is {target:g}"
+        line = f"the error is estimated at {self.worst:.1e}, above the target {target:g}"
+        if self.growth_rate * duration < 1.0:
+            return line
+        line += f": the motion is sensitive, and errors grow by a factor of e in {1.0 / self.growth_rate:.2g} s"
+        if self.hopeless(target, duration):
+            line += ", so that round-off alone may spoil it"
+        return line
+
+
+def least_torque(law, mass: float, length: float, duration: float) -> float:
+    """The torque [N m] by which smaller torques count: their relative error would be one of round-off.
+
+    law: the `Law`, or None. mass [kg], length [m]: of the body. duration [s]: of the run.
+    """
+    periods = [term.period for term in law.terms if term.period] if law is not None else []
+    return TORQUE_FLOOR * mass * (length / min(periods, default=max(duration, 1.0))) ** 2
+
+
+def growth_rate_of(time: np.ndarray, distance: np.ndarray, small: float) -> float:
+    """Slope [1/s] of the logarithm of the `distance` (T,) over `time` (T,), where it is settled and `small`; or 0."""
+    counts = (time >= SETTLED * time[-1]) & (distance > 0.0) & (distance < small)
+    if counts.sum() < LEAST_SAMPLES:
+        counts = (distance > 0.0) & (distance < small)  # it has grown within the first part
+    if counts.sum() < LEAST_SAMPLES:
+        return 0.0
+    return max(0.0, float(np.polyfit(time[counts], np.log(distance[counts]), 1)[0]))

@@ -1,0 +1,45 @@
+"""Tells when the error of a run exceeds its target: each time once in the log, and in /diagnostics until a reset."""
+
+TARGET, LOST = "accuracy target", "lost accuracy"  # kinds of conditions
+
+
+class ErrorMonitor:
+    """Watches the error estimate of a `simulation`, if it has one.
+
+    Attributes:
+        values: the figures for /diagnostics, by name, at the last check.
+    """
+
+    def __init__(self, simulation, report):
+        self._simulation, self._report = simulation, report
+        self.values: dict[str, float] = {}
+
+    def restart(self):
+        """Forget what has been told."""
+        self.values = {}
+        for kind in (TARGET, LOST):
+            self._report.end(kind)
+
+    def check(self):
+        """Tell of a missed target, and of a motion whose errors have grown beyond all bounds."""
+        simulation = self._simulation
+        error = simulation.error_estimate
+        if error is None:
+            return
+        missed = error.missed(simulation.accuracy.target, simulation.time - simulation.measured_since)
+        if missed and not self._report.lasts(TARGET):
+            self._report.begin(TARGET, f"at t = {simulation.time:g} s {missed}")
+        if simulation.lost_at is not None and not self._report.lasts(LOST):
+            speed = f" (by a factor of e in {1.0 / error.growth_rate:.2g} s)" if error.growth_rate else ""
+            self._report.begin(
+                LOST,
+                f"at t = {simulation.lost_at:g} s the errors have grown so far{speed} that the position is no longer "
+                "known. From then on they are measured anew",
+            )
+        named = {
+            "error_position": error.position,
+            "error_torque": error.torque,
+            "error_growth_rate": error.growth_rate,
+            "error_since": simulation.measured_since,
+        }
+        self.values = {name: value for name, value in named.items() if value is not None}
