@@ -73,10 +73,12 @@ def least_torque(law, mass: float, length: float, duration: float) -> float:
 
 
 def growth_rate_of(time: np.ndarray, distance: np.ndarray, small: float) -> float:
-    """Slope [1/s] of the logarithm of the `distance` (T,) over `time` (T,), where it is settled and `small`; or 0."""
-    counts = (time >= SETTLED * time[-1]) & (distance > 0.0) & (distance < small)
+    """Slope [1/s] of the logarithm of the `distance` (T,) over `time` (T,), until it is no longer `small`; or 0."""
+    grown = distance >= small
+    growing = (distance > 0.0) & (np.arange(len(time)) < (np.argmax(grown) if grown.any() else len(time)))
+    counts = growing & (time >= SETTLED * time[-1])
     if counts.sum() < LEAST_SAMPLES:
-        counts = (distance > 0.0) & (distance < small)  # it has grown within the first part
+        counts = growing  # it has grown within the first part
     if counts.sum() < LEAST_SAMPLES:
         return 0.0
     return max(0.0, float(np.polyfit(time[counts], np.log(distance[counts]), 1)[0]))

@@ -13,10 +13,10 @@ from eel_gaits.law import Law, Ramp, Term
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.budget import Budget
+from eel_dynamics.accuracy.error_estimate import ErrorEstimate
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.model.shapes import NamedHalfAxis, PolynomialHalfAxis, polynomials_through
-from eel_dynamics.accuracy.error_estimate import ErrorEstimate
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 HALF_AXES = ("half_width", "half_height")
