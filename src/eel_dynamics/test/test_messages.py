@@ -50,9 +50,9 @@ def swum():
     simulation.advance(2.3)
     snapshot = simulation.observe()
     sample = Sample(simulation.x, simulation.scene, DynamicsParameters())
-    sample.set_time(2_300_000_000)
     assert np.isnan(filled(sample, "swim_state", snapshot).estimated_error)
-    sample.estimated_error = 1e-5
+    sample = Sample(simulation.x, simulation.scene, DynamicsParameters(), lambda: 1e-5)
+    sample.set_time(2_300_000_000)
     return snapshot, {name: filled(sample, name, snapshot) for name in sample.kinds}
 
 
@@ -165,11 +165,10 @@ def test_refilling_replaces_all_that_was_there(swum):
     snapshot, messages = swum
     simulation = Simulation(stations=17)
     simulation.adopt(falling())
-    sample = Sample(simulation.x, simulation.scene, DynamicsParameters())
+    sample = Sample(simulation.x, simulation.scene, DynamicsParameters(), lambda: 1e-5)
     for name in sample.kinds:
         sample.fill(name, simulation.observe())
     sample.set_time(2_300_000_000)
-    sample.estimated_error = 1e-5
     for name in sample.kinds:
         assert filled(sample, name, snapshot) == messages[name], name
 

@@ -50,16 +50,23 @@ def seconds_of(time: Time) -> float:
 class Sample:
     """The serialised messages of one sample: `fill` returns that of a topic, `tick` that of /clock.
 
+    estimated_error: returns what swim_state gives as such [-].
+
     Attributes:
         kinds: message type by topic.
         clock: message type of /clock.
-        estimated_error: what swim_state gives as such [-]; NaN while there is no estimate.
     """
 
     clock = Clock
 
-    def __init__(self, x: np.ndarray, scene: Scene, parameters: DynamicsParameters):
-        self._nanoseconds, self.estimated_error = (0, 0), math.nan
+    def __init__(
+        self,
+        x: np.ndarray,
+        scene: Scene,
+        parameters: DynamicsParameters,
+        estimated_error: Callable[[], float] = lambda: math.nan,
+    ):
+        self._nanoseconds, self._estimated_error = (0, 0), estimated_error
         messages = {
             "head_pose": PoseStamped(),
             "head_twist": TwistStamped(),
@@ -184,7 +191,7 @@ class Sample:
             math.atan2(ahead[1], ahead[0]),
             math.nan if snapshot.torque is None else np.max(np.abs(snapshot.torque)),
             math.nan if snapshot.actuator_work is None else snapshot.actuator_work,
-            self.estimated_error,
+            self._estimated_error(),
         )
 
     def _fill_joints(self, numbers, snapshot):

@@ -68,7 +68,7 @@ class DynamicsNode(Node):
         values, scene = self.parameters.values, self.parameters.scene
         simulation = simulation_from_parameters(values, scene)
         self.sample_publishers = Publishers(
-            Sample(simulation.x, scene, values),
+            Sample(simulation.x, scene, values, lambda: self.run_loop.errors.get("error_position", math.nan)),
             create=lambda kind, topic, depth: self.create_publisher(kind, topic, depth or LOSSLESS),
             destroy=self.destroy_publisher,
             received=lambda publisher, seconds: publisher.wait_for_all_acked(Duration(seconds=seconds)),
