@@ -11,6 +11,7 @@ from eel_dynamics.simulation.prescribed import HydrodynamicWrench, hydrodynamic_
 from eel_dynamics.simulation.simulation import Simulation
 from eel_dynamics.simulation.snapshot import Snapshot
 from eel_dynamics.simulation.stopping import SimulationStopped
+from eel_dynamics.studies.gradients.gradient import Gradient, gradient
 from eel_dynamics.studies.sweep.sweep import sweep
 
 __all__ = [
@@ -18,6 +19,7 @@ __all__ = [
     "Batch",
     "Body",
     "EnergyLedger",
+    "Gradient",
     "HydrodynamicWrench",
     "MeasuredSimulation",
     "Run",
@@ -25,6 +27,7 @@ __all__ = [
     "Simulation",
     "SimulationStopped",
     "Snapshot",
+    "gradient",
     "hydrodynamic_wrench",
     "simulate",
     "simulate_batch",

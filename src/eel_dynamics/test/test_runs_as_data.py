@@ -242,8 +242,11 @@ def test_the_command_saves_a_run(tmp_path, capsys):
 def test_the_default_sampling_suits_any_gait():
     for period, sample in ((0.05, 0.0025), (0.2, 0.01), (1.0, 0.05), (3.0, 0.05)):
         run = simulate(straight(period=period), 2.0 * period, accuracy=1e-2, stations=5, estimate=False)
-        assert run.time[1] == pytest.approx(sample) and run.mean_speed == run.analysis().mean_speed > 0.0
+        assert run.time[1] == pytest.approx(sample) and run.time[-1] == pytest.approx(2.0 * period)
+        assert run.mean_speed == run.analysis().mean_speed > 0.0
     assert len(simulate(Law(), 0.1, stations=2).time) == 3
+    odd = simulate(straight(period=0.3), 1.0, accuracy=1e-2, stations=5, estimate=False)
+    assert odd.time[-1] == pytest.approx(1.0) and odd.time[1] <= 0.015
     both = simulate_batch([straight(period=0.2), straight()], 1.0, accuracy=1e-2, stations=5)
     assert both.time[1] == pytest.approx(0.01)
     long = simulate(straight(period=1e-2), 0.06, accuracy=0.1, stations=2, estimate=False, sample_period=0.05)

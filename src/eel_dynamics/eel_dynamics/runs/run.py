@@ -1,5 +1,6 @@
 """Simulates one run of a law: `simulate`, and the `Run` that it returns."""
 
+import math
 import os
 import warnings
 from collections.abc import Callable
@@ -349,13 +350,15 @@ def _with_stable_step(stopped: SimulationStopped, again, accuracy: Accuracy) -> 
 
 
 def default_sample_period(laws, duration) -> float:
-    """The sample period [s] for which none is given: `SAMPLE_PERIOD`, or fine enough to analyse the fastest of `laws`.
+    """The sample period [s] where none is given: `SAMPLE_PERIOD`, or fine enough to analyse the fastest of `laws`.
 
-    A run of more than `MOST_DEFAULT_SAMPLES` is not made by default.
+    The finer ones divide the `duration`. A run of more than `MOST_DEFAULT_SAMPLES` is not made by default.
     """
     shortest = min((term.period for law in laws for term in law.terms if term.period), default=np.inf)
-    fine = min(SAMPLE_PERIOD, shortest / SAMPLES_OF_PERIOD)
-    return fine if is_finite(duration) and duration <= MOST_DEFAULT_SAMPLES * fine else SAMPLE_PERIOD
+    fine = shortest / SAMPLES_OF_PERIOD
+    if fine >= SAMPLE_PERIOD or not is_finite(duration) or not 0.0 < duration <= MOST_DEFAULT_SAMPLES * fine:
+        return SAMPLE_PERIOD
+    return duration / math.ceil(duration / fine - 1e-9)
 
 
 def checked_times(duration, sample_period) -> np.ndarray:

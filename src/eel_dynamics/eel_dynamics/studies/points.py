@@ -60,8 +60,8 @@ class SwimSettings(NamedTuple):
         return self.measure(run) if callable(self.measure) else measures_of(run, self.measure, periods)
 
 
-def batch_of_points(points: list[Point], how: SwimSettings, threads: int | None = None) -> Batch:
-    """Simulate the `points`."""
+def batch_of_points(points: list[Point], how: SwimSettings, threads: int | None = None, progress=None) -> Batch:
+    """Simulate the `points`. threads, progress: as in `simulate_batch`."""
     return simulate_batch(
         [point.law for point in points],
         how.duration,
@@ -75,6 +75,7 @@ def batch_of_points(points: list[Point], how: SwimSettings, threads: int | None 
         twists=np.array([point.start.twist for point in points]),
         estimate=how.estimate,
         threads=threads,
+        progress=progress,
         most_evaluations=how.most_evaluations,
     )
 

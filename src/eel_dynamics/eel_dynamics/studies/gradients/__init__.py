@@ -1,0 +1,1 @@
+"""Derivatives of what a swim amounts to, by its parameters."""
