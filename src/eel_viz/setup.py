@@ -25,5 +25,6 @@ setup(
             "render = eel_viz.pictures.render:main",
         ],
         "eel_dynamics.drawing": ["rerun = eel_viz.recording.library:to_rerun"],
+        "eel_dynamics.bags": ["messages = eel_viz.bags.run_messages:run_messages"],
     },
 )

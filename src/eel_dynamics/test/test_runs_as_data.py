@@ -236,7 +236,7 @@ def test_the_command_saves_a_run(tmp_path, capsys):
     assert command.main(f"straight --duration 1 --accuracy 1e-2 --stations 5 --out {out}".split()) == 0
     assert Run.load(out) == simulate(straight(), 1.0, accuracy="1e-2", stations=5)
     assert command.main(f"--out {tmp_path}/run.nv".split()) == 2
-    assert "must end in .nc, .npz, .csv, .rrd" in capsys.readouterr().err
+    assert "must end in .nc, .npz, .csv or .rrd" in capsys.readouterr().err
 
 
 def test_the_default_sampling_suits_any_gait():

@@ -37,7 +37,7 @@ def node_messages(run, statuses):
         energy = SimpleNamespace(**{name: run.energy[name][k] for name in run.energy.keys()})  # noqa: SIM118
         snapshot = SimpleNamespace(energy=energy, **{name: getattr(run, name)[k] for name in PROFILES})
         for topic, kind in sample.kinds.items():
-            if not topic.startswith("/"):
+            if not topic.startswith("/") and topic != "swim_state":  # which is not drawn
                 yield topic, deserialize_message(sample.fill(topic, snapshot), kind)
     yield "diagnostics", statuses[1]
 
@@ -136,7 +136,7 @@ def test_simulate_writes_it_too(tmp_path, capsys):
     assert "exists and will be overwritten" in capsys.readouterr().err
     assert len(read(out, entities.SPEED).time) == 3
     assert main(["straight", "--out", str(tmp_path / "run.txt")]) == 2
-    assert "--out must end in .npz, .csv or .rrd, got" in capsys.readouterr().err
+    assert "--out must end in .nc, .npz, .csv or .rrd, got" in capsys.readouterr().err
 
 
 def test_what_cannot_be_is_said(run, tmp_path):

@@ -28,6 +28,7 @@ def _of_the_run(run) -> list[str]:
     if run.torque is not None:
         size, x, time = run.greatest_torque()
         lines.append(f"greatest torque     {size:.4g} N m at X = {x:.3f} m, t = {time:.3f} s")
+    if run.closure_torque is not None:
         lines.append(f"closure at the nose {np.max(run.closure_torque):.1e} N m, {np.max(run.closure_force):.1e} N")
     if run.energy is not None:
         e = run.energy

@@ -96,7 +96,7 @@ def _checks(run) -> dict[str, float]:
     found = {}
     if run.energy is not None:
         found["energy_residual_worst"] = np.max(np.abs(run.energy.residual))
-    if run.torque is not None and np.any(run.torque):
+    if run.closure_torque is not None and np.any(run.torque):
         found["closure_torque_relative"] = np.max(run.closure_torque) / np.max(np.abs(run.torque))
     return found
 

@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from eel_gaits.law import Law
 from eel_gaits.quantity import is_finite
+from eel_gaits.wording import one_line, shown
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.error_estimate import ErrorEstimate
@@ -27,6 +28,7 @@ from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.broadcast import SwimmerArguments
 from eel_dynamics.runs.companion import stable_step, with_error_estimate
 from eel_dynamics.runs.progress_monitor import ProgressMonitor
+from eel_dynamics.runs.recorded_run import fields_of_messages
 from eel_dynamics.runs.records import records
 from eel_dynamics.runs.storage.netcdf import loaded, write
 from eel_dynamics.runs.storage.run_contents import contents_of_run, fields_of_run
@@ -167,6 +169,26 @@ class Run:
         """The run that `save` wrote. `ValueError` in one line for a damaged or foreign file, or another version's."""
         return loaded(path, "run", lambda contents: Run(**fields_of_run(contents)))
 
+    @staticmethod
+    def from_bag(path, namespace: str | None = None, *, body: Body | None = None, scene: Scene | None = None) -> "Run":
+        """The run of the swimmer that a bag holds, from the topics of the dynamics node.
+
+        namespace: the swimmer's; None: that of the only one. body, scene: those of the node; by default the body of the
+        topic `body`, and `Scene()`, as no topic tells the scene. Topics that the bag lacks leave their fields None; the
+        head's acceleration, the works and the centre of mass come from splines. `steps`, `evaluations` and `nodes` are
+        0. `ValueError` in one line where the bag holds no run; `ImportError` without the package eel_viz.
+        """
+        if body is not None:
+            checked_instance("body", body, Body)
+        if scene is not None:
+            checked_instance("scene", scene, Scene)
+        messages = _of_eel_viz("eel_dynamics.bags", "messages", "from_bag", "rosbags and rerun-sdk")
+        try:
+            return Run(**fields_of_messages(messages(path, namespace), body, scene))
+        except ValueError as error:
+            told = "" if shown(os.fspath(path)) in str(error) else f"bag {shown(os.fspath(path))} holds no run: "
+            raise ValueError(f"{told}{one_line(error)}") from None
+
     def to_xarray(self):
         """An `xarray.Dataset` of all arrays with dimensions and units. Its attributes are those of a file of `save`.
 
@@ -188,12 +210,7 @@ class Run:
         visualiser, such as blueprint="torques", skin_rate=50. Loads are shown if the run was simulated with load=True.
         `ImportError` without the package eel_viz and rerun-sdk.
         """
-        found = entry_points(group="eel_dynamics.drawing", name="rerun")
-        try:
-            (to_rerun,) = (each.load() for each in found)
-        except (ValueError, ImportError) as error:
-            reason = error if found else "it is not installed"
-            raise ImportError(f"to_rerun needs the package eel_viz, with rerun-sdk: {reason}") from error
+        to_rerun = _of_eel_viz("eel_dynamics.drawing", "rerun", "to_rerun", "rerun-sdk")
         runs = [self] if compare is None else [self, compare]
         to_rerun(
             target, [records(run) for run in runs], [f"{run.law.name} {run.accuracy.name}" for run in runs], **settings
@@ -221,6 +238,17 @@ class Run:
     def body_mass(self) -> float:
         """Mass of the body in this scene [kg]."""
         return self.body.volume * (self.body.density if self.scene.density is None else self.scene.density)
+
+
+def _of_eel_viz(group: str, name: str, user: str, needs: str) -> Callable:
+    """A function of the package eel_viz, which knows of this one. `ImportError` where that is not installed."""
+    found = entry_points(group=group, name=name)
+    try:
+        (function,) = (each.load() for each in found)
+    except (ValueError, ImportError) as error:
+        reason = error if found else "it is not installed"
+        raise ImportError(f"{user} needs the package eel_viz, with {needs}: {reason}") from error
+    return function
 
 
 def simulate(

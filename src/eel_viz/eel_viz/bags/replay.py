@@ -10,7 +10,7 @@ import contextlib
 import os
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import fields
 from types import SimpleNamespace
 
@@ -34,14 +34,26 @@ OPTIONS = ("blueprint", "rate", "skin_rate", "colour_limit", "torque_limit", "fo
 OPTIONS += ("load_scale", "end_force_scale", "viewer")
 
 
+def _named_law(message, place: int) -> SimpleNamespace:
+    """A law for the visualiser: its arrays cannot be compared, so each message counts as a new law."""
+    return SimpleNamespace(name=message.name, place=place)
+
+
 class Source:
     """The messages of one swimmer in `bag`, as pairs of topic and message.
 
-    namespace: the swimmer's; None: that of the only swimmer. `ValueError` if there is none, or several.
+    namespace: the swimmer's; None: that of the only swimmer. law_message(message, place): what is yielded for a law.
+    `ValueError` if there is no swimmer, or several.
     """
 
-    def __init__(self, bag: Bag, namespace: str | None, log_warning: LogFunction) -> None:
-        self._bag, self._log_warning = bag, log_warning
+    def __init__(
+        self,
+        bag: Bag,
+        namespace: str | None,
+        log_warning: LogFunction,
+        law_message: Callable[[object, int], object] = _named_law,
+    ) -> None:
+        self._bag, self._log_warning, self._law_message = bag, log_warning, law_message
         self._told: set[str] = set()
         self.namespace = self._found(namespace)
         self._topics = {f"{self.namespace}/{name}": name for name in (*SAMPLES, "body", "curvature_law")}
@@ -71,8 +83,8 @@ class Source:
                 name, count = self._topics[topic], count + 1
                 if name == "body" and first is not None:
                     first = None
-                elif name == "curvature_law":  # its arrays cannot be compared: each message counts as a new law
-                    yield name, SimpleNamespace(name=message.name, place=count)
+                elif name == "curvature_law":
+                    yield name, self._law_message(message, count)
                 else:
                     yield name, message
         except DamagedBag as error:

@@ -1,0 +1,202 @@
+"""Makes the fields of a run from the messages of a node: the reverse of `records`.
+
+What messages do not carry is computed from them: the head's acceleration and the works by splines in time, the centre
+of mass by splines along the body.
+"""
+
+import math
+import warnings
+from collections.abc import Iterable
+from dataclasses import replace
+
+import numpy as np
+from eel_gaits.law import AXES, Law, Ramp, Term
+from eel_gaits.quantity import is_finite
+from eel_gaits.wording import one_line
+
+from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.accuracy.budget import Budget
+from eel_dynamics.model.axes import turn_quaternion, turn_vector
+from eel_dynamics.model.body import Body
+from eel_dynamics.model.grid import Grid
+from eel_dynamics.model.panels import panels_of
+from eel_dynamics.model.scene import Scene
+from eel_dynamics.runs.records import ENERGIES
+from eel_dynamics.simulation.energy import EnergyLedger
+
+NEEDED = ("head_pose", "head_twist", "backbone", "curvature")
+FURTHER = ("internal_wrench", "hydrodynamic_load", "energy")
+WORKS = ("actuator", "wake", "nose", "drag")
+FEWEST = 4  # samples, for splines through them
+AXIS_OF_NUMBER = {column + 1: name for name, column in AXES.items()}  # as in CurvatureTerm
+
+
+def fields_of_messages(messages: Iterable[tuple[str, object]], body: Body | None, scene: Scene | None) -> dict:
+    """The fields of the `Run` that `messages` (topic and message) tell of.
+
+    body, scene: what the messages do not tell; None for the body of the topic `body`, and for `Scene()`. `ValueError`
+    where topics are missing.
+    """
+    once, samples = _collected(messages)
+    missing = [topic for topic in NEEDED if not samples[topic]]
+    if missing:
+        raise ValueError(f"there is no message on {', '.join(missing)}, which a run needs")
+    further = [topic for topic in FURTHER if samples[topic]]
+    stamps = sorted(set.intersection(*(set(samples[topic]) for topic in (*NEEDED, *further))))
+    if len(stamps) < FEWEST:
+        raise ValueError(f"there must be {FEWEST} instants or more with a message on each topic, got {len(stamps)}")
+    rows = {topic: [samples[topic][stamp] for stamp in stamps] for topic in (*NEEDED, *further)}
+    scene = replace(
+        Scene() if scene is None else scene, internal_wrench="internal_wrench" in rows, ledger="energy" in rows
+    )
+    found = {"time": 1e-9 * np.array(stamps), "law": _law(once), "scene": scene, "accuracy": _accuracy(once, scene)}
+    found |= _motion(rows, found["time"])
+    found["body"] = _body(once, scene) if body is None else body
+    found["center_of_mass"] = _center_of_mass(found["body"], found["x"], found["backbone"])
+    found |= dict.fromkeys(("closure_torque", "closure_force")) | dict.fromkeys(("steps", "evaluations", "nodes"), 0)
+    return found | _wrench(rows) | _load(rows) | {"energy": _energy(rows, found["time"])}
+
+
+def _collected(messages) -> tuple[dict, dict]:
+    """Messages of topics that come once (the last, all laws), and by topic those of the samples by stamp [ns]."""
+    once, samples = {"curvature_law": []}, {topic: {} for topic in (*NEEDED, *FURTHER)}
+    for topic, message in messages:
+        if topic == "curvature_law":
+            once[topic].append(message)
+        elif topic in samples:
+            stamp = message.header.stamp.sec * 1_000_000_000 + message.header.stamp.nanosec
+            poses = samples["head_pose"]
+            if topic == "head_pose" and poses and stamp <= next(reversed(poses)):
+                warnings.warn(f"time falls back to {1e-9 * stamp:g} s: a reset; the run has what follows", stacklevel=4)
+                samples = {name: {} for name in samples}
+            samples[topic][stamp] = message
+        else:
+            once[topic] = message
+    return once, samples
+
+
+def _motion(rows: dict, time: np.ndarray) -> dict:
+    pose = [message.pose for message in rows["head_pose"]]
+    twist = [message.twist for message in rows["head_twist"]]
+    angular = turn_vector(_numbers((each.angular for each in twist), "xyz"))
+    linear = turn_vector(_numbers((each.linear for each in twist), "xyz"))
+    whole = np.concatenate((angular, linear), axis=1)
+    rate = _spline(time, whole)(time, 1)
+    rate[:, 3:] += np.cross(angular, linear)
+    x = np.array(rows["backbone"][0].x, dtype=float)
+    bend = {name: np.array([getattr(each, name) for each in rows["curvature"]]) for name in ("pitch", "yaw")}
+    bend |= {f"{name}_rate": np.array([getattr(each, f"{name}_rate") for each in rows["curvature"]]) for name in bend}
+    straight = np.zeros_like(bend["pitch"])
+    return {
+        "position": turn_vector(_numbers((each.position for each in pose), "xyz")),
+        "orientation": turn_quaternion(_numbers((each.orientation for each in pose), "xyzw")),
+        "twist": whole,
+        "head_acceleration": rate,
+        "x": x,
+        "backbone": turn_vector(_along(rows["backbone"], "position", len(x), 3)),
+        "section_orientation": turn_quaternion(_along(rows["backbone"], "orientation", len(x), 4)),
+        "curvature": np.stack((straight, bend["pitch"], bend["yaw"]), axis=2),
+        "curvature_rate": np.stack((straight, bend["pitch_rate"], bend["yaw_rate"]), axis=2),
+    }
+
+
+def _wrench(rows: dict) -> dict:
+    names = ("torque", "force")
+    if "internal_wrench" not in rows:
+        return dict.fromkeys(names)
+    return {name: _by_axes(rows["internal_wrench"], name) for name in names}
+
+
+def _load(rows: dict) -> dict:
+    if "hydrodynamic_load" not in rows:
+        return dict.fromkeys(("fluid_force", "resistive_force", "tail_force", "nose_force"))
+    load = rows["hydrodynamic_load"]
+    ends = {name: _numbers((getattr(each, name) for each in load), "xyz") for name in ("tail_force", "nose_force")}
+    return {"fluid_force": _by_axes(load, "force"), "resistive_force": _by_axes(load, "resistive"), **ends}
+
+
+def _energy(rows: dict, time: np.ndarray) -> EnergyLedger | None:
+    """The ledger, with works since the first sample."""
+    if "energy" not in rows:
+        return None
+    told = {name: np.array([getattr(each, name) for each in rows["energy"]]) for name in ENERGIES}
+    works = {}
+    for part in WORKS:
+        total = _spline(time, told[f"{part}_power"]).antiderivative()
+        works[f"{part}_work"] = total(time) - total(time[0])
+    return EnergyLedger(**told, **works)
+
+
+def _law(once: dict) -> Law:
+    """The last law, in the time of the simulation."""
+    told = once["curvature_law"]
+    if not told:
+        warnings.warn("there is no message on curvature_law: the run's law is the straight body's", stacklevel=4)
+        return Law(name="unknown")
+    if len(told) > 1:
+        warnings.warn(f"there are {len(told)} laws: the run's law is the last one", stacklevel=4)
+    message = told[-1]
+    origin = message.header.stamp.sec + 1e-9 * message.header.stamp.nanosec
+    return Law(*(_term(term, origin) for term in message.terms), name=message.name, transition=message.transition)
+
+
+def _term(term, origin: float) -> Term:
+    ramps = tuple(Ramp(ramp.start + origin, ramp.end + origin, ramp.delta) for ramp in term.envelope)
+    later = math.remainder(2.0 * math.pi * origin / term.period, 2.0 * math.pi) if term.period else 0.0
+    return Term(
+        axis=AXIS_OF_NUMBER[term.axis],
+        amplitude=tuple(term.amplitude),
+        knots=tuple(term.knots),
+        wavelength=term.wavelength,
+        period=term.period,
+        phase=term.phase + later,
+        envelope=ramps,
+    )
+
+
+def _body(once: dict, scene: Scene) -> Body:
+    """The body of the topic `body`: its half-axes at the points of the message, its mass at the scene's density."""
+    message = once.get("body")
+    if message is None:
+        raise ValueError("there is no message on body: give the body")
+    x, width, height = (np.array(getattr(message, name), dtype=float) for name in ("x", "half_width", "half_height"))
+    body = Body(x=x, half_width=width, half_height=height, name="bag")
+    return body.changed(density=message.mass / body.volume) if is_finite(message.mass) and message.mass > 0.0 else body
+
+
+def _accuracy(once: dict, scene: Scene) -> Accuracy:
+    """The accuracy that the diagnostics name, or `standard`."""
+    statuses = getattr(once.get("diagnostics"), "status", ())
+    told = [pair.value for status in statuses for pair in status.values if pair.key == "accuracy"]
+    try:
+        wanted = Accuracy.of(told[-1] if told else "standard")
+    except ValueError as error:
+        warnings.warn(f"the accuracy is not known: {one_line(error)}", stacklevel=4)
+        wanted = Accuracy.of("standard")
+    return (Accuracy.of("standard") if isinstance(wanted, Budget) else wanted).in_scene(scene)
+
+
+def _center_of_mass(body: Body, x: np.ndarray, backbone: np.ndarray) -> np.ndarray:
+    """(T, 3) [m], from the backbone (T, M, 3) [m] at the stations x (M,) [m]."""
+    grid = Grid.of(panels_of(body, resolution=40))
+    weight = grid.weight * body.half_width(grid.x) * body.half_height(grid.x)
+    inside = np.clip(grid.x, x[0], x[-1])
+    return np.einsum("n,tnk->tk", weight / weight.sum(), _spline(x, backbone, axis=1)(inside))
+
+
+def _spline(x: np.ndarray, values: np.ndarray, axis: int = 0):
+    from scipy.interpolate import CubicSpline
+
+    return CubicSpline(x, values, axis=axis)
+
+
+def _numbers(parts, names: str) -> np.ndarray:
+    return np.array([[getattr(each, name) for name in names] for each in parts], dtype=float)
+
+
+def _along(messages: list, name: str, stations: int, size: int) -> np.ndarray:
+    return np.array([np.reshape(getattr(each, name), (stations, size)) for each in messages], dtype=float)
+
+
+def _by_axes(messages: list, name: str) -> np.ndarray:
+    return np.array([np.stack([getattr(each, f"{name}_{axis}") for axis in (1, 2, 3)], axis=-1) for each in messages])

@@ -1,0 +1,117 @@
+"""`Run.from_bag`: a run of the library, from what a dynamics node published of it."""
+
+from dataclasses import fields
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from builtin_interfaces.msg import Time
+from eel_dynamics.ros.messages import Sample, body_message, diagnostic_array
+from eel_dynamics.ros.parameters import DynamicsParameters
+from eel_gaits.messages import law_to_message
+from eel_viz.bags.definitions import definition, type_hash
+from eel_viz.topics import GLOBAL, OWN
+from rclpy.serialization import serialize_message
+from rosbags.rosbag2 import StoragePlugin, Writer
+
+from eel_dynamics import Run, Scene, simulate
+from eel_gaits import falling, straight
+
+PROFILES = ("backbone", "section_orientation", "curvature", "curvature_rate", "torque", "force", "fluid_force")
+PROFILES += ("resistive_force", "tail_force", "nose_force", "position", "orientation", "twist")
+COMPUTED = ("head_acceleration", "center_of_mass", "energy", "body", "time", "law", "accuracy", "error_estimate")
+COMPUTED += ("steps", "evaluations", "nodes", "closure_torque", "closure_force")
+
+
+@pytest.fixture(scope="module")
+def run() -> Run:
+    return simulate(falling(), 2.0, sample_period=0.02, load=True, scene=Scene(friction="laminar"), accuracy=1e-3)
+
+
+def write_bag(folder, run, *, left_out=(), space="", runs=1, laws=1, origin=0, first=0):
+    """A bag of the messages that a node publishes of `run`, `runs` times; the law's own time begins at `origin` [s]."""
+    writer, connections = Writer(folder, version=9, storage_plugin=StoragePlugin.MCAP), {}
+    with writer:
+
+        def add(topic: str, kind: str, data: bytes):
+            if topic.removeprefix(f"{space}/") in left_out:
+                return
+            if topic not in connections:
+                connections[topic] = writer.add_connection(topic, kind, msgdef=definition(kind), rihs01=type_hash(kind))
+            writer.write(connections[topic], 1_800_000_000 * 10**9, data)
+
+        add(f"{space}/body", OWN["body"], serialize_message(body_message(run.body, run.scene, run.x, "section")))
+        for _ in range(laws):
+            message = law_to_message(run.law, stamp=Time(sec=origin))
+            add(f"{space}/curvature_law", OWN["curvature_law"], serialize_message(message))
+        told = diagnostic_array(0.0, "/dynamics", 0, "swimming", {"law": run.law.name, "accuracy": run.accuracy.name})
+        add("/diagnostics", GLOBAL["/diagnostics"], serialize_message(told))
+        sample = Sample(run.x, run.scene, DynamicsParameters())
+        for k in [k for _ in range(runs) for k in range(first, len(run.time))]:
+            sample.set_time(round(run.time[k] * 1e9))
+            energy = SimpleNamespace(**{name: run.energy[name][k] for name in run.energy.keys()})  # noqa: SIM118
+            snapshot = SimpleNamespace(energy=energy, **{name: getattr(run, name)[k] for name in PROFILES})
+            for topic in sample.kinds:
+                if topic in OWN and topic != "swim_state":
+                    add(f"{space}/{topic}", OWN[topic], sample.fill(topic, snapshot))
+    return folder
+
+
+def test_it_is_the_run_that_was_published(run, tmp_path):
+    again = Run.from_bag(write_bag(tmp_path / "bag", run), scene=run.scene)
+    for item in fields(Run):
+        if item.name not in COMPUTED:
+            assert np.array_equal(getattr(again, item.name), getattr(run, item.name)), item.name
+    assert again.law == run.law and again.accuracy.name == "0.001" and again.time == pytest.approx(run.time, abs=1e-9)
+    size = np.abs(run.head_acceleration).max()
+    assert np.abs(again.head_acceleration - run.head_acceleration).max() < 5e-3 * size
+    assert again.center_of_mass == pytest.approx(run.center_of_mass, abs=1e-4)
+    assert again.body_mass == pytest.approx(run.body_mass, rel=1e-9)
+    x = np.linspace(0.0, 1.0, 50)
+    assert again.body.half_width(x) == pytest.approx(run.body.half_width(x), abs=1e-4)
+    for name in run.energy.keys():  # noqa: SIM118
+        assert again.energy[name] == pytest.approx(run.energy[name], abs=1e-4 * np.abs(run.energy[name]).max() + 1e-6)
+    assert again.mean_speed == pytest.approx(run.mean_speed, rel=1e-3) and "Strouhal" in again.summary()
+    again.save(tmp_path / "run.nc")
+    assert Run.load(tmp_path / "run.nc") == again
+    known = Run.from_bag(tmp_path / "bag", body=run.body, scene=run.scene)
+    assert known.body is run.body and known.refined.position == pytest.approx(run.position, abs=1e-3)
+
+
+def test_what_the_bag_lacks_is_none_or_named(run, tmp_path):
+    bag = write_bag(tmp_path / "few", run, left_out=("internal_wrench", "energy", "hydrodynamic_load", "odom"))
+    few = Run.from_bag(bag)
+    assert few.torque is None and few.energy is None and few.fluid_force is None
+    assert not few.scene.internal_wrench and not few.scene.ledger and "mean speed" in few.summary()
+    bag = write_bag(tmp_path / "without", run, left_out=("backbone", "head_twist"))
+    with pytest.raises(ValueError, match=r"bag .*without' holds no run: there is no message on head_twist, backbone"):
+        Run.from_bag(bag)
+    bag = write_bag(tmp_path / "bodiless", run, left_out=("body", "curvature_law"))
+    with pytest.raises(ValueError, match="no message on body: give the body"), pytest.warns(UserWarning, match="law"):
+        Run.from_bag(bag)
+    with pytest.raises(ValueError, match="does not exist") as error:
+        Run.from_bag(tmp_path / "nowhere")
+    assert "\n" not in str(error.value)
+
+
+def test_a_reset_and_several_laws_are_told(run, tmp_path):
+    bag = write_bag(tmp_path / "bag", run, runs=2, laws=3)
+    with pytest.warns(UserWarning) as told:
+        again = Run.from_bag(bag)
+    assert again.time == pytest.approx(run.time, abs=1e-9)
+    words = [str(each.message) for each in told]
+    assert any("time falls back to 0 s" in line for line in words) and any("there are 3 laws" in line for line in words)
+
+
+def test_one_swimmer_of_a_namespace(run, tmp_path):
+    bag = write_bag(tmp_path / "bag", run, space="/eel2", first=40)
+    assert np.array_equal(Run.from_bag(bag, "eel2").position, run.position[40:])
+    with pytest.raises(ValueError, match="no swimmer in namespace 'eel3'"):
+        Run.from_bag(bag, "eel3")
+
+
+def test_a_law_is_moved_to_the_time_of_the_simulation(tmp_path):
+    run = simulate(straight(period=0.7), 1.5, sample_period=0.05, load=True, accuracy=1e-2)
+    law = Run.from_bag(write_bag(tmp_path / "bag", run, origin=1)).law
+    moved, own = law.curvature(1.9, run.x), run.law.curvature(0.9, run.x)
+    assert np.allclose(moved, own, rtol=1e-12, atol=1e-12)
