@@ -30,7 +30,7 @@ from eel_dynamics.model.body import Body
 from eel_dynamics.model.equality import same_fields
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.model.section_data import TRANSITION
-from eel_dynamics.runs.error_estimate import relative_errors
+from eel_dynamics.runs.companion import relative_errors
 from eel_dynamics.runs.run import Run, default_sample_period
 from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.studies.gradients.fixed_discretisation import fixed_steps, on_one_grid, step_of
