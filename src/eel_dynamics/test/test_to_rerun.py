@@ -106,7 +106,7 @@ def test_two_runs_are_laid_over_each_other(run, tmp_path):
     run.to_rerun(tmp_path / "both.rrd", other, blueprint="compare")
     distance = read(tmp_path / "both.rrd", entities.DISTANCE)
     np.testing.assert_array_equal(distance.time, np.round(run.time, 9))
-    expected = 1e3 * np.linalg.norm(run.position - other.position, axis=1)
+    expected = np.linalg.norm(run.position - other.position, axis=1)
     np.testing.assert_allclose(distance["scalars"][:, 0], expected, rtol=1e-9, atol=1e-12)
     assert expected.max() > 0.0
     text = read(tmp_path / "both.rrd", entities.COMPARE_TEXT)["text"][-1][0]

@@ -17,14 +17,13 @@ def setting(default, description: str, *, unit: str = "", minimum: float | None 
 
 
 SINKS = ("spawn", "connect", "serve", "save")
-BLUEPRINTS = ("overview", "torques", "motion", "compare")
+BLUEPRINTS = ("overview", "torques", "motion", "swimmer", "compare")
 
 
 @dataclass(frozen=True, kw_only=True)
 class Drawing:
     """What every node that draws has."""
 
-    colour_limit: float = setting(0.25, "torque C3 from which on colours are deepest", unit="N m", minimum=1e-9)
     load_scale: float = setting(0.06, "length of the arrow of a load of 1 N/m", unit="m^2/N", minimum=0.0)
     end_force_scale: float = setting(
         0.8, "length of the arrow of a force of 1 N at nose or tail", unit="m/N", minimum=0.0
@@ -43,6 +42,7 @@ class Drawing:
 class MarkerSettings(Drawing):
     """Parameters of the node `markers`, read at start. `ValueError` names one that does not fit."""
 
+    colour_limit: float = setting(0.25, "torque C3 from which on colours are deepest", unit="N m", minimum=1e-9)
     rate: float = setting(
         25.0, "markers and paths per second of wall time, at most", unit="Hz", minimum=0.1, maximum=1000.0
     )
@@ -70,7 +70,7 @@ class Settings(Drawing):
     )
     port: int = setting(9877, "port of the served data (gRPC)", minimum=1024, maximum=65535)
     web_port: int = setting(9090, "port of the served web viewer", minimum=1024, maximum=65535)
-    blueprint: str = setting("overview", "arrangement shown first: overview, torques, motion or compare")
+    blueprint: str = setting("overview", "arrangement shown first: overview, torques, motion, swimmer or compare")
     compare: str = setting(
         "",
         "namespace of another swimmer (/: the one without), laid over this one in the arrangement compare; empty: none",
@@ -91,11 +91,17 @@ class Settings(Drawing):
         "end a file with an index of what it holds, kept in memory until then: 1 MB for each 4 MB of file; without it "
         "memory stays as it is, and `rerun rrd optimize` adds the index",
     )
-    torque_limit: float = setting(
-        0.6, "torque at the plot's edge; grows if need be, like those below", unit="N m", minimum=1e-9
+    colour_limit: float = setting(
+        0.0,
+        "torque C3 from which on colours are deepest; 0, here and below: what fits the run so far",
+        unit="N m",
+        minimum=0.0,
     )
-    force_limit: float = setting(2.0, "force at the plot's edge", unit="N", minimum=1e-9)
-    curvature_limit: float = setting(5.0, "curvature at the plot's edge", unit="rad/m", minimum=1e-9)
+    torque_limit: float = setting(
+        0.0, "torque at the plot's edge; grows if need be, like those below", unit="N m", minimum=0.0
+    )
+    force_limit: float = setting(0.0, "force at the plot's edge", unit="N", minimum=0.0)
+    curvature_limit: float = setting(0.0, "curvature at the plot's edge", unit="rad/m", minimum=0.0)
     memory_limit: str = setting("1GiB", "memory that served data may take before the oldest are dropped")
     stop_with_publisher: bool = setting(
         False,

@@ -81,7 +81,7 @@ def test_differences_are_those_of_the_messages(made):
     path, logged = made
     distance = read(path, entities.DISTANCE)
     np.testing.assert_array_equal(distance.stamps, list(logged))
-    np.testing.assert_allclose(distance["scalars"][:, 0], 5.0, rtol=1e-9)  # mm
+    np.testing.assert_allclose(distance["scalars"][:, 0], 0.005, rtol=1e-9)  # m
     most = read(path, entities.TORQUE_DIFFERENCE_MOST)
     np.testing.assert_array_equal(most.stamps, list(logged))
     for k, (this, other) in enumerate(logged.values()):
@@ -114,7 +114,7 @@ def test_the_table_has_both_runs(made):
     text = read(path, entities.COMPARE_TEXT)["text"][-1][0]
     assert "| | standard | draft |" in text
     assert "| law | made up | another |" in text
-    assert "heads apart by at most **5 mm**" in text
+    assert "heads apart by at most **5.00 mm** so far" in text
 
 
 def test_the_order_of_the_two_does_not_matter(made, tmp_path):

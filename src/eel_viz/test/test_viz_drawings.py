@@ -6,7 +6,10 @@ import rerun as rr
 from eel_viz.batched_stream import BatchedStream
 from eel_viz.plots import heat_map, profile_plot
 from eel_viz.plots.heat_map import HeatMap
-from eel_viz.plots.profile_plot import ProfilePlot, grown_limit
+from eel_viz.plots.limit import Limit
+from eel_viz.plots.profile_plot import ProfilePlot
+from eel_viz.plots.readable import length, number
+from eel_viz.plots.series import Attitude
 from eel_viz.plots.state_text import Summary
 from eel_viz.recording.reading import read
 from eel_viz.scene3d import colours
@@ -39,14 +42,61 @@ def stream(tmp_path):
 
 @given(limit=st.floats(1e-3, 1e3), value=st.floats(1e-6, 1e6))
 def test_a_limit_grows_to_a_round_value_that_holds(limit, value):
-    grown = grown_limit(limit, value)
+    scale = Limit(limit)
+    scale.include(value)
+    grown = scale.value
     assert grown >= value * (1 - 1e-9)
     if value <= limit:
         assert grown == limit
     else:
         mantissa = grown / 10 ** np.floor(np.log10(grown) + 1e-12)
-        assert min(abs(mantissa - step) for step in (1, 2, 5, 10)) < 1e-9
-        assert grown <= 2.5 * value * (1 + 1e-9)
+        assert min(abs(mantissa - step) for step in (1, 1.5, 2, 3, 4, 5, 6, 8, 10)) < 1e-9
+        assert grown <= 1.5 * value * (1 + 1e-9)
+
+
+def test_a_limit_that_nobody_set_fits_the_first_values_and_a_set_one_may_stay():
+    fitted, kept = Limit(0.0), Limit(0.25, grows=False)
+    assert fitted.value == 1.0  # all values so far are zero
+    for scale in (fitted, kept):
+        scale.include(3.2e-6)
+    assert fitted.value == pytest.approx(4e-6) and kept.value == 0.25
+    kept.include(1.0)
+    assert kept.value == 0.25
+
+
+@pytest.mark.parametrize(
+    ("metres", "text"),
+    [
+        (0.0, "0 m"),
+        (1.7449, "1.74 m"),
+        (1740.4, "1,740 m"),
+        (0.0174, "17.4 mm"),
+        (9.19e-4, "919 µm"),
+        (2e-8, "0.0200 µm"),
+    ],
+)
+def test_lengths_are_read_without_powers_of_ten(metres, text):
+    assert length(metres) == text
+
+
+def test_numbers_are_read_without_powers_of_ten_where_that_can_be():
+    assert [number(value) for value in (130.4, 0.0339, 999.7, 1e-7, -2.5)] == [
+        "130",
+        "0.0339",
+        "1,000",
+        "1e-07",
+        "-2.50",
+    ]
+
+
+def test_heading_and_roll_go_on_over_whole_turns():
+    attitude, turned = Attitude(), []
+    for degrees in range(0, 1000, 30):
+        wrapped = (np.radians(degrees) + np.pi) % (2 * np.pi) - np.pi
+        turned.append(attitude.continued((wrapped, 0.1, -wrapped)))
+    np.testing.assert_allclose(np.array(turned)[:, 0], np.arange(0, 1000, 30), atol=1e-9)
+    np.testing.assert_allclose(np.array(turned)[:, 2], -np.arange(0, 1000, 30), atol=1e-9)
+    np.testing.assert_allclose(np.array(turned)[:, 1], np.degrees(0.1))
 
 
 def test_curves_are_drawn_in_the_frame_s_units(stream):
@@ -74,10 +124,10 @@ def test_nothing_leaves_the_frame_and_ticks_follow(stream):
     stream.disconnect()
     curves = read(stream.path, f"{entities.FORCE}/{entities.CURVES}")
     drawn = np.array([row[0][0][1] for row in curves["strips"]])
-    np.testing.assert_allclose(drawn, [-0.45, -0.3, -0.35, -0.005], atol=1e-7)
+    np.testing.assert_allclose(drawn, [-0.45, -0.4, -0.4375, -0.00625], atol=1e-7)
     ticks = read(stream.path, f"{entities.FORCE}/{entities.TICKS}")
     np.testing.assert_array_equal(ticks.stamps, [0, 1_000_000_000, 2_000_000_000])
-    assert [row[0] for row in ticks["labels"]] == ["+1", "+2", "+10"]
+    assert [row[0] for row in ticks["labels"]] == ["+1", "+1.5", "+8"]
 
 
 def test_the_envelope_is_the_least_and_the_greatest_so_far(stream):
@@ -112,7 +162,7 @@ def image(path):
 
 
 def test_the_heat_map_rolls_and_shows_gaps_by_the_next_value(stream):
-    drawing = HeatMap(stream, limit=1.0)
+    drawing = HeatMap(stream, limit=Limit(1.0))
     step = round(heat_map.STEP * 1e9)
     drawing.include(0, X, np.full(21, -1.0))
     drawing.include(step // 2, X, np.full(21, 0.7))  # the same column: left as it is
@@ -128,7 +178,7 @@ def test_the_heat_map_rolls_and_shows_gaps_by_the_next_value(stream):
 
 
 def test_the_heat_map_forgets_what_is_older_than_its_length(stream):
-    drawing = HeatMap(stream, limit=1.0)
+    drawing = HeatMap(stream, limit=Limit(1.0))
     drawing.include(0, X, np.full(21, 1.0))
     drawing.include(10**12, X, np.full(21, 0.0))
     drawing.draw(10**9)
@@ -171,6 +221,6 @@ def test_the_summary_counts_path_speed_and_greatest_torque():
     text = summary.text()
     assert "law **falling**, swimming" in text
     assert "mean speed **0.500 m/s**, path 2.00 m" in text
-    assert "greatest C3 **-0.700 N m** at X 0.50 m, 2.00 s" in text
+    assert "greatest C3 so far **-0.7 N m** at X = 0.50 m, 2.00 s" in text
     assert "accuracy standard, real-time factor 0, closure 1.23e-14" in text
     assert "warnings" not in text

@@ -6,7 +6,7 @@ import pytest
 from eel_viz.scene3d import camera
 from eel_viz.scene3d.centre_line import Resampling
 from eel_viz.scene3d.orientation import attitude, world_from_body, world_from_section
-from eel_viz.scene3d.skin import Skin
+from eel_viz.scene3d.skin import Flanks, Skin
 
 
 def about_z(angle):
@@ -148,12 +148,46 @@ def test_the_mesh_stays_when_the_number_of_stations_changes(skin):
 
 
 def test_the_camera_s_target_is_the_middle_of_the_picture_and_right_is_right():
-    np.testing.assert_allclose(camera.in_picture(camera.TARGET), (0.0, 0.0), atol=1e-15)
+    np.testing.assert_allclose(camera.in_picture(np.zeros(3)), (0.0, 0.0), atol=1e-15)
     np.testing.assert_allclose(camera.in_picture(camera.before_eye(2.0, 0.4, -0.6)), (0.2, -0.3), atol=1e-14)
-    ahead, up = camera.in_picture(camera.TARGET + np.array([(0.1, 0.0, 0.0), (0.0, 0.0, 0.1)]))
+    ahead, up = camera.in_picture(np.array([(0.1, 0.0, 0.0), (0.0, 0.0, 0.1)]))
     assert ahead[0] > 0  # swimming to +x is to the right
     assert up[1] > 0
     assert abs(up[0]) < 1e-15
+
+
+def test_the_least_radius_brings_the_last_point_to_the_edge_of_the_clear_part():
+    edges = camera.CLEAR
+    for point, axis, edge in (
+        ((3.0, -2.0, 0.1), 0, edges["right"]),
+        ((0.1, 0.1, 1.0), 1, edges["up"]),
+        ((0.1, 0.1, -1.0), 1, -edges["down"]),
+    ):
+        points = np.array([point, (0.0, 0.1, 0.0)])
+        seen = camera.in_picture(points / camera.least_radius(points))
+        np.testing.assert_allclose(seen[0, axis], edge, rtol=1e-12)
+
+
+def test_back_and_belly_differ_and_both_sides_are_alike(skin):
+    shades = skin.shades.reshape(len(skin.x), -1, 3).astype(int)
+    quarter = shades.shape[1] // 4
+    back, belly = shades[:, quarter], shades[:, 3 * quarter]
+    assert np.all(belly - back > 100)
+    np.testing.assert_array_equal(shades[:, 0], shades[:, 2 * quarter])
+
+
+def test_the_torque_layer_lies_just_outside_the_skin_on_both_flanks(skin):
+    geometry = made_up.body()
+    flanks = Flanks(geometry["x"], geometry["half_width"], geometry["half_height"])
+    around = flanks.place(*straight())[0].reshape(len(flanks.x), 6, 3)[1:]
+    width = np.interp(flanks.x[1:], geometry["x"], np.square(geometry["half_width"])) ** 0.5
+    sides = np.abs(around[:, (1, 4), 1])
+    np.testing.assert_allclose(sides, 1.05 * np.stack([width, width], axis=1), rtol=1e-4)
+    assert np.all(around[:, 1, 1] * around[:, 4, 1] < 0.0)
+    vertices, normals = (array.reshape(-1, 3) for array in flanks.place(*straight()))
+    corners = vertices[flanks.triangles.astype(int)]
+    facing = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    assert np.all(np.sum(facing * normals[flanks.triangles[:, 0].astype(int)], axis=1) > -1e-9)
 
 
 def test_the_camera_has_no_lag_behind_a_steady_motion_and_leaves_the_wiggle():

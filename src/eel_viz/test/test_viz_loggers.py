@@ -4,13 +4,14 @@ import made_up
 import numpy as np
 import pytest
 from eel_viz.plots import heat_map
-from eel_viz.recording.blueprint import arrangement
 from eel_viz.recording.reading import read
 from eel_viz.scene3d import camera
 from eel_viz.scene3d.colours import diverging, diverging_index
 from eel_viz.scene3d.orientation import attitude, world_from_section
-from eel_viz.scene3d.skin import Skin
+from eel_viz.scene3d.skin import Flanks, Skin
 from eel_viz.scene3d.track import LENGTH, PIECES, POINTS
+from eel_viz.scene3d.water import GRID, LABELS, WALLS
+from eel_viz.views.blueprint import arrangement
 from made_up_recording import body
 
 from eel_viz import entities
@@ -41,7 +42,7 @@ def made(tmp_path_factory):
     from made_up_recording import record
 
     path = tmp_path_factory.mktemp("made") / "made_up.rrd"
-    return path, record(path, 1.0, 100.0)
+    return path, record(path, 1.0, 100.0, colour_limit=0.25, torque_limit=0.6, force_limit=2.0, curvature_limit=5.0)
 
 
 def drawn_stamps(samples, rate=25.0):
@@ -125,34 +126,53 @@ def test_the_backbone_is_there_with_every_sample(made):
     np.testing.assert_allclose(columns["strips"][:, 0], expected, atol=SINGLE)
 
 
+def packed(shades):
+    """Colours (N, 3) as Rerun keeps them: one number each, opaque."""
+    red, green, blue = shades.astype(np.uint32).T
+    return (red << 24) + (green << 16) + (blue << 8) + 255
+
+
 def test_skin_and_frames_at_the_drawing_rate(made):
     path, samples = made
     stamps = drawn_stamps(samples)
     assert len(stamps) == 26
-    skin = Skin(body().x, body().half_width, body().half_height)
-    logged = read(path, entities.SKIN)
-    for name in ("vertex_positions", "vertex_normals", "vertex_colors"):
+    sections = body().x, body().half_width, body().half_height
+    skin, flanks = Skin(*sections), Flanks(*sections)
+    logged, layer = read(path, entities.SKIN), read(path, entities.TORQUE_LAYER)
+    for name in ("vertex_positions", "vertex_normals"):
         np.testing.assert_array_equal(logged.stamps_of[name], stamps)
-    triangles = read(path, entities.SKIN, static=True)["triangle_indices"][0]
-    np.testing.assert_array_equal(triangles, skin.triangles)
-    heads, tails, follow = (read(path, entity) for entity in (entities.HEAD, entities.TAIL, entities.FOLLOW))
-    followed = camera.FollowFilter()
+    np.testing.assert_array_equal(layer.stamps_of["vertex_colors"], stamps)
+    np.testing.assert_array_equal(
+        layer.stamps_of["vertex_positions"], stamps[1:]
+    )  # the backbone came before the torque
+    for path_of, surface in ((entities.SKIN, skin), (entities.TORQUE_LAYER, flanks)):
+        triangles = read(path, path_of, static=True)["triangle_indices"][0]
+        np.testing.assert_array_equal(triangles, surface.triangles)
+    fixed = np.array(read(path, entities.SKIN, static=True)["vertex_colors"][0], dtype=np.uint32)
+    np.testing.assert_array_equal(fixed, packed(skin.shades))
+    heads, tails, follow, whole = (
+        read(path, entity) for entity in (entities.HEAD, entities.TAIL, entities.FOLLOW, entities.WHOLE_PATH)
+    )
+    followed, path_frame = camera.FollowFrame(), camera.PathFrame()
     for k, stamp in enumerate(stamps):
         backbone = samples[stamp]["backbone"][0]
         vertices, normals = skin.place(backbone.x, backbone.position, backbone.orientation)
         np.testing.assert_allclose(logged["vertex_positions"][k], vertices, atol=SINGLE)
         np.testing.assert_allclose(logged["vertex_normals"][k], normals, atol=SINGLE)
         wrench = samples[stamp]["internal_wrench"][0]
-        shades = diverging(skin.spread(wrench.x, wrench.values["torque_3"]), 0.25).astype(np.uint32)
-        packed = (shades[:, 0] << 24) + (shades[:, 1] << 16) + (shades[:, 2] << 8) + 255
-        np.testing.assert_array_equal(np.array(logged["vertex_colors"][k], dtype=np.uint32), packed)
+        shades = diverging(flanks.spread(wrench.x, wrench.values["torque_3"]), 0.25)
+        np.testing.assert_array_equal(np.array(layer["vertex_colors"][k], dtype=np.uint32), packed(shades))
         pose = samples[stamp]["head_pose"][0]
         np.testing.assert_allclose(heads["translation"][k][0], pose.position, atol=SINGLE)
         np.testing.assert_allclose(heads["quaternion"][k][0], pose.orientation, atol=SINGLE)
         np.testing.assert_allclose(tails["translation"][k][0], backbone.position[-1], atol=SINGLE)
         np.testing.assert_allclose(tails["quaternion"][k][0], backbone.orientation[-1], atol=SINGLE)
-        middle = followed.follow(stamp, backbone.position.mean(axis=0))
-        np.testing.assert_allclose(follow["translation"][k][0], middle, atol=SINGLE)
+        for logged_frame, frame in (
+            (follow, followed.follow(stamp, backbone.position, 1.0)),
+            (whole, path_frame.include(backbone.position, 1.0)),
+        ):
+            np.testing.assert_allclose(logged_frame["translation"][k][0], frame[0], atol=SINGLE)
+            np.testing.assert_allclose(logged_frame["scale"][k][0], np.full(3, frame[1]), rtol=1e-6)
 
 
 def test_the_track_is_the_path_of_the_head_without_gaps(made):
@@ -228,7 +248,10 @@ def test_nothing_is_shown_that_no_test_compares_with_the_messages(made):
     compared = {*TIME_SERIES, *NUMBERS, entities.BACKBONE, entities.SKIN, entities.HEAD, entities.TAIL, entities.FOLLOW}
     compared |= {entities.TRACK, entities.TRAIL, entities.LOAD, entities.LOAD_ENDS, entities.HEAT_MAP_IMAGE}
     compared |= {f"{root}/{part}" for root in plots for part in (entities.CURVES, entities.ENVELOPE, entities.TICKS)}
-    compared |= {entities.GRID, entities.GRID_LABELS, entities.SHADOW, entities.RUN, entities.LOG}
+    compared |= {f"{root}/{part}" for root in (entities.WATER, entities.PATH_WATER) for part in (GRID, LABELS, WALLS)}
+    compared |= {entities.SHADOW, entities.RUN, entities.LOG, entities.TORQUE_LAYER, entities.WHOLE_PATH}
+    compared |= {f"{entities.LEGEND}/{part}" for part in ("bar", "labels", "arrows")}
+    compared.add(f"{entities.HEAT_MAP_FRAME}/labels")
     assert changing - {path for path in changing if path.startswith("/__")} == compared
 
 
@@ -250,37 +273,44 @@ def test_arrows_are_the_load_in_the_world(record_made_up):
         np.testing.assert_allclose(ends["origins"][k], backbone.position[[0, -1]], atol=SINGLE)
 
 
-def test_the_floor_stays_below_and_its_labels_say_where(record_made_up):
-    path, samples = record_made_up(10.0, 25.0)
-    grid = read(path, entities.GRID)
-    place = dict(zip(grid.stamps.tolist(), np.array(grid["translation"])[:, 0], strict=True))
-    follow = read(path, entities.FOLLOW)
-    middles = dict(zip(follow.stamps.tolist(), np.array(follow["translation"])[:, 0].astype(float), strict=True))
-    floor = None
-    for stamp, arguments in samples.items():
-        floor = place.get(stamp, floor)
-        position = arguments["backbone"][0].position
-        assert position[:, 2].min() - floor[2] >= 0.4
-        assert np.all(np.abs(middles[stamp][:2] - 0.5 - floor[:2]) <= 0.5 + SINGLE)
-    labels = read(path, entities.GRID_LABELS)
-    shown = {
-        stamp: (texts, points)
-        for stamp, texts, points in zip(labels.stamps.tolist(), labels["labels"], labels["positions"], strict=True)
-    }
-    present, floor, counts = ((), ()), None, []
-    for stamp, arguments in samples.items():
-        present, floor = shown.get(stamp, present), place.get(stamp, floor)
-        position = arguments["backbone"][0].position
-        seen = camera.in_picture(position - middles[stamp])
+@pytest.fixture(scope="module")
+def long_swim(tmp_path_factory):
+    from made_up_recording import record
+
+    path = tmp_path_factory.mktemp("long") / "long.rrd"
+    return path, record(path, 8.0, 25.0)
+
+
+@pytest.mark.parametrize(
+    ("root", "frame"), [(entities.WATER, entities.FOLLOW), (entities.PATH_WATER, entities.WHOLE_PATH)]
+)
+def test_the_water_encloses_the_swimmer_and_its_labels_say_where(long_swim, root, frame):
+    path, samples = long_swim
+    grid, labels, follow = (read(path, entity) for entity in (f"{root}/{GRID}", f"{root}/{LABELS}", frame))
+    boxes = dict(zip(grid.stamps.tolist(), grid["strips"], strict=True))
+    shown = dict(zip(labels.stamps.tolist(), zip(labels["labels"], labels["positions"], strict=True), strict=True))
+    box, present, counts = None, ((), ()), []
+    for stamp, middle, scale in zip(follow.stamps.tolist(), follow["translation"], follow["scale"], strict=True):
+        if stamp in boxes:
+            corners = np.array(boxes[stamp]).reshape(-1, 3)
+            box = corners.min(axis=0), corners.max(axis=0)
+        present = shown.get(stamp, present)
+        position = samples[stamp]["backbone"][0].position
+        assert np.all(position - box[0] > 0.2) and np.all(box[1] - position > 0.1)
+        centre, radius = np.array(middle[0], dtype=float), float(scale[0][0])
+        seen = camera.in_picture((position - centre) / radius)
         counts.append(len(present[0]))
         for text, point in zip(*present, strict=True):
-            assert point[2] == floor[2]
-            assert max(abs(point[0] - floor[0]), abs(point[1] - floor[1])) < 6
-            for axis, value in zip("xyz", point, strict=True):
-                assert f"{axis} " not in text or f"{axis} {value:.0f}" in text
-            distance = np.abs(camera.in_picture(np.array(point) - middles[stamp]) - seen)
+            kind, value, unit = text.split()
+            axis = ("x", "y", "depth").index(kind)
+            assert unit == "m" and float(value) == pytest.approx(
+                -point[2] if kind == "depth" else point[axis], abs=1e-6
+            )
+            place = camera.in_picture((np.array(point) - centre) / radius)
+            assert np.abs(place[0]) < 1.4 * camera.EDGE and np.abs(place[1]) < camera.EDGE
+            distance = np.abs(place - seen) if root == entities.WATER else np.ones((1, 2))
             assert not np.any((distance[:, 0] < 0.1) & (distance[:, 1] < 0.07)), "a label stands before the swimmer"
-    assert min(counts) >= 4
+    assert min(counts) >= 2 and np.mean(counts) > 4
 
 
 def test_stations_may_change_in_mid_run(record_made_up, tmp_path):
@@ -326,7 +356,7 @@ def test_the_order_of_topics_does_not_matter(tmp_path):
         paths.append(tmp_path / f"{name}.rrd")
     for entity, component in (
         (entities.LOAD, "vectors"),
-        (entities.SKIN, "vertex_colors"),
+        (entities.TORQUE_LAYER, "vertex_colors"),
         (entities.SKIN, "vertex_positions"),
         (entities.SPEED, "scalars"),
         (f"{entities.TORQUE}/curves", "strips"),
@@ -360,7 +390,9 @@ def test_the_recording_carries_its_blueprint(made):
 
     path, _ = made
     assert len(RrdReader(str(path)).blueprints()) == 1
-    with pytest.raises(ValueError, match="blueprint must be one of overview, torques, motion, compare, got 'best'"):
+    with pytest.raises(
+        ValueError, match="blueprint must be one of overview, torques, motion, swimmer, compare, got 'best'"
+    ):
         arrangement("best")
 
 

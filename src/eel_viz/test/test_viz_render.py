@@ -16,6 +16,7 @@ VIEWS = {
     "overview": {"3D": 1, "2D": 3, "TimeSeries": 3, "TextDocument": 1},
     "torques": {"3D": 1, "2D": 4},
     "motion": {"3D": 1, "TimeSeries": 5},
+    "swimmer": {"3D": 1},
     "compare": {"3D": 1, "2D": 2, "TimeSeries": 3, "TextDocument": 1},
 }
 
@@ -56,6 +57,18 @@ def test_a_picture_shows_the_swimmer_and_changes_with_time(can_draw, tmp_path):
         assert (red > 40).sum() > 300  # skin and path of the head
         assert (blue > 30).sum() > 3000  # water lines, skin
     assert (np.abs(pictures[0] - pictures[1]).sum(axis=2) > 60).sum() > 2000
+
+
+def test_a_bare_picture_is_the_view_alone_in_the_size_that_was_asked_for(can_draw, tmp_path):
+    from made_up_recording import record
+
+    record(tmp_path / "made_up.rrd", 2.0, 50.0)
+    for size in ((800, 450), (480, 360)):
+        with drawn(tmp_path / "made_up.rrd", size=size, bare=True) as drawing:
+            picture = pixels(drawing.png(1.5))
+        assert picture.shape == (size[1], size[0], 3)
+        edge = picture[:5].reshape(-1, 3)
+        assert (edge[:, 2] > edge[:, 0] + 10).mean() > 0.9  # water, no tabs
 
 
 def test_a_viewer_that_panics_is_one_line_that_says_what_to_install(tmp_path):

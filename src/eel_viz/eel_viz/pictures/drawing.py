@@ -5,6 +5,7 @@ the time is complete, unless it equals the previous picture: then it is verified
 """
 
 import contextlib
+import io
 import os
 import pathlib
 import subprocess
@@ -13,25 +14,34 @@ import time
 from collections.abc import Iterator
 
 from eel_gaits.wording import shown
+from PIL import Image
 
 from eel_viz.entities import TIMELINE
 from eel_viz.viewer import CannotRender, native_viewer, viewer
 
 LOADING_LIMIT = 60.0  # s until the recording must be open
 LOADED_CHECKS = 5  # checks in a row of a loaded recording, after which no more timelines are expected
+NOTICE = 2.5  # s after its start, for which a viewer shows a notice in the corner
 PICTURE_LIMIT = 90.0  # s until two screenshots must be equal
 SIZE = (1920, 1080)  # pixels
+FRAME = (8, 132)  # pixels, at least those of a window that a view alone does not fill: edges, tabs, title, time panel
 MAGIC = b"RRF"  # first bytes of a recording of any version
+ALONE = "swimmer"  # the arrangement of a bare picture
 LEAST, MOST = 64, 8192  # pixels of a window's side
 
 
 class Drawing:
-    """A recording that a viewer shows; `start` and `end` [s] are its first and last simulation time."""
+    """A recording that a viewer shows; `start` and `end` [s] are its first and last simulation time.
 
-    def __init__(self, client, path: pathlib.Path) -> None:
-        self._client, self._path = client, path
+    size: of bare pictures [pixels].
+    """
+
+    def __init__(self, client, path: pathlib.Path, size: tuple[int, int]) -> None:
+        self._client, self._path, self._size = client, path, size
+        self._started = time.monotonic()
         self.start, self.end = self._load()
         self._last = b""
+        self._view: str | None = None  # of which pictures are taken; None: of the whole window
 
     def png(self, at: float) -> bytes:
         """The picture at simulation time `at` [s] as PNG. `ValueError` if it lies outside the recording."""
@@ -40,14 +50,17 @@ class Drawing:
                 f"time must lie in the recording, {self.start:g} to {self.end:g} s ({self._path.name}), got {at:g}"
             )
         self._client.set_time(TIMELINE, duration=at, play_state="paused")
-        picture = self._client.take_screenshot() if self._last else b""
+        picture = self._screenshot() if self._last else b""
         if picture == self._last:  # the first, or perhaps not up to date
             picture = self._stable_picture()
         self._last = picture
-        return picture
+        return picture if self._view is None else _cropped(picture, self._size)
 
-    def arrange(self, name: str) -> None:
-        """Bring the arrangement `name` of the recording to the front. `ValueError` if there is none."""
+    def arrange(self, name: str, *, bare: bool = False) -> None:
+        """Bring the arrangement `name` of the recording to the front. `ValueError` if there is none.
+
+        bare: from now on, pictures show its first view alone, without the viewer's frame.
+        """
         blueprint = self._client.get_blueprint(of="recording").blueprint
         boxes = {
             path.strip("/"): part["ContainerBlueprint"]
@@ -62,8 +75,12 @@ class Drawing:
                 f"blueprint must be one of {', '.join(tabs) or 'none'} ({self._path.name}), got {shown(name)}"
             )
         root["active_tab"] = tabs[name]
+        self._view = _first_view(boxes, tabs[name]) if bare else None
         self._client.set_blueprint(blueprint, of="recording")
         self._last = b""
+
+    def _screenshot(self) -> bytes:
+        return self._client.take_screenshot(self._view)
 
     def _load(self) -> tuple[float, float]:
         self._client.open([str(self._path)])
@@ -86,26 +103,51 @@ class Drawing:
         before = b""
         while time.monotonic() < limit:
             time.sleep(0.2)
-            png = self._client.take_screenshot()
-            if png and png == before and not self._client.get_state().loading:
+            png = self._screenshot()
+            noticed = time.monotonic() - self._started < NOTICE
+            if png and png == before and not noticed and not self._client.get_state().loading:
                 return png
             before = png
         raise CannotRender(f"the viewer did not come to rest within {PICTURE_LIMIT:g} s")
 
 
-@contextlib.contextmanager
-def drawn(recording: str | os.PathLike[str], *, size: tuple[int, int] = SIZE, blueprint: str = "") -> Iterator[Drawing]:
-    """Open a `Drawing` of the file `recording` in a window of `size` pixels; `blueprint`: the arrangement in front.
+def _cropped(png: bytes, size: tuple[int, int]) -> bytes:
+    """The middle of the picture, of `size` [pixels]: a viewer's frame is not of the same height in every window."""
+    with Image.open(io.BytesIO(png)) as image:
+        if image.size == size:
+            return png
+        left, top = ((whole - part) // 2 for whole, part in zip(image.size, size, strict=True))
+        kept = io.BytesIO()
+        image.crop((left, top, left + size[0], top + size[1])).save(kept, format="PNG")
+    return kept.getvalue()
 
+
+def _first_view(boxes: dict[str, dict], path: str) -> str:
+    """The id of the first view in the container at `path`."""
+    kind, _, identifier = path.strip("/").partition("/")
+    if kind == "view":
+        return identifier
+    contents = boxes[path.strip("/")]["contents"]
+    return _first_view(boxes, contents if isinstance(contents, str) else contents[0])
+
+
+@contextlib.contextmanager
+def drawn(
+    recording: str | os.PathLike[str], *, size: tuple[int, int] = SIZE, blueprint: str = "", bare: bool = False
+) -> Iterator[Drawing]:
+    """Open a `Drawing` of the file `recording` with pictures of `size` pixels; `blueprint`: the arrangement in front.
+
+    bare: the pictures show the arrangement's first view alone; without `blueprint`, that of the swimmer.
     `ValueError` if the file is not a recording; `CannotRender` if the viewer cannot draw.
     """
     if not all(LEAST <= side <= MOST for side in size):
         raise ValueError(f"size must be {LEAST} to {MOST} pixels each way, got {size[0]}x{size[1]}")
     with contextlib.ExitStack() as stack:
         path = _readable(pathlib.Path(recording).resolve(), stack)
-        drawing = Drawing(stack.enter_context(viewer(size)), path)
-        if blueprint:
-            drawing.arrange(blueprint)
+        window = tuple(side + edge for side, edge in zip(size, FRAME, strict=True)) if bare else size
+        drawing = Drawing(stack.enter_context(viewer(window)), path, size)
+        if blueprint or bare:
+            drawing.arrange(blueprint or ALONE, bare=bare)
         yield drawing
 
 

@@ -10,6 +10,7 @@ from eel_gaits.wording import shown
 
 ANIMATIONS = (".gif", ".webp")
 FRAME = "frame_%05d.png"
+QUALITY = 60  # of a .webp
 FILMS = (".mp4", ".webm", ".mkv", ".mov", *ANIMATIONS)
 
 
@@ -18,11 +19,21 @@ def ffmpeg() -> str | None:
     return shutil.which("ffmpeg")
 
 
-def film(folder: str | os.PathLike[str], count: int, output: str | os.PathLike[str], *, fps: float) -> None:
+def check_quality(quality: int) -> None:
+    """`ValueError` if `quality` does not lie between 1 and 100."""
+    if not 1 <= quality <= 100:
+        raise ValueError(f"quality must be 1 to 100, got {quality}")
+
+
+def film(
+    folder: str | os.PathLike[str], count: int, output: str | os.PathLike[str], *, fps: float, quality: int = QUALITY
+) -> None:
     """Write the film `output` of the first `count` pictures `FRAME` in `folder`, of equal size, with `fps` per second.
 
-    `ValueError` for an unknown suffix, or if ffmpeg is needed and missing; `OSError` if writing fails.
+    quality: of a .webp, 1 (smallest file) to 100. `ValueError` for an unknown suffix or a quality outside that range,
+    or if ffmpeg is needed and missing; `OSError` if writing fails.
     """
+    check_quality(quality)
     path = pathlib.Path(output)
     if path.suffix not in FILMS:
         raise ValueError(f"film must end in one of {', '.join(FILMS)}, got {shown(str(output))}")
@@ -31,7 +42,7 @@ def film(folder: str | os.PathLike[str], count: int, output: str | os.PathLike[s
         raise ValueError(f"ffmpeg is not installed, which {path.suffix} needs; {' and '.join(ANIMATIONS)} do without")
     with replacing(path) as draft:
         if path.suffix in ANIMATIONS:
-            _animate([pathlib.Path(folder) / (FRAME % k) for k in range(count)], draft, fps)
+            _animate([pathlib.Path(folder) / (FRAME % k) for k in range(count)], draft, fps, quality)
         else:
             _encode(program, pathlib.Path(folder) / FRAME, count, draft, fps)
 
@@ -45,7 +56,7 @@ def _encode(program: str, pictures: pathlib.Path, count: int, path: pathlib.Path
         raise OSError(f"ffmpeg said: {' '.join(done.stderr.split())[-300:]}")
 
 
-def _animate(pictures: list[pathlib.Path], path: pathlib.Path, fps: float) -> None:
+def _animate(pictures: list[pathlib.Path], path: pathlib.Path, fps: float, quality: int) -> None:
     from PIL import Image
 
     def picture(name):
@@ -54,5 +65,10 @@ def _animate(pictures: list[pathlib.Path], path: pathlib.Path, fps: float) -> No
 
     first, *others = pictures
     picture(first).save(
-        path, save_all=True, append_images=(picture(name) for name in others), duration=1000 / fps, loop=0
+        path,
+        save_all=True,
+        append_images=(picture(name) for name in others),
+        duration=1000 / fps,
+        loop=0,
+        quality=quality,
     )

@@ -3,6 +3,7 @@
 render RUN.rrd -o picture.png                # --at 7.0: at another time
 render RUN.rrd -o frames/ --fps 30           # frames/frame_00000.png ..., and frames/film.mp4 where ffmpeg is
 render RUN.rrd -o swim.webp --fps 15 --size 960x540
+render RUN.rrd -o swim.webp --fps 15 --size 800x450 --bare    # the swimmer alone
 """
 
 import argparse
@@ -19,7 +20,7 @@ from eel_gaits.output_file import NotWritten, check_output, replacing
 from eel_gaits.wording import shown
 
 from eel_viz.pictures.drawing import SIZE, Drawing, drawn
-from eel_viz.pictures.film import ANIMATIONS, FILMS, FRAME, ffmpeg, film
+from eel_viz.pictures.film import ANIMATIONS, FILMS, FRAME, QUALITY, check_quality, ffmpeg, film
 from eel_viz.viewer import CannotRender
 
 NAME = "render"
@@ -35,12 +36,14 @@ def render(
     at: float | None = None,
     size: tuple[int, int] = SIZE,
     blueprint: str = "",
+    bare: bool = False,
 ) -> None:
-    """Write the PNG `picture` of `recording` at simulation time `at` [s] (None: after `DEFAULT_SHARE` of it).
+    """Write the PNG `picture` of `recording` at simulation time `at` [s]; None: after a `DEFAULT_SHARE`.
 
-    size: width and height [pixels]. blueprint: the arrangement shown; empty: the recording's first.
+    size: width and height [pixels]. blueprint: the arrangement shown; empty: the recording's first. bare: its first
+    view alone, without the viewer's frame; with an empty blueprint, the swimmer.
     """
-    with drawn(recording, size=size, blueprint=blueprint) as drawing:
+    with drawn(recording, size=size, blueprint=blueprint, bare=bare) as drawing:
         if at is None:
             at = drawing.start + DEFAULT_SHARE * (drawing.end - drawing.start)
         png = drawing.png(at)
@@ -106,9 +109,17 @@ def parser() -> Parser:
     made.add_argument(
         "--speed", type=float, default=1.0, metavar="X", help="simulated seconds in a second of the film (default 1)"
     )
+    made.add_argument(
+        "--quality", type=int, default=QUALITY, metavar="N", help="of a .webp, 1 to 100 (default %(default)s)"
+    )
     made.add_argument("--size", default=f"{SIZE[0]}x{SIZE[1]}", metavar="WxH", help="in pixels (default %(default)s)")
     made.add_argument(
         "--blueprint", default="", metavar="NAME", help="arrangement: overview, torques ... (default: the first)"
+    )
+    made.add_argument(
+        "--bare",
+        action="store_true",
+        help="the first view of the arrangement alone, without the viewer's frame (default arrangement: swimmer)",
     )
     return made
 
@@ -146,6 +157,7 @@ def _draw(chosen: argparse.Namespace, output: pathlib.Path, size: tuple[int, int
     many = chosen.fps is not None
     if many:
         _check_positive(fps=chosen.fps, speed=chosen.speed)
+        check_quality(chosen.quality)
     alone = many and output.suffix in FILMS
     if alone and output.suffix not in ANIMATIONS and ffmpeg() is None:
         raise ValueError(f"ffmpeg is not installed, which {output.suffix} needs; {' and '.join(ANIMATIONS)} do without")
@@ -153,10 +165,10 @@ def _draw(chosen: argparse.Namespace, output: pathlib.Path, size: tuple[int, int
         raise ValueError(f"a picture must end in .png, got {shown(str(output))}; --fps N makes many in a folder")
     _check_writable(output, folder=many and not alone)
     if not many:
-        render(chosen.recording, output, at=chosen.at, size=size, blueprint=chosen.blueprint)
+        render(chosen.recording, output, at=chosen.at, size=size, blueprint=chosen.blueprint, bare=chosen.bare)
         return
     with contextlib.ExitStack() as stack:
-        drawing = stack.enter_context(drawn(chosen.recording, size=size, blueprint=chosen.blueprint))
+        drawing = stack.enter_context(drawn(chosen.recording, size=size, blueprint=chosen.blueprint, bare=chosen.bare))
         at = times(drawing, fps=chosen.fps, start=chosen.start, end=chosen.end, speed=chosen.speed)
         folder = output
         if alone:
@@ -169,7 +181,7 @@ def _draw(chosen: argparse.Namespace, output: pathlib.Path, size: tuple[int, int
         name = output if alone else folder / FILM
         print(f"{len(written)} pictures" + ("" if alone else f" in {folder}"))
         if alone or ffmpeg() is not None:
-            film(folder, len(written), name, fps=chosen.fps)
+            film(folder, len(written), name, fps=chosen.fps, quality=chosen.quality)
             print(f"film {name}, {len(written) / chosen.fps:.3g} s")
         else:
             print(f"no film, for ffmpeg is not installed: ffmpeg -framerate {chosen.fps:g} -i "

@@ -4,6 +4,7 @@ The other swimmer is drawn as hoops around this one, so that both can be seen wh
 run's value minus the other's, at this run's stamps and stations (see `pairs`).
 """
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 
 import numpy as np
@@ -14,13 +15,16 @@ from eel_viz.batched_stream import BatchedStream
 from eel_viz.messages import Backbone, Body, Pose, Profiles, Status, Twist
 from eel_viz.plots.pairs import Pairs
 from eel_viz.plots.profile_plot import ProfilePlot
+from eel_viz.plots.readable import length, number
 from eel_viz.plots.state_text import Summary
 from eel_viz.scene3d import colours
+from eel_viz.scene3d.camera import FollowFrame
 from eel_viz.scene3d.skin import Skin
+from eel_viz.scene3d.swimmer_scene import log_frame
+from eel_viz.scene3d.water import WaterBox
 
 HOOPS, SIDES = 24, 16
-LEAST = 1e-6  # N m: first limit of the torque's difference, which then grows
-SUMMARY_PERIOD = 500_000_000  # ns
+SUMMARY_PERIOD = 200_000_000  # ns
 
 Due = Callable[[str, int, int], bool]
 
@@ -35,7 +39,8 @@ class Comparison:
     def __init__(self, stream: BatchedStream, *, names: tuple[str, str], limit: float, due: Due, drawings: int):
         self._stream, self._due, self._drawings, self.names = stream, due, drawings, names
         self._heads, self._torques = Pairs(), Pairs()
-        self.this, self.other = ThisSide(self), OtherSide(self, stream, lambda stamp: due("other", stamp, drawings))
+        self.this = ThisSide(self, lambda stamp: due("both", stamp, drawings))
+        self.other = OtherSide(self, stream, lambda stamp: due("other", stamp, drawings))
         self._both = ProfilePlot(
             stream,
             entities.COMPARED_TORQUE,
@@ -50,12 +55,13 @@ class Comparison:
             entities.TORQUE_DIFFERENCE,
             names=("C1", "C2", "C3"),
             unit="N m",
-            limit=LEAST,
+            limit=0.0,
         )
         self._farthest = self._worst = self._greatest = 0.0
+        self._frame, self._water = FollowFrame(), WaterBox(stream, entities.BOTH_WATER)
         for path, name, colour in (
-            (entities.OTHER_SPEED, f"{names[1]} [m/s]", colours.AMBER),
-            (entities.DISTANCE, "distance [mm]", colours.MAGENTA),
+            (entities.OTHER_SPEED, names[1], colours.AMBER),
+            (entities.DISTANCE, "distance [m]", colours.MAGENTA),
             (entities.TORQUE_DIFFERENCE_MOST, "greatest over X [N m]", colours.MAGENTA),
         ):
             stream.log_static(path, rr.SeriesLines(names=[name], colors=[colour], widths=[1.5]))
@@ -69,7 +75,16 @@ class Comparison:
                 self._stream.log(stamp, entities.COMPARE_TEXT, rr.TextDocument(self.text(), media_type="text/markdown"))
             distance = float(np.linalg.norm(this - other))
             self._farthest = max(self._farthest, distance)
-            self._stream.add_scalars(stamp, entities.DISTANCE, [1e3 * distance])
+            self._stream.add_scalars(stamp, entities.DISTANCE, [distance])
+
+    def move_camera(self, stamp: int) -> None:
+        """Keep both swimmers in the picture, at `stamp` [ns]; the other at its last place."""
+        last = [side.line for side in (self.this, self.other) if side.line is not None]
+        positions = np.concatenate([backbone.position for backbone in last])
+        body_length = max(float(backbone.x[-1] - backbone.x[0]) for backbone in last)
+        frame = self._frame.follow(stamp, positions, body_length)
+        log_frame(self._stream, stamp, entities.BOTH, *frame)
+        self._water.draw(stamp, *frame, positions)
 
     def torques(self, pairs: list[tuple]) -> None:
         """Log C3 of both runs and the differences of C1, C2, C3 for each complete pair of torques, (M, 3) [N m]."""
@@ -92,22 +107,23 @@ class Comparison:
     def text(self) -> str:
         """Markdown: the greatest differences, and the figures of both runs side by side."""
         columns = [side.summary.figures() for side in (self.this, self.other)]
-        lines = [f"heads apart by at most **{1e3 * self._farthest:.3g} mm**  "]
+        lines = [f"heads apart by at most **{length(self._farthest)}** so far  "]
         if self._greatest:
-            share = 100.0 * self._worst / self._greatest
-            lines.append(f"torques by at most **{self._worst:.2g} N m**, {share:.2g} % of the greatest")
+            share = number(100.0 * self._worst / self._greatest)
+            lines.append(f"torques by at most **{number(self._worst)} N m**, {share} % of the greatest")
         lines += ["", f"| | {self.names[0]} | {self.names[1]} |", "|---|---|---|"]
         for key in columns[1] | columns[0]:
             lines.append(f"| {key} | " + " | ".join(column.get(key, "") for column in columns) + " |")
         return "\n".join(lines)
 
 
-class Side:
+class Side(ABC):
     """The messages that are logged alike for both runs."""
 
     def __init__(self, comparison: Comparison) -> None:
         self._comparison = comparison
         self.summary = Summary()
+        self.line: Backbone | None = None  # the last backbone
 
     def law(self, stamp: int, name: str) -> None:
         """Take the law's name."""
@@ -127,12 +143,23 @@ class Side:
         torque = wrench.together("torque_1", "torque_2", "torque_3")
         self._comparison.torques(self._pair(self._comparison._torques, stamp, torque, wrench.x))
 
+    @abstractmethod
     def _pair(self, pairs: Pairs, *sample) -> list[tuple]:
-        raise NotImplementedError
+        """Add a sample of this side; returns the complete pairs."""
 
 
 class ThisSide(Side):
     """The run that the rest of the recording shows."""
+
+    def __init__(self, comparison: Comparison, due: Callable[[int], bool]) -> None:
+        super().__init__(comparison)
+        self._due = due
+
+    def backbone(self, stamp: int, backbone: Backbone) -> None:
+        """Take the line, and move the camera."""
+        self.line = backbone
+        if self._due(stamp):
+            self._comparison.move_camera(stamp)
 
     def _pair(self, pairs: Pairs, *sample) -> list[tuple]:
         return pairs.add_this(*sample)
@@ -163,6 +190,7 @@ class OtherSide(Side):
 
     def backbone(self, stamp: int, backbone: Backbone) -> None:
         """Log line and hoops."""
+        self.line = backbone
         if not self._due(stamp):
             return
         line = backbone.position[None].astype(np.float32)

@@ -1,6 +1,7 @@
 """A heat map of one profile over abscissa and time: the last seconds, the present at the right, the head at the top.
 
-It is a rolling image of palette indices (one byte each) with one column per `STEP` seconds, axes and a colour bar.
+It is a rolling image of palette indices (one byte each) with one column per `STEP` seconds, axes and a colour bar. When
+the limit of the colours grows, all columns change.
 """
 
 from itertools import pairwise
@@ -10,6 +11,7 @@ import rerun as rr
 
 from eel_viz import entities
 from eel_viz.batched_stream import BatchedStream
+from eel_viz.plots.limit import Limit
 from eel_viz.scene3d import colours
 
 COLUMNS = 200
@@ -23,14 +25,15 @@ BOUNDS_Y = (-3.0, ROWS + 9.0)
 class HeatMap:
     """Keeps the columns and logs the image; `limit` is the value of the deepest colour."""
 
-    def __init__(self, stream: BatchedStream, *, limit: float) -> None:
+    def __init__(self, stream: BatchedStream, *, limit: Limit) -> None:
         self._stream, self._limit = stream, limit
-        self._pixels = np.full((ROWS, COLUMNS), NO_DATA, dtype=np.uint8)
+        self._values = np.full((ROWS, COLUMNS), np.nan, dtype=np.float32)
         self._last: int | None = None
         palette = [rr.AnnotationInfo(id=NO_DATA, color=(24, 27, 31))]
         palette += [rr.AnnotationInfo(id=k, color=tuple(int(c) for c in colours.DIVERGING[k])) for k in range(1, 256)]
         stream.log_static(entities.HEAT_MAP, rr.AnnotationContext(palette))
-        self._length: float | None = None
+        self._length = 0.0  # m
+        self._labelled: tuple[float, float] | None = None
         self._draw_bar()
 
     def include(self, stamp: int, x: np.ndarray, values: np.ndarray) -> None:
@@ -38,20 +41,24 @@ class HeatMap:
         column = int((stamp + 1000) // int(STEP * 1e9))
         if self._last is not None and column <= self._last:
             return
-        if self._length != x[-1]:
-            self._length = float(x[-1])
-            self._draw_labels(self._length)
+        self._length = float(x[-1])
         shift = COLUMNS if self._last is None else min(column - self._last, COLUMNS)
-        self._pixels[:, :-shift] = self._pixels[:, shift:].copy()
+        self._values[:, :-shift] = self._values[:, shift:].copy()
         rows = np.interp(np.linspace(0.0, x[-1], ROWS), x, values)
-        fresh = np.maximum(colours.diverging_index(rows, self._limit), 1)
-        self._pixels[:, -shift:] = NO_DATA if self._last is None else fresh[:, None]
-        self._pixels[:, -1] = fresh
+        self._values[:, -shift:] = np.nan if self._last is None else rows[:, None]
+        self._values[:, -1] = rows
         self._last = column
 
     def draw(self, stamp: int) -> None:
-        """Log the image at `stamp` [ns]."""
-        self._stream.log(stamp, entities.HEAT_MAP_IMAGE, rr.SegmentationImage(self._pixels, draw_order=0.0))
+        """Log the image at `stamp` [ns], and the labels when they change."""
+        labelled = (self._length, self._limit.value)
+        if labelled != self._labelled:
+            self._labelled = labelled
+            self._draw_labels(stamp, *labelled)
+        known = np.isfinite(self._values)
+        pixels = np.maximum(colours.diverging_index(np.where(known, self._values, 0.0), self._limit.value), 1)
+        image = np.where(known, pixels, NO_DATA).astype(np.uint8)
+        self._stream.log(stamp, entities.HEAT_MAP_IMAGE, rr.SegmentationImage(image, draw_order=0.0))
 
     def _draw_bar(self) -> None:
         bar = np.linspace(0, ROWS, 65)
@@ -63,7 +70,7 @@ class HeatMap:
             rr.LineStrips2D(steps, colors=shades, radii=(right - left) / 2),
         )
 
-    def _draw_labels(self, length: float) -> None:
+    def _draw_labels(self, stamp: int, length: float, limit: float) -> None:
         rise, right = 4.2, COLUMNS + 8.0
         places = [
             (-9.0, 2.5 - rise),
@@ -73,11 +80,12 @@ class HeatMap:
             (right + 9.0, ROWS / 2 - rise),
         ]
         places += [(right + 9.0, ROWS - 2.5 - rise)]
-        texts = ["head 0", f"X {length / 2:.3g} m", f"tail {length:.3g}", f"+{self._limit:g}", "0", f"-{self._limit:g}"]
+        texts = ["head 0", f"X {length / 2:.3g} m", f"tail {length:.3g}", f"+{limit:g}", "0", f"-{limit:g}"]
         span = COLUMNS * STEP
         places += [(COLUMNS * k / 4, ROWS + 4.5 - rise) for k in range(5)]
         texts += [f"-{span * (1 - k / 4):g} s" for k in range(4)] + ["now"]
-        self._stream.log_static(
+        self._stream.log(
+            stamp,
             f"{entities.HEAT_MAP_FRAME}/labels",
             rr.Points2D(
                 places,

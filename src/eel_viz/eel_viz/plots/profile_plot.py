@@ -2,7 +2,7 @@
 
 Rerun only plots against time. So the plot is made of lines in a two-dimensional view, whose axes share one scale and
 whose y points down: drawn x = WIDTH * X / length, drawn y = -value / (2 limit). If a value exceeds the limit, the limit
-grows to the next of 1, 2, 5, 10 ..., and the ticks with it.
+grows to the next round number, and the ticks with it.
 """
 
 import numpy as np
@@ -10,20 +10,21 @@ import rerun as rr
 
 from eel_viz import entities
 from eel_viz.batched_stream import BatchedStream
+from eel_viz.plots.limit import Limit
 from eel_viz.scene3d import colours
 from eel_viz.stations import same
 
 WIDTH = 5.2
 LABEL_RISE = 0.085  # a label hangs below its point
-BOUNDS_X = (-0.42, WIDTH + 0.18)
+BOUNDS_X = (-0.5, WIDTH + 0.18)
 BOUNDS_Y = (-0.79, 0.79)
 
 
 class ProfilePlot:
     """Draws up to three profiles into the entities below `root` of a recording.
 
-    names: of the curves (C1, C2, C3), from back to front. unit: of the values. limit: the value > 0 at the upper edge
-    at first. palette: colours of the curves. widths: of the curves [pixels].
+    names: of the curves (C1, C2, C3), from back to front. unit: of the values. limit: the value at the upper edge at
+    first; 0: what fits the values so far. palette: colours of the curves. widths: of the curves [pixels].
     """
 
     def __init__(
@@ -38,12 +39,17 @@ class ProfilePlot:
         widths: tuple[float, ...] = (1.4,),
     ):
         self._stream, self._root, self._names, self._unit = stream, root, names, unit
-        self.limit = limit
+        self._limit = Limit(limit)
         self._palette, self._widths = palette, widths
         self._ticks: tuple[float, float] | None = None
         self._x: np.ndarray | None = None
         self._low = self._high = np.empty(0)
         self._draw_frame()
+
+    @property
+    def limit(self) -> float:
+        """The value at the upper edge."""
+        return self._limit.value
 
     def include(self, x: np.ndarray, values: np.ndarray) -> None:
         """Extend the envelope and the limit by `values`, (M, n) at stations `x` (M,) [m]."""
@@ -52,7 +58,7 @@ class ProfilePlot:
         else:
             np.minimum(self._low, values, out=self._low)
             np.maximum(self._high, values, out=self._high)
-        self.limit = grown_limit(self.limit, float(np.max(np.abs(values))))
+        self._limit.include(float(np.max(np.abs(values))))
 
     def draw(self, stamp: int, x: np.ndarray, values: np.ndarray) -> None:
         """Draw the curves of `values`, (M, n) at stations `x` (M,) [m], at `stamp` [ns]."""
@@ -96,27 +102,19 @@ class ProfilePlot:
             f"{self._root}/{entities.ENVELOPE}",
             rr.LineStrips2D.from_fields(colors=behind * 2, radii=rr.Radius.ui_points(0.7), draw_order=20.0),
         )
-        widths = [0.16 + 0.075 * len(name) for name in self._names]
-        starts = 0.26 - widths[0] / 2 + np.cumsum([0.0, *widths[:-1]])
+        widths = [0.16 + 0.095 * len(name) for name in self._names]
+        starts = 0.08 + np.cumsum([0.0, *widths[:-1]])
         keys = [(start + width / 2, -0.62 - LABEL_RISE) for start, width in zip(starts, widths, strict=True)]
         log(f"{self._root}/{entities.KEY}", _labels(keys, list(self._names), palette))
 
     def _draw_ticks(self, stamp: int, length: float) -> None:
-        places = [(-0.2, -y - LABEL_RISE) for y in (0.5, 0.0, -0.5)]
+        places = [(-0.26, -y - LABEL_RISE) for y in (0.5, 0.0, -0.5)]
         texts = [f"{y * self.limit:+.3g}" if y else "0" for y in (1.0, 0.0, -1.0)]
         places += [(WIDTH * k / 5, 0.585 - LABEL_RISE) for k in range(6)]
         texts += [f"{length * k / 5:.3g}" for k in range(6)]
         places.append((WIDTH * 0.88, -0.62 - LABEL_RISE))
         texts.append(f"[{self._unit}] over X [m]")
         self._stream.log(stamp, f"{self._root}/{entities.TICKS}", _labels(places, texts, [colours.LABEL] * len(texts)))
-
-
-def grown_limit(limit: float, value: float) -> float:
-    """`limit`, or the first of 1, 2, 5, 10, 20 ... times a power of ten that is not below `value`."""
-    if value <= limit:
-        return limit
-    decade = 10.0 ** np.floor(np.log10(value))
-    return next(float(step * decade) for step in (1.0, 2.0, 5.0, 10.0) if step * decade >= value * (1 - 1e-12))
 
 
 def _labels(places: list, texts: list[str], palette: list | tuple) -> rr.Points2D:

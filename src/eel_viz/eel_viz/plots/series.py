@@ -1,5 +1,6 @@
-"""The time series: names and colours of each entity's values, in order."""
+"""The time series: names and colours of each entity's values, in order; the attitude without jumps."""
 
+import numpy as np
 import rerun as rr
 
 from eel_viz import entities
@@ -27,3 +28,18 @@ def log_styles(stream: BatchedStream) -> None:
     for path, lines in SERIES.items():
         names, shades = zip(*lines, strict=True)
         stream.log_static(path, rr.SeriesLines(names=names, colors=shades, widths=[1.5] * len(names)))
+
+
+class Attitude:
+    """Heading, pitch and roll; heading and roll continue over whole turns, without jumps of 360 degrees."""
+
+    def __init__(self) -> None:
+        self._last: np.ndarray | None = None  # deg, (3,)
+
+    def continued(self, angles: tuple[float, float, float]) -> np.ndarray:
+        """Heading, pitch and roll [deg], (3,), from those of `attitude` [rad]."""
+        degrees = np.degrees(angles)
+        if self._last is not None:
+            degrees -= 360.0 * np.round((degrees - self._last) / 360.0)
+        self._last = degrees
+        return degrees

@@ -8,6 +8,7 @@ import re
 import numpy as np
 
 from eel_viz.messages import Body
+from eel_viz.plots.readable import number
 
 MAXIMUM_AGE = 2_000_000_000  # ns: older diagnostics are not shown as the present state
 LABELS = {  # key of the diagnostics: its label
@@ -90,10 +91,10 @@ class Summary:
         if self._last is not None and self._first is not None:
             seconds = (self._last[0] - self._first[0]) / 1e9
             mean = self._path / seconds if seconds > 0 else 0.0
-            lines.append(f"mean speed **{mean:.3f} m/s**, path {self._path:.2f} m")
+            lines.append(f"until {self._last[0] / 1e9:.1f} s: mean speed **{mean:.3f} m/s**, path {self._path:.2f} m")
         torque, x, stamp = self._peak
         if torque:
-            lines.append(f"greatest C3 **{torque:+.3f} N m** at X {x:.2f} m, {stamp / 1e9:.2f} s")
+            lines.append(f"greatest C3 so far **{torque:+.3g} N m** at X = {x:.2f} m, {stamp / 1e9:.2f} s")
         if self.body is not None:
             lines.append(f"body {self.body.length:.3g} m, {self.body.mass:.4g} kg")
         return "  \n".join(line for line in lines if line)
@@ -121,6 +122,6 @@ def plain(name: str, longest: int = LONGEST_NAME) -> str:
 def _short(value: str) -> str:
     """Numbers to three digits; other texts unchanged."""
     try:
-        return f"{float(value):.3g}"
+        return number(float(value))
     except ValueError:
         return plain(value, LONGEST_TEXT)

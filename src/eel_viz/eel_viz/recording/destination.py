@@ -3,14 +3,15 @@
 import contextlib
 import pathlib
 import threading
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 
 import rerun as rr
 import rerun.blueprint as rrb
 
-from eel_viz.recording.blueprint import arrangement
 from eel_viz.recording.loggers import Rates
 from eel_viz.settings import Settings
+from eel_viz.views.blueprint import arrangement
 
 APPLICATION = "eel"  # Rerun's application id
 CLOSE_TIMEOUT = 3.0  # s for the last flush of a stream
@@ -18,7 +19,7 @@ CLOSE_TIMEOUT = 3.0  # s for the last flush of a stream
 LogFunction = Callable[[str], None]
 
 
-class Destination:
+class Destination(ABC):
     """Opens and closes the streams of recordings.
 
     rates: how often numbers and drawings are logged. log_info, log_warning: write one line to the user.
@@ -65,9 +66,11 @@ class Destination:
 
     def abort(self, stream: rr.RecordingStream) -> None:
         """Handle a stream whose file can no longer be written."""
+        return
 
     def discard(self) -> None:
         """After an error: discard the recordings that are not complete."""
+        return
 
     def disconnected(self) -> bool:
         """Whether the receiver of open streams has gone, so that they must be given up."""
@@ -80,6 +83,7 @@ class Destination:
 
     def close(self) -> None:
         """Close what outlives the recordings, such as a server."""
+        return
 
     def _batcher_config(self) -> rr.ChunkBatcherConfig:
         """How Rerun batches data before it sends them."""
@@ -90,8 +94,9 @@ class Destination:
             self.settings.blueprint, live=self.live, compare=bool(self.settings.compare), frames=self.settings.frames
         )
 
+    @abstractmethod
     def _sink(self, number: int) -> rr.FileSink | rr.GrpcSink | None:
-        raise NotImplementedError
+        """The sink of recording `number`; None if it cannot be opened now."""
 
 
 def close_stream(stream: rr.RecordingStream) -> None:

@@ -36,6 +36,9 @@ class CallerStream(Destination):
         """Flush the stream."""
         stream.flush()
 
+    def _sink(self, number: int) -> None:
+        """None: the caller has set the sinks of the stream."""
+
 
 def to_rerun(
     target: str | os.PathLike[str] | rr.RecordingStream,

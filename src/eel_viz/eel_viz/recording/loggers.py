@@ -16,22 +16,19 @@ from eel_viz.batched_stream import BatchedStream
 from eel_viz.messages import Backbone, Body, Load, Pose, Profiles, Status, Twist
 from eel_viz.plots.comparison import Comparison
 from eel_viz.plots.heat_map import HeatMap
+from eel_viz.plots.limit import Limit
 from eel_viz.plots.profile_plot import ProfilePlot
-from eel_viz.plots.series import log_styles
+from eel_viz.plots.series import Attitude, log_styles
 from eel_viz.plots.state_text import Summary
 from eel_viz.scene3d import colours
-from eel_viz.scene3d.arrows import Arrows
-from eel_viz.scene3d.camera import FollowFilter
 from eel_viz.scene3d.orientation import attitude
-from eel_viz.scene3d.skin import Skin
-from eel_viz.scene3d.surroundings import Water, log_legend
-from eel_viz.scene3d.track import Track
+from eel_viz.scene3d.swimmer_scene import SwimmerScene
 from eel_viz.settings import Settings
 from eel_viz.stations import same
 
 ENVELOPE_PERIOD = 500_000_000  # ns
 HEAT_MAP_PERIOD = 200_000_000
-SUMMARY_PERIOD = 500_000_000
+SUMMARY_PERIOD = 200_000_000
 LOG_NAMES = reprlib.Repr()
 LOG_NAMES.maxstring = 220  # characters of a law's name, which is not checked before
 LEVELS = ("INFO", "WARN", "ERROR", "WARN")
@@ -57,39 +54,25 @@ class Loggers:
 
     def __init__(self, recording: rr.RecordingStream, settings: Settings, rates: Rates, name: str = "eel") -> None:
         self._stream = stream = BatchedStream(recording, tick=rates.tick)
-        self._settings = settings
         self._number_period = _period(rates.numbers)
         self._drawing_period = _period(rates.drawings)
         self._slots: dict[str, int] = {}
         self._stations: dict[str, np.ndarray] = {}
-        self._skin: Skin | None = None
         self._statuses: dict[str, tuple[int, str]] = {}
         self.summary = Summary()
-        stream.log_static(entities.WORLD, rr.ViewCoordinates.RIGHT_HAND_Z_UP)
-        self._camera = FollowFilter()
-        self._water = Water(stream)
-        self._track = Track(stream)
-        self._torque = ProfilePlot(
-            stream, entities.TORQUE, names=("C1", "C2", "C3"), unit="N m", limit=settings.torque_limit
+        self._attitude = Attitude()
+        self._scene = SwimmerScene(stream, load_scale=settings.load_scale, end_scale=settings.end_force_scale)
+        self._torque, self._force, self._curvature = (
+            ProfilePlot(stream, path, names=names, unit=unit, limit=limit, palette=colours.AXIS[3 - len(names) :])
+            for path, names, unit, limit in (
+                (entities.TORQUE, ("C1", "C2", "C3"), "N m", settings.torque_limit),
+                (entities.FORCE, ("N1", "N2", "N3"), "N", settings.force_limit),
+                (entities.CURVATURE, ("K2", "K3"), "rad/m", settings.curvature_limit),
+            )
         )
-        self._force = ProfilePlot(
-            stream, entities.FORCE, names=("N1", "N2", "N3"), unit="N", limit=settings.force_limit
-        )
-        self._curvature = ProfilePlot(
-            stream,
-            entities.CURVATURE,
-            names=("K2", "K3"),
-            unit="rad/m",
-            limit=settings.curvature_limit,
-            palette=colours.AXIS[1:],
-        )
-        self._heat_map = HeatMap(stream, limit=settings.colour_limit)
-        log_legend(stream, limit=settings.colour_limit, unit="N m", name="C3")
-        self._arrows = Arrows(stream, load_scale=settings.load_scale, end_scale=settings.end_force_scale)
+        self._colour_limit = Limit(settings.colour_limit, grows=not settings.colour_limit)
+        self._heat_map = HeatMap(stream, limit=self._colour_limit)
         log_styles(stream)
-        stream.log_static(entities.BACKBONE, rr.LineStrips3D.from_fields(colors=[colours.LABEL], radii=[0.0004]))
-        for path in (entities.HEAD, entities.TAIL):
-            stream.log_static(path, rr.TransformAxes3D(0.12))
         self._comparison: Comparison | None = None
         if settings.compare:
             self._comparison = Comparison(
@@ -118,11 +101,10 @@ class Loggers:
     # --- the swimmer ---------------------------------------------------------------------------------------------
     def body(self, body: Body) -> None:
         """Log the geometry, valid at all times."""
-        self._skin = Skin(body.x, body.half_width, body.half_height)
+        self._scene.body(body)
         self.summary.body = body
         if self._comparison:
             self._comparison.this.summary.body = body
-        self._stream.log_static(entities.SKIN, rr.Mesh3D.from_fields(triangle_indices=self._skin.triangles))
         values = {name: getattr(body, name) for name in ("length", "mass", "x", "half_width", "half_height")}
         self._stream.log_static(entities.BODY_NUMBERS, rr.DynamicArchetype("BodyGeometry", components=values))
 
@@ -135,11 +117,10 @@ class Loggers:
             scalars = self._stream.add_scalars
             scalars(stamp, entities.POSITION, pose.position)
             scalars(stamp, entities.ORIENTATION, pose.orientation)
-            scalars(stamp, entities.ATTITUDE, np.degrees(attitude(pose.orientation)))
+            scalars(stamp, entities.ATTITUDE, self._attitude.continued(attitude(pose.orientation)))
             scalars(stamp, entities.DEPTH, -pose.position[2:])
         if self._due("track", stamp, self._drawing_period):
-            self._track.draw(stamp, pose.position)
-            self._place(stamp, entities.HEAD, pose.position, pose.orientation)
+            self._scene.head(stamp, pose)
         if self._due("summary", stamp, SUMMARY_PERIOD):
             self._summarise(stamp)
 
@@ -158,24 +139,16 @@ class Loggers:
             self._numbers(stamp, entities.ODOMETRY_NUMBERS, "Odometry", values)
 
     def backbone(self, stamp: int, backbone: Backbone) -> None:
-        """Log line, skin, floor and camera."""
-        position = backbone.position
+        """Log line, skin, water and cameras."""
+        if self._comparison:
+            self._comparison.this.backbone(stamp, backbone)
         if self._due("backbone", stamp, self._number_period):
-            line = position[None].astype(np.float32)
-            self._stream.add_row(stamp, entities.BACKBONE, rr.LineStrips3D, strips=line)
-        if not self._due("skin", stamp, self._drawing_period):
-            return
-        middle = self._camera.follow(stamp, position.mean(axis=0))
-        self._stream.add_row(stamp, entities.FOLLOW, rr.Transform3D, translation=middle[None])
-        self._place(stamp, entities.TAIL, position[-1], backbone.orientation[-1])
-        self._water.draw(stamp, position, middle)
-        if self._skin is not None:
-            vertices, normals = self._skin.place(backbone.x, position, backbone.orientation)
-            self._stream.add_row(stamp, entities.SKIN, rr.Mesh3D, vertex_positions=vertices, vertex_normals=normals)
-        self._arrows.backbone(stamp, backbone)
+            self._scene.line(stamp, backbone)
+        if self._due("skin", stamp, self._drawing_period):
+            self._scene.backbone(stamp, backbone)
 
     def internal_wrench(self, stamp: int, wrench: Profiles) -> None:
-        """Log torques and forces along the body; C3 colours the skin and makes the heat map."""
+        """Log torques and forces along the body; C3 colours the torque layer and makes the heat map."""
         torque = wrench.together("torque_1", "torque_2", "torque_3")
         force = wrench.together("force_1", "force_2", "force_3")
         self.summary.add_torque(stamp, wrench.x, torque[:, 2])
@@ -185,13 +158,12 @@ class Loggers:
         self._force.include(wrench.x, force)
         if self._due("wrench", stamp, self._number_period):
             self._numbers(stamp, entities.WRENCH_NUMBERS, "InternalWrench", wrench.values, wrench.x)
+        self._colour_limit.include(float(np.abs(torque[:, 2]).max()))
         self._heat_map.include(stamp, wrench.x, torque[:, 2])
         if self._due("profiles", stamp, self._drawing_period):
             self._torque.draw(stamp, wrench.x, torque)
             self._force.draw(stamp, wrench.x, force)
-            if self._skin is not None:
-                shades = colours.diverging(self._skin.spread(wrench.x, torque[:, 2]), self._settings.colour_limit)
-                self._stream.add_row(stamp, entities.SKIN, rr.Mesh3D, vertex_colors=shades)
+            self._scene.torque(stamp, wrench.x, torque[:, 2], self._colour_limit.value)
         if self._due("envelope", stamp, ENVELOPE_PERIOD):
             self._torque.draw_envelope(stamp)
             self._force.draw_envelope(stamp)
@@ -215,7 +187,7 @@ class Loggers:
             values = {**load.profiles.values, "tail_force": load.tail, "nose_force": load.nose}
             self._numbers(stamp, entities.LOAD_NUMBERS, "HydrodynamicLoad", values, load.profiles.x)
         if self._due("arrows", stamp, self._drawing_period):
-            self._arrows.load(stamp, load)
+            self._scene.load(stamp, load)
 
     def energy(self, stamp: int, energy: dict[str, float]) -> None:
         """Log the terms of the energy ledger [W], [J]."""
@@ -253,9 +225,6 @@ class Loggers:
                 return False
             self._slots[what] = slot
         return True
-
-    def _place(self, stamp: int, path: str, position: np.ndarray, orientation: np.ndarray) -> None:
-        self._stream.add_row(stamp, path, rr.Transform3D, translation=position[None], quaternion=orientation[None])
 
     def _numbers(
         self, stamp: int, path: str, name: str, values: dict[str, np.ndarray], x: np.ndarray | None = None

@@ -1,30 +1,52 @@
-"""The camera that follows the swimmer: its motion, and its initial pose [m] in the frame `entities.FOLLOW`."""
+"""The cameras: frames that keep the swimmer in the picture, and the eye before them.
+
+The eye of every view stands still in its frame, at `EYE` from the origin, and looks there. A frame has a place
+in the world, its centre, and a scale, its radius [m]. The radius is such that all that must be seen lies in `CLEAR`,
+the part of the picture without legend. So the eye steps back where the swimmer needs more room, and a swimmer of any
+length fills the picture alike. Each view must be at least `LEAST_ASPECT` times as wide as high.
+"""
 
 import numpy as np
 
-EYE = np.array((-0.40, -0.80, 0.48))
-TARGET = np.array((0.03, 0.0, -0.05))
+FIELD_OF_VIEW = np.radians(55.0)  # vertical; Rerun's default
+EYE_FROM = np.array((-0.43, -0.80, 0.53))  # direction of the eye, from the origin
+LEAST_ASPECT = 1.3
+CLOSE = 0.36  # least radius of a frame [body lengths]
+RELEASE = 2.5  # s: time constant with which a frame becomes smaller
 
 
 def _unit(vector: np.ndarray) -> np.ndarray:
     return vector / np.linalg.norm(vector)
 
 
-AHEAD = _unit(TARGET - EYE)
+EYE = _unit(EYE_FROM) / np.sin(FIELD_OF_VIEW / 2)  # radii: the unit sphere touches the picture's upper and lower edge
+AHEAD = _unit(-EYE)
 RIGHT = _unit(np.cross(AHEAD, (0.0, 0.0, 1.0)))
 UP = np.cross(RIGHT, AHEAD)
 SEEN = np.stack([RIGHT, UP, AHEAD], axis=1)  # vector @ SEEN: its components to the right, up and ahead
+EDGE = np.tan(FIELD_OF_VIEW / 2)  # tangent of the picture's upper edge
+CLEAR = {"right": 0.88 * LEAST_ASPECT * EDGE, "up": 0.86 * EDGE, "down": 0.70 * EDGE}  # tangents; left as right
 
 
 def before_eye(ahead: float, right: float, up: float) -> np.ndarray:
-    """The point, (3,) [m], at the given distances [m] ahead of the eye, to its right and up."""
+    """The point, (3,) [radii], at the given distances [radii] ahead of the eye, to its right and up."""
     return EYE + ahead * AHEAD + right * RIGHT + up * UP
 
 
 def in_picture(points: np.ndarray) -> np.ndarray:
-    """Projection of `points` (..., 3) [m] before the eye: (..., 2), tangents to the right and up from the centre."""
+    """Projection of `points` (..., 3) [radii]: (..., 2), tangents to the right and up from the picture's centre."""
     seen = (np.asarray(points) - EYE) @ SEEN
     return seen[..., :2] / seen[..., 2:]
+
+
+def least_radius(points: np.ndarray) -> float:
+    """The least radius of a frame in which `points` (N, 3) [m], relative to its centre, lie in `CLEAR`.
+
+    A point is seen at the tangent right / (D radius + ahead), with D the eye's distance: linear in the radius.
+    """
+    right, up, ahead = (np.asarray(points) @ SEEN).T
+    wanted = np.abs(right) / CLEAR["right"], up / CLEAR["up"], -up / CLEAR["down"]
+    return float((np.max(wanted, axis=0) - ahead).max() / np.linalg.norm(EYE))
 
 
 class FollowFilter:
@@ -54,3 +76,39 @@ class FollowFilter:
         self.position = target + decay * ((1.0 - turn) * behind + elapsed * self._velocity)
         self._velocity = decay * (-self.RATE * turn * behind + (1.0 + turn) * self._velocity)
         return self.position
+
+
+class FollowFrame:
+    """The frame that moves with one swimmer or two, and never turns. It grows at once, and shrinks slowly."""
+
+    def __init__(self) -> None:
+        self._filter = FollowFilter()
+        self._last: tuple[int, float] | None = None  # ns, m
+
+    def follow(self, stamp: int, positions: np.ndarray, length: float) -> tuple[np.ndarray, float]:
+        """Centre (3,) and radius [m] at `stamp` [ns].
+
+        positions: (N, 3) [m] in the world, of all that must be seen. length: of the body [m].
+        """
+        middle = self._filter.follow(stamp, positions.mean(axis=0))
+        radius = least = max(CLOSE * length, least_radius(positions - middle))
+        if self._last is not None and stamp >= self._last[0]:
+            kept = np.exp((self._last[0] - stamp) * 1e-9 / RELEASE)
+            radius = max(least, float(least + kept * (self._last[1] - least)))
+        self._last = stamp, radius
+        return middle, radius
+
+
+class PathFrame:
+    """The frame of all places of the body so far; it grows."""
+
+    def __init__(self) -> None:
+        self._low, self._high = np.full(3, np.inf), np.full(3, -np.inf)
+
+    def include(self, positions: np.ndarray, length: float) -> tuple[np.ndarray, float]:
+        """Centre (3,) and radius [m] with the `positions` (N, 3) [m] of a body of `length` [m]."""
+        np.minimum(self._low, positions.min(axis=0), out=self._low)
+        np.maximum(self._high, positions.max(axis=0), out=self._high)
+        middle = (self._low + self._high) / 2
+        corners = np.stack(np.meshgrid(*zip(self._low, self._high, strict=True)), axis=-1).reshape(-1, 3)
+        return middle, max(CLOSE * length, least_radius(corners - middle))

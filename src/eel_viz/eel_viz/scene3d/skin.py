@@ -1,24 +1,39 @@
-"""The swimmer's skin: elliptic sections on the backbone, as one closed triangle mesh with exact normals.
+"""The swimmer's surface: elliptic sections on the backbone, with exact normals.
 
-A point of the skin is r(X) + b(X) cos(angle) t2 + a(X) sin(angle) t3, with b the half width (section axis 2) and a the
-half height (axis 3). The normal is the gradient of (y/b)^2 + (z/a)^2 - 1 in section axes, times a b / 2:
+A point of the surface is r(X) + b(X) cos(angle) t2 + a(X) sin(angle) t3, with b the half width (section axis 2) and a
+the half height (axis 3). The normal is the gradient of (y/b)^2 + (z/a)^2 - 1 in section axes, times a b / 2:
 (-(a cos^2 b' + b sin^2 a'), a cos, b sin). Half axes are interpolated in their squares, since they go like sqrt(X)
 at the nose.
 """
 
 import numpy as np
 
+from eel_viz.scene3d import colours
 from eel_viz.scene3d.centre_line import Resampling
 
 RINGS = 20
 SIDES = 12
+FLANK = 0.34  # rad: half of the angle that a flank covers
+OUTSIDE = 1.05  # how far a flank lies outside the skin, which has flat sides
 
 
-class Skin:
-    """The mesh of one body. `x`, `half_width`, `half_height` [m], each (B,), as in the message `BodyGeometry`."""
+class Surface:
+    """The part of the surface between the `angles` (S,) [rad] of each ring.
+
+    x, half_width, half_height: [m], each (B,), as in the message `BodyGeometry`. edges: pairs of neighbouring angles by
+    their numbers. swell: factor of the half axes.
+    """
 
     def __init__(
-        self, x: np.ndarray, half_width: np.ndarray, half_height: np.ndarray, *, rings: int = RINGS, sides: int = SIDES
+        self,
+        x: np.ndarray,
+        half_width: np.ndarray,
+        half_height: np.ndarray,
+        *,
+        rings: int,
+        angles: np.ndarray,
+        edges: list[tuple[int, int]],
+        swell: float = 1.0,
     ):
         length = float(x[-1])
         self.x = length * _graded(rings)  # [m], (rings,)
@@ -28,10 +43,9 @@ class Skin:
         # b b' and a a' are half the slopes of the squares, which are finite at the nose
         width_slope = np.interp(self.x, fine, np.gradient(np.interp(fine, x, np.square(half_width)), fine)) / 2
         height_slope = np.interp(self.x, fine, np.gradient(np.interp(fine, x, np.square(half_height)), fine)) / 2
-        angle = np.linspace(0.0, 2 * np.pi, sides, endpoint=False)
-        cos, sin = np.cos(angle), np.sin(angle)
-        zero = np.zeros((rings, sides))
-        self._offset = np.stack([zero, np.outer(width, cos), np.outer(height, sin)], axis=2)
+        cos, sin = np.cos(angles), np.sin(angles)
+        zero = np.zeros((rings, len(angles)))
+        self._offset = swell * np.stack([zero, np.outer(width, cos), np.outer(height, sin)], axis=2)
         b, a = np.maximum(width, 1e-6), np.maximum(height, 1e-6)
         normal = np.stack(
             [
@@ -43,8 +57,8 @@ class Skin:
         )
         normal[0] = (-1.0, 0.0, 0.0)
         self._normal = normal / np.linalg.norm(normal, axis=2, keepdims=True)
-        self.triangles = _triangles(rings, sides)
-        self._sides = sides
+        self.triangles = _triangles(rings, len(angles), edges)
+        self._angles = angles
         self._resampling: Resampling | None = None
 
     def resampling(self, x: np.ndarray) -> Resampling:
@@ -54,16 +68,50 @@ class Skin:
         return self._resampling
 
     def place(self, x: np.ndarray, position: np.ndarray, orientation: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Vertices [m] and normals in the world, float32 (rings * sides, 3), of a backbone at stations `x` [m]."""
-        points, axes = self.resampling(x).centre_line(position, orientation)
+        """Vertices [m] and normals in the world, float32 (rings * S, 3), of a backbone at stations `x` [m]."""
+        return self.place_on(*self.resampling(x).centre_line(position, orientation))
+
+    def place_on(self, points: np.ndarray, axes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """As `place`, on the centre line at the rings: `points` (rings, 3) [m], `axes` (rings, 3, 3)."""
         turn = np.swapaxes(axes, 1, 2)
         vertices = points[:, None, :] + self._offset @ turn
         normals = self._normal @ turn
         return vertices.reshape(-1, 3).astype(np.float32), normals.reshape(-1, 3).astype(np.float32)
 
     def spread(self, x: np.ndarray, values: np.ndarray) -> np.ndarray:
-        """One value for each vertex, (rings * sides,), from `values` at stations `x`, (M,)."""
-        return np.repeat(self.resampling(x).linear(values), self._sides)
+        """One value for each vertex, (rings * S,), from `values` at stations `x`, (M,)."""
+        return np.repeat(self.resampling(x).linear(values), len(self._angles))
+
+
+class Skin(Surface):
+    """The closed skin."""
+
+    def __init__(
+        self, x: np.ndarray, half_width: np.ndarray, half_height: np.ndarray, *, rings: int = RINGS, sides: int = SIDES
+    ):
+        angles = np.linspace(0.0, 2 * np.pi, sides, endpoint=False)
+        edges = [(k, (k + 1) % sides) for k in range(sides)]
+        super().__init__(x, half_width, half_height, rings=rings, angles=angles, edges=edges)
+        last = (rings - 1) * sides
+        fan = np.array([(last, last + k, last + k + 1) for k in range(1, sides - 1)], dtype=np.uint32)
+        self.triangles = np.concatenate([self.triangles, fan])  # closes the tail
+
+    @property
+    def shades(self) -> np.ndarray:
+        """Colours of the vertices, uint8 (rings * sides, 3): dark back (+ axis 3), light belly, so that roll shows."""
+        share = np.clip(0.5 + 0.8 * np.sin(self._angles), 0.0, 1.0)[:, None]
+        around = share * np.array(colours.BACK) + (1.0 - share) * np.array(colours.BELLY)
+        return np.tile(around.round().astype(np.uint8), (len(self.x), 1))
+
+
+class Flanks(Surface):
+    """A band along each flank, just outside the skin: a layer that a torque colours."""
+
+    def __init__(self, x: np.ndarray, half_width: np.ndarray, half_height: np.ndarray, *, rings: int = RINGS):
+        band = np.array((-FLANK, 0.0, FLANK))
+        edges = [(0, 1), (1, 2), (3, 4), (4, 5)]
+        angles = np.concatenate([band, np.pi + band])
+        super().__init__(x, half_width, half_height, rings=rings, angles=angles, edges=edges, swell=OUTSIDE)
 
 
 def _graded(rings: int) -> np.ndarray:
@@ -73,15 +121,13 @@ def _graded(rings: int) -> np.ndarray:
     return np.concatenate([start * (np.arange(nose) / nose) ** 2, np.linspace(start, 1.0, rings - nose)])
 
 
-def _triangles(rings: int, sides: int) -> np.ndarray:
-    """Indices of the triangles between neighbouring rings, and of the fan that closes the tail, uint32 (T, 3).
+def _triangles(rings: int, sides: int, edges: list[tuple[int, int]]) -> np.ndarray:
+    """Indices of the triangles between neighbouring rings, uint32 (T, 3).
 
     Counter-clockwise seen from outside: angles go from t2 to t3, and rings go along t1 = t2 x t3.
     """
-    ring, side = np.meshgrid(np.arange(rings - 1), np.arange(sides), indexing="ij")
-    here = ring * sides + side
-    beside = ring * sides + (side + 1) % sides
-    quads = np.stack([here, beside, here + sides, beside, beside + sides, here + sides], axis=-1).reshape(-1, 3)
-    last = (rings - 1) * sides
-    fan = [(last, last + k, last + k + 1) for k in range(1, sides - 1)]
-    return np.concatenate([quads, fan]).astype(np.uint32)
+    ring = np.arange(rings - 1)[:, None] * sides
+    side, beside = np.array(edges).T
+    here, next_to = ring + side, ring + beside
+    quads = np.stack([here, next_to, here + sides, next_to, next_to + sides, here + sides], axis=-1)
+    return quads.reshape(-1, 3).astype(np.uint32)

@@ -1,0 +1,107 @@
+"""Draws one swimmer in its water: line, skin, torque layer, arrows, path of the head, frames of the cameras."""
+
+import numpy as np
+import rerun as rr
+
+from eel_viz import entities
+from eel_viz.batched_stream import BatchedStream
+from eel_viz.messages import Backbone, Body, Load, Pose
+from eel_viz.scene3d import colours, legend
+from eel_viz.scene3d.arrows import Arrows
+from eel_viz.scene3d.camera import FollowFrame, PathFrame
+from eel_viz.scene3d.skin import Flanks, Skin
+from eel_viz.scene3d.track import Track
+from eel_viz.scene3d.water import WaterBox
+
+AXES_LENGTH = 0.12  # m
+SHADOW_POINTS = 24
+PATH_WATER_PERIOD = 400_000_000  # ns: its frame changes slowly
+
+
+class SwimmerScene:
+    """Draws into `stream`; load_scale [m per N/m] and end_scale [m per N] are those of `Arrows`."""
+
+    def __init__(self, stream: BatchedStream, *, load_scale: float, end_scale: float) -> None:
+        self._stream, self._scales = stream, {"load_scale": load_scale, "end_scale": end_scale}
+        self._skin: Skin | None = None
+        self._flanks: Flanks | None = None
+        self._torque_limit = 0.0  # N m: of the colours in the legend
+        self._loaded = False
+        self._frame, self._path_frame = FollowFrame(), PathFrame()
+        self._water, self._path_water = (WaterBox(stream, root) for root in (entities.WATER, entities.PATH_WATER))
+        self._path_water_stamp: int | None = None  # ns
+        self._track = Track(stream)
+        self._arrows = Arrows(stream, **self._scales)
+        stream.log_static(entities.WORLD, rr.ViewCoordinates.RIGHT_HAND_Z_UP)
+        stream.log_static(entities.BACKBONE, rr.LineStrips3D.from_fields(colors=[colours.LABEL], radii=[0.0004]))
+        stream.log_static(entities.SHADOW, rr.LineStrips3D.from_fields(colors=[(4, 10, 17)], radii=[0.03]))
+        for path in (entities.HEAD, entities.TAIL):
+            stream.log_static(path, rr.TransformAxes3D(AXES_LENGTH))
+
+    def body(self, body: Body) -> None:
+        """Take the sections, and log what never changes of skin and torque layer."""
+        sections = body.x, body.half_width, body.half_height
+        self._skin, self._flanks = Skin(*sections), Flanks(*sections)
+        fixed = rr.Mesh3D.from_fields(triangle_indices=self._skin.triangles, vertex_colors=self._skin.shades)
+        self._stream.log_static(entities.SKIN, fixed)
+        self._stream.log_static(entities.TORQUE_LAYER, rr.Mesh3D.from_fields(triangle_indices=self._flanks.triangles))
+
+    def head(self, stamp: int, pose: Pose) -> None:
+        """Draw the path of the head, and its axes."""
+        self._track.draw(stamp, pose.position)
+        self._place(stamp, entities.HEAD, pose.position, pose.orientation)
+
+    def line(self, stamp: int, backbone: Backbone) -> None:
+        """Draw the backbone."""
+        strips = backbone.position[None].astype(np.float32)
+        self._stream.add_row(stamp, entities.BACKBONE, rr.LineStrips3D, strips=strips)
+
+    def backbone(self, stamp: int, backbone: Backbone) -> None:
+        """Draw skin, tail, water and arrows, and move the cameras' frames."""
+        position, length = backbone.position, float(backbone.x[-1] - backbone.x[0])
+        frame = self._frame.follow(stamp, position, length)
+        self._water.draw(stamp, *frame, position)
+        log_frame(self._stream, stamp, entities.FOLLOW, *frame)
+        frame = self._path_frame.include(position, length)
+        if self._path_water_stamp is None or abs(stamp - self._path_water_stamp) >= PATH_WATER_PERIOD:
+            self._path_water_stamp = stamp
+            self._path_water.draw(stamp, *frame, position)
+        log_frame(self._stream, stamp, entities.WHOLE_PATH, *frame)
+        shadow = np.array(position[:: max(1, len(position) // SHADOW_POINTS)], dtype=np.float32)
+        shadow[:, 2] = self._water.floor + 0.002
+        self._stream.add_row(stamp, entities.SHADOW, rr.LineStrips3D, strips=shadow[None])
+        self._place(stamp, entities.TAIL, position[-1], backbone.orientation[-1])
+        if self._skin is not None:
+            rings = self._skin.resampling(backbone.x).centre_line(position, backbone.orientation)
+            surfaces = {entities.SKIN: self._skin}
+            if self._torque_limit:
+                surfaces[entities.TORQUE_LAYER] = self._flanks
+            for path, surface in surfaces.items():
+                vertices, normals = surface.place_on(*rings)
+                self._stream.add_row(stamp, path, rr.Mesh3D, vertex_positions=vertices, vertex_normals=normals)
+        self._arrows.backbone(stamp, backbone)
+
+    def torque(self, stamp: int, x: np.ndarray, torque: np.ndarray, limit: float) -> None:
+        """Colour the torque layer by `torque` (M,) [N m] at `x` (M,) [m]; the colours are deepest at `limit`."""
+        if limit != self._torque_limit:
+            self._torque_limit = limit
+            legend.log_bar(self._stream, stamp, limit=limit, unit="N m", name="C3")
+        if self._flanks is not None:
+            shades = colours.diverging(self._flanks.spread(x, torque), limit)
+            self._stream.add_row(stamp, entities.TORQUE_LAYER, rr.Mesh3D, vertex_colors=shades)
+
+    def load(self, stamp: int, load: Load) -> None:
+        """Draw the force of the water as arrows."""
+        if not self._loaded:
+            self._loaded = True
+            legend.log_arrow_scale(self._stream, stamp, **self._scales)
+        self._arrows.load(stamp, load)
+
+    def _place(self, stamp: int, path: str, position: np.ndarray, orientation: np.ndarray) -> None:
+        self._stream.add_row(stamp, path, rr.Transform3D, translation=position[None], quaternion=orientation[None])
+
+
+def log_frame(stream: BatchedStream, stamp: int, path: str, centre: np.ndarray, radius: float) -> None:
+    """Log the frame of a camera: its `centre` (3,) and `radius` [m]."""
+    scale = np.full((1, 3), radius, dtype=np.float32)
+    stream.add_row(stamp, path, rr.Transform3D, translation=centre[None], scale=scale)

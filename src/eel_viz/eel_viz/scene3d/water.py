@@ -1,0 +1,137 @@
+"""Draws the water around a frame of `camera`: a floor and two walls behind the swimmer, with a grid and its scales.
+
+The grid's lines lie at round coordinates of the world. Every second one has a label: x and y along the floor, the depth
+(-z) along an upright edge. The box follows the frame by whole meshes, and takes the mesh that fits the frame's radius.
+"""
+
+import numpy as np
+import rerun as rr
+
+from eel_viz.batched_stream import BatchedStream
+from eel_viz.scene3d import camera, colours
+
+MESHES = (1.0, 2.5, 5.0, 10.0)  # possible widths of a mesh, times a power of ten
+MESHES_IN_RADIUS = 1.4  # at least, where the mesh is chosen
+KEPT = (1.2, 5.0)  # meshes in the radius, between which the mesh stays
+ASIDE, ABOVE, BELOW = 2.4, 0.9, 1.0  # how far the box reaches from the centre at least [radii]
+LAG = 0.75  # meshes: how far the centre moves before the box follows
+LABEL_SIZE = (0.15, 0.085)  # half of a label with the swimmer's thickness, as tangents in the picture
+LABELLED = (1.3 * camera.EDGE, 0.93 * camera.EDGE)  # the part of the picture that has labels, as tangents
+GRID, LABELS, WALLS = "grid", "labels", "walls"
+
+
+class WaterBox:
+    """Draws the box of one frame into the entities below `root`."""
+
+    def __init__(self, stream: BatchedStream, root: str) -> None:
+        self._stream, self._root = stream, root
+        self._mesh = 0.0  # m
+        self._anchor = np.zeros(3)  # the middle of the box, in meshes
+        self._box: tuple | None = None
+        self._all_labels: dict[tuple[float, float, float], str] = {}  # of the box, by their places [m]
+        self._labels: dict[tuple[float, float, float], str] = {}  # those that are drawn
+        stream.log_static(f"{root}/{GRID}", rr.LineStrips3D.from_fields(radii=rr.Radius.ui_points(0.5)))
+
+    @property
+    def floor(self) -> float:
+        """Height z of the floor [m]."""
+        return 0.0 if self._box is None else self._box[0][2]
+
+    def draw(self, stamp: int, centre: np.ndarray, radius: float, swimmer: np.ndarray) -> None:
+        """Draw the box at `stamp` [ns] around a frame, without labels that would cover the `swimmer`, (M, 3) [m]."""
+        self._place(centre, radius)
+        reach = radius / self._mesh
+        low = self._anchor - np.ceil(np.array((ASIDE, ASIDE, BELOW)) * reach + LAG)
+        high = self._anchor + np.ceil(np.array((ASIDE, ASIDE, ABOVE)) * reach)
+        box = tuple(map(tuple, (low * self._mesh, high * self._mesh)))
+        if box != self._box:
+            self._box = box
+            self._draw_grid(stamp, low, high)
+            self._draw_walls(stamp, low * self._mesh, high * self._mesh)
+            self._all_labels = self._labels_of(low, high, centre, radius)
+        labels = self._clear_labels(centre, radius, swimmer)
+        if labels != self._labels:
+            self._labels = labels
+            self._draw_labels(stamp)
+
+    def _place(self, centre: np.ndarray, radius: float) -> None:
+        if not self._mesh or not KEPT[0] <= radius / self._mesh <= KEPT[1]:
+            self._mesh = fitting_mesh(radius / MESHES_IN_RADIUS)
+            self._anchor = np.round(centre / self._mesh)
+        place = centre / self._mesh
+        far = np.abs(place - self._anchor) > LAG
+        self._anchor = np.where(far, np.round(place), self._anchor)
+
+    def _draw_grid(self, stamp: int, low: np.ndarray, high: np.ndarray) -> None:
+        strips, shades = [], []
+        for axis, (first, second) in enumerate(((1, 2), (0, 2), (0, 1))):
+            back = {first: high[first], second: low[second] if second == 2 else high[second]}
+            for k in range(int(low[axis]), int(high[axis]) + 1):
+                strip = np.empty((3, 3))  # across one face, round the edge, across the next
+                strip[:, axis] = k
+                strip[0, first], strip[0, second] = low[first], back[second]
+                strip[1, first], strip[1, second] = back[first], back[second]
+                strip[2, first], strip[2, second] = back[first], high[second] if second == 2 else low[second]
+                strips.append(strip)
+                shades.append(colours.WATER_LINE if k % 2 else colours.WATER_LINE_MAJOR)
+        lines = rr.LineStrips3D.from_fields(strips=np.array(strips) * self._mesh, colors=shades)
+        self._stream.log(stamp, f"{self._root}/{GRID}", lines)
+
+    def _draw_walls(self, stamp: int, low: np.ndarray, high: np.ndarray) -> None:
+        """Floor, and the walls at the greatest x and y, a little behind the lines."""
+        apart = 0.01 * self._mesh
+        (x0, y0, z0), (x1, y1, z1) = low - np.array((0, 0, apart)), high + np.array((apart, apart, 0))
+        floor = [(x0, y0, z0), (x1, y0, z0), (x1, y1, z0), (x0, y1, z0)]
+        walls = [(x0, y1, z0), (x1, y1, z0), (x1, y1, z1), (x0, y1, z1)]
+        walls += [(x1, y0, z0), (x1, y1, z0), (x1, y1, z1), (x1, y0, z1)]
+        deep, high_up = colours.WATER_DEEP, colours.WATER_SHALLOW
+        triangles = np.array([(k, k + 1, k + 2, k, k + 2, k + 3) for k in (0, 4, 8)]).reshape(-1, 3)
+        mesh = rr.Mesh3D(
+            vertex_positions=[*floor, *walls],
+            triangle_indices=triangles,
+            vertex_colors=[deep] * 4 + [deep, deep, high_up, high_up] * 2,
+        )
+        self._stream.log(stamp, f"{self._root}/{WALLS}", mesh)
+
+    def _clear_labels(self, centre: np.ndarray, radius: float, swimmer: np.ndarray) -> dict:
+        """The labels that lie in the picture and do not cover the swimmer, by their places in the world [m]."""
+        labels = self._all_labels
+        if not labels:
+            return {}
+        places = camera.in_picture((np.array(list(labels)) - centre) / radius)
+        apart = np.abs(places[:, None] - camera.in_picture((swimmer - centre) / radius))
+        shown = (np.abs(places) <= LABELLED).all(axis=1) & ~(apart <= LABEL_SIZE).all(axis=2).any(axis=1)
+        return {place: text for (place, text), keep in zip(labels.items(), shown.tolist(), strict=True) if keep}
+
+    def _labels_of(self, low: np.ndarray, high: np.ndarray, centre: np.ndarray, radius: float) -> dict:
+        """All labels of the box between `low` and `high`, each (3,) [meshes]."""
+        mesh, floor = self._mesh, low[2]
+        x_marks, y_marks, z_marks = (
+            [k for k in range(int(start), int(end) + 1) if k % 2 == 0] for start, end in zip(low, high, strict=True)
+        )
+        labels = {(k * mesh, high[1] * mesh, floor * mesh): f"x {k * mesh:g} m" for k in x_marks if k < high[0] - 1}
+        labels |= {(high[0] * mesh, k * mesh, floor * mesh): f"y {k * mesh:g} m" for k in y_marks if k < high[1] - 1}
+        edges = np.array([(high[0], k, high[2]) for k in np.arange(low[1], high[1])]) * mesh
+        right = camera.in_picture((edges - centre) / radius)[:, 0]
+        inside = right <= LABELLED[0]
+        if inside.any():  # the upright edge at the far right of the picture
+            x, y, _ = edges[inside][int(np.argmax(right[inside]))].tolist()
+            labels |= {(x, y, k * mesh): f"depth {0.0 - k * mesh:g} m" for k in z_marks if k > floor}
+        return labels
+
+    def _draw_labels(self, stamp: int) -> None:
+        texts = list(self._labels.values())
+        points = rr.Points3D(
+            list(self._labels),
+            labels=texts,
+            show_labels=True,
+            radii=rr.Radius.ui_points(1.5),
+            colors=[colours.WATER_LABEL] * len(texts),
+        )
+        self._stream.log(stamp, f"{self._root}/{LABELS}", points)
+
+
+def fitting_mesh(limit: float) -> float:
+    """The greatest round width that is not above `limit` > 0 [m]."""
+    decade = 10.0 ** np.floor(np.log10(limit))
+    return float(max(width for width in MESHES if width * decade <= limit * (1 + 1e-9)) * decade)

@@ -1,0 +1,1 @@
+"""The arrangements of views in a recording: Rerun blueprints, without data."""
