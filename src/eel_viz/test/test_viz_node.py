@@ -185,7 +185,7 @@ def test_what_cannot_be_is_refused_in_one_line_with_status_2(start_in_turn, tmp_
         "rate:=often": "rate must be a number, got 'often'",
         "port:=1": "port",
         "compare:=/": "compare must be another namespace than the swimmer's own, got '/'",
-        "blueprint:=mine": "blueprint must be one of overview, torques, motion, compare, got 'mine'",
+        "blueprint:=mine": "blueprint must be one of overview, torques, motion, swimmer, compare, got 'mine'",
     }
     lines = [["--ros-args", "-p", "sink:=[save]", "-p", setting] for setting in cannot_be]
     for words, (status, said) in zip(cannot_be.values(), start_in_turn("eel_viz.ros.node", lines), strict=True):
@@ -251,7 +251,7 @@ def test_a_namespace_keeps_swimmers_apart(start, network, tmp_path):
     np.testing.assert_array_equal(read(tmp_path / "run.rrd", entities.POSITION).stamps, np.arange(5) * 10**8)
 
 
-def test_a_law_that_is_heard_from_either_kind_of_publisher_is_shown_once(start, network, tmp_path):
+def test_a_law_that_is_received_from_either_kind_of_publisher_is_shown_once(start, network, tmp_path):
     from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
     from eel_msgs.msg import CurvatureLaw
@@ -333,7 +333,7 @@ def test_another_swimmer_is_laid_over_the_first(own, compare, start, network, tm
     assert node.interrupt() == 0, node.output()
     distance = read(tmp_path / "run.rrd", entities.DISTANCE)
     np.testing.assert_array_equal(distance.stamps, np.arange(count) * 10**7)
-    np.testing.assert_allclose(distance["scalars"], 250.0, rtol=1e-12)
+    np.testing.assert_allclose(distance["scalars"], 0.25, rtol=1e-12)
     difference = read(tmp_path / "run.rrd", entities.TORQUE_DIFFERENCE_MOST)
     np.testing.assert_array_equal(difference["scalars"], np.zeros((count, 1)))
     assert "went back" not in node.output()
