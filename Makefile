@@ -20,7 +20,7 @@ aarch64: build   ## the C++ tests of the mechanics compiled for 64-bit ARM, run 
 	@$(RUN) tools/core_tests.sh aarch64
 
 validation: build   ## docs/validation.md anew, from what the tests of the mechanics measure
-	@$(RUN) python tools/validation.py
+	@$(RUN) python src/eel_dynamics/test/validation.py
 
 soak: build   ## the long tests (ARGS=... goes to pytest)
 	@$(RUN) python -m pytest -m soak $(ARGS)

@@ -9,8 +9,8 @@ import time
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tools"))
-from node_process import NodeProcess
-from ros_domain import reserve_domain
+from eel_ros.testing.node_process import NodeProcess
+from eel_ros.testing.ros_domain import reserve_domain
 
 DURATION, RATE = 10.0, 50.0  # s, Hz
 START = 3.0  # s after the start of the dynamics node, when all have found each other

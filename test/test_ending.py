@@ -5,7 +5,7 @@ import time
 
 import psutil
 import pytest
-from node_process import PROMPT
+from eel_ros.testing.node_process import PROMPT
 
 NODES = {
     "gait_generator": ("--ros-args",),

@@ -6,12 +6,11 @@ import subprocess
 import sys
 import textwrap
 import time
-from pathlib import Path
 
 import psutil
 import pytest
-from node_process import NodeProcess
-from ros_domain import reserve_domain
+from eel_ros.testing.node_process import NodeProcess
+from eel_ros.testing.ros_domain import reserve_domain
 
 
 def await_death(pid: int) -> None:
@@ -47,10 +46,9 @@ def test_stubborn_process_is_ended_with_its_children(tmp_path):
 
 def test_process_does_not_outlive_a_killed_owner(tmp_path):
     owner = textwrap.dedent(f"""
-        import os, sys, time
-        sys.path.insert(0, {str(Path(__file__).parents[1] / "tools")!r})
+        import os, time
         from pathlib import Path
-        from node_process import NodeProcess
+        from eel_ros.testing.node_process import NodeProcess
         node = NodeProcess("sleep", "1000", environment=dict(os.environ), log=Path({str(tmp_path)!r}) / "log.txt")
         print(node.process.pid, flush=True)
         time.sleep(1000)

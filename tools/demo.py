@@ -12,9 +12,9 @@ import time
 from collections import Counter
 from pathlib import Path
 
-from node_process import NodeProcess
+from eel_ros.testing.node_process import NodeProcess
+from eel_ros.testing.ros_domain import reserve_domain
 from reception import Reception
-from ros_domain import reserve_domain
 from run_summary import describe, summarise
 
 OUT = Path("out")

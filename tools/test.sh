@@ -5,7 +5,7 @@ set -uo pipefail
 if [ $# -gt 0 ]; then exec python -m pytest "$@"; fi
 
 # A test that hangs where Python's own time-out cannot reach, in compiled code, ends its pytest with all threads' stacks.
-pytest=(python -m pytest -o faulthandler_timeout=420 -o faulthandler_exit_on_timeout=true)
+pytest=(python -m pytest -c pyproject.toml -o faulthandler_timeout=420 -o faulthandler_exit_on_timeout=true)
 mkdir -p out
 declare -A beside
 stop() {

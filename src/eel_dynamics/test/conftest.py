@@ -1,9 +1,10 @@
 """For the tests of the mechanics, `measured`; for those of the dynamics node, a client that subscribes to it."""
 
 import pytest
-from validation import Checks
+from validation import PAGE, Checks
 
 CHECKS = Checks()
+collect_ignore = [] if PAGE.is_file() else ["test_validation_page.py"]  # a package alone has no page
 
 
 @pytest.fixture(scope="session")

@@ -102,6 +102,7 @@ def test_labels_keep_apart_about_where_they_belong():
 
 def test_command_leaves_picture_page_table_and_recording(tmp_path, capsys):
     words = f"straight --quick --repeats 1 --duration 1 --csv --pictures {tmp_path} --page {tmp_path}/page.md"
+    pytest.importorskip("rerun")
     assert main([*words.split(), "--rerun", str(tmp_path / "trade.rrd")]) == 0
     said = capsys.readouterr().out
     for preset in ("draft", "standard", "fine", "reference"):

@@ -6,7 +6,7 @@ import time
 
 import pytest
 from eel_gaits.settings import Settings
-from node_process import PROMPT
+from eel_ros.testing.node_process import PROMPT
 from rclpy.qos import QoSProfile
 
 from eel_gaits import falling, gait, turning

@@ -9,11 +9,11 @@ import made_up
 import numpy as np
 import pytest
 import yaml
+from eel_ros.testing.node_process import PROMPT
 from eel_viz.bags.definitions import definition, message_class, type_hash
 from eel_viz.bags.echo import as_yaml, picked
 from eel_viz.topics import GLOBAL, OWN
 from fake_swimmer import TOPICS, arrived, diagnostics, found, messages
-from node_process import PROMPT
 from rosbags.highlevel import AnyReader
 from rosbags.rosbag2 import Reader
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore

@@ -3,6 +3,7 @@
 import contextlib
 import ctypes
 import os
+import shutil
 import signal
 import subprocess
 import time
@@ -13,8 +14,15 @@ PROMPT = 4.0  # s: far above what a good end takes (under 1 s), below any wait f
 MIDDLEWARE = "RTPS_TRANSPORT_SHM"  # Fast DDS: shared memory that is held by a process that does not answer
 
 
+def found_executable(name: str) -> str:
+    """Path of a program on the PATH, or of a node's executable where `ros2 run` looks; `name` if it is nowhere."""
+    prefixes = [Path(prefix) for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(":") if prefix]
+    nodes = (str(path) for prefix in prefixes for path in prefix.glob(f"lib/*/{name.removeprefix('eel_')}"))
+    return shutil.which(name) or next(nodes, name)
+
+
 class NodeProcess:
-    """One executable (found on the PATH that setup.bash makes), with its output in a log file."""
+    """One executable, with its output in a log file."""
 
     def __init__(self, executable: str, *arguments: str, environment: dict[str, str], log: Path) -> None:
         """Start it: `arguments` as after `ros2 run package executable`, `log` takes both output streams."""
@@ -29,7 +37,7 @@ class NodeProcess:
 
         with log.open("w") as output:
             self.process = subprocess.Popen(
-                [executable, *arguments],
+                [found_executable(executable), *arguments],
                 env=environment,
                 stdin=subprocess.DEVNULL,
                 stdout=output,

@@ -1,6 +1,6 @@
 """The ROS domains that tests and the demo run in."""
 
-from ros_domain import PORT_BASE, PORTS_PER_DOMAIN, forget_the_killed, reserve_domain
+from eel_ros.testing.ros_domain import PORT_BASE, PORTS_PER_DOMAIN, forget_the_killed, reserve_domain
 
 
 def test_what_killed_processes_have_left_is_removed_and_nothing_else(tmp_path):

@@ -1,4 +1,7 @@
-"""For all tests: every test session in a ROS domain of its own, and no process left behind."""
+"""For the tests of all packages: every session in a ROS domain of its own, and no process left behind.
+
+A pytest plugin: `-p eel_ros.testing.fixtures`.
+"""
 
 import contextlib
 import json
@@ -10,11 +13,14 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).resolve().parent
-sys.path.insert(0, str(ROOT / "tools"))
+from eel_ros.testing.node_process import NodeProcess
+from eel_ros.testing.ros_domain import reserve_domain
 
-from node_process import NodeProcess  # noqa: E402
-from ros_domain import reserve_domain  # noqa: E402
+MARKERS = (
+    "soak: takes minutes; run by make soak",
+    "fault(group, fault, outcome): a row of docs/robustness.md; `make robustness` writes the page",
+    "identity(name): a test whose measured values go into docs/validation.md, under that heading",
+)
 
 STARTS_IN_TURN = """
 import contextlib, importlib, io, json, sys
@@ -25,6 +31,12 @@ for words in json.loads(sys.argv[2]):
         status = main()
     print(json.dumps([status, said.getvalue()]), flush=True)
 """
+
+
+def pytest_configure(config):
+    """Register the markers."""
+    for marker in MARKERS:
+        config.addinivalue_line("markers", marker)
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[3]
 RECORD = ROOT / "out" / "validation.json"
 PAGE = ROOT / "docs" / "validation.md"
 
@@ -33,7 +33,7 @@ IDENTITIES = {
     "Scaling": "Similar swimmers at equal Reynolds number swim alike.",
     "Second implementation": "The equations again from the kinetic energy alone, differentiated numerically, in "
     "another direction of integration, by code that shares nothing with the package "
-    "(`test/reference.py`).",
+    "(`reference.py`).",
     "Pressure at the tail": "Lumped at the tail or distributed along the body: the same resultant and moment.",
     "Bodies": "Geometry and section data against what is printed or known.",
     "Read off a run": "Figures of `Run.analysis()` and `Run.actuators()` against the same, computed another way.",
@@ -116,7 +116,7 @@ class Checks:
     def measure(self, what: str, value, tolerance: float, *, wanted: float | None = None, unit: str = "") -> None:
         """Assert that the greatest of `value` is at most `tolerance`, or at most that far from `wanted`."""
         if self.identity not in IDENTITIES:
-            raise ValueError(f"{self.test} must have a marker identity(...) of tools/validation.py to use `measured`")
+            raise ValueError(f"{self.test} must have a marker identity(...) of validation.py to use `measured`")
         values = np.atleast_1d(np.asarray(value, dtype=float)).ravel()
         worst = float(values[np.argmax(np.abs(values - (wanted or 0.0)))])
         check = Check(self.identity, what, self.test, abs(worst) if wanted is None else worst, tolerance, wanted, unit)
@@ -138,6 +138,9 @@ class Checks:
         return [(identity, group) for identity, group in listed.items() if group]
 
     def save(self) -> None:
+        """Keep the record for the page, where there is one: a package that is tested alone has none."""
+        if not PAGE.is_file():
+            return
         RECORD.parent.mkdir(exist_ok=True)
         RECORD.write_text(json.dumps([asdict(check) for check in self.by_name.values()], indent=1) + "\n")
 

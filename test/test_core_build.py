@@ -11,7 +11,7 @@ import pytest
 from eel_dynamics import simulate
 from eel_gaits import falling
 
-ROOT = Path(__file__).resolve().parents[3]
+ROOT = Path(__file__).resolve().parents[1]
 SOURCE = ROOT / "src/eel_core"
 
 

@@ -15,7 +15,7 @@ DURATION, STEP = 3.0, 0.01  # s
 @pytest.fixture
 def benchmark(monkeypatch):
     """The benchmark, and the Python that has numba."""
-    monkeypatch.syspath_prepend(Path(__file__).resolve().parents[3] / "benchmarks")
+    monkeypatch.syspath_prepend(Path(__file__).resolve().parents[1] / "benchmarks")
     found = importlib.import_module("against_paper_scheme")
     python = found.environment("numba")
     if python is None:
