@@ -93,6 +93,11 @@ def test_an_optimiser_with_the_gradient_finds_what_a_scan_finds():
     assert -best.fun == pytest.approx(np.polyval(parabola, best.x[0]), rel=1e-3) and abs(best.jac[0]) < 1e-4
 
 
+@pytest.mark.fault(
+    "names",
+    "a gradient between two swims that lie on different sides of the printed friction's jump",
+    "a warning that names the parameters; `Gradient.warnings` keeps it",
+)
 def test_a_jump_of_the_printed_friction_is_told():
     with pytest.warns(UserWarning, match="the printed friction jumps at Re = 80000 between the two swims for period"):
         found = gradient("mean_speed", {"period": 1.0}, steps={"period": 0.02}, duration=3.0, accuracy=1e-2)

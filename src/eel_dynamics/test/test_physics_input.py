@@ -2,6 +2,7 @@
 
 import io
 import re
+from dataclasses import fields
 
 import numpy as np
 import pytest
@@ -268,3 +269,10 @@ def test_a_law_beyond_all_numbers(amplitude):
         assert np.isfinite(stop.time)
     state = simulation.observe(wrench=False, load=False)
     assert np.all(np.isfinite(np.concatenate([state.position, state.orientation, state.twist])))
+
+
+def test_help_on_a_scene_tells_each_field():
+    for item in fields(Scene):
+        assert f"{item.name} = {item.default!r}: {item.metadata['description']}" in Scene.__doc__
+    assert "kinematic viscosity of the water [m^2/s]; >= 0 m^2/s" in Scene.__doc__
+    assert "c_f(Re); one of printed, laminar, blended, none" in Scene.__doc__

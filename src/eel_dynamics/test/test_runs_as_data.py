@@ -108,6 +108,14 @@ def test_a_pickle_is_equal(thing):
     assert again == thing and hash(again) == hash(thing) and len(repr(thing)) < 300
 
 
+def test_what_holds_arrays_is_shown_in_a_line(run, batch):
+    assert repr(run) == "Run('falling', 'body', 2 s, 21 samples, 7 stations, accuracy '0.01')"
+    assert repr(batch) == "Batch(4 swimmers, 21 samples, 5 stations, 1 stopped)"
+    assert repr(run.energy) == "EnergyLedger(21 samples)" and repr(run.law) == "Law('falling', 2 terms)"
+    assert repr(Scene()) == "Scene()" and repr(Scene(planar=True)) == "Scene(planar=True)"
+    assert eval(repr(Accuracy.of("fine"))) == Accuracy.of("fine")
+
+
 def test_pickled_runs_and_batches_are_equal(run, batch):
     assert pickle.loads(pickle.dumps(run)) == run
     again = pickle.loads(pickle.dumps(batch))

@@ -152,3 +152,13 @@ def test_refuses_with_the_number_and_what_it_got(make, message):
         make()
     assert message in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("name", GAITS)
+def test_help_on_a_gait_tells_each_number(name):
+    text = inspect.getdoc(GAITS[name])
+    for item in dataclasses.fields(GAITS[name].numbers):
+        about = item.metadata
+        bounds = f">= {about['minimum']:g} {about['unit']}".rstrip()
+        assert f"{item.name} = {item.default!r}: {about['description']}" in text and bounds in text
+    assert "transition = 0.0: duration of the blend into the law" in text

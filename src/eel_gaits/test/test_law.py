@@ -199,3 +199,11 @@ def test_refuses_with_the_field_and_the_value(make, message):
 
 def test_a_thousand_terms_are_taken():
     assert len(Law(*[term()] * 1000).terms) == 1000
+
+
+def test_terms_may_be_a_sequence():
+    one, two = Term(amplitude=(1.0,)), Term(axis="pitch", amplitude=(0.5,))
+    assert Law([one, two], name="both") == Law(one, two, name="both") == Law((one, two), name="both")
+    assert Law([]) == Law() and repr(Law([one], transition=2.0)) == "Law('law', 1 term, transition=2 s)"
+    with pytest.raises(ValueError, match=r"terms\[1\] must be a Term, got 3"):
+        Law([one, 3])

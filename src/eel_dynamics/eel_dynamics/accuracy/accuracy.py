@@ -15,7 +15,7 @@ One rule leads from a target to settings, and `simulate` measures the error that
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import lru_cache
 
 import numpy as np
@@ -51,7 +51,7 @@ TIGHTER, DENSER, SHORTER = 1.2, 0.2, 0.2
 LEAST_TIGHTENED = 0.02  # least ratio in one go: a saturated error says little of the settings
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class Accuracy:
     """Settings of a run. `ValueError` names a setting that does not fit.
 
@@ -115,6 +115,11 @@ class Accuracy:
             self.step is not None or not (unknown or (is_finite(self.fixed) and self.fixed > 0.0))
         ):
             raise ValueError(f"accuracy fixed must be > 0 steps by period, and no step given, got {shown(self.fixed)}")
+
+    def __repr__(self) -> str:
+        told = {item.name: getattr(self, item.name) for item in fields(self)}
+        others = [item.name for item in fields(self) if told[item.name] != item.default]
+        return f"Accuracy({', '.join(f'{name}={told[name]!r}' for name in others)})"
 
     def points_per_length(self, waves: float) -> float:
         """Points per body length for `waves` waves on the body. One wave or less needs `resolution`."""

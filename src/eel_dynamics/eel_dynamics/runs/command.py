@@ -5,16 +5,17 @@ simulate falling --duration 20 --periods 4 --actuators 8
 simulate straight --set wavelength=0.8 --scene friction=laminar --accuracy 1e-6 --out run.npz
 """
 
+import argparse
 import csv
 import sys
 import time
-from dataclasses import fields
 from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
 from eel_gaits.command_line import Parser, complain
 from eel_gaits.output_file import NotWritten, check_output, replacing
+from eel_gaits.quantity import described_fields
 from eel_gaits.registry import GAITS, gait
 from eel_gaits.wording import shown
 
@@ -31,10 +32,6 @@ from eel_dynamics.runs.storage.tables import columns_of
 from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.simulation.stopping import SimulationStopped
 
-CURRENT = (
-    "current=x,y,z is in the library's world frame, in which the eel swims towards -x, y is right and z up: 0.1,0,0 "
-    "flows against it (scene.current of the node dynamics has x and y the other way)"
-)
 SUFFIXES = (".nc", ".npz", ".csv", ".rrd")
 
 
@@ -110,8 +107,12 @@ class Progress:
 
 
 def _parser() -> Parser:
-    scene = ", ".join(item.name for item in fields(Scene))
-    parser = Parser(prog="simulate", description="Swim a gait offline and print the summary.")
+    parser = Parser(
+        prog="simulate",
+        description="Swim a gait offline and print the summary.",
+        epilog=f"fields of the scene, with default, meaning, unit, and bounds or choices:\n{described_fields(Scene)}",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
     parser.add_argument("gait", nargs="?", default="falling", help=f"one of {', '.join(sorted(GAITS))} (falling)")
     parser.add_argument(
         "--set", action="append", default=[], metavar="NAME=VALUE", help="a number of the gait; may be repeated"
@@ -133,7 +134,7 @@ def _parser() -> Parser:
         action="append",
         default=[],
         metavar="NAME=VALUE",
-        help=f"physics: {scene}; may be repeated; {CURRENT}",
+        help="physics, a field of the list below; may be repeated",
     )
     parser.add_argument(
         "--sample-period", type=float, help="s (0.05, or a 20th of the gait's period where that is less)"

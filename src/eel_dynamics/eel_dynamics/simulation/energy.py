@@ -14,7 +14,7 @@ import numpy as np
 from eel_dynamics.model.equality import same_fields
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class EnergyLedger:
     """The ledger of one instant (floats) or of a run ((T,) arrays). In a current it is relative to the water."""
 
@@ -34,6 +34,10 @@ class EnergyLedger:
         return same_fields(self, other)
 
     __hash__ = None  # it holds arrays
+
+    def __repr__(self) -> str:
+        shape = np.shape(self.residual)
+        return f"EnergyLedger({'an instant' if not shape else ' x '.join(map(str, shape)) + ' samples'})"
 
     def __getitem__(self, name: str):
         if name not in self.keys():

@@ -86,7 +86,7 @@ def gradient(
     steps: dict[str, float] | None = None,
     estimate: bool = True,
     threads: int | None = None,
-    progress: "Callable[[int, int], None] | bool | None" = None,
+    progress: "Callable[[int, int], None] | bool | None" = False,
     most_evaluations: float = MOST_EVALUATIONS,
 ) -> Gradient:
     """Derivatives of measures of a run by its parameters, at the values given.
