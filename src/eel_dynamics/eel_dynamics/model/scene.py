@@ -64,8 +64,8 @@ class Scene:
         default=(0.0, 0.0, 0.0),
         metadata={
             "unit": "m/s",
-            "description": "uniform velocity (x, y, z) of the water, world frame; against the eel: x > 0 in the library "
-            "and its commands, x < 0 for the node (REP-103)",
+            "description": "uniform velocity (x, y, z) of the water, world frame; against the eel: x > 0 in the "
+            "library and its commands, x < 0 for the node (REP-103)",
         },
     )
     density: float | None = field(
