@@ -22,7 +22,7 @@ from visualiser import cpu_time
 from eel_gaits import Law, Term
 
 STARTS, SECONDS, LAWS = 5, 10.0, 31
-FIRST_WORDS = {"dynamics": "waiting for a law", "gait_generator": "published on", "visualiser": "saving to"}
+FIRST_WORDS = {"dynamics": "waiting for curvature_law", "gait_generator": "published on", "visualiser": "saving to"}
 SETTLED = 2.0  # s of simulated time, when all have found each other
 
 
@@ -92,7 +92,7 @@ def _measured(folder: Path, domain):
 def _seconds_to_start(start) -> float:
     began = time.monotonic()
     node = start("dynamics")
-    node.wait_for_output("waiting for a law")
+    node.wait_for_output("waiting for curvature_law")
     seconds = time.monotonic() - began
     node.end()
     return seconds

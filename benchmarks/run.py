@@ -18,6 +18,7 @@ from batch import batch
 from eel_dynamics.studies.tradeoff.settings import REFERENCE
 from growth import growth
 from integrators import integrators
+from lockstep import lockstep
 from measuring import median_ratio, times_in_turn
 from nodes import nodes
 from switches import COUNT, evaluations, plane, switches
@@ -121,6 +122,7 @@ FIGURES = {
     "batch": batch,
     "visualiser": visualiser,
     "nodes": nodes,
+    "lockstep": lockstep,
 }
 OPTIONAL = {"peers": peers, "paper_scheme": paper_scheme}  # on request: they install other people's packages
 

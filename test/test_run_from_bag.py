@@ -28,8 +28,9 @@ def run() -> Run:
     return simulate(falling(), 2.0, sample_period=0.02, load=True, scene=Scene(friction="laminar"), accuracy=1e-3)
 
 
-def write_bag(folder, run, *, left_out=(), space="", runs=1, laws=1, origin=0, first=0):
-    """A bag of the messages that a node publishes of `run`, `runs` times; the law's own time begins at `origin` [s]."""
+def write_bag(folder, run, *, left_out=(), space="", runs=1, laws=1, origin=0, first=0, waiting=0):
+    """A bag of the messages that a node publishes of `run`, `runs` times; the law's own time begins at `origin` [s].
+    waiting: before each run, so many messages of sample 0 with the numbers of another."""
     writer, connections = Writer(folder, version=9, storage_plugin=StoragePlugin.MCAP), {}
     with writer:
 
@@ -47,8 +48,9 @@ def write_bag(folder, run, *, left_out=(), space="", runs=1, laws=1, origin=0, f
         told = diagnostic_array(0.0, "/dynamics", 0, "swimming", {"law": run.law.name, "accuracy": run.accuracy.name})
         add("/diagnostics", GLOBAL["/diagnostics"], serialize_message(told))
         sample = Sample(run.x, run.scene, DynamicsParameters())
-        for k in [k for _ in range(runs) for k in range(first, len(run.time))]:
-            sample.set_time(round(run.time[k] * 1e9))
+        whole = [*[(0, 7)] * waiting, *((k, k) for k in range(first, len(run.time)))]
+        for stamp, k in whole * runs:
+            sample.set_time(round(run.time[stamp] * 1e9))
             energy = SimpleNamespace(**{name: run.energy[name][k] for name in run.energy.keys()})  # noqa: SIM118
             snapshot = SimpleNamespace(energy=energy, **{name: getattr(run, name)[k] for name in PROFILES})
             for topic in sample.kinds:
@@ -76,6 +78,12 @@ def test_it_is_the_run_that_was_published(run, tmp_path):
     assert Run.load(tmp_path / "run.nc") == again
     known = replace(again, body=run.body)
     assert known.refined.position == pytest.approx(run.position, abs=1e-3)
+
+
+def test_a_sample_0_that_was_repeated_before_the_run_counts_once(run, tmp_path, recwarn):
+    again = Run.from_bag(write_bag(tmp_path / "bag", run, waiting=3), scene=run.scene)
+    assert again.time == pytest.approx(run.time, abs=1e-9) and np.array_equal(again.torque, run.torque)
+    assert not recwarn.list
 
 
 def test_what_the_bag_lacks_is_none_or_named(run, tmp_path):

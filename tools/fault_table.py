@@ -28,7 +28,7 @@ GROUPS = {  # key in the decorator: heading, in the order of the page
     "ending": "Signals, kills and full disks",
     "neighbours": "Others on the network",
     "names": "Names, paths and files",
-    "parameters": "Parameters",
+    "parameters": "Parameters and services",
 }
 
 

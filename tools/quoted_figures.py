@@ -128,8 +128,18 @@ def orders() -> str:
     return "\n".join(lines)
 
 
+def lockstep() -> str:
+    """docs/controllers.md: what a tick of a controller in the loop costs."""
+    report = Report("lockstep")
+    lines = [f"From {link(report, '../')} (`{report.command}`).", "", "| way | a tick |", "|---|---|"]
+    for label in ("the library alone", "bare messages, there and back", "the dynamics node", "node over the sum"):
+        lines.append(f"| {label} | {report.rest(label)} |")
+    return "\n".join(lines)
+
+
 BLOCKS: dict[str, dict[str, Callable[[], str]]] = {
     "README.md": {"trust": trust, "speed": speed},
+    "docs/controllers.md": {"lockstep": lockstep},
     "docs/integrators.md": {"integrators": integrators, "orders": orders},
 }
 

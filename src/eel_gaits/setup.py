@@ -19,6 +19,7 @@ setup(
     entry_points={
         "console_scripts": [
             "gait_generator = eel_gaits.node:main",
+            "heading_controller = eel_gaits.heading_controller:main",
         ]
     },
 )

@@ -203,6 +203,10 @@ class March:
         """Stands at time 0 at a position (3,) [m] with an orientation (4,) (x y z w, world from head) and the head's
         twist (6,). The kinetic energy [J] of body and water."""
 
+    def set_state(self, position: Buffer, orientation: Buffer, twist: Buffer) -> float:
+        """Puts the head of the present shape at a position (3,) [m] with an orientation (4,) (x y z w, world from head)
+        and its twist (6,). The kinetic energy [J] of body and water."""
+
     def set_twist(self, twist: Buffer) -> float:
         """Gives the present state the momentum of the twist (6,). The kinetic energy [J] of body and water."""
 

@@ -144,6 +144,13 @@ class PyMarch {
         const Driven in_use(*this);
         return march_.start(vector_from(position, "position"), {q[0], q[1], q[2], q[3]}, twist_from(twist, "twist"));
     }
+    double set_state(const py::object& position, const py::object& orientation, const py::object& twist)
+    {
+        const auto q = row_from<4>(orientation, "orientation");
+        const Driven in_use(*this);
+        return march_.set_state(vector_from(position, "position"), {q[0], q[1], q[2], q[3]},
+                                twist_from(twist, "twist"));
+    }
     double set_twist(const py::object& twist)
     {
         const Driven in_use(*this);
@@ -360,6 +367,7 @@ PYBIND11_MODULE(EEL_CORE_MODULE, module)
         .def("follow", &PyMarch::follow, py::arg("law"), py::arg("breakpoints"), py::arg("bounds"), py::arg("ledger"),
              py::arg("current"), py::arg("smoothly"))
         .def("start", &PyMarch::start, py::arg("position"), py::arg("orientation"), py::arg("twist"))
+        .def("set_state", &PyMarch::set_state, py::arg("position"), py::arg("orientation"), py::arg("twist"))
         .def("set_twist", &PyMarch::set_twist, py::arg("twist"))
         .def("twist", &PyMarch::twist)
         .def("set_slice", &PyMarch::set_slice, py::arg("nodes"))

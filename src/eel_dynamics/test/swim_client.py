@@ -68,6 +68,7 @@ class SwimClient:
         self.executor.add_node(self.node)
         self.received = defaultdict(list)
         self.arrivals = defaultdict(list)  # s, steady clock
+        self.starts = defaultdict(int)  # number of messages with sample 0
         self._subscriptions, self._services = [], {}
         for topic in topics:
             self.listen(topic, {**SAMPLES, **FURTHER}[topic])
@@ -84,10 +85,16 @@ class SwimClient:
         self.context.try_shutdown()
 
     def listen(self, topic, kind, quality=LOSSLESS, name=None):
-        """Subscribes to a topic; its messages are in `received[name]`, by default the topic's."""
+        """Subscribes to a topic; its messages are in `received[name]`, by default the topic's. Of those that repeat
+        sample 0 while the run stands at its start, the last is kept."""
         name = name or topic
 
         def keep(message):
+            if kind in SAMPLES.values() and nanoseconds(message.header.stamp) == 0:
+                self.starts[name] += 1
+                if self.received[name] and nanoseconds(self.received[name][-1].header.stamp) == 0:
+                    self.received[name].pop()
+                    self.arrivals[name].pop()
             self.received[name].append(message)
             self.arrivals[name].append(time.monotonic())
 

@@ -20,13 +20,14 @@ def seconds(message):
 @pytest.mark.fault(
     "time",
     "waiting for a law, and a pause",
-    "/clock ticks on at the time that stands; afterwards the run does not hurry",
+    "/clock ticks on at the time that stands, sample 0 is repeated; afterwards the run does not hurry",
 )
 def test_clock_ticks_while_waiting_and_while_paused(start, client):
-    swim = client(topics=("head_pose",), clock=True)
+    swim = client(topics=("head_pose", "odom"), clock=True)
     start("dynamics", "--ros-args")
-    swim.until(lambda: len(swim.received["/clock"]) > 10, "clock while waiting for a law")
-    assert {seconds(message) for message in swim.received["/clock"]} == {0.0} and not swim.received["head_pose"]
+    swim.until(lambda: len(swim.received["/clock"]) > 10 and swim.starts["odom"] > 3, "clock and sample 0, repeated")
+    assert {seconds(message) for message in swim.received["/clock"]} == {0.0}
+    assert seconds(swim.received["odom"][-1]) == 0.0 and swim.starts["odom"] < len(swim.received["/clock"])
     swim.laws.publish(law_to_message(falling()))
     swim.until_time(0.3)
     stands = swim.stop_the_clock("head_pose")

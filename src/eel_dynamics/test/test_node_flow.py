@@ -200,7 +200,7 @@ def test_controller_without_a_law_drives_flat_out(start, client):
     swim = client(topics=("curvature",))
     patient = ("-p", "subscriber_timeout:=60")
     node = start("dynamics", *FLAT_OUT, "-p", "rate:=50", "-p", "default_transition:=0.1", *patient)
-    node.wait_for_output("waiting for a law", LIMIT)
+    node.wait_for_output("waiting for curvature_law", LIMIT)
     swim.until(lambda: swim.samples.get_subscription_count() == 1, "the node's subscription")
     for k in (1, 2, 3):
         swim.samples.publish(instant(0.02 * k))
@@ -378,7 +378,7 @@ def test_samples_of_too_many_points_and_too_many_of_them_are_refused(start, clie
             setattr(message, name, row)
         swim.spin(1.1)  # errors of one kind are said once a second
         swim.samples.publish(message)
-        said = f"curvature samples x must have at most 1601 points, got {points}"
+        said = f"curvature samples refused: x must have at most 1601 points, got {points}"
         swim.until(lambda said=said: said in node.output(), said)
     x = np.linspace(0.0, 1.0, 1601)
     rows = {name: array.array("d", bytes(8 * 1601)) for name in ROWS}
@@ -418,7 +418,7 @@ def test_second_publisher_of_clock_is_left_alone(start, client):
 def test_of_two_nodes_the_first_keeps_the_clock(start, client):
     swim = client(topics=(), clock=True)
     first = start("dynamics", "--ros-args", "-r", "__ns:=/first")
-    first.wait_for_output("waiting for a law", LIMIT)
+    first.wait_for_output("waiting for curvature_law", LIMIT)
     swim.until(lambda: len(swim.received["/clock"]) > 100, "clock of the first")
     second = start("dynamics", "--ros-args", "-r", "__ns:=/second")
     second.wait_for_output("/clock is published by", LIMIT)

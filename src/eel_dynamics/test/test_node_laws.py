@@ -84,7 +84,7 @@ def test_a_volatile_publisher_is_received_and_repeating_changes_nothing(start, c
     swim = client(topics=("curvature",))
     publisher = swim.node.create_publisher(CurvatureLaw, "curvature_law", QoSProfile(depth=10))
     node = start("dynamics", "--ros-args")
-    node.wait_for_output("waiting for a law", LIMIT)
+    node.wait_for_output("waiting for curvature_law", LIMIT)
     message = law_to_message(bend(1.5, transition=0.3))
 
     def said_until(seconds):
@@ -203,10 +203,10 @@ def test_the_law_may_come_before_or_after_the_node(start, client, early):
     if early:
         swim.laws.publish(law_to_message(bend(0.5, name="only")))
     node = start("dynamics", "--ros-args")
-    node.wait_for_output("adopted" if early else "waiting for a law", LIMIT)
+    node.wait_for_output("adopted" if early else "waiting for curvature_law", LIMIT)
     swim.laws.publish(law_to_message(bend(0.5, name="only")))
     swim.until_time(0.1)
-    assert node.output().count("waiting for a law") <= 1 and node.output().count("'only' adopted") == 1
+    assert node.output().count("waiting for curvature_law") <= 1 and node.output().count("'only' adopted") == 1
 
 
 @pytest.mark.fault(

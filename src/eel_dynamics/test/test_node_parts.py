@@ -1,6 +1,7 @@
 """The parts of the dynamics node that need no ROS process: parameters, pace, /clock, reports, laws, run loop."""
 
 import math
+import threading
 from dataclasses import fields
 from types import SimpleNamespace
 
@@ -411,8 +412,8 @@ def test_a_subscriber_that_comes_after_the_snapshot_was_taken(monkeypatch):
         return SimpleNamespace(get_subscription_count=lambda: audience[topic], publish=received.append)
 
     publishers = Publishers(
-        sample, create=create, destroy=None, received=None, publish_error=RuntimeError, values=DynamicsParameters,
-        stopped=lambda: False, report=Report(Log()),
+        sample, create=create, destroy=None, known=None, received=None, publish_error=RuntimeError,
+        values=DynamicsParameters, stopped=lambda: False, report=Report(Log()),
     )  # fmt: skip
     assert publishers.wanted_parts() == {"wrench": False, "load": False}
     audience.update(dict.fromkeys(audience, 1))
@@ -434,7 +435,7 @@ def test_who_was_given_up_does_not_cost_the_others_the_end_of_a_run(monkeypatch)
 
     publishers = Publishers(
         SimpleNamespace(kinds=dict.fromkeys(("backbone", "head_pose"), str)), create=lambda kind, topic, depth: topic,
-        destroy=lambda publisher: None, received=received, publish_error=RuntimeError,
+        destroy=lambda publisher: None, known=None, received=received, publish_error=RuntimeError,
         values=lambda: DynamicsParameters(real_time_factor=0.0), stopped=lambda: False, report=Report(Log()),
     )  # fmt: skip
     publishers._give_up(publishers._channels["backbone"])
@@ -443,6 +444,12 @@ def test_who_was_given_up_does_not_cost_the_others_the_end_of_a_run(monkeypatch)
 
 
 # the run loop
+
+
+def fake_publishers(publish):
+    return SimpleNamespace(
+        wanted_parts=dict, publish=publish, tick=lambda nanoseconds: None, audience=tuple, lossless=False
+    )
 
 
 @pytest.mark.parametrize(("wanted", "done_at"), [(lambda run: run.reset(), 0.0), (lambda run: run.request(int), 0.25)])
@@ -455,7 +462,7 @@ def test_a_request_knows_when_it_was_carried_out(wanted, done_at):
         if nanoseconds == 250_000_000 and not requests:
             requests.append(wanted(run))
 
-    publishers = SimpleNamespace(wanted_parts=dict, publish=publish, tick=lambda nanoseconds: None)
+    publishers = fake_publishers(publish)
     simulation = Simulation(law=falling(), accuracy=1e-2)
     run = RunLoop(simulation, DynamicsParameters(real_time_factor=0.0, duration=1.0), publishers, Report(Log()))
     run.run()
@@ -476,9 +483,58 @@ def test_a_reset_that_the_law_refuses_leaves_the_run_as_it_is(monkeypatch):
             monkeypatch.setattr("eel_dynamics.simulation.simulation.march_from_start", refuse)
             run.reset()
 
-    publishers = SimpleNamespace(wanted_parts=dict, publish=publish, tick=lambda nanoseconds: None)
+    publishers = fake_publishers(publish)
     simulation = Simulation(law=falling(), accuracy=1e-2)
     run = RunLoop(simulation, DynamicsParameters(real_time_factor=0.0, duration=1.0), publishers, Report(log))
     run.run()
     assert stamps == sorted(set(stamps)) and stamps[-1] == 10**9 and not run.given_up
     assert ("error", "reset refused: law 'x' cannot be begun: kinetic energy") in log.lines
+
+
+def test_a_run_that_stands_at_its_start_repeats_sample_0_and_goes_on_with_sample_1(monkeypatch):
+    """A controller that answers the third sample 0; nobody publishes a law."""
+    monkeypatch.setattr("eel_dynamics.ros.loop.run_loop.START_PERIOD", 0.0)
+    stamps, x = [], [0.0, 1.0]
+
+    def publish(snapshot, nanoseconds):
+        stamps.append(nanoseconds)
+        if len(stamps) == 3:
+            rows = {f"{axis}{of}": [0.0, 0.0] for axis in ("pitch", "yaw") for of in ("", "_rate", "_accel")}
+            run.take_samples({"time": 0.01, "x": x, **rows})
+
+    run = RunLoop(
+        Simulation(accuracy=1e-2),
+        DynamicsParameters(real_time_factor=1000.0, duration=0.05),
+        fake_publishers(publish),
+        Report(Log()),
+    )
+    run.run()
+    assert stamps == [0, 0, 0, *(10_000_000 * k for k in range(1, 6))] and run.samples_published == 6
+
+
+def test_steps_of_a_paused_run_end_with_the_last_of_them_or_say_why():
+    stamps, steps = [], []
+
+    def publish(snapshot, nanoseconds):
+        stamps.append(nanoseconds)
+
+    run = RunLoop(
+        Simulation(accuracy=1e-2, law=falling()),
+        DynamicsParameters(real_time_factor=0.0, duration=1.0),
+        fake_publishers(publish),
+        Report(Log()),
+    )
+    thread = threading.Thread(target=run.run)
+    run.pause(True)
+    thread.start()
+    for count in (3, 2):
+        steps.append(run.step(count))
+        assert steps[-1].done.wait(60.0) and not steps[-1].failure
+    assert [each.time for each in steps] == [0.03, 0.05]
+    assert [stamp for stamp in stamps if stamp] == [10_000_000 * k for k in range(1, 6)]
+    run.pause(False)
+    thread.join()
+    late = run.step(1)
+    run.request(run.stop)
+    run.run()
+    assert "refused at t = 1 s: the run is not paused" in late.failure or not late.done.is_set()

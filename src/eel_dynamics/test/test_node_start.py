@@ -114,9 +114,11 @@ def test_words_that_are_no_ros_arguments(start, word, status, beginning, lines):
 def test_overrides_that_are_no_parameters_are_named(start):
     given = ("rate:=50", "foo:=1", "scene.plane:=true", "use_sim_time:=false")
     node = start("dynamics", "--ros-args", *(part for each in given for part in ("-p", each)))
-    node.wait_for_output("waiting for a law", LIMIT)
+    node.wait_for_output("waiting for curvature_law", LIMIT)
     assert node.output().count("WARN") == 1
-    assert "not parameters of this node, ignored: 'foo', 'scene.plane'\n" in node.output()
+    assert (
+        "not parameters of this node, ignored: 'foo', 'scene.plane' (did you mean 'scene.planar'?)\n" in node.output()
+    )
 
 
 def test_body_from_a_file_and_numbers_of_every_kind(start, client, tmp_path):
@@ -155,7 +157,7 @@ def test_signal_ends_a_run_promptly(start, client, sent, factor):
 @pytest.mark.fault("ending", "two signals at once", "status 0, no traceback")
 def test_two_signals_are_as_good_as_one(start):
     node = start("dynamics")
-    node.wait_for_output("waiting for a law", LIMIT)
+    node.wait_for_output("waiting for curvature_law", LIMIT)
     node.process.send_signal(signal.SIGINT)
     node.process.send_signal(signal.SIGTERM)
     assert node.wait(LIMIT) == 0 and "Traceback" not in node.output()

@@ -1,4 +1,4 @@
-"""The gait generator. It publishes the curvature law of a gait, and a new one whenever a parameter is set.
+"""The gait generator. It publishes the curvature law of a gait, and a new one whenever parameters are set.
 
 The topic `curvature_law` is transient local: a receiver that starts later gets the law too. The stamp of the law is the
 simulation time at which the gait began. A parameter of the same gait does not change that time. Another gait begins at
@@ -11,6 +11,7 @@ from dataclasses import fields
 from builtin_interfaces.msg import Time
 from eel_ros.command_line import USE_SIM_TIME, answer_words
 from eel_ros.frames import frame_in
+from eel_ros.parameter_node import ParameterNode
 from eel_ros.parameters import declare, described, take_overrides, warn_of_unknown
 from eel_ros.qos import latched
 from eel_ros.run_node import run_node
@@ -18,7 +19,6 @@ from eel_ros.serving import PolledGroup, log_dropped
 from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
 from rclpy.clock import JumpThreshold
 from rclpy.duration import Duration
-from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from eel_gaits.command_line import complain
@@ -34,7 +34,7 @@ ABOUT = "Publishes the curvature law of a gait, and a new one whenever a paramet
 LOOK = 0.25  # s between two looks at whether time went back
 
 
-class GaitGenerator(Node):
+class GaitGenerator(ParameterNode):
     """A node with the parameters `gait`, `transition` and the gait's own numbers, and the topic `curvature_law`."""
 
     def __init__(self):
@@ -54,6 +54,7 @@ class GaitGenerator(Node):
         self.add_on_set_parameters_callback(self._judge_change)
         self.add_post_set_parameters_callback(self._make_change)
         backwards = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1), on_clock_change=False)
+        self._publish_later = self.create_guard_condition(self._publish)  # after the present callback: one law of all
         self._jump_handle = self.get_clock().create_jump_callback(backwards, post_callback=self._follow_reset)
         self._publish()
 
@@ -116,7 +117,7 @@ class GaitGenerator(Node):
                 self.undeclare_parameter(name)
             self._declare_numbers()
             self._stamp = self.get_clock().now().to_msg()
-        self._publish()
+        self._publish_later.trigger()
 
     def _follow_reset(self, jump):
         """After time went back, the receiver's law has its own t = 0 at 0. Laws published later have it too."""

@@ -51,6 +51,19 @@ def test_parameters_at_start_take_integers_and_tell_what_they_are(generator, cli
     assert "turning" in name.additional_constraints
 
 
+def test_several_values_set_at_once_make_one_law(generator, client):
+    """As `ros2 param load` does it: one request, in which each parameter is set by itself."""
+    generator("-p", "gait:=kern_fast")
+    client.listen()
+    before = client.law(0)[0]
+    changes = {"waves": 1.5, "bend_nose": 1.6, "bend_third": 0.5, "bend_tail": 2.5, "period": 2, "transition": 0.5}
+    assert all(result.successful for result in client.set(**changes))
+    law, _ = client.law(1)
+    assert law == gait("kern_fast", **{**changes, "period": 2.0}) and law != before
+    client.set(period=3.0)
+    assert client.law(2)[0] == gait("kern_fast", **{**changes, "period": 3.0}) and len(client.messages) == 3
+
+
 def test_a_params_file_in_a_namespace(generator, client, tmp_path):
     file = tmp_path / "parameters.yaml"
     file.write_text(
@@ -122,11 +135,11 @@ def test_what_the_user_set_carries_over(generator, client):
     client.listen()
     assert client.law(0)[0] == falling()
     assert all(result.successful for result in client.set(period=3, wavelength=0.7, gait="turning"))
-    assert client.law(3)[0] == turning(period=3.0, wavelength=0.7, yaw_bend=0.25)
+    assert client.law(1)[0] == turning(period=3.0, wavelength=0.7, yaw_bend=0.25)
     client.set(gait="kern_efficient")
-    assert client.law(4)[0] == gait("kern_efficient", period=3.0)
+    assert client.law(2)[0] == gait("kern_efficient", period=3.0)
     client.set(gait="turning")
-    assert client.law(5)[0] == turning(period=3.0, wavelength=0.7, yaw_bend=0.25)
+    assert client.law(3)[0] == turning(period=3.0, wavelength=0.7, yaw_bend=0.25)
 
 
 def test_a_gait_and_its_numbers_set_together(generator, client):
@@ -227,7 +240,7 @@ def test_help_tells_every_parameter(start):
 def test_overrides_that_are_no_parameters_are_named(generator):
     process = generator("-p", "perod:=0.5", "-p", "left_bend:=1", "-p", "qos_overrides./a.publisher.depth:=2")
     assert process.output().count("WARN") == 1
-    assert "not parameters of this node, ignored: 'perod'\n" in process.output()
+    assert "not parameters of this node, ignored: 'perod' (did you mean 'period'?)\n" in process.output()
 
 
 @pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])

@@ -1,20 +1,27 @@
 """ROS parameters from dataclasses: type, default, range and description come from the fields.
 
-Metadata of a field: description, unit; optional minimum, maximum, choices, changeable (at run time).
+Metadata of a field: description, unit; optional minimum, maximum, choices, changeable (at run time: True, or AT_RESET),
+number (a text or a number).
 """
 
 import math
+import sys
 from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import MISSING, Field, fields
+from difflib import get_close_matches
 
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from rclpy.node import Node
+
+from eel_ros.parameter_files import shared_names
 
 ROS_PREFIXES = (
     "use_sim_time",
     "start_type_description_service",
     "qos_overrides.",
 )  # of ROS's own parameters
+AT_RESET = "at the next reset"  # when a change acts
+ALIKE = 0.8  # of two names, from 0 to 1: one may be meant for the other
 MAXIMUM_INTEGER = 2**63 - 1  # of a ROS parameter
 
 
@@ -32,14 +39,27 @@ def take_overrides(node: Node) -> dict:
 
 
 def warn_of_unknown(node: Node, overrides: Mapping, known: Collection[str]) -> None:
-    """Warn of overrides that are not `known`. They are not an error: a parameter file may serve several nodes."""
-    unknown = [repr(name) for name in overrides if name not in known and not name.startswith(ROS_PREFIXES)]
-    if unknown:
-        node.get_logger().warning(f"not parameters of this node, ignored: {', '.join(unknown)}")
+    """Warn of overrides that are not `known`; they are ignored.
+
+    Those for all nodes (`/**` in a parameter file) may be another node's: of them only those are named that are like a
+    known one.
+    """
+    unknown = [name for name in overrides if name not in known and not name.startswith(ROS_PREFIXES)]
+    shared = shared_names(sys.argv) if unknown else set()
+    hints = {name: did_you_mean(name, known) for name in unknown}
+    told = [f"{name!r}{hint}" for name, hint in hints.items() if hint or name not in shared]
+    if told:
+        node.get_logger().warning(f"not parameters of this node, ignored: {', '.join(told)}")
+
+
+def did_you_mean(name: str, known: Collection[str]) -> str:
+    """The `known` name that is most like `name`, as a question in brackets; empty if none is."""
+    alike = get_close_matches(name, known, n=1, cutoff=ALIKE)
+    return f" (did you mean {alike[0]!r}?)" if alike else ""
 
 
 def declare(
-    node: Node, values, limits: Callable[[Mapping], str], prefix: str = "", changeable: bool | None = None
+    node: Node, values, limits: Callable[[Mapping], str], prefix: str = "", changeable: bool | str | None = None
 ) -> None:
     """Declare a parameter, named `prefix` and field, for each field of the dataclass instance `values`.
 
@@ -47,7 +67,7 @@ def declare(
     """
     for item in fields(values):
         descriptor = _descriptor(item, limits, changeable)
-        value = _as_parameter(getattr(values, item.name))
+        value = as_parameter(getattr(values, item.name))
         node.declare_parameter(prefix + item.name, value, descriptor, ignore_override=True)
 
 
@@ -66,21 +86,24 @@ def described(item: Field) -> str:
 def default_of(item: Field):
     """The default of a field as a ROS parameter holds it: a list for a tuple, 0.0 for None."""
     assert item.default is not MISSING, item.name
-    return _as_parameter(item.default)
+    return as_parameter(item.default)
 
 
-def _as_parameter(value):
+def as_parameter(value):
+    """`value` as a ROS parameter holds it: a list for a tuple, 0.0 for None."""
     if value is None:
         return 0.0
     return list(value) if isinstance(value, tuple) else value
 
 
-def _descriptor(item: Field, limits: Callable[[Mapping], str], changeable: bool | None) -> ParameterDescriptor:
+def _descriptor(item: Field, limits: Callable[[Mapping], str], changeable: bool | str | None) -> ParameterDescriptor:
     metadata = item.metadata
     if changeable is None:
         changeable = metadata.get("changeable", False)
     none = "; 0: not overridden" if item.default is None else ""
-    descriptor = ParameterDescriptor(description=described(item) + none, read_only=not changeable)
+    when = f"; a change acts {AT_RESET}" if changeable == AT_RESET else ""
+    descriptor = ParameterDescriptor(description=described(item) + none + when, read_only=not changeable)
+    descriptor.dynamic_typing = metadata.get("number", False)
     low, high = metadata.get("minimum"), metadata.get("maximum")
     if "choices" in metadata:
         descriptor.additional_constraints = "one of " + ", ".join(metadata["choices"])

@@ -111,6 +111,12 @@ def stamp_of(message) -> int:
     return stamp.sec * 1_000_000_000 + stamp.nanosec
 
 
+def is_at_start(message) -> bool:
+    """Whether header.stamp is 0; False for a message without it."""
+    stamp = getattr(getattr(message, "header", None), "stamp", None)
+    return stamp is not None and stamp.sec == 0 and stamp.nanosec == 0
+
+
 def read_pose(pose) -> Pose:
     """From geometry_msgs/Pose."""
     p, q = pose.position, pose.orientation

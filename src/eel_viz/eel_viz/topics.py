@@ -16,5 +16,6 @@ OWN = {  # relative: below the swimmer's namespace
     "curvature_samples": "eel_msgs/msg/CurvatureSamples",
 }
 GLOBAL = {"/clock": "rosgraph_msgs/msg/Clock", "/diagnostics": "diagnostic_msgs/msg/DiagnosticArray"}
+SAMPLED = tuple(name for name in OWN if name not in ("body", "curvature_law", "curvature_samples"))  # once a sample
 LATCHED = ("body", "curvature_law")  # transient local
 SWIMMER = "head_pose"  # without publishers of this topic the swimmer has gone

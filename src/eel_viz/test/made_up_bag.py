@@ -22,6 +22,7 @@ def write_bag(
     stations: int = 21,
     namespaces: tuple[str, ...] = ("",),
     runs: int = 1,
+    waiting: int = 0,
     storage: StoragePlugin = StoragePlugin.MCAP,
     compression: CompressionMode = CompressionMode.NONE,
     kinds: dict[str, str] | None = None,
@@ -29,6 +30,7 @@ def write_bag(
 ) -> Path:
     """Body and law first, then all samples; returns `folder`.
 
+    waiting: before each run, so many messages of stamp 0 with the numbers of another time.
     `spoil(topic, message)` is what is written instead, None: nothing; `kinds` are types given out for topics' own.
     """
     writer = Writer(folder, version=9, storage_plugin=storage)
@@ -52,8 +54,11 @@ def write_bag(
             add(f"{space}/body", OWN["body"], body_message(made_up.STATIONS))
             add(f"{space}/curvature_law", OWN["curvature_law"], CurvatureLaw(name="made up"))
         swimmer = made_up.Swimmer(stations)
-        for stamp in [round(k * 1e9 / rate) for _ in range(runs) for k in range(round(seconds * rate) + 1)]:
-            sample = messages(swimmer, stamp)
+        whole = [*[-1] * waiting, *(round(k * 1e9 / rate) for k in range(round(seconds * rate) + 1))]
+        for stamp in whole * runs:
+            sample = messages(swimmer, stamp if stamp >= 0 else 3 * 10**8)
+            for message in sample.values() if stamp < 0 else ():
+                message.header.stamp.nanosec = 0
             for space in namespaces:
                 for topic, message in sample.items():
                     add(f"{space}/{topic}", OWN[topic], message)

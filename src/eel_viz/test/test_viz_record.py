@@ -89,6 +89,23 @@ def test_a_run_without_a_pace_is_recorded_completely(start, fresh_domain, tmp_pa
     assert {profile["reliability"] for profile in profiles.values()} == {"reliable"}
 
 
+def test_a_repeated_sample_0_is_recorded_once(start, network, tmp_path):
+    """Four times the same, as a run sends it that waits for a law; then another one, as a law makes it."""
+    recorder = start("record", "-o", str(tmp_path / "bag"))
+    recorder.wait_for_output("recording to")
+    publisher = network.create_publisher(TOPICS["head_pose"], "head_pose", 1000)
+    found(publisher)
+    for stamp, x in [(0, 1.0)] * 4 + [(0, 2.0), (10, 3.0), (10, 3.0)]:
+        message = messages(made_up.Swimmer(51), stamp)["head_pose"]
+        message.pose.position.x = x
+        publisher.publish(message)
+    assert publisher.wait_for_all_acked()
+    recorder.process.send_signal(signal.SIGINT)
+    assert recorder.wait(90.0) == 0 and "/head_pose 4" in recorder.output(), recorder.output()
+    bag = contents(tmp_path / "bag")["/head_pose"]
+    assert [message.pose.position.x for _, message in bag] == [1.0, 2.0, 3.0, 3.0]
+
+
 @pytest.mark.parametrize("kind", TYPES)
 def test_definitions_are_complete_and_their_hashes_are_those_of_the_types(kind):
     store = get_typestore(Stores.EMPTY)

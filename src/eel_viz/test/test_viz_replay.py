@@ -69,6 +69,17 @@ def test_every_number_is_that_of_the_visualisers_loggers(tmp_path, logged, stora
     assert read(tmp_path / "run.rrd", entities.LOG)["text"][0][0] == "law 'made up' published"
 
 
+@pytest.mark.parametrize("runs", [1, 2])
+def test_a_sample_0_that_was_repeated_before_the_run_is_shown_and_counted_once(tmp_path, capsys, runs):
+    folder = write_bag(tmp_path / "bag", 0.4, waiting=3, runs=runs)
+    assert main([str(folder), "-o", str(tmp_path / "run.rrd")]) == 0
+    assert f"backbone {41 * runs}" in capsys.readouterr().out
+    for name in ("run.rrd", "run-2.rrd")[:runs]:
+        torque = read(tmp_path / name, entities.WRENCH_NUMBERS)
+        np.testing.assert_array_equal(torque.stamps_of["torque_3"], STAMPS[:41])
+        np.testing.assert_array_equal(torque["torque_3"][0], made_up.Swimmer(21).wrench(0.0)["torque_3"])
+
+
 def test_it_needs_no_ros_at_all(tmp_path, bag, logged):
     blocked = ["rclpy", "eel_msgs", "std_msgs", "geometry_msgs", "rcl_interfaces", "builtin_interfaces", "nav_msgs"]
     code = f"import sys\nfor name in {blocked!r}: sys.modules[name] = None\nfrom eel_viz.bags.replay import main\n"

@@ -36,11 +36,11 @@ class CurvatureSample(NamedTuple):
     values: np.ndarray
 
     @staticmethod
-    def checked(time, x, rows, *, length: float, planar: bool, now: float) -> "CurvatureSample":
+    def checked(time, x, rows, *, length: float, planar: bool, now: float, begun: bool) -> "CurvatureSample":
         """A sample from its arguments. `ValueError` names the one that does not fit.
 
         time [s]; x (n,) [m]; rows (6, n): as in `QUANTITIES`. length [m]: of the body. planar: of the scene. now [s]:
-        the present time.
+        the present time. begun: whether the march has begun; before, a sample may lie at the present.
         """
         x = checked_row("curvature samples x", x, None)
         if len(x) < 2 or np.any(np.diff(x) <= 0.0):
@@ -52,7 +52,7 @@ class CurvatureSample(NamedTuple):
         ]
         if planar and any(np.any(row) for row in values[:3]):
             raise ValueError("curvature samples pitch must be 0 in a planar scene")
-        if not is_finite(time) or time <= now:
+        if not is_finite(time) or time < now or (time == now and begun):
             raise ValueError(
                 f"curvature samples time must lie ahead of the simulation ({now:.6f} s), got {shown(time)} s"
             )

@@ -99,10 +99,14 @@ class Quota:
 
 
 class Status:
-    """Collects the content of /diagnostics from a RunLoop."""
+    """Collects the content of /diagnostics from a RunLoop.
+
+    Attributes:
+        accuracy: of the present run, as it was asked for.
+    """
 
     def __init__(self, run, report, accuracy):
-        self._run, self._report, self._accuracy = run, report, accuracy
+        self._run, self._report, self.accuracy = run, report, accuracy
         self._seen = (0.0, 0.0)  # s: simulation time, wall time spent on samples
         self._last_published = (-PERIOD, 0.0, None)  # s, s: wall time, simulation time; state
 
@@ -138,7 +142,7 @@ class Status:
         self._last_published = (time.monotonic(), run.time, (run.standing, state))
         values = {
             "law": run.laws.name,
-            "accuracy": self._accuracy,
+            "accuracy": self.accuracy,
             "time": run.time,
             "real_time_factor": max(0.0, simulated) / wall if wall > 0.0 else 0.0,
             "late": run.pace.lost,

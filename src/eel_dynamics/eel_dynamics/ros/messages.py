@@ -13,6 +13,7 @@ import numpy as np
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from eel_gaits.law import MAXIMUM_TERMS
+from eel_gaits.wording import shown
 from geometry_msgs.msg import PoseStamped, TransformStamped, TwistStamped
 from nav_msgs.msg import Odometry
 from rclpy.serialization import deserialize_message
@@ -24,7 +25,7 @@ from eel_dynamics.analysis.actuators import Joints
 from eel_dynamics.curvature.curvature_samples import check_points
 from eel_dynamics.model.axes import QUATERNION, VECTOR, matrix_of, turn_quaternion, turn_vector, turn_world
 from eel_dynamics.model.scene import Scene
-from eel_dynamics.ros.parameters import DynamicsParameters
+from eel_dynamics.ros.parameters import DynamicsParameters, unit_quaternion
 from eel_dynamics.ros.serialised_message import SerialisedMessage
 from eel_dynamics.runs.records import outline
 from eel_msgs.msg import (
@@ -38,6 +39,7 @@ from eel_msgs.msg import (
     InternalWrench,
     SwimState,
 )
+from eel_msgs.srv import SetState
 
 SECOND = 1_000_000_000  # ns
 
@@ -263,6 +265,29 @@ def samples_from_message(message: CurvatureSamples) -> dict[str, np.ndarray | fl
     check_points(len(message.x))  # before the request is queued
     names = ("x", "pitch", "pitch_rate", "pitch_accel", "yaw", "yaw_rate", "yaw_accel")
     return {"time": seconds_of(message.header.stamp)} | {name: np.array(getattr(message, name)) for name in names}
+
+
+def state_from_message(request: SetState.Request) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The arguments of `Simulation.set_state` from a request in REP-103 frames. `ValueError` names the field."""
+    pose, twist = request.pose, request.twist
+    groups = {
+        "pose.position": [getattr(pose.position, axis) for axis in "xyz"],
+        "pose.orientation": [getattr(pose.orientation, axis) for axis in "xyzw"],
+        "twist.angular": [getattr(twist.angular, axis) for axis in "xyz"],
+        "twist.linear": [getattr(twist.linear, axis) for axis in "xyz"],
+    }
+    for name, values in groups.items():
+        if not np.isfinite(values).all():
+            raise ValueError(f"{name} must be finite, got {shown(values)}")
+    position, orientation, angular, linear = groups.values()
+    orientation = unit_quaternion("pose.orientation", orientation)
+    return turn_vector(position), turn_quaternion(orientation), turn_vector([angular, linear]).ravel()
+
+
+def time_message(seconds: float) -> Time:
+    """`seconds` as a stamp."""
+    whole, rest = divmod(round(seconds * SECOND), SECOND)
+    return Time(sec=whole, nanosec=rest)
 
 
 def diagnostic_array(time: float, name: str, level: int, text: str, values: dict) -> DiagnosticArray:

@@ -12,19 +12,21 @@ import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from eel_gaits.command_line import complain
 from eel_gaits.messages import law_from_message
+from eel_gaits.wording import one_line
 from eel_ros.command_line import answer_words
 from eel_ros.fastdds_profile import use_prompt_repair
+from eel_ros.parameter_node import ParameterNode
 from eel_ros.parameters import help_rows
 from eel_ros.process_end import ProcessEnd, leave_at_once
-from eel_ros.qos import keep_all, latched
+from eel_ros.qos import keep_all, latched, matches
 from eel_ros.serving import serve_once
 from eel_ros.start import start
+from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.clock import Clock, ClockType
 from rclpy.duration import Duration
 from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.impl.implementation_singleton import rclpy_implementation
-from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from std_srvs.srv import SetBool, Trigger
 
@@ -33,21 +35,25 @@ from eel_dynamics.ros.clock_arbiter import ClockMonitor
 from eel_dynamics.ros.declaration import Declaration
 from eel_dynamics.ros.diagnostics import Report, Status
 from eel_dynamics.ros.loop.law_feed import LawFeed
-from eel_dynamics.ros.loop.run_loop import RunLoop
+from eel_dynamics.ros.loop.run_loop import NewRun, RunLoop
 from eel_dynamics.ros.messages import (
     Sample,
     body_message,
     diagnostic_array,
     parse_law,
     samples_from_message,
+    state_from_message,
+    time_message,
     values_of_status,
 )
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.ros.publishers import Publishers
+from eel_dynamics.ros.sample_inbox import SampleInbox
 from eel_dynamics.ros.simulation_from_parameters import simulation_from_parameters
 from eel_dynamics.ros.swimmer_arbiter import Identity, SwimmerArbiter
 from eel_dynamics.runs.one_line_warnings import one_line_warnings
-from eel_msgs.msg import BodyGeometry, CurvatureLaw, CurvatureSamples
+from eel_msgs.msg import BodyGeometry, CurvatureLaw
+from eel_msgs.srv import SetState, Step
 
 NAME = "dynamics"
 ABOUT = "Simulates the swimmer that the laws on curvature_law bend, and publishes how it moves."
@@ -55,10 +61,18 @@ LATCHED, LOSSLESS = latched(10), keep_all()
 SERVICE_QOS = QoSProfile(depth=1000)  # with ROS's default, more than ten simultaneous calls are lost silently
 TIMER_PERIOD = 0.25  # s between two checks of the state and of the publishers of /clock
 SERVICE_TIMEOUT = 1.0  # s within which a service answers
+MOST_STEPS = 1_000_000  # samples of one call
 SIGNAL_TIMEOUT = 0.2  # s: longest wait for acknowledgements after a signal
 
 
-class DynamicsNode(Node):
+class NextTurn:
+    """A callback that awaits one lets the executor run others of other groups, and goes on when that wakes again."""
+
+    def __await__(self):
+        yield
+
+
+class DynamicsNode(ParameterNode):
     """Topics, services and parameters of one simulation."""
 
     def __init__(self):
@@ -71,15 +85,15 @@ class DynamicsNode(Node):
             Sample(simulation.x, scene, values, lambda: self.run_loop.errors.get("error_position", math.nan)),
             create=lambda kind, topic, depth: self.create_publisher(kind, topic, depth or LOSSLESS),
             destroy=self.destroy_publisher,
+            known=self._count_known,
             received=lambda publisher, seconds: publisher.wait_for_all_acked(Duration(seconds=seconds)),
             publish_error=rclpy_implementation.RCLError,
             values=lambda: self.parameters.values,
             stopped=lambda: self.run_loop.stopped,
             report=report,
         )
-        self.run_loop = RunLoop(
-            simulation, values, self.sample_publishers, report, on_subscribers_complete=self._wait_for_body_received
-        )
+        inbox = SampleInbox(self, lambda message, *about: feed.receive_samples(message, *about))
+        self.run_loop = RunLoop(simulation, values, self.sample_publishers, report, self._wait_for_body_received, inbox)
         self.status = Status(self.run_loop, report, values.accuracy)
         self._diagnostics = self.create_publisher(DiagnosticArray, "/diagnostics", 10)
         self._body = self.create_publisher(BodyGeometry, "body", LATCHED)
@@ -96,9 +110,12 @@ class DynamicsNode(Node):
                 raw=True,
                 event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),  # one of the two matches
             )
-        self.create_subscription(CurvatureSamples, "curvature_samples", feed.receive_samples, LOSSLESS)
         self.create_service(Trigger, "~/reset", self._reset, qos_profile=SERVICE_QOS)
         self.create_service(SetBool, "~/pause", self._pause, qos_profile=SERVICE_QOS)
+        steps = ReentrantCallbackGroup()  # others go on while a call waits for its samples
+        self.create_service(Step, "~/step", self._step, qos_profile=SERVICE_QOS, callback_group=steps)
+        self._steps_done = self.create_guard_condition(lambda: None, steps)
+        self.create_service(SetState, "~/set_state", self._set_state, qos_profile=SERVICE_QOS)
         clock = ClockMonitor(
             self, lambda offered: self.run_loop.request(lambda: self.sample_publishers.enable_clock(offered)), report
         )
@@ -110,11 +127,17 @@ class DynamicsNode(Node):
         def on_timer():
             """Check all in one timer: waking the executor costs more than the checks."""
             self._arbiter.look()
+            inbox.look()
             if self.status.due():
                 self.publish_diagnostics()
             clock.look(self.parameters.values.clock and not self._arbiter.waits)
 
         self.create_timer(TIMER_PERIOD, on_timer, clock=Clock(clock_type=ClockType.STEADY_TIME))
+
+    def _count_known(self, publisher) -> int:
+        """The number of subscribers on the network that `publisher` can match."""
+        wanted = self.get_subscriptions_info_by_topic(publisher.topic_name)
+        return sum(matches(each.qos_profile, publisher.qos_profile) for each in wanted)
 
     def publish_diagnostics(self, final: bool = False):
         """Publish /diagnostics; `final`: at the end of the run."""
@@ -138,19 +161,65 @@ class DynamicsNode(Node):
         for status in message.status:
             self._arbiter.receive(status.name, values_of_status(status))
 
+    def answer_to(self, names: list[str]) -> str:
+        """When the changes of the parameters `names` act; empty: at once."""
+        return self.parameters.answer_to(names)
+
     def _reset(self, request, response):
-        return self._answer(response, self.run_loop.reset(), "reset")
+        try:
+            new = self._new_run() if self.parameters.pending else None
+        except (ValueError, OSError) as error:
+            response.message = f"reset refused: {one_line(error)}"
+            self.get_logger().error(response.message)
+            return response
+        return self._answer(response, self.run_loop.reset(new), "reset")
+
+    def _new_run(self) -> NewRun:
+        """The run with the parameters that have been set for the next reset. `ValueError` names what does not fit."""
+        values, scene = self.parameters.next_values, self.parameters.next_scene
+        simulation = simulation_from_parameters(values, scene)
+        sample = Sample(simulation.x, scene, values)
+        body = body_message(simulation.body, scene, simulation.x, values.section_frame)
+
+        def begin():
+            self.parameters.begin(values, scene)
+            self.sample_publishers.change(sample)
+            self._body.publish(body)
+            self.status.accuracy = values.accuracy
+
+        return NewRun(simulation, values, begin)
+
+    async def _step(self, request, response):
+        if not 1 <= request.samples <= MOST_STEPS:
+            response.message = f"samples must be 1 to {MOST_STEPS}, got {request.samples}"
+            return response
+        steps = self.run_loop.step(request.samples, self._steps_done.trigger)
+        while not steps.done.is_set():
+            await NextTurn()
+        response.success, response.stamp = not steps.failure, time_message(steps.time)
+        response.message = steps.failure or f"{request.samples} samples published, paused at t = {steps.time:g} s"
+        return response
+
+    def _set_state(self, request, response):
+        try:
+            state = state_from_message(request)
+        except ValueError as error:
+            response.message = str(error)
+            return response
+        return self._answer(response, self.run_loop.set_state(*state), "head put into the state")
 
     def _pause(self, request, response):
         return self._answer(response, self.run_loop.pause(request.data), "paused" if request.data else "going on")
 
     def _answer(self, response, request, state):
-        response.success = request.done.wait(SERVICE_TIMEOUT)
-        response.message = (
-            f"{state} at t = {request.time:g} s"
-            if response.success
-            else f"not done within {SERVICE_TIMEOUT:g} s, still queued"
-        )
+        done = request.done.wait(SERVICE_TIMEOUT)
+        response.success = done and not request.failure
+        if request.failure:
+            response.message = f"refused: {request.failure}"
+        elif done:
+            response.message = f"{state} at t = {request.time:g} s"
+        else:
+            response.message = f"not done within {SERVICE_TIMEOUT:g} s, still queued"
         return response
 
 

@@ -10,6 +10,7 @@ from dataclasses import Field, dataclass, field, fields
 
 from eel_gaits.quantity import is_finite, limits
 from eel_gaits.wording import shown
+from eel_ros.parameters import AT_RESET
 
 from eel_dynamics.analysis.actuators import MOST_JOINTS
 from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
@@ -26,16 +27,23 @@ class DynamicsParameters:
     """The node's parameters except the scene. Made by `from_values`, which checks each value.
 
     Metadata of a field: unit, description; minimum, maximum, exclusive (the minimum itself is refused), choices,
-    number (a text or a number), changeable (at run time).
+    number (a text or a number), changeable (at run time: True, or AT_RESET).
     """
 
     accuracy: str = _parameter(
         "standard",
         "preset (draft, standard, fine, reference) or a target relative error of a run of that duration, or of 10 s",
         number=True,
+        changeable=AT_RESET,
     )
     rate: float = _parameter(
-        100.0, "samples published per simulated second", "Hz", minimum=0.0, exclusive=True, maximum=1e4
+        100.0,
+        "samples published per simulated second",
+        "Hz",
+        minimum=0.0,
+        exclusive=True,
+        maximum=1e4,
+        changeable=AT_RESET,
     )
     real_time_factor: float = _parameter(
         1.0,
@@ -48,7 +56,7 @@ class DynamicsParameters:
         0.0, "simulated time after which the node ends with status 0; 0: no end", "s", minimum=0.0, maximum=1e9
     )
     stations: int = _parameter(
-        51, "points along the backbone at which profiles are published", minimum=2, maximum=10_000
+        51, "points along the backbone at which profiles are published", minimum=2, maximum=10_000, changeable=AT_RESET
     )
     most_evaluations: float = _parameter(
         MOST_EVALUATIONS,
@@ -60,16 +68,24 @@ class DynamicsParameters:
         True, "measure the run's own error by a companion with coarser settings; shown in /diagnostics"
     )
     body: str = _parameter(
-        "boyer2010", "name of a body, or a .csv or .npz file with columns x, half_width, half_height [m]"
+        "boyer2010",
+        "name of a body, or a .csv or .npz file with columns x, half_width, half_height [m]",
+        changeable=AT_RESET,
     )
     default_transition: float = _parameter(
         1.0, "blending time of a law that names none", "s", minimum=0.0, exclusive=True, maximum=1e4
     )
-    initial_position: tuple = _parameter((0.0, 0.0, 0.0), "of the head at the start, in the world frame", "m")
-    initial_orientation: tuple = _parameter((0.0, 0.0, 0.0, 1.0), "of the head at the start, unit quaternion x y z w")
-    initial_linear_velocity: tuple = _parameter((0.0, 0.0, 0.0), "of the head at the start, in the head frame", "m/s")
+    initial_position: tuple = _parameter(
+        (0.0, 0.0, 0.0), "of the head at the start, in the world frame", "m", changeable=AT_RESET
+    )
+    initial_orientation: tuple = _parameter(
+        (0.0, 0.0, 0.0, 1.0), "of the head at the start, unit quaternion x y z w", changeable=AT_RESET
+    )
+    initial_linear_velocity: tuple = _parameter(
+        (0.0, 0.0, 0.0), "of the head at the start, in the head frame", "m/s", changeable=AT_RESET
+    )
     initial_angular_velocity: tuple = _parameter(
-        (0.0, 0.0, 0.0), "of the head at the start, in the head frame", "rad/s"
+        (0.0, 0.0, 0.0), "of the head at the start, in the head frame", "rad/s", changeable=AT_RESET
     )
     world_frame: str = _parameter("odom", "frame id of the world; by default below the namespace, as in eel1/odom")
     head_frame: str = _parameter("base_link", "frame id of the head; by default below the namespace")
@@ -103,18 +119,21 @@ class DynamicsParameters:
                 raise ValueError(f"{name} must not be empty")
         if max(self.yaw_joints, self.pitch_joints) > 0 and self.stations < 4:
             raise ValueError(f"stations must be 4 or more where there are joints, got {self.stations}")
-        norm = math.sqrt(math.fsum(value * value for value in self.initial_orientation))
-        if abs(norm - 1.0) > 1e-3:
-            raise ValueError(
-                f"initial_orientation must be a unit quaternion, got {shown(list(self.initial_orientation))} of norm "
-                f"{norm:g}"
-            )
-        object.__setattr__(self, "initial_orientation", tuple(value / norm for value in self.initial_orientation))
+        orientation = unit_quaternion("initial_orientation", self.initial_orientation)
+        object.__setattr__(self, "initial_orientation", orientation)
 
     @property
     def last_sample(self) -> float:
         """Index of the last sample: samples k = 0 ... N at k/rate; infinite without a duration."""
         return math.floor(self.duration * self.rate + 1e-9) if self.duration > 0.0 else math.inf
+
+
+def unit_quaternion(name: str, values) -> tuple[float, ...]:
+    """`values` (x, y, z, w) of norm 1; `ValueError` with the `name` where the norm differs by more than 1e-3."""
+    norm = math.sqrt(math.fsum(value * value for value in values))
+    if not abs(norm - 1.0) <= 1e-3:
+        raise ValueError(f"{name} must be a unit quaternion, got {shown(list(values))} of norm {norm:g}")
+    return tuple(value / norm for value in values)
 
 
 def checked(item: Field, value, name: str):

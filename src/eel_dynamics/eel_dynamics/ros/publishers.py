@@ -16,6 +16,7 @@ END_TIMEOUT = 5.0  # s: longest wait for acknowledgements at the end of a paced 
 LOSSLESS_END_TIMEOUT = 30.0  # s: where no sample may be lost: time for a slow subscriber to read a full history
 SLICE = 0.2  # s between two checks whether such a wait is interrupted
 QUIET_TIME = 1.0  # s without a change, after which the subscribers that some topics have are considered complete
+MATCH_LIMIT = 5.0  # s: longest wait for the subscribers that exist to be matched
 COUNT_PERIOD = 0.1  # s of wall time between two counts of subscribers: a count costs as much as a short message
 PARTS = {"wrench": ("internal_wrench", "joint_states", "swim_state"), "load": ("hydrodynamic_load",)}
 # of Simulation.observe, and the topics that need them
@@ -42,36 +43,60 @@ class Publishers:
     """All topics of samples, and /clock.
 
     sample: makes the messages (messages.Sample). create: see Channel; destroy(publisher).
+    known(publisher): number of subscribers on the network that the publisher can match.
     received(publisher, seconds): waits until all messages are acknowledged; whether they are. publish_error: the
     exception of a failed publish. values(): the present DynamicsParameters. stopped(): whether the run is over.
+
+    Attributes:
+        lossless: the run is as fast as possible, and no sample may be lost.
     """
 
-    def __init__(self, sample, *, create, destroy, received, publish_error, values, stopped, report):
+    def __init__(self, sample, *, create, destroy, known, received, publish_error, values, stopped, report):
         self._sample, self._create, self._destroy, self._publish_error = sample, create, destroy, publish_error
-        self._received = received
+        self._known, self._received = known, received
         self._values, self._stopped, self._report = values, stopped, report
-        self._lossless = values().real_time_factor == 0.0
-        self._channels = {name: Channel(create, kind, name, self._lossless) for name, kind in sample.kinds.items()}
+        self.lossless = values().real_time_factor == 0.0
+        self._channels = {}
+        self.change(sample)
         self._subscribed, self._last_count = (), -math.inf  # topics with subscribers, and s: when that was found
+        self._counts = {}  # of subscribers by topic, at that time
         self._clock = None
         self._wait_budget = WaitBudget()
-        self._subscriber_counts, self._counts_since = None, 0.0
+        self._subscriber_counts, self._counts_since, self._waiting_since = None, 0.0, None
+        self._samples = 0  # published since the start of the run
+
+    def change(self, sample):
+        """Change to another maker of messages, and to its topics."""
+        self._sample = sample
+        for name in [name for name in self._channels if name not in sample.kinds]:
+            self._destroy(self._channels.pop(name).publisher)
+        for name, kind in sample.kinds.items():
+            if name not in self._channels:
+                self._channels[name] = Channel(self._create, kind, name, self.lossless)
+        self._subscribed, self._last_count = (), -math.inf
 
     def _count_subscribers(self):
-        """Find the topics that have subscribers."""
+        """Find the topics that have subscribers. In a run as fast as possible, tell what a new one has missed."""
         self._last_count = time.monotonic()
         hidden = () if self._values().publish_tf else ("/tf",)
-        self._subscribed = tuple(
-            name
-            for name, channel in self._channels.items()
-            if name not in hidden and channel.publisher.get_subscription_count() > 0
-        )
+        before, self._counts = self._counts, dict(zip(self._channels, self.audience(), strict=True))
+        self._subscribed = tuple(name for name, count in self._counts.items() if name not in hidden and count > 0)
+        if self.lossless and self._samples > 1:
+            late = [name for name in self._subscribed if self._counts[name] > before.get(name, 0)]
+            if late:
+                self._report.note(
+                    "late subscriber", f"a subscriber of {', '.join(late)} came late: it missed {self._samples} samples"
+                )
 
     def wanted_parts(self) -> dict[str, bool]:
         """Which costly parts of the next snapshot have subscribers: the flags of `Simulation.observe`."""
-        if self._lossless or time.monotonic() - self._last_count >= COUNT_PERIOD:
+        if self.lossless or time.monotonic() - self._last_count >= COUNT_PERIOD:
             self._count_subscribers()
         return {part: any(name in self._subscribed for name in topics) for part, topics in PARTS.items()}
+
+    def audience(self) -> tuple[int, ...]:
+        """The number of subscribers of each topic."""
+        return tuple(channel.publisher.get_subscription_count() for channel in self._channels.values())
 
     def publish(self, snapshot, nanoseconds: int):
         """Publish /clock and one sample at simulation time `nanoseconds` [ns].
@@ -79,6 +104,7 @@ class Publishers:
         Only topics that had subscribers at the last call of `wanted_parts` are published.
         """
         self.tick(nanoseconds)
+        self._samples = self._samples + 1 if nanoseconds else 1
         for name in self._subscribed:
             self._send(self._channels[name], self._sample.fill(name, snapshot))
 
@@ -91,7 +117,7 @@ class Publishers:
     def enable_clock(self, offered: bool):
         """Begin or stop publishing /clock."""
         if offered and self._clock is None:
-            self._clock = Channel(self._create, self._sample.clock, "/clock", self._lossless)
+            self._clock = Channel(self._create, self._sample.clock, "/clock", self.lossless)
         elif not offered and self._clock is not None:
             self._destroy(self._clock.publisher)
             self._clock = None
@@ -99,13 +125,21 @@ class Publishers:
     def subscribers_complete(self, wanted: int, now: float) -> bool:
         """Whether every topic has `wanted` subscribers, or some topics have and no count has changed for a while.
 
-        now: time [s, steady clock].
+        With 0 wanted: whether the subscribers on the network are matched, and none has come for a while; true after
+        `MATCH_LIMIT`. now: time [s, steady clock].
         """
-        own = [channel for name, channel in self._channels.items() if name not in NOT_AWAITED]
-        counts = [channel.publisher.get_subscription_count() for channel in own]
-        if counts != self._subscriber_counts:
-            self._subscriber_counts, self._counts_since = counts, now
-        return min(counts) >= wanted or (max(counts) >= wanted and now - self._counts_since > QUIET_TIME)
+        left_out = NOT_AWAITED if wanted else ()
+        own = [channel.publisher for name, channel in self._channels.items() if name not in left_out]
+        counts = [publisher.get_subscription_count() for publisher in own]
+        known = [] if wanted else [self._known(publisher) for publisher in own]
+        if [counts, known] != self._subscriber_counts:
+            self._subscriber_counts, self._counts_since = [counts, known], now
+        quiet = now - self._counts_since > QUIET_TIME
+        if wanted:
+            return min(counts) >= wanted or (max(counts) >= wanted and quiet)
+        self._waiting_since = self._waiting_since or now
+        matched = all(count >= there for count, there in zip(counts, known, strict=True))
+        return (quiet and matched) or now - self._waiting_since > MATCH_LIMIT
 
     def wait_until_received(self, others: list, interrupted, longest: float = math.inf) -> bool:
         """Wait until all messages are acknowledged, also those of the publishers `others`; whether they were.
@@ -114,7 +148,7 @@ class Publishers:
         in any case at most `longest` [s], and until `interrupted()`.
         """
         clock = [self._clock] if self._clock is not None else []
-        samples = [*self._channels.values(), *clock] if self._lossless else []
+        samples = [*self._channels.values(), *clock] if self.lossless else []
         whole = [channel.publisher for channel in samples if channel.lossless]
         rest = [channel.publisher for channel in samples if not channel.lossless] + others
         backlog = max(LOSSLESS_END_TIMEOUT, self._values().subscriber_timeout)

@@ -16,7 +16,7 @@ def simulation_from_parameters(parameters: DynamicsParameters, scene: Scene) -> 
     twist = (*parameters.initial_angular_velocity, *parameters.initial_linear_velocity)
     kind = MeasuredSimulation if parameters.estimate_error else Simulation
     return kind(
-        body=_body_of(parameters.body),
+        body=body_of(parameters.body),
         scene=replace(scene, current=tuple(turn_vector(scene.current).tolist())),
         accuracy=parameters.accuracy,
         stations=parameters.stations,
@@ -28,5 +28,6 @@ def simulation_from_parameters(parameters: DynamicsParameters, scene: Scene) -> 
     )
 
 
-def _body_of(name: str) -> Body:
+def body_of(name: str) -> Body:
+    """The body of this name, or from this file. `ValueError` or `OSError` if there is none."""
     return Body.from_file(name) if Path(name).suffix in (".csv", ".npz") else Body.named(name)

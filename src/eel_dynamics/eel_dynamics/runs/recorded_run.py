@@ -58,7 +58,10 @@ def fields_of_messages(messages: Iterable[tuple[str, object]], body: Body | None
 
 
 def _collected(messages) -> tuple[dict, dict]:
-    """Messages of topics that come once (the last, all laws), and by topic those of the samples by stamp [ns]."""
+    """Messages of topics that come once (the last, all laws), and by topic those of the samples by stamp [ns].
+
+    Of several of one stamp, as a node sends them that waits at its start, the last counts.
+    """
     once, samples = {"curvature_law": []}, {topic: {} for topic in (*NEEDED, *FURTHER)}
     for topic, message in messages:
         if topic == "curvature_law":
@@ -66,7 +69,7 @@ def _collected(messages) -> tuple[dict, dict]:
         elif topic in samples:
             stamp = message.header.stamp.sec * 1_000_000_000 + message.header.stamp.nanosec
             poses = samples["head_pose"]
-            if topic == "head_pose" and poses and stamp <= next(reversed(poses)):
+            if topic == "head_pose" and poses and stamp < next(reversed(poses)):
                 warnings.warn(f"time falls back to {1e-9 * stamp:g} s: a reset; the run has what follows", stacklevel=4)
                 samples = {name: {} for name in samples}
             samples[topic][stamp] = message

@@ -10,6 +10,7 @@ from eel_gaits.law import Law
 import eel_core
 from eel_dynamics.curvature.curvature_samples import CurvatureSample
 from eel_dynamics.curvature.law_follower import LawFollower
+from eel_dynamics.model.initial_state import InitialState, time_scale
 from eel_dynamics.simulation.discretisation import Discretisation, GridSettings
 from eel_dynamics.simulation.observations import Observations
 from eel_dynamics.simulation.sample_check import first_bad_sample
@@ -32,6 +33,7 @@ class LawDrivenMarch:
         self._setup, self.settings = setup, settings
         self.accuracy, self.discretisation, self.time = setup.settings, setup.discretise(settings), 0.0
         self.follower = LawFollower(self.discretisation.tabulation, setup.default_transition, law, origin)
+        self._time_scale = setup.time_scale
         self.tabulated_law, self._bounds = self.follower.tabulated_law, self._step_bounds()
         self._march = eel_core.March(self.discretisation.swimmer, *self._method)
         self._hand_over_law(smoothly=False)
@@ -69,6 +71,24 @@ class LawDrivenMarch:
         The next step begins anew, unless the motion goes on `smoothly`.
         """
         self._go_on(self.discretisation, smoothly)
+
+    def set_state(self, state: InitialState):
+        """Put the head into `state` at the present time; the next step begins anew.
+
+        `ValueError` without a finite energy; the march then stays as it is.
+        """
+        before, twist, length = self.state, self._twist(), self._setup.body.length
+        relative = state.in_water(self._setup.current)
+        with np.errstate(over="ignore", invalid="ignore"):
+            energy = self._march.set_state(state.position, state.orientation, relative)
+            present = self._march.set_state(before[:3], before[3:7], twist)
+        if not np.isfinite(energy):
+            raise ValueError(f"twist must give a finite kinetic energy, got {energy} J")
+        self._time_scale = min(self._setup.time_scale, time_scale(relative, length))
+        self._bounds = self._step_bounds()
+        self._hand_over_law(smoothly=False)
+        self._march.set_state(state.position, state.orientation, relative)
+        self.kinetic_at_start += energy - present
 
     def refine(self, needs: ShapeNeeds):
         """Make the grid fine enough for the `needs`. The head's motion does not change."""
@@ -127,7 +147,7 @@ class LawDrivenMarch:
             follower=self.follower,
             discretisation=self.discretisation,
             length=setup.body.length,
-            scale=setup.time_scale,
+            scale=self._time_scale,
             most_evaluations=setup.most_evaluations,
         )
 

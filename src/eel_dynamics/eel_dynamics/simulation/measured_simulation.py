@@ -78,6 +78,11 @@ class MeasuredSimulation(Simulation):
             self._compare(interrupted)
         return reached
 
+    def set_state(self, position, orientation, twist):
+        """As `Simulation.set_state`. The estimate begins again."""
+        super().set_state(position, orientation, twist)
+        self._seat()
+
     def reset(self):
         """As `Simulation.reset`. The estimate begins again."""
         super().reset()

@@ -20,7 +20,7 @@ from eel_dynamics.model.scene import Scene
 from eel_dynamics.simulation.discretisation import Discretisation, GridSettings
 from eel_dynamics.simulation.law_driven_march import march_from_start
 from eel_dynamics.simulation.observations import Observations, empty_observations
-from eel_dynamics.simulation.simulation_setup import SimulationSetup
+from eel_dynamics.simulation.simulation_setup import SimulationSetup, checked_state
 from eel_dynamics.simulation.snapshot import Snapshot
 from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.simulation.stopping import SimulationStopped
@@ -143,7 +143,7 @@ class Simulation:
         self._needs, self.ready = needs, True
 
     def add_samples(self, time, x, pitch, pitch_rate, pitch_accel, yaw, yaw_rate, yaw_accel):
-        """Add a controller's curvature at the instant `time` [s], which lies ahead.
+        """Add a controller's curvature at the instant `time` [s], which lies ahead; before the start it may be 0.
 
         The rows hold the curvature [rad/m], its rate [rad/m/s] and its acceleration [rad/m/s^2] at the points `x` (n,)
         [m]. They are interpolated by natural cubic splines in X, and between two instants by the quintic that meets
@@ -154,7 +154,8 @@ class Simulation:
         self._march.follower.samples.check_space(len(x))
         rows = pitch, pitch_rate, pitch_accel, yaw, yaw_rate, yaw_accel
         length, planar = self.body.length, self.scene.planar
-        sample = CurvatureSample.checked(time, x, rows, length=length, planar=planar, now=self.time)
+        given = {"length": length, "planar": planar, "now": self.time, "begun": self._started}
+        sample = CurvatureSample.checked(time, x, rows, **given)
         self._march.add_sample(sample)
         self.ready = True
 
@@ -191,6 +192,14 @@ class Simulation:
             raise ValueError(f"time must be finite and >= the present {self.time} s, got {shown(time)}")
         self._started = True
         return self._march.advance(float(time), interrupted)
+
+    def set_state(self, position, orientation, twist):
+        """Put the head elsewhere, with another twist, at the present time. The arguments are those of `Simulation`.
+
+        The shape and its motion go on. The momentum becomes that of the twist. The ledger leaves out the jump of the
+        kinetic energy. `ValueError` for a state that the scene does not allow, or without a finite energy.
+        """
+        self._march.set_state(checked_state(self.scene, position, orientation, twist))
 
     def reset(self):
         """Reset state and time to the start. The last law stays, with its own t = 0 at 0.

@@ -29,6 +29,18 @@ from eel_dynamics.simulation.discretisation import Discretisation, GridSettings,
 from eel_dynamics.simulation.step_bounds import check_cost
 
 
+def checked_state(scene: Scene, position, orientation, twist) -> InitialState:
+    """The head's position (3,) [m], orientation (4,) and twist (6,). `ValueError` if `scene` does not allow them."""
+    state = InitialState(
+        checked_row("position", position, 3),
+        checked_quaternion("orientation", orientation),
+        checked_row("twist", twist, 6),
+    )
+    if scene.planar:
+        check_planar(*state)
+    return state
+
+
 class ShapeNeeds(NamedTuple):
     """The properties of a curvature that its grid must fit: waves on the body, and knots [m] of splines."""
 
@@ -70,14 +82,7 @@ class SimulationSetup:
         body = Body.boyer2010() if body is None else checked_instance("body", body, Body)
         scene = Scene() if scene is None else checked_instance("scene", scene, Scene)
         accuracy, x = Accuracy.of(accuracy), checked_stations(stations, body.length)
-        position, orientation, twist = initial_state
-        start = InitialState(
-            checked_row("position", position, 3),
-            checked_quaternion("orientation", orientation),
-            checked_row("twist", twist, 6),
-        )
-        if scene.planar:
-            check_planar(*start)
+        start = checked_state(scene, *initial_state)
         if not (is_finite(default_transition) and default_transition > 0.0):
             raise ValueError(f"default_transition must be finite and > 0 s, got {shown(default_transition)}")
         most_evaluations = checked_number("most_evaluations", most_evaluations, "per simulated second")

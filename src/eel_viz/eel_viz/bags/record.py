@@ -2,7 +2,8 @@
 
 Messages are written undecoded. The bag is completed once a second (see `growing_bag`), so that it opens however the
 recorder ends. The swimmer's topics are subscribed to from the start, so that no message of a run as fast as possible is
-lost; other topics as soon as they are discovered. Stamps in the bag are times of reception.
+lost; other topics as soon as they are discovered. Stamps in the bag are times of reception. Sample 0, which the
+dynamics node repeats while its run stands at the start, is written once.
 """
 
 import argparse
@@ -20,13 +21,14 @@ from rosbags.interfaces import Qos, QosDurability, QosHistory, QosLiveliness, Qo
 
 from eel_viz.bags.definitions import definition, message_class, type_hash
 from eel_viz.bags.growing_bag import GrowingBag
-from eel_viz.topics import GLOBAL, LATCHED, OWN, SWIMMER
+from eel_viz.topics import GLOBAL, LATCHED, OWN, SAMPLED, SWIMMER
 
 NAME = "record"
 GONE = 1.0  # s without publishers and messages, after which --stop-with-publisher ends it
 LOOK = 0.2  # s between two look-ups of the topics
 SAVE = 1.0  # s between two saves of the bag, at least
 SHARE = 20.0  # the least ratio of that period to the CPU time of a save
+STAMP = slice(4, 12)  # of a serialised message that begins with a header
 NOT_BY_DEFAULT = ("/rosout", "/parameter_events")  # recorded only by name
 
 
@@ -50,6 +52,7 @@ class Recorder(Node):
         self._subscribed: dict[str, tuple[object, QoSProfile]] = {}
         self._offers: dict[str, list[QoSProfile]] = {}
         self._connections: dict[str, object] = {}
+        self._start: dict[str, bytes] = {}  # topic: the last sample 0
         self._refused: set[str] = set()
         self._began = self._looked = self._last_message = time.monotonic()
         self._present = False
@@ -118,11 +121,17 @@ class Recorder(Node):
         return (topic.startswith(space) or topic in GLOBAL or topic == "/tf") and topic not in NOT_BY_DEFAULT
 
     def _subscribe(self, topic: str, kind: str, quality: QoSProfile) -> None:
+        sampled = topic in [self.resolve_topic_name(name) for name in SAMPLED]
+
         def receive(data: bytes, about: dict) -> None:
             if topic not in self._connections:
                 self._connect(topic, kind)
             self._last_message = time.monotonic()
             self._present |= topic == self.resolve_topic_name(SWIMMER)  # a law alone is not a swimmer
+            if sampled and not any(data[STAMP]):
+                if data == self._start.get(topic):
+                    return
+                self._start[topic] = data
             self.counts[topic] += 1
             self._bag.write(self._connections[topic], about.get("received_timestamp") or time.time_ns(), data)
 

@@ -1,5 +1,7 @@
 """Dispatches one swimmer's messages to the loggers, whatever their source: the network, a bag, a run of the library.
 
+While a run stands at its start, the dynamics node repeats sample 0. So a sample of stamp 0 is held back until the next
+one of its topic comes, and of several only the last is logged and counted.
 A message is any object with the fields of its type. A message that cannot be shown is reported once and left out.
 """
 
@@ -33,7 +35,7 @@ class Dispatcher:
     namespace: the swimmer's; diagnostics of other namespaces are ignored. log_warning: writes one line to the user.
 
     Attributes:
-        received: number of messages by topic.
+        received: number of messages by topic; a repeated sample 0 counts once.
     """
 
     def __init__(
@@ -43,6 +45,7 @@ class Dispatcher:
         self._namespace = namespace.rstrip("/")
         self.received: Counter[str] = Counter()
         self._reported: set = set()  # faults
+        self._start: dict[str, tuple[object, bool]] = {}  # topic: sample 0, and whether from another publisher
         self._stations: dict[str, int] = {}  # number of stations by topic
         self._first_backbone: float | None = None  # s
         self._last_law = None
@@ -55,6 +58,19 @@ class Dispatcher:
 
     def dispatch(self, topic: str, message, *, new_publisher: bool = False) -> None:
         """Log one message of `topic`, a name in `topics`; `new_publisher`: the first one from another publisher."""
+        if topic in SAMPLES and messages.is_at_start(message):
+            _, before = self._start.get(topic, (None, False))
+            self._start[topic] = message, new_publisher or before
+            return
+        self._log_start(topic)
+        self._log(topic, message, new_publisher)
+
+    def _log_start(self, topic: str) -> None:
+        """Log the sample 0 of `topic` that is held back."""
+        if topic in self._start:
+            self._log(topic, *self._start.pop(topic))
+
+    def _log(self, topic: str, message, new_publisher: bool) -> None:
         self.received[topic] += 1
         try:
             if topic in SAMPLES:
@@ -72,6 +88,8 @@ class Dispatcher:
 
     def close(self) -> str:
         """Close the recordings; returns the received topics with their numbers of messages as text."""
+        for topic in list(self._start):
+            self._log_start(topic)
         if self._first_backbone is not None:
             self._check_body()
         self._recordings.close()

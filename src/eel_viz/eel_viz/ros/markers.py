@@ -10,11 +10,11 @@ from collections import OrderedDict
 
 from eel_gaits.command_line import complain
 from eel_ros.command_line import USE_SIM_TIME, answer_words
+from eel_ros.parameter_node import ParameterNode
 from eel_ros.parameters import help_rows
 from eel_ros.qos import latched
 from eel_ros.run_node import run_node
 from nav_msgs.msg import Path
-from rclpy.node import Node
 from visualization_msgs.msg import MarkerArray
 
 from eel_msgs.msg import Backbone, BodyGeometry, HydrodynamicLoad, InternalWrench
@@ -34,7 +34,7 @@ DEPTH = 10  # samples that wait for the rest of their topics
 LOOK = 0.5  # s between two look-ups of the publishers
 
 
-class Markers(Node):
+class Markers(ParameterNode):
     """Joins the messages of one stamp, and publishes at most `rate` of them per second of wall time."""
 
     def __init__(self) -> None:

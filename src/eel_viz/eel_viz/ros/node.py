@@ -12,12 +12,12 @@ from diagnostic_msgs.msg import DiagnosticArray
 from eel_gaits.command_line import complain
 from eel_gaits.wording import shown
 from eel_ros.command_line import USE_SIM_TIME, answer_words
+from eel_ros.parameter_node import ParameterNode
 from eel_ros.parameters import help_rows
 from eel_ros.qos import keep_all
 from eel_ros.run_node import run_node
 from geometry_msgs.msg import PoseStamped, TwistStamped
 from nav_msgs.msg import Odometry
-from rclpy.node import Node
 from rclpy.qos import QoSProfile
 
 from eel_msgs.msg import Backbone, BodyGeometry, Curvature, CurvatureLaw, EnergyLedger, HydrodynamicLoad, InternalWrench
@@ -48,7 +48,7 @@ SAMPLED = {
 }
 
 
-class Visualiser(Node):
+class Visualiser(ParameterNode):
     """Subscribes to the topics of one swimmer, or two that are compared, and passes the messages to dispatchers."""
 
     def __init__(self):

@@ -62,8 +62,7 @@ class March {
                  const Twist<Space, double>& twist)
     {
         time_ = 0.0, works_ = {};
-        state_ = {position.x, position.y, position.z, orientation.x, orientation.y, orientation.z, orientation.w};
-        const double energy = set_twist(twist);
+        const double energy = set_state(position, orientation, twist);
         std::visit([&](auto& stepper) { stepper.forget(state_, settings_.bounds.spare_steps); }, stepper_);
         begin();
         return energy;
@@ -76,6 +75,15 @@ class March {
         if (!find_motion(*swimmer_, settings_.law, time_, state_, work))
             throw std::domain_error("inertia is not positive definite");
         return work.twist;
+    }
+
+    // Puts the head of the present shape elsewhere, with the momentum of its twist relative to the water. Returns the
+    // kinetic energy of body and water [J].
+    double set_state(const Vector3<double>& position, const Quaternion<double>& orientation,
+                     const Twist<Space, double>& twist)
+    {
+        state_ = {position.x, position.y, position.z, orientation.x, orientation.y, orientation.z, orientation.w};
+        return set_twist(twist);
     }
 
     // Gives the present state the momentum of the head's twist. Returns the kinetic energy of body and water [J].

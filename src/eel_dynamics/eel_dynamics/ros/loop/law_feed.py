@@ -1,19 +1,25 @@
 """Checks laws and samples of laws as they arrive, drops duplicates, and passes them to the simulation.
 
+A subscription that takes samples from best-effort publishers takes those of reliable publishers a second time.
+
 There are two subscriptions to laws: one also gets earlier messages (transient local), the other matches any publisher
 (volatile). So most laws arrive twice. If laws come faster than they are read, each subscription drops different ones:
 an old law that the other subscription has dropped is not adopted.
 """
 
 import reprlib
+import time
 from collections import deque
 
+import numpy as np
 from eel_gaits.wording import shown
 
 from eel_dynamics.ros.diagnostics import ERROR
 
+REMEMBERED = 4096  # samples: one of two subscriptions may be so far behind the other
 FAR_AHEAD = 3600.0  # s: a stamp further ahead of the simulation is wall time by mistake
 DROPPED = 1_000_000_000  # ns: a publisher's law that arrives after a later one is at most this much older
+ECHO = 2.0  # s after a reset, within which samples that were sent before it may come
 SHOWN = reprlib.Repr()
 SHOWN.maxstring = 60  # characters of a refused law's name
 REFUSALS = ValueError, ArithmeticError, MemoryError  # errors with which the simulation refuses laws and samples
@@ -31,6 +37,7 @@ class LawFeed:
         self._parse, self._law_of, self._samples_of = parse, law_of, samples_of
         self._received = deque(maxlen=256)
         self._newest = {}  # subscription: its last delivery
+        self._samples = {}  # deliveries of samples, the oldest first
 
     def receive_law(self, data, info: dict, subscription: int = 0):
         """Pass on the law in the serialised message `data`; `info`: message info, to recognise a second delivery."""
@@ -54,53 +61,71 @@ class LawFeed:
         self._received.append(delivery)
         self._newest[subscription] = delivery
         later = (newest for other, newest in self._newest.items() if other != subscription)
-        return received or any(time > delivery[0] > time - DROPPED and number > delivery[1] for time, number in later)
+        return received or any(sent > delivery[0] > sent - DROPPED and number > delivery[1] for sent, number in later)
 
-    def receive_samples(self, message):
-        """Pass on one instant of a law from a controller."""
+    def receive_samples(self, message, info: dict, several: bool = False):
+        """Pass on one instant of a law from a controller; `several`: more than one subscription takes it."""
+        delivery = (info.get("source_timestamp"), info.get("publication_sequence_number"))
+        if several:
+            if delivery in self._samples:
+                return
+            self._samples[delivery] = None
+            if len(self._samples) > REMEMBERED:
+                del self._samples[next(iter(self._samples))]
         try:
             self._checked_stamp(message.header.stamp)
             samples = self._samples_of(message)
         except ValueError as error:
-            self._report.event("samples", f"curvature samples refused: {error}", ERROR)
+            self._report.event("samples", refused(error), ERROR)
         else:
             self._run.take_samples(samples)
 
     def _checked_stamp(self, stamp) -> float:
-        time = stamp.sec + 1e-9 * stamp.nanosec
+        stamped = stamp.sec + 1e-9 * stamp.nanosec
         if stamp.sec < 0 or stamp.nanosec >= 1_000_000_000:
             raise ValueError(
                 f"header.stamp must be >= 0 s, with nanosec < 1e9, got sec {stamp.sec}, nanosec {stamp.nanosec}"
             )
-        if time > self._run.time + FAR_AHEAD:
+        if stamped > self._run.time + FAR_AHEAD:
             raise ValueError(
                 f"header.stamp must be simulation time, at most {FAR_AHEAD:g} s ahead of {self._run.time:g} s, "
-                f"got {time:.3f} s: that looks like wall time, does its publisher have use_sim_time set?"
+                f"got {stamped:.3f} s: that looks like wall time, does its publisher have use_sim_time set?"
             )
-        return time
+        return stamped
+
+
+def refused(error: Exception) -> str:
+    """The log line for curvature samples that are refused with `error`."""
+    return f"curvature samples refused: {str(error).removeprefix('curvature samples ')}"
 
 
 class LawAdopter:
     """Passes laws and samples to the `simulation`, in the thread of the run loop.
 
     `SimulationStopped` if the simulation cannot continue with a law.
+
+    Attributes:
+        simulation: may be replaced at a reset.
     """
 
     def __init__(self, simulation, report):
-        self._simulation, self._report = simulation, report
+        self.simulation, self._report = simulation, report
         self._origin = 0.0  # s: simulation time of the law's t = 0
+        self._last = None  # the last instant that was added
+        self._farthest = 0.0  # s: the greatest time by which a sample lay ahead of the simulation
+        self._echo_until = 0.0  # s, steady clock: until when samples from before the last reset may come
 
     @property
     def name(self) -> str:
         """Name of the law that the swimmer follows, or of the topic of samples."""
-        simulation = self._simulation
+        simulation = self.simulation
         if simulation.sampled or simulation.resting:
             return "curvature_samples"
         return simulation.law.name if simulation.law is not None else ""
 
     def adopt(self, law, origin: float):
         """Adopt a law whose own t = 0 lies at simulation time `origin` [s]; log a refusal."""
-        simulation = self._simulation
+        simulation = self.simulation
         driven = simulation.law is not None and simulation.samples_until is None and not simulation.resting
         if driven and law == simulation.law and origin == self._origin:
             return  # published again: nothing to blend
@@ -120,25 +145,41 @@ class LawAdopter:
             )
 
     def add_samples(self, samples: dict):
-        """Add one instant of a law: the arguments of `Simulation.add_samples`."""
-        try:
-            self._simulation.add_samples(**samples)
-        except REFUSALS as error:
-            self._report.event("samples", f"curvature samples refused: {error}", ERROR)
+        """Add one instant of a law: the arguments of `Simulation.add_samples`.
 
-    def lacks_samples(self, time: float) -> bool:
-        """Whether a controller's samples drive the swimmer and do not reach simulation time `time` [s] yet."""
-        until = self._simulation.samples_until
-        return until is not None and until < time and not self._simulation.resting
+        An instant that is the same as the last one is the answer to a repeated sample 0, and changes nothing. Shortly
+        after a reset, a sample that lies more than twice as far ahead as any before was sent before the controller saw
+        the reset, and is left out.
+        """
+        ahead = samples["time"] - self.simulation.time
+        if ahead > 2.0 * self._farthest and time.monotonic() < self._echo_until:
+            self._report.note("echo", f"curvature samples of {samples['time']:g} s left out: sent before the reset")
+            return
+        if self._last is not None and all(np.array_equal(samples[name], self._last[name]) for name in samples):
+            return
+        try:
+            self.simulation.add_samples(**samples)
+        except REFUSALS as error:
+            self._report.event("samples", refused(error), ERROR)
+        else:
+            self._last, self._farthest = samples, max(self._farthest, ahead)
+
+    def lacks_samples(self, instant: float) -> bool:
+        """Whether a controller's samples drive the swimmer and do not reach simulation time `instant` [s] yet."""
+        until = self.simulation.samples_until
+        return until is not None and until < instant and not self.simulation.resting
 
     def reset(self):
         """Set the law's own t = 0 back to simulation time 0."""
         self._origin = 0.0
+        self._last = None
+        if self._farthest > 0.0:
+            self._echo_until = time.monotonic() + ECHO
         self._report.end("resting")
 
-    def report_resting(self, time: float):
-        """Log when samples have run out, or are back, at simulation time `time` [s]."""
-        if self._simulation.resting:
-            self._report.begin("resting", f"curvature samples have run out at t = {time:g} s: coming to rest")
+    def report_resting(self, instant: float):
+        """Log when samples have run out, or are back, at simulation time `instant` [s]."""
+        if self.simulation.resting:
+            self._report.begin("resting", f"curvature samples have run out at t = {instant:g} s: coming to rest")
         elif self._report.lasts("resting"):
-            self._report.end("resting", f"curvature samples are back at t = {time:g} s")
+            self._report.end("resting", f"curvature samples are back at t = {instant:g} s")

@@ -19,10 +19,14 @@ class LimitsMonitor:
     def restart(self):
         """Forget all snapshots and reported violations, and check the body."""
         self._wake_power, self._since = [], None
+        self.end()
+        self._warn("slenderness", self._limits.of_body())
+
+    def end(self):
+        """End the reported violations."""
         for kind in self._reported:
             self._report.end(kind)
         self._reported = set()
-        self._warn("slenderness", self._limits.of_body())
 
     def add(self, snapshot, check: bool):
         """Add a snapshot; with `check`, compare all since the last check with the limits."""

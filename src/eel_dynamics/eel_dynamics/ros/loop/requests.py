@@ -10,24 +10,35 @@ INTERRUPT_AFTER = 1.0  # s of wall time for one sample, after which any request 
 
 
 class Request:
-    """An `action` for the run loop; `done` is set after its execution."""
+    """An `action` for the run loop; `done` is set, and `wake()` called, after its execution.
 
-    def __init__(self, action: Callable[[], None], replaces: str = ""):
-        self.action, self.replaces = action, replaces
+    Attributes:
+        time: simulation time [s] after its execution.
+        failure: why it was refused, as text; empty if it was not.
+    """
+
+    def __init__(self, action: Callable[[], None], replaces: str = "", wake: Callable[[], None] = lambda: None):
+        self.action, self.replaces, self._wake = action, replaces, wake
         self.done = threading.Event()
-        self.time = math.nan  # s: simulation time after its execution
+        self.time, self.failure = math.nan, ""
+
+    def finish(self, simulation_time: float, failure: str = ""):
+        """Set the attributes: it was executed, or ended with `failure`, at `simulation_time` [s]."""
+        self.time, self.failure = simulation_time, failure
+        self.done.set()
+        self._wake()
 
 
 class RequestQueue:
-    """Requests in the order of arrival, and the flag to stop.
+    """Requests in the order of arrival, and the flag to stop. `wake_up`: what the run loop waits on.
 
     Attributes:
         urgent: a request does not wait for the next sample.
         stopped: the run is to end.
     """
 
-    def __init__(self):
-        self._guard, self._wake_up = threading.Lock(), WakeUp()
+    def __init__(self, wake_up: "WakeUp"):
+        self._guard, self._wake_up = threading.Lock(), wake_up
         self._waiting: deque[Request] = deque()
         self.urgent = False
         self.stopped = False
@@ -64,14 +75,13 @@ class RequestQueue:
             self._wake_up.clear()
         return self._wake_up.wait(seconds)
 
-    def carry_out(self, perform: Callable[[Callable[[], None]], float]):
-        """Execute the waiting requests by `perform(action)`, which returns the simulation time [s] afterwards."""
+    def carry_out(self, perform: Callable[[Callable[[], None]], tuple[float, str]]):
+        """Execute the waiting requests by `perform(action)`, which returns the simulation time [s] and a failure."""
         self.urgent = False  # before counting, so that no request is missed
         for _ in range(len(self._waiting)):  # later requests wait for the next sample
             with self._guard:
                 request = self._waiting.popleft()
-            request.time = perform(request.action)
-            request.done.set()
+            request.finish(*perform(request.action))
 
 
 class WakeUp:

@@ -7,6 +7,8 @@ No ROS is imported: `publishers` and `report` come from the node.
 
 import math
 import time
+from collections.abc import Callable
+from typing import NamedTuple
 
 from eel_dynamics.ros.diagnostics import ERROR
 from eel_dynamics.ros.loop.error_monitor import ErrorMonitor
@@ -14,21 +16,34 @@ from eel_dynamics.ros.loop.law_feed import LawAdopter
 from eel_dynamics.ros.loop.limits_monitor import LimitsMonitor
 from eel_dynamics.ros.loop.obstacles import Obstacles
 from eel_dynamics.ros.loop.pacing import ControllerWait, Pace, Stopwatch
-from eel_dynamics.ros.loop.requests import Request, RequestQueue
+from eel_dynamics.ros.loop.requests import Request, RequestQueue, WakeUp
 from eel_dynamics.ros.loop.run_totals import RunTotals
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 TICK = 0.05  # s of wall time between two messages on /clock while the simulation stands
+START_PERIOD = 0.1  # s of wall time between two messages of sample 0 while the run stands at its start
 MAXIMUM_REQUESTS = 10_000  # requests
 TOO_MANY = f"curvature samples refused: at most {MAXIMUM_REQUESTS} wait for the next sample"
+
+
+class NewRun(NamedTuple):
+    """What a reset changes: another `simulation`, `parameters`, and `begin()`, which makes its topics ready."""
+
+    simulation: object
+    parameters: object
+    begin: Callable[[], None]
 
 
 class RunLoop:
     """Publishes samples k = 0 ... `last_sample` of the `simulation`, at times k/rate, paced by the `parameters`.
 
+    While the run stands at its start, it repeats sample 0 ten times a second, so that a controller that answers samples
+    begins. It goes on with sample 1, unless a law changes sample 0, or a subscriber has not had it.
+
     `run` is the thread's function: it returns after the last sample, or after `stop`. A simulation that has stopped
     waits for a reset; an unattended one (with a duration, as fast as possible) returns and has `given_up`.
-    on_subscribers_complete: called when the subscribers that the run waits for are there.
+    on_subscribers_complete: called when the subscribers that the run waits for are there. inbox: has `poll()`, which
+    passes samples that have come to `take_samples`, and the methods of `WakeUp`.
 
     Attributes:
         time: simulation time of the last sample [s].
@@ -37,10 +52,11 @@ class RunLoop:
         totals: RunTotals since the start. laws: LawAdopter. pace: Pace. wall_time: Stopwatch.
     """
 
-    def __init__(self, simulation, parameters, publishers, report, on_subscribers_complete=lambda: None):
+    def __init__(self, simulation, parameters, publishers, report, on_subscribers_complete=lambda: None, inbox=None):
         self._simulation, self._parameters, self._publishers, self._report = simulation, parameters, publishers, report
         self._obstacles = Obstacles(simulation, publishers, parameters.wait_for_subscribers, on_subscribers_complete)
-        self._requests = RequestQueue()
+        self._requests = RequestQueue(inbox or WakeUp())
+        self._poll = inbox.poll if inbox is not None else lambda: None
         self.pace = Pace(1.0 / parameters.rate, parameters.real_time_factor)
         self._controller, self.wall_time = ControllerWait(), Stopwatch()
         self.laws, self._monitor = LawAdopter(simulation, report), LimitsMonitor(simulation, report)
@@ -48,6 +64,7 @@ class RunLoop:
         self._last_tick = -math.inf  # s, steady clock: last message on /clock
         self._sample_begun = None  # s, steady clock: when the computation of the next sample began
         self._whole_snapshot_due = True
+        self._start_shown, self._start_audience = -math.inf, None  # s, steady clock: last sample 0, and who had it
         self.time, self.samples_published, self.standing, self.totals = 0.0, 0, "", RunTotals()
 
     # For other threads.
@@ -61,7 +78,7 @@ class RunLoop:
 
     def take_law(self, law, origin: float):
         """Adopt a law whose own t = 0 lies at simulation time `origin` [s]; of several before a sample the last."""
-        self.request(lambda: self.laws.adopt(law, origin), "law")
+        self.request(lambda: self._adopt(law, origin), "law")
 
     def take_samples(self, samples: dict):
         """Add one instant of a law, the arguments of `Simulation.add_samples`; refused while too many wait."""
@@ -70,13 +87,26 @@ class RunLoop:
         else:
             self._report.event("samples", TOO_MANY, ERROR)
 
-    def reset(self) -> Request:
-        """Reset state and time to the start."""
-        return self.request(self._reset, urgent=True)
+    def reset(self, new: NewRun | None = None) -> Request:
+        """Reset state and time to the start, of a `new` run if it is given. The law stays."""
+        return self.request(lambda: self._reset(new), urgent=True)
 
     def pause(self, paused: bool) -> Request:
         """Pause the run, or continue it."""
-        return self.request(lambda: self._obstacles.pause(paused), urgent=True)
+        return self.request(lambda: self._obstacles.pause(paused, self.time), urgent=True)
+
+    def step(self, samples: int, wake: Callable[[], None] = lambda: None) -> Request:
+        """Publish so many `samples` of a paused run; the request is done with the last of them, and calls `wake()`.
+
+        Sample 0 is none of them.
+        """
+        steps = Request(lambda: None, wake=wake)
+        self.request(lambda: self._obstacles.begin_steps(samples, steps, self.time), urgent=True)
+        return steps
+
+    def set_state(self, position, orientation, twist) -> Request:
+        """Put the head elsewhere, as `Simulation.set_state` does."""
+        return self.request(lambda: self._set_state(position, orientation, twist), urgent=True)
 
     def hold(self, reason: str):
         """Hold the run for a `reason`, before its next sample; continue it with an empty one."""
@@ -121,20 +151,24 @@ class RunLoop:
         """Run the loop: the thread's function."""
         self.pace.restart(0, time.monotonic())
         while not self.stopped and self.samples_published <= self._parameters.last_sample and not self.given_up:
+            self._poll()
             self._requests.carry_out(self._perform)
             obstacle = self._obstacles.find(self.time)
             if obstacle:
                 self._idle(obstacle)
             elif self._wait_for_turn():
                 self._next_sample()
+        self._obstacles.end_steps(self.time, "the run has ended")
 
-    def _perform(self, action) -> float:
-        """Execute a request's action; returns the simulation time [s] afterwards."""
+    def _perform(self, action) -> tuple[float, str]:
+        """Execute a request's action; returns the simulation time [s] afterwards, and why it was refused."""
         try:
             action()
         except SimulationStopped as error:
             self._fail(error)
-        return self.time
+        except ValueError as error:
+            return self.time, str(error)
+        return self.time, ""
 
     def _idle(self, obstacle: str):
         """Wait for one tick while there is an obstacle; /clock continues."""
@@ -142,8 +176,21 @@ class RunLoop:
         if obstacle != self.standing:
             self.standing = obstacle
             self._report.info(obstacle)
-        self._tick(time.monotonic())
+        now = time.monotonic()
+        self._tick(now)
+        at_start = self.samples_published == 0 and now - self._start_shown >= START_PERIOD
+        if at_start and self._obstacles.start_may_be_shown(now):
+            self._show_start(now)
         self._requests.wait(TICK)
+
+    def _show_start(self, now: float):
+        """Publish sample 0, at `now` [s, steady clock], without counting it."""
+        try:
+            self._publish_sample(whole=True)
+        except SimulationStopped as error:
+            self._fail(error)
+        else:
+            self._start_shown, self._start_audience = now, self._publishers.audience()
 
     def _wait_for_turn(self) -> bool:
         """Wait until the next sample is due; False if a request or a tick comes first."""
@@ -165,31 +212,42 @@ class RunLoop:
 
     def _next_sample(self):
         """Advance to the next sample and publish it."""
-        simulation, publishers = self._simulation, self._publishers
         try:
-            if self._next_time > simulation.time and not self._advance():
+            if self._next_time > self._simulation.time and not self._advance():
                 return
-            last = self.samples_published == self._parameters.last_sample
-            whole, self._whole_snapshot_due = self._whole_snapshot_due or last, False
-            snapshot = simulation.observe(
-                **{part: wanted or whole for part, wanted in publishers.wanted_parts().items()}
-            )
-            self.totals.add(snapshot)
-            self._monitor.add(snapshot, check=whole)
-            if whole:
-                self._errors.check()
+            if not self._start_is_known:
+                last = self.samples_published == self._parameters.last_sample
+                whole, self._whole_snapshot_due = self._whole_snapshot_due or last, False
+                self._publish_sample(whole)
         except SimulationStopped as error:
             self._fail(error)
             return
-        self.time = self._next_time
-        publishers.publish(snapshot, nanoseconds(self.samples_published, self._parameters.rate))
         now = self._last_tick = time.monotonic()
         self.wall_time.lap(now)
         self.laws.report_resting(self.time)
         delay = self.pace.give_up_delay(self.samples_published, now)
         if delay > 0.0:
             self._report.event("late", f"late by {delay:.3g} s at t = {self.time:g} s: accuracy is kept, not the pace")
+        if self.samples_published > 0:
+            self._obstacles.count_step(self.time)
         self.samples_published += 1
+
+    @property
+    def _start_is_known(self) -> bool:
+        """Whether the next sample is sample 0, and all subscribers have had it."""
+        shown = self._start_audience if self.samples_published == 0 else None
+        return shown is not None and shown == self._publishers.audience()
+
+    def _publish_sample(self, whole: bool):
+        """Publish the sample of the simulation's present time; with `whole`, check everything that the totals use."""
+        parts = self._publishers.wanted_parts()
+        snapshot = self._simulation.observe(**{part: wanted or whole for part, wanted in parts.items()})
+        self.totals.add(snapshot)
+        self._monitor.add(snapshot, check=whole)
+        if whole:
+            self._errors.check()
+        self.time = self._next_time
+        self._publishers.publish(snapshot, nanoseconds(self.samples_published, self._parameters.rate))
 
     def _advance(self) -> bool:
         """Advance to the next sample; False if a request or the end of the run interrupts it."""
@@ -203,6 +261,7 @@ class RunLoop:
 
     def _fail(self, error: SimulationStopped):
         self._obstacles.failed, self._sample_begun = True, None
+        self._obstacles.end_steps(self.time, f"simulation {error}")
         then = "this run ends here, with status 1" if self.given_up else "reset starts it again"
         self._report.begin("stopped", f"simulation {error}; {then}", ERROR)
 
@@ -215,19 +274,35 @@ class RunLoop:
             self._last_tick = now
             self._publishers.tick(nanoseconds(max(0, self.samples_published - 1), self._parameters.rate))
 
+    def _adopt(self, law, origin: float):
+        self.laws.adopt(law, origin)
+        self._start_audience = None  # sample 0 may be another one
+
     def _change(self, parameters):
         self._parameters = parameters
         self.pace.restart(self.samples_published, time.monotonic(), parameters.real_time_factor)
 
-    def _reset(self):
+    def _set_state(self, position, orientation, twist):
+        self._simulation.set_state(position, orientation, twist)
+        self._start_audience = None
+        self._monitor.restart()
+
+    def _reset(self, new: NewRun | None):
         try:
-            self._simulation.reset()
+            if new is None:
+                self._simulation.reset()
+            elif self._simulation.law is not None:
+                new.simulation.adopt(self._simulation.law)
         except ValueError as error:  # a law that could be blended into may not begin from the initial state
             self._report.event("reset", f"reset refused: {error}", ERROR)
-            return
+            raise
+        self._obstacles.end_steps(self.time, "the run was reset")
+        if new is not None:
+            self._begin(new)
         now = time.monotonic()
         self.time, self.samples_published, self.totals = 0.0, 0, RunTotals()
         self._obstacles.failed, self._sample_begun = False, None
+        self._start_audience = None
         self._monitor.restart()
         self._errors.restart()
         self.wall_time.restart(now)
@@ -235,6 +310,17 @@ class RunLoop:
         self.pace.restart(0, now)
         self.laws.reset()
         self._report.info("reset to t = 0 s")
+
+    def _begin(self, new: NewRun):
+        """Change to a new run."""
+        self._parameters = new.parameters
+        self._simulation = self._obstacles.simulation = self.laws.simulation = new.simulation
+        self._monitor.end()
+        self._monitor = LimitsMonitor(new.simulation, self._report)
+        self._errors.restart()
+        self._errors = ErrorMonitor(new.simulation, self._report)
+        self.pace.period = 1.0 / new.parameters.rate
+        new.begin()
 
 
 def nanoseconds(sample: int, rate: float) -> int:

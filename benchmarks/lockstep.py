@@ -1,0 +1,148 @@
+"""What a tick of a controller in the loop costs: `python benchmarks/run.py lockstep`.
+
+A controller at 50 Hz answers each sample on `odom` with one instant of curvature, 20 ms ahead; the run is as fast as
+possible. In turn, in the same minutes: the library alone (the controller's numbers, `add_samples`, `advance`,
+`observe`), bare messages (the same two topics, between the controller's process and one that simulates nothing), and
+the dynamics node. The least of several turns counts: others may use the machine too.
+`python benchmarks/lockstep.py controller` and `... echo` are the two processes.
+"""
+
+import array
+import math
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+from eel_ros.qos import keep_all
+from eel_ros.testing.node_process import NodeProcess
+from eel_ros.testing.ros_domain import reserve_domain
+from nav_msgs.msg import Odometry
+
+from eel_dynamics import Simulation
+from eel_msgs.msg import CurvatureSamples
+
+TICK, POINTS = 20_000_000, 21  # ns; along the body
+FIRST, LAST = 50, 800  # ticks that are measured
+TURNS = 7
+X = array.array("d", [k / (POINTS - 1) for k in range(POINTS)])
+FLAT = array.array("d", bytes(8 * POINTS))
+PERIOD = 1.0  # s
+
+
+def lockstep():
+    """A tick of the falling eel's scene under a controller's samples: library, messages, and both in the node."""
+    times = {"library": [], "messages": [], "node": []}
+    with tempfile.TemporaryDirectory() as folder:
+        for turn in range(TURNS):
+            times["library"].append(_library())
+            times["messages"].append(_over_topics(Path(folder), f"messages-{turn}", sys.executable, __file__, "echo"))
+            node = (
+                "dynamics",
+                "--ros-args",
+                "-p",
+                "real_time_factor:=0",
+                "-p",
+                "rate:=50",
+                "-p",
+                "estimate_error:=false",
+            )
+            times["node"].append(_over_topics(Path(folder), f"node-{turn}", *node))
+    library, messages, node = (1e6 * min(times[name]) for name in ("library", "messages", "node"))
+    yield "the library alone", library, "us a tick"
+    yield "bare messages, there and back", messages, "us a tick"
+    yield "the dynamics node", node, f"us a tick, {TICK / 1e3 / node:.1f} times real time"
+    ratios = [node / (library + messages) for library, messages, node in zip(*times.values(), strict=True)]
+    yield (
+        "node over the sum",
+        node / (library + messages),
+        f"times; turn by turn {min(ratios):.2f} to {max(ratios):.2f}",
+    )
+
+
+def rows(time: int) -> tuple[array.array, ...]:
+    """Curvature in yaw, its rate and its acceleration at `time` [ns], along the body."""
+    w = 2.0 * math.pi / PERIOD
+    s, c = math.sin(w * time / 1e9), math.cos(w * time / 1e9)
+    return tuple(array.array("d", [value] * POINTS) for value in (2.0 * s, 2.0 * w * c, -2.0 * w * w * s))
+
+
+def _library() -> float:
+    """Seconds a tick."""
+    simulation = Simulation()
+    simulation.add_samples(0.0, X, FLAT, FLAT, FLAT, *rows(0))
+    began = 0.0
+    for tick in range(1, LAST + 1):
+        if tick == FIRST:
+            began = time.perf_counter()
+        simulation.add_samples(tick * TICK / 1e9, X, FLAT, FLAT, FLAT, *rows(tick * TICK))
+        simulation.advance(tick * TICK / 1e9)
+        simulation.observe(wrench=False, load=False)
+    return (time.perf_counter() - began) / (LAST - FIRST)
+
+
+def _over_topics(folder: Path, name: str, *plant: str) -> float:
+    """Seconds a tick of the process `plant` under a controller in another."""
+    domain = reserve_domain()
+    environment = domain.environment()
+    words = (plant, (sys.executable, __file__, "controller"))
+    running = [NodeProcess(*each, environment=environment, log=folder / f"{name}-{k}") for k, each in enumerate(words)]
+    try:
+        assert running[1].wait(120.0) == 0, running[1].output() + running[0].output()
+        return float(running[1].output().splitlines()[-1])
+    finally:
+        for node in running:
+            node.end()
+        domain.claim.close()
+
+
+def controller():
+    """Answer samples on odom until the last tick, and print the seconds of a tick."""
+    import rclpy
+
+    rclpy.init()
+    node = rclpy.create_node("controller")
+    publisher = node.create_publisher(CurvatureSamples, "curvature_samples", keep_all())
+    begun, done = [], []
+
+    def answer(odometry):
+        stamp = odometry.header.stamp.sec * 1_000_000_000 + odometry.header.stamp.nanosec
+        begun.extend([time.perf_counter()] if stamp == FIRST * TICK else [])
+        done.extend([time.perf_counter()] if stamp == LAST * TICK else [])
+        yaw = dict(zip(("yaw", "yaw_rate", "yaw_accel"), rows(stamp + TICK), strict=True))
+        message = CurvatureSamples(x=X, pitch=FLAT, pitch_rate=FLAT, pitch_accel=FLAT, **yaw)
+        message.header.stamp.sec, message.header.stamp.nanosec = divmod(stamp + TICK, 1_000_000_000)
+        publisher.publish(message)
+
+    node.create_subscription(Odometry, "odom", answer, keep_all())
+    executor = rclpy.executors.SingleThreadedExecutor()
+    executor.add_node(node)
+    while not done:
+        executor.spin_once()
+    print((done[0] - begun[0]) / (LAST - FIRST), flush=True)
+
+
+def echo():
+    """Answer each sample of curvature with the odometry of its time, and begin with that of time 0."""
+    import rclpy
+
+    rclpy.init()
+    node = rclpy.create_node("echo")
+    publisher, message = node.create_publisher(Odometry, "odom", keep_all()), Odometry()
+
+    def answer(samples):
+        message.header.stamp = samples.header.stamp
+        publisher.publish(message)
+
+    node.create_subscription(CurvatureSamples, "curvature_samples", answer, keep_all())
+    start = node.create_timer(0.1, lambda: message.header.stamp.nanosec or publisher.publish(message))
+    executor = rclpy.executors.SingleThreadedExecutor()
+    executor.add_node(node)
+    while not message.header.stamp.nanosec:
+        executor.spin_once()
+    node.destroy_timer(start)
+    executor.spin()
+
+
+if __name__ == "__main__":
+    {"controller": controller, "echo": echo}[sys.argv[1]]()

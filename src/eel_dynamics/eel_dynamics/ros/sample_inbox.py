@@ -1,0 +1,83 @@
+"""Takes a controller's samples in the thread of the run loop: a turn of the executor would cost as much as a tick.
+
+The loop waits for samples and requests together, in a wait set of its own, as `rclpy.wait_for_message` does.
+"""
+
+from collections.abc import Callable
+
+from eel_ros.qos import keep_all
+from eel_ros.serving import PolledGroup, log_dropped
+from rclpy.impl.implementation_singleton import rclpy_implementation
+from rclpy.qos import ReliabilityPolicy
+from rclpy.serialization import deserialize_message
+
+from eel_msgs.msg import CurvatureSamples
+
+TOPIC = "curvature_samples"
+BATCH = 1000  # samples taken from one subscription at once
+
+
+class SampleInbox:
+    """The subscriptions of `node` to samples, and what wakes the run loop, in place of `requests.WakeUp`.
+
+    There is one without loss, and from `look` on a second one, if some publisher is best-effort.
+    receive(message, info, several): takes a message; several: whether there are two subscriptions.
+    """
+
+    def __init__(self, node, receive: Callable[[CurvatureSamples, dict, bool], None]):
+        self._node, self._receive, self._group = node, receive, PolledGroup()
+        self._guard = node.create_guard_condition(lambda: None, self._group)
+        self._subscriptions, self._wait_set = (), None
+        self._subscribe(reliable=True)
+
+    def look(self):
+        """Look the publishers up, and subscribe a second time where one is best-effort; call this now and then."""
+        offers = self._node.get_publishers_info_by_topic(self._node.resolve_topic_name(TOPIC))
+        unreliable = any(each.qos_profile.reliability == ReliabilityPolicy.BEST_EFFORT for each in offers)
+        if unreliable and len(self._subscriptions) == 1:
+            self._subscribe(reliable=False)
+
+    def _subscribe(self, reliable: bool):
+        quality = keep_all(reliable=reliable)
+        made = self._node.create_subscription(CurvatureSamples, TOPIC, print, quality, callback_group=self._group)
+        self._subscriptions, self._wait_set = (*self._subscriptions, made), None
+        self.set()
+
+    # In the run loop's thread.
+
+    def poll(self):
+        """Take the samples that have come. One that cannot be read is logged and left out."""
+        subscriptions = self._subscriptions
+        for subscription in subscriptions:
+            for _ in range(BATCH):
+                with subscription.handle:
+                    taken = subscription.handle.take_message(subscription.msg_type, True)
+                if taken is None:
+                    break
+                try:
+                    self._receive(deserialize_message(taken[0], CurvatureSamples), taken[1], len(subscriptions) > 1)
+                except Exception as error:
+                    log_dropped(self._node, error, f"a message of {subscription.topic_name}")
+
+    def wait(self, seconds: float) -> bool:
+        """Sleep until samples have come or `set` was called, at most `seconds`; whether one of them was the reason."""
+        subscriptions = self._subscriptions
+        if self._wait_set is None:
+            sizes = len(subscriptions), 1, 0, 0, 0, 0
+            self._wait_set = rclpy_implementation.WaitSet(*sizes, self._node.context.handle)
+        waiting = self._wait_set
+        waiting.clear_entities()
+        for subscription in subscriptions:
+            waiting.add_subscription(subscription.handle)
+        waiting.add_guard_condition(self._guard.handle)
+        waiting.wait(max(0, round(seconds * 1e9)))
+        return bool(waiting.get_ready_entities("subscription") or waiting.get_ready_entities("guard_condition"))
+
+    def clear(self):
+        """Do nothing: a wait that returns resets the guard condition."""
+
+    # For any thread.
+
+    def set(self):
+        """Wake the run loop, or let its next `wait` return at once."""
+        self._guard.trigger()

@@ -1,0 +1,111 @@
+"""A heading controller: it reads the heading from /odom, and answers each sample with the curvature one period on.
+
+It swims straight, and bends the whole body towards the target heading. Its answers are `curvature_samples`, so that a
+simulation as fast as possible (`real_time_factor:=0`) keeps in step with it. docs/controllers.md tells how.
+"""
+
+import array
+import math
+import sys
+from dataclasses import dataclass
+
+import numpy as np
+from builtin_interfaces.msg import Time
+from eel_ros.command_line import answer_words
+from eel_ros.parameter_node import ParameterNode
+from eel_ros.parameters import declare, help_rows, take_overrides, warn_of_unknown
+from eel_ros.qos import keep_all
+from eel_ros.run_node import run_node
+from nav_msgs.msg import Odometry
+from std_msgs.msg import Header
+
+from eel_gaits.command_line import complain
+from eel_gaits.gaits import straight
+from eel_gaits.quantity import Quantities, limits, quantity
+from eel_msgs.msg import CurvatureSamples
+
+NAME = "heading_controller"
+ABOUT = "Swims towards a heading: answers each sample on odom with one on curvature_samples."
+FOLLOWING = 3.0  # rad/s, with which the bend follows what the heading wants
+
+
+@dataclass(frozen=True, kw_only=True)
+class HeadingParameters(Quantities):
+    """The parameters of the controller."""
+
+    heading: float = quantity(
+        0.5, unit="rad", description="target heading in the world frame; positive: left", minimum=-1e3, maximum=1e3
+    )
+    gain: float = quantity(
+        1.0, unit="1/m", description="bend of the body by error of the heading", minimum=0.0, maximum=1e3
+    )
+    greatest_bend: float = quantity(0.5, unit="rad/m", description="limit of that bend", minimum=0.0, maximum=1e3)
+    period: float = quantity(
+        0.01,
+        unit="s",
+        description="time from a sample to its answer; the dynamics node's 1/rate",
+        minimum=1e-4,
+        maximum=1.0,
+    )
+    length: float = quantity(1.0, unit="m", description="body length", minimum=1e-4, maximum=1e3)
+
+
+# [controller]
+class HeadingController(ParameterNode):
+    """A node with the topics `odom` (in) and `curvature_samples` (out)."""
+
+    def __init__(self):
+        super().__init__(NAME, automatically_declare_parameters_from_overrides=True)
+        overrides, names = take_overrides(self), HeadingParameters.__dataclass_fields__
+        given = HeadingParameters(**{name: overrides[name] for name in overrides if name in names})
+        declare(self, given, limits, changeable=True)
+        warn_of_unknown(self, overrides, names)
+        self.gait, self.x = straight(), np.linspace(0.0, given.length, 21)
+        self.bend, self.last, self.answer = np.zeros(3), math.inf, None
+        self.publisher = self.create_publisher(CurvatureSamples, "curvature_samples", keep_all())
+        self.create_subscription(Odometry, "odom", self.receive, keep_all())
+
+    def receive(self, odometry):
+        """Answer one sample. A stamp that goes back is a start; one that is repeated gets the same answer."""
+        now = odometry.header.stamp.sec + 1e-9 * odometry.header.stamp.nanosec
+        if now != self.last:
+            self.bend = self.next_bend(odometry.pose.pose.orientation) if now > self.last else np.zeros(3)
+            self.answer, self.last = self.sample(now + self.get_parameter("period").value), now
+        self.publisher.publish(self.answer)
+
+    def next_bend(self, q):
+        """The bend of the body one period on: K3 [rad/m], its rate and its acceleration. K3 > 0 turns to the right."""
+        heading = math.atan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y * q.y + q.z * q.z))
+        target, gain, limit, step = (
+            self.get_parameter(name).value for name in ("heading", "gain", "greatest_bend", "period")
+        )
+        wanted = -gain * math.remainder(target - heading, 2.0 * math.pi)
+        value, rate, _ = self.bend
+        acceleration = FOLLOWING**2 * (max(-limit, min(limit, wanted)) - value) - 2.0 * FOLLOWING * rate
+        rate += step * acceleration
+        return np.array((value + step * rate, rate, acceleration))
+
+    def sample(self, time):
+        """The curvature at `time` [s]: the gait and the bend."""
+        yaw = [rows[:, 2] + bend for rows, bend in zip(self.gait.curvature(time, self.x), self.bend, strict=True)]
+        numbers = dict(zip(("x", "yaw", "yaw_rate", "yaw_accel"), (self.x, *yaw), strict=True))
+        flat = dict.fromkeys(("pitch", "pitch_rate", "pitch_accel"), np.zeros(len(self.x)))
+        seconds, nanoseconds = divmod(round(time * 1e9), 1_000_000_000)
+        fields = {name: array.array("d", values.tobytes()) for name, values in (numbers | flat).items()}
+        return CurvatureSamples(header=Header(stamp=Time(sec=seconds, nanosec=nanoseconds)), **fields)
+
+
+# [end of controller]
+
+
+def main(args=None):
+    """Run the node. The exit status is 0 after SIGINT or SIGTERM, and 2 if a parameter or word is refused at start."""
+    words = sys.argv if args is None else args
+    status = answer_words(NAME, ABOUT, help_rows(HeadingParameters), words, complain)
+    if status is not None:
+        return status
+    return run_node(NAME, words, HeadingController, lambda node: True, complain=complain)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,86 @@
+"""The heading controller and the dynamics node together: it starts the run by itself, and steers it to its target."""
+
+import math
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from nav_msgs.msg import Odometry
+from swim_client import LIMIT, SwimClient, nanoseconds
+
+ROOT = Path(__file__).resolve().parent.parent
+
+
+@pytest.fixture
+def swim(fresh_domain):
+    swim = SwimClient(domain=fresh_domain, topics=())
+    yield swim
+    swim.close()
+
+
+def heading(odometry) -> float:
+    """Heading [rad] of the head, positive to the left."""
+    q = odometry.pose.pose.orientation
+    return math.atan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y * q.y + q.z * q.z))
+
+
+def test_the_heading_controller_turns_left_and_right_and_repeats_itself(start, swim):
+    """Three eels in namespaces of their own, as fast as possible, in lockstep; two of them have the same target. The
+    gait makes the head swing, so the heading is the mean over the last two periods."""
+    targets = {"left": 0.6, "again": 0.6, "right": -0.6}
+    for name in targets:
+        swim.listen(f"/{name}/odom", Odometry)
+    nodes = []
+    for name, target in targets.items():
+        space = ("--ros-args", "-r", f"__ns:=/{name}", "-p")
+        pace = ("real_time_factor:=0", "-p", "duration:=12", "-p", "rate:=50", "-p", "clock:=false")
+        nodes.append(start("dynamics", *space, *pace, "-p", "wait_for_subscribers:=2", "-p", "subscriber_timeout:=60"))
+        start("heading_controller", *space, f"heading:={target}", "-p", "period:=0.02")
+    runs = [swim.received[f"/{name}/odom"] for name in targets]
+
+    def ended():
+        return all(run and run[-1].header.stamp.sec >= 12 for run in runs)
+
+    swim.until(ended, "the ends of the runs", 2 * LIMIT)
+    for node in nodes:
+        assert node.wait(LIMIT) == 0 and "ERROR" not in node.output() and "run out" not in node.output(), node.output()
+    left, again, right = ({nanoseconds(each.header.stamp): each for each in run} for run in runs)
+    assert len(left) == 601
+    assert {stamp: left[stamp].pose.pose for stamp in left} == {stamp: again[stamp].pose.pose for stamp in again}
+    for run, target in ((left, 0.6), (right, -0.6)):
+        last = [heading(each) for stamp, each in run.items() if stamp > 10 * 10**9]
+        assert sum(last) / len(last) == pytest.approx(target, abs=0.2)
+
+
+def test_the_page_shows_the_controller_and_its_library_example_runs():
+    page = (ROOT / "docs/controllers.md").read_text()
+    source = (ROOT / "src/eel_gaits/eel_gaits/heading_controller.py").read_text()
+    controller = source.partition("# [controller]\n")[2].partition("# [end of controller]")[0].strip()
+    assert f"```python\n{controller}\n```" in page
+    example = page.partition("<!-- library -->\n```python\n")[2].partition("```")[0]
+    assert "add_samples" in example
+    ran = subprocess.run([sys.executable, "-c", example], capture_output=True, text=True, timeout=LIMIT)
+    assert ran.returncode == 0, ran.stderr
+    assert float(ran.stdout) > 0.3  # it turns left
+
+
+def test_a_parameter_file_for_all_nodes_makes_none_warn_of_the_others_names(start, tmp_path):
+    """One file with names of each node under /**; a name that nobody has is named by the node that has one like it."""
+    path = tmp_path / "all.yaml"
+    recording = tmp_path / "run.rrd"
+    path.write_text(
+        "/**:\n  ros__parameters:\n    gait: turning\n    yaw_bend: -1.0\n    rate: 50.0\n    stations: 21\n"
+        "    scene:\n      planar: true\n    heading: 0.3\n    periods: 2.0\n"
+        f"    sink: [save]\n    recording: {recording}\n"
+    )
+    words = {"dynamics": "waiting for", "gait_generator": "published on", "visualiser": "saving to"}
+    nodes = {name: start(name, "--ros-args", "--params-file", str(path)) for name in (*words, "heading_controller")}
+    for name, text in words.items():
+        nodes[name].wait_for_output(text, LIMIT)
+    nodes["heading_controller"].wait_for_output("did you mean", LIMIT)
+    for name in ("dynamics", "visualiser"):
+        assert "not parameters of this node" not in nodes[name].output(), nodes[name].output()
+    for name in ("gait_generator", "heading_controller"):
+        said = [line for line in nodes[name].output().splitlines() if "not parameters of this node" in line]
+        assert len(said) == 1 and said[0].endswith("ignored: 'periods' (did you mean 'period'?)"), said
