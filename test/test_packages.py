@@ -23,15 +23,16 @@ ROSDEP_KEY = {
     "matplotlib": "python3-matplotlib",
     "yaml": "python3-yaml",
     "PIL": "python3-pil",
+    "xarray": "python3-xarray",
+    "rosbags": "python3-rosbags-pip",
 }
 with (ROOT / "pyproject.toml").open("rb") as settings:
     CONTRACTS = tomllib.load(settings)["tool"]["importlinter"]["contracts"]
 (MAY_IMPORT_ROS,) = (each["allowed_importers"] for each in CONTRACTS if each["type"] == "protected")
-OPTIONAL = {"pytest", "dask", "distributed", "xarray", "eel_viz"}  # used where it is installed
+OPTIONAL = {"pytest", "dask", "distributed", "eel_viz"}  # used where it is installed
 FROM_REQUIREMENTS = {
     "rerun",
     "rerun_bindings",
-    "rosbags",
     "mcap",
     "pyarrow",
     "zstandard",
@@ -71,6 +72,14 @@ def test_manifest_is_valid(package):
     assert parsed.name == package
     assert parsed.licenses == ["Apache-2.0"]
     assert parsed.version == "0.1.0"
+
+
+@pytest.mark.parametrize("package", (*PYTHON_PACKAGES, "eel_core", "eel_msgs"))
+def test_package_carries_its_licence_address_and_author(package):
+    assert (ROOT / "src" / package / "LICENSE").read_bytes() == (ROOT / "LICENSE").read_bytes()
+    root = manifest(package)
+    assert root.find("license").get("file") == "LICENSE"
+    assert root.find("url").text.startswith("https://") and root.find("author").text == root.find("maintainer").text
 
 
 @pytest.mark.parametrize("package", EXECUTABLES)

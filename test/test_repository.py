@@ -45,6 +45,15 @@ def test_no_path_of_a_developers_machine(tracked):
     assert found == []
 
 
+def test_every_source_file_names_its_licence(tracked):
+    sources = [path for path in tracked if path.suffix in (".py", ".pyi", ".hpp", ".cpp", ".sh", ".cmake")]
+    assert len(sources) > 300
+    beginnings = {path: path.read_text().splitlines()[:2] for path in sources}
+    assert [
+        str(path) for path, lines in beginnings.items() if "SPDX-License-Identifier: Apache-2.0" not in str(lines)
+    ] == []
+
+
 def test_no_large_file(tracked):
     assert [str(path) for path in tracked if path.stat().st_size > 1_000_000] == []
 
