@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The two commands are `make demo` and `make test`; each does all the set-up itself, inside this folder.
 SHELL := /bin/bash
 .DEFAULT_GOAL := help

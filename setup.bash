@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Source this after `make build`, from any bash shell and any folder:
 #     source /path/to/this/folder/setup.bash
 # It puts this folder's Python, ROS 2 and nodes first in the environment. Sourcing it again changes nothing.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The paper's own scheme against the library, at equal error: `python benchmarks/run.py paper_scheme`.
 
 The scheme runs in numba, in an environment of its own, which is made on the first call.

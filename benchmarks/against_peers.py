@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Other people's simulators, each in an environment of its own with pinned versions: `python benchmarks/run.py peers`.
 
 MuJoCo (a chain of ellipsoids with its fluid model) and PyElastica (a Cosserat rod with its slender-body drag) swim the

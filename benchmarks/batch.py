@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Many swimmers side by side: `python benchmarks/run.py batch`, against the size of the batch and the cores."""
 
 import os

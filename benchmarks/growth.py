@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How the cost grows with nodes and with duration: `python benchmarks/run.py growth`."""
 
 import statistics

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Methods of integration, measured: evaluations of the head's dynamics for an error of its position.
 
 10 s of the falling gait with laminar friction, fixed steps that end on the kinks of the ramps: Runge-Kutta of orders 2

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a tick of a controller in the loop costs: `python benchmarks/run.py lockstep`.
 
 A controller at 50 Hz answers each sample on `odom` with one instant of curvature, 20 ms ahead; the run is as fast as

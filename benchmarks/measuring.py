@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How contenders are compared: in turn, so that whatever else the machine does meets all alike, and by the CPU
 time of this process, to which the time that others take does not count. For contenders that use one thread."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the nodes cost and how soon they answer: `python benchmarks/run.py nodes`. The dynamics at 100 Hz and at the
 clock's rate, 51 stations, with a subscriber on every topic; real processes on a domain of their own."""
 

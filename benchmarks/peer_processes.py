@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Scripts of the folder `peers`, each run by a Python of its own with pinned packages.
 
 The environments lie in `.venv-peers` and are made on the first call.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Speed and accuracy, measured: `python benchmarks/run.py [NAME ...]`, one line per figure with its unit.
 
 Each figure is the median of repeats in one process; ratios come from repeats taken in turn. Timings mean something on

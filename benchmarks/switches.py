@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a scene requires, and what it is spared: the plane against space, the switches, the search for the drag's kinks:
 `python benchmarks/run.py plane switches`."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Explicit Runge-Kutta methods of orders 2 to 8, each as (order, a, b, c).
 
 Order 2: midpoint. 3: Bogacki and Shampine, Appl. Math. Lett. 2 (1989). 4: classical. 5: Dormand and Prince, J. Comp.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What one period of a node's real time costs: steps whose length the error chooses, against fixed ones.
 
 `python benchmarks/run.py ticks`. The evaluations in a period are the same on every machine; they bound its time.

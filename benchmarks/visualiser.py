@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What showing a run costs: `python benchmarks/run.py visualiser`. A real run of the falling gait at the clock's rate,
 three processes, and the CPU time of the visualiser alone while the swimmer swims."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Publishes what is in a bag, byte for byte and as fast as subscribers take it, and leaves: `ros2 bag play` in small.
 
 Usage: bag_player.py FOLDER COUNT: so many messages of each topic. Publishers have the quality of service that the bag

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Messages with extremes in their fields: of any type, one field at a time, and in all fields together."""
 
 import array

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A run of the three nodes and the recorder as processes over DDS, and what it leaves, read back."""
 
 from dataclasses import dataclass

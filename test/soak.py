@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A long run of the three nodes as fast as possible, with subscribers, and the memory of each process.
 
 Memory is what a process has for itself in RAM, without what is mapped from files (Linux's `RssAnon`): the pages

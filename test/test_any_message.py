@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """No message ends a node, whatever it holds: every subscription receives the extremes of each field, over DDS."""
 
 import time

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """docs/architecture.md and docs/misprints.md: the files, folders and functions that they name exist; examples apply."""
 
 import ast

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the machine lacks is named in one line, with the command that brings it; nothing is made before that."""
 
 import os

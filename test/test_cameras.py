@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The cameras of the visualiser keep the swimmer in the picture: every gait, every tenth of a second, every camera.
 
 The projection is written here a second time, from the eye, its target and Rerun's vertical field of view.

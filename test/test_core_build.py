@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Where the build cannot be done, it names the package that brings what is missing; pip builds it without ROS."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A damaged library of the messages is one line that names it and the command that repairs it."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Ctrl-C and SIGTERM end each node promptly, with status 0 and without a traceback."""
 
 import signal

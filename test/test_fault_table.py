@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """docs/robustness.md tells what the tests show, and nothing else."""
 
 import fault_table

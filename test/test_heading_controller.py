@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The heading controller and the dynamics node together: it starts the run by itself, and steers it to its target."""
 
 import math

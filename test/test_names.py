@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Names in messages are shown and nothing else: no path, no format, no markup; files are where the user said."""
 
 import os

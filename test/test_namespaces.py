@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Two eels on one network: each node has the topics and frames of its namespace; /clock, /diagnostics and /tf are
 shared."""
 

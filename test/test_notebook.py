@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The notebook of the documentation: its cells run, one after the other, and say what they said when it was written."""
 
 import contextlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Ubuntu 24.04's own Python has numpy 1.26: messages, gaits and dynamics are built and run with it here.
 
 A second virtual environment holds that numpy, and sees everything else of the first one. eel_core is built without

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The packages as colcon and rosdep see them: manifests name what the sources import, executables in place."""
 
 import ast

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The paper's own scheme, as the benchmarks have it, comes to the library's answer: a third code for the equations."""
 
 import importlib

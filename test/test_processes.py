@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the tests and the demo stand on: domains of their own, and processes that never outlive their owner."""
 
 import os

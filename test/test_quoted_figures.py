@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Figures that README.md and docs quote are the newest report's: `make quotes` writes them, `make lint` checks them."""
 
 import pytest

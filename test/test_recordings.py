@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is left of a recording when the disk is full, the process is killed, or a viewer stops reading."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What must not be in the repository: addresses of package indices, paths of a developer's machine, large files."""
 
 import re

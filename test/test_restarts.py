@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Nodes that are killed and come back while the others run, resets seen by all, and systems side by side."""
 
 import signal

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """`Run.from_bag`: a run of the library, from what a dynamics node published of it."""
 
 from dataclasses import fields, replace

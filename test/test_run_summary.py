@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The demo's summary, from messages whose numbers are known; and what makes it fail."""
 
 from types import SimpleNamespace

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which steps `make build` makes in a new folder, again, after an interruption, in a moved folder, and twice at once.
 
 A Python that only writes down its calls stands in for the real one: every other test runs in what the real one makes.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """`source setup.bash`: from any folder, as often as one likes, without breaking the calling shell."""
 
 import os

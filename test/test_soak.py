@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Long runs as fast as possible, a subscriber on every topic: nothing is lost, and memory does not grow.
 
 `make soak` swims for an hour of simulation and leaves out/soak.csv and out/soak.png, which `make robustness` brings

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The three nodes and a sweep on machines that lack something that most have."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The suite as a user runs it: three processes over DDS, every topic recorded twice, compared with the library's run.
 
 Messages and Rerun's scalars are double precision: equal but for the order of additions. Rerun's geometry is single

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """`Run.to_rerun`: bit by bit what the visualiser makes of the node's own messages of the same run."""
 
 import os

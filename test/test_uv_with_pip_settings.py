@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What pip is told of indexes, certificates and proxies, uv is told too."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the commands and nodes say, whatever they are given and wherever they say it: one line, and no traceback."""
 
 import os

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Brings this folder to the state that the sources ask for: virtual environment, colcon build.
 # Each has a stamp with the hash of what it was made from and the folder's own path, so that a second call
 # is quick, and an interrupted set-up, a moved folder or a changed source is put right.

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Builds and runs the C++ tests of eel_core, each kind in a build folder of its own (src/eel_core/CMakePresets.json).
 #   tests      for this machine
 #   sanitize   with AddressSanitizer and UndefinedBehaviorSanitizer, and the Python tests of the mechanics with them

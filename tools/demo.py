@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Swim the paper's eel for 10 s through the three nodes, as three processes, into Rerun; then say what happened.
 
 With a display the viewer opens and the run keeps pace with the clock; without one it goes as fast as possible, and a

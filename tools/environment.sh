@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Sourced by build.sh and run.sh: takes whatever ROS 2 or Python workspace the calling shell has sourced out of the
 # environment, so that this folder's own ROS 2 is the only one in sight.
 

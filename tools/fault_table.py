@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The table of faults in docs/robustness.md, written from the tests: `make robustness`.
 
 A test that shows what happens at a fault says so by a decorator, once for each fault that it shows:

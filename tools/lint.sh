@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Every check of the sources that runs nothing of them. All are made, whatever fails; the last line says which did.
 set -uo pipefail
 

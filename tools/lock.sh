@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Pins requirements*.txt anew from requirements*.in: one resolution for Python 3.11 to 3.13, every file with its hash.
 # Run it after `make build`, which brings uv, when a line of a requirements*.in changes; then `make test`.
 set -euo pipefail

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The pictures of the visualiser in docs/images, one for each arrangement, and a film of the swimmer: `make pictures`.
 
 The falling gait at the standard accuracy, with the run at draft accuracy laid over it where two are compared, drawn by

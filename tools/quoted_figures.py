@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Writes the figures that README.md and docs quote: `make quotes`; `--check` says which are stale.
 
 They stand between two marker lines and come from the newest report in benchmarks/reports that has them (the output of

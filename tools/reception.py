@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every message of a run, as a subscriber on the network receives it: KEEP_ALL, in a thread of its own.
 
 Of the messages that repeat sample 0 before the run begins, the last is kept.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Make the ROS wheels of this virtual environment usable by CMake, and keep colcon out of it.
 
 The wheels' CMake files name the Python of the machine that built them (/opt/python/cp3xx-cp3xx/...), which does not

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The figures of benchmarks/reports: what `make bench` printed, read back by label."""
 
 import re

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Sourced by build.sh: what must be on the machine already. Each shortage ends the build with one line that names it and
 # the command that brings it; nothing is installed from here.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a run was, from the messages that came over the network: numbers first, then the text that says them."""
 
 from dataclasses import dataclass

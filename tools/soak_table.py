@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The memory of the nodes over an hour of simulation, as `make soak` left it in out/, for docs/robustness.md."""
 
 import csv

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # All tests but the long ones. Without arguments as four pytest processes side by side, each in ROS domains of its own:
 # they wait most of the time. Arguments go to one pytest.
 set -uo pipefail

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Runs uv with pip's settings of indexes, certificates and proxies, which uv does not read itself.
 
 python tools/uv_with_pip_settings.py pip install ...

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """PyElastica as a peer: a Cosserat rod with its slender-body drag, bent by muscles through a law's curvature.
 
 python elastica_rod.py task.npz        # in PyElastica's own environment; prints one line of JSON

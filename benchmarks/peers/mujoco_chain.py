@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """MuJoCo as a peer: a chain of N rigid ellipsoids with its fluid model, driven through a law's joint angles.
 
 python mujoco_chain.py task.npz        # in MuJoCo's own environment; prints one line of JSON

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The paper's own numerical scheme (section 7.1 of Boyer, Porez and Leroyer 2010), as a competitor to measure against.
 
 Fourth-order Runge-Kutta in time, and in each evaluation fourth-order Runge-Kutta along the body, from head to tail over

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # How everything here is compiled. The level of the processor is apart (levels.cmake).
 if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
   set(CMAKE_BUILD_TYPE Release)   # -O3

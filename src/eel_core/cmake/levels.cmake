@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Sets `modules` to the names of the modules to build, and march_of_NAME to the flag of each.
 # A module for a level dies on a processor below it, so each level has a module of its own; eel_core/levels.py chooses.
 if(NOT CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")

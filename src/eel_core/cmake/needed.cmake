@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # What the build needs. Each shortage ends it with the package that brings what is missing.
 include(CheckLanguage)
 check_language(CXX)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The Python package: its sources, a compiled module per level, and built.py, which lists the levels.
 foreach(module IN LISTS modules)
   pybind11_add_module(${module} MODULE NO_EXTRAS src/module.cpp)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The mechanics of elongated swimmers in water (Boyer, Porez and Leroyer, 2010), compiled.
 
 `eel_core._core` is the compiled module for this processor: its level is chosen here.

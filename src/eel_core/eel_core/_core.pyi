@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The compiled module, whichever level of the processor it is for.
 
 Arrays are contiguous and of doubles, unless another type is named; they go through the buffer protocol. SI units and

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Chooses the compiled module that suits this processor, before anything compiled is imported."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What this machine's processor can do: its x86-64 level (x86-64 psABI, table of micro-architecture levels).
 
 As a script it prints the level, for the build.

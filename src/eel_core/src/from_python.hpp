@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What Python hands over: arrays and tables as objects with arrays for attributes, copied into the structs of the core.
 #pragma once
 

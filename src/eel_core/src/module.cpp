@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The Python module. EEL_CORE_MODULE is its name: one for each level of the processor.
 #include <pybind11/pybind11.h>
 

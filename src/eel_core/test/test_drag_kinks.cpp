@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where a speed changes its sign within a panel: the place that the search finds, and the integrals up to it.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The flags keep the arithmetic that the mechanics counts on. Inputs are volatile: nothing is computed by the compiler.
 #include <gtest/gtest.h>
 

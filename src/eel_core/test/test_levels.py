@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The compiled module is chosen for the processor before it is imported; where none suits, one line says so."""
 
 import shutil

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Functions of numbers and lanes, to round-off.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A sanitizer that reports nothing is of no use: here each has something to report.
 #include <gtest/gtest.h>
 

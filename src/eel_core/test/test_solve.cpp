@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Symmetric systems: solutions, and matrices that are not positive definite.
 #include <gtest/gtest.h>
 

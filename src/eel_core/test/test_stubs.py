@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The type stubs name what the compiled module has, no more and no less."""
 
 import ast

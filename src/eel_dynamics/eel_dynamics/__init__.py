@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Dynamics of an elongated swimmer in three dimensions, after Boyer, Porez and Leroyer (2010)."""
 
 from eel_dynamics.accuracy.accuracy import Accuracy

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Bodies, laws and states that the tests of the physics share."""
 
 from types import SimpleNamespace

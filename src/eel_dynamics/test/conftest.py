@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """For the tests of the mechanics, `measured`; for those of the dynamics node, a client that subscribes to it."""
 
 import pytest

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Laws, bodies, states and scenes for hypothesis: of sizes that a swimmer could have, plain where it can shrink.
 
 `few(n)` is the profile: n examples, the same ones in every run, as they hang on the test's own source alone.

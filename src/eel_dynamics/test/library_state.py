@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The public API of eel_dynamics at one prescribed instant, for comparisons: bodies, scenes and snapshots."""
 
 from types import SimpleNamespace

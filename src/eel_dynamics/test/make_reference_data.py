@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Writes data/falling.json: the head after the falling gait, by the reference. From the root of the repository:
 
     source setup.bash && python src/eel_dynamics/test/make_reference_data.py

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Random scenes over more than any swimmer has: bodies, waters, laws, ramps, settings, throws."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The swimmer's mechanics a second time, slow and plain: the independent check of the package's kernel.
 
 It starts from the kinetic energy of body and fluid (eqs 16, 36 of Boyer, Porez & Leroyer 2010),

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Quadrature and interpolation of the reference: Gauss panels that no kink of the body straddles."""
 
 import itertools

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A ROS node for tests: receives a dynamics node's topics without loss, publishes laws and samples, calls services."""
 
 import re

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What an accuracy gives: settings by one rule from the target and the scene, budgets of time, bad input."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The library against the reference, which shares no code with it: states, loads, internal wrench, trajectory."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What researchers read off a run, against the same figures computed here from the arrays, and what is undefined."""
 
 from itertools import pairwise

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Many swimmers side by side: each is the run that it would be alone, and none disturbs another."""
 
 import numpy as np

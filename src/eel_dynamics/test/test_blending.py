@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Changes of what drives the body: curvature, its rate and its acceleration never jump, and the head follows."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Bodies: mass and volume as printed, section data of ellipses, added mass by pushing the body."""
 
 import numpy as np

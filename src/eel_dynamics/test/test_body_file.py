@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Body files: what cannot be is one line that names the file and the column; what is meant is read."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Closure of the internal wrench, its boundary conditions, and the acceleration as a derivative."""
 
 import numpy as np

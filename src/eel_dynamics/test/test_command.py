@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The command `simulate`: bad input is one line with exit status 2, said before anything swims."""
 
 import numpy as np

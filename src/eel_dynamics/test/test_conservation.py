@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """No fluid, or water that sheds no wake: linear and angular momentum stay, energy is the actuators' work."""
 
 import numpy as np

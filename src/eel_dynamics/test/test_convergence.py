@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Convergence: the order in time, spectral in space, and the presets' accuracy."""
 
 import numpy as np

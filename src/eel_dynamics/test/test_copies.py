@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A copy of a simulation goes on by itself, to the same bits, and leaves the original as it was."""
 
 import copy

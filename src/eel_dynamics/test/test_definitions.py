@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every figure read off a run, by its definition: on motions and powers made up so that the answer is a formula."""
 
 import dataclasses

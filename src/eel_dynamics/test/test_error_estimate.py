@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every run measures its own error: on the safe side, or it says that its target is missed."""
 
 import warnings

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Driven anywhere, a run finishes or says why it stopped: nothing that is not finite comes back, nothing hangs."""
 
 from types import SimpleNamespace

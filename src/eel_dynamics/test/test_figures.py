@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The command `figures`: what is drawn is what was simulated, what the page says is what was read off, bad input."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Gradients of runs: central differences on one grid with one sequence of steps, and their own stated error."""
 
 import warnings

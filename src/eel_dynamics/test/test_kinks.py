@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The drag's kinks along the body: which of them are integrated exactly, by the accuracy. How they are found is tested
 in eel_core."""
 

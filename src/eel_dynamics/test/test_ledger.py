@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Energy ledger: the change of kinetic energy is the integral of the four powers."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Planar motion without drag is Lighthill's theory: eqs (1), (61), and the linear theory of 1960."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The model's own limits: each is found where it lies, said once, and not found where it does not."""
 
 import numpy as np

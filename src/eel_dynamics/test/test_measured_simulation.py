@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A simulation that measures its own error as it goes: it moves like any other, and its estimate bounds its error."""
 
 import numpy as np

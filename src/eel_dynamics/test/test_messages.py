@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Snapshots as messages: REP-103 axes where a message is in a ROS frame, section axes where it is not."""
 
 import numpy as np

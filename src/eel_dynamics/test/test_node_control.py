@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Control of a run over DDS: pause, reset, pace, parameters, what stops a simulation, and /clock meanwhile."""
 
 import time

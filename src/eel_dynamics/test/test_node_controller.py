@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Controllers over DDS: one that answers /odom starts the run by itself, in lockstep, and goes on after a reset."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Experiments over DDS that change without a restart: parameters for the next reset, steps, a state of the head."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Who waits for whom: subscribers slow, stuck or late, controllers that drive and die, others on /clock."""
 
 import array

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Laws over DDS: blended without a jump, good ones taken from anybody, bad ones refused with one clear error."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A sample that takes long: the node answers requests meanwhile, says that it hangs, and ends at once."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Far more than a machine can do: the run falls behind and says so, and leaves nothing out of the physics."""
 
 import sys

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The parts of the dynamics node that need no ROS process: parameters, pace, /clock, reports, laws, run loop."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A run as fast as possible, over DDS: every sample once, equal to what the library computes, and a good end."""
 
 import numpy as np

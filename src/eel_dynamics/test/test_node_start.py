@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How the dynamics node starts and ends: parameters that do not fit, signals at any moment."""
 
 import signal

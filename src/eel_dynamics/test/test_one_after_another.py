@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Runs one after another, of which some share tables of body, scene and law: nothing of one is in the next."""
 
 import threading

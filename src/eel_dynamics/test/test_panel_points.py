@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How many points a panel has does not hang on the resolution's last bit, which differs between versions of numpy."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Bad input of the library: one ValueError that names the argument and what it got."""
 
 import io

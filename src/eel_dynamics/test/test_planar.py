@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The planar kernel: the same motion as the three-dimensional one, with one angle in place of a rotation."""
 
 import numpy as np

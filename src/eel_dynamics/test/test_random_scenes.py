@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Random scenes: each finishes with a ledger that closes, or says why not; nothing hangs. The soak has more of them."""
 
 from dataclasses import replace

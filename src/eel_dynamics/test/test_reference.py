@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The reference is verified by itself before anything is held against it: no import of eel_dynamics here."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The last digit of a start, or of a processor's arithmetic, stays a last digit: steps are not chosen by it."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The straight rigid body: closed forms."""
 
 import numpy as np

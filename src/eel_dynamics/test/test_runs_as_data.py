@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Runs and batches as data: files, pickles, labelled arrays and tables hold them whole."""
 
 import json

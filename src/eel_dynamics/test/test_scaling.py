@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Similar bodies at equal Reynolds number swim alike."""
 
 import dataclasses

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A march can be interrupted and goes on as if nothing had been; what a swim costs is foreseen, and limited."""
 
 import itertools

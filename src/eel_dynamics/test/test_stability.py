@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The command `stability`: studies hold what was simulated, the page what was measured, bad input is one line."""
 
 from dataclasses import replace

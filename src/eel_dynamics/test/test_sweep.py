@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Sweeps over grids of parameters, in threads or on Dask: labelled, equal to single runs, whole after a lost worker."""
 
 import errno

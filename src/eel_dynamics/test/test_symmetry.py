@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Symmetries: poses, mirrors, plane, rest, and a uniform current."""
 
 import dataclasses

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Pressure at the tail, lumped or distributed: same head motion and torque, N1 larger by T_f(X)."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The measured trade: errors against a converged run, fronts, poorer models, and what the command leaves behind."""
 
 from types import SimpleNamespace

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """docs/validation.md is what the tests measure: `make validation` writes it anew."""
 
 import re

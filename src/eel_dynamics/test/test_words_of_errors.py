@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Bad input anywhere in the library: one `ValueError` in one short line that names the argument."""
 
 from pathlib import Path

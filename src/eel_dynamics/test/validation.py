@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the tests of the mechanics measure: recorded while they run, listed at their end, written as docs/validation.md.
 
     make validation        # runs those tests and writes the page

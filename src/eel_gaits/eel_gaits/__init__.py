@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Curvature laws of elongated swimmers, and a ROS 2 node that publishes them. Nothing imported here needs ROS."""
 
 from eel_gaits.gaits import (

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The command line of every command and node: one line per error, and output that any terminal can show."""
 
 import argparse

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Gaits by name. A gait is a function that makes a `Law` from a few numbers. Each gait starts from rest.
 
 The numbers of a gait are the fields of a frozen dataclass. Each has a unit, a default, bounds and a description.

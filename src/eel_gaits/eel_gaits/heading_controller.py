@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A heading controller: it reads the heading from /odom, and answers each sample with the curvature one period on.
 
 It swims straight, and bends the whole body towards the target heading. Its answers are `curvature_samples`, so that a

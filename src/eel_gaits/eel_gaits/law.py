@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Curvature laws: the commanded curvature of the body, with exact first and second time derivatives.
 
 A law is a sum of terms. Each term is a wave in pitch (K2) or yaw (K3) of the backbone:

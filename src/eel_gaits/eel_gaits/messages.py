@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Curvature laws as `eel_msgs/CurvatureLaw` messages, and back.
 
 Laws and messages use the paper's section axes, so nothing is turned here. K2 (pitch) > 0 bends the tail down. K3 (yaw)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The gait generator. It publishes the curvature law of a gait, and a new one whenever parameters are set.
 
 The topic `curvature_law` is transient local: a receiver that starts later gets the law too. The stamp of the law is the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Output files: an output has its name only when it is complete.
 
 An output is written beside its name: `run.npz` as `run.part.npz`. It takes its name when it is complete. Until then an

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Numbers with a unit, bounds and a one-line description. They are declared once and checked on entry.
 
 A parameter set is a frozen, keyword-only dataclass. It derives from `Quantities`, and `quantity` makes its fields. A

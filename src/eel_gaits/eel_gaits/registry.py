@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Gaits by name.
 
 A gait is written as a function that makes terms from its numbers. `register` lists it, and turns it into a function

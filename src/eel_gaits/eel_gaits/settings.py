@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The settings of the gait generator: a gait, its numbers and the transition. They give the law.
 
 Numbers have the names that the gaits give them, except turns. The paper's `yaw_bend` is positive to the right; the node

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Natural cubic splines through whole rows of values at once.
 
 The spline s through the knots x_0 < ... < x_(n-1) is a piecewise cubic. s, s' and s'' are continuous, and s'' = 0 at

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How messages show a value or an error: short, in one line, on any terminal."""
 
 import re

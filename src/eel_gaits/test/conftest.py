@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """For the tests of eel_gaits: hypothesis without wall-clock limits, and a ROS client that watches a gait generator."""
 
 import pytest

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A ROS node for tests: receives curvature laws, ticks /clock, calls the gait generator's parameter services."""
 
 import time

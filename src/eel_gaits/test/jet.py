@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Second-order automatic differentiation: a value with its first and second time derivative, exact to round-off."""
 
 from dataclasses import dataclass

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Random curvature laws for hypothesis, of magnitudes that a swimmer could follow."""
 
 from hypothesis import strategies as st

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The gaits against their sources, written out separately, and the registry."""
 
 import dataclasses

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Ramp, Term and Law: exact derivatives, limits, and every refusal."""
 
 import math

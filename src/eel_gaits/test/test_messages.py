@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Laws as messages and back: exact, and every refusal names the field and the value."""
 
 import math

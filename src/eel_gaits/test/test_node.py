@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The gait generator as a process, over real DDS."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Output files are complete under their name, or not there; nothing else is replaced."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the user has set: carry-over between gaits, and refusals that change nothing."""
 
 import pytest

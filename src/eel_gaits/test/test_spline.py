@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The natural cubic spline against scipy's, and its limits."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The command line of a node: --help lists its parameters; other arguments than ROS arguments are refused."""
 
 import reprlib

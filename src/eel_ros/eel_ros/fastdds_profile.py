@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Fast DDS profile that makes a publisher resend lost packets within 50 ms.
 
 A run as fast as possible publishes thousands of messages a second, and packets are dropped when a subscriber's process

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Frame ids below a namespace, so that two robots in two namespaces do not share a frame."""
 
 

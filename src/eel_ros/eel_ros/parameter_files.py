@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Reads which names the parameter files of a command line set for all nodes: under `/**`, or another `*`."""
 
 from collections.abc import Iterator, Sequence

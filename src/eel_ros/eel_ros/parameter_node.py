@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A node whose parameters take an integer for a float, and whose read-only parameters accept the value that they have.
 
 `ros2 param load` sets every parameter of a dump, also those that are read-only; rclpy refuses them even where nothing

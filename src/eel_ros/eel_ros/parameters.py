@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """ROS parameters from dataclasses: type, default, range and description come from the fields.
 
 Metadata of a field: description, unit; optional minimum, maximum, choices, changeable (at run time: True, or AT_RESET),

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Waits for the end of the process: SIGINT or SIGTERM, or a thread that returns or raises, whichever comes first."""
 
 import os

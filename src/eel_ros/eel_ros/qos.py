@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Quality-of-service profiles: KEEP_ALL, transient local, and profiles that match the publishers' offers."""
 
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Runs a node in the main thread: SIGINT and SIGTERM end it with status 0 and no traceback."""
 
 import time

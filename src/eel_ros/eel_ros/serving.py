@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Runs callbacks so that an exception does not end the node: it is logged, and the message is dropped."""
 
 from rclpy.callback_groups import CallbackGroup

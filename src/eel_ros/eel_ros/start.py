@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Starts a node, or reports in one line why it cannot start."""
 
 from collections.abc import Callable

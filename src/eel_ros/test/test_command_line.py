@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The words of a node's command line: a usage, one line of refusal, or none of them."""
 
 import pytest

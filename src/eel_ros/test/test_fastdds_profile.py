@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The middleware's profile: taken where the user has none, and one that Fast DDS reads."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Parameters from a dataclass: type, range and description of each, the user's values over the defaults."""
 
 from dataclasses import dataclass, field

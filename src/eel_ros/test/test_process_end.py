@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The end of a process with threads: their work done, an error, a signal; a thread that hangs does not keep it."""
 
 import signal

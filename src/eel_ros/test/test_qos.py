@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Quality of service: what fits and matches is what the middleware says is compatible."""
 
 from itertools import product

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The ROS domains that tests and the demo run in."""
 
 from eel_ros.testing.ros_domain import PORT_BASE, PORTS_PER_DOMAIN, forget_the_killed, reserve_domain

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How a node's process ends: by itself, by a signal, with a failure, or because it cannot start."""
 
 import signal

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Callbacks that raise do not end the node; what is left to the node is left alone by the executor."""
 
 import pytest

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The start: the node, or the reason why there is none, and rclpy as it was before."""
 
 import pytest

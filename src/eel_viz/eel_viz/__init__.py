@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Shows a swimmer in Rerun and records its topics. Topics are the only connection to the other packages.
 
 `ros` holds the visualiser node. `recording` turns messages into Rerun recordings: dispatcher, loggers, destinations,

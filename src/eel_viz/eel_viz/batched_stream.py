@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A Rerun stream that sends rows in batches: ten rows in one column cost little more than one row.
 
 Rows wait for at most `tick` seconds of wall time (`send_due`), or until there are `MAXIMUM_ROWS` of a kind. `flush`

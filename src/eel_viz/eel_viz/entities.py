@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The entity paths of a recording, shared by loggers and blueprints.
 
 Three trees: `/world` (three-dimensional, metres, the world frame of the messages, z up), `/profiles` and `/heat_map`

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Reads the swimmer's messages into arrays, and checks that they are finite and of consistent size.
 
 Each `read_*` takes one message (any object with its fields) and returns arrays, or raises `BadMessage` that names the

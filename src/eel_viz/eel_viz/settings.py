@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The nodes' settings with unit, default, bounds and description; the nodes declare their parameters from them."""
 
 import ipaddress

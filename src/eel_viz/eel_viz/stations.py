@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Comparison of stations: arrays of abscissae X [m], which rarely change during a run."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Names and types of the swimmer's topics, as texts: no ROS is imported."""
 
 OWN = {  # relative: below the swimmer's namespace

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Starts Rerun's native viewer as a separate process: with a window, or headless for pictures.
 
 Headless drawing needs a Vulkan driver; Mesa's software driver (package mesa-vulkan-drivers) is enough.

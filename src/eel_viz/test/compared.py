@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Two recordings, entity by entity and number by number."""
 
 from pathlib import Path

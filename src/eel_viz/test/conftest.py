@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Rerun raises on bad data instead of warning, and recordings are made in a folder of the test's own."""
 
 import pytest

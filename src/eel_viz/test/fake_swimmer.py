@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Publishes the made-up swimmer on the real topics, as fast as subscribers take it, and leaves; a process of its own.
 
 Usage: fake_swimmer.py DURATION RATE STATIONS SUBSCRIBERS [RUNS]; prints one line with what it published.

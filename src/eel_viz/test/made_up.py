@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A swimmer that never was: smooth analytic fields with the shapes, frames and sizes of the real messages.
 
 The backbone is the integral of the curvature and the sections are orthonormal; the loads are made up.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The made-up swimmer in a rosbag2 folder, in each of the ways in which bags come; written by `rosbags` alone."""
 
 from pathlib import Path

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The made-up swimmer through the loggers into a file, without ROS."""
 
 from pathlib import Path

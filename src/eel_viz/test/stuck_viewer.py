@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Shows a made-up swimmer in a file and to a viewer that does not read, and tells the memory; a process of its own.
 
 Usage: stuck_viewer.py FILE SINK PORT MEGABYTES: SINK is connect (the viewer listens on PORT) or serve (on PORT; whoever

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A stream whose file can no longer be written is closed within a time limit, and does not keep the process alive."""
 
 import threading

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Two runs laid over each other: the pairs, the differences, and what is drawn of the other, against its messages."""
 
 import made_up

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Plots against X, the heat map, colours and summary: what is drawn, read back from a recording."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """`render` as a command: one picture, many, and a film, by one viewer; what cannot be is said in one line."""
 
 import contextlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Axes, the line between stations, and the skin: against circles and ellipses that are known exactly."""
 
 import made_up

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The bag that is whole at all times: after each `save`, after more of them, and after one that failed."""
 
 import errno

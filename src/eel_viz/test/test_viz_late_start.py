@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A visualiser that comes late: body and law are there at once, and so is the present."""
 
 import time

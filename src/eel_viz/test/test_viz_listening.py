@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Who can reach what the visualiser serves: this machine alone, unless more is asked for."""
 
 import signal

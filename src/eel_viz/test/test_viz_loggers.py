@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Everything that is logged, read back and compared number by number with what was given."""
 
 import made_up

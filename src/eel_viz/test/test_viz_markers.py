@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The node `markers` over DDS: what RViz and Foxglove get is the swimmer of the messages."""
 
 import time

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Messages to arrays: what fits comes through unchanged, what does not is refused with the field's name."""
 
 import math

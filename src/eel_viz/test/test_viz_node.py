@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The visualiser as a process, over DDS: nothing is lost, nothing bad comes through, and it ends well."""
 
 import signal

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """`record` and `echo` as processes, over DDS: nothing is lost, the bag is what other tools expect, both end well."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Each arrangement drawn by the real viewer: all views are there, none complains, and the picture is not empty."""
 
 import io

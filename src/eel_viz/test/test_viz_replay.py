@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """`replay`: a bag becomes the recording that the visualiser makes of the same messages, whatever the bag's form."""
 
 import shutil

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Runs and where they go: files, ports, viewers that are absent, and stamps that go back."""
 
 import datetime

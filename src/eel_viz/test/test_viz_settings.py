@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Settings: defaults are sound, and what is not is refused by name."""
 
 import subprocess

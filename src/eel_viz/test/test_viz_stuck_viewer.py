@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A viewer that does not read costs a bounded amount of memory, however much passes."""
 
 import json

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // SECTION 7.1: the algorithm of one instant, from the shape and the head's state to the rates of both, and to the
 // internal wrench.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How the including file is compiled, from what the compiler itself says.
 #pragma once
 

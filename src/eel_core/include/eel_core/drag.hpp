@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Drag of the water along the body, section 7.2.1:
 //
 //     n = -1/2 rho_f (k1 V1|V1|, k2 V2|V2|, k3 V3|V3|)        c1 = -1/2 rho_f k4 Omega1|Omega1|

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where the drag along the body is not smooth at an instant, and its integrals there.
 //
 // V|V| has a kink where V changes its sign, and the printed friction law a jump where Re = 8e4; within a panel either

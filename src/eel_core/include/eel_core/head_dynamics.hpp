@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Motion of the head: eq. (27), in the momentum form of the balance (60).
 //
 // The balance is the time derivative of the total momentum P' = P + m_o V1 E1, L about the head. With that momentum as

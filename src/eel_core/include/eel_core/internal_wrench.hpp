@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The internal wrench, eq. (50), from the balance of the part of the body behind each section; and the accelerations
 // that it needs, eq. (60).
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Configuration of the body and velocities due to its change of shape: eq. (25), the first loop of section 7.1.
 //
 //     R' = R hat(K)      omega' = R Kdot      r' = t1      v' = omega x t1

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The curvature law K_d(t, X) = sum_m factor_m(t) row_m(X), for pitch (K2) and yaw (K3), with two time derivatives.
 //
 // A travelling wave is two rows, since sin(kX + phase - wt) = sin(kX + phase) cos wt - cos(kX + phase) sin wt. The

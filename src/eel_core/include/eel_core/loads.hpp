@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Loads at the ends of the body: what the tail gives up to the wake, and the water on the nose; eq. (60).
 #pragma once
 

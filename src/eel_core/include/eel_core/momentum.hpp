@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Inertia and momentum of body and water about the head, and the twist that goes with a momentum: section 6.
 //
 //     momentum = I_o twist + momentum of the change of shape

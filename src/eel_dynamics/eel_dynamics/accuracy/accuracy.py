@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The accuracy of a run: one word or one number gives the nodes along the body, the method and the steps in time.
 
 A target is a relative error. The error of the head's position is relative to the length of its path, or to the length

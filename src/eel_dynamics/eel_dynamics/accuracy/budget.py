@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A budget of time in place of an accuracy: "fastest within 5 ms per second", on this machine."""
 
 import re

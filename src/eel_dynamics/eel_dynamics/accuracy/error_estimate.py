@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """An estimate of the error of a run, from its distance to a companion: the same swimmer with coarser settings.
 
 The companion has another grid, a looser tolerance and longer longest steps, and so some ten times the error of the run.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The demand of a run on a robot with n joints: a chain of n + 1 rigid links in place of the continuous backbone.
 
 Joint j represents the segment (j - 1) l/n to j l/n, and lies in its middle, X = (j - 1/2) l/n. Its angles are the

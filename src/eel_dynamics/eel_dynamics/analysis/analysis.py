@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Analyses a run: speed, kinematic numbers, power and efficiency over whole periods of the gait.
 
     analysis = run.analysis()          # the later half of the run, in whole periods

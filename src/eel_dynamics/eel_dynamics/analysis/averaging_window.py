@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The averaging window of a run: whole periods of its gait.
 
 Samples are interpolated by cubic splines, so a window need not begin or end at a sample. Positions are relative to the

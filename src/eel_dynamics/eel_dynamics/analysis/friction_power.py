@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Power of the axial friction, k1 of section 7.2.1, apart from the rest of the drag."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The measures of a run: one number per measure, with its unit and definition."""
 
 from functools import cache

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Checks a run against the limits of the model. Beyond a limit the simulation continues, but its results mean less.
 
 | limit | why |

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The text of `Run.summary()`: the figures of a run with their units."""
 
 import numpy as np

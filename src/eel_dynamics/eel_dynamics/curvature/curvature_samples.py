@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A controller's samples and their queue. A sample is the curvature along the body at one instant."""
 
 from bisect import bisect_left, bisect_right

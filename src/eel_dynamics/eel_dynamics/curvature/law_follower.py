@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The law or the samples that the body follows, and the smooth change from one to the next.
 
 A new law or controller takes over with a blend. The difference between the present motion and the new one (value, rate

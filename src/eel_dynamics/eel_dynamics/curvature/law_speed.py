@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The speed that a law gives to the sections of a body, from the strokes of its terms.
 
 Strokes are root mean squares over the sections about the body's mean place, as if the body lay still.

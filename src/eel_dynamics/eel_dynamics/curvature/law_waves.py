@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A law along the body: the waveforms of its terms, its number of waves, and the knots of its splines."""
 
 from functools import lru_cache

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The curvature law on the grid: rows along the body times factors of time.
 
 Every law is a sum of fields of X times functions of time alone,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Checks of arguments. `ValueError` names the argument that does not fit, and its value."""
 
 import math

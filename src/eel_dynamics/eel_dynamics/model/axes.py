@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The two sets of axes, and the half turn about z between them.
 
 Library (the paper's) axes: at rest the body lies along +x from the head and swims towards -x.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The body: homogeneous, with elliptic sections along a straight reference line (sections 3.3 and 7.2.1).
 
 A section at X has the half-height a(X) along E3 (its major axis on the paper's robot) and the half-width b(X) along E2.

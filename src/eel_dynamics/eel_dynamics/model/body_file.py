@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Columns of a body from a file: x, half_width, half_height [m] of a .csv with a header line, or of an .npz archive."""
 
 import csv

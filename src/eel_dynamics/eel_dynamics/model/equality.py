@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Equality of objects that hold arrays: every number the same to the last bit, NaN equal to NaN."""
 
 from dataclasses import fields

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Nodes along the body, and the matrices that integrate from the nose to each of them.
 
 The body is cut into panels at its kinks, so that every field is smooth inside a panel. A panel carries `p` right Radau

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One half-axis of the body along X: its square and the derivative of its square.
 
 A half-axis grows like sqrt(X) at a rounded nose. Only its square is smooth there.

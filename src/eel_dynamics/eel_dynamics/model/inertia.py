@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Inertia (6, 6) of the straight body with its water, and the refusal of bodies for which it is singular.
 
 Rotations are scaled by the body's length, so that all entries are masses [kg] and the condition number has no unit. The

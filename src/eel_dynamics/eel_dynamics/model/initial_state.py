@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The initial state of the head, and what follows from its velocity."""
 
 import math

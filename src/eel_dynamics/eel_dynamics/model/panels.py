@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The panels of a body's grid: where the body is cut along X, and how many points each part has."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The physics that a run models, and the water. A part that is off costs nothing.
 
 The switches name the parts of the model of Boyer, Porez and Leroyer (2010): reactive (added mass, wake: eq. 36-37, 60),

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Section data of the body and the water at the nodes and the stations (sections 3.3, 4.2 and 7.2.1 of the paper).
 
 The half-axis a lies along E3, b along E2.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Half-axes along X as functions that compare equal by value, and that files can hold: by name, or as polynomials.
 
 Sources: boyer2010 after section 7.2.1 of Boyer, Porez and Leroyer (2010); kern2006 after Kern and Koumoutsakos,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Decides whether this node may publish /clock: only one publisher may, and the first one stays.
 
 A publisher knows the others by their identifiers alone, and discovers them up to some seconds late. Two nodes of this

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The node's log and its content of /diagnostics: a condition is logged once, and published while it lasts."""
 
 import math

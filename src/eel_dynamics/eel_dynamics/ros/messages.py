@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Converts between snapshots and messages: fills serialised sample messages, and reads laws and samples of laws.
 
 The paper's frames, which the library uses, are converted to REP-103 frames by `turn_vector` and `turn_quaternion`.

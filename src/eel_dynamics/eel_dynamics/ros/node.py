@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The dynamics node: declares parameters, subscribes to laws, runs the simulation, publishes samples and diagnostics.
 
 The run loop runs in one thread (run_loop.py), callbacks in another, and the main thread waits for the end.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The dynamics node's parameters with default, unit, bounds and description.
 
 The node declares its ROS parameters from these fields (and from `Scene`'s, as `scene.*`) and applies the user's

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Publishes the samples of a run on all topics with subscribers, paced or without loss.
 
 In a paced run (real_time_factor > 0) the node never waits: a slow subscriber misses samples. In a run as fast as

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Messages that are serialised once; after that their numbers are changed in place.
 
 Serialising a message field by field costs more than computing its numbers. The layout of the serialised form stays the

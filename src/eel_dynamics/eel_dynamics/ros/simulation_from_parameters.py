@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Makes the simulation (in the library's frames) from the node's parameters (in REP-103 frames)."""
 
 from dataclasses import replace

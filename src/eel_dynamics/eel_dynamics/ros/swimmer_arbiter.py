@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Decides which of several dynamics nodes publishes a swimmer: of those with the same topics, the one that began first.
 
 Each node gives its identity in /diagnostics: topic, start, host, process. So the nodes decide alike as soon as they

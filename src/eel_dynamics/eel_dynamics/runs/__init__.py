@@ -1,1 +1,2 @@
+# SPDX-License-Identifier: Apache-2.0
 """Whole runs: `simulate`, `simulate_batch`, and the command `simulate`."""

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Simulates many swimmers in parallel: `simulate_batch`, each with the result of `simulate`.
 
     batch = simulate_batch([straight(period=p) for p in periods], 10.0, accuracy=1e-3, stations=None)

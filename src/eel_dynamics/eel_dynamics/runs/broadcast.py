@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Checks the arguments of `simulate` and `simulate_batch`, and broadcasts those of a batch to its swimmers."""
 
 from typing import NamedTuple

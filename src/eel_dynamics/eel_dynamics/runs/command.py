@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The command `simulate`: simulates a gait offline, prints the summary, and writes the run.
 
 simulate falling

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every run measures its own error: the distance from a companion, a run of the same swimmer with coarser settings.
 
 Where the estimate exceeds the target, the run becomes the next companion of a finer one, up to `MOST_REFINEMENTS`

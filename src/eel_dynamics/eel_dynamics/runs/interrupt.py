@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Ctrl-C handling for commands that keep no partial results."""
 
 import signal

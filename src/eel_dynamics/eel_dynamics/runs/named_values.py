@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The options --set, --scene and --vary of the commands: each is NAME=VALUE, and may be given several times.
 
 A value is a number, true or false (on or off), or a word.

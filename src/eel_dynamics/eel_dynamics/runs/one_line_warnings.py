@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Prints the warnings of a command: one line each on stderr, without the place in the sources."""
 
 import contextlib

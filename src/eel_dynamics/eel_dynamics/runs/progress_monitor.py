@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Reports the progress of a run and its remaining wall time, once a second."""
 
 import time

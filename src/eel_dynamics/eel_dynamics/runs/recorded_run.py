@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Makes the fields of a run from the messages of a node: the reverse of `records`.
 
 What messages do not carry is computed from them: the head's acceleration and the works by splines in time, the centre

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Converts a run to the messages that the node would publish: the same topics and fields, as plain objects without ROS.
 
 The paper's frames, which the library uses, are converted to REP-103 frames by `turn_vector` and `turn_quaternion`, as

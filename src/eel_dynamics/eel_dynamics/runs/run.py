@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Simulates one run of a law: `simulate`, and the `Run` that it returns."""
 
 import math

@@ -1,1 +1,2 @@
+# SPDX-License-Identifier: Apache-2.0
 """One swimmer, marched in time and observed: `Simulation`."""

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A body in a scene on a grid: its section data at the nodes and the stations. Equal runs share it."""
 
 from functools import lru_cache

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The energy ledger: where the work of the actuators goes (eq. 60 times the head's twist).
 
     d/dt (kinetic_body + kinetic_fluid) = actuator_power + wake_power + nose_power + drag_power

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The march in time of a swimmer under a law. The law's needs give the grid, its breakpoints the steps."""
 
 import math

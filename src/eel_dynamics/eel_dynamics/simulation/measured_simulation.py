@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A simulation that measures its own error as it goes: a companion with coarser settings follows it.
 
 Both get the same laws and samples. Their distance is the estimate of the error (accuracy/error_estimate.py). A motion

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Arrays of a run's samples: poses, velocities, energies, and profiles along the body at the stations."""
 
 from functools import lru_cache

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The water's wrench on the body for a prescribed motion of the head: eq. (61) with the resistive and nose loads."""
 
 from dataclasses import dataclass

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Checks of a run's samples before they are returned: all are finite, and the energy ledger closes.
 
 A fixed step that is too long does not fail by itself: the motion grows, but every number stays finite. The ledger (eq.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The march in time of a swimmer in water: the algorithm of section 7.1 of Boyer, Porez and Leroyer (2010)."""
 
 import math

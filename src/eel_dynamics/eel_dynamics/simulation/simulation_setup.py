@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The set-up of a simulation: its checked arguments, and the accuracy and grid that follow from them."""
 
 from collections.abc import Callable

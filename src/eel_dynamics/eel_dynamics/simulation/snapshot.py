@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The quantities of one instant of a simulation."""
 
 from dataclasses import dataclass

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Bounds of the steps in time. They follow from the accuracy, the law, the initial velocity and the body."""
 
 from eel_gaits.law import Law

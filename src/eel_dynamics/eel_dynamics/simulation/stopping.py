@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The reasons why a march could not continue, and what to change."""
 
 import numpy as np

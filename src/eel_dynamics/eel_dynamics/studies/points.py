@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Points of a study: one run each, with numbers of the gait, the scene, the body or the initial state by name.
 
 | name | what it sets |

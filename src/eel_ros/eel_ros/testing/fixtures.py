@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """For the tests of all packages: every session in a ROS domain of its own, and no process left behind.
 
 A pytest plugin: `-p eel_ros.testing.fixtures`.

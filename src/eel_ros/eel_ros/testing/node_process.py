@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A ROS node as a process of its own, which ends when its owner does, whatever way the owner ends."""
 
 import contextlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A ROS domain that no other program on this machine uses, so that runs side by side do not discover each other."""
 
 import os

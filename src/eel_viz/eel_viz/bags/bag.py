@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Reads a rosbag2 folder, or one of its files, without ROS: MCAP or sqlite3, split or not, compressed or not.
 
 After a crash (no metadata, no index, a truncated file) the readable part is read. Types are those that the bag defines;

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Reads an MCAP file whose end is missing: record by record, up to the damage.
 
 The interface is that of rosbags' `Reader`; messages come in the order in which they were written.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Definitions and hashes of message types, as bags store them.
 
 Both are read from the files that every interface package installs (`share/PACKAGE/msg/TYPE.msg` and `.json`), so they

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The command `eel_echo`: prints the messages of a topic as YAML, as `ros2 topic echo` does, without `ros2`."""
 
 import argparse

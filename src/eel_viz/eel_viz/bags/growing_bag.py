@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Writes a rosbag2 folder in MCAP storage that can be opened at all times, not only once it is closed.
 
 rosbags' writer writes the index, the end of the file and metadata.yaml when it is closed; before, there is no bag. Here

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The command `record`: records topics to a rosbag2 folder in MCAP storage, without `ros2 bag`.
 
 Messages are written undecoded. The bag is completed once a second (see `growing_bag`), so that it opens however the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The command `replay`: turns a bag into the Rerun recording that the visualiser would make, without ROS.
 
     replay BAG -o run.rrd

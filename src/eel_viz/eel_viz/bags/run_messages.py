@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The messages of one swimmer in a bag, for `Run.from_bag` of the library."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Draws pictures of a recording with Rerun's headless viewer: one viewer for all pictures.
 
 The first picture is complete when two screenshots in a row are equal. After that, the first screenshot after setting

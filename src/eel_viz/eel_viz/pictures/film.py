@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Makes a film of pictures: with ffmpeg if it is installed, or as an animated GIF or WebP without it."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The command `render`: draws a recording to pictures, or to a film, without a display.
 
 render RUN.rrd -o picture.png                # --at 7.0: at another time

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Compares two runs: draws the other run over this one, and plots their differences.
 
 The other swimmer is drawn as hoops around this one, so that both can be seen where they coincide. A difference is this

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A heat map of one profile over abscissa and time: the last seconds, the present at the right, the head at the top.
 
 It is a rolling image of palette indices (one byte each) with one column per `STEP` seconds, axes and a colour bar. When

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The limit of a scale: what the user has set, or what fits the values so far; it grows by round numbers."""
 
 import numpy as np

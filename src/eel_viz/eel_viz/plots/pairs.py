@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Pairs the samples of two runs: this run's sample with the other run's, interpolated linearly to the same stamp.
 
 Samples with equal stamps are not interpolated. Samples of the run that is ahead wait for the other run.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A plot of profiles against the abscissa X: curves, their envelope so far, and axes with ticks.
 
 Rerun only plots against time. So the plot is made of lines in a two-dimensional view, whose axes share one scale and

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Numbers as people read them: three digits, no power of ten where it can be avoided, and a unit that fits."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The time series: names and colours of each entity's values, in order; the attitude without jumps."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The state of a run in a few lines of Markdown.
 
 The path comes from head_pose, the torque from internal_wrench, the rest from diagnostics.

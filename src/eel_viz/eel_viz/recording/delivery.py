@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Checks that logged data arrives: a disk may be full, a viewer may have stopped reading.
 
 Rerun reports neither. After one failed write a file silently drops everything that follows. Logging to a viewer that

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Base class of the destinations of recordings: each opens one Rerun stream per recording and sends the blueprint."""
 
 import contextlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Dispatches one swimmer's messages to the loggers, whatever their source: the network, a bag, a run of the library.
 
 While a run stands at its start, the dynamics node repeats sample 0. So a sample of stamp 0 is held back until the next

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Records a run of the library to Rerun, without ROS; called by `Run.to_rerun`.
 
 A run is a sequence of messages here: pairs of a topic and a plain object with the message's fields.

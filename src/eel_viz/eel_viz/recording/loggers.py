@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Logs the swimmer's messages to one Rerun recording: one method per topic, called with the message's own stamp.
 
 Geometry is drawn in single precision at one rate. Scalars and profiles are logged in double precision at another rate

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Records messages that do not come from the network: of one swimmer, or of two that are compared."""
 
 from collections.abc import Iterable, Iterator, Sequence

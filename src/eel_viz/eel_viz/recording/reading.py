@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Reads a recording back into arrays.
 
     columns = read("out/falling.rrd", entities.WRENCH_NUMBERS)

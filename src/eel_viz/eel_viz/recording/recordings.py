@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The recordings of one visualiser: a stamp that goes back begins the next recording.
 
 A reset reaches the topics one by one, in any order. So each topic has its own current recording, and a recording is

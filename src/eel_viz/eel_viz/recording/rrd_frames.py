@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The framing of an .rrd file: finds the complete messages of a file that was cut off within a message.
 
 A file begins with 12 bytes. Each message is its kind and its length (two little-endian 64-bit numbers), then its

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The destinations of a recording: a file, a running viewer, or a server that any viewer can connect to.
 
 The server runs in this process, and the streams of the recordings are its clients: nothing blocks without a viewer,

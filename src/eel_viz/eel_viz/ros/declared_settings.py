@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Declares the parameters of a node from a dataclass of settings."""
 
 from dataclasses import fields

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Makes markers and a path, which RViz and Foxglove show, of the swimmer's messages."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The node `markers`: publishes the swimmer as `visualization_msgs/MarkerArray` and `nav_msgs/Path`.
 
 RViz and Foxglove show them. Skin and arrows need messages of one stamp; a sample is drawn when all of its topics that

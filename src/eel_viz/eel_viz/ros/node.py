@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The visualiser node: subscribes to every topic of a swimmer and logs the messages to Rerun.
 
 Subscriptions are reliable and keep all, so that no message is lost when the simulation runs as fast as possible. Times

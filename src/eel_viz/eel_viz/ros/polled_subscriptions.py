@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Subscriptions that the node polls itself: many messages at once, instead of one executor call per message.
 
 An executor collects and waits on all entities of a node before each message. With eight topics that costs more than

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Detects that a message comes from another publisher than the one before, such as a restarted node.
 
 Stamps are not enough: the new node's may already lie beyond the last stamp of the old one. A message does not name its

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Draws the fluid's force on the body as arrows in the world: along the body, and at nose and tail.
 
 A load is in section axes, so it needs the backbone of the same stamp; the one that comes first waits for the other.

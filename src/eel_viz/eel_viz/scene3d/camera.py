@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The cameras: frames that keep the swimmer in the picture, and the eye before them.
 
 The eye of every view stands still in its frame, at `EYE` from the origin, and looks there. A frame has a place

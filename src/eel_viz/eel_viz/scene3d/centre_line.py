@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Interpolates the backbone between its stations: cubic Hermite in position, with the exact slope dr/dX = t1.
 
 So the skin has its own abscissae, finer at the nose, and keeps its mesh when the number of stations changes.

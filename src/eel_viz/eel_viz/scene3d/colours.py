@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Colours for colour-blind readers too: one for each section axis, and a diverging map for signed values.
 
 The three axis colours are Okabe and Ito's orange, bluish green and sky blue. The diverging map goes from blue over

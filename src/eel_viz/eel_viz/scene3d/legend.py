@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The legend of the following views: a bar of the torque's colours, and the scale of the arrows.
 
 It stands at the lower edge of the picture, below `camera.CLEAR`, and so never before the swimmer.

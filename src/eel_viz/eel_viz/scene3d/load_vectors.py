@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Turns a load into vectors in the world: along the body, and at nose and tail."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Converts quaternions to axes. Quaternions are x, y, z, w; body axes are REP-103 (x forward, y left, z up).
 
 The section axes of the messages differ from them by half a turn about z: 1 = -x, 2 = -y, 3 = +z.

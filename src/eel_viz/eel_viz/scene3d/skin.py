@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The swimmer's surface: elliptic sections on the backbone, with exact normals.
 
 A point of the surface is r(X) + b(X) cos(angle) t2 + a(X) sin(angle) t3, with b the half width (section axis 2) and a

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Draws one swimmer in its water: line, skin, torque layer, arrows, path of the head, frames of the cameras."""
 
 import numpy as np

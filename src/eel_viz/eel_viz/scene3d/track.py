@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Draws the path of the head: as short pieces, which a view shows from the start to the cursor, and the last seconds as
 a trail that fades out.
 """

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Draws the water around a frame of `camera`: a floor and two walls behind the swimmer, with a grid and its scales.
 
 The grid's lines lie at round coordinates of the world. Every second one has a label: x and y along the floor, the depth

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The blueprints of a recording, as functions without data. Each fits a window of 1280 by 720 pixels.
 
 `overview` shows everything at once, `torques` the profiles large, `motion` the path and the velocities, `swimmer` the

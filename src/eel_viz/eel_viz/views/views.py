@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Single views, as functions without data."""
 
 import rerun as rr

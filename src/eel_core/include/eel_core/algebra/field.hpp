@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Fields along the body: numbers, vectors or frames at the nodes, each component in a row of its own.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The two motions: in space, and in the plane that is spanned by axes 1 and 2, where rotations are angles about axis 3.
 //
 // Vectors have three components in space and two in the plane; what turns (angular velocity, torque, angular momentum)

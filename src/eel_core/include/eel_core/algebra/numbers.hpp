@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Numbers of the mechanics: a double, or `Lanes`, the doubles of neighbouring nodes side by side.
 //
 // Every formula is a template over the number, so that it serves the head (a double) and the nodes along the body

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rotations of neighbouring sections: R' = R hat(K) by a Magnus series, and the product of quaternions.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Symmetric positive definite systems of three or six equations: L D L^T.
 #pragma once
 

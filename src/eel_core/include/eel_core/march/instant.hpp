@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Single instants, for studies and tests: rates, loads and inertia for a given state or motion of the head.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A swimmer on its way: its state, what drives it, the steps it takes, and what is seen of it.
 #pragma once
 

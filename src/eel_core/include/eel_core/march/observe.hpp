@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What an instant shows: pose, velocities, energies, and profiles along the body at the stations.
 //
 // The fields go on from the nodes to the stations by the integrals that made them, so a profile is as exact as the run.

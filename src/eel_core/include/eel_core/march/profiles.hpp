@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where the numbers of samples lie: T instants, M stations, one block of doubles for each quantity, all in one array.
 #pragma once
 

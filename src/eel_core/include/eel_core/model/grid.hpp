@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Nodes along the body, in panels between its kinks, and the integral from the nose to each of them.
 #pragma once
 

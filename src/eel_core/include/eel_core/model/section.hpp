@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Data of the elliptic sections of body and water, and what they say of momentum and energy: eq. (37), section 7.2.1.
 //
 // Half-axes a along axis 3, b along axis 2. Body: m = rho_b pi a b, J2 = rho_b pi a^3 b / 4, J3 = rho_b pi a b^3 / 4,

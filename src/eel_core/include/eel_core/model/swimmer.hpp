@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a run never writes: body and water at the nodes and stations, and which physics is on.
 #pragma once
 

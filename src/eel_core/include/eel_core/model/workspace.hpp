@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One evaluation's work space: nothing in it is kept from one instant to the next.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Steps of Adams and Bashforth of variable length and order: one evaluation each.
 //
 //     y(t + h) = y(t) + h sum_j g_j phi*_j,  phi*_j = beta_j phi_j,  phi_0 = f,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Works of actuators, wake, nose and drag along the way: integrals of their powers, by the Lobatto points of each step.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The methods by which steps in time are taken. The last rate of a step is the first of the next.
 //
 // Adams and Bashforth's of orders 1 to 6 (`adams.hpp`); the pair of Dormand and Prince of orders 5(4) (J. Comp. Appl.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How long the next step may be: by the error of the last one, and by what lies ahead.
 #pragma once
 

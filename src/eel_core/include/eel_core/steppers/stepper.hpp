@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Steps of the head in time, in the momentum form, with dense output.
 //
 // Steps end at the breakpoints of the shape, where its derivatives jump. The state between steps comes from the

@@ -1,1 +1,2 @@
+# SPDX-License-Identifier: Apache-2.0
 """The node's run loop: pacing, waiting, requests and laws."""

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Tells when the error of a run exceeds its target: each time once in the log, and in /diagnostics until a reset."""
 
 TARGET, LOST = "accuracy target", "lost accuracy"  # kinds of conditions

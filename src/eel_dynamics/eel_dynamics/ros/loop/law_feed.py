@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Checks laws and samples of laws as they arrive, drops duplicates, and passes them to the simulation.
 
 A subscription that takes samples from best-effort publishers takes those of reliable publishers a second time.

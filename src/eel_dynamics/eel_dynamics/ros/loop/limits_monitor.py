@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Monitors the model's limits during a run: each violation is logged once, and stays in /diagnostics until a reset."""
 
 import numpy as np

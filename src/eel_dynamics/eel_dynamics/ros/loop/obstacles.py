@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Finds what keeps a run from its next sample: another node, a failure, no law, missing subscribers, or a pause."""
 
 import time

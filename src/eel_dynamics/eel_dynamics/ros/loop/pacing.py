@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Pacing on the steady clock: due times of samples, the wait for a controller, and the wall time spent.
 
 Sample k is due at start + (k - first) * period / factor. A run that falls behind by more than a few periods does not

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Queue of requests from other threads to the run loop, which executes them between two samples."""
 
 import math

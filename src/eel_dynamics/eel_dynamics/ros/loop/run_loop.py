@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The run loop, in a thread of its own: waits, paces, advances the simulation, and publishes each sample.
 
 Only this thread uses the simulation. Other threads make requests, which are executed between two samples. An urgent

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Totals and extreme values of a run for /diagnostics: energy ledger, closure of the wrench, torque and force."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Contents of runs and batches as netCDF files (classic format, 64-bit offsets), by SciPy alone.
 
 xarray, and whatever else reads netCDF, opens the files too. What no array holds (law, body, scene, settings, ...) is a

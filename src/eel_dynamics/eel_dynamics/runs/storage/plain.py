@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Laws, bodies, scenes, settings, errors and their estimates as values that JSON can hold, and back.
 
 A body whose half-axes are functions of the user's own becomes one of polynomials through their squares: no file holds

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Takes a run, or a batch, apart into `Contents`, and puts their fields together again."""
 
 import numpy as np

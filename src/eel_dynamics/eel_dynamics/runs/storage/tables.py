@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Contents of runs and batches as labelled arrays (xarray) and tables (pandas), which are needed for these alone."""
 
 from importlib import import_module

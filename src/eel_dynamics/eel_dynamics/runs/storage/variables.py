@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The arrays of a run: dimensions, unit and meaning of each. Files, labelled arrays and tables take them from here."""
 
 from typing import NamedTuple

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """`python -m eel_dynamics.studies.figures`, where the executable `figures` is not on the PATH."""
 
 import sys

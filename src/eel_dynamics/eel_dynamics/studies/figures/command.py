@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """`figures`: the paper's figures 5 to 9 from our own runs, further figures, and a page that explains them.
 
 figures                       # into docs/figures

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Effect of the paper's misprints on its own run: perimeter, friction and added mass as printed and as corrected.
 
 Each reading is a `Scene` for the same falling gait. Two corrections have no option: the sign of the loads on the nose

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Figures beyond the paper's. Each function draws runs of the falling gait into an empty matplotlib figure."""
 
 from itertools import product

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Comparison with published results for a second body: the eel of Kern and Koumoutsakos.
 
 J. Exp. Biol. 209 (2006), 4841-4857, doi:10.1242/jeb.02526. They computed the flow from the Navier-Stokes equations in

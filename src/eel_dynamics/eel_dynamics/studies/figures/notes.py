@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The page beside the figures: what the paper shows, what we show, and where we differ.
 
 Every number is computed from the runs in the figures.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Errors against nodes along the body and against the step in time, with and without cross-flow drag.
 
 Cross-flow drag is proportional to V|V|, and roll drag to Omega|Omega|. Their second derivatives jump where V or Omega

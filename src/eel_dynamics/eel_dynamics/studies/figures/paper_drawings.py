@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Figures 5 to 9 of the paper. Each function draws runs of the falling gait into an empty matplotlib figure."""
 
 import numpy as np

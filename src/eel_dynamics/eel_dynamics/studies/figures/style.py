@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Style of the figures: colours, dashes, and the settings of matplotlib.
 
 Colours are those of Okabe and Ito, distinct for colour-blind readers. Each has its own dash for print without colour.

@@ -1,1 +1,2 @@
+# SPDX-License-Identifier: Apache-2.0
 """Derivatives of what a swim amounts to, by its parameters."""

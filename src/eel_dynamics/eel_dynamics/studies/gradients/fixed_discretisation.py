@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One grid and one sequence of steps for neighbouring swims, so that their difference is that of the swims alone.
 
 Steps of fixed length end on the breakpoints of the law's ramps. The step is chosen such that each span between two of

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Where the printed friction law jumps between two neighbouring swims."""
 
 import numpy as np

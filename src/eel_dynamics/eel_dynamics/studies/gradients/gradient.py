@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Derivatives of what a swim amounts to, by its parameters: `gradient`.
 
     found = gradient(["mean_speed", "cost_of_transport"], {"period": 1.0, "body.lateral_drag": 1.98}, gait="straight")

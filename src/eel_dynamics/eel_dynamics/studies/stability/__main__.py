@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """`python -m eel_dynamics.studies.stability`, where the executable `stability` is not on the PATH."""
 
 import sys

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """`stability`: maps over two parameters beyond the range of any swimmer; long runs, planar laws, singular bodies.
 
 stability                       # every study; pictures into docs/images

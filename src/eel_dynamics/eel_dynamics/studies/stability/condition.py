@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Condition number of the 6 x 6 inertia matrix: the factor by which a solution magnifies round-off.
 
 Rotations are scaled by the body's length. One map is of the straight body, over its density and slenderness. The other

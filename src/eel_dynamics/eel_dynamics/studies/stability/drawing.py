@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The maps as pictures.
 
 Colour is the error relative to the target. A cross marks a stop with a message. A dot marks a warning of a limit of the

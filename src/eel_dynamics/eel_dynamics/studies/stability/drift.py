@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Drift of long runs: of the energy ledger, the quaternion, the law's phase and the path, over decades of periods.
 
 The works of the ledger are integrated along with the motion, and only the samples are kept: memory does not grow with

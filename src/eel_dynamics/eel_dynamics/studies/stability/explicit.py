@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Why the added mass is part of the inertia matrix: with an explicit treatment, light bodies are unstable.
 
 A wrench w acts on a straight body at rest. Implicit treatment solves (I_b + I_f) a = w. Explicit treatment, as with a

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Maps of the error over two parameters of a run at a time, beyond the range of any swimmer.
 
 Each run is compared with a finer one. The error is the greatest distance between the two heads over all samples,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A planar law in three dimensions: does round-off grow out of the plane, and is the cause the model or the numerics?
 
 The components out of the plane are the head's roll and pitch rates and its velocity along axis 3, (Omega1 l, Omega2 l,

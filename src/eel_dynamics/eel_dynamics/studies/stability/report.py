@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The results of the maps, and the explicit treatment of the added mass, as Markdown tables."""
 
 import numpy as np

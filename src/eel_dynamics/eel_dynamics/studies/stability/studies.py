@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The studies by name. Each returns a text in Markdown and pictures."""
 
 from collections.abc import Callable

@@ -1,1 +1,2 @@
+# SPDX-License-Identifier: Apache-2.0
 """The command `sweep`: simulates a grid of parameters on many processes."""

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Distributes tasks over threads, or with Dask over processes of this machine or of others.
 
 Threads are enough on one machine: the mechanics run without the GIL. The tasks of a process that dies are reassigned to

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """`sweep`: simulate a grid of parameters on all cores or a Dask cluster; writes labelled arrays to a NetCDF file.
 
 sweep straight --vary period=0.5:2:16 --vary scene.friction=printed,laminar --out periods.nc

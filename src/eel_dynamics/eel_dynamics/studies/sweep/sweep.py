@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Simulates a grid of parameters: `sweep`, with labelled results.
 
     data = sweep({"period": np.linspace(0.5, 2.0, 16), "scene.friction": ["laminar", "printed"]}, gait="straight",

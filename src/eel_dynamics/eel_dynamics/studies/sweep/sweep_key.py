@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The key of a sweep: a hash of everything that the results depend on."""
 
 import hashlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Stores the partial results of a sweep on disk beside its output, so that an interrupted sweep can be resumed."""
 
 import contextlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """`tradeoff`: cost of accuracy for a gait, and error of models that leave physics out, as tables and pictures.
 
 tradeoff falling

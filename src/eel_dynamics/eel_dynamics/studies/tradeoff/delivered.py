@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Measures what the targets deliver, and how well runs judge their own error, over random swims.
 
 Swims are drawn from bends in space and in the plane, periods of 0.2 to 3 s, densities of 200 to 8,000 kg/m^3, every

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Writes docs/accuracy.md: what a target means, what it costs, and what targets deliver."""
 
 from pathlib import Path

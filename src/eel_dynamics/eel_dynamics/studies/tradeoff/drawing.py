@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The trade-off as a picture: error against times real time, both Pareto fronts, and the errors of simpler models.
 
 Methods differ in colour (Okabe and Ito) and in mark, so that they can be told apart in print without colour.

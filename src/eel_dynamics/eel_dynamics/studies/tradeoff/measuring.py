@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Error and cost of each setting, against a converged run.
 
 Errors are those of `accuracy`: of the head's position at the end relative to the length of its path (or of the body, if

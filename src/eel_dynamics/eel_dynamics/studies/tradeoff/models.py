@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Errors of simpler models: the difference of a model that leaves physics out, solved exactly, from the full model.
 
 A discretisation error far below the error of the model has no benefit. This sets the accuracy that a scene requires.

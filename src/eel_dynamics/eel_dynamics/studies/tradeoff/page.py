@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Writes docs/tradeoff.md: the tables, the picture, and how to read them."""
 
 import platform

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The settings of the trade-off: points along the body, method and steps in time."""
 
 from dataclasses import replace

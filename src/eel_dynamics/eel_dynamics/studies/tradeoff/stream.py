@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The trade-off as a Rerun recording: the runs on the fronts in time, the settings as points, the tables as text."""
 
 import contextlib

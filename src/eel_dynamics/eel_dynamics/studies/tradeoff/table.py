@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The trade-off as text: aligned for a terminal, or as Markdown tables."""
 
 import csv
