@@ -11,24 +11,14 @@ import made_up
 import rclpy
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
-from geometry_msgs.msg import PoseStamped, TwistStamped, Vector3
-from nav_msgs.msg import Odometry
+from eel_viz.ros.node import SAMPLED as TOPICS
+from geometry_msgs.msg import Vector3
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 
-from eel_msgs.msg import Backbone, BodyGeometry, Curvature, CurvatureLaw, EnergyLedger, HydrodynamicLoad, InternalWrench
+from eel_msgs.msg import BodyGeometry, CurvatureLaw
 
 EVERY = QoSProfile(history=HistoryPolicy.KEEP_ALL, depth=1, reliability=ReliabilityPolicy.RELIABLE)
 LATCHED = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-TOPICS = {
-    "head_pose": PoseStamped,
-    "head_twist": TwistStamped,
-    "odom": Odometry,
-    "backbone": Backbone,
-    "curvature": Curvature,
-    "internal_wrench": InternalWrench,
-    "hydrodynamic_load": HydrodynamicLoad,
-    "energy": EnergyLedger,
-}
 
 
 def messages(swimmer: made_up.Swimmer, nanoseconds: int) -> dict:
