@@ -9,7 +9,7 @@ from eel_viz.plots import heat_map, profile_plot
 from eel_viz.plots.heat_map import HeatMap
 from eel_viz.plots.limit import Limit
 from eel_viz.plots.profile_plot import ProfilePlot
-from eel_viz.plots.readable import length, number
+from eel_viz.plots.readable import number, quantity
 from eel_viz.plots.series import Attitude
 from eel_viz.plots.state_text import Summary
 from eel_viz.recording.reading import read
@@ -77,7 +77,11 @@ def test_a_limit_that_nobody_set_fits_the_first_values_and_a_set_one_may_stay():
     ],
 )
 def test_lengths_are_read_without_powers_of_ten(metres, text):
-    assert length(metres) == text
+    assert quantity(metres, "m") == text
+
+
+def test_torques_have_a_prefix_too():
+    assert [quantity(value, "N m") for value in (5.82e-5, 0.0, -0.25)] == ["58.2 µN m", "0 N m", "-250 mN m"]
 
 
 def test_numbers_are_read_without_powers_of_ten_where_that_can_be():

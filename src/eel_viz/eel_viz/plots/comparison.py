@@ -16,7 +16,7 @@ from eel_viz.batched_stream import BatchedStream
 from eel_viz.messages import Backbone, Body, Pose, Profiles, Status, Twist
 from eel_viz.plots.pairs import Pairs
 from eel_viz.plots.profile_plot import ProfilePlot
-from eel_viz.plots.readable import length, number
+from eel_viz.plots.readable import number, quantity
 from eel_viz.plots.state_text import Summary
 from eel_viz.scene3d import colours
 from eel_viz.scene3d.camera import FollowFrame
@@ -108,10 +108,10 @@ class Comparison:
     def text(self) -> str:
         """Markdown: the greatest differences, and the figures of both runs side by side."""
         columns = [side.summary.figures() for side in (self.this, self.other)]
-        lines = [f"heads apart by at most **{length(self._farthest)}** so far  "]
+        lines = [f"heads apart by at most **{quantity(self._farthest, 'm')}** so far  "]
         if self._greatest:
             share = number(100.0 * self._worst / self._greatest)
-            lines.append(f"torques by at most **{number(self._worst)} N m**, {share} % of the greatest")
+            lines.append(f"torques by at most **{quantity(self._worst, 'N m')}**, {share} % of the greatest")
         lines += ["", f"| | {self.names[0]} | {self.names[1]} |", "|---|---|---|"]
         for key in columns[1] | columns[0]:
             lines.append(f"| {key} | " + " | ".join(column.get(key, "") for column in columns) + " |")

@@ -3,7 +3,7 @@
 
 import math
 
-UNITS = (("m", 1.0), ("mm", 1e-3), ("µm", 1e-6))
+PREFIXES = (("", 1.0), ("m", 1e-3), ("µ", 1e-6))
 DIGITS = 3
 
 
@@ -15,9 +15,9 @@ def number(value: float) -> str:
     return f"{float(f'{value:.{DIGITS}g}'):,.{decimals}f}"
 
 
-def length(metres: float) -> str:
-    """A length [m] with the unit m, mm or µm that makes its number at least 1."""
-    for unit, size in UNITS:
-        if abs(metres) >= size:
-            return f"{number(metres / size)} {unit}"
-    return f"{number(metres)} m" if metres == 0 else f"{number(metres / UNITS[-1][1])} {UNITS[-1][0]}"
+def quantity(value: float, unit: str) -> str:
+    """`value` [unit] with the prefix (none, milli, micro) that makes the number at least 1, if there is one."""
+    prefix, size = next(
+        (each for each in PREFIXES if abs(value) >= each[1]), PREFIXES[0] if value == 0 else PREFIXES[-1]
+    )
+    return f"{number(value / size)} {prefix}{unit}"
