@@ -103,7 +103,10 @@ class DynamicsParameters:
     )
     pitch_joints: int = _parameter(0, "joints in pitch, likewise", minimum=0, maximum=MOST_JOINTS)
     wait_for_subscribers: int = _parameter(
-        0, "subscribers to wait for before the first sample", minimum=0, maximum=1000
+        0,
+        "subscribers to wait for before the first sample; 0: at real_time_factor 0, those on the network",
+        minimum=0,
+        maximum=1000,
     )
     subscriber_timeout: float = _parameter(
         5.0,
