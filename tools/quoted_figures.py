@@ -16,6 +16,7 @@ VALIDATION = ROOT / "docs" / "validation.md"
 WRITTEN_WHOLE = (
     "docs/validation.md",
     "docs/tradeoff.md",
+    "docs/tradeoff_tables.md",
     "docs/accuracy.md",
     "docs/figures/README.md",
 )  # by commands of their own

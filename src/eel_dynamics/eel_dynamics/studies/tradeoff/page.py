@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes docs/tradeoff.md: the tables, the picture, and how to read them."""
+"""Writes docs/tradeoff.md, six rows and a picture, and docs/tradeoff_tables.md, all that was measured."""
 
+import math
 import platform
 from datetime import date
 from pathlib import Path
@@ -10,50 +11,86 @@ from eel_gaits.output_file import replacing
 import eel_core
 from eel_dynamics.studies.tradeoff.models import Model
 from eel_dynamics.studies.tradeoff.settings import CHECK, REFERENCE
-from eel_dynamics.studies.tradeoff.table import model_table, trade_table
+from eel_dynamics.studies.tradeoff.table import WANTED, cheapest, digits_table, model_table, trade_table
 
-HEAD = """# What exactness costs, and what a scene requires
+PAGE = """# What exactness costs, and what a scene requires
 
 Made by `tradeoff {gaits} --page {page}`{machine}.
-Times are of the processor, medians of {repeats} rounds in which all settings take turns, of the motion alone (no
-ledger, no wrench, one sample), set-up included; they carry over to another machine as ratios only. Errors are against a
-run of {points:g} points per body length and a tolerance of {tolerance:g} per step: of the head's position at the end by
-its path, and of the torque field (51 stations, 201 instants) by its greatest magnitude.
+
+The {gait} gait, {duration:g} s, the motion alone (no ledger, no wrench, one sample), set-up included. Each row is the
+cheapest of the measured settings whose errors, of pose and of torque, are both below the first column. Times carry over
+to another machine as ratios only.{digit}
+
+{table}
+{picture}
+Each point is a setting: on the left with its error of the position, on the right of the torque. The dashed lines tell
+by how much a poorer model, solved exactly, is off. A setting whose own error is a tenth of that is exact enough
+wherever that physics is in doubt. What makes no difference to a gait may be left out of its scene: `Scene(...)` says
+what is modelled, and what is off costs nothing.
+
+A word or a number (`accuracy="standard"`, `accuracy=1e-4`) chooses settings by a rule that is on the safe side for
+swims of all kinds, and the run measures its own error: [accuracy.md](accuracy.md). All settings and models, for
+{count} gaits: [{tables}]({tables}).
+"""
+TABLES = """# What exactness costs: all tables
+
+Made by `tradeoff {gaits} --page {page}`{machine}. The short of it: [{short}]({short}).
+
+Times are of the processor, medians of {repeats} rounds in which all settings take turns. Errors are against a run of
+{points:g} points per body length and a tolerance of {tolerance:g} per step: of the head's position at the end by its
+path, and of the torque field (51 stations, 201 instants) by its greatest magnitude.
 
 `P`, `T`: on the Pareto front of pose, of torque: no other setting is both cheaper and more exact. `adams` takes one
 evaluation a step, of variable length; `dormand-prince` is the pair of orders 5(4), six evaluations a step, of a length
 chosen by the tolerance; `classical` is the Runge-Kutta method of order 4 with fixed steps. `no kinks`: the
 places along the body where cross flow and roll change their sign, and the printed friction jumps, are not looked for.
-
-How to read the second table of a gait: a poorer model, solved exactly, is off by that much, so a setting whose own
-error is a tenth of it is exact enough wherever that physics is in doubt. What makes no difference to a gait may be left
-out of its scene.
+The second table of a gait holds the poorer models.
 """
 
 
-def write_page(path: Path, found: list[tuple], picture: str | None):
-    """Write the page to `path`.
+def write_page(path: Path, found: list[tuple], picture: str | None) -> Path:
+    """Write the page to `path`, and all tables to a page beside it, whose path is returned.
 
     found: pairs of a trade and its models. picture: path of the first gait's picture, relative to the page; None: no
-    picture. `OSError` where the page cannot be written.
+    picture. `OSError` where a page cannot be written.
     """
-    gaits = " ".join(trade.law.name for trade, _ in found)
-    text = HEAD.format(
-        gaits=gaits,
-        page=path,
-        machine=machine(),
-        repeats=found[0][0].repeats,
+    first, tables = found[0][0], path.with_name(f"{path.stem}_tables{path.suffix}")
+    shown = {"gaits": " ".join(trade.law.name for trade, _ in found), "page": path, "machine": machine()}
+    short = PAGE.format(
+        **shown,
+        gait=first.law.name,
+        duration=first.duration,
+        digit=digit_line(first),
+        table=digits_table(first, markdown=True),
+        picture=f"\n![The trade of the {first.law.name} gait]({picture})\n" if picture else "",
+        count=len(found),
+        tables=tables.name,
+    )
+    long = TABLES.format(
+        **shown,
+        short=path.name,
+        repeats=first.repeats,
         points=REFERENCE.resolution,
         tolerance=REFERENCE.tolerance,
     )
-    if picture:
-        text += f"\n![The trade of the {found[0][0].law.name} gait]({picture})\n"
     for trade, models in found:
-        text += f"\n## {trade.law.name}, {trade.duration:g} s\n\n{reference_line(trade)}\n\n"
-        text += trade_table(trade, markdown=True) + "\n\n"
-        text += model_table(models, trade, markdown=True) + "\n"
-    with replacing(path) as draft:
-        draft.write_text(text, encoding="utf-8")
+        long += f"\n## {trade.law.name}, {trade.duration:g} s\n\n{reference_line(trade)}\n\n"
+        long += trade_table(trade, markdown=True) + "\n\n"
+        long += model_table(models, trade, markdown=True) + "\n"
+    for each, text in ((path, short), (tables, long)):
+        with replacing(each) as draft:
+            draft.write_text(text, encoding="utf-8")
+    return tables
+
+
+def digit_line(trade) -> str:
+    """What one more digit costs in the mean of the short table, in words; empty where it has fewer than two rows."""
+    rows = [row for row in cheapest(trade) if row is not None]
+    if len(rows) < 2:
+        return ""
+    digits = math.log10(WANTED[0] / WANTED[len(rows) - 1])
+    factor = (rows[0].times_real_time / rows[-1].times_real_time) ** (1.0 / digits)
+    return f" One more digit takes {factor:.1f} times as long, in the mean."
 
 
 def reference_line(trade) -> str:

@@ -24,6 +24,8 @@ HEAD = (
     "times real time",
     "memory [kB]",
 )
+SHORT = (1, 4, 5, 6, 7, 8, 10)  # columns of `HEAD` that the short table has
+WANTED = 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7  # relative errors of its rows
 EXACT_ENOUGH = 0.1  # of a model's error, allowed for the discretisation
 
 
@@ -69,11 +71,32 @@ def cells_of(row: Measured, mark: str) -> list[str]:
     ]
 
 
-def trade_table(trade: Trade, *, everything: bool = False, markdown: bool = False) -> str:
-    """A table of the fronts and the presets, the cheapest first; `everything`: of all settings."""
+def listed(trade: Trade, everything: bool = False) -> list[Measured]:
+    """The settings of the fronts and the presets, the cheapest first; `everything`: all settings."""
     marks = marks_of(trade)
     rows = [row for row in trade.rows if everything or marks[id(row)] or row.accuracy.name in PRESETS]
-    rows.sort(key=seconds)
+    return sorted(rows, key=seconds)
+
+
+def cheapest(trade: Trade) -> list[Measured | None]:
+    """For each of the errors `WANTED` the cheapest listed setting whose pose and torque are both as exact, or None."""
+    rows = listed(trade)
+    return [next((row for row in rows if max(row.pose_error, row.torque_error) <= wanted), None) for wanted in WANTED]
+
+
+def digits_table(trade: Trade, *, markdown: bool = False) -> str:
+    """A row for each of the errors `WANTED`: its `cheapest` setting."""
+    head = "relative error", *(HEAD[place] for place in SHORT)
+    rows = []
+    for wanted, row in zip(WANTED, cheapest(trade), strict=True):
+        cells = ["-"] * len(HEAD) if row is None else cells_of(row, "")
+        rows.append([f"{wanted:.0e}", *(cells[place] for place in SHORT)])
+    return laid_out(head, rows, markdown)
+
+
+def trade_table(trade: Trade, *, everything: bool = False, markdown: bool = False) -> str:
+    """A table of the `listed` settings."""
+    marks, rows = marks_of(trade), listed(trade, everything)
     return laid_out(HEAD, [cells_of(row, marks[id(row)]) for row in rows], markdown)
 
 
