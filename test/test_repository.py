@@ -56,7 +56,9 @@ def test_every_source_file_names_its_licence(tracked):
 
 
 def test_no_large_file(tracked):
-    assert [str(path) for path in tracked if path.stat().st_size > 1_000_000] == []
+    """Only the film at the head of the README may be larger than 1 MB."""
+    film = ROOT / "docs/images/falling.webp"
+    assert [str(path) for path in tracked if path.stat().st_size > (2_000_000 if path == film else 1_000_000)] == []
 
 
 @pytest.mark.parametrize("name", (*REQUIREMENTS, "test/numpy1.txt"))
