@@ -142,10 +142,8 @@ def test_skin_and_frames_at_the_drawing_rate(made):
     logged, layer = read(path, entities.SKIN), read(path, entities.TORQUE_LAYER)
     for name in ("vertex_positions", "vertex_normals"):
         np.testing.assert_array_equal(logged.stamps_of[name], stamps)
-    np.testing.assert_array_equal(layer.stamps_of["vertex_colors"], stamps)
-    np.testing.assert_array_equal(
-        layer.stamps_of["vertex_positions"], stamps[1:]
-    )  # the backbone came before the torque
+    np.testing.assert_array_equal(layer.stamps_of["vertex_colors"], [0, *stamps])  # first those without a torque
+    np.testing.assert_array_equal(layer.stamps_of["vertex_positions"], stamps)
     for path_of, surface in ((entities.SKIN, skin), (entities.TORQUE_LAYER, flanks)):
         triangles = read(path, path_of, static=True)["triangle_indices"][0]
         np.testing.assert_array_equal(triangles, surface.triangles)
@@ -162,7 +160,7 @@ def test_skin_and_frames_at_the_drawing_rate(made):
         np.testing.assert_allclose(logged["vertex_normals"][k], normals, atol=SINGLE)
         wrench = samples[stamp]["internal_wrench"][0]
         shades = diverging(flanks.spread(wrench.x, wrench.values["torque_3"]), 0.25)
-        np.testing.assert_array_equal(np.array(layer["vertex_colors"][k], dtype=np.uint32), packed(shades))
+        np.testing.assert_array_equal(np.array(layer["vertex_colors"][1 + k], dtype=np.uint32), packed(shades))
         pose = samples[stamp]["head_pose"][0]
         np.testing.assert_allclose(heads["translation"][k][0], pose.position, atol=SINGLE)
         np.testing.assert_allclose(heads["quaternion"][k][0], pose.orientation, atol=SINGLE)

@@ -83,6 +83,13 @@ class Surface:
         """One value for each vertex, (rings * S,), from `values` at stations `x`, (M,)."""
         return np.repeat(self.resampling(x).linear(values), len(self._angles))
 
+    @property
+    def shades(self) -> np.ndarray:
+        """Colours of the vertices, uint8 (V, 3): dark back (+ axis 3), light belly, so that roll shows."""
+        share = np.clip(0.5 + 0.8 * np.sin(self._angles), 0.0, 1.0)[:, None]
+        around = share * np.array(colours.BACK) + (1.0 - share) * np.array(colours.BELLY)
+        return np.tile(around.round().astype(np.uint8), (len(self.x), 1))
+
 
 class Skin(Surface):
     """The closed skin."""
@@ -96,13 +103,6 @@ class Skin(Surface):
         last = (rings - 1) * sides
         fan = np.array([(last, last + k, last + k + 1) for k in range(1, sides - 1)], dtype=np.uint32)
         self.triangles = np.concatenate([self.triangles, fan])  # closes the tail
-
-    @property
-    def shades(self) -> np.ndarray:
-        """Colours of the vertices, uint8 (rings * sides, 3): dark back (+ axis 3), light belly, so that roll shows."""
-        share = np.clip(0.5 + 0.8 * np.sin(self._angles), 0.0, 1.0)[:, None]
-        around = share * np.array(colours.BACK) + (1.0 - share) * np.array(colours.BELLY)
-        return np.tile(around.round().astype(np.uint8), (len(self.x), 1))
 
 
 class Flanks(Surface):

@@ -46,6 +46,8 @@ class SwimmerScene:
         fixed = rr.Mesh3D.from_fields(triangle_indices=self._skin.triangles, vertex_colors=self._skin.shades)
         self._stream.log_static(entities.SKIN, fixed)
         self._stream.log_static(entities.TORQUE_LAYER, rr.Mesh3D.from_fields(triangle_indices=self._flanks.triangles))
+        # until a torque comes; not static, for static colours would hide later ones
+        self._stream.add_row(0, entities.TORQUE_LAYER, rr.Mesh3D, vertex_colors=self._flanks.shades)
 
     def head(self, stamp: int, pose: Pose) -> None:
         """Draw the path of the head, and its axes."""
@@ -74,10 +76,7 @@ class SwimmerScene:
         self._place(stamp, entities.TAIL, position[-1], backbone.orientation[-1])
         if self._skin is not None:
             rings = self._skin.resampling(backbone.x).centre_line(position, backbone.orientation)
-            surfaces = {entities.SKIN: self._skin}
-            if self._torque_limit:
-                surfaces[entities.TORQUE_LAYER] = self._flanks
-            for path, surface in surfaces.items():
+            for path, surface in ((entities.SKIN, self._skin), (entities.TORQUE_LAYER, self._flanks)):
                 vertices, normals = surface.place_on(*rings)
                 self._stream.add_row(stamp, path, rr.Mesh3D, vertex_positions=vertices, vertex_normals=normals)
         self._arrows.backbone(stamp, backbone)
