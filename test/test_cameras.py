@@ -65,7 +65,7 @@ def test_the_camera_of_the_path_shows_all_places_so_far(runs, name):
     assert np.ptp(seen.reshape(-1, 2), axis=0).max() / 2 > 0.35
 
 
-@pytest.mark.parametrize(("one", "other"), itertools.list(pairwise(GAIT_NAMES)))
+@pytest.mark.parametrize(("one", "other"), list(itertools.pairwise(GAIT_NAMES)))
 def test_the_camera_of_two_swimmers_shows_both(runs, one, other):
     frame = FollowFrame()
     for stamp, *lines in zip(stamps(len(runs[one])), runs[one], runs[other], strict=True):
