@@ -27,10 +27,14 @@ from eel_viz.bags.record import OWN
 rclpy.init()
 node = rclpy.create_node("listener")
 every = QoSProfile(history=HistoryPolicy.KEEP_ALL)
-counts = dict.fromkeys((topic for topic in OWN if topic not in ("body", "curvature_law", "curvature_samples")), 0)
+others = ("body", "curvature_law", "curvature_samples", "joint_states")
+counts = dict.fromkeys((topic for topic in OWN if topic not in others), 0)
+last = {}
 for topic in counts:
     def count(data, topic=topic):
-        counts[topic] += 1
+        stamp = data[4:12]  # behind the four bytes of the encapsulation; sample 0 is repeated
+        counts[topic] += stamp != last.get(topic)
+        last[topic] = stamp
     node.create_subscription(message_class(OWN[topic]), topic, count, every, raw=True)
 print("listening", flush=True)
 executor = rclpy.executors.SingleThreadedExecutor()

@@ -22,10 +22,15 @@ from tf2_msgs.msg import TFMessage
 rclpy.init()
 node = rclpy.create_node("listener")
 every = QoSProfile(history=HistoryPolicy.KEEP_ALL, depth=1)
-poses, statuses, transforms = {"/left": [], "/right": []}, [], []
+poses, statuses, transforms = {"/left": {}, "/right": {}}, [], {}
+def keep(kept, name, message):  # by stamp: sample 0 is repeated
+    kept[name, message.header.stamp.sec, message.header.stamp.nanosec] = message
 for space in poses:
-    node.create_subscription(PoseStamped, space + "/head_pose", poses[space].append, every)
-node.create_subscription(TFMessage, "/tf", lambda m: transforms.extend(m.transforms), every)
+    node.create_subscription(PoseStamped, space + "/head_pose", lambda m, s=space: keep(poses[s], "", m), every)
+def receive(message):
+    for each in message.transforms:
+        keep(transforms, each.child_frame_id, each)
+node.create_subscription(TFMessage, "/tf", receive, every)
 node.create_subscription(DiagnosticArray, "/diagnostics", statuses.append, every)
 print("ready", flush=True)
 deadline = time.monotonic() + 90
@@ -38,10 +43,12 @@ while time.monotonic() < deadline:
 clocks = node.get_publishers_info_by_topic("/clock")
 print(json.dumps({
     "count": {k: len(v) for k, v in poses.items()},
-    "end": {k: [v[-1].pose.position.x, v[-1].pose.position.y] for k, v in poses.items() if v},
+    "end": {k: [v[max(v)].pose.position.x, v[max(v)].pose.position.y] for k, v in poses.items() if v},
     "names": sorted(names),
-    "frames": {k: sorted({m.header.frame_id for m in v}) for k, v in poses.items()},
-    "transforms": {t.child_frame_id: [t.header.frame_id, t.transform.translation.x] for t in transforms},
+    "frames": {k: sorted({m.header.frame_id for m in v.values()}) for k, v in poses.items()},
+    "transforms": {
+        t.child_frame_id: [t.header.frame_id, t.transform.translation.x] for _, t in sorted(transforms.items())
+    },
     "topics": sorted(n for n, _ in node.get_topic_names_and_types()),
 }))
 rclpy.shutdown()

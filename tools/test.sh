@@ -22,12 +22,12 @@ begin() {   # NAME TESTS...: into out/test-NAME.log
 }
 
 nodes=(src/eel_dynamics/test/test_node_[!r]*.py)
-begin nodes "${nodes[@]}"
+begin nodes "${nodes[@]}" src/eel_ros/test src/eel_gaits/test src/eel_core/test
 begin viz src/eel_viz/test
 tools/core_tests.sh tests > out/test-core.log 2>&1 &
 beside[core]=$!
-begin system test src/eel_ros/test src/eel_gaits/test src/eel_core/test
-echo "[test] mechanics here; beside, shown when done: the dynamics node, eel_viz, the processes together with the other packages, the C++ tests"
+begin system test
+echo "[test] mechanics here; beside, shown when done: the dynamics node with the small packages, eel_viz, the processes together, the C++ tests"
 "${pytest[@]}" src/eel_dynamics/test "${nodes[@]/#/--ignore=}"
 status=$?
 for name in core nodes viz system; do

@@ -11,6 +11,7 @@ from eel_dynamics.accuracy import accuracy as settings
 from eel_dynamics.accuracy.error_estimate import ErrorEstimate
 from eel_dynamics.runs import companion
 from eel_dynamics.runs.companion import relative_errors
+from eel_dynamics.studies.tradeoff import delivered
 from eel_dynamics.studies.tradeoff.delivered import deliver
 
 from eel_dynamics import Accuracy, Body, Scene, simulate, simulate_batch
@@ -153,8 +154,10 @@ def test_a_companion_with_the_same_steps_would_miss_the_error_of_the_steps(monke
 @pytest.mark.parametrize(
     ("count", "seed"), [(200, 2026), pytest.param(2000, 11, marks=pytest.mark.soak, id="two thousand")]
 )
-def test_random_swims_keep_their_target_or_say_so(count, seed):
-    """docs/accuracy.md quotes the counts of another seed."""
+def test_random_swims_keep_their_target_or_say_so(count, seed, monkeypatch):
+    """docs/accuracy.md quotes the counts of another seed. In few swims, the durations are shorter."""
+    if count < 1000:
+        monkeypatch.setattr(delivered, "DURATIONS", (1.0, 6.0))
     trials = deliver(count, seed)
     assert len(trials) > 0.97 * count
     assert not any(each.missed for each in trials)

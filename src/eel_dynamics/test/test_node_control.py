@@ -120,20 +120,26 @@ def test_parameters_at_run_time(start, client):
         ("real_time_factor", 0.0, ("real_time_factor", "> 0", "got 0")),
         ("real_time_factor", -1.0, ("real_time_factor", "-1")),
         ("subscriber_timeout", "long", ("DOUBLE", "STRING")),
-        ("rate", 10.0, ("read-only", "rate")),
-        ("scene.planar", True, ("read-only", "scene.planar")),
+        ("rate", -10.0, ("rate", "out of range")),
+        ("duration", 10.0, ("read-only", "duration")),
     ):
         (result,) = swim.set(**{name: value})
         assert not result.successful and all(word in result.reason for word in words), result.reason
     assert all(result.successful for result in swim.set(subscriber_timeout=2, publish_tf=False))
     assert swim.get("subscriber_timeout", "publish_tf", "real_time_factor") == [2.0, False, 1.0]
+    (result,) = swim.set(**{"scene.planar": True})
+    assert result.successful and result.reason == "acts at the next reset"
 
 
 def test_parameters_are_described(start, client):
     swim = client(topics=())
     start("dynamics")
     rate, factor, friction = swim.describe("rate", "real_time_factor", "scene.friction")
-    assert rate.read_only and "Hz" in rate.description and rate.floating_point_range[0].to_value == 1e4
+    assert (
+        not rate.read_only
+        and "[Hz]; a change acts at the next reset" in rate.description
+        and rate.floating_point_range[0].to_value == 1e4
+    )
     assert not factor.read_only and factor.floating_point_range[0].from_value == 0.0
     assert friction.additional_constraints == "one of printed, laminar, blended, none" and friction.description
 

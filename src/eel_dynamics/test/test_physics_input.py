@@ -240,7 +240,7 @@ def test_advance_without_a_law_and_backwards():
 @pytest.mark.parametrize(
     "time, x, pitch, word",
     [
-        (0.0, [0.0, 1.0], [0.0, 0.0], "time"),
+        (-0.1, [0.0, 1.0], [0.0, 0.0], "time"),
         (np.nan, [0.0, 1.0], [0.0, 0.0], "time"),
         (1.0, [1.0, 0.0], [0.0, 0.0], "x"),
         (1.0, [0.0, 1.0], [0.0], "pitch"),

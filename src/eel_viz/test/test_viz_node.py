@@ -130,10 +130,10 @@ def test_bad_messages_are_said_once_each_and_the_rest_goes_on(start, network, tm
         sample["head_pose"].pose.orientation.w = 3.0
 
     send(0)  # profiles before the body is known
-    node.wait_for_output("no body has come: the backbone is drawn as a line, without skin")
     for k, spoil in enumerate((nan_everywhere, sizes_that_do_not_fit, no_unit_quaternions), start=1):
         for _ in range(3):
             send(k, spoil=spoil)
+    node.wait_for_output("no body has come: the backbone is drawn as a line, without skin")
     bad, worse = body_message(11), body_message(11)
     bad.half_width[3] = -1.0
     worse.half_height[3] = -1.0

@@ -147,11 +147,11 @@ class Status:
             "time": run.time,
             "real_time_factor": max(0.0, simulated) / wall if wall > 0.0 else 0.0,
             "late": run.pace.lost,
-            **run.totals.values(),
-            **run.errors,
+            **run.output.totals.values(),
+            **run.output.errors,
             "samples_published": run.samples_published,
             "publishers_of_laws": publishers_of_laws,
             "warnings": "; ".join(warnings),
         }
-        run.request_whole_snapshot()
+        run.output.request_whole_snapshot()
         return level, (warnings[0] if warnings else "finished" if final else run.standing or "swimming"), values

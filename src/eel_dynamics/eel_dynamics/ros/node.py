@@ -83,7 +83,7 @@ class DynamicsNode(ParameterNode):
         values, scene = self.parameters.values, self.parameters.scene
         simulation = simulation_from_parameters(values, scene)
         self.sample_publishers = Publishers(
-            Sample(simulation.x, scene, values, lambda: self.run_loop.errors.get("error_position", math.nan)),
+            Sample(simulation.x, scene, values, lambda: self.run_loop.output.errors.get("error_position", math.nan)),
             create=lambda kind, topic, depth: self.create_publisher(kind, topic, depth or LOSSLESS),
             destroy=self.destroy_publisher,
             known=self._count_known,

@@ -6,23 +6,18 @@ request interrupts the computation of a sample, and so does any request once tha
 No ROS is imported: `publishers` and `report` come from the node.
 """
 
-import math
 import time
 from collections.abc import Callable
 from typing import NamedTuple
 
 from eel_dynamics.ros.diagnostics import ERROR
-from eel_dynamics.ros.loop.error_monitor import ErrorMonitor
 from eel_dynamics.ros.loop.law_feed import LawAdopter
-from eel_dynamics.ros.loop.limits_monitor import LimitsMonitor
 from eel_dynamics.ros.loop.obstacles import Obstacles
 from eel_dynamics.ros.loop.pacing import ControllerWait, Pace, Stopwatch
 from eel_dynamics.ros.loop.requests import Request, RequestQueue, WakeUp
-from eel_dynamics.ros.loop.run_totals import RunTotals
+from eel_dynamics.ros.loop.sample_output import TICK, SampleOutput
 from eel_dynamics.simulation.stopping import SimulationStopped
 
-TICK = 0.05  # s of wall time between two messages on /clock while the simulation stands
-START_PERIOD = 0.1  # s of wall time between two messages of sample 0 while the run stands at its start
 MAXIMUM_REQUESTS = 10_000  # requests
 TOO_MANY = f"curvature samples refused: at most {MAXIMUM_REQUESTS} wait for the next sample"
 
@@ -50,23 +45,22 @@ class RunLoop:
         time: simulation time of the last sample [s].
         samples_published: number of samples, which is the index of the next one.
         standing: what the simulation waits for, as text; empty while it runs.
-        totals: RunTotals since the start. laws: LawAdopter. pace: Pace. wall_time: Stopwatch.
+        laws: LawAdopter. output: SampleOutput. pace: Pace. wall_time: Stopwatch.
     """
 
     def __init__(self, simulation, parameters, publishers, report, on_subscribers_complete=lambda: None, inbox=None):
-        self._simulation, self._parameters, self._publishers, self._report = simulation, parameters, publishers, report
+        self._simulation, self._parameters, self._report = simulation, parameters, report
         self._obstacles = Obstacles(simulation, publishers, parameters.wait_for_subscribers, on_subscribers_complete)
         self._requests = RequestQueue(inbox or WakeUp())
         self._poll = inbox.poll if inbox is not None else lambda: None
         self.pace = Pace(1.0 / parameters.rate, parameters.real_time_factor)
         self._controller, self.wall_time = ControllerWait(), Stopwatch()
-        self.laws, self._monitor = LawAdopter(simulation, report), LimitsMonitor(simulation, report)
-        self._errors = ErrorMonitor(simulation, report)
-        self._last_tick = -math.inf  # s, steady clock: last message on /clock
+        self.laws, self.output = (
+            LawAdopter(simulation, report),
+            SampleOutput(simulation, parameters.rate, publishers, report),
+        )
         self._sample_begun = None  # s, steady clock: when the computation of the next sample began
-        self._whole_snapshot_due = True
-        self._start_shown, self._start_audience = -math.inf, None  # s, steady clock: last sample 0, and who had it
-        self.time, self.samples_published, self.standing, self.totals = 0.0, 0, "", RunTotals()
+        self.time, self.samples_published, self.standing = 0.0, 0, ""
 
     # For other threads.
 
@@ -117,10 +111,6 @@ class RunLoop:
         """Apply `parameters`; only the changeable ones may differ."""
         self.request(lambda: self._change(parameters))
 
-    def request_whole_snapshot(self):
-        """Let the next snapshot hold everything that the totals use, even without subscribers."""
-        self._whole_snapshot_due = True
-
     def stop(self):
         """End the run."""
         self._requests.stop()
@@ -135,11 +125,6 @@ class RunLoop:
         """Wall time [s] that the computation of the next sample has taken so far; 0 in a run as fast as possible."""
         since = self._sample_begun
         return time.monotonic() - since if since is not None and self.pace.factor > 0.0 else 0.0
-
-    @property
-    def errors(self) -> dict[str, float]:
-        """Figures of the error estimate, by name; empty where none is wanted."""
-        return self._errors.values
 
     @property
     def given_up(self) -> bool:
@@ -179,19 +164,12 @@ class RunLoop:
             self._report.info(obstacle)
         now = time.monotonic()
         self._tick(now)
-        at_start = self.samples_published == 0 and now - self._start_shown >= START_PERIOD
-        if at_start and self._obstacles.start_may_be_shown(now):
-            self._show_start(now)
+        if self.samples_published == 0 and self.output.start_is_due(now) and self._obstacles.start_may_be_shown(now):
+            try:
+                self.output.show_start(now)
+            except SimulationStopped as error:
+                self._fail(error)
         self._requests.wait(TICK)
-
-    def _show_start(self, now: float):
-        """Publish sample 0, at `now` [s, steady clock], without counting it."""
-        try:
-            self._publish_sample(whole=True)
-        except SimulationStopped as error:
-            self._fail(error)
-        else:
-            self._start_shown, self._start_audience = now, self._publishers.audience()
 
     def _wait_for_turn(self) -> bool:
         """Wait until the next sample is due; False if a request or a tick comes first."""
@@ -216,14 +194,13 @@ class RunLoop:
         try:
             if self._next_time > self._simulation.time and not self._advance():
                 return
-            if not self._start_is_known:
+            if self.samples_published > 0 or not self.output.start_is_known:
                 last = self.samples_published == self._parameters.last_sample
-                whole, self._whole_snapshot_due = self._whole_snapshot_due or last, False
-                self._publish_sample(whole)
+                self.output.publish(self.samples_published, last)
         except SimulationStopped as error:
             self._fail(error)
             return
-        now = self._last_tick = time.monotonic()
+        self.time, now = self._next_time, time.monotonic()
         self.wall_time.lap(now)
         self.laws.report_resting(self.time)
         delay = self.pace.give_up_delay(self.samples_published, now)
@@ -232,23 +209,6 @@ class RunLoop:
         if self.samples_published > 0:
             self._obstacles.count_step(self.time)
         self.samples_published += 1
-
-    @property
-    def _start_is_known(self) -> bool:
-        """Whether the next sample is sample 0, and all subscribers have had it."""
-        shown = self._start_audience if self.samples_published == 0 else None
-        return shown is not None and shown == self._publishers.audience()
-
-    def _publish_sample(self, whole: bool):
-        """Publish the sample of the simulation's present time; with `whole`, check everything that the totals use."""
-        parts = self._publishers.wanted_parts()
-        snapshot = self._simulation.observe(**{part: wanted or whole for part, wanted in parts.items()})
-        self.totals.add(snapshot)
-        self._monitor.add(snapshot, check=whole)
-        if whole:
-            self._errors.check()
-        self.time = self._next_time
-        self._publishers.publish(snapshot, nanoseconds(self.samples_published, self._parameters.rate))
 
     def _advance(self) -> bool:
         """Advance to the next sample; False if a request or the end of the run interrupts it."""
@@ -271,13 +231,11 @@ class RunLoop:
         return self.samples_published / self._parameters.rate
 
     def _tick(self, now: float):
-        if now - self._last_tick >= TICK:
-            self._last_tick = now
-            self._publishers.tick(nanoseconds(max(0, self.samples_published - 1), self._parameters.rate))
+        self.output.tick(max(0, self.samples_published - 1), now)
 
     def _adopt(self, law, origin: float):
         self.laws.adopt(law, origin)
-        self._start_audience = None  # sample 0 may be another one
+        self.output.forget_start()
 
     def _change(self, parameters):
         self._parameters = parameters
@@ -285,8 +243,7 @@ class RunLoop:
 
     def _set_state(self, position, orientation, twist):
         self._simulation.set_state(position, orientation, twist)
-        self._start_audience = None
-        self._monitor.restart()
+        self.output.change_state()
 
     def _reset(self, new: NewRun | None):
         try:
@@ -301,11 +258,9 @@ class RunLoop:
         if new is not None:
             self._begin(new)
         now = time.monotonic()
-        self.time, self.samples_published, self.totals = 0.0, 0, RunTotals()
+        self.time, self.samples_published = 0.0, 0
         self._obstacles.failed, self._sample_begun = False, None
-        self._start_audience = None
-        self._monitor.restart()
-        self._errors.restart()
+        self.output.restart(self._simulation)
         self.wall_time.restart(now)
         self._report.end("stopped")
         self.pace.restart(0, now)
@@ -316,14 +271,5 @@ class RunLoop:
         """Change to a new run."""
         self._parameters = new.parameters
         self._simulation = self._obstacles.simulation = self.laws.simulation = new.simulation
-        self._monitor.end()
-        self._monitor = LimitsMonitor(new.simulation, self._report)
-        self._errors.restart()
-        self._errors = ErrorMonitor(new.simulation, self._report)
-        self.pace.period = 1.0 / new.parameters.rate
+        self.pace.period, self.output.rate = 1.0 / new.parameters.rate, new.parameters.rate
         new.begin()
-
-
-def nanoseconds(sample: int, rate: float) -> int:
-    """Simulation time [ns] of a sample at `rate` [Hz]."""
-    return round(sample * 1e9 / rate)
