@@ -494,7 +494,7 @@ def test_a_reset_that_the_law_refuses_leaves_the_run_as_it_is(monkeypatch):
 
 def test_a_run_that_stands_at_its_start_repeats_sample_0_and_goes_on_with_sample_1(monkeypatch):
     """A controller that answers the third sample 0; nobody publishes a law."""
-    monkeypatch.setattr("eel_dynamics.ros.loop.run_loop.START_PERIOD", 0.0)
+    monkeypatch.setattr("eel_dynamics.ros.loop.sample_output.START_PERIOD", 0.0)
     stamps, x = [], [0.0, 1.0]
 
     def publish(snapshot, nanoseconds):
