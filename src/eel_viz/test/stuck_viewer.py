@@ -14,7 +14,7 @@ from pathlib import Path
 
 import made_up
 from eel_gaits.output_file import part_of
-from eel_viz.recording.delivery import exit_despite_blocked
+from eel_ros.process_end import leave_at_once
 from eel_viz.recording.recordings import Recordings
 from eel_viz.recording.sinks import destinations
 from eel_viz.settings import Settings
@@ -68,7 +68,7 @@ def main() -> None:
     tell()
     print("done", flush=True)
     made.close()
-    exit_despite_blocked(0)
+    leave_at_once(0)
 
 
 if __name__ == "__main__":

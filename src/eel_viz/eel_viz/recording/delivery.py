@@ -8,7 +8,6 @@ flushed: the flush fails, or it times out.
 
 import os
 import pathlib
-import sys
 import threading
 import time
 
@@ -129,12 +128,3 @@ def write_error(path: pathlib.Path) -> str:
 def detach_blocked(blocked: rr.RecordingStream | threading.Thread) -> None:
     """Keep a reference to a blocked stream or thread: its destructor would block this process."""
     _detached.append(blocked)
-
-
-def exit_despite_blocked(status: int) -> int:
-    """Return `status`; if a stream or thread was detached, end the process with it here, without clean-up."""
-    if _detached:
-        sys.stdout.flush()
-        sys.stderr.flush()
-        os._exit(status)
-    return status

@@ -15,6 +15,7 @@ from eel_gaits.wording import shown
 from eel_ros.command_line import USE_SIM_TIME, answer_words
 from eel_ros.parameter_node import ParameterNode
 from eel_ros.parameters import help_rows
+from eel_ros.process_end import leave_at_once
 from eel_ros.qos import keep_all
 from eel_ros.run_node import run_node
 from geometry_msgs.msg import PoseStamped, TwistStamped
@@ -22,7 +23,6 @@ from nav_msgs.msg import Odometry
 from rclpy.qos import QoSProfile
 
 from eel_msgs.msg import Backbone, BodyGeometry, Curvature, CurvatureLaw, EnergyLedger, HydrodynamicLoad, InternalWrench
-from eel_viz.recording.delivery import exit_despite_blocked
 from eel_viz.recording.dispatcher import Dispatcher
 from eel_viz.recording.recordings import ComparedRecordings, Recordings
 from eel_viz.recording.sinks import destinations
@@ -47,6 +47,8 @@ SAMPLED = {
     "hydrodynamic_load": HydrodynamicLoad,
     "energy": EnergyLedger,
 }
+
+CANNOT_START = 2  # exit status
 
 
 class Visualiser(ParameterNode):
@@ -137,7 +139,10 @@ def main(arguments: list[str] | None = None) -> int:
         return status
     words = [*USE_SIM_TIME, *given]
     node, poll, take_messages = Visualiser, Visualiser.poll, Visualiser.take_messages
-    return exit_despite_blocked(run_node(NAME, words, node, poll, take_messages, complain=complain, complete=True))
+    status = run_node(NAME, words, node, poll, take_messages, complain=complain, complete=True)
+    # Not by Python's own way: a stream may be blocked, and a thread of LTTng, which ROS brings, may fork just then. It
+    # would wait for a lock of Arrow, and the destructors of LTTng for the thread.
+    return status if status == CANNOT_START else leave_at_once(status)
 
 
 if __name__ == "__main__":
