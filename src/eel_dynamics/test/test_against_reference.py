@@ -229,4 +229,4 @@ def test_falling_gait(measured, case, accuracy, tolerance):
     error = distance(run.position[at], wanted[:, :3], max(path, 1.0))
     name = "300 points per length" if accuracy is DENSE else f"accuracy {accuracy}"
     friction = case if case == "no drag" else f"{case} friction"
-    measured(f"head's path over 10 s of the falling gait, {friction}, {name} (by the path)", error, tolerance)
+    measured(f"head's path over 10 s of the falling gait, {friction}, {name} (relative to the path)", error, tolerance)

@@ -150,5 +150,5 @@ def test_presets_on_the_falling_gait(measured, exact, preset, position, torque):
     run = simulate(falling_law(), accuracy=preset, **WHOLE)
     path = np.sum(np.linalg.norm(np.diff(exact.position, axis=0), axis=1))
     error = distance(run.position[-1], exact.position[-1], max(path, 1.0))
-    measured(f"head's position after 10 s, all physics, preset {preset} (by the path)", error, position)
+    measured(f"head's position after 10 s, all physics, preset {preset} (relative to the path)", error, position)
     measured(f"torque over X and t, all physics, preset {preset}", distance(run.torque, exact.torque), torque)

@@ -86,8 +86,8 @@ def test_run_with_a_controller_goes_on_after_ten_resets(start, client, factor):
     assert factor > 0 or "ERROR" not in node.output(), node.output()
 
 
-@pytest.mark.fault("samples", "a best-effort publisher of samples", "heard like a reliable one, each sample once")
-def test_best_effort_samples_are_heard(start, client):
+@pytest.mark.fault("samples", "a best-effort publisher of samples", "received like a reliable one, each sample once")
+def test_best_effort_samples_are_received(start, client):
     swim = client(topics=("odom",))
     quality = QoSProfile(depth=100, reliability=ReliabilityPolicy.BEST_EFFORT)
     node = start("dynamics", "--ros-args", "-p", "rate:=50", "-p", "real_time_factor:=0.1")  # 5 s for each answer

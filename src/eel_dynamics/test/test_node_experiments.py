@@ -155,7 +155,9 @@ def test_state_of_the_head_is_set_in_mid_run(start, client):
 
 
 @pytest.mark.fault(
-    "subscribers", "a subscriber that comes late, as fast as it goes", "it is told how many samples it has missed"
+    "subscribers",
+    "a subscriber that comes late, at `real_time_factor:=0`",
+    "the log says how many samples it has missed",
 )
 def test_late_subscriber_is_told_what_it_missed_and_an_early_one_misses_nothing(start, client):
     early, late = client(topics=("odom", "backbone")), client(topics=())

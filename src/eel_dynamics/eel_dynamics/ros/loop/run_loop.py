@@ -55,10 +55,8 @@ class RunLoop:
         self._poll = inbox.poll if inbox is not None else lambda: None
         self.pace = Pace(1.0 / parameters.rate, parameters.real_time_factor)
         self._controller, self.wall_time = ControllerWait(), Stopwatch()
-        self.laws, self.output = (
-            LawAdopter(simulation, report),
-            SampleOutput(simulation, parameters.rate, publishers, report),
-        )
+        self.laws = LawAdopter(simulation, report)
+        self.output = SampleOutput(simulation, parameters.rate, publishers, report)
         self._sample_begun = None  # s, steady clock: when the computation of the next sample began
         self.time, self.samples_published, self.standing = 0.0, 0, ""
 

@@ -93,7 +93,6 @@ class SampleOutput:
         """Begin again with the start of a `simulation`, which may be another one."""
         if simulation is not self._simulation:
             self._limits.end()
-            self._errors.restart()
             self._simulation, report = simulation, self._report
             self._limits, self._errors = LimitsMonitor(simulation, report), ErrorMonitor(simulation, report)
         self.totals = RunTotals()

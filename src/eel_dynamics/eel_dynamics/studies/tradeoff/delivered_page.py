@@ -36,9 +36,9 @@ and error_torque.
 is measured and not judged; so is a budget of time. `Simulation` measures nothing.
 
 **In the node** `dynamics` (and `MeasuredSimulation` in Python) a companion follows the simulation as it goes. It gets
-the same laws and samples. What is published cannot be made finer, so a missed target is told: WARN in the log and in
-`/diagnostics`, which has `error_position`, `error_torque`, `error_growth_rate` [1/s] and `error_since` [s]. In a
-sensitive motion the distance grows until it says nothing more; this is told once, and the companion begins again from
+the same laws and samples. What is published cannot be made finer, so a missed target is reported: WARN in the log and
+in `/diagnostics`, which has `error_position`, `error_torque`, `error_growth_rate` [1/s] and `error_since` [s]. In a
+sensitive motion the distance grows until it says nothing more; this is reported once; the companion begins anew from
 the present state at `error_since`. The parameter `estimate_error` turns it off. A controller that answers to what it
 observes closes a loop: the estimate knows the error that the same curvature leads to, not what the controller would
 have done with a truer observation. Only a second run of the whole loop tells that.
