@@ -20,7 +20,7 @@ sanitize: build   ## the mechanics under AddressSanitizer and UndefinedBehaviorS
 aarch64: build   ## the C++ tests of the mechanics compiled for 64-bit ARM, run by qemu
 	@$(RUN) tools/core_tests.sh aarch64
 
-validation: build   ## docs/validation.md anew, from what the tests of the mechanics measure
+validation: build   ## docs/appendix/validation.md anew, from what the tests of the mechanics measure
 	@$(RUN) python src/eel_dynamics/test/validation.py
 
 soak: build   ## the long tests (ARGS=... goes to pytest)
@@ -32,7 +32,7 @@ bench: build   ## speed and accuracy figures (ARGS=NAME for one of them)
 pictures: build   ## draw the pictures of the visualiser in docs/images
 	@$(RUN) python tools/pictures.py
 
-robustness: build   ## write the table of faults in docs/robustness.md from the tests
+robustness: build   ## write the table of faults in docs/appendix/robustness.md from the tests
 	@$(RUN) python tools/fault_table.py
 
 quotes: build   ## write the figures that README.md and docs quote, from the newest reports

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""docs/architecture.md and docs/misprints.md: the files, folders and functions that they name exist; examples apply."""
+"""The pages architecture and misprints of docs/explanation name files and functions that exist; the examples apply."""
 
 import ast
 import os
@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
-PAGE = ROOT / "docs" / "architecture.md"
-MISPRINTS = ROOT / "docs" / "misprints.md"
+PAGE = ROOT / "docs" / "explanation" / "architecture.md"
+MISPRINTS = ROOT / "docs" / "explanation" / "misprints.md"
 EXAMPLES = sorted((ROOT / "docs" / "examples").glob("*.diff"))
 SOURCES = (".py", ".hpp", ".cpp", ".msg")
 NEAR = 3  # files more or fewer than the table says: it tells how large a folder is

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""docs/robustness.md tells what the tests show, and nothing else."""
+"""docs/appendix/robustness.md tells what the tests show, and nothing else."""
 
 import fault_table
 import pytest
@@ -7,7 +7,7 @@ import pytest
 
 def test_the_page_is_what_the_tests_say():
     page = fault_table.PAGE.read_text()
-    assert page == fault_table.with_table(page), "docs/robustness.md is stale: `make robustness` writes it"
+    assert page == fault_table.with_table(page), "docs/appendix/robustness.md is stale: `make robustness` writes it"
 
 
 def test_every_fault_is_told_once():

@@ -6,7 +6,7 @@ import io
 import json
 from pathlib import Path
 
-NOTEBOOK = Path(__file__).resolve().parents[1] / "docs" / "swim.ipynb"
+NOTEBOOK = Path(__file__).resolve().parents[1] / "docs" / "tutorials" / "swim.ipynb"
 SMALL = 200_000  # bytes, pictures included
 
 

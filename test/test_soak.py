@@ -2,7 +2,7 @@
 """Long runs as fast as possible, a subscriber on every topic: nothing is lost, and memory does not grow.
 
 `make soak` swims for an hour of simulation and leaves out/soak.csv and out/soak.png, which `make robustness` brings
-into docs/robustness.md; twenty seconds are in `make test`.
+into docs/appendix/robustness.md; twenty seconds are in `make test`.
 """
 
 from pathlib import Path

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The table of faults in docs/robustness.md, written from the tests: `make robustness`.
+"""The table of faults in docs/appendix/robustness.md, written from the tests: `make robustness`.
 
 A test that shows what happens at a fault says so by a decorator, once for each fault that it shows:
 
@@ -17,7 +17,7 @@ from pathlib import Path
 from soak_table import with_soak
 
 ROOT = Path(__file__).resolve().parent.parent
-PAGE = ROOT / "docs" / "robustness.md"
+PAGE = ROOT / "docs" / "appendix" / "robustness.md"
 BEGIN, END = "<!-- faults: written by `make robustness` -->", "<!-- end of faults -->"
 GROUPS = {  # key in the decorator: heading, in the order of the page
     "laws": "Laws",

@@ -2,8 +2,8 @@
 """Writes the figures that README.md and docs quote: `make quotes`; `--check` says which are stale.
 
 They stand between two marker lines and come from the newest report in benchmarks/reports that has them (the output of
-`make bench`), or from docs/validation.md (`make validation`). These pages quote no other measured figure but what
-another command writes between markers of its own.
+`make bench`), or from docs/appendix/validation.md (`make validation`). These pages quote no other measured figure
+but what another command writes between markers of its own.
 """
 
 import re
@@ -12,12 +12,12 @@ from collections.abc import Callable
 
 from reports import ROOT, Report
 
-VALIDATION = ROOT / "docs" / "validation.md"
+VALIDATION = ROOT / "docs" / "appendix" / "validation.md"
 WRITTEN_WHOLE = (
-    "docs/validation.md",
-    "docs/tradeoff.md",
-    "docs/tradeoff_tables.md",
-    "docs/accuracy.md",
+    "docs/appendix/validation.md",
+    "docs/appendix/tradeoff.md",
+    "docs/appendix/tradeoff_tables.md",
+    "docs/explanation/accuracy.md",
     "docs/figures/README.md",
 )  # by commands of their own
 MARKED = re.compile(r"<!-- ([a-z]+): written by `(.*?)`.*? -->\n(.*?)<!-- end of \1 -->", re.DOTALL)
@@ -68,7 +68,7 @@ def speed() -> str:
         "",
         f"Errors are of the head's position at the end, by its path; friction is laminar ({link(falling)}). These are",
         "bare runs (`estimate=False`). A run that measures its own error, as `simulate` does by default, takes",
-        f"{min(longer):.1f} to {max(longer):.1f} times as long ([docs/accuracy.md](docs/accuracy.md)).",
+        f"{min(longer):.1f} to {max(longer):.1f} times as long ([accuracy](docs/explanation/accuracy.md)).",
         f"One evaluation of the head's dynamics takes {evaluation.value('24 nodes'):.2g} us",
         f"at 24 nodes ({link(evaluation)}).",
         "At equal error the paper's own scheme takes, both compiled by numba,",
@@ -81,7 +81,7 @@ def speed() -> str:
 
 
 ACTUATORS = " of the actuators' work"
-CHECKS = {  # what README says: the lines of docs/validation.md whose worst it is, and what it is relative to
+CHECKS = {  # what README says: the lines of docs/appendix/validation.md whose worst it is, and what it is relative to
     "accelerations, wrench, loads against a second code, written from kinetic energy alone, other direction of "
     "integration; no drag": (r"(head's acceleration|internal torque and force|shape in space).* without drag", ""),
     "head's path over 10 s against that code with DOP853, laminar friction, accuracy reference": (
@@ -105,25 +105,25 @@ def trust() -> str:
     for check, (pattern, scale) in CHECKS.items():
         found = [float(value.split()[0]) for what, value in measured.items() if re.fullmatch(pattern, what)]
         if not found:
-            raise ValueError(f"docs/validation.md has no line like {pattern!r}: make validation")
+            raise ValueError(f"docs/appendix/validation.md has no line like {pattern!r}: make validation")
         lines.append(f"| {check} | {max(found):.1e}{scale} |")
     return "\n".join([*lines, f"| {MASS} (printed: 1.94 kg) | {measured[MASS]} |"])
 
 
 def integrators() -> str:
-    """docs/integrators.md: evaluations by method and target."""
+    """docs/explanation/integrators.md: evaluations by method and target."""
     report = Report("integrators")
     table = [re.split(r" {2,}", line) for line in report.lines if not line.startswith("order seen")]
     head, *rows = table
-    lines = [f"From {link(report, '../')}.", "", f"| {' | '.join(head)} |", "|---" * len(head) + "|"]
+    lines = [f"From {link(report, '../../')}.", "", f"| {' | '.join(head)} |", "|---" * len(head) + "|"]
     return "\n".join([*lines, *(f"| {' | '.join(row)} |" for row in rows)])
 
 
 def orders() -> str:
-    """docs/integrators.md: the orders that are seen."""
+    """docs/explanation/integrators.md: the orders that are seen."""
     report = Report("integrators")
     head = "| what is not smooth | order | error at 20 and 80 per second |"
-    lines = [f"From {link(report, '../')}.", "", head, "|---|---|---|"]
+    lines = [f"From {link(report, '../../')}.", "", head, "|---|---|---|"]
     for line in report.lines:
         if found := re.fullmatch(r"order seen, (.*?) {2,}(\S+) errors (\S+) to (\S+) m", line):
             lines.append(f"| {found[1]} | {found[2]} | {found[3]} m, {found[4]} m |")
@@ -131,9 +131,9 @@ def orders() -> str:
 
 
 def lockstep() -> str:
-    """docs/controllers.md: what a tick of a controller in the loop costs."""
+    """docs/howto/controllers.md: what a tick of a controller in the loop costs."""
     report = Report("lockstep")
-    lines = [f"From {link(report, '../')} (`{report.command}`).", "", "| way | a tick |", "|---|---|"]
+    lines = [f"From {link(report, '../../')} (`{report.command}`).", "", "| way | a tick |", "|---|---|"]
     for label in ("the library alone", "bare messages, there and back", "the dynamics node", "node over the sum"):
         lines.append(f"| {label} | {report.rest(label)} |")
     return "\n".join(lines)
@@ -141,8 +141,8 @@ def lockstep() -> str:
 
 BLOCKS: dict[str, dict[str, Callable[[], str]]] = {
     "README.md": {"trust": trust, "speed": speed},
-    "docs/controllers.md": {"lockstep": lockstep},
-    "docs/integrators.md": {"integrators": integrators, "orders": orders},
+    "docs/howto/controllers.md": {"lockstep": lockstep},
+    "docs/explanation/integrators.md": {"integrators": integrators, "orders": orders},
 }
 
 

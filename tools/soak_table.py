@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The memory of the nodes over an hour of simulation, as `make soak` left it in out/, for docs/robustness.md."""
+"""The memory of the nodes over an hour, as `make soak` left it in out/, for docs/appendix/robustness.md."""
 
 import csv
 import shutil
@@ -32,6 +32,6 @@ def with_soak(page: str) -> str:
     before, begin, rest = page.partition(BEGIN)
     _, end, after = rest.partition(END)
     if not begin or not end:
-        raise ValueError(f"docs/robustness.md must have the lines {BEGIN!r} and {END!r}")
+        raise ValueError(f"docs/appendix/robustness.md must have the lines {BEGIN!r} and {END!r}")
     shutil.copy(LEFT.with_suffix(".png"), PICTURE)
     return f"{before}{BEGIN}\n{soak_table()}{END}{after}"

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""docs/validation.md is what the tests measure: `make validation` writes it anew."""
+"""docs/appendix/validation.md is what the tests measure: `make validation` writes it anew."""
 
 import re
 
 from validation import PAGE, ROOT
 
-STALE = "docs/validation.md is stale: make validation"
+STALE = "docs/appendix/validation.md is stale: make validation"
 
 
 def rows():

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the tests of the mechanics measure: recorded while they run, listed at their end, written as docs/validation.md.
+"""What the tests of the mechanics measure: recorded while they run, listed at their end, written as
+docs/appendix/validation.md.
 
     make validation        # runs those tests and writes the page
 
@@ -18,7 +19,7 @@ import numpy as np
 
 ROOT = Path(__file__).resolve().parents[3]
 RECORD = ROOT / "out" / "validation.json"
-PAGE = ROOT / "docs" / "validation.md"
+PAGE = ROOT / "docs" / "appendix" / "validation.md"
 
 IDENTITIES = {
     "Energy ledger": "The change of kinetic energy of body and water is the integral of the four powers: actuators, "

@@ -2,7 +2,7 @@
 """A heading controller: it reads the heading from /odom, and answers each sample with the curvature one period on.
 
 It swims straight, and bends the whole body towards the target heading. Its answers are `curvature_samples`, so that a
-simulation as fast as possible (`real_time_factor:=0`) keeps in step with it. docs/controllers.md tells how.
+simulation as fast as possible (`real_time_factor:=0`) keeps in step with it. docs/howto/controllers.md tells how.
 """
 
 import array

@@ -3,7 +3,7 @@
 
 stability                       # every study; pictures into docs/images
 stability --study drift         # one of them: maps, condition, drift, plane
-stability --page docs/robustness.md --out docs/images
+stability --page docs/appendix/stability.md --out docs/images
 """
 
 from pathlib import Path

@@ -2,9 +2,9 @@
 """`tradeoff`: cost of accuracy for a gait, and error of models that leave physics out, as tables and pictures.
 
 tradeoff falling
-tradeoff falling straight turning --page docs/tradeoff.md --pictures docs/images
+tradeoff falling straight turning --page docs/appendix/tradeoff.md --pictures docs/images
 tradeoff straight --set period=0.7 --quick --rerun trade.rrd
-tradeoff --delivered --seed 7 --page docs/accuracy.md --pictures docs/images
+tradeoff --delivered --seed 7 --page docs/explanation/accuracy.md --pictures docs/images
 """
 
 import os
@@ -174,7 +174,7 @@ def _parser() -> Parser:
         "--delivered",
         action="store_true",
         help="instead: measure what the targets deliver over random swims, and how well runs judge their own error "
-        "(a minute or two); --page writes docs/accuracy.md",
+        "(a minute or two); --page writes docs/explanation/accuracy.md",
     )
     parser.add_argument("--count", type=int, default=COUNT, help=f"of the random swims ({COUNT})")
     parser.add_argument("--seed", type=int, default=SEED, help=f"of the random swims ({SEED})")

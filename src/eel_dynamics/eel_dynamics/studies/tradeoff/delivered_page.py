@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes docs/accuracy.md: what a target means, what it costs, and what targets deliver."""
+"""Writes docs/explanation/accuracy.md: what a target means, what it costs, and what targets deliver."""
 
 from pathlib import Path
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes docs/tradeoff.md, six rows and a picture, and docs/tradeoff_tables.md, all that was measured."""
+"""Writes docs/appendix/tradeoff.md (six rows, a picture) and tradeoff_tables.md beside it (all that was measured)."""
 
 import math
 import platform
@@ -29,8 +29,8 @@ wherever that physics is in doubt. What makes no difference to a gait may be lef
 what is modelled, and what is off costs nothing.
 
 A word or a number (`accuracy="standard"`, `accuracy=1e-4`) chooses settings by a rule that is on the safe side for
-swims of all kinds, and the run measures its own error: [accuracy.md](accuracy.md). All settings and models, for
-{count} gaits: [{tables}]({tables}).
+swims of all kinds, and the run measures its own error: [accuracy](../explanation/accuracy.md). All settings and
+models, for {count} gaits: [{tables}]({tables}).
 """
 TABLES = """# What exactness costs: all tables
 
