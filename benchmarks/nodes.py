@@ -13,7 +13,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tools"))
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "src" / "eel_dynamics" / "test"))
 import numpy as np
-from eel_gaits.messages import law_to_message
+from eel_gaits.ros.messages import law_to_message
 from eel_ros.testing.node_process import NodeProcess
 from eel_ros.testing.ros_domain import reserve_domain
 from geometry_msgs.msg import PoseStamped

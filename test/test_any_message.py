@@ -6,7 +6,7 @@ import time
 import pytest
 import rclpy
 from builtin_interfaces.msg import Time
-from eel_gaits.messages import law_to_message
+from eel_gaits.ros.messages import law_to_message
 from eel_viz.recording.reading import read
 from extreme_messages import broken, extremes, get_message
 from fake_swimmer import TOPICS, messages

@@ -80,7 +80,7 @@ def test_functions_that_are_not_defined_are_found_out():
     folder = ROOT / "src" / "eel_core" / "include" / "eel_core"
     assert stands_in("configure", folder / "kinematics.hpp")
     assert not stands_in("configure", folder / "algorithm.hpp")  # which only calls it
-    assert not stands_in("Law.combine", ROOT / "src" / "eel_gaits" / "eel_gaits" / "law.py")
+    assert not stands_in("Law.combine", ROOT / "src" / "eel_gaits" / "eel_gaits" / "laws" / "law.py")
 
 
 def test_table_tells_the_size_of_folders():

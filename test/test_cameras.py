@@ -9,7 +9,7 @@ import itertools
 import numpy as np
 import pytest
 from eel_dynamics.model.axes import turn_vector
-from eel_gaits.registry import GAITS
+from eel_gaits.gaits.registry import GAITS
 from eel_viz.scene3d import camera
 from eel_viz.scene3d.camera import FollowFrame, PathFrame
 

@@ -56,7 +56,7 @@ def test_the_heading_controller_turns_left_and_right_and_repeats_itself(start, s
 
 def test_the_page_shows_the_controller_and_its_library_example_runs():
     page = (ROOT / "docs/howto/controllers.md").read_text()
-    source = (ROOT / "src/eel_gaits/eel_gaits/heading_controller.py").read_text()
+    source = (ROOT / "src/eel_gaits/eel_gaits/ros/heading_controller.py").read_text()
     controller = source.partition("# [controller]\n")[2].partition("# [end of controller]")[0].strip()
     assert f"```python\n{controller}\n```" in page
     example = page.partition("<!-- library -->\n```python\n")[2].partition("```")[0]

@@ -5,8 +5,8 @@ import os
 import re
 
 import pytest
-from eel_gaits.messages import law_to_message
-from eel_gaits.wording import shown
+from eel_gaits.input_output.wording import shown
+from eel_gaits.ros.messages import law_to_message
 from eel_viz.recording.reading import read
 from swim_client import LIMIT, SwimClient
 

@@ -7,7 +7,7 @@ import subprocess
 import sys
 
 import pytest
-from eel_gaits.messages import law_to_message
+from eel_gaits.ros.messages import law_to_message
 from swim_client import SwimClient, nanoseconds
 
 from eel_gaits import falling

@@ -32,7 +32,7 @@ import json, sys
 import numpy
 from eel_dynamics.ros import messages
 from eel_gaits import falling
-from eel_gaits.messages import law_from_message, law_to_message
+from eel_gaits.ros.messages import law_from_message, law_to_message
 from eel_msgs.msg import Backbone, CurvatureLaw
 from rclpy.serialization import deserialize_message, serialize_message
 

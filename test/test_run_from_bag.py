@@ -9,7 +9,7 @@ import pytest
 from builtin_interfaces.msg import Time
 from eel_dynamics.ros.messages import Sample, body_message, diagnostic_array
 from eel_dynamics.ros.parameters import DynamicsParameters
-from eel_gaits.messages import law_to_message
+from eel_gaits.ros.messages import law_to_message
 from eel_viz.bags.definitions import definition, type_hash
 from eel_viz.topics import GLOBAL, OWN
 from rclpy.serialization import serialize_message

@@ -19,8 +19,8 @@ setup(
     license="Apache-2.0",
     entry_points={
         "console_scripts": [
-            "gait_generator = eel_gaits.node:main",
-            "heading_controller = eel_gaits.heading_controller:main",
+            "gait_generator = eel_gaits.ros.node:main",
+            "heading_controller = eel_gaits.ros.heading_controller:main",
         ]
     },
 )

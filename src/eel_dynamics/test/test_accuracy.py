@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 from eel_dynamics.accuracy.accuracy import BUDGET_TARGETS
 from eel_dynamics.runs.companion import relative_errors
-from eel_gaits.law import Law, Term
+from eel_gaits.laws.law import Law
+from eel_gaits.laws.term import Term
 
 from eel_dynamics import Accuracy, Scene, Simulation, SimulationStopped, simulate, simulate_batch
 from eel_gaits import falling, gait, straight

@@ -5,7 +5,9 @@ import copy
 
 import numpy as np
 import pytest
-from eel_gaits.law import Law, Ramp, Term
+from eel_gaits.laws.law import Law
+from eel_gaits.laws.ramp import Ramp
+from eel_gaits.laws.term import Term
 
 import eel_core
 from eel_dynamics import Scene, Simulation

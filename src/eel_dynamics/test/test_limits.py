@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 from eel_dynamics.analysis.model_limits import ModelLimits, cross_axes
 from eel_dynamics.ros.loop.limits_monitor import LimitsMonitor
-from eel_gaits.law import Law, Term
+from eel_gaits.laws.law import Law
+from eel_gaits.laws.term import Term
 
 from eel_dynamics import Body, Scene, simulate
 from eel_gaits import backward, falling, still, straight

@@ -3,7 +3,8 @@
 
 import numpy as np
 import pytest
-from eel_gaits.law import Law, Term
+from eel_gaits.laws.law import Law
+from eel_gaits.laws.term import Term
 
 from eel_dynamics import Accuracy, MeasuredSimulation, Scene, Simulation, SimulationStopped
 from eel_gaits import falling, helix, straight, turning

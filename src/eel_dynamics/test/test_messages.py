@@ -7,7 +7,7 @@ from eel_dynamics.ros.messages import Sample, body_message, diagnostic_array, sa
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.ros.serialised_message import MARKED_TIME, SerialisedMessage
 from eel_dynamics.ros.simulation_from_parameters import simulation_from_parameters
-from eel_gaits.settings import Settings
+from eel_gaits.gaits.settings import Settings
 from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import Odometry
 from rclpy.serialization import deserialize_message, serialize_message

@@ -5,7 +5,7 @@ import time
 
 import numpy as np
 import pytest
-from eel_gaits.messages import law_to_message
+from eel_gaits.ros.messages import law_to_message
 from rclpy.qos import QoSProfile
 from rosgraph_msgs.msg import Clock
 from std_srvs.srv import SetBool, Trigger

@@ -4,7 +4,7 @@
 import math
 
 import pytest
-from eel_gaits.messages import law_to_message
+from eel_gaits.ros.messages import law_to_message
 from geometry_msgs.msg import Point, Pose, Quaternion, Twist, Vector3
 from rcl_interfaces.srv import ListParameters
 from swim_client import LIMIT, nanoseconds

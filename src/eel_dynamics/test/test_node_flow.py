@@ -10,7 +10,7 @@ import time
 
 import numpy as np
 import pytest
-from eel_gaits.messages import law_to_message
+from eel_gaits.ros.messages import law_to_message
 from geometry_msgs.msg import PoseStamped
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rosgraph_msgs.msg import Clock

@@ -6,7 +6,7 @@ import time
 
 import numpy as np
 import pytest
-from eel_gaits.messages import law_to_message
+from eel_gaits.ros.messages import law_to_message
 from rclpy.qos import QoSProfile
 from swim_client import LIMIT, is_finite, nanoseconds
 

@@ -4,7 +4,7 @@
 import math
 
 import pytest
-from eel_gaits.messages import law_to_message
+from eel_gaits.ros.messages import law_to_message
 from swim_client import LIMIT
 
 from eel_gaits import Law, Term, falling

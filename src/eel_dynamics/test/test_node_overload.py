@@ -5,7 +5,7 @@ import sys
 
 import numpy as np
 import pytest
-from eel_gaits.messages import law_to_message
+from eel_gaits.ros.messages import law_to_message
 from swim_client import LIMIT, nanoseconds
 
 from eel_dynamics import Simulation

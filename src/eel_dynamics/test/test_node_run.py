@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from eel_gaits.messages import law_to_message
+from eel_gaits.ros.messages import law_to_message
 from scipy.interpolate import CubicSpline
 from swim_client import LIMIT, SAMPLES, is_finite, nanoseconds
 

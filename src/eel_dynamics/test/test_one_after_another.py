@@ -6,7 +6,9 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
-from eel_gaits.law import Law, Ramp, Term
+from eel_gaits.laws.law import Law
+from eel_gaits.laws.ramp import Ramp
+from eel_gaits.laws.term import Term
 
 from eel_dynamics import Accuracy, Body, Scene, Simulation, SimulationStopped, simulate
 from eel_gaits import falling, helix, kern_fast, straight, turning

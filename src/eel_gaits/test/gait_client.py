@@ -3,7 +3,7 @@
 
 import time
 
-from eel_gaits.messages import law_from_message
+from eel_gaits.ros.messages import law_from_message
 from rcl_interfaces.srv import (
     DescribeParameters,
     GetParameters,

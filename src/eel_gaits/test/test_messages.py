@@ -4,7 +4,7 @@
 import math
 
 import pytest
-from eel_gaits.messages import law_from_message, law_to_message
+from eel_gaits.ros.messages import law_from_message, law_to_message
 from hypothesis import given
 from law_strategies import laws
 from rclpy.serialization import deserialize_message, serialize_message

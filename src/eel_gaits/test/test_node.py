@@ -6,7 +6,7 @@ import signal
 import time
 
 import pytest
-from eel_gaits.settings import Settings
+from eel_gaits.gaits.settings import Settings
 from eel_ros.testing.node_process import PROMPT
 from rclpy.qos import QoSProfile
 
@@ -200,7 +200,7 @@ def test_bad_parameters_at_start_are_one_line_each_and_status_2(start_in_turn):
         "transition:=[1.0]": "gait_generator: transition must be a number, got",
     }
     lines = [["--ros-args", "-p", argument] for argument in bad]
-    for line, (status, said) in zip(bad.values(), start_in_turn("eel_gaits.node", lines), strict=True):
+    for line, (status, said) in zip(bad.values(), start_in_turn("eel_gaits.ros.node", lines), strict=True):
         assert status == 2 and said.startswith(line) and said.count("\n") == 1, said
 
 

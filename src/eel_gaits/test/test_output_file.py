@@ -8,7 +8,7 @@ import sys
 import threading
 
 import pytest
-from eel_gaits.output_file import Draft, NotWritten, check_output, obstacle, replacing
+from eel_gaits.input_output.output_file import Draft, NotWritten, check_output, obstacle, replacing
 
 OLD = b"PK\x03\x04 of yesterday"
 
@@ -97,7 +97,7 @@ def test_two_drafts_of_one_name_are_two_files(tmp_path):
 def test_a_killed_process_leaves_the_older_file(tmp_path):
     name = tmp_path / "run.npz"
     name.write_bytes(OLD)
-    code = "import sys, time\nfrom eel_gaits.output_file import replacing\n"
+    code = "import sys, time\nfrom eel_gaits.input_output.output_file import replacing\n"
     code += "with replacing(sys.argv[1]) as path:\n    path.write_bytes(b'PK half')\n    print('half', flush=True)\n"
     code += "    sys.stdin.read()\n"
     pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}

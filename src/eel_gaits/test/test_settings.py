@@ -2,7 +2,7 @@
 """What the user has set: carry-over between gaits, and refusals that change nothing."""
 
 import pytest
-from eel_gaits.settings import Settings
+from eel_gaits.gaits.settings import Settings
 
 from eel_gaits import falling, gait, turning
 

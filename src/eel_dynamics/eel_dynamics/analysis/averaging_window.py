@@ -9,8 +9,9 @@ import math
 from functools import cached_property
 
 import numpy as np
-from eel_gaits.law import Law, Term
-from eel_gaits.wording import shown
+from eel_gaits.input_output.wording import shown
+from eel_gaits.laws.law import Law
+from eel_gaits.laws.term import Term
 
 LONGEST_COMMON = 12  # of the strongest wave's periods, after which the whole gait must repeat
 FEWEST_SAMPLES = 8  # in a period

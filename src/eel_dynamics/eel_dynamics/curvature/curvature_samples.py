@@ -6,8 +6,8 @@ from operator import attrgetter
 from typing import NamedTuple
 
 import numpy as np
-from eel_gaits.quantity import is_finite
-from eel_gaits.wording import shown
+from eel_gaits.input_output.quantity import is_finite
+from eel_gaits.input_output.wording import shown
 
 from eel_dynamics.curvature.law_waves import MOST_WAVES
 from eel_dynamics.model.arguments import checked_row

@@ -10,8 +10,8 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from eel_gaits.law import Law
-from eel_gaits.spline import natural_spline
+from eel_gaits.laws.law import Law
+from eel_gaits.laws.spline import natural_spline
 
 import eel_core
 from eel_dynamics.curvature.curvature_samples import CurvatureSample, SampleQueue

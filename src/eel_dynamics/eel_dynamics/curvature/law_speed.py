@@ -9,7 +9,9 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from eel_gaits.law import Law, Ramp, amplitude_of
+from eel_gaits.laws.law import Law
+from eel_gaits.laws.ramp import Ramp
+from eel_gaits.laws.term import amplitude_of
 
 from eel_dynamics.curvature.law_waves import groups_of
 

@@ -4,8 +4,9 @@
 from functools import lru_cache
 
 import numpy as np
-from eel_gaits.law import Law, Term, amplitude_of
-from eel_gaits.wording import shown
+from eel_gaits.input_output.wording import shown
+from eel_gaits.laws.law import Law
+from eel_gaits.laws.term import Term, amplitude_of
 
 AXES = {"pitch": 0, "yaw": 1}
 PART_OF_PEAK = 0.75  # of the turns where all terms bend the body most

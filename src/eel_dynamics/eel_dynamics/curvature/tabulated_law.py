@@ -15,7 +15,8 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from eel_gaits.law import Law, amplitude_of
+from eel_gaits.laws.law import Law
+from eel_gaits.laws.term import amplitude_of
 
 import eel_core
 from eel_dynamics.curvature.law_waves import AXES, groups_of

@@ -5,8 +5,8 @@ import math
 from functools import lru_cache
 
 import numpy as np
-from eel_gaits.quantity import is_finite, numbers
-from eel_gaits.wording import shown
+from eel_gaits.input_output.quantity import is_finite, numbers
+from eel_gaits.input_output.wording import shown
 
 
 def checked_instance(name: str, value, kind: type):

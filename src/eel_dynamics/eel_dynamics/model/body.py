@@ -11,7 +11,7 @@ from functools import cache, cached_property, lru_cache
 from pathlib import Path
 
 import numpy as np
-from eel_gaits.wording import shown
+from eel_gaits.input_output.wording import shown
 
 from eel_dynamics.model.arguments import checked_instance, checked_number, checked_row
 from eel_dynamics.model.body_file import columns_of

@@ -14,8 +14,8 @@ a run shows how much of a motion is due to the wake. It is no model of a fish.
 from dataclasses import dataclass, field, fields
 
 import numpy as np
-from eel_gaits.quantity import documented
-from eel_gaits.wording import shown
+from eel_gaits.input_output.quantity import documented
+from eel_gaits.input_output.wording import shown
 
 from eel_dynamics.model.arguments import checked_number, checked_row
 

@@ -11,9 +11,9 @@ import traceback
 
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
-from eel_gaits.command_line import complain
-from eel_gaits.messages import law_from_message
-from eel_gaits.wording import one_line
+from eel_gaits.input_output.command_line import complain
+from eel_gaits.input_output.wording import one_line
+from eel_gaits.ros.messages import law_from_message
 from eel_ros.command_line import answer_words
 from eel_ros.fastdds_profile import use_prompt_repair
 from eel_ros.parameter_node import ParameterNode

@@ -4,9 +4,9 @@
 from typing import NamedTuple
 
 import numpy as np
-from eel_gaits.law import Law
-from eel_gaits.quantity import numbers
-from eel_gaits.wording import shown
+from eel_gaits.input_output.quantity import numbers
+from eel_gaits.input_output.wording import shown
+from eel_gaits.laws.law import Law
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.model.arguments import (

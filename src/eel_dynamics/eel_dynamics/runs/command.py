@@ -14,11 +14,11 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
-from eel_gaits.command_line import Parser, complain
-from eel_gaits.output_file import NotWritten, check_output, replacing
-from eel_gaits.quantity import described_fields
-from eel_gaits.registry import GAITS, gait
-from eel_gaits.wording import shown
+from eel_gaits.gaits.registry import GAITS, gait
+from eel_gaits.input_output.command_line import Parser, complain
+from eel_gaits.input_output.output_file import NotWritten, check_output, replacing
+from eel_gaits.input_output.quantity import described_fields
+from eel_gaits.input_output.wording import shown
 
 from eel_dynamics.accuracy.accuracy import PRESETS
 from eel_dynamics.analysis.actuators import MOST_JOINTS

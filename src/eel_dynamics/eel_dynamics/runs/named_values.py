@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import fields
 
 import numpy as np
-from eel_gaits.wording import shown
+from eel_gaits.input_output.wording import shown
 
 from eel_dynamics.model.scene import Scene
 

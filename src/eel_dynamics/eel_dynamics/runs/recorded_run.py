@@ -11,9 +11,11 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
-from eel_gaits.law import AXES, Law, Ramp, Term
-from eel_gaits.quantity import is_finite
-from eel_gaits.wording import one_line
+from eel_gaits.input_output.quantity import is_finite
+from eel_gaits.input_output.wording import one_line
+from eel_gaits.laws.law import Law
+from eel_gaits.laws.ramp import Ramp
+from eel_gaits.laws.term import AXES, Term
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.budget import Budget

@@ -12,9 +12,9 @@ from importlib.metadata import entry_points
 from typing import NamedTuple
 
 import numpy as np
-from eel_gaits.law import Law
-from eel_gaits.quantity import is_finite
-from eel_gaits.wording import one_line, shown
+from eel_gaits.input_output.quantity import is_finite
+from eel_gaits.input_output.wording import one_line, shown
+from eel_gaits.laws.law import Law
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.error_estimate import ErrorEstimate

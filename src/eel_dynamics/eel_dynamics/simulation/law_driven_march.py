@@ -6,7 +6,7 @@ from collections.abc import Callable
 from copy import deepcopy
 
 import numpy as np
-from eel_gaits.law import Law
+from eel_gaits.laws.law import Law
 
 import eel_core
 from eel_dynamics.curvature.curvature_samples import CurvatureSample

@@ -9,7 +9,7 @@ from collections import deque
 from collections.abc import Callable
 
 import numpy as np
-from eel_gaits.law import Law
+from eel_gaits.laws.law import Law
 
 from eel_dynamics.accuracy.error_estimate import LEAST_SAMPLES, SMALL, ErrorEstimate, growth_rate_of, least_torque
 from eel_dynamics.simulation.simulation import Simulation

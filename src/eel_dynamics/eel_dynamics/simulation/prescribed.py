@@ -4,9 +4,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from eel_gaits.law import Law
-from eel_gaits.quantity import is_finite
-from eel_gaits.wording import shown
+from eel_gaits.input_output.quantity import is_finite
+from eel_gaits.input_output.wording import shown
+from eel_gaits.laws.law import Law
 
 import eel_core
 from eel_dynamics.accuracy.accuracy import Accuracy

@@ -7,10 +7,11 @@ from collections.abc import Callable
 from functools import cache
 
 import numpy as np
-from eel_gaits.gaits import falling, straight
-from eel_gaits.law import Law
-from eel_gaits.quantity import is_finite
-from eel_gaits.wording import shown
+from eel_gaits.gaits.diving import falling
+from eel_gaits.gaits.swimming import straight
+from eel_gaits.input_output.quantity import is_finite
+from eel_gaits.input_output.wording import shown
+from eel_gaits.laws.law import Law
 
 import eel_core
 from eel_dynamics.accuracy.accuracy import Accuracy

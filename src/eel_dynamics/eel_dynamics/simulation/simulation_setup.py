@@ -7,9 +7,9 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from eel_gaits.law import Law
-from eel_gaits.quantity import is_finite
-from eel_gaits.wording import shown
+from eel_gaits.input_output.quantity import is_finite
+from eel_gaits.input_output.wording import shown
+from eel_gaits.laws.law import Law
 
 from eel_dynamics.accuracy.accuracy import Accuracy, within_budget
 from eel_dynamics.accuracy.budget import Budget

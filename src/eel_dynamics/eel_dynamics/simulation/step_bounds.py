@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bounds of the steps in time. They follow from the accuracy, the law, the initial velocity and the body."""
 
-from eel_gaits.law import Law
-from eel_gaits.wording import shown
+from eel_gaits.input_output.wording import shown
+from eel_gaits.laws.law import Law
 
 import eel_core
 from eel_dynamics.accuracy.accuracy import LONGEST_STEP, Accuracy

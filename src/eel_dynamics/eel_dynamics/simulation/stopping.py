@@ -2,8 +2,8 @@
 """The reasons why a march could not continue, and what to change."""
 
 import numpy as np
-from eel_gaits.law import Law
-from eel_gaits.wording import shown
+from eel_gaits.input_output.wording import shown
+from eel_gaits.laws.law import Law
 
 import eel_core
 from eel_dynamics.accuracy.accuracy import Accuracy

@@ -17,10 +17,10 @@ from dataclasses import fields, replace
 from typing import NamedTuple
 
 import numpy as np
-from eel_gaits.law import Law
-from eel_gaits.quantity import number
-from eel_gaits.registry import find
-from eel_gaits.wording import shown
+from eel_gaits.gaits.registry import find
+from eel_gaits.input_output.quantity import number
+from eel_gaits.input_output.wording import shown
+from eel_gaits.laws.law import Law
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.analysis.measures import measures_of

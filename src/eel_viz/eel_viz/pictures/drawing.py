@@ -14,7 +14,7 @@ import tempfile
 import time
 from collections.abc import Iterator
 
-from eel_gaits.wording import shown
+from eel_gaits.input_output.wording import shown
 from PIL import Image
 
 from eel_viz.entities import TIMELINE

@@ -12,7 +12,7 @@ import os
 from dataclasses import dataclass
 
 import numpy as np
-from eel_gaits.wording import shown
+from eel_gaits.input_output.wording import shown
 
 from eel_viz.entities import TIMELINE
 from eel_viz.recording.rrd_frames import HEAD, complete_file

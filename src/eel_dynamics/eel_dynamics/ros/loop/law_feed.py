@@ -13,7 +13,7 @@ import time
 from collections import deque
 
 import numpy as np
-from eel_gaits.wording import shown
+from eel_gaits.input_output.wording import shown
 
 from eel_dynamics.ros.diagnostics import ERROR
 

@@ -7,8 +7,8 @@ figures --out out/figures --format png
 
 from pathlib import Path
 
-from eel_gaits.command_line import Parser, complain
-from eel_gaits.output_file import NotWritten, replacing
+from eel_gaits.input_output.command_line import Parser, complain
+from eel_gaits.input_output.output_file import NotWritten, replacing
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.model.scene import Scene

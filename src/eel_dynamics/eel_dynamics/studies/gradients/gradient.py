@@ -20,8 +20,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from eel_gaits.quantity import number
-from eel_gaits.wording import shown
+from eel_gaits.input_output.quantity import number
+from eel_gaits.input_output.wording import shown
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.analysis.analysis import Analysis

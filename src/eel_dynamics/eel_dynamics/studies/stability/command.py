@@ -8,9 +8,9 @@ stability --page docs/appendix/stability.md --out docs/images
 
 from pathlib import Path
 
-from eel_gaits.command_line import Parser, complain
-from eel_gaits.output_file import NotWritten, check_output, replacing
-from eel_gaits.wording import shown
+from eel_gaits.input_output.command_line import Parser, complain
+from eel_gaits.input_output.output_file import NotWritten, check_output, replacing
+from eel_gaits.input_output.wording import shown
 
 from eel_dynamics.runs.interrupt import end_on_interrupt
 

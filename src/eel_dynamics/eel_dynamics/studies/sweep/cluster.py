@@ -11,7 +11,7 @@ from concurrent.futures import ThreadPoolExecutor
 from concurrent.futures import as_completed as completed
 from contextlib import contextmanager
 
-from eel_gaits.wording import shown
+from eel_gaits.input_output.wording import shown
 
 from eel_dynamics.runs.storage.tables import needed
 

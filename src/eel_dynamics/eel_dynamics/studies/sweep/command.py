@@ -9,9 +9,9 @@ import sys
 import time
 
 import numpy as np
-from eel_gaits.command_line import Parser, complain
-from eel_gaits.output_file import NotWritten
-from eel_gaits.registry import GAITS
+from eel_gaits.gaits.registry import GAITS
+from eel_gaits.input_output.command_line import Parser, complain
+from eel_gaits.input_output.output_file import NotWritten
 
 from eel_dynamics.accuracy.accuracy import PRESETS
 from eel_dynamics.analysis.measures import MEASURES

@@ -15,8 +15,8 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-from eel_gaits.law import Law
-from eel_gaits.wording import one_line, shown
+from eel_gaits.input_output.wording import one_line, shown
+from eel_gaits.laws.law import Law
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.analysis.measures import checked_measures, checked_point, described

@@ -8,7 +8,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
-from eel_gaits.wording import shown
+from eel_gaits.input_output.wording import shown
 
 import eel_core
 import eel_dynamics

@@ -9,8 +9,8 @@ import os
 import warnings
 from pathlib import Path
 
-from eel_gaits.output_file import check_output, replacing
-from eel_gaits.wording import shown
+from eel_gaits.input_output.output_file import check_output, replacing
+from eel_gaits.input_output.wording import shown
 
 from eel_dynamics.analysis.measures import checked_point
 

@@ -11,9 +11,9 @@ import os
 import sys
 from pathlib import Path
 
-from eel_gaits.command_line import Parser, complain
-from eel_gaits.output_file import NotWritten, check_output, replacing
-from eel_gaits.registry import GAITS, gait
+from eel_gaits.gaits.registry import GAITS, gait
+from eel_gaits.input_output.command_line import Parser, complain
+from eel_gaits.input_output.output_file import NotWritten, check_output, replacing
 
 from eel_dynamics.model.body import NAMED, Body
 from eel_dynamics.model.scene import Scene

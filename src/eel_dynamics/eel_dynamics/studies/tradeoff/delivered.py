@@ -13,7 +13,9 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
-from eel_gaits.law import Law, Ramp, Term
+from eel_gaits.laws.law import Law
+from eel_gaits.laws.ramp import Ramp
+from eel_gaits.laws.term import Term
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.error_estimate import ErrorEstimate

@@ -3,7 +3,7 @@
 
 from pathlib import Path
 
-from eel_gaits.output_file import replacing
+from eel_gaits.input_output.output_file import replacing
 
 from eel_dynamics.studies.tradeoff.delivered import REFERENCES, Trial, delivered_table
 

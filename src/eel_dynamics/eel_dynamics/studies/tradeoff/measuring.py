@@ -13,7 +13,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from eel_gaits.law import Law
+from eel_gaits.laws.law import Law
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.model.body import Body

@@ -7,7 +7,7 @@ A discretisation error far below the error of the model has no benefit. This set
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from eel_gaits.law import Law
+from eel_gaits.laws.law import Law
 
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene

@@ -6,7 +6,7 @@ import platform
 from datetime import date
 from pathlib import Path
 
-from eel_gaits.output_file import replacing
+from eel_gaits.input_output.output_file import replacing
 
 import eel_core
 from eel_dynamics.studies.tradeoff.models import Model

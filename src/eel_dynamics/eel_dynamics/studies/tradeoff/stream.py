@@ -6,7 +6,7 @@ import warnings
 from pathlib import Path
 
 import numpy as np
-from eel_gaits.output_file import replacing
+from eel_gaits.input_output.output_file import replacing
 
 from eel_dynamics.accuracy.accuracy import PRESETS
 from eel_dynamics.studies.tradeoff.models import Model

@@ -4,7 +4,7 @@
 import csv
 from pathlib import Path
 
-from eel_gaits.output_file import replacing
+from eel_gaits.input_output.output_file import replacing
 
 from eel_dynamics.accuracy.accuracy import PRESETS
 from eel_dynamics.studies.tradeoff.measuring import Measured, Trade, front

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, fields
 
 import numpy as np
 
-from eel_gaits.wording import shown
+from eel_gaits.input_output.wording import shown
 
 
 def quantity(default, *, unit, description, minimum, maximum):

@@ -12,9 +12,9 @@ from dataclasses import Field, dataclass, field, fields, make_dataclass
 from functools import cache
 from types import MappingProxyType
 
-from eel_gaits.quantity import Quantities
-from eel_gaits.registry import GAITS, Transition, find
-from eel_gaits.wording import shown
+from eel_gaits.gaits.registry import GAITS, Transition, find
+from eel_gaits.input_output.quantity import Quantities
+from eel_gaits.input_output.wording import shown
 
 TURNS = {"left_bend": "yaw_bend"}  # number of the node: that of the gait, which has the opposite sign
 

@@ -22,12 +22,12 @@ from rclpy.clock import JumpThreshold
 from rclpy.duration import Duration
 from rclpy.parameter import Parameter
 
-from eel_gaits.command_line import complain
-from eel_gaits.messages import FRAME, law_to_message
-from eel_gaits.quantity import limits
-from eel_gaits.registry import GAITS, Transition
-from eel_gaits.settings import Settings, numbers_of
-from eel_gaits.wording import shown
+from eel_gaits.gaits.registry import GAITS, Transition
+from eel_gaits.gaits.settings import Settings, numbers_of
+from eel_gaits.input_output.command_line import complain
+from eel_gaits.input_output.quantity import limits
+from eel_gaits.input_output.wording import shown
+from eel_gaits.ros.messages import FRAME, law_to_message
 from eel_msgs.msg import CurvatureLaw
 
 NAME = "gait_generator"

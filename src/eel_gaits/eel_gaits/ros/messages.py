@@ -8,7 +8,9 @@ Laws and messages use the paper's section axes, so nothing is turned here. K2 (p
 from builtin_interfaces.msg import Time
 from std_msgs.msg import Header
 
-from eel_gaits.law import MAXIMUM_TERMS, Law, Ramp, Term
+from eel_gaits.laws.law import MAXIMUM_TERMS, Law
+from eel_gaits.laws.ramp import Ramp
+from eel_gaits.laws.term import Term
 from eel_msgs import msg
 
 FRAME = "section"  # axes of the section itself

@@ -4,7 +4,7 @@
 import argparse
 import sys
 
-from eel_gaits.wording import one_line
+from eel_gaits.input_output.wording import one_line
 
 
 class Parser(argparse.ArgumentParser):

@@ -2,16 +2,16 @@
 """Gaits by name.
 
 A gait is written as a function that makes terms from its numbers. `register` lists it, and turns it into a function
-that takes the numbers as keywords and returns a `Law`. The gaits are in `eel_gaits.gaits`.
+that takes the numbers as keywords and returns a `Law`. The gaits are in the other files of this folder.
 """
 
 import functools
 import inspect
 from dataclasses import dataclass
 
-from eel_gaits.law import Law
-from eel_gaits.quantity import Quantities, described_fields, quantity
-from eel_gaits.wording import shown
+from eel_gaits.input_output.quantity import Quantities, described_fields, quantity
+from eel_gaits.input_output.wording import shown
+from eel_gaits.laws.law import Law
 
 
 @dataclass(frozen=True, kw_only=True)

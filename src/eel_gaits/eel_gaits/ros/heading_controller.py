@@ -20,9 +20,9 @@ from eel_ros.run_node import run_node
 from nav_msgs.msg import Odometry
 from std_msgs.msg import Header
 
-from eel_gaits.command_line import complain
-from eel_gaits.gaits import straight
-from eel_gaits.quantity import Quantities, limits, quantity
+from eel_gaits.gaits.swimming import straight
+from eel_gaits.input_output.command_line import complain
+from eel_gaits.input_output.quantity import Quantities, limits, quantity
 from eel_msgs.msg import CurvatureSamples
 
 NAME = "heading_controller"

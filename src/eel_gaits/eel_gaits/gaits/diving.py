@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Dives and climbs: the forward wave with bends in pitch.
+
+Source: Boyer, Porez and Leroyer, J. Nonlinear Sci. 20 (2010), section 7.2.2,
+doi:10.1007/s00332-009-9050-5.
+"""
+
+import math
+from dataclasses import dataclass
+
+from eel_gaits.gaits.numbers import bend_quantity, check_order, instant_quantity
+from eel_gaits.gaits.registry import register
+from eel_gaits.gaits.swimming import Wave
+from eel_gaits.laws.ramp import Ramp
+from eel_gaits.laws.term import Term
+
+
+@dataclass(frozen=True, kw_only=True)
+class Dive(Wave):
+    """The forward wave with a bend in pitch, first one way and later the other: gamma(t) of eq. (66)."""
+
+    pitch_bend: float = bend_quantity(0.5, "pitch curvature of the dive, K_c2")
+    bend_start: float = instant_quantity(1.0, "the bend begins, t1")
+    bend_full: float = instant_quantity(2.0, "the bend is complete, t2")
+    bend_end: float = instant_quantity(3.0, "the body is straight in pitch again, t3")
+    counter_start: float = instant_quantity(6.0, "the opposite bend begins, t4")
+    counter_full: float = instant_quantity(7.0, "the opposite bend is complete, t5")
+    counter_end: float = instant_quantity(8.0, "the body is straight in pitch for good, t6")
+
+    def __post_init__(self):
+        super().__post_init__()
+        for earlier, later in (
+            ("bend_start", "bend_full"),
+            ("bend_full", "bend_end"),
+            ("counter_start", "counter_full"),
+            ("counter_full", "counter_end"),
+        ):
+            check_order(self, earlier, later)
+
+    def bend(self, direction):
+        """The pitch term. It first bends the tail down (direction 1) or up (-1)."""
+        return Term(
+            axis="pitch",
+            amplitude=(direction * self.pitch_bend,),
+            phase=math.pi / 2.0,
+            envelope=(
+                Ramp(self.bend_start, self.bend_full, 1.0),
+                Ramp(self.bend_full, self.bend_end, -1.0),
+                Ramp(self.counter_start, self.counter_full, -1.0),
+                Ramp(self.counter_full, self.counter_end, 1.0),
+            ),
+        )
+
+
+@register(Dive)
+def falling(numbers):
+    """The gait of section 7.2.2, eqs. (62) to (66): forward swimming and a dive to a greater depth."""
+    return (numbers.term(), numbers.bend(1.0))
+
+
+@register(Dive)
+def rising(numbers):
+    """The falling gait upside down: forward swimming and a climb."""
+    return (numbers.term(), numbers.bend(-1.0))

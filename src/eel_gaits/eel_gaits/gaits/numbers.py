@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Numbers that several gaits have, and their smooth start from rest."""
+
+from eel_gaits.input_output.quantity import quantity
+from eel_gaits.laws.ramp import Ramp
+
+
+def period_quantity(default):
+    """The period of a wave [s]."""
+    return quantity(default, unit="s", description="period T of the wave", minimum=1e-3, maximum=1e4)
+
+
+def wavelength_quantity(default, description="wavelength of the wave"):
+    """The wavelength of a wave [m]."""
+    return quantity(default, unit="m", description=description, minimum=1e-4, maximum=1e4)
+
+
+def start_periods_quantity():
+    """The duration of the start from rest, in periods."""
+    description = "length of the smooth start from rest, in periods of the wave"
+    return quantity(1.0, unit="periods", description=description, minimum=0.01, maximum=1e3)
+
+
+def bend_quantity(default, description):
+    """A curvature [rad/m]."""
+    return quantity(default, unit="rad/m", description=description, minimum=-1e5, maximum=1e5)
+
+
+def instant_quantity(default, description):
+    """A time of the law [s]."""
+    return quantity(default, unit="s", description=description + ", in the law's own time", minimum=0.0, maximum=1e6)
+
+
+def start_ramp(numbers):
+    """The envelope of a start from rest, of `numbers` that have `period` and `start_periods`."""
+    return (Ramp(0.0, numbers.start_periods * numbers.period, 1.0),)
+
+
+def check_order(numbers, earlier, later):
+    """`ValueError` unless the instant `later` lies after the instant `earlier`. Both are names in `numbers`."""
+    before, after = getattr(numbers, earlier), getattr(numbers, later)
+    if not after > before:
+        raise ValueError(f"{later} must be > {earlier} ({before:g} s), got {after}")

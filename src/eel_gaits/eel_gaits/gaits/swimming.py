@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Swimming in the horizontal plane: straight on, backward, in a turn, and coasting.
+
+Source: Boyer, Porez and Leroyer, J. Nonlinear Sci. 20 (2010), section 7.2.2,
+doi:10.1007/s00332-009-9050-5.
+"""
+
+import math
+from dataclasses import dataclass
+
+from eel_gaits.gaits.numbers import (
+    bend_quantity,
+    check_order,
+    instant_quantity,
+    period_quantity,
+    start_periods_quantity,
+    start_ramp,
+    wavelength_quantity,
+)
+from eel_gaits.gaits.registry import register
+from eel_gaits.input_output.quantity import Quantities, quantity
+from eel_gaits.laws.ramp import Ramp
+from eel_gaits.laws.term import Term
+
+
+@dataclass(frozen=True, kw_only=True)
+class Wave(Quantities):
+    """A travelling wave of the amplitude a2 X^2 + a1 X + a0 (eq. 65). It starts smoothly over some periods (eq. 63)."""
+
+    period: float = period_quantity(1.0)
+    wavelength: float = wavelength_quantity(1.0)
+    amplitude_0: float = bend_quantity(1.0, "amplitude of the wave at the nose, a0")
+    amplitude_1: float = quantity(
+        0.5, unit="rad/m^2", description="growth of the amplitude with X, a1", minimum=-1e8, maximum=1e8
+    )
+    amplitude_2: float = quantity(
+        2.0, unit="rad/m^3", description="growth of the amplitude with X^2, a2", minimum=-1e11, maximum=1e11
+    )
+    start_periods: float = start_periods_quantity()
+
+    def term(self, direction=1.0):
+        """The yaw wave. It runs to the tail (direction 1) or to the head (-1)."""
+        return Term(
+            axis="yaw",
+            amplitude=(self.amplitude_0, self.amplitude_1, self.amplitude_2),
+            wavelength=direction * self.wavelength,
+            period=self.period,
+            envelope=start_ramp(self),
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Turn(Wave):
+    """The forward wave with a lasting bend in yaw."""
+
+    yaw_bend: float = bend_quantity(0.5, "yaw curvature of the turn; positive: to the right, negative: to the left")
+    bend_start: float = instant_quantity(1.0, "the turn begins")
+    bend_full: float = instant_quantity(2.0, "the bend of the turn is complete")
+
+    def __post_init__(self):
+        super().__post_init__()
+        check_order(self, "bend_start", "bend_full")
+
+
+@register(Quantities)
+def still(numbers):
+    """The straight body, whose shape does not move. Use it to coast, or to push the body."""
+    return ()
+
+
+@register(Wave)
+def straight(numbers):
+    """Forward swimming: the yaw wave of eqs. (63) and (65), from head to tail."""
+    return (numbers.term(),)
+
+
+@register(Wave)
+def backward(numbers):
+    """Backward swimming: the same wave, from tail to head."""
+    return (numbers.term(direction=-1.0),)
+
+
+@register(Turn)
+def turning(numbers):
+    """Forward swimming with a lasting bend in yaw."""
+    ramp = Ramp(numbers.bend_start, numbers.bend_full, 1.0)
+    bend = Term(axis="yaw", amplitude=(numbers.yaw_bend,), phase=math.pi / 2.0, envelope=(ramp,))
+    return (numbers.term(), bend)
