@@ -2,7 +2,7 @@
 # The two commands are `make demo` and `make test`; each does all the set-up itself, inside this folder.
 SHELL := /bin/bash
 .DEFAULT_GOAL := help
-.PHONY: quotes pictures help demo test sanitize aarch64 validation build bench lint soak robustness clean
+.PHONY: docs notebook quotes pictures help demo test sanitize aarch64 validation build bench lint soak robustness clean
 RUN := tools/run.sh
 
 help:   ## this list
@@ -28,6 +28,12 @@ soak: build   ## the long tests (ARGS=... goes to pytest)
 
 bench: build   ## speed and accuracy figures (ARGS=NAME for one of them)
 	@$(RUN) python benchmarks/run.py $(ARGS)
+
+docs: build   ## the site of docs/ in out/docs, links checked
+	@$(RUN) tools/docs.sh
+
+notebook: build   ## run docs/tutorials/swim.ipynb anew, its outputs written into it
+	@$(RUN) tools/docs.sh notebook
 
 pictures: build   ## draw the pictures of the visualiser in docs/images
 	@$(RUN) python tools/pictures.py

@@ -2,8 +2,6 @@
 """The heading controller and the dynamics node together: it starts the run by itself, and steers it to its target."""
 
 import math
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -54,16 +52,17 @@ def test_the_heading_controller_turns_left_and_right_and_repeats_itself(start, s
         assert sum(last) / len(last) == pytest.approx(target, abs=0.2)
 
 
+<<<<<<< HEAD
 def test_the_page_shows_the_controller_and_its_library_example_runs():
     page = (ROOT / "docs/howto/controllers.md").read_text()
     source = (ROOT / "src/eel_gaits/eel_gaits/ros/heading_controller.py").read_text()
+=======
+def test_the_page_shows_the_controller():
+    page = (ROOT / "docs/tutorials/own_controller.md").read_text()
+    source = (ROOT / "src/eel_gaits/eel_gaits/heading_controller.py").read_text()
+>>>>>>> 1152c11 (README halved; tutorials, how-to, reference and explanation; a site; page examples as tests)
     controller = source.partition("# [controller]\n")[2].partition("# [end of controller]")[0].strip()
     assert f"```python\n{controller}\n```" in page
-    example = page.partition("<!-- library -->\n```python\n")[2].partition("```")[0]
-    assert "add_samples" in example
-    ran = subprocess.run([sys.executable, "-c", example], capture_output=True, text=True, timeout=LIMIT)
-    assert ran.returncode == 0, ran.stderr
-    assert float(ran.stdout) > 0.3  # it turns left
 
 
 def test_a_parameter_file_for_all_nodes_makes_none_warn_of_the_others_names(start, tmp_path):

@@ -61,7 +61,7 @@ def test_no_large_file(tracked):
     assert [str(path) for path in tracked if path.stat().st_size > (2_000_000 if path == film else 1_000_000)] == []
 
 
-@pytest.mark.parametrize("name", (*REQUIREMENTS, "test/numpy1.txt"))
+@pytest.mark.parametrize("name", (*REQUIREMENTS, "docs/requirements.txt", "test/numpy1.txt"))
 def test_every_requirement_is_pinned_with_hashes(name):
     entries = (ROOT / name).read_text().replace("\\\n", " ").splitlines()
     packages = [line for line in entries if line.strip() and not line.lstrip().startswith("#")]

@@ -2,7 +2,7 @@
 """`figures`: the paper's figures 5 to 9 from our own runs, further figures, and a page that explains them.
 
 figures                       # into docs/figures
-figures --out out/figures --format png
+figures --out out/figures --format pdf --columns 1       # for a journal
 """
 
 from pathlib import Path
@@ -16,7 +16,7 @@ from eel_dynamics.runs.interrupt import end_on_interrupt
 from eel_dynamics.runs.run import simulate
 from eel_dynamics.studies.figures import corrections, kern_comparison, orders
 from eel_dynamics.studies.figures.notes import page
-from eel_dynamics.studies.figures.style import SETTINGS
+from eel_dynamics.studies.figures.style import SETTINGS, letter_panels
 from eel_gaits import straight
 
 SIZES = {  # inches; name of the file
@@ -25,12 +25,16 @@ SIZES = {  # inches; name of the file
     "figure7_wrench_along_the_body": (6.4, 5.0),
     "figure8_wrench_in_time": (6.8, 5.0),
     "figure9_head_velocity": (6.8, 3.8),
-    "torque_surface": (8.5, 4.4),
+    "torque_surface": (8.5, 6.4),
     "head_path": (7.0, 6.2),
     "power_ledger": (6.8, 5.8),
     "convergence": (7.6, 3.8),
 }
 FORMATS = ("svg", "png")
+DATELESS = {"svg": {"Date": None}, "png": {"Software": None}, "pdf": {"CreationDate": None}}  # the same file each time
+COLUMN, PAGE = 3.4, 7.0  # inches: widths of a journal's column, and of its page
+SIDE_BY_SIDE = ("figure6_configurations", "torque_surface", "convergence")  # always as wide as a page
+JOURNAL = {"font.size": 8.0, "lines.linewidth": 1.0, "pdf.fonttype": 42}  # letters as letters, not as curves
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -58,7 +62,7 @@ def main(arguments: list[str] | None = None) -> int:
         errors = {
             rule.__name__: {drag: rule(drag) for drag in (False, True)} for rule in (orders.in_space, orders.in_time)
         }
-        for path in draw(drawings_of(readings, errors), folder, options.format):
+        for path in draw(drawings_of(readings, errors), folder, options.format, options.columns):
             print(f"{path}  {path.stat().st_size / 1000.0:.0f} kB")
         with replacing(folder / "README.md") as draft:
             draft.write_text(page(readings, control, comparison, errors), encoding="utf-8")
@@ -69,20 +73,33 @@ def main(arguments: list[str] | None = None) -> int:
     return 0
 
 
-def draw(drawings: dict, folder: Path, formats=FORMATS):
-    """Draw each of the `drawings` (`drawings_of`) into `folder`; yields the path of each file."""
+def draw(drawings: dict, folder: Path, formats=FORMATS, columns: int | None = None):
+    """Draw each of the `drawings` (`drawings_of`) into `folder`; yields the path of each file.
+
+    columns: of a journal's page, 1 or 2, that a figure is wide; None: a size for screens.
+    """
     import matplotlib
     from matplotlib.figure import Figure
 
-    with matplotlib.rc_context(SETTINGS):
+    with matplotlib.rc_context(SETTINGS | (JOURNAL if columns else {})):
         for name, fill in drawings.items():
-            figure = Figure(figsize=SIZES[name], layout="constrained")
+            figure = Figure(figsize=size_of(name, columns), layout="constrained")
             fill(figure)
+            letter_panels(figure)
             for suffix in formats:
                 path = folder / f"{name}.{suffix}"
                 with replacing(path) as draft:
-                    figure.savefig(draft, metadata={"Date": None} if suffix == "svg" else {"Software": None})
+                    figure.savefig(draft, format=suffix, metadata=DATELESS[suffix])
                 yield path
+
+
+def size_of(name: str, columns: int | None) -> tuple[float, float]:
+    """Width and height [inches] of a figure."""
+    width, height = SIZES[name]
+    if not columns:
+        return width, height
+    wanted = COLUMN if columns == 1 and name not in SIDE_BY_SIDE else PAGE
+    return wanted, height * max(wanted / width, 0.7)  # curves above one another stay high enough to be read
 
 
 def drawings_of(readings, errors) -> dict:
@@ -111,6 +128,13 @@ def _parser() -> Parser:
         "them; half a minute.",
     )
     parser.add_argument("--out", default="docs/figures", metavar="FOLDER", help="where to (docs/figures)")
-    parser.add_argument("--format", nargs="+", choices=FORMATS, default=FORMATS, help="file formats (svg png)")
+    parser.add_argument("--format", nargs="+", choices=DATELESS, default=FORMATS, help="file formats (svg png)")
+    parser.add_argument(
+        "--columns",
+        type=int,
+        choices=(1, 2),
+        help="columns of a journal's page that a figure is wide: 3.4 or 7 inches, with letters of 8 points; panels side "
+        "by side take both (a size for screens)",
+    )
     parser.add_argument("--accuracy", default="fine", help="of the runs: a preset or a target relative error (fine)")
     return parser

@@ -12,27 +12,30 @@ PERIOD = 1.0  # s, of the falling gait
 
 
 def draw_torque_surface(figure, run):
-    """Draw the internal torques C2 and C3 [N m] over time and X, each as a surface and as a map."""
+    """Draw the internal torques C2 and C3 [N m] over time and X, each as a surface and, below it, as a map."""
     from matplotlib.ticker import MaxNLocator
 
-    grid = figure.add_gridspec(2, 2, width_ratios=(1.0, 1.5))
-    for row, (column, symbol, name) in enumerate(((1, "$C_2$", "pitch"), (2, "$C_3$", "yaw"))):
+    grid = figure.add_gridspec(2, 2, height_ratios=(1.45, 1.0))
+    torques = ((1, "$C_2$, pitch [N m]"), (2, "$C_3$, yaw [N m]"))
+    spaces = [figure.add_subplot(grid[0, k], projection="3d") for k in range(2)]
+    maps = [figure.add_subplot(grid[1, k]) for k in range(2)]
+    for (column, name), space, axes in zip(torques, spaces, maps, strict=True):
         values = run.torque[..., column].T  # (M, T)
         size = np.max(np.abs(values))
-        _draw_surface(figure.add_subplot(grid[row, 0], projection="3d"), run, values, size)
-        axes = figure.add_subplot(grid[row, 1])
+        _draw_surface(space, run, values, size, name)
         levels = np.linspace(-size, size, 20)  # an even number: no line at 0, where the water is still
         drawn = axes.contourf(run.time, run.x, values, levels=levels, cmap="PuOr")
         drawn.set_rasterized(True)
-        axes.set_ylabel("$X_1$ [m], nose to tail")
+        axes.set(xlabel="time t [s]", ylabel="$X_1$ [m], nose to tail")
         axes.invert_yaxis()
-        ticks = MaxNLocator(6, symmetric=True)
-        figure.colorbar(drawn, ax=axes, label=f"{symbol}, {name} [N m]", pad=0.02, ticks=ticks, format="%+.2f")
-    axes.set_xlabel("time t [s]")
+        ticks = MaxNLocator(5, symmetric=True)
+        figure.colorbar(drawn, ax=axes, label=name, pad=0.02, ticks=ticks, format="%+.2f")
 
 
-def _draw_surface(axes, run, values, size):
+def _draw_surface(axes, run, values, size, name):
     """Draw the surface of `values` (M, T) [N m] into 3D `axes`, coarse enough for a small file."""
+    from matplotlib.ticker import MaxNLocator
+
     time, x = run.time[::4], run.x[::5]
     surface = axes.plot_surface(
         *np.meshgrid(time, x),
@@ -42,16 +45,18 @@ def _draw_surface(axes, run, values, size):
         vmax=size,
         rcount=len(x),
         ccount=len(time),
-        edgecolor=(0.4, 0.4, 0.4, 0.3),
-        linewidth=0.2,
+        edgecolor=(0.3, 0.3, 0.3, 0.5),
+        linewidth=0.3,
     )
     surface.set_rasterized(True)
-    axes.view_init(elev=42, azim=-62)
-    axes.set_box_aspect((2.2, 1.0, 0.9), zoom=1.2)
-    axes.set(xticks=[0, 5, 10], yticks=[0.0, 0.5, 1.0], zticks=[], zlim=(-size, size))
-    axes.set_xlabel("t [s]", labelpad=-2)
+    axes.view_init(elev=34, azim=-58)
+    axes.set_box_aspect((1.9, 1.0, 1.0), zoom=1.0)
+    axes.set(xticks=[0, 2, 4, 6, 8, 10], yticks=[0.0, 0.5, 1.0], zlim=(-size, size))
+    axes.zaxis.set_major_locator(MaxNLocator(4, symmetric=True))
+    axes.set_xlabel("time t [s]", labelpad=4)
     axes.set_ylabel("$X_1$ [m]", labelpad=0)
-    axes.tick_params(pad=-2)
+    axes.set_zlabel(name, labelpad=2)
+    axes.tick_params(pad=0)
 
 
 def draw_head_path(figure, run):

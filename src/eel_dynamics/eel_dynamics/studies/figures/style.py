@@ -33,3 +33,10 @@ def plain(axes):
     """Add a grid to `axes` and remove the left and right margins."""
     axes.grid(alpha=0.3)
     axes.margins(x=0.0)
+
+
+def letter_panels(figure):
+    """Put (a), (b), ... above the panels of a figure, where it has more than one; colour bars have none."""
+    panels = [axes for axes in figure.axes if axes.get_label() != "<colorbar>"]
+    for number, axes in enumerate(panels if len(panels) > 1 else ()):
+        axes.set_title(f"({chr(ord('a') + number)})", loc="left", fontsize="medium", fontweight="bold")

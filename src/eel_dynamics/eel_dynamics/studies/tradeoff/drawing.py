@@ -108,11 +108,11 @@ def _draw_models(axes, models: list[Model], quantity: str, floor: float):
             model.name.split(" (")[0],
             (1.0, value),
             xycoords=axes.get_yaxis_transform(),
-            xytext=(1.03, 10.0**height),
+            xytext=(1.08, 10.0**height),
             textcoords=axes.get_yaxis_transform(),
             fontsize="small",
             va="center",
-            arrowprops={"arrowstyle": "-", "color": GREY, "linewidth": 0.6},
+            arrowprops={"arrowstyle": "-", "color": GREY, "linewidth": 0.6, "relpos": (0.0, 0.5), "shrinkB": 0},
         )
 
 

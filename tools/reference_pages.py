@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The reference pages that follow from the code, for `make docs`: messages, parameters and commands.
+
+The messages are their files. Parameters come from the dataclasses that the nodes declare them from; commands and nodes
+tell their own `--help`. The pages are not kept in the repository.
+"""
+
+import subprocess
+import sys
+from dataclasses import fields
+from pathlib import Path
+
+from eel_dynamics.model.scene import Scene
+from eel_dynamics.ros.parameters import DynamicsParameters
+from eel_gaits.ros.heading_controller import HeadingParameters
+from eel_gaits.input_output.quantity import limits
+from eel_gaits.gaits.registry import GAITS, Transition
+from eel_gaits.gaits.settings import numbers_of
+from eel_viz.settings import MarkerSettings, Settings
+
+ROOT = Path(__file__).resolve().parent.parent
+REFERENCE = ROOT / "docs" / "reference"
+NODES = {  # name of the node: heading, prefix and dataclass of its parameters
+    "gait_generator": [("", "", Transition), *((f"gait {name}", "", numbers_of(name)) for name in sorted(GAITS))],
+    "dynamics": [("", "", DynamicsParameters), ("scene", "scene.", Scene)],
+    "heading_controller": [("", "", HeadingParameters)],
+    "visualiser": [("", "", Settings)],
+    "markers": [("", "", MarkerSettings)],
+}
+EXTRA = {"gait_generator": {"gait"}}
+COMMANDS = ("simulate", "sweep", "tradeoff", "stability", "figures", "record", "eel_echo", "replay", "render")
+
+
+def parameter_names(node: str) -> set[str]:
+    """The names of all parameters of a node."""
+    return {prefix + item.name for _, prefix, kind in NODES[node] for item in fields(kind)} | EXTRA.get(node, set())
+
+
+def messages() -> str:
+    """Every message and service, as its file tells it."""
+    parts = ["# Messages and services", "", "All units are SI, angles radians. `eel_msgs` holds:"]
+    for folder, suffix in (("msg", "msg"), ("srv", "srv")):
+        for path in sorted((ROOT / "src" / "eel_msgs" / folder).glob(f"*.{suffix}")):
+            parts += ["", f"## {path.stem}", "", "```text", path.read_text(encoding="utf-8").rstrip(), "```"]
+    return "\n".join(parts) + "\n"
+
+
+def parameters() -> str:
+    """A table for each node; of the gait generator one for each gait."""
+    parts = ["# Parameters of the nodes", "", "`ros2 param describe NODE NAME` tells the same."]
+    for node, tables in NODES.items():
+        parts += ["", f"## {node}"]
+        for heading, prefix, kind in tables:
+            if fields(kind):
+                parts += ["", f"### {heading}"] if heading else []
+                parts += ["", "| parameter | default | unit | must be | meaning |", "|---|---|---|---|---|"]
+                parts += [_row(prefix, item) for item in fields(kind)]
+    return "\n".join(parts) + "\n"
+
+
+def _row(prefix: str, item) -> str:
+    about = item.metadata
+    must = f"one of {', '.join(about['choices'])}" if "choices" in about else limits(about)
+    default = "" if item.default is None else f"`{item.default!r}`"
+    cells = f"`{prefix}{item.name}`", default, about["unit"], must, about["description"]
+    return f"| {' | '.join(cell.replace('|', '&#124;') for cell in cells)} |"
+
+
+def commands() -> str:
+    """What `--help` of every command and node says."""
+    parts = ["# Commands", ""]
+    for name in (*COMMANDS, *NODES):
+        told = subprocess.run([name, "--help"], capture_output=True, text=True, check=True, timeout=60)
+        parts += [f"## {name}", "", "```text", told.stdout.rstrip(), "```", ""]
+    return "\n".join(parts)
+
+
+def main() -> int:
+    """Write the three pages."""
+    for page in (messages, parameters, commands):
+        path = REFERENCE / f"{page.__name__}.md"
+        path.write_text(page(), encoding="utf-8")
+        print(path.relative_to(ROOT))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
