@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The site of these pages, built by Sphinx: `make docs` leaves it in out/docs."""
 
+import re
+from pathlib import Path
+
 project = "Eel simulator"
 author = "Eel simulator maintainers"
 copyright = "Eel simulator maintainers, Apache-2.0"
@@ -23,4 +26,21 @@ html_theme = "furo"
 html_title = project
 html_copy_source = False
 html_show_sphinx = False
-html_static_path = []
+LINK_OUT = re.compile(r"\[([^\]]+)\]\((\.\./[^)#]+)\)")
+
+
+def without_links_to_folders(app, name, source):
+    """Outside docs/ the site offers single files of code; folders and pages there are named, not linked."""
+    folder, root = (Path(app.srcdir) / name).parent, Path(app.srcdir).resolve()
+
+    def shown(link: re.Match) -> str:
+        target = (folder / link[2]).resolve()
+        named = root not in target.parents and (target.is_dir() or target.suffix == ".md")
+        return link[1] if named else link[0]
+
+    source[0] = LINK_OUT.sub(shown, source[0])
+
+
+def setup(app):
+    """What Sphinx calls first."""
+    app.connect("source-read", without_links_to_folders)

@@ -52,15 +52,9 @@ def test_the_heading_controller_turns_left_and_right_and_repeats_itself(start, s
         assert sum(last) / len(last) == pytest.approx(target, abs=0.2)
 
 
-<<<<<<< HEAD
-def test_the_page_shows_the_controller_and_its_library_example_runs():
-    page = (ROOT / "docs/howto/controllers.md").read_text()
-    source = (ROOT / "src/eel_gaits/eel_gaits/ros/heading_controller.py").read_text()
-=======
 def test_the_page_shows_the_controller():
     page = (ROOT / "docs/tutorials/own_controller.md").read_text()
-    source = (ROOT / "src/eel_gaits/eel_gaits/heading_controller.py").read_text()
->>>>>>> 1152c11 (README halved; tutorials, how-to, reference and explanation; a site; page examples as tests)
+    source = (ROOT / "src/eel_gaits/eel_gaits/ros/heading_controller.py").read_text()
     controller = source.partition("# [controller]\n")[2].partition("# [end of controller]")[0].strip()
     assert f"```python\n{controller}\n```" in page
 

@@ -83,7 +83,9 @@ def check(words: list[str]):
     elif name in RUN:
         assert main_of(name)(rest) == 0, words
     elif name in COMMANDS:
-        options = [word for word in rest[: (rest.index("--ros-args") if "--ros-args" in rest else None)] if word[0] == "-"]
+        options = [
+            word for word in rest[: (rest.index("--ros-args") if "--ros-args" in rest else None)] if word[0] == "-"
+        ]
         assert [option for option in options if not re.search(rf"(?<!\S){option}\b", help_of(name))] == [], words
     elif name == "make":
         assert re.search(rf"^{rest[0]}:", (ROOT / "Makefile").read_text(), re.MULTILINE), words

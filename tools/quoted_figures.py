@@ -65,12 +65,13 @@ def speed() -> str:
     longer = [falling.value(case) for case in cases]
     lines += [
         "",
-        "Errors are of the head's position at the end, by its path, with laminar friction, without the run's estimate of its own",
-        f"error, which takes {min(longer):.1f} to {max(longer):.1f} times as long. One evaluation takes",
-        f"{evaluation.value('24 nodes'):.2g} us at 24 nodes ({link(evaluation)}).",
+        "Errors are of the head's position at the end, by its path, with laminar friction. A run that measures",
+        f"its own error, as `simulate` does, takes {min(longer):.1f} to {max(longer):.1f} times as long.",
+        f"One evaluation takes {evaluation.value('24 nodes'):.2g} us at 24 nodes ({link(evaluation)}).",
         f"The paper's own scheme takes {span(scheme.ratios('motion alone'))} at equal error ({link(scheme)}).",
-        "Other simulators on the same gait, with less physics of the water, at equal error against their own converged answers",
-        f"({link(peers)}):",
+        "",
+        "Other simulators on the same gait, with less physics of the water, at equal error against their own converged",
+        f"answers ({link(peers)}):",
         f"MuJoCo with servos, 10 links, {span(peers.ratios('10 links'))};",
         f"PyElastica {span(peers.ratios('[0-9]+ elements'))}.",
     ]

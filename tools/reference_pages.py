@@ -12,10 +12,10 @@ from pathlib import Path
 
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.ros.parameters import DynamicsParameters
-from eel_gaits.ros.heading_controller import HeadingParameters
-from eel_gaits.input_output.quantity import limits
 from eel_gaits.gaits.registry import GAITS, Transition
 from eel_gaits.gaits.settings import numbers_of
+from eel_gaits.input_output.quantity import limits
+from eel_gaits.ros.heading_controller import HeadingParameters
 from eel_viz.settings import MarkerSettings, Settings
 
 ROOT = Path(__file__).resolve().parent.parent

@@ -133,8 +133,8 @@ def _parser() -> Parser:
         "--columns",
         type=int,
         choices=(1, 2),
-        help="columns of a journal's page that a figure is wide: 3.4 or 7 inches, with letters of 8 points; panels side "
-        "by side take both (a size for screens)",
+        help="columns of a journal's page that a figure is wide, 3.4 or 7 inches, with letters of 8 points; panels "
+        "side by side take both (a size for screens)",
     )
     parser.add_argument("--accuracy", default="fine", help="of the runs: a preset or a target relative error (fine)")
     return parser
