@@ -121,12 +121,13 @@ class Law(_Shared):
         self,
         tables: LawTables,
         origin: float,
-        waves: list[tuple[float, Sequence[tuple[float, float, float]] | None, int, int]],
+        waves: list[tuple[float, Sequence[Sequence[tuple[float, float, float]]], int, int]],
         segment: tuple[int, float, float] | None,
         blend: tuple[int, float, float] | None,
     ) -> None:
-        """origin [s]: simulation time of the law's own t = 0. waves: (period [s], ramps, row of the sine, row of the
-        cosine); period 0: constant in time; ramps (start [s], end [s], delta), or None for an envelope of 1. segment:
+        """origin [s]: simulation time of the law's own t = 0. waves: (period [s], envelope, row of the sine, row of
+        the cosine); period 0: constant in time; envelope: factors that multiply, each a row of ramps (start [s], end
+        [s], delta) that add up from 0; no factor: 1. segment:
         (first of its twelve rows, start [s], end [s]) of a quintic between two instants of a controller: for each axis
         value, rate and acceleration at both. blend: (first of its six rows, start [s], end [s]) of a difference that
         dies out. `ValueError` for a row that the tables do not have."""

@@ -50,13 +50,14 @@ py::dict layout(std::size_t samples, std::size_t stations, bool wrench, bool loa
 
 Wave wave_from(const py::tuple& wave)
 {
-    Wave result{
-        wave[0].cast<double>(), !wave[1].is_none(), {}, wave[2].cast<std::size_t>(), wave[3].cast<std::size_t>()};
-    if (result.enveloped)
-        for (const py::handle ramp : wave[1]) {
+    Wave result{wave[0].cast<double>(), {}, wave[2].cast<std::size_t>(), wave[3].cast<std::size_t>()};
+    for (const py::handle factor : wave[1]) {
+        auto& ramps = result.factors.emplace_back();
+        for (const py::handle ramp : factor) {
             const auto [start, end, delta] = ramp.cast<std::tuple<double, double, double>>();
-            result.ramps.push_back({start, end, delta});
+            ramps.push_back({start, end, delta});
         }
+    }
     return result;
 }
 

@@ -6,7 +6,7 @@ import pytest
 from cases import SPLINE_KNOTS, random_law
 from library_state import Scene, Simulation, distance, simulate
 
-from eel_gaits import Law, falling, still, straight
+from eel_gaits import Law, falling, still, straight, turning
 
 STEP = 1e-3
 X = np.array([0.0, 0.1, 0.35, 0.6, 1.0])
@@ -139,6 +139,17 @@ def test_samples_take_over_from_a_law_that_lies_still():
         simulation.add_samples(*samples_of(law_of(7), 0.1 + 0.05 * k, x))
     simulation.advance(0.9)
     assert simulation.sampled and np.isfinite(simulation.observe().position).all()
+
+
+def test_a_law_that_ends_while_it_begins_is_swum_as_it_is_written():
+    """Its envelope is the product of two sums of ramps."""
+    law = straight().followed_by(turning(), at=0.6, blend=0.5).followed_by(straight(), at=0.9, blend=0.4)
+    assert max(ramp.factor for term in law.terms for ramp in term.envelope) == 2
+    run = simulate(law, 1.6, accuracy="draft", estimate=False, sample_period=0.05, stations=X)
+    for time, curvature, rate in zip(run.time, run.curvature, run.curvature_rate, strict=True):
+        expected = law.curvature(time, X)
+        np.testing.assert_allclose(curvature, expected[0], rtol=0.0, atol=1e-12)
+        np.testing.assert_allclose(rate, expected[1], rtol=0.0, atol=1e-11)
 
 
 def test_the_grid_goes_back_when_fine_samples_have_passed():

@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Curvature laws of elongated swimmers, and a ROS 2 node that publishes them. Nothing imported here needs ROS."""
 
-from eel_gaits.gaits.diving import falling, rising
+from eel_gaits.gaits.bursts import burst_and_coast, c_start
+from eel_gaits.gaits.diving import diving, falling, rising, spiral
+from eel_gaits.gaits.fish import anguilliform, carangiform
 from eel_gaits.gaits.kern import kern_efficient, kern_fast
 from eel_gaits.gaits.registry import GAITS, gait
-from eel_gaits.gaits.rolling import helix, rolling
+from eel_gaits.gaits.rolling import helix, roll_over, rolling
+from eel_gaits.gaits.snakes import joint_wave, serpenoid
 from eel_gaits.gaits.swimming import backward, still, straight, turning
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.ramp import Ramp
@@ -16,15 +19,24 @@ __all__ = [
     "Law",
     "Ramp",
     "Term",
+    "anguilliform",
     "backward",
+    "burst_and_coast",
+    "c_start",
+    "carangiform",
+    "diving",
     "falling",
     "gait",
     "helix",
+    "joint_wave",
     "kern_efficient",
     "kern_fast",
     "natural_spline",
     "rising",
+    "roll_over",
     "rolling",
+    "serpenoid",
+    "spiral",
     "still",
     "straight",
     "turning",

@@ -13,7 +13,7 @@ def numbers(low, high):
 @st.composite
 def ramps(draw):
     start = draw(numbers(-5.0, 5.0))
-    return Ramp(start, start + draw(numbers(0.05, 3.0)), draw(numbers(-2.0, 2.0)))
+    return Ramp(start, start + draw(numbers(0.05, 3.0)), draw(numbers(-2.0, 2.0)), draw(st.integers(0, 2)))
 
 
 @st.composite

@@ -100,7 +100,7 @@ def test_every_gait_starts_smoothly_from_the_straight_body(name):
         assert not each.any()
     near = [np.abs(each).max() for each in law.curvature(1e-4, STATIONS)]
     assert near[0] < 1e-7 and near[1] < 1e-3 and near[2] < 1.0
-    assert name == "still" or np.abs(law.curvature(3.1, STATIONS)[0]).max() > 0.1
+    assert name == "still" or np.abs(law.curvature(1.7, STATIONS)[0]).max() > 0.1
 
 
 @pytest.mark.parametrize("name", sorted(GAITS))
@@ -118,7 +118,8 @@ def test_every_number_tells_its_unit_bounds_and_meaning(name):
 def test_every_number_changes_the_law(name):
     """No number is declared and then forgotten."""
     for entry in dataclasses.fields(GAITS[name].numbers):
-        changed = gait(name, **{entry.name: 0.9 * entry.default})
+        value = 0.9 * entry.default or 0.1
+        changed = gait(name, **{entry.name: value})
         assert changed.terms != gait(name).terms, entry.name
 
 
@@ -132,7 +133,7 @@ def test_transition_belongs_to_the_law():
     [
         (
             lambda: gait("swim"),
-            "unknown gait 'swim', must be one of backward, falling, helix, kern_efficient, kern_fast",
+            "unknown gait 'swim', must be one of anguilliform, backward, burst_and_coast, c_start, carangiform",
         ),
         (lambda: gait(3), "unknown gait 3, must be one of"),
         (lambda: gait(["falling"]), "unknown gait ['falling'], must be one of"),

@@ -27,7 +27,9 @@ def ramp_jet(ramp, t):
 
 def term_jet(term, t, x):
     """A term from the words of CurvatureTerm, with its derivatives by automatic differentiation."""
-    envelope = sum((ramp_jet(ramp, t) for ramp in term.envelope), Jet(0.0)) if term.envelope else Jet(1.0)
+    envelope = Jet(1.0)
+    for factor in {ramp.factor for ramp in term.envelope}:
+        envelope *= sum((ramp_jet(ramp, t) for ramp in term.envelope if ramp.factor == factor), Jet(0.0))
     if term.knots:
         amplitude = natural_spline(term.knots, term.amplitude, x)
     else:
@@ -71,7 +73,8 @@ def test_term_has_the_derivatives_of_its_formula(term, t):
     got = term.curvature(t, STATIONS)
     frequency = 2.0 * math.pi / term.period if term.period else 0.0
     fastest = max([1.0, frequency, *(7.0 / (ramp.end - ramp.start) for ramp in term.envelope)])
-    size = 1.0 + np.max(np.abs(term.amplitude_at(STATIONS))) * (1.0 + sum(abs(ramp.delta) for ramp in term.envelope))
+    height = math.prod(1.0 + abs(ramp.delta) for ramp in term.envelope)
+    size = 1.0 + np.max(np.abs(term.amplitude_at(STATIONS))) * height
     for ours, theirs in zip(got, (expected.value, expected.rate, expected.acceleration), strict=True):
         np.testing.assert_allclose(ours, np.broadcast_to(theirs, 6), rtol=0.0, atol=1e-12 * size * fastest**2)
 

@@ -37,15 +37,25 @@ struct Ramp {
 
 // Terms of the law with the same axis, period and envelope.
 struct Wave {
-    double period;   // [s], 0: constant in time
-    bool enveloped;  // false: the envelope is 1
-    std::vector<Ramp> ramps;
-    std::size_t sine, cosine;  // their rows: of sin(kX + phase) and cos(kX + phase)
+    double period;                           // [s], 0: constant in time
+    std::vector<std::vector<Ramp>> factors;  // of the envelope: their ramps add up, and they multiply; none: 1
+    std::size_t sine, cosine;                // their rows: of sin(kX + phase) and cos(kX + phase)
+
+    Jet envelope(double time) const
+    {
+        Jet product{1.0, 0.0, 0.0};
+        for (const std::vector<Ramp>& ramps : factors) {
+            Jet sum{};
+            for (const Ramp& ramp : ramps) ramp.add_to(sum, time);
+            product = {product[0] * sum[0], product[1] * sum[0] + product[0] * sum[1],
+                       product[2] * sum[0] + 2.0 * product[1] * sum[1] + product[0] * sum[2]};
+        }
+        return product;
+    }
 
     void set(std::vector<Jet>& factor, double time) const
     {
-        Jet e{enveloped ? 0.0 : 1.0, 0.0, 0.0};
-        for (const Ramp& ramp : ramps) ramp.add_to(e, time);
+        const Jet e = envelope(time);
         if (period == 0.0) {
             factor[sine] = e;
             return;

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 from eel_gaits.laws.law import Law
-from eel_gaits.laws.ramp import Ramp
+from eel_gaits.laws.ramp import height_of
 from eel_gaits.laws.term import amplitude_of
 
 from eel_dynamics.curvature.law_waves import groups_of
@@ -39,21 +39,12 @@ def motions_of(law: Law, length: float) -> tuple[GroupMotion, ...]:
     """Motions of the terms of `law` on a body of `length` [m], grouped by axis, period and envelope."""
     found = []
     for (_, period, envelope), terms in groups_of(law).items():
-        stroke_rms = math.sqrt(0.5 * _moved(tuple(terms), period > 0.0, length)) / length * _height(envelope)
+        stroke_rms = math.sqrt(0.5 * _moved(tuple(terms), period > 0.0, length)) / length * height_of(envelope)
         if period > 0.0:
             found.append(GroupMotion(2.0 * math.pi * stroke_rms, period, False))
         elif envelope:
             found.append(GroupMotion(2.0 * stroke_rms, min(ramp.end - ramp.start for ramp in envelope), True))
     return tuple(found)
-
-
-def _height(envelope: tuple[Ramp, ...]) -> float:
-    """Greatest value or change of an envelope."""
-    level, heights = 0.0, [] if envelope else [1.0]
-    for ramp in sorted(envelope, key=lambda ramp: ramp.end):
-        level += ramp.delta
-        heights += [abs(level), abs(ramp.delta)]
-    return max(heights)
 
 
 @lru_cache(maxsize=4096)

@@ -16,6 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 from eel_gaits.laws.law import Law
+from eel_gaits.laws.ramp import factors_of
 from eel_gaits.laws.term import amplitude_of
 
 import eel_core
@@ -80,7 +81,7 @@ class TabulatedLaw(NamedTuple):
     rows: np.ndarray  # (m, width), as `Tabulation.columns` has them
     axis: np.ndarray  # (m,) of the rows, 0 pitch, 1 yaw
     tables: eel_core.LawTables | None = None  # the rows for the compiled mechanics, where several runs share them
-    waves: tuple = ()  # as `eel_core.Law` takes them: period [s], ramps, row of the sine, row of the cosine
+    waves: tuple = ()  # as `eel_core.Law` takes them: period [s], envelope, row of the sine, row of the cosine
     origin: float = 0.0  # s, simulation time of the law's own t = 0
     segment: tuple[float, float] | None = None  # s, of the quintic between two samples of a controller
     law: Law | None = None  # that was tabulated
@@ -97,7 +98,7 @@ class TabulatedLaw(NamedTuple):
     @staticmethod
     def constant(value: np.ndarray) -> "TabulatedLaw":
         """A shape that does not move. value (2, width): its rows in pitch and yaw."""
-        return TabulatedLaw(np.array(value), np.arange(2), waves=tuple((0.0, None, row, row) for row in range(2)))
+        return TabulatedLaw(np.array(value), np.arange(2), waves=tuple((0.0, (), row, row) for row in range(2)))
 
     @staticmethod
     def between(rows: np.ndarray, start: float, end: float) -> "TabulatedLaw":
@@ -138,10 +139,13 @@ def _tabulated(law: Law | None, tabulation: Tabulation) -> TabulatedLaw:
         return _straight(tabulation)
     moving = tuple((axis, period > 0.0, tuple(terms)) for (axis, period, _), terms in groups.items())
     rows, axis, tables, sine, cosine = _rows_of(moving, tabulation)
-    ramps = [[(ramp.start, ramp.end, ramp.delta) for ramp in envelope] for _, _, envelope in groups]
+    envelopes = [
+        [[(ramp.start, ramp.end, ramp.delta) for ramp in factor] for factor in factors_of(envelope)]
+        for _, _, envelope in groups
+    ]
     periods = [period for _, period, _ in groups]
-    waves = tuple(zip(periods, (envelope or None for envelope in ramps), sine, cosine, strict=True))
-    ends = {time for envelope in ramps for start, end, _ in envelope for time in (start, end)}
+    waves = tuple(zip(periods, envelopes, sine, cosine, strict=True))
+    ends = {time for _, _, envelope in groups for ramp in envelope for time in (ramp.start, ramp.end)}
     return TabulatedLaw(rows, axis, tables, waves, law=law, ramp_ends=tuple(sorted(ends)))
 
 

@@ -5,7 +5,6 @@ What messages do not carry is computed from them: the head's acceleration and th
 of mass by splines along the body.
 """
 
-import math
 import warnings
 from collections.abc import Iterable
 from dataclasses import replace
@@ -143,20 +142,20 @@ def _law(once: dict) -> Law:
         warnings.warn(f"there are {len(told)} laws: the run's law is the last one", stacklevel=4)
     message = told[-1]
     origin = message.header.stamp.sec + 1e-9 * message.header.stamp.nanosec
-    return Law(*(_term(term, origin) for term in message.terms), name=message.name, transition=message.transition)
+    law = Law(*map(_term, message.terms), name=message.name, transition=message.transition)
+    return law.delayed(origin)
 
 
-def _term(term, origin: float) -> Term:
-    ramps = tuple(Ramp(ramp.start + origin, ramp.end + origin, ramp.delta) for ramp in term.envelope)
-    later = math.remainder(2.0 * math.pi * origin / term.period, 2.0 * math.pi) if term.period else 0.0
+def _term(term) -> Term:
+    ramps = (Ramp(ramp.start, ramp.end, ramp.delta, getattr(ramp, "factor", 0)) for ramp in term.envelope)
     return Term(
         axis=AXIS_OF_NUMBER[term.axis],
         amplitude=tuple(term.amplitude),
         knots=tuple(term.knots),
         wavelength=term.wavelength,
         period=term.period,
-        phase=term.phase + later,
-        envelope=ramps,
+        phase=term.phase,
+        envelope=tuple(ramps),
     )
 
 

@@ -8,9 +8,10 @@ doi:10.1007/s00332-009-9050-5.
 import math
 from dataclasses import dataclass
 
-from eel_gaits.gaits.numbers import bend_quantity, check_order, instant_quantity
+from eel_gaits.gaits.numbers import bend_quantity, check_order, constant_bend, instant_quantity
 from eel_gaits.gaits.registry import register
 from eel_gaits.gaits.swimming import Wave
+from eel_gaits.input_output.quantity import quantity
 from eel_gaits.laws.ramp import Ramp
 from eel_gaits.laws.term import Term
 
@@ -52,6 +53,40 @@ class Dive(Wave):
         )
 
 
+@dataclass(frozen=True, kw_only=True)
+class Slope(Wave):
+    """The forward wave with one bend in pitch, after which the body swims on down a slope."""
+
+    pitch_bend: float = bend_quantity(0.4, "pitch curvature of the dive; positive: down, negative: up")
+    bend_start: float = instant_quantity(1.0, "the bend begins")
+    bend_full: float = instant_quantity(2.5, "the bend is complete")
+    unbend_start: float = instant_quantity(3.0, "the body begins to straighten in pitch")
+    bend_end: float = instant_quantity(4.5, "the body is straight in pitch again")
+
+    def __post_init__(self):
+        super().__post_init__()
+        check_order(self, "bend_start", "bend_full")
+        check_order(self, "unbend_start", "bend_end")
+
+    def bend(self):
+        """The pitch term."""
+        ramps = Ramp(self.bend_start, self.bend_full, 1.0), Ramp(self.unbend_start, self.bend_end, -1.0)
+        return constant_bend("pitch", self.pitch_bend, ramps)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Spiral(Wave):
+    """The forward wave with lasting bends in yaw and pitch, after a first bend in pitch that lowers the head."""
+
+    yaw_bend: float = bend_quantity(2.0, "yaw curvature of the spiral; positive: to the right, negative: to the left")
+    pitch_bend: float = bend_quantity(0.5, "pitch curvature of the spiral; positive: down, negative: up")
+    first_pitch_bend: float = bend_quantity(0.2, "pitch curvature of the entry; positive: down, negative: up")
+    entry_start: float = instant_quantity(1.0, "the entry begins; it lasts two entry times")
+    entry_time: float = quantity(
+        1.0, unit="s", description="duration of each of the entry's ramps", minimum=1e-3, maximum=1e4
+    )
+
+
 @register(Dive)
 def falling(numbers):
     """The gait of section 7.2.2, eqs. (62) to (66): forward swimming and a dive to a greater depth."""
@@ -62,3 +97,23 @@ def falling(numbers):
 def rising(numbers):
     """The falling gait upside down: forward swimming and a climb."""
     return (numbers.term(), numbers.bend(-1.0))
+
+
+@register(Slope)
+def diving(numbers):
+    """Forward swimming and one bend in pitch: the body then swims straight on down a slope."""
+    return (numbers.term(), *numbers.bend())
+
+
+@register(Spiral)
+def spiral(numbers):
+    """A descent on a helix. Constant bends turn the body by the same screw motion in each period."""
+    start, time = numbers.entry_start, numbers.entry_time
+    middle, end = start + time, start + 2.0 * time
+    lasting = (Ramp(middle, end, 1.0),)
+    return (
+        numbers.term().scaled(math.copysign(1.0, numbers.yaw_bend)),  # so that left and right are mirror images
+        *constant_bend("pitch", numbers.first_pitch_bend, (Ramp(start, middle, 1.0), Ramp(middle, end, -1.0))),
+        *constant_bend("yaw", numbers.yaw_bend, lasting),
+        *constant_bend("pitch", numbers.pitch_bend, lasting),
+    )

@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Numbers that several gaits have, and their smooth start from rest."""
 
+import math
+
 from eel_gaits.input_output.quantity import quantity
 from eel_gaits.laws.ramp import Ramp
+from eel_gaits.laws.term import Term
 
 
 def period_quantity(default):
@@ -29,6 +32,21 @@ def bend_quantity(default, description):
 def instant_quantity(default, description):
     """A time of the law [s]."""
     return quantity(default, unit="s", description=description + ", in the law's own time", minimum=0.0, maximum=1e6)
+
+
+def length_quantity():
+    """The length of the body [m]."""
+    return quantity(1.0, unit="m", description="body length L", minimum=1e-4, maximum=1e3)
+
+
+def waves_quantity(default):
+    """The number of waves on the body."""
+    return quantity(default, unit="", description="waves on the body, L / wavelength", minimum=1e-3, maximum=100.0)
+
+
+def constant_bend(axis, bend, envelope):
+    """The terms of a `bend` [rad/m] of the whole body about an `axis`, with an `envelope`. None where it is 0."""
+    return (Term(axis=axis, amplitude=(bend,), phase=0.5 * math.pi, envelope=envelope),) if bend else ()
 
 
 def start_ramp(numbers):

@@ -12,7 +12,8 @@ from eel_gaits.gaits.numbers import (
     wavelength_quantity,
 )
 from eel_gaits.gaits.registry import register
-from eel_gaits.input_output.quantity import Quantities
+from eel_gaits.input_output.quantity import Quantities, quantity
+from eel_gaits.laws.ramp import Ramp
 from eel_gaits.laws.term import Term
 
 
@@ -37,10 +38,37 @@ class Helix(Quantities):
     start_periods: float = start_periods_quantity()
 
 
+@dataclass(frozen=True, kw_only=True)
+class RollOver(Quantities):
+    """A bend whose direction turns about the backbone for some periods."""
+
+    period: float = period_quantity(1.0)
+    bend: float = bend_quantity(0.3, "amplitude of the bend; positive: the left side goes up, negative: the right side")
+    start_periods: float = quantity(
+        3.0, unit="periods", description="length of the start and of the end", minimum=0.01, maximum=1e3
+    )
+    hold_periods: float = quantity(
+        1.1, unit="periods", description="time between start and end", minimum=0.0, maximum=1e3
+    )
+
+
 @register(Roll)
 def rolling(numbers):
     """A body bent into an arc whose direction turns about the backbone."""
     return _pair(numbers, wavelength=0.0)
+
+
+@register(RollOver)
+def roll_over(numbers):
+    """Half a turn about the backbone: while a bend turns about it, body and water turn the other way."""
+    start, end = numbers.start_periods * numbers.period, numbers.hold_periods * numbers.period
+    end += start
+    envelope = (Ramp(0.0, start, 1.0), Ramp(end, end + start, -1.0))
+    shared = {"period": numbers.period, "envelope": envelope}
+    return (
+        Term(axis="pitch", amplitude=(-numbers.bend,), phase=math.pi / 2.0, **shared),
+        Term(axis="yaw", amplitude=(abs(numbers.bend),), **shared),
+    )
 
 
 @register(Helix)

@@ -16,7 +16,10 @@ from eel_gaits.gaits.registry import GAITS, Transition, find
 from eel_gaits.input_output.quantity import Quantities
 from eel_gaits.input_output.wording import shown
 
-TURNS = {"left_bend": "yaw_bend"}  # number of the node: that of the gait, which has the opposite sign
+TURNS = {
+    "left_bend": "yaw_bend",
+    "left_angle": "yaw_angle",
+}  # number of the node: that of the gait, which has the opposite sign
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,6 +80,12 @@ class Settings:
         return find(self.gait)(**numbers)
 
 
+def _as_left(description):
+    """The description of a number whose sign is turned."""
+    about, _, _ = description.partition("; positive:")
+    return f"{about}; positive: to the left, negative: to the right"
+
+
 @cache
 def numbers_of(gait):
     """The class of the node's numbers of a `gait`. `ValueError` for an unknown gait."""
@@ -90,7 +99,7 @@ def _as_ros_expects(entry: Field) -> Field:
     for name, opposite in TURNS.items():
         if entry.name == opposite:
             metadata = entry.metadata | {"minimum": -entry.metadata["maximum"], "maximum": -entry.metadata["minimum"]}
-            metadata["description"] = "yaw curvature of the turn; positive: to the left, negative: to the right"
+            metadata["description"] = _as_left(metadata["description"])
             turned = field(default=-entry.default, metadata=metadata)
             turned.name = name
             return turned

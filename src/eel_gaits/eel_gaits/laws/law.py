@@ -5,8 +5,10 @@ A law is a sum of terms. Each term is a wave in pitch (K2) or yaw (K3) of the ba
 
     K(t, X) = sum over terms of  envelope(t) amplitude(X) sin(2 pi (X / wavelength - t / period) + phase)
 
-A quotient is dropped where its divisor is 0. An envelope is a sum of ramps. Equations (62) to (66) of Boyer, Porez and
-Leroyer, J. Nonlinear Sci. 20 (2010), 47-79, doi:10.1007/s00332-009-9050-5, are such a sum.
+A quotient is dropped where its divisor is 0. An envelope is a sum of ramps, or a product of such sums. Equations (62)
+to (66) of Boyer, Porez and Leroyer, J. Nonlinear Sci. 20 (2010), 47-79, doi:10.1007/s00332-009-9050-5, are such a law.
+
+Laws add (`+`), scale (`*`), and are delayed, mirrored, ramped in and out, and followed by one another.
 
 Section axes (the paper's): 1 along the backbone from head to tail, 2 lateral, 3 up. K2 > 0 bends the tail down,
 K3 > 0 bends it towards +2. X runs from 0 at the nose to the body's length at the tail.
@@ -93,6 +95,73 @@ class Law:
         for term in self.terms:
             total[:, :, AXES[term.axis]] += term.curvature(time, x)
         return total[0], total[1], total[2]
+
+    # -- laws made of laws
+
+    def __add__(self, other):
+        """The sum of two laws. Its transition is the longer one."""
+        if not isinstance(other, Law):
+            return NotImplemented
+        name = self.name if self.name == other.name else f"{self.name} + {other.name}"[:MAXIMUM_NAME]
+        return Law(*self.terms, *other.terms, name=name, transition=max(self.transition, other.transition))
+
+    def __mul__(self, scale):
+        """The law with `scale` times its curvature."""
+        if isinstance(scale, Law):
+            return NotImplemented
+        scale = number("scale", scale)
+        return self._of(term.scaled(scale) for term in self.terms)
+
+    __rmul__ = __mul__
+
+    def delayed(self, delay):
+        """The same motion, later by `delay` [s]; earlier where it is negative."""
+        delay = number("delay", delay)
+        return self._of(term.delayed(delay) for term in self.terms)
+
+    def mirrored(self, axis="yaw"):
+        """The law with the opposite curvature about one `axis`: left and right ("yaw") or up and down ("pitch")."""
+        if not isinstance(axis, str) or axis not in AXES:
+            raise ValueError(f"axis must be one of {', '.join(AXES)}, got {shown(axis)}")
+        return self._of(term.scaled(-1.0) if term.axis == axis else term for term in self.terms)
+
+    def ramped_in(self, start, end):
+        """The law that is straight before `start` [s] and unchanged after `end` [s].
+
+        A term that is 0 until `start` by itself stays as it is.
+        """
+        start, end = _interval(start, end)
+        return self._of(term.begun(start, end) for term in self.terms)
+
+    def ramped_out(self, start, end):
+        """The law that is unchanged before `start` [s] and straight after `end` [s]."""
+        start, end = _interval(start, end)
+        ended = (term.ended(start, end) for term in self.terms)
+        return self._of(term for term in ended if term is not None)
+
+    def followed_by(self, other, at, blend=0.5):
+        """This law until `at` [s], then `other`, whose own t = 0 lies there.
+
+        From `at` on this law fades out over `blend` [s]. The terms of `other` that do not start from rest fade in
+        meanwhile. The curvature is twice differentiable in time.
+        """
+        if not isinstance(other, Law):
+            raise ValueError(f"the law that follows must be a Law, got {shown(other)}")
+        at, blend = number("at", at), number("blend", blend)
+        if not blend > 0.0:
+            raise ValueError(f"blend must be > 0 s, got {blend:g}")
+        first, second = self.ramped_out(at, at + blend), other.delayed(at).ramped_in(at, at + blend)
+        return Law(*first.terms, *second.terms, name=self.name, transition=self.transition)
+
+    def _of(self, terms):
+        return Law(*terms, name=self.name, transition=self.transition)
+
+
+def _interval(start, end):
+    start, end = number("start", start), number("end", end)
+    if not end > start:
+        raise ValueError(f"end must be > start ({start:g} s), got {end:g}")
+    return start, end
 
 
 def _name(value):

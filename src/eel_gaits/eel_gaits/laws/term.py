@@ -2,13 +2,13 @@
 """Terms of a curvature law: a wave or a bend in pitch (K2) or yaw (K3), with its time derivatives."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from eel_gaits.input_output.quantity import number
 from eel_gaits.input_output.wording import shown
-from eel_gaits.laws.ramp import Ramp
+from eel_gaits.laws.ramp import Ramp, begun, ended, envelope_at
 from eel_gaits.laws.spline import natural_spline
 
 AXES = {"pitch": 1, "yaw": 2}  # name of the axis: its column in a curvature array
@@ -30,7 +30,8 @@ class Term:
         wavelength: [m]; 0 for a standing term; negative for a wave that runs towards the head.
         period: [s]; 0 for a term that is constant in time except for its envelope.
         phase: [rad]; pi/2 for a constant bend.
-        envelope: ramps, whose sum starts from 0; without ramps the envelope is 1 at all times.
+        envelope: ramps. Those of one factor add up from 0, and the factors multiply. Without ramps the envelope is 1 at
+            all times.
     """
 
     axis: str = "yaw"
@@ -96,10 +97,7 @@ class Term:
 
     def envelope_at(self, t):
         """The envelope [1] and its first and second time derivatives at `t` [s]: three arrays of the shape of `t`."""
-        if not self.envelope:
-            zero = np.zeros_like(np.asarray(t, dtype=float))
-            return zero + 1.0, zero, zero
-        return tuple(np.sum([ramp.value(t) for ramp in self.envelope], axis=0))
+        return envelope_at(self.envelope, t)
 
     def curvature(self, time, x):
         """Curvature [rad/m], its rate [rad/m/s] and its acceleration [rad/m/s^2], each of shape (len(x),).
@@ -118,6 +116,28 @@ class Term:
             (envelope_acceleration - envelope * frequency**2) * sine - 2.0 * envelope_rate * frequency * cosine
         )
         return value, rate, acceleration
+
+    def scaled(self, scale):
+        """The term with `scale` times its amplitude."""
+        return replace(self, amplitude=tuple(scale * value for value in self.amplitude))
+
+    def delayed(self, delay):
+        """The same motion, later by `delay` [s]."""
+        turns = math.remainder(delay / self.period, 1.0) if self.period else 0.0
+        return replace(
+            self,
+            phase=self.phase + 2.0 * math.pi * turns,
+            envelope=tuple(ramp.delayed(delay) for ramp in self.envelope),
+        )
+
+    def begun(self, start, end):
+        """The term that fades in from `start` to `end` [s], or begins by itself after `start`."""
+        return replace(self, envelope=begun(self.envelope, start, end))
+
+    def ended(self, start, end):
+        """The term that fades out from `start` to `end` [s]; None where it begins after `end`."""
+        envelope = ended(self.envelope, start, end)
+        return None if envelope is None else replace(self, envelope=envelope)
 
 
 def amplitude_of(amplitude, knots, x):

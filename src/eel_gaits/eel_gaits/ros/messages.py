@@ -51,7 +51,7 @@ def _term_to_message(term):
         wavelength=term.wavelength,
         period=term.period,
         phase=term.phase,
-        envelope=[msg.Ramp(start=ramp.start, end=ramp.end, delta=ramp.delta) for ramp in term.envelope],
+        envelope=[_ramp_to_message(ramp) for ramp in term.envelope],
     )
 
 
@@ -74,8 +74,12 @@ def _term_from_message(term, place):
         raise ValueError(f"{place}.{error}") from None
 
 
+def _ramp_to_message(ramp):
+    return msg.Ramp(start=ramp.start, end=ramp.end, delta=ramp.delta, factor=ramp.factor)
+
+
 def _ramp_from_message(ramp, place):
     try:
-        return Ramp(ramp.start, ramp.end, ramp.delta)
+        return Ramp(ramp.start, ramp.end, ramp.delta, ramp.factor)
     except ValueError as error:
         raise ValueError(f"{place}.{error}") from None

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Fish by midline: the lateral displacement h(X, t) that was measured on fish, as a curvature (`laws.midline`).
+
+    h(X, t) = a(X) sin(2 pi (waves X / L - t / T)),   X: arc length from the nose, L: body length
+
+carangiform: a / L = a0 + a1 X / L + a2 (X / L)^2, of a mackerel; Borazjani and Sotiropoulos, J. Exp. Biol. 211 (2008),
+1541-1558, doi:10.1242/jeb.015644, after Videler and Hess (1984).
+anguilliform: a / L = a_tail exp(growth (X / L - 1)), of a lamprey; Borazjani and Sotiropoulos, J. Exp. Biol. 212
+(2009), 576-592, doi:10.1242/jeb.025007, after Hultmark, Leftwich and Smits (2007).
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from eel_gaits.gaits.numbers import length_quantity, period_quantity, start_periods_quantity, start_ramp, waves_quantity
+from eel_gaits.gaits.registry import register
+from eel_gaits.input_output.quantity import Quantities, quantity
+from eel_gaits.laws.midline import lateral_wave
+
+
+def _lateral(default, description):
+    return quantity(default, unit="L", description=description, minimum=-1.0, maximum=1.0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Fish(Quantities):
+    """A wave of the midline, in body lengths."""
+
+    length: float = length_quantity()
+    period: float = period_quantity(1.0)
+    waves: float = waves_quantity(1.0)
+    start_periods: float = start_periods_quantity()
+
+    def terms(self, amplitude):
+        """The terms of a midline. amplitude: function of X / L that returns a / L and its first two derivatives."""
+
+        def scaled(x):
+            a, slope, bend = amplitude(x / self.length)
+            return a * self.length, slope, bend / self.length
+
+        return lateral_wave(
+            scaled,
+            length=self.length,
+            wavelength=self.length / self.waves,
+            period=self.period,
+            envelope=start_ramp(self),
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Carangiform(Fish):
+    """A midline whose lateral amplitude is a quadratic in X."""
+
+    waves: float = waves_quantity(1.0 / 0.95)
+    lateral_0: float = _lateral(0.02, "lateral amplitude at the nose, a0")
+    lateral_1: float = _lateral(-0.0825, "growth of the lateral amplitude with X / L, a1")
+    lateral_2: float = _lateral(0.1625, "growth of the lateral amplitude with (X / L)^2, a2")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Anguilliform(Fish):
+    """A midline whose lateral amplitude grows exponentially with X."""
+
+    waves: float = waves_quantity(1.0 / 0.642)
+    lateral_tail: float = _lateral(0.089, "lateral amplitude at the tail, a_tail")
+    growth: float = quantity(
+        1.0, unit="", description="growth of the lateral amplitude, growth", minimum=-10.0, maximum=10.0
+    )
+
+
+@register(Carangiform)
+def carangiform(numbers):
+    """A mackerel: the lateral amplitude is small in front and grows towards the tail."""
+    a = np.polynomial.Polynomial((numbers.lateral_0, numbers.lateral_1, numbers.lateral_2))
+    return numbers.terms(lambda x: (a(x), a.deriv(1)(x), a.deriv(2)(x)))
+
+
+@register(Anguilliform)
+def anguilliform(numbers):
+    """A lamprey or an eel: the whole body moves sideways, and more towards the tail."""
+
+    def amplitude(x):
+        a = numbers.lateral_tail * np.exp(numbers.growth * (x - 1.0))
+        return a, numbers.growth * a, numbers.growth**2 * a
+
+    return numbers.terms(amplitude)

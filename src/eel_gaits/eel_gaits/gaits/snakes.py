@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Gaits of snake robots: the serpenoid curve, and a wave of joint angles.
+
+serpenoid: the angle of the backbone is a sine of the arc length. Its curvature is
+
+    K3(t, X) = winding_angle k cos(k X - 2 pi t / T) + bend,   k = 2 pi waves / L
+
+(Hirose, Biologically Inspired Robots, Oxford University Press, 1993).
+
+joint_wave: the angle of joint i of n, counted from the tail as on the robot Mamba, is
+
+    phi_i(t) = alpha g(i) sin(2 pi t / T + (i - 1) delta) + phi_0,   g = 1 or (n - i) / (n + 1)
+
+(Kelasidi, Liljeback, Pettersen and Gravdahl, Robotics and Biomimetics 2:8 (2015), doi:10.1186/s40638-015-0029-4). With
+delta > 0 the wave runs from head to tail. A joint stands for a segment of the length L / n and lies in its middle. The
+angle of each joint is the integral of the curvature over its segment, exactly.
+"""
+
+import math
+from dataclasses import dataclass
+
+from eel_gaits.gaits.numbers import (
+    bend_quantity,
+    constant_bend,
+    length_quantity,
+    period_quantity,
+    start_periods_quantity,
+    start_ramp,
+    waves_quantity,
+)
+from eel_gaits.gaits.registry import register
+from eel_gaits.input_output.quantity import Quantities, quantity
+from eel_gaits.laws.term import Term
+
+
+@dataclass(frozen=True, kw_only=True)
+class Serpenoid(Quantities):
+    """A serpenoid curve that travels along itself, with a lasting bend."""
+
+    length: float = length_quantity()
+    period: float = period_quantity(1.0)
+    waves: float = waves_quantity(1.0)
+    winding_angle: float = quantity(
+        0.5, unit="rad", description="greatest angle of the backbone to its mean direction", minimum=-1e3, maximum=1e3
+    )
+    yaw_bend: float = bend_quantity(0.0, "yaw curvature of a turn; positive: to the right, negative: to the left")
+    start_periods: float = start_periods_quantity()
+
+
+@dataclass(frozen=True, kw_only=True)
+class JointWave(Quantities):
+    """A wave of the angles of n joints."""
+
+    length: float = length_quantity()
+    joints: float = quantity(10.0, unit="", description="number of joints, n", minimum=1.0, maximum=1000.0)
+    period: float = period_quantity(1.0)
+    joint_amplitude: float = quantity(
+        0.35, unit="rad", description="amplitude of the joint angles, alpha", minimum=-math.pi, maximum=math.pi
+    )
+    joint_phase: float = quantity(
+        0.6, unit="rad", description="phase from joint to joint, delta", minimum=-math.pi, maximum=math.pi
+    )
+    yaw_angle: float = quantity(
+        0.0,
+        unit="rad",
+        description="offset of every joint, phi_0; positive: turns to the right, negative: to the left",
+        minimum=-math.pi,
+        maximum=math.pi,
+    )
+    eel_like: float = quantity(
+        1.0, unit="", description="amplitude along the body: 1: (n - i) / (n + 1), 0: g = 1", minimum=0.0, maximum=1.0
+    )
+    start_periods: float = start_periods_quantity()
+
+    def __post_init__(self):
+        super().__post_init__()
+        if self.joints != int(self.joints):
+            raise ValueError(f"joints must be a whole number, got {self.joints:g}")
+
+
+@register(Serpenoid)
+def serpenoid(numbers):
+    """The serpenoid curve of Hirose, which travels from head to tail."""
+    wave = Term(
+        axis="yaw",
+        amplitude=(2.0 * math.pi * numbers.waves / numbers.length * numbers.winding_angle,),
+        wavelength=numbers.length / numbers.waves,
+        period=numbers.period,
+        phase=0.5 * math.pi,
+        envelope=start_ramp(numbers),
+    )
+    return (wave, *constant_bend("yaw", numbers.yaw_bend, start_ramp(numbers)))
+
+
+@register(JointWave)
+def joint_wave(numbers):
+    """A wave of joint angles, as snake robots swim: lateral undulation (eel_like = 0) or eel-like motion (1)."""
+    n, segment = numbers.joints, numbers.length / numbers.joints
+    # i - 1 = n - 1/2 - X / segment at joint i, so g and the phase are linear in X
+    first = 1.0 - numbers.eel_like + numbers.eel_like * (-0.5) / (n + 1.0)
+    growth = numbers.eel_like / ((n + 1.0) * segment)
+    phase, wave_number = numbers.joint_phase * (n - 0.5), -numbers.joint_phase / segment
+    return (
+        *_segment_wave(
+            numbers.joint_amplitude * first,
+            numbers.joint_amplitude * growth,
+            segment=segment,
+            wave_number=wave_number,
+            phase=phase,
+            period=numbers.period,
+            envelope=start_ramp(numbers),
+        ),
+        *constant_bend("yaw", numbers.yaw_angle / segment, start_ramp(numbers)),
+    )
+
+
+def _segment_wave(first, growth, *, segment, wave_number, phase, period, envelope):
+    """The curvature whose integral over a segment about X is (first + growth X) sin theta.
+
+    With theta = 2 pi t / T + phase + wave_number X, h = segment / 2, and k = wave_number, the integrals over a segment
+    of sin theta, cos theta and (X - X_i) sin theta are S sin theta_i, S cos theta_i and S (1/k - h cot kh) cos theta_i,
+    where S = 2 sin(kh) / k. (A linear growth adds the last one, and the correction takes it away.)
+    """
+    half = 0.5 * wave_number * segment
+    if abs(half) < 1e-6:
+        share, shift = 1.0 / segment, 0.0
+    else:
+        share = half / math.sin(half) / segment
+        shift = 1.0 / wave_number - 0.5 * segment / math.tan(half)
+    # sin(2 pi t / T + b) = sin(-2 pi t / T + pi - b), and the wave number of a term goes with -2 pi t / T
+    wavelength = -2.0 * math.pi / wave_number if wave_number else 0.0
+    shared = {"axis": "yaw", "wavelength": wavelength, "period": period, "envelope": envelope}
+    wave = Term(amplitude=(share * first, share * growth), phase=math.pi - phase, **shared)
+    correction = Term(amplitude=(-share * growth * shift,), phase=0.5 * math.pi - phase, **shared)
+    return (wave, correction) if growth * shift else (wave,)
