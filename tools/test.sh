@@ -1,12 +1,14 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# All tests but the long ones. Without arguments as four pytest processes side by side, each in ROS domains of its own:
-# they wait most of the time. Arguments go to one pytest.
+# All tests but the long ones. The mechanics run in one process, which keeps account of what they measure. Beside them,
+# the files whose tests start processes and wait most of the time are dealt out to four workers, each in a ROS domain of
+# its own. Arguments go to one pytest.
 set -uo pipefail
 if [ $# -gt 0 ]; then exec python -m pytest "$@"; fi
 
 # A test that hangs where Python's own time-out cannot reach, in compiled code, ends its pytest with all threads' stacks.
 pytest=(python -m pytest -c pyproject.toml -o faulthandler_timeout=420 -o faulthandler_exit_on_timeout=true)
+nodes=(src/eel_dynamics/test/test_node_[!r]*.py)
 mkdir -p out
 declare -A beside
 stop() {
@@ -15,22 +17,16 @@ stop() {
     exit 130
 }
 trap stop INT TERM
-begin() {   # NAME TESTS...: into out/test-NAME.log
-    # a job in the background would ignore SIGINT, and so would pytest
-    env --default-signal=INT "${pytest[@]}" "${@:2}" > "out/test-$1.log" 2>&1 &
-    beside[$1]=$!
-}
-
-nodes=(src/eel_dynamics/test/test_node_[!r]*.py)
-begin nodes "${nodes[@]}" src/eel_ros/test src/eel_gaits/test src/eel_core/test
-begin viz src/eel_viz/test
+# a job in the background would ignore SIGINT, and so would pytest
+env --default-signal=INT "${pytest[@]}" --numprocesses=4 --dist=loadfile \
+    "${nodes[@]}" src/eel_ros/test src/eel_gaits/test src/eel_core/test src/eel_viz/test test > out/test-processes.log 2>&1 &
+beside[processes]=$!
 tools/core_tests.sh tests > out/test-core.log 2>&1 &
 beside[core]=$!
-begin system test
-echo "[test] mechanics here; beside, shown when done: the dynamics node with the small packages, eel_viz, the processes together, the C++ tests"
+echo "[test] mechanics here; beside, shown when done: the tests that start processes, and the C++ tests"
 "${pytest[@]}" src/eel_dynamics/test "${nodes[@]/#/--ignore=}"
 status=$?
-for name in core nodes viz system; do
+for name in core processes; do
     wait "${beside[$name]}" || status=1
     cat "out/test-$name.log"
 done

@@ -53,11 +53,15 @@ def test_parameters_that_act_at_the_next_reset(start, client, tmp_path):
         lambda: len(swim.received["backbone"][-1].x) == 21 and seconds(swim.received["backbone"][-1]) > 0.1, "new run"
     )
     swim.until(lambda: swim.received["body"][-1].length == 1.2, "the new body")
+    swim.until(lambda: any(each.pose.position.y == 2.0 for each in swim.received["head_pose"]), "the new pose")
     first = next(each for each in swim.received["head_pose"] if each.pose.position.y == 2.0)
     assert (first.pose.position.x, first.pose.position.z, seconds(first)) == (1.0, -3.0, 0.0)
-    stamps = [nanoseconds(each.header.stamp) for each in swim.received["head_pose"][-5:]]
+    poses = swim.received["head_pose"]
+    swim.until(lambda: len(poses) > poses.index(first) + 5, "samples at 50 Hz")
+    stamps = [nanoseconds(each.header.stamp) for each in poses[-5:]]
     assert all(stamp % 20_000_000 == 0 for stamp in stamps) and swim.diagnosis()[2]["accuracy"]
-    assert swim.node.count_publishers("internal_wrench") == 0 and "ERROR" not in node.output()
+    swim.until(lambda: swim.node.count_publishers("internal_wrench") == 0, "the end of a topic")
+    assert "ERROR" not in node.output()
 
     path.unlink()
     assert swim.set(rate=100.0)[0].successful
@@ -101,7 +105,7 @@ def test_a_node_takes_its_own_dump(start, client):
 def test_steps_of_a_paused_run(start, client):
     swim = client(topics=("odom",))
     swim.laws.publish(law_to_message(falling()))
-    start("dynamics", "--ros-args", "-p", "real_time_factor:=0", "-p", "wait_for_subscribers:=1", "-p", "rate:=50")
+    start("dynamics", "--ros-args", "-p", "wait_for_subscribers:=1", "-p", "rate:=50")
     swim.until_time(0.1, "odom")
     answer = swim.call(Step, "dynamics/step", samples=3)
     assert not answer.success and "the run is not paused" in answer.message

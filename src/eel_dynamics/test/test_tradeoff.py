@@ -141,12 +141,13 @@ def test_bad_input_is_named(words, named, capsys):
 def test_the_counts_of_delivered_errors():
     """Errors and estimates that are given here: one swim misses its target in silence, one is told, one is unknown."""
 
-    def trial(error, estimate, told=False):
+    def trial(error, estimate, told=False, uncertainty=0.0):
         known = None if error is None else ErrorEstimate(error, None)
-        return Trial({"accuracy": 1e-3}, known, ErrorEstimate(estimate, None), told, 1.5)
+        return Trial({"accuracy": 1e-3}, known, uncertainty, ErrorEstimate(estimate, None), told, 1.5)
 
     trials = [trial(1e-5, 1e-4), trial(4e-3, 1e-3), trial(5e-3, 6e-3, told=True), trial(None, 1e-2, told=True)]
     assert [each.missed for each in trials] == [False, True, False, False]
+    assert trial(3e-5, 1e-5, uncertainty=2.5e-5).underestimated == pytest.approx(0.5)  # a reference of no more worth
     row = delivered_table(trials, markdown=True).splitlines()[2]
     cells = [cell.strip() for cell in row.split("|")[1:-1]]
     assert cells == ["position, motion alone", "4", "3", "2", "1", "1", "1", "1", "0.833", "4.00", "0", "1.50"]
