@@ -7,10 +7,12 @@ from eel_gaits.gaits.fish import anguilliform, carangiform
 from eel_gaits.gaits.kern import kern_efficient, kern_fast
 from eel_gaits.gaits.registry import GAITS, gait
 from eel_gaits.gaits.rolling import helix, roll_over, rolling
+from eel_gaits.gaits.sequence_file import sequence_from_file
 from eel_gaits.gaits.snakes import joint_wave, serpenoid
 from eel_gaits.gaits.swimming import backward, still, straight, turning
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.ramp import Ramp
+from eel_gaits.laws.sequence import sequence
 from eel_gaits.laws.spline import natural_spline
 from eel_gaits.laws.term import Term
 
@@ -35,6 +37,8 @@ __all__ = [
     "rising",
     "roll_over",
     "rolling",
+    "sequence",
+    "sequence_from_file",
     "serpenoid",
     "spiral",
     "still",

@@ -10,7 +10,7 @@ from eel_gaits.gaits.settings import Settings
 from eel_ros.testing.node_process import PROMPT
 from rclpy.qos import QoSProfile
 
-from eel_gaits import falling, gait, turning
+from eel_gaits import falling, gait, sequence, straight, turning
 
 SAID = "published on"
 
@@ -156,6 +156,28 @@ def test_a_gait_and_its_numbers_set_together(generator, client):
 
 @pytest.mark.fault(
     "parameters",
+    "a sequence's file that does not fit, while a gait runs",
+    "refused with file, line and key; the old law stays",
+)
+def test_a_sequence_from_a_file_and_one_that_does_not_fit(generator, client, tmp_path):
+    file = tmp_path / "patrol.yaml"
+    file.write_text("steps:\n  - {gait: straight, duration: 3}\n  - gait: turning\n")
+    generator("-p", "gait:=sequence", "-p", f"file:={file}")
+    client.listen()
+    before = client.law(0)[0]
+    assert before.terms == sequence([(straight(), 3.0), (turning(), None)]).terms and before.name == "patrol"
+    file.write_text("steps:\n  - {gait: straight, duration: long}\n")
+    refused = client.set_together(file=str(file))
+    assert not refused.successful
+    assert refused.reason == f"{file}, line 2, key 'duration': duration must be a number, got 'long'"
+    file.write_text("blend: 2\nsteps:\n  - {gait: straight, duration: 3}\n")
+    assert client.set_together(file=str(file)).successful
+    assert client.law(1)[0].terms == sequence([(straight(), 3.0)], blend=2.0).terms
+    assert client.set_together(gait="straight").successful and client.law(2)[0] == straight()
+
+
+@pytest.mark.fault(
+    "parameters",
     "a gait's parameter set to what cannot be, while it runs",
     "refused with the reason; nothing changes, nothing is published",
 )
@@ -165,7 +187,7 @@ def test_a_refused_set_says_why_and_changes_nothing(generator, client):
     client.law(0)
     before = client.values()
     for values, reason in (
-        ({"gait": "swim"}, "unknown gait 'swim', must be one of backward, falling, helix"),
+        ({"gait": "swim"}, "unknown gait 'swim', must be one of anguilliform, backward"),
         ({"gait": 7}, "unknown gait 7"),
         ({"period": -1.0}, "period must be >= 0.001 s, got -1.0"),
         ({"period": 0}, "period must be >= 0.001 s, got 0.0"),

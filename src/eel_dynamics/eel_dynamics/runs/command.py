@@ -3,6 +3,7 @@
 
 simulate falling
 simulate falling --duration 20 --periods 4 --actuators 8
+simulate --sequence patrol.yaml --duration 20
 simulate straight --set wavelength=0.8 --scene friction=laminar --accuracy 1e-6 --out run.npz
 """
 
@@ -15,10 +16,12 @@ from pathlib import Path
 
 import numpy as np
 from eel_gaits.gaits.registry import GAITS, gait
+from eel_gaits.gaits.sequence_file import sequence_from_file
 from eel_gaits.input_output.command_line import Parser, complain
 from eel_gaits.input_output.output_file import NotWritten, check_output, replacing
 from eel_gaits.input_output.quantity import described_fields
 from eel_gaits.input_output.wording import shown
+from eel_gaits.laws.law import Law
 
 from eel_dynamics.accuracy.accuracy import PRESETS
 from eel_dynamics.analysis.actuators import MOST_JOINTS
@@ -58,7 +61,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 def _swim(options, out: Path | None) -> int:
     """Simulate, print the summary and write the run; returns the exit status: 0, or 3 for a run that stopped."""
-    law = gait(options.gait, **set_numbers(options.set))
+    law = _law(options)
     body = Body.named(options.body) if options.body in NAMED else Body.from_file(options.body)
     scene = scene_of(options.scene)
     if options.actuators is not None:
@@ -94,6 +97,16 @@ def _swim(options, out: Path | None) -> int:
     return 0
 
 
+def _law(options) -> Law:
+    """The law of the gait, or of the sequence."""
+    if options.sequence is None:
+        return gait(options.gait or "falling", **set_numbers(options.set))
+    if options.gait or options.set:
+        given = options.gait or f"--set {options.set[0]}"
+        raise ValueError(f"--sequence takes the place of a gait, got {shown(given)} too")
+    return sequence_from_file(options.sequence)
+
+
 class Progress:
     """Prints the progress of a run of `duration` [s] to stderr: after 1, 2, 4 ... s, and every minute."""
 
@@ -114,9 +127,14 @@ def _parser() -> Parser:
         epilog=f"fields of the scene, with default, meaning, unit, and bounds or choices:\n{described_fields(Scene)}",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("gait", nargs="?", default="falling", help=f"one of {', '.join(sorted(GAITS))} (falling)")
+    parser.add_argument("gait", nargs="?", help=f"one of {', '.join(sorted(GAITS))} (falling)")
     parser.add_argument(
         "--set", action="append", default=[], metavar="NAME=VALUE", help="a number of the gait; may be repeated"
+    )
+    parser.add_argument(
+        "--sequence",
+        metavar="FILE",
+        help="a YAML file of gaits that follow one another, in place of a gait: docs/reference/manoeuvres.md",
     )
     parser.add_argument("--duration", type=float, default=10.0, help="s (10)")
     parser.add_argument(

@@ -7,6 +7,9 @@ from eel_gaits.input_output.quantity import quantity
 from eel_gaits.laws.ramp import Ramp
 from eel_gaits.laws.term import Term
 
+# number of the node and of sequence files, positive to the left: that of the gait, which has the opposite sign
+TURNS = {"left_bend": "yaw_bend", "left_angle": "yaw_angle"}
+
 
 def period_quantity(default):
     """The period of a wave [s]."""

@@ -12,14 +12,14 @@ from dataclasses import Field, dataclass, field, fields, make_dataclass
 from functools import cache
 from types import MappingProxyType
 
+from eel_gaits.gaits.numbers import TURNS
 from eel_gaits.gaits.registry import GAITS, Transition, find
+from eel_gaits.gaits.sequence_file import sequence_from_file
 from eel_gaits.input_output.quantity import Quantities
 from eel_gaits.input_output.wording import shown
+from eel_gaits.laws.law import Law
 
-TURNS = {
-    "left_bend": "yaw_bend",
-    "left_angle": "yaw_angle",
-}  # number of the node: that of the gait, which has the opposite sign
+FILE_GAITS = {"sequence": sequence_from_file}  # gaits that a file gives: the function that reads it
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -27,38 +27,42 @@ class Settings:
     """A gait and the numbers that the user has set. `ValueError` where they give no law.
 
     Attributes:
-        gait: name of the gait.
+        gait: name of the gait, or "sequence".
         chosen: the numbers that the user has set, by name, including those of other gaits.
+        file: of a sequence. It is read when the settings are made.
     """
 
     gait: str = "falling"
     chosen: dict[str, float] = field(default_factory=dict)
+    file: str = ""
+    _law: Law = field(init=False, repr=False, compare=False)
 
     def __post_init__(self):
         object.__setattr__(self, "chosen", MappingProxyType(dict(self.chosen)))
-        self.law()
+        from_file = isinstance(self.gait, str) and self.gait in FILE_GAITS
+        object.__setattr__(self, "_law", self._read_law() if from_file else self._make_law())
 
     @classmethod
     def known_names(cls):
         """The names of all parameters of all gaits."""
         numbers = {entry.name for name in GAITS for entry in fields(numbers_of(name))}
-        return {"gait", "transition"} | numbers
+        return {"gait", "file", "transition"} | numbers
 
     @classmethod
     def start(cls, overrides):
         """The settings at start, from a mapping of name to value. Names that no gait has are ignored."""
         known = {name: value for name, value in overrides.items() if name in cls.known_names()}
-        return cls(gait=known.pop("gait", cls.gait), chosen=known)
+        return cls(gait=known.pop("gait", cls.gait), file=known.pop("file", cls.file), chosen=known)
 
     def changed(self, changes):
         """The settings after `changes`, a mapping of name to value. `ValueError` where one of them does not fit."""
         changes = dict(changes)
-        gait = changes.pop("gait", self.gait)
+        gait, file = changes.pop("gait", self.gait), changes.pop("file", self.file)
         own_names = ["transition", *(entry.name for entry in fields(numbers_of(gait)))]
         for name in changes:
             if name not in own_names:
                 raise ValueError(f"gait {shown(gait)} has no parameter {shown(name)}, it has: {', '.join(own_names)}")
-        return Settings(gait=gait, chosen={**self.chosen, **changes})
+        return Settings(gait=gait, file=file, chosen={**self.chosen, **changes})
 
     def groups(self):
         """The transition and the gait's numbers: two `Quantities`. The user's numbers replace the defaults."""
@@ -73,6 +77,19 @@ class Settings:
 
     def law(self):
         """The law of this gait with these numbers."""
+        return self._law
+
+    def _read_law(self):
+        transition, _ = self.groups()
+        if not isinstance(self.file, str) or not self.file:
+            raise ValueError(f"gait {shown(self.gait)} needs the parameter file, got {shown(self.file)}")
+        try:
+            law = FILE_GAITS[self.gait](self.file)
+        except OSError as error:
+            raise ValueError(f"file {shown(self.file)} cannot be read: {error.strerror or error}") from None
+        return Law(*law.terms, name=law.name, transition=transition.transition)
+
+    def _make_law(self):
         numbers = self.numbers()
         for name, opposite in TURNS.items():
             if name in numbers:
@@ -89,7 +106,7 @@ def _as_left(description):
 @cache
 def numbers_of(gait):
     """The class of the node's numbers of a `gait`. `ValueError` for an unknown gait."""
-    kind = find(gait).numbers
+    kind = Quantities if gait in FILE_GAITS else find(gait).numbers
     entries = [(entry.name, float, entry) for entry in map(_as_ros_expects, fields(kind))]
     return make_dataclass(kind.__name__, entries, bases=(Quantities,), frozen=True, kw_only=True)
 

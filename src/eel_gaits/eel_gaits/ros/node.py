@@ -23,7 +23,7 @@ from rclpy.duration import Duration
 from rclpy.parameter import Parameter
 
 from eel_gaits.gaits.registry import GAITS, Transition
-from eel_gaits.gaits.settings import Settings, numbers_of
+from eel_gaits.gaits.settings import FILE_GAITS, Settings, numbers_of
 from eel_gaits.input_output.command_line import complain
 from eel_gaits.input_output.quantity import limits
 from eel_gaits.input_output.wording import shown
@@ -32,6 +32,8 @@ from eel_msgs.msg import CurvatureLaw
 
 NAME = "gait_generator"
 ABOUT = "Publishes the curvature law of a gait, and a new one whenever a parameter is set."
+KNOWN = ", ".join(sorted((*GAITS, *FILE_GAITS)))
+FILE = "YAML file of the gait 'sequence'; read when it is set"
 LOOK = 0.25  # s between two looks at whether time went back
 
 
@@ -47,9 +49,10 @@ class GaitGenerator(ParameterNode):
         self._plan = None  # in mid-change: the new Settings, or the reason of a refusal
         self._stamp = Time()
         self._publisher = self.create_publisher(CurvatureLaw, "curvature_law", latched(1))
-        known = ", ".join(sorted(GAITS))
-        descriptor = ParameterDescriptor(description="name of the gait", additional_constraints=f"one of {known}")
+        descriptor = ParameterDescriptor(description="name of the gait", additional_constraints=f"one of {KNOWN}")
         self.declare_parameter("gait", self._settings.gait, descriptor, ignore_override=True)
+        descriptor = ParameterDescriptor(description=FILE)
+        self.declare_parameter("file", self._settings.file, descriptor, ignore_override=True)
         self._declare_numbers()
         self.add_pre_set_parameters_callback(self._plan_change)
         self.add_on_set_parameters_callback(self._judge_change)
@@ -97,8 +100,8 @@ class GaitGenerator(ParameterNode):
             self._plan = str(error)
             return [Parameter("gait", value=self._settings.gait)]
         if self._plan.gait != self._settings.gait:  # its numbers are declared once the set is accepted
-            return [*others, Parameter("gait", value=self._plan.gait)]
-        stored = {"gait": self._plan.gait, **self._plan.numbers()}
+            return [*others, Parameter("gait", value=self._plan.gait), Parameter("file", value=self._plan.file)]
+        stored = {"gait": self._plan.gait, "file": self._plan.file, **self._plan.numbers()}
         return [*others, *(Parameter(name, value=stored[name]) for name in changes)]
 
     def _judge_change(self, parameters):
@@ -137,7 +140,8 @@ class GaitGenerator(ParameterNode):
 
 def parameter_rows():
     """Name, description and default of each parameter. The description names the gaits that have the parameter."""
-    yield "gait", f"name of the gait, one of {', '.join(sorted(GAITS))}", Settings.gait
+    yield "gait", f"name of the gait, one of {KNOWN}", Settings.gait
+    yield "file", FILE, Settings.file
     gaits = {}  # of each number
     for kind, gait in [(Transition, None), *((numbers_of(name), name) for name in GAITS)]:
         for entry in fields(kind):
