@@ -18,6 +18,7 @@ exclude_patterns = ["requirements.*", "examples"]
 nb_execution_mode = "off"  # `make notebook` runs it
 nb_merge_streams = True
 myst_heading_anchors = 3
+napoleon_use_ivar = True
 myst_fence_as_directive = ["mermaid"]
 default_role = "code"
 autodoc_member_order = "bysource"

@@ -142,7 +142,7 @@ def test_shell_of_a_page_names_what_exists(page, folder):
 @pytest.mark.parametrize(
     "line",
     [
-        "dynamics --ros-args -p acuracy:=fine",
+        "dynamics --ros-args -p exactness:=fine",
         "render run.rrd --speeed 2",
         "make nothing",
         "ros2 service call /dynamics/nothing std_srvs/srv/Trigger",

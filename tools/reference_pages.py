@@ -7,7 +7,7 @@ tell their own `--help`. The pages are not kept in the repository.
 
 import subprocess
 import sys
-from dataclasses import fields
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 
 from eel_dynamics.model.scene import Scene
@@ -20,20 +20,34 @@ from eel_viz.settings import MarkerSettings, Settings
 
 ROOT = Path(__file__).resolve().parent.parent
 REFERENCE = ROOT / "docs" / "reference"
+
+
+@dataclass
+class Gait:
+    """The gait generator's own parameter; its node declares it from the list of gaits."""
+
+    gait: str = field(
+        default="falling", metadata={"unit": "", "description": "name of the gait", "choices": sorted(GAITS)}
+    )
+
+
 NODES = {  # name of the node: heading, prefix and dataclass of its parameters
-    "gait_generator": [("", "", Transition), *((f"gait {name}", "", numbers_of(name)) for name in sorted(GAITS))],
+    "gait_generator": [
+        ("", "", Gait),
+        ("", "", Transition),
+        *((f"gait {name}", "", numbers_of(name)) for name in sorted(GAITS)),
+    ],
     "dynamics": [("", "", DynamicsParameters), ("scene", "scene.", Scene)],
     "heading_controller": [("", "", HeadingParameters)],
     "visualiser": [("", "", Settings)],
     "markers": [("", "", MarkerSettings)],
 }
-EXTRA = {"gait_generator": {"gait"}}
 COMMANDS = ("simulate", "sweep", "tradeoff", "stability", "figures", "record", "eel_echo", "replay", "render")
 
 
 def parameter_names(node: str) -> set[str]:
     """The names of all parameters of a node."""
-    return {prefix + item.name for _, prefix, kind in NODES[node] for item in fields(kind)} | EXTRA.get(node, set())
+    return {prefix + item.name for _, prefix, kind in NODES[node] for item in fields(kind)}
 
 
 def messages() -> str:

@@ -6,7 +6,7 @@ from itertools import product
 import numpy as np
 
 from eel_dynamics.studies.figures.orders import ConvergenceErrors
-from eel_dynamics.studies.figures.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, mark_pitch, plain
+from eel_dynamics.studies.figures.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, legend_above, mark_pitch, plain
 
 PERIOD = 1.0  # s, of the falling gait
 
@@ -50,7 +50,7 @@ def _draw_surface(axes, run, values, size, name):
     )
     surface.set_rasterized(True)
     axes.view_init(elev=34, azim=-58)
-    axes.set_box_aspect((1.9, 1.0, 1.0), zoom=1.0)
+    axes.set_box_aspect((1.7, 1.0, 1.0), zoom=1.15)
     axes.set(xticks=[0, 2, 4, 6, 8, 10], yticks=[0.0, 0.5, 1.0], zlim=(-size, size))
     axes.zaxis.set_major_locator(MaxNLocator(4, symmetric=True))
     axes.set_xlabel("time t [s]", labelpad=4)
@@ -76,7 +76,7 @@ def draw_head_path(figure, run):
             color=ORANGE,
             linewidth=1.4,
             linestyle=(0, (5, 2)),
-            label="centre of mass, averaged over a period",
+            label="centre of mass, averaged",
         )
         axes.plot(path[marks, 0], path[marks, column], "o", color=BLUE, markersize=3.5)
         for mark in marks[[0, *range(2, len(marks))]]:  # in the first second the head hardly moves
@@ -87,7 +87,7 @@ def draw_head_path(figure, run):
         axes.set_aspect("equal", adjustable="box")
         axes.grid(alpha=0.3)
     axes.set_xlabel("x [m]; it swims towards -x")
-    figure.axes[0].legend(loc="upper right")
+    legend_above(figure)
 
 
 def draw_ledger(figure, run):
@@ -109,9 +109,8 @@ def draw_ledger(figure, run):
     power.set_ylabel("power into body\nand water [W]")
     work.set_ylabel("its integral [J]")
     residual.set_ylabel("|residual| [J]")
-    residual.set_xlabel("time t [s]; grey: the body bends in pitch")
-    power.legend(ncols=2, loc="upper right")
-    work.legend(loc="upper left")
+    residual.set_xlabel("time t [s]; grey: pitch bends")
+    legend_above(figure, columns=3)
     for axes in (power, work, residual):
         plain(axes)
     figure.align_ylabels()
@@ -146,4 +145,4 @@ def draw_convergence(figure, space: dict[bool, ConvergenceErrors], time: dict[bo
     by_step.minorticks_off()
     by_nodes.set_title("along the body: one evaluation", fontsize="medium")
     by_step.set_title("in time: 2.5 s, Runge-Kutta 4", fontsize="medium")
-    by_step.legend(fontsize="x-small")
+    legend_above(figure, columns=3)

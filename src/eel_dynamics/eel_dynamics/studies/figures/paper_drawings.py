@@ -4,7 +4,17 @@
 import numpy as np
 
 from eel_dynamics.model.body import Body
-from eel_dynamics.studies.figures.style import AS_PRINTED, BLACK, BLUE, OWN, PALE_BLUE, mark_pitch, plain
+from eel_dynamics.studies.figures.style import (
+    AS_PRINTED,
+    BLACK,
+    BLUE,
+    COLOUR_BAR,
+    OWN,
+    PALE_BLUE,
+    legend_above,
+    mark_pitch,
+    plain,
+)
 
 FRAME_PERIOD = 0.5  # s, of Fig. 6: 2 frames a second
 INSTANT = 7.0  # s, of Fig. 7
@@ -28,7 +38,7 @@ def draw_body(figure, body: Body):
         width, height = float(body.half_width(place)), float(body.half_height(place))
         ellipses.fill(place + width * np.cos(angle), height * np.sin(angle), facecolor=PALE_BLUE, edgecolor=BLUE)
     ellipses.set_ylabel("sections\n$X_3$ [m]")
-    ellipses.set_xlabel("$X_1$ from nose to tail [m]; each section is drawn at its place, turned towards the reader")
+    ellipses.set_xlabel("$X_1$ [m], nose to tail")
     for axes in (side, above, ellipses):
         axes.set_aspect("equal")
         axes.set_ylim(-0.07, 0.07)
@@ -44,8 +54,8 @@ def draw_configurations(figure, run):
 
     figure.set_layout_engine("none")  # the layout engine does not suit 3D axes
     space = figure.add_axes((-0.03, 0.14, 0.58, 0.88), projection="3d")
-    above, side = figure.add_axes((0.64, 0.66, 0.35, 0.31)), figure.add_axes((0.64, 0.09, 0.35, 0.48))
-    bar = figure.add_axes((0.09, 0.11, 0.4, 0.025))
+    above, side = figure.add_axes((0.65, 0.68, 0.34, 0.26)), figure.add_axes((0.65, 0.12, 0.34, 0.44))
+    bar = figure.add_axes((0.09, 0.13, 0.4, 0.025), label=COLOUR_BAR)
     colours = ScalarMappable(Normalize(run.time[0], run.time[-1]), "cividis")
     for time in np.arange(run.time[0], run.time[-1] + 1e-9, FRAME_PERIOD):
         x, y, z = run.backbone[np.argmin(np.abs(run.time - time)), ::2].T
@@ -76,14 +86,14 @@ def draw_wrench_along_the_body(figure, run, printed):
     profiles = [
         {"force": each.force[k], "torque": each.torque[k]} for each, k in zip((run, printed), samples, strict=True)
     ]
-    _draw_wrench(figure, run.x, profiles, f"$X_1$ from nose to tail [m], at t = {INSTANT:g} s")
+    _draw_wrench(figure, run.x, profiles, f"$X_1$ [m], nose to tail, at t = {INSTANT:g} s")
 
 
 def draw_wrench_in_time(figure, run, printed):
     """Draw Fig. 8: N1 [N], C2 and C3 [N m] against t at X = 0.5 m, of our run and of the `printed` reading."""
     station = int(np.argmin(np.abs(run.x - PLACE)))
     profiles = [{"force": each.force[:, station], "torque": each.torque[:, station]} for each in (run, printed)]
-    _draw_wrench(figure, run.time, profiles, f"time t [s], at $X_1$ = {PLACE:g} m; grey: the body bends in pitch")
+    _draw_wrench(figure, run.time, profiles, f"time t [s], at $X_1$ = {PLACE:g} m; grey: pitch bends")
     mark_pitch(figure.axes)
 
 
@@ -101,7 +111,7 @@ def _draw_wrench(figure, abscissa, profiles, name):
         axes.axhline(0.0, color=BLACK, linewidth=0.5)
         plain(axes)
     axes.set_xlabel(name)
-    figure.axes[0].legend(loc="best", ncols=2)
+    legend_above(figure)
     figure.align_ylabels()
 
 
@@ -114,7 +124,7 @@ def draw_head_velocity(figure, run, printed):
         axes.set_ylabel(label)
         axes.axhline(0.0, color=BLACK, linewidth=0.5)
         plain(axes)
-    axes.set_xlabel("time t [s]; grey: the body bends in pitch")
-    figure.axes[0].legend(loc="upper right")
+    axes.set_xlabel("time t [s]; grey: pitch bends")
+    legend_above(figure)
     figure.align_ylabels()
     mark_pitch(figure.axes)

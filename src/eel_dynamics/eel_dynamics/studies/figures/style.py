@@ -19,6 +19,7 @@ SETTINGS = {
     "figure.dpi": 100,
     "savefig.dpi": 100,
 }
+COLOUR_BAR = "<colorbar>"  # label that matplotlib gives the axes of a colour bar
 PITCH_RAMPS = ((1.0, 3.0), (6.0, 8.0))  # s, intervals in which the falling gait bends in pitch: t1 to t3 and t4 to t6
 
 
@@ -29,6 +30,15 @@ def mark_pitch(panels):
             axes.axvspan(start, end, color=GREY, alpha=0.12, linewidth=0)
 
 
+def legend_above(figure, columns: int = 2):
+    """One legend above all panels of a figure, where it covers no curve; curves of the same name are listed once."""
+    named = {}
+    for axes in figure.axes:
+        for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
+            named.setdefault(label, handle)
+    figure.legend(named.values(), named.keys(), loc="outside upper center", ncols=columns, frameon=False)
+
+
 def plain(axes):
     """Add a grid to `axes` and remove the left and right margins."""
     axes.grid(alpha=0.3)
@@ -37,6 +47,6 @@ def plain(axes):
 
 def letter_panels(figure):
     """Put (a), (b), ... above the panels of a figure, where it has more than one; colour bars have none."""
-    panels = [axes for axes in figure.axes if axes.get_label() != "<colorbar>"]
+    panels = [axes for axes in figure.axes if axes.get_label() != COLOUR_BAR]
     for number, axes in enumerate(panels if len(panels) > 1 else ()):
         axes.set_title(f"({chr(ord('a') + number)})", loc="left", fontsize="medium", fontweight="bold")
