@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Other people's simulators, each in an environment of its own with pinned versions: `python benchmarks/run.py peers`.
 
-MuJoCo (a chain of ellipsoids with its fluid model) and PyElastica (a Cosserat rod with its slender-body drag) swim the
+MuJoCo (a chain of ellipsoids with its fluid model, held by servos, or with the joints prescribed and the head's six
+equations solved outside: its best) and PyElastica (a Cosserat rod with its slender-body drag) swim the
 falling gait. Their physics is another, so each is held against its own converged answer, and costs are compared where
 the library has no greater error against its own. A peer that cannot be installed is skipped.
 """
@@ -21,6 +22,8 @@ BATCH = 8  # swimmers side by side
 LINKS = {10: 2.5e-4, 20: 2.5e-4}  # MuJoCo: links, s of the finest step
 LINK_STEPS = (0.01, 0.005, 0.002)  # s
 LAG = 0.02  # s, of the servos (mujoco_chain.py)
+PRESCRIBED_STEPS = (0.05, 0.02, 0.01)  # s, where the joints are prescribed (mujoco_prescribed.py)
+PRESCRIBED_FINEST = 0.0025  # s
 ELEMENTS = {25: 2.5e-5, 50: 2.5e-5}  # PyElastica: elements, s of the finest step
 ELEMENT_STEPS = (1e-4, 5e-5)  # s; half as much again is unstable
 STIFFNESS = 1e7  # Pa, Young's modulus: soft enough for these steps, stiff enough to follow the law
@@ -120,19 +123,44 @@ def _mujoco(python: Path, ours: Ours, duration: float = 10.0):
         )
         yield "    joint angles off by", max(r["shape_error"] for r in results.values()), "rad at most"
         ends[links] = np.array(results[finest]["head"])
+    yield from _prescribed(python, ours, duration)
     few, many = ends.values()
     yield "  10 and 20 links apart", float(np.linalg.norm(few - many)), "m at the end"
     yield "  the head is then from its start", float(np.linalg.norm(many)), f"m; ours {_way(ours, duration):.3g} m"
     yield "  a link pushed from rest weighs", result["added_mass_share"], "times its mass: 1 is without added mass"
 
 
-def _joint_angles(ours: Ours, links: int, step: float, duration: float):
-    """Angles (steps + 1, 2 (links - 1)) [rad], pitch and yaw, at the joints: integrals of K over a link about each."""
+def _prescribed(python: Path, ours: Ours, duration: float = 10.0):
+    """Lines of MuJoCo's chain with prescribed joints."""
+    for links in LINKS:
+        middle = (np.arange(links) + 0.5) * ours.body.length / links
+        results = {}
+        for step in (*PRESCRIBED_STEPS, PRESCRIBED_FINEST):
+            results[step] = measured(
+                python,
+                "mujoco_prescribed.py",
+                length=ours.body.length,
+                half_width=ours.body.half_width(middle),
+                half_height=ours.body.half_height(middle),
+                density=ours.body.density,
+                water=1000.0,
+                viscosity=VISCOSITY,
+                step=step,
+                joints=np.stack([_joint_angles(ours, links, 0.5 * step, duration, rate) for rate in range(3)], axis=1),
+                repeats=REPEATS if step > PRESCRIBED_FINEST else 1,
+            )
+        yield from _lines(f"{links} links, joints prescribed", results, ours, duration)
+
+
+def _joint_angles(ours: Ours, links: int, step: float, duration: float, rate: int = 0):
+    """Angles (steps + 1, 2 (links - 1)) [rad], pitch and yaw, at the joints: integrals of K over a link about each.
+
+    rate: 1, 2 for their first and second time derivatives."""
     link = ours.body.length / links
     points, weights = np.polynomial.legendre.leggauss(6)
     x = (np.arange(1, links)[:, None] * link + 0.5 * link * points).ravel()
     times = np.arange(round(duration / step) + 1) * step
-    curvature = np.array([ours.law.curvature(time, x)[0][:, 1:] for time in times])
+    curvature = np.array([ours.law.curvature(time, x)[rate][:, 1:] for time in times])
     shaped = curvature.reshape(len(times), links - 1, len(points), 2)
     angles = 0.5 * link * np.einsum("p,tjpk->tjk", weights, shaped)
     return angles.reshape(len(times), -1)

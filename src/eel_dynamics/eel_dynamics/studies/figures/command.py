@@ -33,7 +33,7 @@ SIZES = {  # inches; name of the file
 FORMATS = ("svg", "png")
 DATELESS = {"svg": {"Date": None}, "png": {"Software": None}, "pdf": {"CreationDate": None}}  # the same file each time
 COLUMN, PAGE = 3.4, 7.0  # inches: widths of a journal's column, and of its page
-SIDE_BY_SIDE = ("figure6_configurations", "torque_surface", "convergence")  # always as wide as a page
+PAGE_WIDE = ("figure5_body", "figure6_configurations", "torque_surface", "convergence")  # whatever the columns
 JOURNAL = {"font.size": 8.0, "lines.linewidth": 1.0, "pdf.fonttype": 42}  # letters as letters, not as curves
 
 
@@ -98,7 +98,7 @@ def size_of(name: str, columns: int | None) -> tuple[float, float]:
     width, height = SIZES[name]
     if not columns:
         return width, height
-    wanted = COLUMN if columns == 1 and name not in SIDE_BY_SIDE else PAGE
+    wanted = COLUMN if columns == 1 and name not in PAGE_WIDE else PAGE
     return wanted, height * max(wanted / width, 0.7)  # curves above one another stay high enough to be read
 
 
