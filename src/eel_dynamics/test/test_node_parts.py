@@ -10,6 +10,7 @@ import pytest
 from eel_dynamics.ros import clock_arbiter
 from eel_dynamics.ros.clock_arbiter import ClockArbiter, ClockMonitor
 from eel_dynamics.ros.diagnostics import ERROR, OK, WARN, Report
+from eel_dynamics.ros.loop.clock_ticks import ClockTicks
 from eel_dynamics.ros.loop.law_feed import LawAdopter, LawFeed
 from eel_dynamics.ros.loop.pacing import Pace
 from eel_dynamics.ros.loop.run_loop import RunLoop
@@ -425,6 +426,27 @@ def test_a_subscriber_that_comes_after_the_snapshot_was_taken(monkeypatch):
     assert [name for name, *_ in received] == ["internal_wrench", "hydrodynamic_load", "energy"]
 
 
+@pytest.mark.parametrize("factor", [0.0, 1.0])
+def test_subscribers_that_are_waited_for_are_counted_on_each_topic(factor):
+    """At real time too. Those of some topics alone are complete when none has come for a while."""
+    audience = dict.fromkeys(("head_pose", "backbone", "swim_state"), 0)
+    publishers = Publishers(
+        SimpleNamespace(kinds=dict.fromkeys(audience, str)), destroy=None, known=None, received=None,
+        create=lambda kind, topic, depth: SimpleNamespace(get_subscription_count=lambda: audience[topic]),
+        publish_error=RuntimeError, values=lambda: DynamicsParameters(real_time_factor=factor),
+        stopped=lambda: False, report=Report(Log()),
+    )  # fmt: skip
+    assert not publishers.subscribers_complete(2, 10.0)
+    audience["head_pose"] = 5
+    assert not publishers.subscribers_complete(2, 11.0)  # five of one topic are not two of each
+    audience["backbone"] = 1
+    assert not publishers.subscribers_complete(2, 12.9) and not publishers.subscribers_complete(2, 13.8)
+    audience["backbone"] = 2
+    assert publishers.subscribers_complete(2, 13.9)  # nobody has to plot
+    audience["backbone"] = 1
+    assert not publishers.subscribers_complete(2, 14.0) and publishers.subscribers_complete(2, 15.1)
+
+
 def test_who_was_given_up_does_not_cost_the_others_the_end_of_a_run(monkeypatch):
     """Its topic gets a short farewell; on the others a backlog is waited for as long as without it."""
     monkeypatch.setattr("eel_dynamics.ros.publishers.END_TIMEOUT", 0.0)
@@ -453,7 +475,9 @@ def fake_publishers(publish):
     )
 
 
-@pytest.mark.parametrize(("wanted", "done_at"), [(lambda run: run.reset(), 0.0), (lambda run: run.request(int), 0.25)])
+@pytest.mark.parametrize(
+    ("wanted", "done_at"), [(lambda run: run.requests.reset(), 0.0), (lambda run: run.requests.put(int), 0.25)]
+)
 def test_a_request_knows_when_it_was_carried_out(wanted, done_at):
     """However many samples the run has published before the other thread looks: it may be thousands."""
     requests, stamps = [], []
@@ -482,7 +506,7 @@ def test_a_reset_that_the_law_refuses_leaves_the_run_as_it_is(monkeypatch):
         stamps.append(nanoseconds)
         if nanoseconds == 250_000_000:
             monkeypatch.setattr("eel_dynamics.simulation.simulation.march_from_start", refuse)
-            run.reset()
+            run.requests.reset()
 
     publishers = fake_publishers(publish)
     simulation = Simulation(law=falling(), accuracy=1e-2)
@@ -501,7 +525,7 @@ def test_a_run_that_stands_at_its_start_repeats_sample_0_and_goes_on_with_sample
         stamps.append(nanoseconds)
         if len(stamps) == 3:
             rows = {f"{axis}{of}": [0.0, 0.0] for axis in ("pitch", "yaw") for of in ("", "_rate", "_accel")}
-            run.take_samples({"time": 0.01, "x": x, **rows})
+            run.requests.take_samples({"time": 0.01, "x": x, **rows})
 
     run = RunLoop(
         Simulation(accuracy=1e-2),
@@ -511,6 +535,51 @@ def test_a_run_that_stands_at_its_start_repeats_sample_0_and_goes_on_with_sample
     )
     run.run()
     assert stamps == [0, 0, 0, *(10_000_000 * k for k in range(1, 6))] and run.samples_published == 6
+
+
+def clock_of(run_for, **parameters):
+    """What a run publishes, in order: ("tick", simulation time [ns]) of /clock, and ("sample", its stamp [ns])."""
+    told = []
+    publishers = fake_publishers(lambda snapshot, stamp: told.append(("sample", stamp)))
+    publishers.tick = lambda stamp: told.append(("tick", stamp))
+    values = DynamicsParameters(duration=run_for, **parameters)
+    RunLoop(Simulation(accuracy=1e-2, law=falling()), values, publishers, Report(Log())).run()
+    return told
+
+
+@pytest.mark.parametrize("factor", [0.0, 1.0])
+def test_the_clock_has_a_rate_of_its_own_and_is_never_behind_a_sample(factor):
+    told = clock_of(0.04, rate=50.0, clock_rate=200.0, real_time_factor=factor)
+    assert [stamp for what, stamp in told if what == "tick"] == [5_000_000 * k for k in range(9)]
+    assert [each for each in told if each[0] == "sample" or each[1] % 20_000_000 == 0] == [
+        (what, 20_000_000 * k) for k in range(3) for what in ("tick", "sample")
+    ]
+
+
+def test_a_clock_slower_than_the_samples_comes_with_the_first_sample_at_its_time_or_after():
+    told = clock_of(0.5, rate=100.0, clock_rate=8.0, real_time_factor=0.0)
+    assert [stamp for what, stamp in told if what == "tick"] == [125_000_000 * k for k in range(5)]
+    after = [told[k + 1][1] for k, (what, _) in enumerate(told) if what == "tick"]
+    assert after == [0, 130_000_000, 250_000_000, 380_000_000, 500_000_000]
+
+
+def test_without_a_rate_of_its_own_the_clock_comes_with_each_sample():
+    told = clock_of(0.03, rate=100.0, real_time_factor=0.0)
+    assert told == [(what, 10_000_000 * k) for k in range(4) for what in ("tick", "sample")]
+
+
+def test_a_clock_that_stands_does_not_go_back_to_the_last_sample():
+    told, now = [], 0.0
+    clock = ClockTicks(100.0, SimpleNamespace(tick=told.append))
+    clock.reach(0)
+    clock.go_on(30_000_000, 0, now)
+    for _ in range(3):
+        now += 1e9  # s: later than any clock's time
+        clock.repeat(0, now)
+    assert told == [0, 10_000_000, 20_000_000, 30_000_000, *[30_000_000] * 3]
+    clock.restart()
+    clock.reach(0)
+    assert told[-1] == 0
 
 
 def test_steps_of_a_paused_run_end_with_the_last_of_them_or_say_why():
@@ -526,16 +595,16 @@ def test_steps_of_a_paused_run_end_with_the_last_of_them_or_say_why():
         Report(Log()),
     )
     thread = threading.Thread(target=run.run)
-    run.pause(True)
+    run.requests.pause(True)
     thread.start()
     for count in (3, 2):
-        steps.append(run.step(count))
+        steps.append(run.requests.step(count))
         assert steps[-1].done.wait(60.0) and not steps[-1].failure
     assert [each.time for each in steps] == [0.03, 0.05]
     assert [stamp for stamp in stamps if stamp] == [10_000_000 * k for k in range(1, 6)]
-    run.pause(False)
+    run.requests.pause(False)
     thread.join()
-    late = run.step(1)
-    run.request(run.stop)
+    late = run.requests.step(1)
+    run.requests.put(run.requests.stop)
     run.run()
     assert "refused at t = 1 s: the run is not paused" in late.failure or not late.done.is_set()

@@ -15,16 +15,16 @@ from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from eel_gaits.input_output.wording import shown
 from eel_gaits.laws.law import MAXIMUM_TERMS
+from eel_ros.frames import heading
 from geometry_msgs.msg import PoseStamped, TransformStamped, TwistStamped
 from nav_msgs.msg import Odometry
 from rclpy.serialization import deserialize_message
 from rosgraph_msgs.msg import Clock
-from sensor_msgs.msg import JointState
 from tf2_msgs.msg import TFMessage
 
 from eel_dynamics.analysis.actuators import Joints
 from eel_dynamics.curvature.curvature_samples import check_points
-from eel_dynamics.model.axes import QUATERNION, VECTOR, matrix_of, turn_quaternion, turn_vector, turn_world
+from eel_dynamics.model.axes import QUATERNION, VECTOR, turn_quaternion, turn_vector, turn_world
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.ros.parameters import DynamicsParameters, unit_quaternion
 from eel_dynamics.ros.serialised_message import SerialisedMessage
@@ -97,6 +97,8 @@ class Sample:
         robots = {"yaw": (2, parameters.yaw_joints), "pitch": (1, parameters.pitch_joints)}  # section axis, joints
         self._joints = [(axis, Joints(x, float(x[-1]), count)) for axis, count in robots.values() if count]
         if self._joints:
+            from sensor_msgs.msg import JointState  # here, for its package takes a tenth of the node's start
+
             names = [f"{name}_{k + 1}" for name, (_, count) in robots.items() for k in range(count)]
             zeros = [0.0] * len(names)
             effort = zeros if scene.internal_wrench else []
@@ -187,11 +189,10 @@ class Sample:
         numbers[""][:] = [getattr(snapshot.energy, name) for name in ENERGY_FIELDS]
 
     def _fill_state(self, numbers, snapshot):
-        ahead = matrix_of(self._head[ORIENTATION])[:, 0]
         numbers[""][:] = (  # in the order of the fields
             np.linalg.norm(self._head[LINEAR]),
             -self._head[POSITION][2],
-            math.atan2(ahead[1], ahead[0]),
+            heading(self._head[ORIENTATION]),
             math.nan if snapshot.torque is None else np.max(np.abs(snapshot.torque)),
             math.nan if snapshot.actuator_work is None else snapshot.actuator_work,
             self._estimated_error(),

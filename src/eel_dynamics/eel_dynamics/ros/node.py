@@ -79,7 +79,7 @@ class DynamicsNode(ParameterNode):
     def __init__(self):
         super().__init__(NAME, automatically_declare_parameters_from_overrides=True)
         report = Report(self.get_logger())
-        self.parameters = Declaration(self, lambda values: self.run_loop.change(values))
+        self.parameters = Declaration(self, lambda values: self.run_loop.requests.change(values))
         values, scene = self.parameters.values, self.parameters.scene
         simulation = simulation_from_parameters(values, scene)
         self.sample_publishers = Publishers(
@@ -93,14 +93,16 @@ class DynamicsNode(ParameterNode):
             stopped=lambda: self.run_loop.stopped,
             report=report,
         )
-        inbox = SampleInbox(self, lambda message, *about: feed.receive_samples(message, *about))
+        inbox = SampleInbox(self, lambda message, info: feed.receive_samples(message, info))
         self.run_loop = RunLoop(simulation, values, self.sample_publishers, report, self._wait_for_body_received, inbox)
         self.status = Status(self.run_loop, report, values.accuracy)
         self._diagnostics = self.create_publisher(DiagnosticArray, "/diagnostics", 10)
         self._body = self.create_publisher(BodyGeometry, "body", LATCHED)
         self._body.publish(body_message(simulation.body, scene, simulation.x, values.section_frame))
 
-        feed = LawFeed(self.run_loop, report, parse=parse_law, law_of=law_from_message, samples_of=samples_from_message)
+        feed = LawFeed(
+            self.run_loop.requests, report, parse=parse_law, law_of=law_from_message, samples_of=samples_from_message
+        )
         # The first also gets earlier messages, the second matches any publisher.
         for number, quality in enumerate((LATCHED, QoSProfile(depth=10))):
             self.create_subscription(
@@ -118,11 +120,13 @@ class DynamicsNode(ParameterNode):
         self._steps_done = self.create_guard_condition(lambda: None, steps)
         self.create_service(SetState, "~/set_state", self._set_state, qos_profile=SERVICE_QOS)
         clock = ClockMonitor(
-            self, lambda offered: self.run_loop.request(lambda: self.sample_publishers.enable_clock(offered)), report
+            self,
+            lambda offered: self.run_loop.requests.put(lambda: self.sample_publishers.enable_clock(offered)),
+            report,
         )
         clock.look(values.clock)
         topic = self.resolve_topic_name("head_pose")
-        self._arbiter = SwimmerArbiter(Identity.own(), topic, report, self.run_loop.hold)
+        self._arbiter = SwimmerArbiter(Identity.own(), topic, report, self.run_loop.requests.hold)
         self.create_subscription(DiagnosticArray, "/diagnostics", self._receive_diagnostics, 10)
 
         def on_timer():
@@ -173,7 +177,7 @@ class DynamicsNode(ParameterNode):
             response.message = f"reset refused: {one_line(error)}"
             self.get_logger().error(response.message)
             return response
-        return self._answer(response, self.run_loop.reset(new), "reset")
+        return self._answer(response, self.run_loop.requests.reset(new), "reset")
 
     def _new_run(self) -> NewRun:
         """The run with the parameters that have been set for the next reset. `ValueError` names what does not fit."""
@@ -194,7 +198,7 @@ class DynamicsNode(ParameterNode):
         if not 1 <= request.samples <= MOST_STEPS:
             response.message = f"samples must be 1 to {MOST_STEPS}, got {request.samples}"
             return response
-        steps = self.run_loop.step(request.samples, self._steps_done.trigger)
+        steps = self.run_loop.requests.step(request.samples, self._steps_done.trigger)
         while not steps.done.is_set():
             await NextTurn()
         response.success, response.stamp = not steps.failure, time_message(steps.time)
@@ -207,10 +211,12 @@ class DynamicsNode(ParameterNode):
         except ValueError as error:
             response.message = str(error)
             return response
-        return self._answer(response, self.run_loop.set_state(*state), "head put into the state")
+        return self._answer(response, self.run_loop.requests.set_state(*state), "head put into the state")
 
     def _pause(self, request, response):
-        return self._answer(response, self.run_loop.pause(request.data), "paused" if request.data else "going on")
+        return self._answer(
+            response, self.run_loop.requests.pause(request.data), "paused" if request.data else "going on"
+        )
 
     def _answer(self, response, request, state):
         done = request.done.wait(SERVICE_TIMEOUT)
@@ -247,7 +253,7 @@ def main(args=None) -> int:
     end.start(node.run_loop.run)
     end.start(lambda: spin(executor, node, end))
     done, error = end.wait()
-    node.run_loop.stop()
+    node.run_loop.requests.stop()
     end.over = True
     executor.create_task(lambda: None)  # wakes the executor once more
     joined = end.join(SIGNAL_TIMEOUT)

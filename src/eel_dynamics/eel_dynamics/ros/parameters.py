@@ -94,6 +94,14 @@ class DynamicsParameters:
         "section", "frame id of values in the axes of their own section; by default below the namespace"
     )
     clock: bool = _parameter(True, "publish /clock, unless another publisher of it is on the network", changeable=True)
+    clock_rate: float = _parameter(
+        0.0,
+        "messages on /clock per simulated second; 0: one with each sample",
+        "Hz",
+        minimum=0.0,
+        maximum=1e4,
+        changeable=AT_RESET,
+    )
     publish_tf: bool = _parameter(True, "publish world to head on /tf", changeable=True)
     publish_tf_stations: bool = _parameter(
         False, "publish a frame of section axes for each station too, as section_0, section_1, ... (see section_frame)"

@@ -100,17 +100,17 @@ class Publishers:
         return tuple(channel.publisher.get_subscription_count() for channel in self._channels.values())
 
     def publish(self, snapshot, nanoseconds: int):
-        """Publish /clock and one sample at simulation time `nanoseconds` [ns].
+        """Publish one sample at simulation time `nanoseconds` [ns].
 
         Only topics that had subscribers at the last call of `wanted_parts` are published.
         """
-        self.tick(nanoseconds)
+        self._sample.set_time(nanoseconds)
         self._samples = self._samples + 1 if nanoseconds else 1
         for name in self._subscribed:
             self._send(self._channels[name], self._sample.fill(name, snapshot))
 
     def tick(self, nanoseconds: int):
-        """Publish /clock alone, at simulation time `nanoseconds` [ns]."""
+        """Publish /clock, with simulation time `nanoseconds` [ns]."""
         self._sample.set_time(nanoseconds)
         if self._clock is not None:
             self._send(self._clock, self._sample.tick())

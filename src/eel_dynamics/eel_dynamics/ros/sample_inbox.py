@@ -22,10 +22,10 @@ class SampleInbox:
     """The subscriptions of `node` to samples, and what wakes the run loop, in place of `requests.WakeUp`.
 
     There is one without loss, and from `look` on a second one, if some publisher is best-effort.
-    receive(message, info, several): takes a message; several: whether there are two subscriptions.
+    receive(message, info): takes a message. Where there are two subscriptions, it may come twice.
     """
 
-    def __init__(self, node, receive: Callable[[CurvatureSamples, dict, bool], None]):
+    def __init__(self, node, receive: Callable[[CurvatureSamples, dict], None]):
         self._node, self._receive, self._group = node, receive, PolledGroup()
         self._guard = node.create_guard_condition(lambda: None, self._group)
         self._subscriptions, self._wait_set = (), None
@@ -48,15 +48,14 @@ class SampleInbox:
 
     def poll(self):
         """Take the samples that have come. One that cannot be read is logged and left out."""
-        subscriptions = self._subscriptions
-        for subscription in subscriptions:
+        for subscription in self._subscriptions:
             for _ in range(BATCH):
                 with subscription.handle:
                     taken = subscription.handle.take_message(subscription.msg_type, True)
                 if taken is None:
                     break
                 try:
-                    self._receive(deserialize_message(taken[0], CurvatureSamples), taken[1], len(subscriptions) > 1)
+                    self._receive(deserialize_message(taken[0], CurvatureSamples), taken[1])
                 except Exception as error:
                     log_dropped(self._node, error, f"a message of {subscription.topic_name}")
 

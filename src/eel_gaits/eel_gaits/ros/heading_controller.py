@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from builtin_interfaces.msg import Time
 from eel_ros.command_line import answer_words
+from eel_ros.frames import heading
 from eel_ros.parameter_node import ParameterNode
 from eel_ros.parameters import declare, help_rows, take_overrides, warn_of_unknown
 from eel_ros.qos import keep_all
@@ -76,11 +77,10 @@ class HeadingController(ParameterNode):
 
     def next_bend(self, q):
         """The bend of the body one period on: K3 [rad/m], its rate and its acceleration. K3 > 0 turns to the right."""
-        heading = math.atan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y * q.y + q.z * q.z))
         target, gain, limit, step = (
             self.get_parameter(name).value for name in ("heading", "gain", "greatest_bend", "period")
         )
-        wanted = -gain * math.remainder(target - heading, 2.0 * math.pi)
+        wanted = -gain * math.remainder(target - heading((q.x, q.y, q.z, q.w)), 2.0 * math.pi)
         value, rate, _ = self.bend
         acceleration = FOLLOWING**2 * (max(-limit, min(limit, wanted)) - value) - 2.0 * FOLLOWING * rate
         rate += step * acceleration

@@ -28,6 +28,7 @@ from eel_viz.recording.sinks import destinations
 from eel_viz.settings import Settings
 from eel_viz.topics import GLOBAL, OWN
 from eel_viz.viewer import display, open_window
+from eel_viz.without_pandas import keep_pandas_out
 
 NAME = "replay"
 DIAGNOSTICS = "/diagnostics"
@@ -199,6 +200,7 @@ def parser() -> Parser:
 def main(arguments: list[str] | None = None) -> int:
     """Run the command. Exit status: 0; with one line on stderr 1 if the recording cannot be written completely, 2 if it
     cannot be begun, 130 after Ctrl-C."""
+    keep_pandas_out()
     chosen = parser().parse_args(arguments)
     output = chosen.output or f"{name_of(chosen.bag)}.rrd"
     other = chosen.compare if chosen.compare.strip("/") and os.path.exists(chosen.compare) else None

@@ -23,6 +23,7 @@ from eel_gaits.input_output.wording import shown
 from eel_viz.pictures.drawing import SIZE, Drawing, drawn
 from eel_viz.pictures.film import ANIMATIONS, FILMS, FRAME, QUALITY, check_quality, ffmpeg, film
 from eel_viz.viewer import CannotRender
+from eel_viz.without_pandas import keep_pandas_out
 
 NAME = "render"
 FILM = "film.mp4"
@@ -128,6 +129,7 @@ def parser() -> Parser:
 def main(arguments: list[str] | None = None) -> int:
     """Run the command. Exit status: 0; 1 if the output cannot be written completely; 2 for bad arguments; 3 if the
     viewer cannot draw; 130 after Ctrl-C."""
+    keep_pandas_out()
     made = parser()
     chosen = made.parse_args(arguments)
     output = chosen.output or chosen.picture

@@ -30,6 +30,7 @@ from eel_viz.ros.declared_settings import declared_settings
 from eel_viz.ros.polled_subscriptions import PolledSubscriptions
 from eel_viz.settings import Settings
 from eel_viz.topics import SWIMMER
+from eel_viz.without_pandas import keep_pandas_out
 
 NAME = "visualiser"
 ABOUT = "Shows and records every topic of a swimmer in Rerun."
@@ -133,6 +134,7 @@ class Visualiser(ParameterNode):
 def main(arguments: list[str] | None = None) -> int:
     """Run the node. Exit status: 0 after SIGINT or SIGTERM; 1 if a file could not be written completely; 2 if a
     parameter or an argument is refused at start."""
+    keep_pandas_out()
     given = sys.argv if arguments is None else [NAME, *arguments]
     status = answer_words(NAME, ABOUT, help_rows(Settings), given, complain)
     if status is not None:

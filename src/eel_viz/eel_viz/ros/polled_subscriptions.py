@@ -5,9 +5,9 @@ An executor collects and waits on all entities of a node before each message. Wi
 logging them. The callback group here is never executed, so messages stay in the KEEP_ALL histories until `take`.
 """
 
-from collections import deque
 from collections.abc import Callable
 
+from eel_ros.deliveries import Deliveries
 from eel_ros.serving import PolledGroup, log_dropped
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
@@ -17,7 +17,6 @@ from eel_viz.ros.publisher_change import PublisherChange
 
 BATCH = 64  # messages taken from one subscription before the next one
 PROCESS = 12  # bytes of an endpoint's identifier that all endpoints of a process share (RTPS: the GUID's prefix)
-REMEMBERED = 1024  # deliveries of a topic with two subscriptions, one of which may be some batches behind
 
 
 class PolledSubscriptions:
@@ -33,10 +32,10 @@ class PolledSubscriptions:
         new_publisher: whether the message is the first one of another publisher than before. There is one subscription
         for each of the `qualities`; a message that several of them receive is passed once.
         """
-        delivered = deque(maxlen=REMEMBERED if len(qualities) > 1 else 0)
+        deliveries = Deliveries()
         for quality in qualities:
             made = self._node.create_subscription(kind, topic, show, quality, callback_group=self._group)
-            self._subscriptions.append((made, show, PublisherChange(lambda: self._publishers(topic)), delivered))
+            self._subscriptions.append((made, show, PublisherChange(lambda: self._publishers(topic)), deliveries))
 
     def _publishers(self, topic: str) -> set[tuple]:
         """Identifiers of the processes that publish on `topic`. A node may replace one of its publishers."""
@@ -54,7 +53,7 @@ class PolledSubscriptions:
         a message object even if none has come.
         """
         count = 0
-        for subscription, show, publisher_change, delivered in self._subscriptions:
+        for subscription, show, publisher_change, deliveries in self._subscriptions:
             with subscription.handle:  # keeps it from being destroyed meanwhile
                 for _ in range(BATCH):
                     taken = subscription.handle.take_message(subscription.msg_type, True)
@@ -62,12 +61,12 @@ class PolledSubscriptions:
                         break
                     count += 1
                     data, about = taken
-                    delivery = about["publication_sequence_number"], about["source_timestamp"]
-                    new_publisher = publisher_change.changes(*delivery)
+                    new_publisher = publisher_change.changes(
+                        about["publication_sequence_number"], about["source_timestamp"]
+                    )
                     if new_publisher:
                         self.note_publishers()
-                    if delivery not in delivered:
-                        delivered.append(delivery)
+                    if not deliveries.repeats(about):
                         try:
                             show(deserialize_message(data, subscription.msg_type), new_publisher)
                         except Exception as error:

@@ -9,15 +9,6 @@ from eel_viz import entities
 from eel_viz.plots import heat_map, profile_plot
 from eel_viz.scene3d import camera, colours
 
-_PAST = rrb.VisibleTimeRanges(
-    [
-        rrb.VisibleTimeRange(
-            entities.TIMELINE,
-            start=rrb.TimeRangeBoundary.infinite(),
-            end=rrb.TimeRangeBoundary.cursor_relative(),
-        )
-    ]
-)
 NARROW, WIDE = 4.5, 2.0  # s before the start, for the legend of a narrow or a wide view of some ten seconds
 LOADS = entities.LOAD, entities.LOAD_ENDS
 
@@ -36,7 +27,13 @@ def path_view(*, frames: bool = False) -> rrb.Spatial3DView:
     """Three dimensions; the camera keeps all places so far in the picture."""
     left_out = [entities.WATER, entities.BOTH_WATER, entities.LEGEND, entities.OTHER]
     hidden = _hidden(*LOADS, *(() if frames else (entities.HEAD, entities.TAIL)))
-    return _three_dimensions("Path so far", entities.WHOLE_PATH, left_out, {entities.TRACK: [_PAST], **hidden})
+    return _three_dimensions("Path so far", entities.WHOLE_PATH, left_out, {entities.TRACK: [_past()], **hidden})
+
+
+def _past() -> rrb.VisibleTimeRanges:
+    """All that lies before the cursor."""
+    start, end = rrb.TimeRangeBoundary.infinite(), rrb.TimeRangeBoundary.cursor_relative()
+    return rrb.VisibleTimeRanges([rrb.VisibleTimeRange(entities.TIMELINE, start=start, end=end)])
 
 
 def _three_dimensions(name: str, origin: str, left_out: list[str], overrides: dict) -> rrb.Spatial3DView:

@@ -10,14 +10,13 @@ an old law that the other subscription has dropped is not adopted.
 
 import reprlib
 import time
-from collections import deque
 
 import numpy as np
 from eel_gaits.input_output.wording import shown
+from eel_ros.deliveries import Deliveries
 
 from eel_dynamics.ros.diagnostics import ERROR
 
-REMEMBERED = 4096  # samples: one of two subscriptions may be so far behind the other
 FAR_AHEAD = 3600.0  # s: a stamp further ahead of the simulation is wall time by mistake
 DROPPED = 1_000_000_000  # ns: a publisher's law that arrives after a later one is at most this much older
 ECHO = 2.0  # s after a reset, within which samples that were sent before it may come
@@ -36,14 +35,12 @@ class LawFeed:
     def __init__(self, run, report, *, parse, law_of, samples_of):
         self._run, self._report = run, report
         self._parse, self._law_of, self._samples_of = parse, law_of, samples_of
-        self._received = deque(maxlen=256)
-        self._newest = {}  # subscription: its last delivery
-        self._samples = {}  # deliveries of samples, the oldest first
+        self._laws, self._samples = Deliveries(), Deliveries()
+        self._newest = {}  # subscription: time of sending [ns] and count of its last law
 
     def receive_law(self, data, info: dict, subscription: int = 0):
         """Pass on the law in the serialised message `data`; `info`: message info, to recognise a second delivery."""
-        delivery = (info.get("source_timestamp"), info.get("publication_sequence_number"))
-        if delivery[0] and self._is_known(delivery, subscription):
+        if self._is_outdated(info, subscription) or self._laws.repeats(info):
             return
         name = ""
         try:
@@ -56,23 +53,19 @@ class LawFeed:
         else:
             self._run.take_law(law, origin)
 
-    def _is_known(self, delivery: tuple, subscription: int) -> bool:
-        """Whether the other subscription has received this law, or a later one of the same publisher."""
-        received = delivery in self._received
-        self._received.append(delivery)
+    def _is_outdated(self, info: dict, subscription: int) -> bool:
+        """Whether the other subscription has received a later law of the same publisher."""
+        sent, count = delivery = info.get("source_timestamp"), info.get("publication_sequence_number")
+        if not sent or count is None:  # the middleware does not tell
+            return False
         self._newest[subscription] = delivery
-        later = (newest for other, newest in self._newest.items() if other != subscription)
-        return received or any(sent > delivery[0] > sent - DROPPED and number > delivery[1] for sent, number in later)
+        others = (newest for other, newest in self._newest.items() if other != subscription)
+        return any(later > sent > later - DROPPED and further > count for later, further in others)
 
-    def receive_samples(self, message, info: dict, several: bool = False):
-        """Pass on one instant of a law from a controller; `several`: more than one subscription takes it."""
-        delivery = (info.get("source_timestamp"), info.get("publication_sequence_number"))
-        if several:
-            if delivery in self._samples:
-                return
-            self._samples[delivery] = None
-            if len(self._samples) > REMEMBERED:
-                del self._samples[next(iter(self._samples))]
+    def receive_samples(self, message, info: dict):
+        """Pass on one instant of a law from a controller; `info` as in `receive_law`."""
+        if self._samples.repeats(info):
+            return
         try:
             self._checked_stamp(message.header.stamp)
             samples = self._samples_of(message)

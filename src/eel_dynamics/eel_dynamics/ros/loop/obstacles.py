@@ -4,7 +4,7 @@
 import time
 from collections.abc import Callable
 
-from eel_dynamics.ros.loop.requests import Request
+from eel_dynamics.ros.loop.request_queue import Request
 
 WAITING = "waiting for curvature_law or curvature_samples"
 

@@ -1,33 +1,22 @@
 # SPDX-License-Identifier: Apache-2.0
 """The run loop, in a thread of its own: waits, paces, advances the simulation, and publishes each sample.
 
-Only this thread uses the simulation. Other threads make requests, which are executed between two samples. An urgent
-request interrupts the computation of a sample, and so does any request once that has taken long.
+Only this thread uses the simulation. Other threads make requests (run_requests.py), which are executed between two
+samples. An urgent request interrupts the computation of a sample, and so does any request once that has taken long.
 No ROS is imported: `publishers` and `report` come from the node.
 """
 
 import time
-from collections.abc import Callable
-from typing import NamedTuple
 
 from eel_dynamics.ros.diagnostics import ERROR
+from eel_dynamics.ros.loop.clock_ticks import TICK
 from eel_dynamics.ros.loop.law_feed import LawAdopter
 from eel_dynamics.ros.loop.obstacles import Obstacles
 from eel_dynamics.ros.loop.pacing import ControllerWait, Pace, Stopwatch
-from eel_dynamics.ros.loop.requests import Request, RequestQueue, WakeUp
-from eel_dynamics.ros.loop.sample_output import TICK, SampleOutput
+from eel_dynamics.ros.loop.request_queue import RequestQueue, WakeUp
+from eel_dynamics.ros.loop.run_requests import NewRun, RunRequests
+from eel_dynamics.ros.loop.sample_output import SampleOutput, nanoseconds
 from eel_dynamics.simulation.stopping import SimulationStopped
-
-MAXIMUM_REQUESTS = 10_000  # requests
-TOO_MANY = f"curvature samples refused: at most {MAXIMUM_REQUESTS} wait for the next sample"
-
-
-class NewRun(NamedTuple):
-    """What a reset changes: another `simulation`, `parameters`, and `begin()`, which makes its topics ready."""
-
-    simulation: object
-    parameters: object
-    begin: Callable[[], None]
 
 
 class RunLoop:
@@ -39,84 +28,33 @@ class RunLoop:
     `run` is the thread's function: it returns after the last sample, or after `stop`. A simulation that has stopped
     waits for a reset; an unattended one (with a duration, as fast as possible) returns and has `given_up`.
     on_subscribers_complete: called when the subscribers that the run waits for are there. inbox: has `poll()`, which
-    passes samples that have come to `take_samples`, and the methods of `WakeUp`.
+    passes samples that have come to `requests.take_samples`, and the methods of `WakeUp`.
 
     Attributes:
         time: simulation time of the last sample [s].
         samples_published: number of samples, which is the index of the next one.
         standing: what the simulation waits for, as text; empty while it runs.
-        laws: LawAdopter. output: SampleOutput. pace: Pace. wall_time: Stopwatch.
+        requests: RunRequests, for other threads.
+        obstacles: Obstacles. laws: LawAdopter. output: SampleOutput. pace: Pace. wall_time: Stopwatch.
     """
 
     def __init__(self, simulation, parameters, publishers, report, on_subscribers_complete=lambda: None, inbox=None):
         self._simulation, self._parameters, self._report = simulation, parameters, report
-        self._obstacles = Obstacles(simulation, publishers, parameters.wait_for_subscribers, on_subscribers_complete)
-        self._requests = RequestQueue(inbox or WakeUp())
+        self.obstacles = Obstacles(simulation, publishers, parameters.wait_for_subscribers, on_subscribers_complete)
+        self._queue = RequestQueue(inbox or WakeUp())
+        self.requests = RunRequests(self, self._queue, report)
         self._poll = inbox.poll if inbox is not None else lambda: None
         self.pace = Pace(1.0 / parameters.rate, parameters.real_time_factor)
         self._controller, self.wall_time = ControllerWait(), Stopwatch()
         self.laws = LawAdopter(simulation, report)
-        self.output = SampleOutput(simulation, parameters.rate, publishers, report)
+        self.output = SampleOutput(simulation, parameters.rate, parameters.clock_rate, publishers, report)
         self._sample_begun = None  # s, steady clock: when the computation of the next sample began
         self.time, self.samples_published, self.standing = 0.0, 0, ""
 
-    # For other threads.
-
-    def request(self, action, replaces: str = "", urgent: bool = False) -> Request:
-        """Queue `action()` for execution between two samples; an `urgent` one interrupts the present sample.
-
-        It replaces the newest request if both have the same non-empty text `replaces`.
-        """
-        return self._requests.put(action, replaces, urgent)
-
-    def take_law(self, law, origin: float):
-        """Adopt a law whose own t = 0 lies at simulation time `origin` [s]; of several before a sample the last."""
-        self.request(lambda: self._adopt(law, origin), "law")
-
-    def take_samples(self, samples: dict):
-        """Add one instant of a law, the arguments of `Simulation.add_samples`; refused while too many wait."""
-        if len(self._requests) < MAXIMUM_REQUESTS:
-            self.request(lambda: self.laws.add_samples(samples))
-        else:
-            self._report.event("samples", TOO_MANY, ERROR)
-
-    def reset(self, new: NewRun | None = None) -> Request:
-        """Reset state and time to the start, of a `new` run if it is given. The law stays."""
-        return self.request(lambda: self._reset(new), urgent=True)
-
-    def pause(self, paused: bool) -> Request:
-        """Pause the run, or continue it."""
-        return self.request(lambda: self._obstacles.pause(paused, self.time), urgent=True)
-
-    def step(self, samples: int, wake: Callable[[], None] = lambda: None) -> Request:
-        """Publish so many `samples` of a paused run; the request is done with the last of them, and calls `wake()`.
-
-        Sample 0 is none of them.
-        """
-        steps = Request(lambda: None, wake=wake)
-        self.request(lambda: self._obstacles.begin_steps(samples, steps, self.time), urgent=True)
-        return steps
-
-    def set_state(self, position, orientation, twist) -> Request:
-        """Put the head elsewhere, as `Simulation.set_state` does."""
-        return self.request(lambda: self._set_state(position, orientation, twist), urgent=True)
-
-    def hold(self, reason: str):
-        """Hold the run for a `reason`, before its next sample; continue it with an empty one."""
-        self.request(lambda: self._obstacles.hold(reason), urgent=True)
-
-    def change(self, parameters):
-        """Apply `parameters`; only the changeable ones may differ."""
-        self.request(lambda: self._change(parameters))
-
-    def stop(self):
-        """End the run."""
-        self._requests.stop()
-
     @property
     def stopped(self) -> bool:
-        """Whether `stop` was called."""
-        return self._requests.stopped
+        """Whether the run was to end, by `requests.stop`."""
+        return self._queue.stopped
 
     @property
     def overdue(self) -> float:
@@ -127,7 +65,7 @@ class RunLoop:
     @property
     def given_up(self) -> bool:
         """The simulation has stopped, and it is unattended: no reset is expected."""
-        return self._obstacles.failed and self.pace.factor == 0.0 and self._parameters.duration > 0.0
+        return self.obstacles.failed and self.pace.factor == 0.0 and self._parameters.duration > 0.0
 
     # In the run loop's thread.
 
@@ -136,13 +74,13 @@ class RunLoop:
         self.pace.restart(0, time.monotonic())
         while not self.stopped and self.samples_published <= self._parameters.last_sample and not self.given_up:
             self._poll()
-            self._requests.carry_out(self._perform)
-            obstacle = self._obstacles.find(self.time)
+            self._queue.carry_out(self._perform)
+            obstacle = self.obstacles.find(self.time)
             if obstacle:
                 self._idle(obstacle)
             elif self._wait_for_turn():
                 self._next_sample()
-        self._obstacles.end_steps(self.time, "the run has ended")
+        self.obstacles.end_steps(self.time, "the run has ended")
 
     def _perform(self, action) -> tuple[float, str]:
         """Execute a request's action; returns the simulation time [s] afterwards, and why it was refused."""
@@ -161,13 +99,13 @@ class RunLoop:
             self.standing = obstacle
             self._report.info(obstacle)
         now = time.monotonic()
-        self._tick(now)
-        if self.samples_published == 0 and self.output.start_is_due(now) and self._obstacles.start_may_be_shown(now):
+        self.output.clock.repeat(self._stamp, now)
+        if self.samples_published == 0 and self.output.start_is_due(now) and self.obstacles.start_may_be_shown(now):
             try:
                 self.output.show_start(now)
             except SimulationStopped as error:
                 self._fail(error)
-        self._requests.wait(TICK)
+        self._queue.wait(TICK)
 
     def _wait_for_turn(self) -> bool:
         """Wait until the next sample is due; False if a request or a tick comes first."""
@@ -178,13 +116,15 @@ class RunLoop:
             self.wall_time.resume(now)
         missing = self.pace.factor == 0.0 and self.laws.lacks_samples(self._next_time)
         if self._controller.waits(missing, now, self._parameters.subscriber_timeout):
-            self._tick(now)
-            self._requests.wait(TICK)
+            self.output.clock.repeat(self._stamp, now)
+            self._queue.wait(TICK)
             return False
         delay = self.pace.due(self.samples_published) - now
         if delay > 0.0:
-            self._tick(now)
-            return not self._requests.wait(min(delay, TICK)) and delay <= TICK
+            clock, present = self.output.clock, self._next_time - delay * self.pace.factor
+            clock.go_on(round(present * 1e9), self._stamp, now)
+            pause = min(delay, TICK, (clock.next - present) / self.pace.factor)
+            return not self._queue.wait(pause) and pause == delay
         return True
 
     def _next_sample(self):
@@ -205,22 +145,22 @@ class RunLoop:
         if delay > 0.0:
             self._report.event("late", f"late by {delay:.3g} s at t = {self.time:g} s: accuracy is kept, not the pace")
         if self.samples_published > 0:
-            self._obstacles.count_step(self.time)
+            self.obstacles.count_step(self.time)
         self.samples_published += 1
 
     def _advance(self) -> bool:
         """Advance to the next sample; False if a request or the end of the run interrupts it."""
         if self._sample_begun is None:
             self._sample_begun = time.monotonic()
-        since, requests = self._sample_begun, self._requests
-        reached = self._simulation.advance(self._next_time, lambda: requests.interrupt(since))
+        since, queue = self._sample_begun, self._queue
+        reached = self._simulation.advance(self._next_time, lambda: queue.interrupt(since))
         if reached:
             self._sample_begun = None
         return reached
 
     def _fail(self, error: SimulationStopped):
-        self._obstacles.failed, self._sample_begun = True, None
-        self._obstacles.end_steps(self.time, f"simulation {error}")
+        self.obstacles.failed, self._sample_begun = True, None
+        self.obstacles.end_steps(self.time, f"simulation {error}")
         then = "this run ends here, with status 1" if self.given_up else "reset starts it again"
         self._report.begin("stopped", f"simulation {error}; {then}", ERROR)
 
@@ -228,22 +168,30 @@ class RunLoop:
     def _next_time(self) -> float:
         return self.samples_published / self._parameters.rate
 
-    def _tick(self, now: float):
-        self.output.tick(max(0, self.samples_published - 1), now)
+    @property
+    def _stamp(self) -> int:
+        """Simulation time [ns] of the last sample; before the first one, its own."""
+        return nanoseconds(max(0, self.samples_published - 1), self._parameters.rate)
 
-    def _adopt(self, law, origin: float):
+    # Requests, executed between two samples.
+
+    def adopt(self, law, origin: float):
+        """Adopt a law whose own t = 0 lies at simulation time `origin` [s]."""
         self.laws.adopt(law, origin)
         self.output.forget_start()
 
-    def _change(self, parameters):
+    def change(self, parameters):
+        """Apply `parameters`; only the changeable ones may differ."""
         self._parameters = parameters
         self.pace.restart(self.samples_published, time.monotonic(), parameters.real_time_factor)
 
-    def _set_state(self, position, orientation, twist):
+    def set_state(self, position, orientation, twist):
+        """Put the head elsewhere, as `Simulation.set_state` does."""
         self._simulation.set_state(position, orientation, twist)
         self.output.change_state()
 
-    def _reset(self, new: NewRun | None):
+    def reset(self, new: NewRun | None):
+        """Reset state and time to the start, of a `new` run if it is given. `ValueError` if the law cannot begin."""
         try:
             if new is None:
                 self._simulation.reset()
@@ -252,12 +200,12 @@ class RunLoop:
         except ValueError as error:  # a law that could be blended into may not begin from the initial state
             self._report.event("reset", f"reset refused: {error}", ERROR)
             raise
-        self._obstacles.end_steps(self.time, "the run was reset")
+        self.obstacles.end_steps(self.time, "the run was reset")
         if new is not None:
             self._begin(new)
         now = time.monotonic()
         self.time, self.samples_published = 0.0, 0
-        self._obstacles.failed, self._sample_begun = False, None
+        self.obstacles.failed, self._sample_begun = False, None
         self.output.restart(self._simulation)
         self.wall_time.restart(now)
         self._report.end("stopped")
@@ -268,6 +216,7 @@ class RunLoop:
     def _begin(self, new: NewRun):
         """Change to a new run."""
         self._parameters = new.parameters
-        self._simulation = self._obstacles.simulation = self.laws.simulation = new.simulation
+        self._simulation = self.obstacles.simulation = self.laws.simulation = new.simulation
         self.pace.period, self.output.rate = 1.0 / new.parameters.rate, new.parameters.rate
+        self.output.clock.rate = new.parameters.clock_rate
         new.begin()

@@ -5,13 +5,12 @@ While a run stands at its start, sample 0 is repeated. It is not published once 
 """
 
 import math
-import time
 
+from eel_dynamics.ros.loop.clock_ticks import ClockTicks
 from eel_dynamics.ros.loop.error_monitor import ErrorMonitor
 from eel_dynamics.ros.loop.limits_monitor import LimitsMonitor
 from eel_dynamics.ros.loop.run_totals import RunTotals
 
-TICK = 0.05  # s of wall time between two messages on /clock while the simulation stands
 START_PERIOD = 0.1  # s of wall time between two messages of sample 0 while the run stands at its start
 
 
@@ -20,13 +19,14 @@ class SampleOutput:
 
     Attributes:
         rate: may be replaced at a reset.
+        clock: ClockTicks.
         totals: RunTotals since the start.
     """
 
-    def __init__(self, simulation, rate: float, publishers, report):
+    def __init__(self, simulation, rate: float, clock_rate: float, publishers, report):
         self._simulation, self.rate, self._publishers, self._report = simulation, rate, publishers, report
         self._limits, self._errors = LimitsMonitor(simulation, report), ErrorMonitor(simulation, report)
-        self._last_tick = -math.inf  # s, steady clock: last message on /clock
+        self.clock = ClockTicks(clock_rate, publishers)
         self._whole_snapshot_due = True
         self._start_shown, self._start_audience = -math.inf, None  # s, steady clock: last sample 0, and who had it
         self.totals = RunTotals()
@@ -44,7 +44,6 @@ class SampleOutput:
         """Publish `sample` of the simulation's present time; `last`: of the run. `SimulationStopped` for a bad one."""
         whole, self._whole_snapshot_due = self._whole_snapshot_due or last, False
         self._publish(sample, whole)
-        self._last_tick = time.monotonic()
 
     def _publish(self, sample: int, whole: bool):
         """With `whole`, check everything that the totals use."""
@@ -54,13 +53,9 @@ class SampleOutput:
         self._limits.add(snapshot, check=whole)
         if whole:
             self._errors.check()
-        self._publishers.publish(snapshot, nanoseconds(sample, self.rate))
-
-    def tick(self, sample: int, now: float):
-        """Publish the time of `sample` on /clock at `now` [s, steady clock], unless that was done just before."""
-        if now - self._last_tick >= TICK:
-            self._last_tick = now
-            self._publishers.tick(nanoseconds(sample, self.rate))
+        stamp = nanoseconds(sample, self.rate)
+        self.clock.reach(stamp)
+        self._publishers.publish(snapshot, stamp)
 
     # -- sample 0
 
@@ -96,6 +91,7 @@ class SampleOutput:
             self._simulation, report = simulation, self._report
             self._limits, self._errors = LimitsMonitor(simulation, report), ErrorMonitor(simulation, report)
         self.totals = RunTotals()
+        self.clock.restart()
         self.change_state()
         self._errors.restart()
 
