@@ -18,6 +18,7 @@ from against_peers import peers
 from batch import batch
 from eel_dynamics.studies.tradeoff.settings import REFERENCE
 from growth import growth
+from gym_steps import gym
 from integrators import integrators
 from lockstep import lockstep
 from measuring import median_ratio, times_in_turn
@@ -124,6 +125,7 @@ FIGURES = {
     "visualiser": visualiser,
     "nodes": nodes,
     "lockstep": lockstep,
+    "gym": gym,
 }
 OPTIONAL = {"peers": peers, "paper_scheme": paper_scheme}  # on request: they install other people's packages
 

@@ -30,7 +30,7 @@ ROSDEP_KEY = {
 with (ROOT / "pyproject.toml").open("rb") as settings:
     CONTRACTS = tomllib.load(settings)["tool"]["importlinter"]["contracts"]
 (MAY_IMPORT_ROS,) = (each["allowed_importers"] for each in CONTRACTS if each["type"] == "protected")
-OPTIONAL = {"pytest", "dask", "distributed", "eel_viz"}  # used where it is installed
+OPTIONAL = {"pytest", "dask", "distributed", "eel_viz", "gymnasium"}  # used where it is installed
 FROM_REQUIREMENTS = {
     "rerun",
     "rerun_bindings",

@@ -11,7 +11,12 @@ setup(
         ("share/eel_dynamics", ["package.xml"]),
     ],
     install_requires=["setuptools"],
-    extras_require={"test": ["pytest"], "data": ["xarray"], "cluster": ["dask", "distributed", "xarray"]},
+    extras_require={
+        "test": ["pytest"],
+        "data": ["xarray"],
+        "gym": ["gymnasium"],
+        "cluster": ["dask", "distributed", "xarray"],
+    },
     zip_safe=False,
     maintainer="Eel simulator maintainers",
     maintainer_email="maintainers@eel-simulator.example.org",

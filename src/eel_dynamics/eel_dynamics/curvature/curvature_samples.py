@@ -2,6 +2,7 @@
 """A controller's samples and their queue. A sample is the curvature along the body at one instant."""
 
 from bisect import bisect_left, bisect_right
+from functools import lru_cache
 from operator import attrgetter
 from typing import NamedTuple
 
@@ -43,26 +44,41 @@ class CurvatureSample(NamedTuple):
         time [s]; x (n,) [m]; rows (6, n): as in `QUANTITIES`. length [m]: of the body. planar: of the scene. now [s]:
         the present time. begun: whether the march has begun; before, a sample may lie at the present.
         """
-        x = checked_row("curvature samples x", x, None)
-        if len(x) < 2 or np.any(np.diff(x) <= 0.0):
-            raise ValueError(f"curvature samples x must rise over 2 points or more, got {len(x)} points")
-        if x[0] < -1e-9 * length or x[-1] > length * (1.0 + 1e-9):
-            raise ValueError(f"curvature samples x must lie within 0 to {length} m, got {x[0]} to {x[-1]}")
-        values = [
-            checked_row(f"curvature samples {name}", row, len(x)) for name, row in zip(QUANTITIES, rows, strict=True)
-        ]
-        if planar and any(np.any(row) for row in values[:3]):
+        x = _checked_x(checked_row("curvature samples x", x, None).tobytes(), length)
+        values = _checked_values(rows, len(x))
+        if planar and values[:3].any():
             raise ValueError("curvature samples pitch must be 0 in a planar scene")
         if not is_finite(time) or time < now or (time == now and begun):
             raise ValueError(
                 f"curvature samples time must lie ahead of the simulation ({now:.6f} s), got {shown(time)} s"
             )
-        return CurvatureSample(float(time), x, np.reshape(values, (2, 3, len(x))))
+        return CurvatureSample(float(time), x, values.reshape(2, 3, len(x)))
 
     @property
     def waves(self) -> float:
         """The number of waves on the body that the points resolve."""
         return (len(self.x) - 1) / POINTS_PER_WAVE
+
+
+@lru_cache(maxsize=64)
+def _checked_x(x: bytes, length: float) -> np.ndarray:
+    """The points (n,) [m] of a sample, from their bytes. Equal ones are one array, which never changes."""
+    x = np.frombuffer(x)
+    if len(x) < 2 or np.any(np.diff(x) <= 0.0):
+        raise ValueError(f"curvature samples x must rise over 2 points or more, got {len(x)} points")
+    if x[0] < -1e-9 * length or x[-1] > length * (1.0 + 1e-9):
+        raise ValueError(f"curvature samples x must lie within 0 to {length} m, got {x[0]} to {x[-1]}")
+    return x
+
+
+def _checked_values(rows, points: int) -> np.ndarray:
+    """The rows of a sample as an array (6, points) of finite floats. Rows of floats are checked all at once."""
+    if all(type(row) is np.ndarray and row.dtype == float and row.shape == (points,) for row in rows):
+        values = np.array(rows)
+        if len(values) == len(QUANTITIES) and np.isfinite(values).all():
+            return values
+    named = zip(QUANTITIES, rows, strict=True)
+    return np.array([checked_row(f"curvature samples {name}", row, points) for name, row in named])
 
 
 class SampleQueue:

@@ -169,12 +169,13 @@ class LawFollower:
     def _segment(self) -> TabulatedLaw:
         """The quintic between the two samples that bracket the present."""
         first, second = self.samples.first_two
-        rows = np.stack((self._tabulated(first), self._tabulated(second)), axis=1).reshape(12, -1)
-        return TabulatedLaw.between(rows, first.time, second.time)
+        rows = np.empty((2, 2, 3, self._tabulation.width))  # axis, sample, value and its derivatives
+        rows[:, 0], rows[:, 1] = self._tabulated(first), self._tabulated(second)
+        return TabulatedLaw.between(rows.reshape(12, -1), first.time, second.time)
 
     def _tabulated(self, sample: CurvatureSample) -> np.ndarray:
         """Rows (2, 3, width) of a sample."""
-        if self._spline is None or not np.array_equal(self._spline[0], sample.x):
+        if self._spline is None or self._spline[0] is not sample.x:
             matrix = natural_spline(sample.x, np.eye(len(sample.x)), self._tabulation.x)
             self._spline = sample.x, self._tabulation.columns(matrix)
         return sample.values @ self._spline[1]

@@ -22,6 +22,7 @@ from eel_gaits.laws.term import amplitude_of
 import eel_core
 from eel_dynamics.curvature.law_waves import AXES, groups_of
 
+SEGMENT_AXES = np.repeat((0, 1), 6)  # of the rows of a quintic between two samples
 MOMENT_POINTS = 10  # Gauss points per interval for the Magnus moments
 
 
@@ -69,10 +70,10 @@ class Tabulation:
     def law_tables(self, rows: np.ndarray, axis) -> eel_core.LawTables:
         """Tabulated `rows` (m, width) of the axes `axis` (m,) (0 pitch, 1 yaw), for the compiled mechanics."""
         n, s, m = self.nodes, self.stations, len(rows)
-        node, moments, station, station_moments = np.split(rows, [n, 4 * n, 4 * n + s], axis=1)
-        moments, station_moments = moments.reshape(m, 3, n), station_moments.reshape(m, 3, s)
-        tables = node, np.cumsum(moments[:, 0], axis=1), moments, station, station_moments
-        return eel_core.LawTables([int(each) for each in axis], *(np.ascontiguousarray(table) for table in tables))
+        moments, station_moments = rows[:, n : 4 * n].reshape(m, 3, n), rows[:, 4 * n + s :].reshape(m, 3, s)
+        angle = moments[:, 0].cumsum(axis=1)
+        tables = rows[:, :n], angle, moments, rows[:, 4 * n : 4 * n + s], station_moments
+        return eel_core.LawTables(np.asarray(axis).tolist(), *(np.ascontiguousarray(table) for table in tables))
 
 
 class TabulatedLaw(NamedTuple):
@@ -104,7 +105,7 @@ class TabulatedLaw(NamedTuple):
     def between(rows: np.ndarray, start: float, end: float) -> "TabulatedLaw":
         """The quintic between two samples of a controller from `start` to `end` [s]. rows (12, width): for each axis
         value, rate and acceleration at both."""
-        return TabulatedLaw(rows, np.repeat((0, 1), 6), segment=(start, end))
+        return TabulatedLaw(rows, SEGMENT_AXES, segment=(start, end))
 
     def moved(self, tabulation: Tabulation, convert) -> "TabulatedLaw":
         """The same on another grid: a law is tabulated anew, other rows are converted by convert(rows)."""

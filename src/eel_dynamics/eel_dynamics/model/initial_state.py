@@ -23,6 +23,14 @@ class InitialState(NamedTuple):
             relative[3:] -= matrix_of(self.orientation).T @ current
         return relative
 
+    def against_water(self, current: np.ndarray) -> "InitialState":
+        """The same in the world, of a state whose twist is relative to water that flows with the `current` (3,)."""
+        if not current.any():
+            return self
+        twist = self.twist.copy()
+        twist[3:] += matrix_of(self.orientation).T @ current
+        return self._replace(twist=twist)
+
 
 def time_scale(twist: np.ndarray, length: float) -> float:
     """The shorter time [s] in which a `twist` (6,) moves a body by its `length` [m] or turns it by 1 rad."""

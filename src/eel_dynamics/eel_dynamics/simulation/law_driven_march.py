@@ -141,14 +141,16 @@ class LawDrivenMarch:
         return self.accuracy.method, self.accuracy.order, bool(self._setup.scene.planar)
 
     def _step_bounds(self) -> eel_core.StepBounds:
-        setup = self._setup
+        setup, follower, length = self._setup, self.follower, self._setup.body.length
         return step_bounds_of(
             accuracy=self.accuracy,
-            scene=setup.scene,
-            follower=self.follower,
-            discretisation=self.discretisation,
-            length=setup.body.length,
-            scale=self._time_scale,
+            ledger=bool(setup.scene.ledger),
+            between_samples=follower.between_samples,
+            nodes=len(self.discretisation.grid.x),
+            mass=self.discretisation.mass,
+            length=length,
+            speed=follower.speed(length),
+            scale=min(follower.time_scale, self._time_scale),
             most_evaluations=setup.most_evaluations,
         )
 
@@ -213,6 +215,12 @@ class LawDrivenMarch:
         """The floor [J] for `first_bad_sample`; infinite where the steps follow from their error, a check by itself."""
         checked = self._setup.scene.ledger and self.accuracy.method == "classical"
         return self._bounds.momentum_floor**2 / self.discretisation.mass if checked else np.inf
+
+    @property
+    def head(self) -> InitialState:
+        """As `Simulation.head`."""
+        state = self.state
+        return InitialState(state[:3], state[3:7], self._twist()).against_water(self._setup.current)
 
     def _twist(self) -> np.ndarray:
         """Twist (6,) of the head relative to the water, in its axes, of the present state."""

@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bounds of the steps in time. They follow from the accuracy, the law, the initial velocity and the body."""
 
+from functools import lru_cache
+
 from eel_gaits.input_output.wording import shown
 from eel_gaits.laws.law import Law
 
 import eel_core
 from eel_dynamics.accuracy.accuracy import LONGEST_STEP, Accuracy
-from eel_dynamics.curvature.law_follower import LawFollower
-from eel_dynamics.model.scene import Scene
-from eel_dynamics.simulation.discretisation import Discretisation
 
 # A run takes at most so many evaluations per simulated second. They take seconds of wall time. The most exact runs need
 # a tenth of them.
@@ -46,32 +45,36 @@ def check_cost(law: Law, most_evaluations: float):
         )
 
 
+@lru_cache(maxsize=64)
 def step_bounds_of(
     *,
     accuracy: Accuracy,
-    scene: Scene,
-    follower: LawFollower,
-    discretisation: Discretisation,
+    ledger: bool,
+    between_samples: bool,
+    nodes: int,
+    mass: float,
     length: float,
+    speed: float,
     scale: float,
     most_evaluations: float,
 ) -> eel_core.StepBounds:
-    """The bounds of the steps for a body on its `discretisation` under the law of the `follower`.
+    """The bounds of the steps for a body of `length` [m] and `mass` [kg] on a grid of `nodes`.
 
-    length [m]: of the body. scale [s]: time scale of the initial velocity. most_evaluations: per simulated second.
+    ledger: whether the energy ledger is kept. between_samples: whether the curvature is a quintic between two samples.
+    speed [m/s]: that the law gives to the body. scale [s]: the shortest time scale of the law and the initial velocity.
+    most_evaluations: per simulated second.
     """
-    scale = min(follower.time_scale, scale)
     longest = accuracy.longest_step * min(scale, 10.0)
     fixed = accuracy.step or (accuracy.fixed and min(scale, 1.0) / accuracy.fixed)
-    part_of_span = PART_OF_RAMP if scene.ledger and not follower.between_samples else PART_OF_SPAN
-    slowest = max(SLOWEST * length / min(scale, 10.0), PART_OF_SPEED * follower.speed(length))
+    part_of_span = PART_OF_RAMP if ledger and not between_samples else PART_OF_SPAN
+    slowest = max(SLOWEST * length / min(scale, 10.0), PART_OF_SPEED * speed)
     return eel_core.StepBounds(
         tolerance=accuracy.tolerance,
         longest=fixed or longest,
         smallest=1e-11 * min(scale, 1.0),
         length=length,
-        momentum_floor=discretisation.mass * slowest,
+        momentum_floor=mass * slowest,
         part_of_span=min(1.0, part_of_span * accuracy.longest_step / LONGEST_STEP),
         most_steps=most_evaluations / EVALUATIONS[accuracy.method],
-        spare_steps=max(LEAST_SPARE, SPARE_STEPS * min(1.0, SPARE_POINTS / len(discretisation.grid.x))),
+        spare_steps=max(LEAST_SPARE, SPARE_STEPS * min(1.0, SPARE_POINTS / nodes)),
     )

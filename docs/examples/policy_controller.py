@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A ROS node: the policy of hold_heading.py steers the dynamics node, in lockstep, over odom and curvature_samples.
+
+dynamics --ros-args -p real_time_factor:=0 -p rate:=10 -p duration:=20 -p scene.planar:=true
+python docs/examples/policy_controller.py --ros-args -p heading:=0.6
+"""
+
+import array
+import json
+import sys
+from pathlib import Path
+
+import numpy as np
+import rclpy
+from eel_dynamics.gym import HeadingEnv, HeadMotion
+from eel_ros.qos import keep_all
+from hold_heading import FILE, actions_of
+from nav_msgs.msg import Odometry
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+
+from eel_msgs.msg import CurvatureSamples
+
+FIELDS = "pitch", "pitch_rate", "pitch_accel", "yaw", "yaw_rate", "yaw_accel"
+
+
+class PolicyController(Node):
+    """Answers each sample on `odom` with the curvature one control step on. The rate of the run is that of training."""
+
+    def __init__(self):
+        super().__init__("policy_controller")
+        found = json.loads(Path(self.declare_parameter("policy", str(FILE)).value).read_text())
+        self.weights, self.step = np.array(found["weights"]), found["task"]["control_period"]
+        self.env = HeadingEnv(control_period=self.step)
+        self.env.target = self.declare_parameter("heading", 0.0).value
+        self.last, self.answers = np.inf, []
+        self.publisher = self.create_publisher(CurvatureSamples, "curvature_samples", keep_all())
+        self.create_subscription(Odometry, "odom", self.receive, keep_all())
+
+    def receive(self, odometry):
+        """Answer one sample. A stamp that goes back is a start; one that is repeated gets the same answers."""
+        now = odometry.header.stamp.sec + 1e-9 * odometry.header.stamp.nanosec
+        if now != self.last:
+            self.answers = []
+            if not now > self.last:
+                self.answers.append(self.message(now, self.env.restart()))
+            observation = self.env.see(head_motion(odometry))
+            action = actions_of(self.weights, observation[np.newaxis])[0]
+            self.answers.append(self.message(now + self.step, self.env.action.advance(action, self.step)))
+            self.last = now
+        for answer in self.answers:
+            self.publisher.publish(answer)
+
+    def message(self, time, rows):
+        """The curvature `rows` (6, points) at `time` [s]."""
+        message = CurvatureSamples(x=array.array("d", self.env.action.x.tobytes()))
+        message.header.stamp.sec, message.header.stamp.nanosec = divmod(round(time * 1e9), 1_000_000_000)
+        for name, row in zip(FIELDS, rows, strict=True):
+            setattr(message, name, array.array("d", row.tobytes()))
+        return message
+
+
+def head_motion(odometry) -> HeadMotion:
+    """The head's motion in a message, which has the axes that the policy knows."""
+    pose, twist = odometry.pose.pose, odometry.twist.twist
+    q = pose.orientation
+    vectors = (np.array((v.x, v.y, v.z)) for v in (pose.position, twist.angular, twist.linear))
+    position, angular_velocity, velocity = vectors
+    return HeadMotion(position, np.array((q.x, q.y, q.z, q.w)), angular_velocity, velocity)
+
+
+def main() -> int:
+    """Run until a signal comes."""
+    rclpy.init()
+    try:
+        rclpy.spin(PolicyController())
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    finally:
+        rclpy.try_shutdown()
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

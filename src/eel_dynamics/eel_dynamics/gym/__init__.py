@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Environments of Gymnasium: a swimmer that learns. Importing this package registers them.
+
+    import gymnasium
+    import eel_dynamics.gym
+
+    env = gymnasium.make("Eel/Heading-v0")
+    envs = gymnasium.make_vec("Eel/Heading-v0", num_envs=16)      # in threads
+
+`SwimmerEnv` is the base class for tasks of your own. `ImportError` without gymnasium.
+"""
+
+try:
+    import gymnasium
+except ImportError as error:
+    raise ImportError(
+        f"eel_dynamics.gym needs gymnasium ({error}); install it with: pip install 'eel_dynamics[gym]'"
+    ) from None
+
+from eel_dynamics.gym.depth import DepthEnv
+from eel_dynamics.gym.head_motion import HeadMotion
+from eel_dynamics.gym.heading import HeadingEnv
+from eel_dynamics.gym.knot_action import KnotAction
+from eel_dynamics.gym.law_action import LawAction
+from eel_dynamics.gym.swimmer_env import Episode, Observed, Start, SwimmerEnv
+from eel_dynamics.gym.vector_env import ThreadedVectorEnv
+from eel_dynamics.gym.way_points import WayPointsEnv
+
+__all__ = [
+    "DepthEnv",
+    "Episode",
+    "HeadMotion",
+    "HeadingEnv",
+    "KnotAction",
+    "LawAction",
+    "Observed",
+    "Start",
+    "SwimmerEnv",
+    "ThreadedVectorEnv",
+    "WayPointsEnv",
+]
+
+for _task in (HeadingEnv, DepthEnv, WayPointsEnv):
+    gymnasium.register(
+        f"Eel/{_task.name}-v0",
+        entry_point=f"{_task.__module__}:{_task.__name__}",
+        vector_entry_point=f"eel_dynamics.gym.vector_env:{_task.__name__.removesuffix('Env')}VectorEnv",
+    )

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The head's motion as a policy sees it: in REP-103 axes, as on the topic `odom`.
+
+The swimmer heads for +x, y is left, z is up. So a policy that has learned here drives the dynamics node too.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from eel_dynamics.model.axes import turn_quaternion, turn_vector
+from eel_dynamics.model.initial_state import InitialState
+
+
+class HeadMotion(NamedTuple):
+    """Pose and twist of the head, in REP-103 axes."""
+
+    position: np.ndarray  # (3,) m, world
+    orientation: np.ndarray  # (4,) x y z w, world from head
+    angular_velocity: np.ndarray  # (3,) rad/s, head's axes: about forward, left, up
+    velocity: np.ndarray  # (3,) m/s, head's axes: forward, left, up
+
+    @staticmethod
+    def of(head: InitialState) -> "HeadMotion":
+        """The motion of a simulation's `head`, which has the library's axes."""
+        position, orientation, twist = head
+        return HeadMotion(
+            turn_vector(position), turn_quaternion(orientation), turn_vector(twist[:3]), turn_vector(twist[3:])
+        )
+
+    @property
+    def heading(self) -> float:
+        """Angle [rad] about the vertical, positive to the left, from -pi to pi."""
+        x, y, z, w = self.orientation.tolist()
+        return math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
+
+    @property
+    def climb(self) -> float:
+        """Angle [rad] of the head above the horizontal."""
+        x, y, z, w = self.orientation.tolist()
+        return math.asin(max(-1.0, min(1.0, 2.0 * (x * z - w * y))))
+
+    @property
+    def roll(self) -> float:
+        """Angle [rad] about the forward axis, positive where the right side is down, from -pi to pi."""
+        x, y, z, w = self.orientation.tolist()
+        return math.atan2(2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y))
+
+
+def turned(heading: float) -> tuple[float, float, float, float]:
+    """The orientation (x, y, z, w), in either set of axes, of a level head with this `heading` [rad]."""
+    return 0.0, 0.0, math.sin(0.5 * heading), math.cos(0.5 * heading)
+
+
+def wrapped(angle: float) -> float:
+    """The `angle` [rad] from -pi to pi."""
+    return math.remainder(angle, 2.0 * math.pi)
