@@ -137,9 +137,22 @@ def lockstep() -> str:
     return "\n".join(lines)
 
 
+def gym() -> str:
+    """docs/howto/learning.md: what a control step of the environments costs."""
+    report = Report("gym")
+    lines = [f"From {link(report, '../../')} (`{report.command}`).", "", "| what | measured |", "|---|---|"]
+    for name in ("Heading", "Depth"):
+        for label in (f"bare, scene of {name}", f"Eel/{name}-v0", f"Eel/{name}-v0 by bare"):
+            lines.append(f"| {label} | {report.rest(label)} |")
+    for label in ("a control step of Eel/Depth-v0", "2 threads"):
+        lines.append(f"| {label} | {report.rest(label)} |")
+    return "\n".join(lines)
+
+
 BLOCKS: dict[str, dict[str, Callable[[], str]]] = {
     "README.md": {"trust": trust, "speed": speed},
     "docs/howto/controllers.md": {"lockstep": lockstep},
+    "docs/howto/learning.md": {"gym": gym},
     "docs/explanation/integrators.md": {"integrators": integrators, "orders": orders},
 }
 

@@ -200,6 +200,14 @@ def test_unknown_and_bad_parameters_are_named_in_one_line():
             make("Eel/Heading-v0", gain=3.0)
     with pytest.raises(ValueError, match=r"control_period must be >= 0\.001 s, got 0\.0"):
         HeadingEnv(control_period=0)
+    for name, wanted in (("scene", "a Scene"), ("body", "a Body"), ("action", "a LawAction or a KnotAction")):
+        with pytest.raises(ValueError, match=f"{name} must be {wanted}, got 'none'"):
+            HeadingEnv(**{name: "none"})
+    with pytest.raises(ValueError, match="accuracy"):
+        HeadingEnv(accuracy="none")
+    for bounds, told in (((1.0, 1.0), "must rise"), (3.0, "must be 2 numbers"), ((0.0, np.inf), "must be finite")):
+        with pytest.raises(ValueError, match=f"bounds of left_bend {told}, got"):
+            LawAction(straight(), {"left_bend": bounds})
     with pytest.raises(ValueError, match="render_mode must be one of rgb_array, rerun, got 'human'"):
         HeadingEnv(render_mode="human")
     with pytest.raises(ValueError, match="a law has no number 'bend', it has: amplitude, tempo, left_bend, up_bend"):

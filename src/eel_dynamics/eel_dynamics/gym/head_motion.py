@@ -24,10 +24,8 @@ class HeadMotion(NamedTuple):
     @staticmethod
     def of(head: InitialState) -> "HeadMotion":
         """The motion of a simulation's `head`, which has the library's axes."""
-        position, orientation, twist = head
-        return HeadMotion(
-            turn_vector(position), turn_quaternion(orientation), turn_vector(twist[:3]), turn_vector(twist[3:])
-        )
+        angular_velocity, velocity = turn_vector(head.twist.reshape(2, 3))
+        return HeadMotion(turn_vector(head.position), turn_quaternion(head.orientation), angular_velocity, velocity)
 
     @property
     def heading(self) -> float:

@@ -14,6 +14,8 @@ import numpy as np
 from eel_gaits.input_output.wording import shown
 from eel_gaits.laws.law import Law
 
+from eel_dynamics.model.arguments import checked_instance, checked_number, checked_row
+
 AXES = {"pitch": 0, "yaw": 1}
 
 
@@ -48,13 +50,16 @@ class LawAction:
     """
 
     def __init__(self, law: Law, numbers: dict, *, response: float = 0.2, length: float = 1.0, points: int = 21):
-        for name, bounds in numbers.items():
+        checked_instance("law", law, Law)
+        for name, bounds in checked_instance("numbers", numbers, dict).items():
             if name not in NUMBERS:
                 raise ValueError(f"a law has no number {shown(name)}, it has: {', '.join(NUMBERS)}")
-            if not -math.inf < bounds[0] < bounds[1] < math.inf:
-                raise ValueError(f"bounds of {name} must be finite and rise, got {shown(tuple(bounds))}")
+            low, high = checked_row(f"bounds of {name}", bounds, 2)
+            if not low < high:
+                raise ValueError(f"bounds of {name} must rise, got {shown(bounds)}")
         if not numbers:
             raise ValueError("numbers must hold one or more, got none")
+        checked_number("response", response, "s")
         self.law, self.names, self.x = law, tuple(numbers), np.linspace(0.0, length, points)
         low, high = np.array(list(numbers.values()), dtype=float).T
         self._middle, self._half, self._rate = 0.5 * (low + high), 0.5 * (high - low), 1.0 / response

@@ -11,11 +11,13 @@ from eel_gaits.gaits.swimming import straight
 from eel_gaits.input_output.quantity import Quantities, described_fields, quantity
 from eel_gaits.input_output.wording import one_line, shown
 
+from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.gym.episode_recording import EpisodeRecording
 from eel_dynamics.gym.head_motion import HeadMotion, turned, wrapped
 from eel_dynamics.gym.knot_action import KnotAction
 from eel_dynamics.gym.law_action import LawAction
 from eel_dynamics.gym.picture import picture
+from eel_dynamics.model.arguments import checked_instance
 from eel_dynamics.model.axes import turn_vector
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
@@ -80,10 +82,7 @@ class SwimmerEnv(gymnasium.Env):
 
     def __init_subclass__(cls, **keywords):
         super().__init_subclass__(**keywords)
-        seen = "\n".join(f"    {each.name} [{each.unit or '1'}], at most {each.bound:g}" for each in cls.observed)
-        told = (cls.__doc__ or "A task.").rstrip()
-        observed = f"Observed, before the state of the action:\n{seen}"
-        cls.__doc__ = f"{told}\n\n{observed}\n\nNumbers:\n{described_fields(cls.Numbers)}\n"
+        cls.__doc__ = described_task(cls)
 
     def __init__(
         self,
@@ -102,14 +101,16 @@ class SwimmerEnv(gymnasium.Env):
                 f"render_mode must be one of {', '.join(self.metadata['render_modes'])}, got {shown(render_mode)}"
             )
         self.render_mode = render_mode
-        self.scene = self.default_scene() if scene is None else scene
-        self.body = Body.boyer2010() if body is None else body
+        self.scene = self.default_scene() if scene is None else checked_instance("scene", scene, Scene)
+        self.body = Body.boyer2010() if body is None else checked_instance("body", body, Body)
+        if action is not None and not isinstance(action, (LawAction, KnotAction)):
+            raise ValueError(f"action must be a LawAction or a KnotAction, got {shown(action)}")
         self.action = self.default_action() if action is None else action
-        seen = [each.bound for each in self.observed] + [bound for _, _, bound in self.action.names_of_state]
-        bounds = np.array(seen, dtype=np.float32)
-        self.observation_space = gymnasium.spaces.Box(-bounds, bounds, dtype=np.float32)
+        seen = (*self.observed, *self.action.names_of_state)
+        self._bounds = np.array([bound for _, _, bound in seen], dtype=np.float32)
+        self.observation_space = gymnasium.spaces.Box(-self._bounds, self._bounds, dtype=np.float32)
         self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (self.action.size,), np.float32)
-        self._settings = {"accuracy": accuracy, "stations": 51 if render_mode else 2}
+        self._settings = {"accuracy": Accuracy.of(accuracy), "stations": 51 if render_mode else 2}
         self._recording = EpisodeRecording(recordings, self.name) if render_mode == "rerun" else None
         self._simulation: Simulation | None = None
         self._headings: deque = deque(maxlen=max(1, round(self.action.period / self.numbers.control_period)))
@@ -217,8 +218,8 @@ class SwimmerEnv(gymnasium.Env):
 
     def describe(self) -> str:
         """One line for each number of the observation and of the action, with unit and bounds."""
-        seen = [*self.observed, *(Observed(*each) for each in self.action.names_of_state)]
-        lines = [f"  {each.name} [{each.unit or '1'}], {-each.bound:g} to {each.bound:g}" for each in seen]
+        seen = [*self.observed, *self.action.names_of_state]
+        lines = [f"  {name} [{unit or '1'}], {-bound:g} to {bound:g}" for name, unit, bound in seen]
         return "\n".join(
             ["observation:", *lines, "action, each from -1 to 1:", *(f"  {each}" for each in self.action.described())]
         )
@@ -237,7 +238,7 @@ class SwimmerEnv(gymnasium.Env):
 
     def _observation(self) -> np.ndarray:
         values = np.array(self.observe() + self.action.state, dtype=np.float32)
-        return np.clip(values, self.observation_space.low, self.observation_space.high, out=values)
+        return np.minimum(np.maximum(values, -self._bounds), self._bounds)
 
     def _checked(self, action) -> np.ndarray:
         try:
@@ -248,11 +249,19 @@ class SwimmerEnv(gymnasium.Env):
             raise gymnasium.error.InvalidAction(
                 f"action must be {self.action.size} finite numbers, got {shown(action)}"
             )
-        return np.clip(values, -1.0, 1.0)
+        return np.minimum(np.maximum(values, -1.0), 1.0)
 
     def _finish_recording(self) -> None:
         if self._recording is not None and self._simulation is not None:
             self._recording.finish(self._simulation)
+
+
+def described_task(task: type[SwimmerEnv]) -> str:
+    """The docstring of a task, with what it observes and its numbers."""
+    seen = "\n".join(f"    {each.name} [{each.unit or '1'}], at most {each.bound:g}" for each in task.observed)
+    observed = f"Observed, before the state of the action:\n{seen}"
+    told = (task.__doc__ or "A task.").rstrip()
+    return f"{told}\n\n{observed}\n\nNumbers:\n{described_fields(task.Numbers)}\n"
 
 
 def checked_numbers(task: str, kind: type[Episode], given: dict) -> Episode:
