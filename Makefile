@@ -2,7 +2,7 @@
 # The two commands are `make demo` and `make test`; each does all the set-up itself, inside this folder.
 SHELL := /bin/bash
 .DEFAULT_GOAL := help
-.PHONY: docs notebook quotes pictures help demo test sanitize aarch64 validation build bench lint soak robustness clean
+.PHONY: docs notebook quotes pictures help demo test sanitize aarch64 validation build bench lint soak robustness clean manoeuvres
 RUN := tools/run.sh
 
 help:   ## this list
@@ -37,6 +37,9 @@ notebook: build   ## run docs/tutorials/swim.ipynb anew, its outputs written int
 
 pictures: build   ## draw the pictures of the visualiser in docs/images
 	@$(RUN) python tools/pictures.py
+
+manoeuvres: build   ## swim every gait, and write docs/reference/manoeuvres.md with its pictures
+	@$(RUN) python tools/manoeuvres.py
 
 robustness: build   ## write the table of faults in docs/appendix/robustness.md from the tests
 	@$(RUN) python tools/fault_table.py

@@ -13,7 +13,7 @@ from pathlib import Path
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_gaits.gaits.registry import GAITS, Transition
-from eel_gaits.gaits.settings import numbers_of
+from eel_gaits.gaits.settings import FILE_GAITS, numbers_of
 from eel_gaits.input_output.quantity import limits
 from eel_gaits.ros.heading_controller import HeadingParameters
 from eel_viz.settings import MarkerSettings, Settings
@@ -24,11 +24,13 @@ REFERENCE = ROOT / "docs" / "reference"
 
 @dataclass
 class Gait:
-    """The gait generator's own parameter; its node declares it from the list of gaits."""
+    """The gait generator's own parameters; its node declares them from the list of gaits."""
 
     gait: str = field(
-        default="falling", metadata={"unit": "", "description": "name of the gait", "choices": sorted(GAITS)}
+        default="falling",
+        metadata={"unit": "", "description": "name of the gait", "choices": sorted((*GAITS, *FILE_GAITS))},
     )
+    file: str = field(default="", metadata={"unit": "", "description": "YAML file of the gait 'sequence'"})
 
 
 NODES = {  # name of the node: heading, prefix and dataclass of its parameters

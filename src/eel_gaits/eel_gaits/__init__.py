@@ -2,6 +2,7 @@
 """Curvature laws of elongated swimmers, and a ROS 2 node that publishes them. Nothing imported here needs ROS."""
 
 from eel_gaits.gaits.bursts import burst_and_coast, c_start
+from eel_gaits.gaits.cpg import cpg
 from eel_gaits.gaits.diving import diving, falling, rising, spiral
 from eel_gaits.gaits.fish import anguilliform, carangiform
 from eel_gaits.gaits.kern import kern_efficient, kern_fast
@@ -26,6 +27,7 @@ __all__ = [
     "burst_and_coast",
     "c_start",
     "carangiform",
+    "cpg",
     "diving",
     "falling",
     "gait",

@@ -117,7 +117,10 @@ def test_every_number_tells_its_unit_bounds_and_meaning(name):
 @pytest.mark.parametrize("name", sorted(set(GAITS) - {"still"}))
 def test_every_number_changes_the_law(name):
     """No number is declared and then forgotten."""
+    streamed = {"convergence", "following", "length"} if name == "cpg" else set()  # of its start alone: test_cpg.py
     for entry in dataclasses.fields(GAITS[name].numbers):
+        if entry.name in streamed:
+            continue
         value = 0.9 * entry.default or 0.1
         changed = gait(name, **{entry.name: value})
         assert changed.terms != gait(name).terms, entry.name

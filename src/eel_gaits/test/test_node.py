@@ -6,11 +6,13 @@ import signal
 import time
 
 import pytest
+from eel_gaits.gaits.cpg import Oscillation, Oscillators
 from eel_gaits.gaits.settings import Settings
 from eel_ros.testing.node_process import PROMPT
 from rclpy.qos import QoSProfile
 
 from eel_gaits import falling, gait, sequence, straight, turning
+from eel_msgs.msg import CurvatureSamples
 
 SAID = "published on"
 
@@ -152,6 +154,30 @@ def test_a_gait_and_its_numbers_set_together(generator, client):
     assert client.values()["left_bend"] == 2.0
     assert client.set_together(bend_start=5, bend_full=6).successful
     assert client.law(2)[0] == turning(yaw_bend=-2.0, period=1.5, bend_start=5.0, bend_full=6.0)
+
+
+def test_oscillators_are_streamed_ahead_of_the_clock_and_follow_new_numbers(generator, client):
+    samples = []
+    client.node.create_subscription(CurvatureSamples, "curvature_samples", samples.append, 1000)
+    client.listen()
+    generator("-p", "gait:=cpg")
+    times = lambda: [each.header.stamp.sec + 1e-9 * each.header.stamp.nanosec for each in samples]  # noqa: E731
+    client.until(lambda: samples and times()[-1] >= 0.5, "samples of the first half second")
+    client.tick_until(0.3, lambda: times()[-1] >= 0.8, "samples after the clock has ticked")
+    assert client.set(left_bend=1)[0].successful
+    client.tick_until(1.0, lambda: times()[-1] >= 1.5, "samples with the bend")
+    begun = times().index(0.0)
+    chain = Oscillators(Oscillation())
+    for time_, sample in list(zip(times(), samples, strict=True))[begun : begun + 20]:
+        if time_ > chain.time:
+            chain.advance(time_)
+        value, rate, acceleration = chain.curvature()
+        assert list(sample.x) == list(chain.x) and not any(sample.pitch)
+        assert list(sample.yaw) == pytest.approx(list(value), abs=1e-9)
+        assert list(sample.yaw_rate) == pytest.approx(list(rate), abs=1e-8)
+        assert list(sample.yaw_accel) == pytest.approx(list(acceleration), abs=1e-7)
+    assert not client.messages  # no law beside the samples
+    assert client.set(gait="straight")[0].successful and client.law(0)[0] == straight()
 
 
 @pytest.mark.fault(

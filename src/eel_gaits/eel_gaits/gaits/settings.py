@@ -12,6 +12,7 @@ from dataclasses import Field, dataclass, field, fields, make_dataclass
 from functools import cache
 from types import MappingProxyType
 
+from eel_gaits.gaits.cpg import Oscillation
 from eel_gaits.gaits.numbers import TURNS
 from eel_gaits.gaits.registry import GAITS, Transition, find
 from eel_gaits.gaits.sequence_file import sequence_from_file
@@ -79,6 +80,14 @@ class Settings:
         """The law of this gait with these numbers."""
         return self._law
 
+    def oscillation(self):
+        """The numbers of the oscillators whose curvature the node streams; None for a gait that is a law."""
+        if self.gait != "cpg":
+            return None
+        numbers = self._numbers_of_gait()
+        del numbers["transition"]
+        return Oscillation(**numbers)
+
     def _read_law(self):
         transition, _ = self.groups()
         if not isinstance(self.file, str) or not self.file:
@@ -90,11 +99,14 @@ class Settings:
         return Law(*law.terms, name=law.name, transition=transition.transition)
 
     def _make_law(self):
+        return find(self.gait)(**self._numbers_of_gait())
+
+    def _numbers_of_gait(self):
         numbers = self.numbers()
         for name, opposite in TURNS.items():
             if name in numbers:
                 numbers[opposite] = -numbers.pop(name)
-        return find(self.gait)(**numbers)
+        return numbers
 
 
 def _as_left(description):

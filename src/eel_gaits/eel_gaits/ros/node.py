@@ -28,13 +28,14 @@ from eel_gaits.input_output.command_line import complain
 from eel_gaits.input_output.quantity import limits
 from eel_gaits.input_output.wording import shown
 from eel_gaits.ros.messages import FRAME, law_to_message
+from eel_gaits.ros.sample_stream import SampleStream
 from eel_msgs.msg import CurvatureLaw
 
 NAME = "gait_generator"
 ABOUT = "Publishes the curvature law of a gait, and a new one whenever a parameter is set."
 KNOWN = ", ".join(sorted((*GAITS, *FILE_GAITS)))
 FILE = "YAML file of the gait 'sequence'; read when it is set"
-LOOK = 0.25  # s between two looks at whether time went back
+LOOK = 0.05  # s between two looks at the time: whether it went back, and how far samples must reach
 
 
 class GaitGenerator(ParameterNode):
@@ -48,6 +49,7 @@ class GaitGenerator(ParameterNode):
         warn_of_unknown(self, overrides, Settings.known_names())
         self._plan = None  # in mid-change: the new Settings, or the reason of a refusal
         self._stamp = Time()
+        self._stream = SampleStream(self)
         self._publisher = self.create_publisher(CurvatureLaw, "curvature_law", latched(1))
         descriptor = ParameterDescriptor(description="name of the gait", additional_constraints=f"one of {KNOWN}")
         self.declare_parameter("gait", self._settings.gait, descriptor, ignore_override=True)
@@ -81,6 +83,16 @@ class GaitGenerator(ParameterNode):
                 except ValueError as error:  # a negative time
                     log_dropped(self, error, "a message on /clock")
         return True
+
+    def look(self) -> bool:
+        """Look at the clock, and send the samples that are due. Returns True: the node continues."""
+        self.look_at_clock()
+        self._stream.extend(self._now())
+        return True
+
+    def _now(self) -> float:
+        """Simulation time [s]."""
+        return 1e-9 * self.get_clock().now().nanoseconds
 
     def _declare_numbers(self):
         for group in self._settings.groups():
@@ -125,11 +137,19 @@ class GaitGenerator(ParameterNode):
 
     def _follow_reset(self, jump):
         """After time went back, the receiver's law has its own t = 0 at 0. Laws published later have it too."""
+        if self._settings.oscillation() is not None:
+            self._stream.restart(self._settings.oscillation(), self._now())
         if self._stamp != Time():
             self._stamp = Time()
             self._publish()
 
     def _publish(self):
+        oscillation = self._settings.oscillation()
+        if oscillation is not None:
+            self._stream.follow(oscillation, self._now())
+            self.get_logger().info(f"gait {shown(self._settings.gait)}, published on curvature_samples")
+            return
+        self._stream.stop()
         frame = frame_in(self.get_namespace(), FRAME)
         self._publisher.publish(law_to_message(self._settings.law(), stamp=self._stamp, frame=frame))
         began = self._stamp.sec + 1e-9 * self._stamp.nanosec
@@ -156,7 +176,7 @@ def main(args=None):
     status = answer_words(NAME, ABOUT, parameter_rows(), words, complain)
     if status is not None:
         return status
-    look = GaitGenerator.look_at_clock
+    look = GaitGenerator.look
     return run_node(NAME, [*USE_SIM_TIME, *words], GaitGenerator, look, complain=complain, period=LOOK)
 
 

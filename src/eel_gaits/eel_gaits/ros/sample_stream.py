@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Streams the curvature of a chain of oscillators as `eel_msgs/CurvatureSamples`, ahead of the simulation."""
+
+import array
+import math
+
+import numpy as np
+from builtin_interfaces.msg import Time
+from eel_ros.frames import frame_in
+from eel_ros.qos import keep_all
+from std_msgs.msg import Header
+
+from eel_gaits.gaits.cpg import Oscillators
+from eel_gaits.ros.messages import FRAME
+from eel_msgs.msg import CurvatureSamples
+
+AHEAD = 0.5  # s of simulation time, from the present to the last sample
+LEAD = 0.1  # s, from the present to the first one of a simulation that already runs
+
+
+class SampleStream:
+    """The stream of a `node` on the topic `curvature_samples`. Nothing is on the network until it begins."""
+
+    def __init__(self, node):
+        self._node, self._publisher, self._chain = node, None, None
+        self._count = 0  # samples since the start, which lies at `_start`
+        self._start, self._listened = 0.0, False
+
+    def follow(self, numbers, now):
+        """Begin at `now` [s of simulation time], or change to the new `numbers` after the samples already sent."""
+        if self._publisher is None:
+            self._publisher = self._node.create_publisher(CurvatureSamples, "curvature_samples", keep_all())
+        if self._chain is None or numbers.length != self._chain.numbers.length:
+            self.restart(numbers, now)
+        else:
+            self._start, self._count = self._chain.time, 0  # the sample period may be another
+            self._chain.numbers = numbers
+        self.extend(now)
+
+    def restart(self, numbers, now):
+        """Begin from rest."""
+        self._start, self._count = (now + LEAD if now > 0.0 else 0.0), 0
+        self._chain = Oscillators(numbers, self._start)
+        self._publish()
+
+    def stop(self):
+        """Send nothing more."""
+        if self._publisher is not None:
+            self._node.destroy_publisher(self._publisher)
+        self._publisher, self._chain = None, None
+
+    def extend(self, now):
+        """Send the samples up to 0.5 s after `now` [s of simulation time]."""
+        if self._chain is None:
+            return
+        listened = self._publisher.get_subscription_count() > 0
+        if (listened and not self._listened) or now < self._start - 2.0 * AHEAD:  # nobody has had the first ones
+            self.restart(self._chain.numbers, now)
+        self._listened = listened
+        period = self._chain.numbers.sample_period
+        if self._chain.time < now:  # the simulation was faster
+            self._start, self._count = now + LEAD, 0
+            self._chain.advance(self._start)
+            self._publish()
+        while self._chain.time < now + AHEAD:
+            self._count += 1
+            self._chain.advance(self._start + self._count * period)
+            self._publish()
+
+    def _publish(self):
+        yaw = dict(zip(("yaw", "yaw_rate", "yaw_accel"), self._chain.curvature(), strict=True))
+        flat = dict.fromkeys(("pitch", "pitch_rate", "pitch_accel"), np.zeros(len(self._chain.x)))
+        seconds, nanoseconds = divmod(math.floor(self._chain.time * 1e9 + 0.5), 1_000_000_000)
+        header = Header(
+            stamp=Time(sec=seconds, nanosec=nanoseconds), frame_id=frame_in(self._node.get_namespace(), FRAME)
+        )
+        rows = {"x": self._chain.x, **yaw, **flat}
+        fields = {name: array.array("d", np.ascontiguousarray(row).tobytes()) for name, row in rows.items()}
+        self._publisher.publish(CurvatureSamples(header=header, **fields))

@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: Apache-2.0
+"""docs/reference/manoeuvres.md: it has every gait with its numbers, its picture, and the figures that a swim gives."""
+
+import re
+from pathlib import Path
+
+import manoeuvres
+import pytest
+from eel_gaits.gaits.registry import GAITS
+
+from eel_gaits import sequence_from_file
+
+ROOT = Path(__file__).resolve().parents[1]
+PAGE = (ROOT / "docs/reference/manoeuvres.md").read_text()
+
+
+@pytest.mark.parametrize("name", sorted(GAITS))
+def test_page_has_the_gait_its_numbers_and_a_small_picture(name):
+    section = PAGE.partition(f"### {name}\n")[2].partition("\n### ")[0]
+    for number in GAITS[name].numbers.__dataclass_fields__:
+        assert f"\n{number} = " in section, number
+    picture = ROOT / "docs/images/manoeuvres" / f"{name}.png"
+    assert f"../images/manoeuvres/{name}.png" in section and picture.stat().st_size < 200_000
+
+
+def test_the_figures_of_the_page_are_those_of_a_swim():
+    swim = manoeuvres.Swim("c_start")
+    assert swim.row() in PAGE and manoeuvres.NOTES["c_start"](swim, {"straight": swim}).split(";")[0] in PAGE
+
+
+def test_the_sequence_of_the_page_is_read(tmp_path):
+    (tmp_path / "patrol.yaml").write_text(re.search(r"```yaml\n(.*?)```", PAGE, re.DOTALL)[1])
+    assert sequence_from_file(tmp_path / "patrol.yaml").name == "patrol"

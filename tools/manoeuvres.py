@@ -1,0 +1,321 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The page docs/reference/manoeuvres.md and its pictures in docs/images/manoeuvres: `make manoeuvres`.
+
+Every gait swims with its own numbers on the robot of the paper. Figures and pictures are those of that swim.
+"""
+
+import inspect
+import io
+import math
+import sys
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+from eel_dynamics.model.axes import turn_vector
+from eel_dynamics.studies.figures.style import BLUE, ORANGE, SETTINGS
+from eel_gaits.gaits.registry import GAITS
+from eel_gaits.input_output.quantity import described_fields
+from PIL import Image
+
+from eel_dynamics import simulate
+from eel_gaits import straight
+
+ROOT = Path(__file__).resolve().parent.parent
+PAGE, PICTURES = ROOT / "docs/reference/manoeuvres.md", ROOT / "docs/images/manoeuvres"
+DURATION, SAMPLE = 20.0, 0.05  # s
+COLOURS = 64
+FAMILIES = {  # heading: gaits
+    "In the plane": ("straight", "backward", "turning", "still"),
+    "Robots and oscillators": ("serpenoid", "joint_wave", "cpg"),
+    "Fish": ("carangiform", "anguilliform", "kern_fast", "kern_efficient"),
+    "Starts and bursts": ("c_start", "burst_and_coast"),
+    "In depth": ("falling", "rising", "diving", "spiral"),
+    "About the backbone": ("rolling", "roll_over", "helix"),
+}
+HEAD = """\
+# Manoeuvres
+`make manoeuvres` writes this page. Each gait swims for 20 s with its own numbers, from rest, on the robot of the paper
+(1 m). Speed, Strouhal number and cost of transport are means over the later half. Displacement, heading and roll are
+those of the whole swim, in the axes of REP-103: x ahead, y to the left, z up; a positive heading is to the left, a
+positive roll lifts the left side. The roll is the integral of the head's rotation about its own axis. The pictures show
+the shape over a period, the path of the centre of mass, the internal torque along the body, and the speed.
+```
+simulate c_start --set yaw_bend=-4.0 --duration 4                    # to the left: the library has the paper's sign
+gait_generator --ros-args -p gait:=c_start -p left_bend:=4.0         # the node has that of REP-103
+gait_generator --ros-args -p gait:=sequence -p file:=patrol.yaml     # gaits that follow one another
+```
+`simulate --sequence patrol.yaml` swims a sequence offline. The node streams `cpg` as samples on `curvature_samples`;
+new numbers act half a second later, and nothing jumps.
+
+## Laws made of laws
+All are twice differentiable in time, and a law again: one message, live and offline.
+
+| in Python | in a sequence | what |
+|---|---|---|
+| `straight() + 0.2 * rolling()` | `together:`, `scale: 0.2` | sum and scale |
+| `law.delayed(2.0)` | `delay: 2.0` | later by 2 s |
+| `law.mirrored()`, `law.mirrored("pitch")` | `mirror: yaw` | left and right, or up and down, change places |
+| `law.ramped_in(0.0, 1.0)`, `law.ramped_out(8.0, 9.0)` | | straight before, or after |
+| `law.followed_by(other, at=8.0, blend=0.5)` | | `other` begins at 8 s |
+| `sequence([(straight(), 8.0), (turning(), 4.0), (still(), None)])` | `steps:` | one after another |
+
+```yaml
+name: patrol              # of the law; the file's name where it is left out
+blend: 0.5                # s, from one step to the next (0.5)
+steps:
+  - gait: straight
+    set: {period: 0.8}    # as --set; left_bend and left_angle too, positive to the left
+    duration: 8.0         # s; the last step may leave it out, and then lasts
+  - gait: turning
+    set: {left_bend: 0.5}
+    duration: 4.0
+    blend: 1.0            # into this step
+  - together:             # the sum of several
+      - gait: straight
+      - gait: rolling
+        scale: 0.2
+    duration: 3.0
+  - repeat: 2
+    steps:
+      - {gait: straight, duration: 2.0}
+      - {gait: still, duration: 1.0}
+```
+A fade multiplies a term's envelope by ramps. Where a ramp is still under way, the envelope becomes a product of sums of
+ramps (`factor` in [Ramp.msg](../../src/eel_msgs/msg/Ramp.msg)). A law that starts from rest needs no fade.
+
+## All of them
+| gait | displacement [m] | heading | roll | speed [m/s] | Strouhal | cost of transport [J/m/kg] |
+|---|---|---|---|---|---|---|
+"""
+
+
+class Swim:
+    """A gait's swim of 20 s. heading, roll [degree]: between the means of the first and of the last second."""
+
+    def __init__(self, name):
+        self.name = name
+        self.run = simulate(GAITS[name](), DURATION, accuracy="standard", sample_period=SAMPLE, estimate=False)
+        self.path = turn_vector(self.run.center_of_mass)
+        self.speed = np.linalg.norm(np.gradient(self.path, self.run.time, axis=0), axis=1)
+        x, y, z, w = self.run.orientation.T
+        self.heading = np.unwrap(np.arctan2(2.0 * (x * y + z * w), 1.0 - 2.0 * (y * y + z * z)))
+        rate = -self.run.twist[:, 0]  # axis 1 points to the tail
+        self.roll = np.concatenate(([0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]) * SAMPLE)))
+        self.period, self.cost = 1.0, None
+        try:
+            analysis = self.run.analysis()
+            self.period = analysis.window.period
+            self.cost = analysis.cost_of_transport
+            moves = analysis.mean_speed > 0.05
+            self.figures = analysis.mean_speed, analysis.strouhal, self.cost
+            self.figures = self.figures if moves else (analysis.mean_speed, None, None)
+        except ValueError:  # no period
+            self.figures = float(np.mean(self.speed[len(self.speed) // 2 :])), None, None
+
+    def change(self, angle, end=DURATION):
+        """Change [degree] of an angle from the start to the mean over the last second before `end` [s]."""
+        last = round(end / SAMPLE) + 1
+        return math.degrees(float(np.mean(angle[last - round(1.0 / SAMPLE) : last]) - angle[0]))
+
+    def at(self, time):
+        """Number of the sample at `time` [s]."""
+        return round(time / SAMPLE)
+
+    def row(self):
+        """The row of the table."""
+        moved = ", ".join(f"{value:+.2f}" for value in self.path[-1] - self.path[0])
+        figures = " | ".join("-" if value is None else f"{round(value, 9):.3g}" for value in self.figures)
+        turned = " | ".join(f"{self.change(angle) + 0.0:+.0f}°" for angle in (self.heading, self.roll))
+        return f"| [{self.name}](#{self.name}) | {moved} | {turned} | {figures} |\n"
+
+    def picture(self):
+        """Shape, path, torque surface and speed, as the bytes of a PNG."""
+        with plt.rc_context(SETTINGS):
+            figure, panels = plt.subplots(1, 4, figsize=(11.0, 2.6), layout="constrained")
+            self._shape(panels[0])
+            self._path(panels[1])
+            self._torque(figure, panels[2])
+            panels[3].plot(self.run.time, self.speed, color=BLUE, linewidth=1.2)
+            panels[3].set(title="speed", xlabel="t [s]", ylabel="m/s", xlim=(0.0, DURATION))
+            panels[3].set_ylim(0.0, max(0.01, 1.05 * np.max(self.speed)))
+            raw = io.BytesIO()
+            figure.savefig(raw, format="png", dpi=90)
+            plt.close(figure)
+        raw.seek(0)
+        small = io.BytesIO()
+        Image.open(raw).convert("RGB").quantize(COLOURS).save(small, "PNG", optimize=True)
+        return small.getvalue()
+
+    def _shape(self, axes):
+        """Midlines over the strongest part of the swim, one period long, relative to the centre of mass."""
+        steps = round(self.period / SAMPLE)
+        last = self.at(SHAPES.get(self.name, DURATION))
+        moved = self.path[last] - self.path[last - steps]
+        in_plane = np.ptp(self.path[:, 2]) < 1e-6 and np.linalg.norm(moved) > 0.05 and self.name not in SHAPES
+        turn = -math.atan2(moved[1], moved[0]) if in_plane and self.name != "backward" else 0.0
+        for k, index in enumerate(np.linspace(last - steps, last, 9).astype(int)[:-1]):
+            line = turn_vector(self.run.backbone[index]) - self.path[index]
+            x = line[:, 0] * math.cos(turn) - line[:, 1] * math.sin(turn)
+            y = line[:, 0] * math.sin(turn) + line[:, 1] * math.cos(turn)
+            axes.plot(x, y, color=plt.cm.cividis(k / 8.0), linewidth=1.0)
+            axes.plot(x[:1], y[:1], "o", color=plt.cm.cividis(k / 8.0), markersize=2.5)
+        axes.set_aspect("equal", "datalim")
+        axes.set(title="shape over a period, from above", xlabel="m", ylabel="m")
+
+    def _path(self, axes):
+        axes.plot(self.path[:, 0], self.path[:, 1], color=BLUE, linewidth=1.2, label="from above: y")
+        if np.ptp(self.path[:, 2]) > 1e-6:
+            axes.plot(self.path[:, 0], self.path[:, 2], color=ORANGE, linewidth=1.2, label="from the side: z")
+        axes.plot(*self.path[0, :2], "o", color="black", markersize=3)
+        axes.set_aspect("equal", "datalim")
+        axes.legend(frameon=False)
+        axes.set(title="path", xlabel="x [m]", ylabel="m")
+
+    def _torque(self, figure, axes):
+        steps = round(2.0 * self.period / SAMPLE) + 1
+        component = 2 if np.max(np.abs(self.run.torque[..., 2])) >= np.max(np.abs(self.run.torque[..., 1])) else 1
+        shown = slice(-steps, None) if self.name not in ONCE else slice(0, round(ONCE[self.name] / SAMPLE) + 1)
+        torque = self.run.torque[shown, :, component]
+        bound = np.max(np.abs(torque)) or 1.0
+        mesh = axes.pcolormesh(
+            self.run.time[shown], self.run.x, torque.T, cmap="PuOr", vmin=-bound, vmax=bound, shading="gouraud"
+        )
+        figure.colorbar(mesh, ax=axes)
+        axes.set(title=f"torque C{component + 1} [N m]", xlabel="t [s]", ylabel="X [m]")
+
+
+ONCE = {"c_start": 2.0, "roll_over": 8.0, "falling": 9.0, "rising": 9.0, "diving": 6.0}  # s: what happens at the start
+
+
+SHAPES = {"c_start": 1.0, "roll_over": 4.0, "burst_and_coast": 2.0, "falling": 3.0, "rising": 3.0, "diving": 4.0}  # s
+
+
+def _turning(swim, swims):
+    rate = (swim.heading[-1] - swim.heading[swim.at(10.0)]) / 10.0
+    radius = swim.figures[0] / abs(rate)
+    return f"It turns by {math.degrees(rate):+.0f} degrees per second, on a circle of {radius:.2f} m radius."
+
+
+def _c_start(swim, swims):
+    fastest, plain = int(np.argmax(swim.speed)), swims["straight"].speed
+    return (
+        f"After 3 s the heading is {swim.change(swim.heading, 3.0):+.0f} degrees, and the torque has reached "
+        f"{np.max(np.abs(swim.run.torque)):.1f} N m. The greatest speed is {swim.speed[fastest]:.2f} m/s, after "
+        f"{swim.run.time[fastest]:.2f} s; `straight` has {plain[fastest]:.2f} m/s then."
+    )
+
+
+def _burst_and_coast(swim, swims):
+    start = swim.at(8.0)  # two cycles of 6 s
+    work = swim.run.energy.actuator_work
+    way = np.linalg.norm(swim.path[-1] - swim.path[start])
+    cost = (work[-1] - work[start]) / way / swim.run.body_mass
+    slower = 12.0 * swims["straight"].figures[0] / way  # period of the plain gait at that speed
+    plain = simulate(straight(period=slower), 20.0 * slower, accuracy="standard", estimate=False).analysis()
+    return (
+        f"Over the last two cycles of 6 s the mean speed is {way / 12.0:.2f} m/s, at {cost:.3f} J/m/kg. `straight` "
+        f"with a period of {slower:.2f} s has {plain.mean_speed:.2f} m/s at {plain.cost_of_transport:.3f} J/m/kg: in "
+        f"this model bursts cost {'more' if cost > plain.cost_of_transport else 'less'}."
+    )
+
+
+def _depth(swim, swims):
+    return f"It ends {abs(swim.path[-1, 2]):.2f} m {'lower' if swim.path[-1, 2] < 0.0 else 'higher'}."
+
+
+def _diving(swim, swims):
+    way = swim.path[-1] - swim.path[swim.at(10.0)]
+    slope = math.degrees(math.atan2(way[2], math.hypot(way[0], way[1])))
+    return (
+        f"From 10 s on the path slopes by {slope:+.0f} degrees. The mean heading has changed by "
+        f"{swim.change(swim.heading):+.0f} degrees; nothing keeps the body from rolling."
+    )
+
+
+def _spiral(swim, swims):
+    steps = np.diff(swim.path[swim.at(10.0) :: swim.at(1.0)], axis=0)  # of one period
+    changes = np.diff(steps, axis=0)
+    axis = np.mean(np.cross(changes[:-1], changes[1:]), axis=0)
+    axis /= np.linalg.norm(axis)
+    across = steps - np.outer(steps @ axis, axis)
+    across_size = np.mean(np.linalg.norm(across, axis=1))
+    turn = math.acos(np.mean(np.sum(across[1:] * across[:-1], axis=1)) / across_size**2)
+    radius, advance = across_size / (2.0 * math.sin(0.5 * turn)), np.mean(steps @ axis) * 2.0 * math.pi / turn
+    return (
+        f"It is a helix of {radius:.2f} m radius about an axis {math.degrees(math.acos(abs(axis[2]))):.0f} degrees "
+        f"from the vertical. It turns by {math.degrees(turn):.0f} degrees in a period, and sinks along the axis by "
+        f"{advance:.2f} m in a turn."
+    )
+
+
+def _roll_over(swim, swims):
+    end = swim.at(7.1)
+    x, y, z, w = swim.run.orientation.T
+    roll = np.degrees(np.arctan2(2.0 * (y * z + x * w), 1.0 - 2.0 * (x * x + y * y))) % 360.0  # of the straight body
+    roll = 360.0 - roll
+    moved = np.linalg.norm(swim.path[end] - swim.path[0])
+    return (
+        f"At its end, after 7.1 s, the straight body lies {roll[end]:+.0f} degrees about its own axis, and its centre "
+        f"of mass has moved by {moved:.2f} m. Without a restoring moment it then drifts, to "
+        f"{roll[-1]:+.0f} degrees at 20 s."
+    )
+
+
+def _rolling(swim, swims):
+    rate = math.degrees(swim.roll[-1] - swim.roll[swim.at(10.0)]) / 10.0
+    return f"The body rolls by {rate:+.0f} degrees per second."
+
+
+NOTES = {  # what was measured, beside the table
+    "turning": _turning,
+    "c_start": _c_start,
+    "burst_and_coast": _burst_and_coast,
+    "falling": _depth,
+    "rising": _depth,
+    "diving": _diving,
+    "spiral": _spiral,
+    "rolling": _rolling,
+    "roll_over": _roll_over,
+    "helix": _rolling,
+}
+
+
+def section(swim, swims):
+    """What the page says of one gait."""
+    function = GAITS[swim.name]
+    about = inspect.getdoc(function).split("\n\nNumbers")[0]
+    numbers = described_fields(function.numbers)
+    listed = f"```text\n{inspect.cleandoc(numbers)}\n```\n" if numbers else "It has no numbers.\n"
+    picture = f"![{swim.name}](../images/manoeuvres/{swim.name}.png)\n"
+    note = f" {NOTES[swim.name](swim, swims)}" if swim.name in NOTES else ""
+    return f"### {swim.name}\n{about}{note}\n\n{picture}\n{listed}\n"
+
+
+def formulas():
+    """The docstring of each file of gaits: formulas and sources."""
+    modules = dict.fromkeys(inspect.getmodule(inspect.unwrap(GAITS[name])) for row in FAMILIES.values() for name in row)
+    return "".join(f"```text\n{inspect.getdoc(module).strip()}\n```\n" for module in modules)
+
+
+def main() -> int:
+    """Write pictures and page."""
+    PICTURES.mkdir(parents=True, exist_ok=True)
+    assert sorted(name for row in FAMILIES.values() for name in row) == sorted(GAITS)
+    swims = {name: Swim(name) for row in FAMILIES.values() for name in row}
+    for name, swim in swims.items():
+        (PICTURES / f"{name}.png").write_bytes(swim.picture())
+    text = HEAD + "".join(swim.row() for swim in swims.values()) + "\n"
+    for family, names in FAMILIES.items():
+        text += f"## {family}\n" + "".join(section(swims[name], swims) for name in names)
+    text += (
+        "## Formulas and sources\nAs the files of [eel_gaits/gaits](../../src/eel_gaits/eel_gaits/gaits) have them.\n\n"
+        + formulas()
+    )
+    PAGE.write_text(text)
+    print(f"{PAGE.relative_to(ROOT)}: {len(swims)} gaits")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
