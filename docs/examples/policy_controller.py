@@ -16,6 +16,7 @@ from eel_dynamics.gym import HeadingEnv, HeadMotion
 from eel_ros.qos import keep_all
 from hold_heading import FILE, actions_of
 from nav_msgs.msg import Odometry
+from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 
@@ -32,7 +33,7 @@ class PolicyController(Node):
         found = json.loads(Path(self.declare_parameter("policy", str(FILE)).value).read_text())
         self.weights, self.step = np.array(found["weights"]), found["task"]["control_period"]
         self.env = HeadingEnv(control_period=self.step)
-        self.env.target = self.declare_parameter("heading", 0.0).value
+        self.declare_parameter("heading", 0.0, ParameterDescriptor(dynamic_typing=True))  # an integer will do
         self.last, self.answers = np.inf, []
         self.publisher = self.create_publisher(CurvatureSamples, "curvature_samples", keep_all())
         self.create_subscription(Odometry, "odom", self.receive, keep_all())
@@ -44,6 +45,7 @@ class PolicyController(Node):
             self.answers = []
             if not now > self.last:
                 self.answers.append(self.message(now, self.env.restart()))
+            self.env.target = float(self.get_parameter("heading").value)
             observation = self.env.see(head_motion(odometry))
             action = actions_of(self.weights, observation[np.newaxis])[0]
             self.answers.append(self.message(now + self.step, self.env.action.advance(action, self.step)))
@@ -70,12 +72,15 @@ def head_motion(odometry) -> HeadMotion:
 
 
 def main() -> int:
-    """Run until a signal comes."""
+    """Run until a signal comes. Status 2 for a policy that cannot be read."""
     rclpy.init()
     try:
         rclpy.spin(PolicyController())
     except (KeyboardInterrupt, ExternalShutdownException):
-        pass
+        return 0
+    except (OSError, ValueError, KeyError) as error:
+        print(f"policy_controller: the policy cannot be read: {error}", file=sys.stderr)
+        return 2
     finally:
         rclpy.try_shutdown()
     return 0
