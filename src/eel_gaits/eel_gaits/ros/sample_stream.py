@@ -24,7 +24,7 @@ class SampleStream:
     def __init__(self, node):
         self._node, self._publisher, self._chain = node, None, None
         self._count = 0  # samples since the start, which lies at `_start`
-        self._start, self._listened = 0.0, False
+        self._start, self._listeners = 0.0, 0
 
     def follow(self, numbers, now):
         """Begin at `now` [s of simulation time], or change to the new `numbers` after the samples already sent."""
@@ -53,10 +53,10 @@ class SampleStream:
         """Send the samples up to 0.5 s after `now` [s of simulation time]."""
         if self._chain is None:
             return
-        listened = self._publisher.get_subscription_count() > 0
-        if (listened and not self._listened) or now < self._start - 2.0 * AHEAD:  # nobody has had the first ones
+        listeners = self._publisher.get_subscription_count()
+        if listeners > self._listeners and now <= self._start:  # the new one has missed the first samples
             self.restart(self._chain.numbers, now)
-        self._listened = listened
+        self._listeners = listeners
         period = self._chain.numbers.sample_period
         if self._chain.time < now:  # the simulation was faster
             self._start, self._count = now + LEAD, 0
