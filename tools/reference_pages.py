@@ -44,7 +44,18 @@ NODES = {  # name of the node: heading, prefix and dataclass of its parameters
     "visualiser": [("", "", Settings)],
     "markers": [("", "", MarkerSettings)],
 }
-COMMANDS = ("simulate", "sweep", "tradeoff", "stability", "figures", "record", "eel_echo", "replay", "render")
+COMMANDS = (
+    "simulate",
+    "sweep",
+    "optimise",
+    "tradeoff",
+    "stability",
+    "figures",
+    "record",
+    "eel_echo",
+    "replay",
+    "render",
+)
 
 
 def parameter_names(node: str) -> set[str]:

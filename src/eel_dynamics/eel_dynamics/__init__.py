@@ -13,6 +13,10 @@ from eel_dynamics.simulation.simulation import Simulation
 from eel_dynamics.simulation.snapshot import Snapshot
 from eel_dynamics.simulation.stopping import SimulationStopped
 from eel_dynamics.studies.gradients.gradient import Gradient, gradient
+from eel_dynamics.studies.identify.identify import Identified, identify
+from eel_dynamics.studies.identify.measurements import MeasuredPath, MeasuredSpeed
+from eel_dynamics.studies.optimise.front import Front
+from eel_dynamics.studies.optimise.optimise import optimise
 from eel_dynamics.studies.sweep.sweep import sweep
 
 __all__ = [
@@ -20,9 +24,13 @@ __all__ = [
     "Batch",
     "Body",
     "EnergyLedger",
+    "Front",
     "Gradient",
     "HydrodynamicWrench",
+    "Identified",
+    "MeasuredPath",
     "MeasuredSimulation",
+    "MeasuredSpeed",
     "Run",
     "Scene",
     "Simulation",
@@ -30,6 +38,8 @@ __all__ = [
     "Snapshot",
     "gradient",
     "hydrodynamic_wrench",
+    "identify",
+    "optimise",
     "simulate",
     "simulate_batch",
     "sweep",

@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 from eel_gaits.gaits.registry import find
 from eel_gaits.input_output.quantity import number
-from eel_gaits.input_output.wording import shown
+from eel_gaits.input_output.wording import did_you_mean, shown
 from eel_gaits.laws.law import Law
 
 from eel_dynamics.accuracy.accuracy import Accuracy
@@ -82,12 +82,12 @@ def batch_of_points(points: list[Point], how: SwimSettings, threads: int | None 
 
 
 def point_at(index: int, values: dict, gait: "str | Callable[..., Law]", numbers: dict, base: Point) -> Point:
-    """The point of these `values` by name; all else is as in `numbers` of the gait and in `base`.
+    """The point of these `values` by name; all else is as in `numbers`, by the same names, and in `base`.
 
     gait: its name, or a function of numbers that returns a law. `ValueError` tells the point and what does not fit.
     """
     try:
-        return _point(index, values, gait, numbers, base)
+        return _point(index, {**numbers, **values}, gait, base)
     except (ValueError, TypeError) as error:
         at = ", ".join(f"{name}={label_of(value) if _named(value) else shown(value)}" for name, value in values.items())
         raise ValueError(f"at {at}: {error}") from None
@@ -104,8 +104,8 @@ def _named(value) -> bool:
     return isinstance(value, (Body, Accuracy))
 
 
-def _point(index: int, values: dict, gait, numbers: dict, base: Point) -> Point:
-    body, accuracy, own = base.body, base.accuracy, dict(numbers)
+def _point(index: int, values: dict, gait, base: Point) -> Point:
+    body, accuracy, own = base.body, base.accuracy, {}
     groups = {"scene": {}, "body": {}, "initial": {}}
     for name, value in values.items():
         group, _, field = name.partition(".")
@@ -138,4 +138,5 @@ def _start(start: InitialState, changes: dict) -> InitialState:
 def _check_names(group: str, given: dict, known) -> None:
     for name in given:
         if name not in known:
-            raise ValueError(f"{group} has no field {shown(name)}, it has: {', '.join(known)}")
+            hint = did_you_mean(name, known)
+            raise ValueError(f"{group} has no field {shown(name)}{hint}, it has: {', '.join(known)}")

@@ -10,7 +10,7 @@ import inspect
 from dataclasses import dataclass
 
 from eel_gaits.input_output.quantity import Quantities, described_fields, quantity
-from eel_gaits.input_output.wording import shown
+from eel_gaits.input_output.wording import did_you_mean, shown
 from eel_gaits.laws.law import Law
 
 
@@ -56,8 +56,10 @@ def register(numbers_class):
         def make(*, transition=0.0, **numbers):
             unknown = [key for key in numbers if key not in own_names]
             if unknown:
+                hint = did_you_mean(unknown[0], own_names)
                 raise ValueError(
-                    f"gait {shown(name)} has no number {shown(unknown[0])}, it has: {', '.join(own_names) or 'none'}"
+                    f"gait {shown(name)} has no number {shown(unknown[0])}{hint}, it has: "
+                    f"{', '.join(own_names) or 'none'}"
                 )
             return Law(*terms_of(numbers_class(**numbers)), name=name, transition=transition)
 

@@ -3,6 +3,8 @@
 
 import re
 import reprlib
+from collections.abc import Collection
+from difflib import get_close_matches
 
 LONGEST = 80  # characters shown of a value
 LONGEST_LINE = 1000  # of a whole message
@@ -33,6 +35,12 @@ def one_line(error) -> str:
         error = f"{error.strerror}: {shown(error.filename)}"
     line = _LONG_WORD.sub(lambda word: _shortened(word[0]), " ".join(str(error).split()))
     return _shortened(line, LONGEST_LINE)
+
+
+def did_you_mean(name: str, known: Collection[str]) -> str:
+    """The `known` name that is most like `name`, as a question in brackets. Empty if none is."""
+    alike = get_close_matches(str(name), known, n=1)
+    return f" (did you mean {alike[0]!r}?)" if alike else ""
 
 
 def _shortened(text: str, longest: int = LONGEST) -> str:

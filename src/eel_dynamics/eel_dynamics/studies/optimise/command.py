@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`optimise`: the gait of least cost of transport at each speed; prints the front, draws it, writes it as a table.
+
+optimise straight --bound period=0.4:3 --bound amplitude_0=0:2 --bound amplitude_2=0:6 --speeds 0.2:0.6:5
+optimise kern_fast --body kern2006 --bound period=0.5:2 --bound bend_tail=0:8 --speeds 0.3,0.4 --out front.png
+"""
+
+import csv
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+from eel_gaits.gaits.registry import GAITS
+from eel_gaits.input_output.command_line import Parser, complain
+from eel_gaits.input_output.output_file import NotWritten, check_output, replacing
+from eel_gaits.input_output.wording import shown
+
+from eel_dynamics.accuracy.accuracy import PRESETS
+from eel_dynamics.analysis.measures import MEASURES
+from eel_dynamics.model.body import NAMED, Body
+from eel_dynamics.runs.interrupt import end_on_interrupt
+from eel_dynamics.runs.named_values import named_texts, scene_of, set_numbers, varied_values
+from eel_dynamics.runs.one_line_warnings import one_line_warnings
+from eel_dynamics.studies.optimise.front import FORMATS, Front
+from eel_dynamics.studies.optimise.optimise import optimise
+from eel_dynamics.studies.optimise.searches import METHODS
+
+SUFFIXES = (*FORMATS, ".csv")
+SMOOTH = "friction=blended"  # unless --scene says otherwise
+MOST_SPEEDS = 1000
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Exit status 0; 1 where an output cannot be written to its end; 2 for bad input, a missing package, or where no
+    gait reaches the speeds. An error prints one line with its reason.
+    """
+    if arguments is None:
+        end_on_interrupt()
+    options = _parser().parse_args(arguments)
+    try:
+        with one_line_warnings("optimise"):
+            return _optimise(options)
+    except NotWritten as error:
+        complain("optimise", error)
+        return 1
+    except (ValueError, ImportError, OSError) as error:
+        complain("optimise", error)
+        return 2
+
+
+def _optimise(options) -> int:
+    start = time.perf_counter()
+    outs = [_checked_out(out) for out in options.out]
+    bounds = {name: _bounds(name, text) for name, text in named_texts("--bound", options.bound)}
+    scene = options.scene if any(text.startswith("friction=") for text in options.scene) else [SMOOTH, *options.scene]
+    front = optimise(
+        bounds,
+        _speeds(options.speeds),
+        gait=options.gait,
+        numbers=set_numbers(options.set),
+        body=Body.named(options.body) if options.body in NAMED else Body.from_file(options.body),
+        scene=scene_of(scene),
+        cost=options.cost,
+        periods=options.periods,
+        accuracy=options.accuracy,
+        method=options.method,
+        starts=options.starts,
+        seed=options.seed,
+    )
+    print(front.table())
+    if front.at_bound.any() or front.dominated.any():
+        print("* a parameter at its bound, or a gait that is slower and costs more than another")
+    print(f"wall time  {time.perf_counter() - start:.1f} s, {len(front.tried)} gaits tried")
+    for out in outs:
+        _write(front, out)
+        print(f"written to {out}")
+    return 0
+
+
+def _bounds(name: str, text: str) -> tuple[float, float]:
+    low, found, high = text.partition(":")
+    try:
+        if not found:
+            raise ValueError
+        return float(low), float(high)
+    except ValueError:
+        raise ValueError(f"--bound must be NAME=low:high, got {shown(f'{name}={text}')}") from None
+
+
+def _speeds(text: str) -> list[float]:
+    try:
+        return [float(speed) for speed in varied_values(text, _check_count)]
+    except ValueError:
+        raise ValueError(f"--speeds must be start:end:count, count >= 1, or a,b,c in m/s, got {shown(text)}") from None
+
+
+def _check_count(count: int):
+    if count > MOST_SPEEDS:
+        raise ValueError(f"at most {MOST_SPEEDS}")
+
+
+def _checked_out(out: str) -> Path:
+    path = Path(out)
+    if path.suffix not in SUFFIXES:
+        raise ValueError(f"--out must end in {', '.join(SUFFIXES[:-1])} or {SUFFIXES[-1]}, got {shown(out)}")
+    check_output("--out", path)
+    if path.exists():
+        complain("optimise", f"{path} exists and will be overwritten")
+    return path
+
+
+def _write(front: Front, path: Path):
+    if path.suffix != ".csv":
+        front.draw(path)
+        return
+    with replacing(path) as draft, draft.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(front.columns)
+        writer.writerows(np.column_stack([*front.columns.values()]).tolist())
+
+
+def _parser() -> Parser:
+    parser = Parser(
+        prog="optimise",
+        description="Find the gait of least cost at each speed. The friction is blended unless --scene says otherwise.",
+    )
+    parser.add_argument("gait", nargs="?", default="straight", help=f"one of {', '.join(sorted(GAITS))} (straight)")
+    parser.add_argument(
+        "--bound",
+        action="append",
+        required=True,
+        metavar="NAME=LOW:HIGH",
+        help="a parameter and its bounds: a number of the gait, scene.FIELD, body.FIELD; may be repeated",
+    )
+    parser.add_argument("--speeds", required=True, metavar="SPEEDS", help="m/s: a,b,c or start:end:count")
+    parser.add_argument(
+        "--set", action="append", default=[], metavar="NAME=VALUE", help="what is held fixed; may be repeated"
+    )
+    parser.add_argument("--scene", action="append", default=[], metavar="NAME=VALUE", help="physics, as for simulate")
+    parser.add_argument("--body", default="boyer2010", help=f"{', '.join(NAMED)}, or a file as for simulate")
+    parser.add_argument("--cost", default="cost_of_transport", help=f"one of {', '.join(MEASURES)} (cost_of_transport)")
+    parser.add_argument("--method", default="gradient", help=f"{' or '.join(METHODS)} (gradient); cma needs cma")
+    parser.add_argument("--periods", type=int, default=10, metavar="N", help="of each swim (10)")
+    parser.add_argument("--accuracy", default=1e-3, help=f"{', '.join(PRESETS)}, or a target (1e-3)")
+    parser.add_argument("--starts", type=int, default=1, metavar="N", help="gaits from which a search begins (1)")
+    parser.add_argument("--seed", type=int, default=0, metavar="N", help="of what is random (0)")
+    parser.add_argument(
+        "--out",
+        action="append",
+        default=[],
+        metavar="FILE",
+        help=".png, .svg: a picture; .csv: a table; may be repeated",
+    )
+    return parser
+
+
+if __name__ == "__main__":
+    sys.exit(main())
