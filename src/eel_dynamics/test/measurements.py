@@ -223,8 +223,8 @@ def rows() -> list[Row]:
             "M",
             f"{ratio:.3f}",
             f"NOT as measured: {ratio / 0.694 - 1.0:+.0%}. Probably because the model's thrust comes from the tail, "
-            "which moves nearly as far in both; joints, blunt links and the drag between them are not in it. A round or "
-            "a flat body changes the ratio by a few hundredths only",
+            "which moves nearly as far in both; joints, blunt links and the drag between them are not in it. A round "
+            "or a flat body changes the ratio by a few hundredths only",
         ),
         Row(
             "length of Mamba from its speed, frequency and our stride",
