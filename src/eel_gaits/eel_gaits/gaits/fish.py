@@ -3,8 +3,9 @@
 
     h(X, t) = a(X) sin(2 pi (waves X / L - t / T)),   X: arc length from the nose, L: body length
 
-carangiform: a / L = a0 + a1 X / L + a2 (X / L)^2, of a mackerel; Borazjani and Sotiropoulos, J. Exp. Biol. 211 (2008),
-1541-1558, doi:10.1242/jeb.015644, after Videler and Hess (1984).
+carangiform: a / L = a0 + a1 X / L + a2 (X / L)^2, of a mackerel, after Videler and Hess (1984); coefficients as in Dong
+and Lu, Phys. Fluids 19 (2007), 057107, the wave as in Borazjani and Sotiropoulos, J. Exp. Biol. 211 (2008), 1541-1558,
+doi:10.1242/jeb.015644.
 anguilliform: a / L = a_tail exp(growth (X / L - 1)), of a lamprey; Borazjani and Sotiropoulos, J. Exp. Biol. 212
 (2009), 576-592, doi:10.1242/jeb.025007, after Hultmark, Leftwich and Smits (2007).
 """
