@@ -123,15 +123,15 @@ def _mujoco(python: Path, ours: Ours, duration: float = 10.0):
         )
         yield "    joint angles off by", max(r["shape_error"] for r in results.values()), "rad at most"
         ends[links] = np.array(results[finest]["head"])
-    yield from _prescribed(python, ours, duration)
+    yield from _prescribed(python, ours, ends, duration)
     few, many = ends.values()
     yield "  10 and 20 links apart", float(np.linalg.norm(few - many)), "m at the end"
     yield "  the head is then from its start", float(np.linalg.norm(many)), f"m; ours {_way(ours, duration):.3g} m"
     yield "  a link pushed from rest weighs", result["added_mass_share"], "times its mass: 1 is without added mass"
 
 
-def _prescribed(python: Path, ours: Ours, duration: float = 10.0):
-    """Lines of MuJoCo's chain with prescribed joints."""
+def _prescribed(python: Path, ours: Ours, ends: dict, duration: float):
+    """Lines of MuJoCo's chain with prescribed joints; ends: where the chain with servos comes to, by links."""
     for links in LINKS:
         middle = (np.arange(links) + 0.5) * ours.body.length / links
         results = {}
@@ -150,6 +150,8 @@ def _prescribed(python: Path, ours: Ours, duration: float = 10.0):
                 repeats=REPEATS if step > PRESCRIBED_FINEST else 1,
             )
         yield from _lines(f"{links} links, joints prescribed", results, ours, duration)
+        apart = np.linalg.norm(np.array(results[PRESCRIBED_FINEST]["head"]) - ends[links])
+        yield "    from the end with servos", float(apart), "m"
 
 
 def _joint_angles(ours: Ours, links: int, step: float, duration: float, rate: int = 0):

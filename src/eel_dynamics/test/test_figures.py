@@ -19,6 +19,7 @@ from eel_dynamics.studies.figures import (
     orders,
     paper_drawings,
 )
+from eel_dynamics.studies.figures.style import letter_panels
 from matplotlib.figure import Figure
 
 from eel_dynamics import Body, simulate
@@ -222,8 +223,28 @@ def test_files_are_written(readings, errors, tmp_path):
     paths = list(command.draw(some, tmp_path, ["png"]))
     assert [path.name for path in paths] == [f"{name}.png" for name in some]
     assert all(path.read_bytes().startswith(b"\x89PNG") for path in paths)
-    first, second = (next(iter(command.draw(drawings, tmp_path, ["svg"]))).read_bytes() for _ in "ab")
-    assert first == second  # the same drawing is the same file
+    for columns, suffix in ((None, "svg"), (1, "pdf")):
+        first, second = (next(iter(command.draw(drawings, tmp_path, [suffix], columns))).read_bytes() for _ in "ab")
+        assert first == second  # the same drawing is the same file
+
+
+def test_a_figure_is_as_wide_as_a_journal_s_column_or_page():
+    assert command.size_of("figure8_wrench_in_time", 1)[0] == 3.4
+    assert command.size_of("figure8_wrench_in_time", 2)[0] == 7.0
+    assert command.size_of("torque_surface", 1)[0] == 7.0  # panels side by side
+    assert command.size_of("head_path", None) == command.SIZES["head_path"]
+
+
+def test_panels_have_letters_and_colour_bars_none():
+    figure = Figure()
+    above, below = figure.subplots(2, 1)
+    figure.colorbar(above.imshow([[0.0, 1.0]]), ax=above)
+    letter_panels(figure)
+    assert [axes.get_title(loc="left") for axes in figure.axes] == ["(a)", "(b)", ""]
+    assert below.get_title(loc="left") == "(b)"
+    alone = Figure()
+    letter_panels(alone.subplots().figure)
+    assert alone.axes[0].get_title(loc="left") == ""
 
 
 def test_bad_input(tmp_path, capsys):

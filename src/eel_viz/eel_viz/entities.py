@@ -24,6 +24,7 @@ BACKBONE = "/world/eel/backbone"
 HEAD = "/world/eel/head"
 TAIL = "/world/eel/tail"
 TRACK = "/world/track"  # the whole path of the head, piece by piece
+STROBES = "/world/strobes"  # the midline, once a second
 TRAIL = "/world/trail"  # its last seconds, fading
 LOAD = "/world/load/distributed"
 LOAD_ENDS = "/world/load/ends"

@@ -10,6 +10,7 @@ import pytest
 from eel_viz.pictures.drawing import drawn
 from eel_viz.pictures.film import film
 from eel_viz.pictures.render import main, times
+from eel_viz.pictures.side_by_side import SideBySide
 from made_up_recording import record
 from PIL import Image
 
@@ -133,6 +134,31 @@ class TenSeconds:
     start, end = 0.0, 10.0
 
 
+def filled(colour: str, start: float, end: float):
+    """A drawing of one colour."""
+
+    class Filled:
+        def __init__(self):
+            self.start, self.end = start, end
+
+        def png(self, at):
+            told = io.BytesIO()
+            Image.new("RGB", (30, 20), colour).save(told, format="PNG")
+            return told.getvalue()
+
+    return Filled()
+
+
+def test_two_recordings_are_drawn_side_by_side_where_both_have_times():
+    pair = SideBySide(filled("red", 0.0, 3.0), filled("blue", 1.0, 9.0))
+    assert (pair.start, pair.end) == (1.0, 3.0)
+    picture = pixels(pair.png(2.0))
+    assert picture.shape == (20, 60, 3)
+    assert (picture[:, :30] == (255, 0, 0)).all() and (picture[:, 30:] == (0, 0, 255)).all()
+    with pytest.raises(ValueError, match="times in common, got 0 to 1 s and 2 to 3 s"):
+        SideBySide(filled("red", 0.0, 1.0), filled("blue", 2.0, 3.0))
+
+
 def test_the_times_of_a_film():
     assert times(TenSeconds, fps=30, start=None, end=None, speed=1.0)[-1] == pytest.approx(10.0)
     assert len(times(TenSeconds, fps=30, start=None, end=None, speed=1.0)) == 301
@@ -163,7 +189,7 @@ def test_without_a_time_the_picture_is_of_seven_tenths_of_the_recording(tmp_path
         def png(self, at):
             return b"\x89PNG at %g s" % at
 
-    monkeypatch.setattr("eel_viz.pictures.render.drawn", lambda *_, **__: contextlib.nullcontext(Drawing()))
+    monkeypatch.setattr("eel_viz.pictures.render.drawn_beside", lambda *_, **__: contextlib.nullcontext(Drawing()))
     assert main(["run.rrd", "-o", str(tmp_path / "picture.png")]) == 0
     assert (tmp_path / "picture.png").read_bytes() == b"\x89PNG at 9 s"
     assert main(["run.rrd", "-o", str(tmp_path / "picture.png"), "--at", "2"]) == 0

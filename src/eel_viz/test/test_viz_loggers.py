@@ -10,7 +10,7 @@ from eel_viz.scene3d import camera
 from eel_viz.scene3d.colours import diverging, diverging_index
 from eel_viz.scene3d.orientation import attitude, world_from_section
 from eel_viz.scene3d.skin import Flanks, Skin
-from eel_viz.scene3d.track import LENGTH, PIECES, POINTS
+from eel_viz.scene3d.track import LENGTH, PIECES, POINTS, STROBE_PERIOD
 from eel_viz.scene3d.water import GRID, LABELS, WALLS
 from eel_viz.views.blueprint import arrangement
 from made_up_recording import body
@@ -184,6 +184,17 @@ def test_the_track_is_the_path_of_the_head_without_gaps(made):
     np.testing.assert_allclose(track["strips"][:, 0, 1], heads[1:], atol=SINGLE)
 
 
+def test_strobes_are_the_midline_once_a_second(made):
+    path, samples = made
+    strobes = read(path, entities.STROBES)
+    stamps = np.array(sorted(stamp for stamp in samples if "backbone" in samples[stamp]))
+    firsts = [stamps[stamps // STROBE_PERIOD == number][0] for number in np.unique(stamps // STROBE_PERIOD)]
+    np.testing.assert_array_equal(strobes.stamps, firsts)
+    midlines = [samples[stamp]["backbone"][0].position for stamp in firsts]
+    for strips, midline in zip(strobes["strips"], midlines, strict=True):
+        np.testing.assert_allclose(strips[0], midline, atol=SINGLE)
+
+
 def test_the_trail_is_the_last_of_the_path_and_fades(made):
     path, samples = made
     trail = read(path, entities.TRAIL)
@@ -245,7 +256,8 @@ def test_nothing_is_shown_that_no_test_compares_with_the_messages(made):
     changing = {str(chunk.entity_path) for chunk in chunks if not chunk.is_static}
     plots = (entities.TORQUE, entities.FORCE, entities.CURVATURE)
     compared = {*TIME_SERIES, *NUMBERS, entities.BACKBONE, entities.SKIN, entities.HEAD, entities.TAIL, entities.FOLLOW}
-    compared |= {entities.TRACK, entities.TRAIL, entities.LOAD, entities.LOAD_ENDS, entities.HEAT_MAP_IMAGE}
+    compared |= {entities.TRACK, entities.STROBES, entities.TRAIL}
+    compared |= {entities.LOAD, entities.LOAD_ENDS, entities.HEAT_MAP_IMAGE}
     compared |= {f"{root}/{part}" for root in plots for part in (entities.CURVES, entities.ENVELOPE, entities.TICKS)}
     compared |= {f"{root}/{part}" for root in (entities.WATER, entities.PATH_WATER) for part in (GRID, LABELS, WALLS)}
     compared |= {entities.SHADOW, entities.RUN, entities.LOG, entities.TORQUE_LAYER, entities.WHOLE_PATH}

@@ -5,6 +5,7 @@ render RUN.rrd -o picture.png                # --at 7.0: at another time
 render RUN.rrd -o frames/ --fps 30           # frames/frame_00000.png ..., and frames/film.mp4 where ffmpeg is
 render RUN.rrd -o swim.webp --fps 15 --size 960x540
 render RUN.rrd -o swim.webp --fps 15 --size 800x450 --bare    # the swimmer alone
+render RUN.rrd -o pair.webp --fps 15 --size 480x400 --bare --beside OTHER.rrd
 """
 
 import argparse
@@ -20,8 +21,9 @@ from eel_gaits.input_output.command_line import Parser, complain
 from eel_gaits.input_output.output_file import NotWritten, check_output, replacing
 from eel_gaits.input_output.wording import shown
 
-from eel_viz.pictures.drawing import SIZE, Drawing, drawn
+from eel_viz.pictures.drawing import SIZE, Drawing
 from eel_viz.pictures.film import ANIMATIONS, FILMS, FRAME, QUALITY, check_quality, ffmpeg, film
+from eel_viz.pictures.side_by_side import SideBySide, drawn_beside
 from eel_viz.viewer import CannotRender
 from eel_viz.without_pandas import keep_pandas_out
 
@@ -39,13 +41,15 @@ def render(
     size: tuple[int, int] = SIZE,
     blueprint: str = "",
     bare: bool = False,
+    beside: str | os.PathLike[str] | None = None,
 ) -> None:
     """Write the PNG `picture` of `recording` at simulation time `at` [s]; None: after a `DEFAULT_SHARE`.
 
     size: width and height [pixels]. blueprint: the arrangement shown; empty: the recording's first. bare: its first
-    view alone, without the viewer's frame; with an empty blueprint, the swimmer.
+    view alone, without the viewer's frame; with an empty blueprint, the swimmer. beside: another recording, drawn to
+    the right in the same size.
     """
-    with drawn(recording, size=size, blueprint=blueprint, bare=bare) as drawing:
+    with drawn_beside(recording, beside, size=size, blueprint=blueprint, bare=bare) as drawing:
         if at is None:
             at = drawing.start + DEFAULT_SHARE * (drawing.end - drawing.start)
         png = drawing.png(at)
@@ -53,7 +57,9 @@ def render(
         draft.write_bytes(png)
 
 
-def times(drawing: Drawing, *, fps: float, start: float | None, end: float | None, speed: float) -> list[float]:
+def times(
+    drawing: Drawing | SideBySide, *, fps: float, start: float | None, end: float | None, speed: float
+) -> list[float]:
     """Simulation times [s] of the pictures of a film with `fps` per second, at `speed` times real time."""
     _check_positive(fps=fps, speed=speed)
     start = drawing.start if start is None else start
@@ -67,7 +73,10 @@ def times(drawing: Drawing, *, fps: float, start: float | None, end: float | Non
 
 
 def frames(
-    drawing: Drawing, folder: pathlib.Path, at: Sequence[float], progress: Callable[[str], None] = lambda text: None
+    drawing: Drawing | SideBySide,
+    folder: pathlib.Path,
+    at: Sequence[float],
+    progress: Callable[[str], None] = lambda text: None,
 ) -> list[pathlib.Path]:
     """Write pictures at the times `at` [s] to frame_00000.png and so on in `folder`; returns their paths."""
     written = []
@@ -123,6 +132,9 @@ def parser() -> Parser:
         action="store_true",
         help="the first view of the arrangement alone, without the viewer's frame (default arrangement: swimmer)",
     )
+    made.add_argument(
+        "--beside", metavar="OTHER", help="another recording, drawn to the right at the same times and in the same size"
+    )
     return made
 
 
@@ -167,11 +179,12 @@ def _draw(chosen: argparse.Namespace, output: pathlib.Path, size: tuple[int, int
     if not many and output.suffix != ".png":
         raise ValueError(f"a picture must end in .png, got {shown(str(output))}; --fps N makes many in a folder")
     _check_writable(output, folder=many and not alone)
+    shown_as = {"size": size, "blueprint": chosen.blueprint, "bare": chosen.bare}
     if not many:
-        render(chosen.recording, output, at=chosen.at, size=size, blueprint=chosen.blueprint, bare=chosen.bare)
+        render(chosen.recording, output, at=chosen.at, beside=chosen.beside, **shown_as)
         return
     with contextlib.ExitStack() as stack:
-        drawing = stack.enter_context(drawn(chosen.recording, size=size, blueprint=chosen.blueprint, bare=chosen.bare))
+        drawing = stack.enter_context(drawn_beside(chosen.recording, chosen.beside, **shown_as))
         at = times(drawing, fps=chosen.fps, start=chosen.start, end=chosen.end, speed=chosen.speed)
         folder = output
         if alone:

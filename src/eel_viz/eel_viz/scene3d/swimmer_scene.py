@@ -11,7 +11,7 @@ from eel_viz.scene3d import colours, legend
 from eel_viz.scene3d.arrows import Arrows
 from eel_viz.scene3d.camera import FollowFrame, PathFrame
 from eel_viz.scene3d.skin import Flanks, Skin
-from eel_viz.scene3d.track import Track
+from eel_viz.scene3d.track import Strobes, Track
 from eel_viz.scene3d.water import WaterBox
 
 AXES_LENGTH = 0.12  # m
@@ -31,7 +31,7 @@ class SwimmerScene:
         self._frame, self._path_frame = FollowFrame(), PathFrame()
         self._water, self._path_water = (WaterBox(stream, root) for root in (entities.WATER, entities.PATH_WATER))
         self._path_water_stamp: int | None = None  # ns
-        self._track = Track(stream)
+        self._track, self._strobes = Track(stream), Strobes(stream)
         self._arrows = Arrows(stream, **self._scales)
         stream.log_static(entities.WORLD, rr.ViewCoordinates.RIGHT_HAND_Z_UP)
         stream.log_static(entities.BACKBONE, rr.LineStrips3D.from_fields(colors=[colours.LABEL], radii=[0.0004]))
@@ -55,7 +55,8 @@ class SwimmerScene:
         self._place(stamp, entities.HEAD, pose.position, pose.orientation)
 
     def line(self, stamp: int, backbone: Backbone) -> None:
-        """Draw the backbone."""
+        """Draw the backbone, and its strobes."""
+        self._strobes.draw(stamp, backbone.position)
         strips = backbone.position[None].astype(np.float32)
         self._stream.add_row(stamp, entities.BACKBONE, rr.LineStrips3D, strips=strips)
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Draws the path of the head: as short pieces, which a view shows from the start to the cursor, and the last seconds as
-a trail that fades out.
+"""Draws where the swimmer was: the path of the head in short pieces and strobes of the midline, both shown up to the
+cursor, and the last seconds of the head as a trail that fades out.
 """
 
 import numpy as np
@@ -12,6 +12,7 @@ from eel_viz.scene3d import colours
 
 LENGTH = 3.0  # s: duration of the trail
 PIECES, POINTS = 10, 6  # pieces of one brightness each, and points of a piece
+STROBE_PERIOD = 1_000_000_000  # ns
 ROOM = 64  # positions, at least, between two reallocations of the history
 
 
@@ -55,6 +56,25 @@ class Track:
         while self._end - self._begin > 2 and self._stamps[self._begin + 1] < stamp - LENGTH * 1e9:
             self._begin += 1
         return self._stamps[self._begin : self._end], self._places[self._begin : self._end]
+
+
+class Strobes:
+    """Draws the midline at each `STROBE_PERIOD`."""
+
+    def __init__(self, stream: BatchedStream) -> None:
+        self._stream = stream
+        self._last: int | None = None  # number of the last strobe
+        stream.log_static(
+            entities.STROBES,
+            rr.LineStrips3D.from_fields(colors=[colours.dim(colours.LABEL)], radii=[rr.Radius.ui_points(0.6)]),
+        )
+
+    def draw(self, stamp: int, midline: np.ndarray) -> None:
+        """Draw `midline`, (M, 3) [m] in the world, if it is the first at or after a strobe's time; stamp [ns]."""
+        number = stamp // STROBE_PERIOD
+        if number != self._last:
+            self._last = number
+            self._stream.add_row(stamp, entities.STROBES, rr.LineStrips3D, strips=midline[None].astype(np.float32))
 
 
 def _ages() -> np.ndarray:

@@ -16,7 +16,13 @@ LOADS = entities.LOAD, entities.LOAD_ENDS
 def following_view(name: str = "Swimmer", *, both: bool = False, frames: bool = False) -> rrb.Spatial3DView:
     """Three dimensions; the camera moves with the swimmer without turning; with `both`, with two swimmers."""
     other_water = entities.WATER if both else entities.BOTH_WATER
-    left_out = [entities.TRACK, entities.PATH_WATER, other_water, *([entities.LEGEND] if both else [entities.OTHER])]
+    left_out = [
+        entities.TRACK,
+        entities.STROBES,
+        entities.PATH_WATER,
+        other_water,
+        *([entities.LEGEND] if both else [entities.OTHER]),
+    ]
     hidden = () if frames else (entities.HEAD, entities.TAIL)
     return _three_dimensions(
         name, entities.BOTH if both else entities.FOLLOW, left_out, _hidden(*hidden, *(LOADS if both else ()))
@@ -27,7 +33,8 @@ def path_view(*, frames: bool = False) -> rrb.Spatial3DView:
     """Three dimensions; the camera keeps all places so far in the picture."""
     left_out = [entities.WATER, entities.BOTH_WATER, entities.LEGEND, entities.OTHER]
     hidden = _hidden(*LOADS, *(() if frames else (entities.HEAD, entities.TAIL)))
-    return _three_dimensions("Path so far", entities.WHOLE_PATH, left_out, {entities.TRACK: [_past()], **hidden})
+    overrides = {path: [_past()] for path in (entities.TRACK, entities.STROBES)}
+    return _three_dimensions("Path so far", entities.WHOLE_PATH, left_out, overrides | hidden)
 
 
 def _past() -> rrb.VisibleTimeRanges:
