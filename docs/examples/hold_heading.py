@@ -14,20 +14,14 @@ import sys
 import time
 from pathlib import Path
 
-import cma
 import eel_dynamics.gym  # noqa: F401, it registers the environments
 import gymnasium
 import numpy as np
+from heading_policy import FILE, actions_of
 
 TASK = {"id": "Eel/Heading-v0", "control_period": 0.1, "duration": 12.0}
-FILE = Path(__file__).with_suffix(".json")
 POPULATION, EPISODES, GENERATIONS, SEED = 12, 4, 25, 1
 TESTED, TEST_SEED = 20, 100_000  # episodes, none of which was trained on
-
-
-def actions_of(weights: np.ndarray, observations: np.ndarray) -> np.ndarray:
-    """The actions (n, 1) of policies `weights` (n, 10) or (10,) at `observations` (n, 9)."""
-    return np.tanh(np.sum(weights[..., :-1] * observations, axis=-1) + weights[..., -1])[:, np.newaxis]
 
 
 def swim(weights: np.ndarray, seeds: list[int]) -> dict[str, np.ndarray]:
@@ -50,6 +44,8 @@ def swim(weights: np.ndarray, seeds: list[int]) -> dict[str, np.ndarray]:
 
 def train() -> dict:
     """Train a policy. Returns what the file holds."""
+    import cma  # here: it imports the whole of scipy.stats and pyplot
+
     search = cma.CMAEvolutionStrategy(np.zeros(10), 0.3, {"popsize": POPULATION, "seed": SEED, "verbose": -9})
     began, curve = time.monotonic(), []
     for generation in range(GENERATIONS):

@@ -14,7 +14,7 @@ import numpy as np
 import rclpy
 from eel_dynamics.gym import HeadingEnv, HeadMotion
 from eel_ros.qos import keep_all
-from hold_heading import FILE, actions_of
+from heading_policy import FILE, actions_of
 from nav_msgs.msg import Odometry
 from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.executors import ExternalShutdownException

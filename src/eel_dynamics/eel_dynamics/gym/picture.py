@@ -2,8 +2,6 @@
 """A small picture of the swimmer, from above and from the side, drawn by matplotlib without a display."""
 
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
 
 from eel_dynamics.model.axes import turn_vector
 from eel_dynamics.model.body import Body
@@ -15,6 +13,9 @@ BODY, MARK = "#0072B2", "#D55E00"
 
 def picture(snapshot, body: Body, marks: list[tuple[float, float, float]]) -> np.ndarray:
     """The picture (400, 800, 3), uint8, of a `Snapshot`; `marks`: points [m] in REP-103 axes."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg  # here: it takes longer to import than all the rest
+    from matplotlib.figure import Figure
+
     figure = Figure(figsize=SIZE, dpi=DPI)
     canvas = FigureCanvasAgg(figure)
     line, head = turn_vector(snapshot.backbone), turn_vector(snapshot.position)
