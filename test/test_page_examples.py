@@ -132,7 +132,7 @@ def test_python_of_a_page_runs(page, folder):
 
 @pytest.mark.parametrize("page", with_blocks(""))
 def test_shell_of_a_page_names_what_exists(page, folder):
-    if page.stem == "own_body":
+    if page.stem in ("motions", "own_body"):
         run_python(page)  # writes the file that its commands read
     for block in blocks(page, ""):
         for words in lines_of(block):

@@ -16,6 +16,7 @@ from eel_gaits.gaits.registry import GAITS, Transition
 from eel_gaits.gaits.settings import FILE_GAITS, numbers_of
 from eel_gaits.input_output.quantity import limits
 from eel_gaits.ros.heading_controller import HeadingParameters
+from eel_gaits.ros.node import FILE
 from eel_viz.settings import MarkerSettings, Settings
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -30,14 +31,14 @@ class Gait:
         default="falling",
         metadata={"unit": "", "description": "name of the gait", "choices": sorted((*GAITS, *FILE_GAITS))},
     )
-    file: str = field(default="", metadata={"unit": "", "description": "YAML file of the gait 'sequence'"})
+    file: str = field(default="", metadata={"unit": "", "description": FILE})
 
 
 NODES = {  # name of the node: heading, prefix and dataclass of its parameters
     "gait_generator": [
         ("", "", Gait),
         ("", "", Transition),
-        *((f"gait {name}", "", numbers_of(name)) for name in sorted(GAITS)),
+        *((f"gait {name}", "", numbers_of(name)) for name in sorted((*GAITS, *FILE_GAITS))),
     ],
     "dynamics": [("", "", DynamicsParameters), ("scene", "scene.", Scene)],
     "heading_controller": [("", "", HeadingParameters)],
@@ -51,6 +52,7 @@ COMMANDS = (
     "tradeoff",
     "stability",
     "figures",
+    "midlines",
     "record",
     "eel_echo",
     "replay",

@@ -27,6 +27,7 @@ setup(
         "console_scripts": [
             "dynamics = eel_dynamics.ros.node:main",
             "simulate = eel_dynamics.runs.command:main",
+            "midlines = eel_dynamics.studies.midlines.command:main",
             "figures = eel_dynamics.studies.figures.command:main",
             "optimise = eel_dynamics.studies.optimise.command:main",
             "sweep = eel_dynamics.studies.sweep.command:main",

@@ -223,11 +223,11 @@ class March:
         evaluated: call again. At the others but "marched" the state stays the last good one."""
 
     def record(
-        self, times: Buffer, first: int, whole: Buffer, works: Buffer, wrench: bool, load: bool
+        self, times: Buffer, first: int, whole: Buffer, works: Buffer, wrench: bool, load: bool, until: float
     ) -> tuple[int, int]:
-        """Marches through the times (T,) [s] from number `first` on and observes each. whole: writable, as `layout`
-        has it; works (T, 4) [J]: writable, of actuators, wake, nose and drag since the start. How many of the instants
-        are complete, and the number of a status; as in `advance`."""
+        """Marches through the times (T,) [s] from number `first` on, up to `until` [s], and observes each. whole:
+        writable, as `layout` has it; works (T, 4) [J]: writable, of actuators, wake, nose and drag since the start. How
+        many of the instants are complete, and the number of a status; as in `advance`."""
 
     def observe(self, whole: Buffer, wrench: bool, load: bool) -> bool:
         """Writes what the present shows into `whole`, as `layout` has it for one sample. False where the inertia is not

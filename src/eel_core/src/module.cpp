@@ -170,7 +170,7 @@ class PyMarch {
         return static_cast<int>(march_.advance(time));
     }
     py::tuple record(const py::object& times, std::size_t first, const py::object& whole, const py::object& works,
-                     bool wrench, bool load)
+                     bool wrench, bool load, double until)
     {
         const Numbers instants(times, "times"), into(whole, "whole", true), works_into(works, "works", true);
         const Profiles profiles(instants.size(), march_.swimmer().stations, wrench, load);
@@ -181,7 +181,7 @@ class PyMarch {
         Status status = Status::marched;
         {
             const py::gil_scoped_release unlocked;
-            status = march_.record(instants.span(), first, profiles, into.data(), works_into.data(), done);
+            status = march_.record(instants.span(), first, until, profiles, into.data(), works_into.data(), done);
         }
         return py::make_tuple(done, static_cast<int>(status));
     }
@@ -375,7 +375,7 @@ PYBIND11_MODULE(EEL_CORE_MODULE, module)
         .def("set_slice", &PyMarch::set_slice, py::arg("nodes"))
         .def("advance", &PyMarch::advance, py::arg("time"))
         .def("record", &PyMarch::record, py::arg("times"), py::arg("first"), py::arg("whole"), py::arg("works"),
-             py::arg("wrench"), py::arg("load"))
+             py::arg("wrench"), py::arg("load"), py::arg("until"))
         .def("observe", &PyMarch::observe, py::arg("whole"), py::arg("wrench"), py::arg("load"))
         .def_property_readonly("memory", &PyMarch::memory)
         .def_property_readonly("time", &PyMarch::time)

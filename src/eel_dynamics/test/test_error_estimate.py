@@ -28,7 +28,7 @@ SENSITIVE = {
 
 def run_at(position, time, torque=None):
     """As a run, of a body of 1 m and 2 kg, with a law of period 1 s."""
-    law = SimpleNamespace(terms=[SimpleNamespace(period=1.0)])
+    law = SimpleNamespace(waves=[SimpleNamespace(period=1.0)])
     path = float(np.linalg.norm(np.diff(position, axis=0), axis=1).sum())
     body = SimpleNamespace(length=1.0)
     return SimpleNamespace(

@@ -6,21 +6,28 @@ from eel_gaits.gaits.cpg import cpg
 from eel_gaits.gaits.diving import diving, falling, rising, spiral
 from eel_gaits.gaits.fish import anguilliform, carangiform
 from eel_gaits.gaits.kern import kern_efficient, kern_fast
-from eel_gaits.gaits.registry import GAITS, gait
+from eel_gaits.gaits.plugins import load_gaits
+from eel_gaits.gaits.registry import GAITS, gait, register
 from eel_gaits.gaits.rolling import helix, roll_over, rolling
 from eel_gaits.gaits.sequence_file import sequence_from_file
 from eel_gaits.gaits.snakes import joint_wave, serpenoid
 from eel_gaits.gaits.swimming import backward, still, straight, turning
+from eel_gaits.input_output.quantity import Quantities, quantity
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.ramp import Ramp
 from eel_gaits.laws.sequence import sequence
 from eel_gaits.laws.spline import natural_spline
 from eel_gaits.laws.term import Term
+from eel_gaits.sources.function_law import sampled
+from eel_gaits.sources.motion_file import read_midlines, read_motion, save_law
+from eel_gaits.sources.sampled_law import SampledLaw
 
 __all__ = [
     "GAITS",
     "Law",
+    "Quantities",
     "Ramp",
+    "SampledLaw",
     "Term",
     "anguilliform",
     "backward",
@@ -36,9 +43,15 @@ __all__ = [
     "kern_efficient",
     "kern_fast",
     "natural_spline",
+    "quantity",
+    "read_midlines",
+    "read_motion",
+    "register",
     "rising",
     "roll_over",
     "rolling",
+    "sampled",
+    "save_law",
     "sequence",
     "sequence_from_file",
     "serpenoid",
@@ -47,3 +60,5 @@ __all__ = [
     "straight",
     "turning",
 ]
+
+load_gaits()  # they import what stands above

@@ -5,13 +5,14 @@ import math
 import signal
 import time
 
+import numpy as np
 import pytest
 from eel_gaits.gaits.cpg import Oscillation, Oscillators
 from eel_gaits.gaits.settings import Settings
 from eel_ros.testing.node_process import PROMPT
 from rclpy.qos import QoSProfile
 
-from eel_gaits import falling, gait, sequence, straight, turning
+from eel_gaits import falling, gait, sampled, save_law, sequence, straight, turning
 from eel_msgs.msg import CurvatureSamples
 
 SAID = "published on"
@@ -200,6 +201,42 @@ def test_a_sequence_from_a_file_and_one_that_does_not_fit(generator, client, tmp
     assert client.set_together(file=str(file)).successful
     assert client.law(1)[0].terms == sequence([(straight(), 3.0)], blend=2.0).terms
     assert client.set_together(gait="straight").successful and client.law(2)[0] == straight()
+
+
+@pytest.mark.fault(
+    "parameters",
+    "a measured motion's file that does not fit, while a gait runs",
+    "refused with file and line; the old motion goes on",
+)
+def test_the_rows_of_a_measured_motion_are_streamed_ahead_of_the_simulation(generator, client, tmp_path):
+    law, samples = sampled(lambda t, x: np.sin(6.0 * (x - t)), 8.0), []
+    save_law(law, tmp_path / "wave.npz")
+    client.node.create_subscription(CurvatureSamples, "curvature_samples", samples.append, QoSProfile(depth=1000))
+    generator("-p", "gait:=file", "-p", f"file:={tmp_path / 'wave.npz'}")
+
+    def reaches(time, after=0):
+        return lambda: len(samples) > after and stamp(samples[-1]) >= time - 0.05
+
+    client.until(reaches(2.0), "rows ahead of the start")  # a simulation that waits for them stands at 0
+    assert stamp(samples[0]) == 0.0
+    for message in samples[:: max(1, len(samples) // 5)]:
+        wanted = law.curvature(stamp(message), message.x)
+        found = (message.yaw, message.yaw_rate, message.yaw_accel)
+        assert all(np.allclose(a, b[:, 2], atol=0.01 * 36.0) for a, b in zip(found, wanted, strict=True))
+        assert np.allclose(message.yaw, wanted[0][:, 2], atol=0.01) and not any(message.pitch)
+    client.tick_until(3.0, reaches(5.0), "rows ahead of the time")
+    (tmp_path / "bad.csv").write_text("time,x,y\n0,0,zero\n")
+    refused = client.set_together(file=str(tmp_path / "bad.csv"))
+    assert not refused.successful and "bad.csv': line 2: y must be a number, got 'zero'" in refused.reason
+    client.tick_until(4.0, reaches(6.0), "rows of the old motion")
+    before = len(samples)
+    client.tick_until(0.5, lambda: len(samples) > before and stamp(samples[-1]) <= 2.5, "rows after a reset")
+    client.listen()
+    assert client.set_together(gait="straight").successful and client.latest()[0] == straight()
+
+
+def stamp(message):
+    return message.header.stamp.sec + 1e-9 * message.header.stamp.nanosec
 
 
 @pytest.mark.fault(

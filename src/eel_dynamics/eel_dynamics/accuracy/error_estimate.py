@@ -26,7 +26,8 @@ class ErrorEstimate:
 
     torque is None for a run without internal wrench or stations. growth_rate [1/s]: the distance of two runs grows by
     a factor of e in 1/growth_rate; 0 where it does not grow, or not seen. evaluations: of the head's dynamics that the
-    estimate took, beside those of the run; cost: the same, each times the nodes along the body.
+    estimate took, beside those of the run; cost: the same, each times the nodes along the body. resampling: the part of
+    both errors that comes from the rows of a `SampledLaw`; None for a law in closed form.
     """
 
     position: float
@@ -34,6 +35,7 @@ class ErrorEstimate:
     growth_rate: float = 0.0
     evaluations: int = 0
     cost: int = 0
+    resampling: float | None = None
 
     @property
     def worst(self) -> float:
@@ -56,6 +58,8 @@ class ErrorEstimate:
         if not np.isfinite(self.worst):
             return f"the error is not known: a run with coarser settings stopped; the target is {target:g}"
         line = f"the error is estimated at {self.worst:.1e}, above the target {target:g}"
+        if self.resampling is not None and self.resampling > 0.5 * self.worst:
+            return f"{line}: most of it comes from the rows of the law, which are too far apart"
         if self.growth_rate * duration < 1.0:
             return line
         line += f": the motion is sensitive, and errors grow by a factor of e in {1.0 / self.growth_rate:.2g} s"
@@ -69,7 +73,7 @@ def least_torque(law, mass: float, length: float, duration: float) -> float:
 
     law: the `Law`, or None. mass [kg], length [m]: of the body. duration [s]: of the run.
     """
-    periods = [term.period for term in law.terms if term.period] if law is not None else []
+    periods = [term.period for term in law.waves] if law is not None else []
     return TORQUE_FLOOR * mass * (length / min(periods, default=max(duration, 1.0))) ** 2
 
 

@@ -12,9 +12,11 @@ import numpy as np
 from eel_gaits.input_output.wording import shown
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.term import Term
+from eel_gaits.sources.sampled_law import SampledLaw
 
 LONGEST_COMMON = 12  # of the strongest wave's periods, after which the whole gait must repeat
 FEWEST_SAMPLES = 8  # in a period
+WHOLE = 1e-4  # part of a period that may be missing: the period of measured rows is not exact
 FINE = 64  # points in a period at which a path or its width is evaluated
 
 
@@ -23,28 +25,26 @@ def strength(term: Term, x: np.ndarray, time: np.ndarray) -> float:
     return float(np.max(np.abs(term.amplitude_at(x))) * np.max(np.abs(term.envelope_at(time)[0])))
 
 
-def strongest(law: Law, x, time, *, axes=("yaw", "pitch"), travelling: bool = False) -> Term | None:
+def strongest(law: Law | SampledLaw, x, time, *, axes=("yaw", "pitch"), travelling: bool = False) -> Term | None:
     """The periodic term of greatest curvature, yaw before pitch whatever their strength; None where there is none.
 
     x (M,) [m] and time (T,) [s]: where and when strength is measured. travelling: waves with a wavelength only.
     """
     found = []
     for axis in axes:
-        terms = [
-            term for term in law.terms if term.axis == axis and term.period and (term.wavelength or not travelling)
-        ]
+        terms = [term for term in law.waves if term.axis == axis and (term.wavelength or not travelling)]
         if terms:
             found.append(max(terms, key=lambda term: strength(term, x, time)))
     return next((term for term in found if strength(term, x, time) > 0.0), found[0] if found else None)
 
 
-def common_period(law: Law, x, time) -> float:
+def common_period(law: Law | SampledLaw, x, time) -> float:
     """Time [s] after which the gait repeats: the least whole multiple of the strongest wave's period that is one of
     every other term's too. `ValueError` for a law without period, or where that multiple is above 12."""
     first = strongest(law, x, time)
     if first is None:
         raise ValueError(f"law {shown(law.name)} has no periodic term: it has no period to average over")
-    periods = {first.period} | {term.period for term in law.terms if term.period and strength(term, x, time) > 0.0}
+    periods = {first.period} | {term.period for term in law.waves if strength(term, x, time) > 0.0}
     for multiple in range(1, LONGEST_COMMON + 1):
         ratios = [multiple * first.period / period for period in periods]
         if all(abs(ratio - round(ratio)) < 1e-9 * ratio and round(ratio) for ratio in ratios):
@@ -67,7 +67,7 @@ class AveragingWindow:
         self.run, self.period = run, common_period(run.law, run.x, time)
         self.wave = strongest(run.law, run.x, time)
         self.travelling_wave = strongest(run.law, run.x, time, axes=("yaw",), travelling=True)
-        whole = math.floor((time[-1] - time[0]) / self.period + 1e-9)
+        whole = math.floor((time[-1] - time[0]) / self.period + WHOLE)
         if whole < 1:
             raise ValueError(f"run must hold a whole period of {self.period:g} s, got {time[-1] - time[0]:g} s")
         if periods is None:

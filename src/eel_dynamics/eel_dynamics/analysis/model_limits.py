@@ -170,7 +170,7 @@ def _later_half(run) -> tuple[np.ndarray, float]:
     except ValueError:  # no period, or too few samples
         later = run.time >= 0.5 * (run.time[0] + run.time[-1])
         time, centre = run.time[later], run.center_of_mass[later] - np.outer(run.time[later], run.scene.current)
-        swims = any(term.period for term in run.law.terms)
+        swims = bool(run.law.waves)
         if swims or len(time) < 2:
             return later, 0.0
         way = float(np.linalg.norm(centre[-1] - centre[0]))

@@ -18,9 +18,11 @@ def shown(value: float | None, digits: str = ".4g", unit: str = "") -> str:
 
 def _of_the_run(run) -> list[str]:
     row = lambda values: "(" + ", ".join(f"{value:+.4f}" for value in values) + ")"  # noqa: E731
+    about = getattr(run.law, "about", "")
     lines = [
         f"{run.law.name}: {run.body.name}, {run.body.length:g} m, {run.body_mass:.4g} kg, "
         f"{run.time[-1]:g} s, accuracy {run.accuracy.name}",
+        *([f"motion              {about}"] if about else []),
         f"final position      {row(run.position[-1])} m",
         f"final orientation   {row(run.orientation[-1])} x y z w",
         f"head's path         {run.path_length:.4f} m",
@@ -109,8 +111,10 @@ def _of_the_cost(run) -> list[str]:
     error = run.error_estimate
     if error is not None:
         torque = "" if error.torque is None else f", of the torque {error.torque:.1e}"
+        rows = "" if error.resampling is None else f", {error.resampling:.1e} of it from the law's rows"
         lines.append(
-            f"estimated error     of the position {error.position:.1e}{torque}; it took {error.evaluations} evaluations"
+            f"estimated error     of the position {error.position:.1e}{torque}{rows}; "
+            f"it took {error.evaluations} evaluations"
         )
     return lines
 

@@ -1,16 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """A controller's samples and their queue. A sample is the curvature along the body at one instant."""
 
+import math
 from bisect import bisect_left, bisect_right
 from functools import lru_cache
+from itertools import repeat
 from operator import attrgetter
 from typing import NamedTuple
 
 import numpy as np
 from eel_gaits.input_output.quantity import is_finite
 from eel_gaits.input_output.wording import shown
+from eel_gaits.sources.sampled_law import SampledLaw
 
-from eel_dynamics.curvature.law_waves import MOST_WAVES
+from eel_dynamics.curvature.law_waves import MOST_WAVES, waves_of_rows
 from eel_dynamics.model.arguments import checked_row
 
 POINTS_PER_WAVE = 8
@@ -19,6 +22,12 @@ MOST_AHEAD, MOST_POINTS_AHEAD = 10_000, 1_000_000  # of the simulation: 50 MB of
 AHEAD = 100  # samples for which a grid is chosen, so that it does not change with every one
 QUANTITIES = "pitch", "pitch_rate", "pitch_accel", "yaw", "yaw_rate", "yaw_accel"
 TIME_OF = attrgetter("time")
+
+
+def waves_of_points(count: int) -> float:
+    """The number of waves on the body that a sample of so many points may carry: a power of 2, so that there are few
+    different grids."""
+    return 2.0 ** math.ceil(math.log2(max(1.0, (count - 1) / POINTS_PER_WAVE)))
 
 
 def check_points(count: int):
@@ -31,11 +40,13 @@ class CurvatureSample(NamedTuple):
     """The curvature at `time` [s] at the points x (n,) [m].
 
     values (2, 3, n): pitch and yaw; of each the value [rad/m], the rate [rad/m/s] and the acceleration [rad/m/s^2].
+    waves: the number of waves on the body that a grid must carry.
     """
 
     time: float
     x: np.ndarray
     values: np.ndarray
+    waves: float
 
     @staticmethod
     def checked(time, x, rows, *, length: float, planar: bool, now: float, begun: bool) -> "CurvatureSample":
@@ -52,12 +63,15 @@ class CurvatureSample(NamedTuple):
             raise ValueError(
                 f"curvature samples time must lie ahead of the simulation ({now:.6f} s), got {shown(time)} s"
             )
-        return CurvatureSample(float(time), x, values.reshape(2, 3, len(x)))
+        return CurvatureSample(float(time), x, values.reshape(2, 3, len(x)), waves_of_points(len(x)))
 
-    @property
-    def waves(self) -> float:
-        """The number of waves on the body that the points resolve."""
-        return (len(self.x) - 1) / POINTS_PER_WAVE
+    def same_as(self, other: "CurvatureSample") -> bool:
+        """Whether the other sample holds the same numbers."""
+        return self.time == other.time and np.array_equal(self.x, other.x) and np.array_equal(self.values, other.values)
+
+    def __deepcopy__(self, memo: dict) -> "CurvatureSample":
+        """The same object, because it never changes."""
+        return self
 
 
 @lru_cache(maxsize=64)
@@ -82,11 +96,26 @@ def _checked_values(rows, points: int) -> np.ndarray:
 
 
 class SampleQueue:
-    """Samples in the order of their time. While they drive the shape, the first two bracket the present."""
+    """Samples in the order of their time. While they drive the shape, the first two bracket the present.
 
-    def __init__(self):
-        self._samples: list[CurvatureSample] = []
-        self._points = 0  # of all of them
+    samples: the first ones, in their order. law_name: of the law whose rows they are; no other sample can join them.
+    """
+
+    def __init__(self, samples: list[CurvatureSample] | None = None, law_name: str | None = None):
+        self._samples = [] if samples is None else samples
+        self._points = sum(len(sample.x) for sample in self._samples)
+        self._law_name = law_name
+
+    @staticmethod
+    def of_law(law: SampledLaw, origin: float) -> "SampleQueue":
+        """The rows of a `law`, whose own t = 0 lies at `origin` [s]."""
+        rows = zip((origin + law.time).tolist(), repeat(law.x), law.values, repeat(waves_of_rows(law)), strict=False)
+        return SampleQueue([CurvatureSample(*row) for row in rows], law.name)
+
+    @property
+    def of_one_law(self) -> bool:
+        """Whether the samples are the rows of a law."""
+        return self._law_name is not None
 
     def __len__(self) -> int:
         return len(self._samples)
@@ -100,8 +129,15 @@ class SampleQueue:
             )
 
     def add(self, sample: CurvatureSample, driving: bool):
-        """Add a sample. `ValueError` for one that comes twice, or too late while the samples are `driving`."""
+        """Add a sample. The same one once more changes nothing.
+
+        `ValueError` for one that comes too late while the samples are `driving`, or for another one of the same time.
+        """
+        if self._law_name is not None:
+            raise ValueError(f"curvature samples cannot join the rows of law {shown(self._law_name)}")
         time, place = sample.time, bisect_left(self._samples, sample.time, key=TIME_OF)
+        if place < len(self._samples) and self._samples[place].same_as(sample):
+            return
         if driving and place < 2:
             ahead = f"the instant being approached ({self._samples[1].time:.6f} s)"
             raise ValueError(f"curvature samples time must come after {ahead}, got {time:.6f} s")

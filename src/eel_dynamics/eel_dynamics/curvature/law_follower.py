@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.spline import natural_spline
+from eel_gaits.sources.sampled_law import SampledLaw
 
 import eel_core
 from eel_dynamics.curvature.curvature_samples import CurvatureSample, SampleQueue
@@ -34,18 +35,25 @@ class LawFollower:
     """The present source of curvature and its blend. `tabulated_law` holds both for the compiled mechanics.
 
     default_transition [s]: of blends to samples and to rest. law: the first law, whose own t = 0 lies at `origin` [s].
-    Without a law the body is straight.
+    Without a law the body is straight. The rows of a `SampledLaw` are samples that are all there from the beginning.
     """
 
-    def __init__(self, tabulation: Tabulation, default_transition: float, law: Law | None = None, origin: float = 0.0):
+    def __init__(
+        self,
+        tabulation: Tabulation,
+        default_transition: float,
+        law: Law | SampledLaw | None = None,
+        origin: float = 0.0,
+    ):
         self._tabulation, self._default_transition = tabulation, default_transition
         self.law = law
         self.samples = SampleQueue()
-        self.sampled = False  # a controller's samples drive the shape
+        self.sampled = False  # samples drive the shape
         self.resting = False  # they have run out
-        self._source = TabulatedLaw.of_law(law, origin, tabulation)
         self._blend: Blend | None = None
         self._spline: tuple[np.ndarray, np.ndarray] | None = None  # x of a sample, and its splines on the grid
+        self._last: tuple[CurvatureSample, np.ndarray] | None = None  # the last sample that was tabulated, and its rows
+        self._source = self._begun(law, origin, 0.0)
         self.tabulated_law = self._with_blend()
 
     def move(self, tabulation: Tabulation, values_at_nodes):
@@ -62,14 +70,23 @@ class LawFollower:
         source = self._source.moved(tabulation, convert)
         if self._blend is not None:
             self._blend = self._blend._replace(difference=convert(self._blend.difference))
-        self._tabulation, self._spline = tabulation, None
+        self._tabulation, self._spline, self._last = tabulation, None, None
         self._follow(source)
 
-    def adopt(self, law: Law, *, origin: float, time: float, transition: float):
+    def adopt(self, law: Law | SampledLaw, *, origin: float, time: float, transition: float):
         """Follow `law` from `time` [s] on, with a blend over `transition` [s]."""
-        self._take_over(TabulatedLaw.of_law(law, origin, self._tabulation), time, transition)
-        self.law = law
         self._forget_samples()
+        self._take_over(self._begun(law, origin, time), time, transition)
+        self.law = law
+
+    def _begun(self, law: Law | SampledLaw | None, origin: float, time: float) -> TabulatedLaw:
+        """The source of `law` at `time` [s]. Before the first row of a `SampledLaw` the body is straight."""
+        if not isinstance(law, SampledLaw):
+            return TabulatedLaw.of_law(law, origin, self._tabulation)
+        self.samples = SampleQueue.of_law(law, origin)
+        self.samples.drop_until(time)
+        self.sampled = self.samples.begun(time)
+        return self._segment() if self.sampled else TabulatedLaw.of_law(None, 0.0, self._tabulation)
 
     # -- samples of a controller
 
@@ -121,6 +138,11 @@ class LawFollower:
         return self._source.segment is not None
 
     @property
+    def between_rows(self) -> bool:
+        """Whether the curvature is a quintic between two rows of a law."""
+        return self.between_samples and self.samples.of_one_law
+
+    @property
     def time_scale(self) -> float:
         """Shortest period [s] of the law; inf where it has none.
 
@@ -169,8 +191,10 @@ class LawFollower:
     def _segment(self) -> TabulatedLaw:
         """The quintic between the two samples that bracket the present."""
         first, second = self.samples.first_two
+        start = self._last[1] if self._last is not None and self._last[0] is first else self._tabulated(first)
+        self._last = second, self._tabulated(second)
         rows = np.empty((2, 2, 3, self._tabulation.width))  # axis, sample, value and its derivatives
-        rows[:, 0], rows[:, 1] = self._tabulated(first), self._tabulated(second)
+        rows[:, 0], rows[:, 1] = start, self._last[1]
         return TabulatedLaw.between(rows.reshape(12, -1), first.time, second.time)
 
     def _tabulated(self, sample: CurvatureSample) -> np.ndarray:
@@ -178,7 +202,7 @@ class LawFollower:
         if self._spline is None or self._spline[0] is not sample.x:
             matrix = natural_spline(sample.x, np.eye(len(sample.x)), self._tabulation.x)
             self._spline = sample.x, self._tabulation.columns(matrix)
-        return sample.values @ self._spline[1]
+        return (sample.values.reshape(6, -1) @ self._spline[1]).reshape(2, 3, -1)
 
     def _follow(self, source: TabulatedLaw):
         self._source = source

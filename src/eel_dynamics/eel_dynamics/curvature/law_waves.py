@@ -6,7 +6,9 @@ from functools import lru_cache
 import numpy as np
 from eel_gaits.input_output.wording import shown
 from eel_gaits.laws.law import Law
+from eel_gaits.laws.spline import natural_spline
 from eel_gaits.laws.term import Term, amplitude_of
+from eel_gaits.sources.sampled_law import SampledLaw
 
 AXES = {"pitch": 0, "yaw": 1}
 PART_OF_PEAK = 0.75  # of the turns where all terms bend the body most
@@ -15,6 +17,7 @@ MOST_KNOTS = 8  # of laws whose panels are cut at them
 MOST_WAVES = 200.0  # on the body: with the most points that a grid may have, five for each
 WIGGLE_POINTS, WINDOW = 1024, 128  # along the body, for the turning points of an amplitude; of these close together
 SHARPNESS, FEW_KNOTS = 1.5, 6  # of a spline's waves; of one whose waves need no count
+MODES, LEFT_OUT = 128, 1e-3  # of rows: polynomials along the body, and the part of the rows that none carries
 SHORTEST_RAMP = 1e-9  # s, or of the time that it ends at: below, steps of time do not see it
 
 
@@ -90,6 +93,19 @@ def check_law(law: Law, length: float) -> float:
                 f"{least:.3g} s can be resolved"
             )
     return waves
+
+
+@lru_cache(maxsize=64)
+def waves_of_rows(law: SampledLaw) -> float:
+    """The number of waves into which the rows of a law bend the body, from the degree of the polynomials in X that
+    carry all but `LEFT_OUT` of them. A wave of w wavelengths needs about the degree pi w + 3."""
+    points, weights = np.polynomial.legendre.leggauss(MODES)
+    x = 0.5 * law.length * (points + 1.0)
+    rows = law.values[:: max(1, len(law.time) // MODES), :, 0].reshape(-1, len(law.x))
+    modes = np.polynomial.legendre.legvander(points, MODES - 1) * np.sqrt(np.arange(MODES) + 0.5)
+    power = np.sum((natural_spline(law.x, rows, x) @ (weights[:, None] * modes)) ** 2, axis=0)
+    left = np.cumsum(power[::-1])[::-1]  # of each mode and those above it
+    return max(1.0, (int(np.count_nonzero(left > LEFT_OUT**2 * left[0])) - 4) / np.pi)
 
 
 def knots_of_law(law: Law) -> tuple[float, ...]:

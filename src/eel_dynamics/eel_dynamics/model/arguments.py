@@ -9,10 +9,11 @@ from eel_gaits.input_output.quantity import is_finite, numbers
 from eel_gaits.input_output.wording import shown
 
 
-def checked_instance(name: str, value, kind: type):
-    """`value`, if it is a `kind`."""
+def checked_instance(name: str, value, kind: type | tuple[type, ...]):
+    """`value`, if it is a `kind`, or one of several."""
     if not isinstance(value, kind):
-        raise ValueError(f"{name} must be a {kind.__name__}, got {shown(value)}")
+        kinds = kind if isinstance(kind, tuple) else (kind,)
+        raise ValueError(f"{name} must be a {' or a '.join(each.__name__ for each in kinds)}, got {shown(value)}")
     return value
 
 

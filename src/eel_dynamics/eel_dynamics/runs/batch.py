@@ -19,6 +19,7 @@ from typing import NamedTuple
 import numpy as np
 from eel_gaits.input_output.wording import shown
 from eel_gaits.laws.law import Law
+from eel_gaits.sources.sampled_law import SampledLaw
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.error_estimate import ErrorEstimate
@@ -29,6 +30,7 @@ from eel_dynamics.model.equality import same_fields
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.broadcast import swimmers_of
 from eel_dynamics.runs.companion import with_error_estimate
+from eel_dynamics.runs.motions import check_duration
 from eel_dynamics.runs.run import Run, SwimRequest, check_memory, checked_times, default_sample_period, run_of
 from eel_dynamics.runs.storage import plain
 from eel_dynamics.runs.storage.netcdf import loaded, write
@@ -52,7 +54,7 @@ class Batch:
     wrench and energy are None unless every scene has them. Two batches are equal where all their fields are.
     """
 
-    laws: tuple[Law, ...]
+    laws: tuple[Law | SampledLaw, ...]
     bodies: tuple[Body, ...]
     scenes: tuple[Scene, ...]
     accuracies: tuple[Accuracy, ...]
@@ -202,6 +204,8 @@ def simulate_batch(
     if sample_period is None:
         sample_period = default_sample_period({each.law for each in swimmers}, duration)
     times = checked_times(duration, sample_period)
+    for each in swimmers:
+        check_duration(each.law, duration)
     along = [0.0] if stations is None else stations
     x_of = {length: checked_stations(along, length) for length in dict.fromkeys(each.body.length for each in swimmers)}
     x = [x_of[each.body.length] for each in swimmers]

@@ -7,6 +7,7 @@ import numpy as np
 from eel_gaits.input_output.quantity import numbers
 from eel_gaits.input_output.wording import shown
 from eel_gaits.laws.law import Law
+from eel_gaits.sources.sampled_law import SampledLaw
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.model.arguments import (
@@ -20,13 +21,14 @@ from eel_dynamics.model.arguments import (
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.initial_state import InitialState
 from eel_dynamics.model.scene import Scene
+from eel_dynamics.runs.motions import LAWS
 from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
 
 
 class SwimmerArguments(NamedTuple):
     """The arguments of one swimmer: law, body, scene, accuracy and initial state."""
 
-    law: Law
+    law: Law | SampledLaw
     body: Body
     scene: Scene
     accuracy: Accuracy
@@ -41,7 +43,7 @@ class SwimmerArguments(NamedTuple):
     ) -> "SwimmerArguments":
         """Check the arguments of `simulate`. `ValueError` names what does not fit."""
         swimmer = SwimmerArguments(
-            checked_instance("law", law, Law),
+            checked_instance("law", law, LAWS),
             Body.boyer2010() if body is None else checked_instance("body", body, Body),
             Scene() if scene is None else checked_instance("scene", scene, Scene),
             Accuracy.of(accuracy),
@@ -69,7 +71,7 @@ def swimmers_of(
     of length 1 counts as one for all. `ValueError` names what does not fit, and the swimmer's number.
     """
     columns = _broadcast(
-        laws=_several("laws", laws, Law),
+        laws=_several("laws", laws, LAWS),
         bodies=_several("bodies", Body.boyer2010() if bodies is None else bodies, Body),
         scenes=_several("scenes", Scene() if scenes is None else scenes, Scene),
         accuracy=[Accuracy.of(each) for each in (accuracy if isinstance(accuracy, (list, tuple)) else [accuracy])],
@@ -96,12 +98,13 @@ def _broadcast(**given) -> list[list]:
     return [values * count if len(values) == 1 else values for values in given.values()]
 
 
-def _several(name: str, values, kind: type) -> list:
+def _several(name: str, values, kind: type | tuple[type, ...]) -> list:
     values = [values] if isinstance(values, kind) else values
     try:
         values = list(values)
     except TypeError:
-        raise ValueError(f"{name} must be a {kind.__name__} or a sequence of them, got {shown(values)}") from None
+        one = kind[0] if isinstance(kind, tuple) else kind
+        raise ValueError(f"{name} must be a {one.__name__} or a sequence of them, got {shown(values)}") from None
     return [checked_instance(f"{name}[{index}]", value, kind) for index, value in enumerate(values)]
 
 

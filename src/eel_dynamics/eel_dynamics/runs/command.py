@@ -4,6 +4,7 @@
 simulate falling
 simulate falling --duration 20 --periods 4 --actuators 8
 simulate --sequence patrol.yaml --duration 20
+simulate --file midlines.csv
 simulate straight --set wavelength=0.8 --scene friction=laminar --accuracy 1e-6 --out run.npz
 """
 
@@ -20,8 +21,10 @@ from eel_gaits.gaits.sequence_file import sequence_from_file
 from eel_gaits.input_output.command_line import Parser, complain
 from eel_gaits.input_output.output_file import NotWritten, check_output, replacing
 from eel_gaits.input_output.quantity import described_fields
-from eel_gaits.input_output.wording import shown
+from eel_gaits.input_output.wording import one_line, shown
 from eel_gaits.laws.law import Law
+from eel_gaits.sources.motion_file import read_motion
+from eel_gaits.sources.sampled_law import SampledLaw
 
 from eel_dynamics.accuracy.accuracy import PRESETS
 from eel_dynamics.analysis.actuators import MOST_JOINTS
@@ -36,6 +39,7 @@ from eel_dynamics.runs.storage.tables import columns_of
 from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.simulation.stopping import SimulationStopped
 
+DURATION = 10.0  # s, by default
 SUFFIXES = (".nc", ".npz", ".csv", ".rrd")
 
 
@@ -61,16 +65,18 @@ def main(arguments: list[str] | None = None) -> int:
 
 def _swim(options, out: Path | None) -> int:
     """Simulate, print the summary and write the run; returns the exit status: 0, or 3 for a run that stopped."""
-    law = _law(options)
     body = Body.named(options.body) if options.body in NAMED else Body.from_file(options.body)
-    scene = scene_of(options.scene)
+    law, scene = _law(options, body), scene_of(options.scene)
+    duration = options.duration
+    if duration is None:
+        duration = DURATION if options.file is None else law.duration
     if options.actuators is not None:
         _check_actuators(options, scene)
     start = time.perf_counter()
     try:
         run = simulate(
             law,
-            options.duration,
+            duration,
             body=body,
             scene=scene,
             accuracy=options.accuracy,
@@ -79,7 +85,7 @@ def _swim(options, out: Path | None) -> int:
             load=options.load,
             estimate=not options.bare,
             most_evaluations=options.most_evaluations,
-            progress=Progress(options.duration),
+            progress=Progress(duration),
         )
     except SimulationStopped as stopped:
         complain("simulate", stopped)
@@ -88,6 +94,8 @@ def _swim(options, out: Path | None) -> int:
         return 3
     seconds = time.perf_counter() - start
     print(run.summary(options.periods))
+    if options.file is not None:
+        _print_smoothing(run)
     print(f"wall time           {seconds:.3f} s, set-up included")
     if options.actuators is not None:
         print(run.actuators(options.actuators).table())
@@ -97,14 +105,29 @@ def _swim(options, out: Path | None) -> int:
     return 0
 
 
-def _law(options) -> Law:
-    """The law of the gait, or of the sequence."""
-    if options.sequence is None:
+def _law(options, body: Body) -> Law | SampledLaw:
+    """The law of the gait, of the sequence, or of the motion in a file."""
+    if options.file is None and (options.unsmoothed or options.scale != 1.0):
+        raise ValueError("--unsmoothed and --scale belong to --file, which is not given")
+    given = [name for name in ("file", "sequence") if getattr(options, name) is not None]
+    if not given:
         return gait(options.gait or "falling", **set_numbers(options.set))
-    if options.gait or options.set:
-        given = options.gait or f"--set {options.set[0]}"
-        raise ValueError(f"--sequence takes the place of a gait, got {shown(given)} too")
-    return sequence_from_file(options.sequence)
+    others = [options.gait, *(f"--set {text}" for text in options.set[:1]), *(f"--{name}" for name in given[1:])]
+    if any(others):
+        raise ValueError(f"--{given[0]} takes the place of a gait, got {shown(next(filter(None, others)))} too")
+    if options.file is None:
+        return sequence_from_file(options.sequence)
+    return read_motion(options.file, length=body.length, scale=options.scale, smooth=not options.unsmoothed)
+
+
+def _print_smoothing(run: Run):
+    """Print what the run would be without the smoothing of its motion."""
+    try:
+        effect = run.smoothing
+    except (ValueError, SimulationStopped) as error:
+        effect = f"without it the motion cannot be swum: {one_line(error)}"
+    if effect is not None:
+        print(f"smoothing           {effect}")
 
 
 class Progress:
@@ -136,7 +159,15 @@ def _parser() -> Parser:
         metavar="FILE",
         help="a YAML file of gaits that follow one another, in place of a gait: docs/reference/manoeuvres.md",
     )
-    parser.add_argument("--duration", type=float, default=10.0, help="s (10)")
+    parser.add_argument(
+        "--file",
+        metavar="FILE",
+        help="a measured motion in place of a gait: .csv or .npz with columns time and x, y (midlines), yaw_1, "
+        "yaw_2 ... (joint angles), or arc_length, yaw (curvature): docs/howto/motions.md",
+    )
+    parser.add_argument("--scale", type=float, default=1.0, metavar="M", help="metres in the file's unit of length (1)")
+    parser.add_argument("--unsmoothed", action="store_true", help="do not smooth what was measured")
+    parser.add_argument("--duration", type=float, help=f"s ({DURATION:g}; of a file: all of it)")
     parser.add_argument(
         "--accuracy", default="standard", help=f"{', '.join(PRESETS)}, or a target relative error (standard)"
     )

@@ -8,6 +8,7 @@ times. A warning names what is then still above the target.
 from dataclasses import replace
 
 import numpy as np
+from eel_gaits.sources.sampled_law import SampledLaw
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.error_estimate import SMALL, ErrorEstimate, growth_rate_of, least_torque
@@ -15,6 +16,7 @@ from eel_dynamics.simulation.stopping import SimulationStopped
 
 ACCEPTED = 1.5  # factor of the target by which an estimate must lie below it
 MOST_REFINEMENTS = 3  # of a run whose error is above its target
+RESAMPLING = 1.0 / 3.0  # 1 / (2^p - 1) of the order p = 2 of an interpolation
 HALVINGS = 8  # of an unstable step, at most, in the search for a stable one
 
 
@@ -63,7 +65,34 @@ def with_error_estimate(swim, request):
         if finer is None:
             break
         companion, swim = swim, _for_target(finer, target)
-    return swim
+    return swim._replace(run=_with_resampling(swim.run, request, others))
+
+
+def _with_resampling(run, request, others: list):
+    """The `run` with the error of the rows between which its law is interpolated, where that is a `SampledLaw`.
+
+    Two companions, one with every second row and point of the law, are apart by `1 / RESAMPLING` of this error or more
+    where the law is smooth, as the interpolation is at least of second order.
+    """
+    law, error = run.law, run.error_estimate
+    if not isinstance(law, SampledLaw) or error is None or not others:
+        return run
+    settings = others[0].accuracy
+    swimmer = request.swimmer._replace(law=law.coarser())
+    coarse = _finished(request._replace(swimmer=swimmer), settings)
+    if coarse is None:
+        return replace(run, error_estimate=replace(error, position=np.inf, resampling=np.inf))
+    apart = relative_errors(others[0], coarse.run)
+    position, torque = RESAMPLING * apart.position, apart.torque and RESAMPLING * apart.torque
+    error = replace(
+        error,
+        position=error.position + position,
+        torque=error.torque if torque is None else error.torque + torque,
+        evaluations=error.evaluations + coarse.run.evaluations,
+        cost=error.cost + coarse.run.evaluations * coarse.run.nodes,
+        resampling=max(position, torque or 0.0),
+    )
+    return replace(run, error_estimate=error)
 
 
 def _for_target(swim, target: float | None):

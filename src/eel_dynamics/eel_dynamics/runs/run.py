@@ -15,6 +15,7 @@ import numpy as np
 from eel_gaits.input_output.quantity import is_finite
 from eel_gaits.input_output.wording import one_line, shown
 from eel_gaits.laws.law import Law
+from eel_gaits.sources.sampled_law import SampledLaw
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.error_estimate import ErrorEstimate
@@ -28,6 +29,7 @@ from eel_dynamics.model.equality import same_fields
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.broadcast import SwimmerArguments
 from eel_dynamics.runs.companion import stable_step, with_error_estimate
+from eel_dynamics.runs.motions import Motion, SmoothingEffect, effect_of_smoothing, law_from
 from eel_dynamics.runs.progress_monitor import ProgressMonitor
 from eel_dynamics.runs.recorded_run import fields_of_messages
 from eel_dynamics.runs.records import records
@@ -43,6 +45,8 @@ from eel_dynamics.simulation.stopping import SimulationStopped
 MOST_SAMPLES = 10_000_000  # of a run: the motion alone takes gigabytes
 SAMPLE_PERIOD = 0.05  # s, where the gait is no faster than a period of 1 s
 SAMPLES_OF_PERIOD = 20  # by default, of the law's shortest period
+MOST_UNSMOOTHED = 5_000.0  # evaluations per simulated second of a motion without smoothing
+ALIKE = 0.99  # a period that is found from rows is not exact
 MOST_DEFAULT_SAMPLES = 20_000  # of a run whose sample period follows from the law
 MOST_MEMORY = 0.8  # share of the machine's memory for the samples
 _searching = ContextVar("searching", default=False)  # whether a stable step is searched for
@@ -55,7 +59,7 @@ class Run:
     Two runs are equal where all their fields are, to the last bit.
     """
 
-    law: Law
+    law: Law | SampledLaw
     body: Body
     scene: Scene
     accuracy: Accuracy
@@ -220,12 +224,16 @@ class Run:
     @cached_property
     def refined(self) -> "Run":
         """The same run with a tenth of the error, simulated on first access."""
+        return self._with(self.law, self.accuracy.tightened(0.1))
+
+    def _with(self, law: Law | SampledLaw, accuracy: Accuracy, most_evaluations: float = MOST_EVALUATIONS) -> "Run":
+        """The bare run with another law or accuracy."""
         return simulate(
-            self.law,
+            law,
             float(self.time[-1]),
             body=self.body,
             scene=self.scene,
-            accuracy=self.accuracy.tightened(0.1),
+            accuracy=accuracy,
             sample_period=float(self.time[1] - self.time[0]) if len(self.time) > 1 else 1.0,
             stations=self.x,
             position=self.position[0],
@@ -233,7 +241,20 @@ class Run:
             twist=self.twist[0],
             load=self.fluid_force is not None,
             estimate=False,
+            most_evaluations=most_evaluations,
+            progress=lambda reached, left: None,
         )
+
+    @cached_property
+    def smoothing(self) -> SmoothingEffect | None:
+        """What the run would be without the smoothing of its measured motion; None where nothing was smoothed.
+
+        Simulated on first access. `ValueError` or `SimulationStopped` where it cannot be swum without smoothing.
+        """
+        law = getattr(self.law, "unsmoothed", None)
+        if law is None:
+            return None
+        return effect_of_smoothing(self, self._with(law, self.accuracy.as_it_is(), MOST_UNSMOOTHED))
 
     @property
     def body_mass(self) -> float:
@@ -253,7 +274,7 @@ def _of_eel_viz(group: str, name: str, user: str, needs: str) -> Callable:
 
 
 def simulate(
-    law: Law,
+    law: Motion,
     duration: float = 10.0,
     *,
     body: Body | None = None,
@@ -271,6 +292,7 @@ def simulate(
 ) -> Run:
     """Simulate `law` for `duration` [s], with samples every `sample_period` [s] from t = 0 on.
 
+    law: a `Law`, a `SampledLaw`, a function K(t, X) (`eel_gaits.sampled`), or a file (`eel_gaits.read_motion`).
     sample_period: None for 0.05 s, or a 20th of the law's shortest period where that is less. stations: number of
     equidistant stations, or their X (M,) [m]. position (3,) [m], orientation (4,) (x y z w), twist (6,) ((Omega, V) in
     the head's axes): the head's initial state. load: compute the water's load along the body too.
@@ -281,7 +303,8 @@ def simulate(
     than a minute gives a warning. `ValueError` names what does not fit; `SimulationStopped` carries the samples so far
     as `run`.
     """
-    checked_instance("law", law, Law)
+    length = (Body.boyer2010() if body is None else checked_instance("body", body, Body)).length
+    law = law_from(law, duration, length)
     sample_period = default_sample_period([law], duration) if sample_period is None else sample_period
     times = checked_times(duration, sample_period)
     again = partial(
@@ -383,9 +406,9 @@ def default_sample_period(laws, duration) -> float:
 
     The finer ones divide the `duration`. A run of more than `MOST_DEFAULT_SAMPLES` is not made by default.
     """
-    shortest = min((term.period for law in laws for term in law.terms if term.period), default=np.inf)
+    shortest = min((term.period for law in laws for term in law.waves), default=np.inf)
     fine = shortest / SAMPLES_OF_PERIOD
-    if fine >= SAMPLE_PERIOD or not is_finite(duration) or not 0.0 < duration <= MOST_DEFAULT_SAMPLES * fine:
+    if fine >= ALIKE * SAMPLE_PERIOD or not is_finite(duration) or not 0.0 < duration <= MOST_DEFAULT_SAMPLES * fine:
         return SAMPLE_PERIOD
     return duration / math.ceil(duration / fine - 1e-9)
 

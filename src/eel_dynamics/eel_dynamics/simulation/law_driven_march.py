@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The march in time of a swimmer under a law. The law's needs give the grid, its breakpoints the steps."""
 
-import math
 from collections.abc import Callable
 from copy import deepcopy
 
@@ -106,9 +105,8 @@ class LawDrivenMarch:
             self.refine(needs)
 
     def _fit_samples(self, samples: list[CurvatureSample]):
-        """Have a grid for `samples` of a controller; in few sizes, for each is kept."""
-        waves = max(sample.waves for sample in samples)
-        self.fit(ShapeNeeds(2.0 ** math.ceil(math.log2(max(1.0, waves)))))
+        """Have a grid for `samples`."""
+        self.fit(ShapeNeeds(max(sample.waves for sample in samples)))
 
     def _change_grid(self, settings: GridSettings):
         old, twist = self.discretisation.grid, self._twist()
@@ -146,6 +144,7 @@ class LawDrivenMarch:
             accuracy=self.accuracy,
             ledger=bool(setup.scene.ledger),
             between_samples=follower.between_samples,
+            between_rows=follower.between_rows,
             nodes=len(self.discretisation.grid.x),
             mass=self.discretisation.mass,
             length=length,
@@ -159,10 +158,7 @@ class LawDrivenMarch:
     def advance(self, time: float, interrupted: Callable[[], bool] | None) -> bool:
         """As `Simulation.advance`."""
         while True:
-            self.follower.pass_event(self.time, self._fit_samples)
-            if self.follower.tabulated_law is not self.tabulated_law:
-                self.follow()
-            event = self.follower.next_event(self.time)
+            event = self._pass_event()
             if not self._march_to(min(time, event), interrupted):
                 return False
             if time <= event:
@@ -173,6 +169,13 @@ class LawDrivenMarch:
             if not self.follower.sampled and self.follower.law is not None:
                 self.fit(self._setup.shape_needs(self.follower.law))
         return True
+
+    def _pass_event(self) -> float:
+        """Change the source of curvature where that is due at the present; the next time [s] of such a change."""
+        self.follower.pass_event(self.time, self._fit_samples)
+        if self.follower.tabulated_law is not self.tabulated_law:
+            self.follow()
+        return self.follower.next_event(self.time)
 
     def _march_to(self, time: float, interrupted) -> bool:
         while (status := self._march.advance(time)) == UNFINISHED:
@@ -196,11 +199,16 @@ class LawDrivenMarch:
 
     def record(self, times, out: Observations, works, wrench: bool, load: bool, look) -> tuple:
         """As `Simulation.record`, into `out` and `works` (T, 4)."""
-        done, status = 0, UNFINISHED
-        while status == UNFINISHED:
-            done, status = self._march.record(times, done, out.whole, works, bool(wrench), bool(load))
-            if look is not None and status == UNFINISHED:
-                look(self._march.time)
+        done, status = 0, MARCHED
+        while status == MARCHED and done < len(times):
+            event, status = self._pass_event(), UNFINISHED
+            while status == UNFINISHED:
+                done, status = self._march.record(times, done, out.whole, works, bool(wrench), bool(load), event)
+                if status == MARCHED and done < len(times):
+                    status = self._march.advance(event)
+                if look is not None and status == UNFINISHED:
+                    look(self._march.time)
+            self.time = self._march.time
         failure = first_bad_sample(out, works, done, self.kinetic_at_start, self._energy_floor)
         if failure:
             done, quantity, value = failure

@@ -10,6 +10,7 @@ from collections.abc import Callable
 
 import numpy as np
 from eel_gaits.laws.law import Law
+from eel_gaits.sources.sampled_law import SampledLaw
 
 from eel_dynamics.accuracy.error_estimate import LEAST_SAMPLES, SMALL, ErrorEstimate, growth_rate_of, least_torque
 from eel_dynamics.simulation.simulation import Simulation
@@ -57,7 +58,7 @@ class MeasuredSimulation(Simulation):
             rate = growth_rate_of(time - self.measured_since, distances, SMALL * scale)
         return ErrorEstimate(self._farthest / scale, torque, rate)
 
-    def adopt(self, law: Law, origin: float = 0.0, transition: float | None = None):
+    def adopt(self, law: Law | SampledLaw, origin: float = 0.0, transition: float | None = None):
         """As `Simulation.adopt`."""
         self._bring_up()
         super().adopt(law, origin, transition)

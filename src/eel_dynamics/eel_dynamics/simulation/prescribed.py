@@ -10,7 +10,7 @@ from eel_gaits.laws.law import Law
 
 import eel_core
 from eel_dynamics.accuracy.accuracy import Accuracy
-from eel_dynamics.model.arguments import checked_row
+from eel_dynamics.model.arguments import checked_instance, checked_row
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.model.section_data import core_swimmer, nose_of
@@ -60,6 +60,7 @@ def hydrodynamic_wrench(
     along the head's axes. `ValueError` names what does not fit.
     """
     twist, twist_rate = checked_row("twist", twist, 6), checked_row("twist_rate", twist_rate, 6)
+    checked_instance("law", law, Law)
     if not is_finite(time):
         raise ValueError(f"time must be finite, got {shown(time)} s")
     simulation = Simulation(body=body, scene=scene, accuracy=FINE, stations=2, law=law)

@@ -12,6 +12,7 @@ from eel_gaits.gaits.swimming import straight
 from eel_gaits.input_output.quantity import is_finite
 from eel_gaits.input_output.wording import shown
 from eel_gaits.laws.law import Law
+from eel_gaits.sources.sampled_law import SampledLaw
 
 import eel_core
 from eel_dynamics.accuracy.accuracy import Accuracy
@@ -58,7 +59,7 @@ class Simulation:
         orientation=(0.0, 0.0, 0.0, 1.0),
         twist=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
         default_transition: float = 1.0,
-        law: Law | None = None,
+        law: Law | SampledLaw | None = None,
         most_evaluations: float = MOST_EVALUATIONS,
     ):
         self._setup = setup = SimulationSetup.of(
@@ -105,7 +106,7 @@ class Simulation:
     # -- law and samples
 
     @property
-    def law(self) -> Law | None:
+    def law(self) -> Law | SampledLaw | None:
         """The law in force, or the last one before a controller took over."""
         return self._march.follower.law
 
@@ -129,11 +130,12 @@ class Simulation:
         """Whether a controller's samples have run out, so that the shape comes to rest."""
         return self._march.follower.resting
 
-    def adopt(self, law: Law, origin: float = 0.0, transition: float | None = None):
+    def adopt(self, law: Law | SampledLaw, origin: float = 0.0, transition: float | None = None):
         """Follow `law` from the present time on. `origin` [s] is the simulation time of its own t = 0.
 
         The first law, before the start, needs no blend. A later law takes over during `transition` [s], or during its
-        own transition, or during the default one. `ValueError` for a law that the scene does not allow.
+        own transition, or during the default one. After the last row of a `SampledLaw` the shape comes to rest.
+        `ValueError` for a law that the scene does not allow.
         """
         needs = self._setup.shape_needs(law)
         if not is_finite(origin):

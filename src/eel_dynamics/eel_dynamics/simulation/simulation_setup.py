@@ -10,10 +10,12 @@ import numpy as np
 from eel_gaits.input_output.quantity import is_finite
 from eel_gaits.input_output.wording import shown
 from eel_gaits.laws.law import Law
+from eel_gaits.sources.sampled_law import SampledLaw
 
 from eel_dynamics.accuracy.accuracy import Accuracy, within_budget
 from eel_dynamics.accuracy.budget import Budget
-from eel_dynamics.curvature.law_waves import check_law, knots_of_law
+from eel_dynamics.curvature.curvature_samples import check_points
+from eel_dynamics.curvature.law_waves import check_law, knots_of_law, waves_of_rows
 from eel_dynamics.model.arguments import (
     check_planar,
     check_planar_law,
@@ -28,6 +30,8 @@ from eel_dynamics.model.initial_state import InitialState, time_scale
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.simulation.discretisation import Discretisation, GridSettings, discretise
 from eel_dynamics.simulation.step_bounds import check_cost
+
+FITTING = 1e-6  # part of the body's length by which the rows of a law may be shorter or longer
 
 
 def checked_state(scene: Scene, position, orientation, twist) -> InitialState:
@@ -60,7 +64,7 @@ class SimulationSetup:
     initial_state: InitialState
     default_transition: float  # s
     most_evaluations: float  # by simulated second
-    law: Law | None  # the first
+    law: Law | SampledLaw | None  # the first
     swim_time: Callable[[Scene, float], float]  # s of wall time by simulated second, of a scene and a target
 
     @staticmethod
@@ -72,7 +76,7 @@ class SimulationSetup:
         stations,
         initial_state: tuple,
         default_transition: float,
-        law: Law | None,
+        law: Law | SampledLaw | None,
         most_evaluations: float,
         swim_time: Callable[[Scene, float], float],
     ) -> "SimulationSetup":
@@ -108,20 +112,29 @@ class SimulationSetup:
         """Time scale [s] of the initial velocity."""
         return time_scale(self.initial_twist, self.body.length)
 
-    def shape_needs(self, law: Law | None) -> ShapeNeeds:
+    def shape_needs(self, law: Law | SampledLaw | None) -> ShapeNeeds:
         """The needs of `law` for a grid.
 
         `ValueError` for a law that the scene or the limit of evaluations does not allow.
         """
         if law is None:
             return ShapeNeeds()
-        checked_instance("law", law, Law)
+        checked_instance("law", law, (Law, SampledLaw))
         if self.scene.planar:
             check_planar_law(law)
+        if isinstance(law, SampledLaw):
+            return self._needs_of_rows(law)
         check_cost(law, self.most_evaluations)
         return ShapeNeeds(check_law(law, self.body.length), knots_of_law(law))
 
-    def transition_to(self, law: Law, transition: float | None) -> float:
+    def _needs_of_rows(self, law: SampledLaw) -> ShapeNeeds:
+        length = self.body.length
+        if abs(law.length - length) > FITTING * length:
+            raise ValueError(f"law {shown(law.name)} is for a body of {law.length:g} m, the body has {length:g} m")
+        check_points(len(law.x))
+        return ShapeNeeds(waves_of_rows(law))
+
+    def transition_to(self, law: Law | SampledLaw, transition: float | None) -> float:
         """Time [s] of the blend to `law`: `transition`, the law's own, or the default."""
         blend = transition or law.transition or self.default_transition
         if not (is_finite(blend) and blend > 0.0):

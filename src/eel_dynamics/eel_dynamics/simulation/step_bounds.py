@@ -34,7 +34,7 @@ EVALUATIONS = {"adams": 1, "dormand_prince": 6, "classical": 4}  # in a step: it
 
 def check_cost(law: Law, most_evaluations: float):
     """`ValueError` where the period of `law` is too short for `most_evaluations` per simulated second to resolve it."""
-    shortest = min((term.period for term in law.terms if term.period), default=None)
+    shortest = min((term.period for term in law.waves), default=None)
     if shortest is None:
         return
     needed = 1.0 / (LONGEST_STEP * shortest)
@@ -51,6 +51,7 @@ def step_bounds_of(
     accuracy: Accuracy,
     ledger: bool,
     between_samples: bool,
+    between_rows: bool,
     nodes: int,
     mass: float,
     length: float,
@@ -60,13 +61,16 @@ def step_bounds_of(
 ) -> eel_core.StepBounds:
     """The bounds of the steps for a body of `length` [m] and `mass` [kg] on a grid of `nodes`.
 
-    ledger: whether the energy ledger is kept. between_samples: whether the curvature is a quintic between two samples.
+    ledger: whether the energy ledger is kept. between_samples: whether the curvature is a quintic between two samples,
+    between_rows: between two rows of a law.
     speed [m/s]: that the law gives to the body. scale [s]: the shortest time scale of the law and the initial velocity.
     most_evaluations: per simulated second.
     """
     longest = accuracy.longest_step * min(scale, 10.0)
     fixed = accuracy.step or (accuracy.fixed and min(scale, 1.0) / accuracy.fixed)
     part_of_span = PART_OF_RAMP if ledger and not between_samples else PART_OF_SPAN
+    if between_rows:  # they are close together on the scale of the motion
+        part_of_span = 1.0
     slowest = max(SLOWEST * length / min(scale, 10.0), PART_OF_SPEED * speed)
     return eel_core.StepBounds(
         tolerance=accuracy.tolerance,

@@ -50,6 +50,8 @@ def register(numbers_class):
 
     def decorate(terms_of):
         name = terms_of.__name__
+        if name in GAITS and GAITS[name].__module__ != terms_of.__module__:
+            raise ValueError(f"gait {shown(name)} is there already, in {GAITS[name].__module__}")
         own_names = tuple(inspect.signature(numbers_class).parameters)
 
         @functools.wraps(terms_of)

@@ -16,11 +16,35 @@ from eel_gaits.gaits.cpg import Oscillation
 from eel_gaits.gaits.numbers import TURNS
 from eel_gaits.gaits.registry import GAITS, Transition, find
 from eel_gaits.gaits.sequence_file import sequence_from_file
-from eel_gaits.input_output.quantity import Quantities
+from eel_gaits.input_output.quantity import Quantities, quantity
 from eel_gaits.input_output.wording import shown
 from eel_gaits.laws.law import Law
+from eel_gaits.sources.motion_file import read_motion
+from eel_gaits.sources.sampled_law import SampledLaw
 
-FILE_GAITS = {"sequence": sequence_from_file}  # gaits that a file gives: the function that reads it
+SEQUENCES = (".yaml", ".yml")  # suffixes of files of sequences
+
+
+@dataclass(frozen=True, kw_only=True)
+class MeasuredBody(Quantities):
+    """The numbers of the gait `file`, for a motion that was measured."""
+
+    length: float = quantity(1.0, unit="m", description="body length L", minimum=1e-4, maximum=1e3)
+    scale: float = quantity(1.0, unit="", description="metres in the file's unit of length", minimum=1e-9, maximum=1e9)
+
+
+def _law_from_file(path: str, numbers: Quantities) -> Law | SampledLaw:
+    """The law of a sequence or of a measured motion, by the suffix of its file."""
+    if path.endswith(SEQUENCES):
+        return sequence_from_file(path)
+    return read_motion(path, length=numbers.length, scale=numbers.scale)
+
+
+# gaits that a file gives: the class of their numbers, and the function of path and numbers that reads the file
+FILE_GAITS = {
+    "file": (MeasuredBody, _law_from_file),
+    "sequence": (Quantities, lambda path, numbers: sequence_from_file(path)),
+}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,15 +52,15 @@ class Settings:
     """A gait and the numbers that the user has set. `ValueError` where they give no law.
 
     Attributes:
-        gait: name of the gait, or "sequence".
+        gait: name of the gait, or one of `FILE_GAITS`.
         chosen: the numbers that the user has set, by name, including those of other gaits.
-        file: of a sequence. It is read when the settings are made.
+        file: of a sequence or a motion. It is read when the settings are made.
     """
 
     gait: str = "falling"
     chosen: dict[str, float] = field(default_factory=dict)
     file: str = ""
-    _law: Law = field(init=False, repr=False, compare=False)
+    _law: Law | SampledLaw = field(init=False, repr=False, compare=False)
 
     def __post_init__(self):
         object.__setattr__(self, "chosen", MappingProxyType(dict(self.chosen)))
@@ -46,7 +70,7 @@ class Settings:
     @classmethod
     def known_names(cls):
         """The names of all parameters of all gaits."""
-        numbers = {entry.name for name in GAITS for entry in fields(numbers_of(name))}
+        numbers = {entry.name for name in (*GAITS, *FILE_GAITS) for entry in fields(numbers_of(name))}
         return {"gait", "file", "transition"} | numbers
 
     @classmethod
@@ -89,13 +113,16 @@ class Settings:
         return Oscillation(**numbers)
 
     def _read_law(self):
-        transition, _ = self.groups()
+        transition, numbers = self.groups()
         if not isinstance(self.file, str) or not self.file:
             raise ValueError(f"gait {shown(self.gait)} needs the parameter file, got {shown(self.file)}")
         try:
-            law = FILE_GAITS[self.gait](self.file)
+            _, read = FILE_GAITS[self.gait]
+            law = read(self.file, numbers)
         except OSError as error:
             raise ValueError(f"file {shown(self.file)} cannot be read: {error.strerror or error}") from None
+        if isinstance(law, SampledLaw):
+            return law
         return Law(*law.terms, name=law.name, transition=transition.transition)
 
     def _make_law(self):
@@ -118,7 +145,7 @@ def _as_left(description):
 @cache
 def numbers_of(gait):
     """The class of the node's numbers of a `gait`. `ValueError` for an unknown gait."""
-    kind = Quantities if gait in FILE_GAITS else find(gait).numbers
+    kind, _ = FILE_GAITS[gait] if gait in FILE_GAITS else (find(gait).numbers, None)
     entries = [(entry.name, float, entry) for entry in map(_as_ros_expects, fields(kind))]
     return make_dataclass(kind.__name__, entries, bases=(Quantities,), frozen=True, kw_only=True)
 

@@ -54,7 +54,7 @@ class Law:
         if transition < 0.0:
             raise ValueError(f"transition must be >= 0 s, got {transition}")
         object.__setattr__(self, "terms", tuple(terms))
-        object.__setattr__(self, "name", _name(name))
+        object.__setattr__(self, "name", checked_name(name))
         object.__setattr__(self, "transition", transition)
 
     def __hash__(self):  # kept: tables are looked up by it
@@ -75,6 +75,11 @@ class Law:
     def in_plane(self) -> bool:
         """Whether the body bends only in yaw."""
         return all(term.axis == "yaw" for term in self.terms)
+
+    @property
+    def waves(self) -> tuple[Term, ...]:
+        """The terms that have a period."""
+        return tuple(term for term in self.terms if term.period)
 
     def curvature(self, time, x):
         """Curvature, its rate and its acceleration at one time. `ValueError` names an argument that is not finite.
@@ -164,7 +169,8 @@ def _interval(start, end):
     return start, end
 
 
-def _name(value):
+def checked_name(value):
+    """`value`, if it is a text that can be the name of a law."""
     if not isinstance(value, str):
         raise ValueError(f"name must be a text, got {shown(value)}")
     if len(value) > MAXIMUM_NAME:

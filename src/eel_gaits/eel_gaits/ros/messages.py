@@ -5,6 +5,10 @@ Laws and messages use the paper's section axes, so nothing is turned here. K2 (p
 > 0 bends it to the right. `law_from_message` checks the message; its `ValueError` names the field and the value.
 """
 
+import math
+from array import array
+
+import numpy as np
 from builtin_interfaces.msg import Time
 from std_msgs.msg import Header
 
@@ -14,6 +18,7 @@ from eel_gaits.laws.term import Term
 from eel_msgs import msg
 
 FRAME = "section"  # axes of the section itself
+ROWS = "pitch", "pitch_rate", "pitch_accel", "yaw", "yaw_rate", "yaw_accel"
 AXIS_NUMBERS = {"pitch": msg.CurvatureTerm.PITCH, "yaw": msg.CurvatureTerm.YAW}
 AXIS_NAMES = {number: name for name, number in AXIS_NUMBERS.items()}
 
@@ -29,6 +34,17 @@ def law_to_message(law, *, stamp=None, frame=FRAME):
         terms=[_term_to_message(term) for term in law.terms],
         transition=law.transition,
     )
+
+
+def samples_to_message(time, x, rows, frame=FRAME):
+    """One instant of a law without a closed form as a message, at `time` [s] and the points x (n,) [m].
+
+    rows (6, n): pitch, its rate and its acceleration, then those of yaw [rad/m, rad/m/s, rad/m/s^2].
+    """
+    seconds, nanoseconds = divmod(math.floor(time * 1e9 + 0.5), 1_000_000_000)
+    header = Header(stamp=Time(sec=seconds, nanosec=nanoseconds), frame_id=frame)
+    fields = {name: array("d", np.ascontiguousarray(row).tobytes()) for name, row in zip(ROWS, rows, strict=True)}
+    return msg.CurvatureSamples(header=header, x=array("d", np.ascontiguousarray(x).tobytes()), **fields)
 
 
 def law_from_message(message):

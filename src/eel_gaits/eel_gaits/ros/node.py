@@ -24,17 +24,20 @@ from rclpy.parameter import Parameter
 
 from eel_gaits.gaits.registry import GAITS, Transition
 from eel_gaits.gaits.settings import FILE_GAITS, Settings, numbers_of
+from eel_gaits.gaits.swimming import still
 from eel_gaits.input_output.command_line import complain
 from eel_gaits.input_output.quantity import limits
 from eel_gaits.input_output.wording import shown
 from eel_gaits.ros.messages import FRAME, law_to_message
+from eel_gaits.ros.row_stream import RowStream
 from eel_gaits.ros.sample_stream import SampleStream
+from eel_gaits.sources.sampled_law import SampledLaw
 from eel_msgs.msg import CurvatureLaw
 
 NAME = "gait_generator"
 ABOUT = "Publishes the curvature law of a gait, and a new one whenever a parameter is set."
 KNOWN = ", ".join(sorted((*GAITS, *FILE_GAITS)))
-FILE = "YAML file of the gait 'sequence'; read when it is set"
+FILE = "file of the gait 'file' (.csv, .npz: a measured motion; .yaml: a sequence) or 'sequence'; read when it is set"
 LOOK = 0.05  # s between two looks at the time: whether it went back, and how far samples must reach
 
 
@@ -50,6 +53,7 @@ class GaitGenerator(ParameterNode):
         self._plan = None  # in mid-change: the new Settings, or the reason of a refusal
         self._stamp = Time()
         self._stream = SampleStream(self)
+        self._rows = RowStream(self, frame_in(self.get_namespace(), FRAME))
         self._publisher = self.create_publisher(CurvatureLaw, "curvature_law", latched(1))
         descriptor = ParameterDescriptor(description="name of the gait", additional_constraints=f"one of {KNOWN}")
         self.declare_parameter("gait", self._settings.gait, descriptor, ignore_override=True)
@@ -88,6 +92,7 @@ class GaitGenerator(ParameterNode):
         """Look at the clock, and send the samples that are due. Returns True: the node continues."""
         self.look_at_clock()
         self._stream.extend(self._now())
+        self._rows.extend(self._now())
         return True
 
     def _now(self) -> float:
@@ -133,29 +138,49 @@ class GaitGenerator(ParameterNode):
                 self.undeclare_parameter(name)
             self._declare_numbers()
             self._stamp = self.get_clock().now().to_msg()
+        if isinstance(plan.law(), SampledLaw) and self._rows.next_stamp is not None:
+            self._stamp = self._rows.next_stamp
         self._publish_later.trigger()
 
     def _follow_reset(self, jump):
         """After time went back, the receiver's law has its own t = 0 at 0. Laws published later have it too."""
         if self._settings.oscillation() is not None:
             self._stream.restart(self._settings.oscillation(), self._now())
-        if self._stamp != Time():
+        if self._rows.running:
+            self._stamp = Time()
+            self._rows.begin_again(0.0)
+        elif self._stamp != Time():
             self._stamp = Time()
             self._publish()
 
     def _publish(self):
-        oscillation = self._settings.oscillation()
-        if oscillation is not None:
+        law, oscillation = self._settings.law(), self._settings.oscillation()
+        began = self._stamp.sec + 1e-9 * self._stamp.nanosec
+        told = f"gait {shown(self._settings.gait)}, t = 0 at {began:.3f} s, published on"
+        if isinstance(law, SampledLaw):
+            if self._stream.running:
+                self._drop_samples()
+            self._rows.follow(law, began)
+            self.get_logger().info(f"{told} {self._rows.topic_name}: {law.about}")
+        elif oscillation is not None:
+            if self._rows.running:
+                self._drop_samples()
             self._stream.follow(oscillation, self._now())
             self.get_logger().info(f"gait {shown(self._settings.gait)}, published on curvature_samples")
-            return
+        else:
+            self._publish_law(law)
+            self.get_logger().info(f"{told} {self._publisher.topic_name}")
+
+    def _publish_law(self, law):
+        """Publish a law. A simulation then drops the samples that it has."""
         self._stream.stop()
+        self._rows.stop()
         frame = frame_in(self.get_namespace(), FRAME)
-        self._publisher.publish(law_to_message(self._settings.law(), stamp=self._stamp, frame=frame))
-        began = self._stamp.sec + 1e-9 * self._stamp.nanosec
-        self.get_logger().info(
-            f"gait {shown(self._settings.gait)}, t = 0 at {began:.3f} s, published on {self._publisher.topic_name}"
-        )
+        self._publisher.publish(law_to_message(law, stamp=self._stamp, frame=frame))
+
+    def _drop_samples(self):
+        """Have a simulation drop the samples of one stream before another begins."""
+        self._publish_law(still())
 
 
 def parameter_rows():
@@ -163,7 +188,7 @@ def parameter_rows():
     yield "gait", f"name of the gait, one of {KNOWN}", Settings.gait
     yield "file", FILE, Settings.file
     gaits = {}  # of each number
-    for kind, gait in [(Transition, None), *((numbers_of(name), name) for name in GAITS)]:
+    for kind, gait in [(Transition, None), *((numbers_of(name), name) for name in (*GAITS, *FILE_GAITS))]:
         for entry in fields(kind):
             gaits.setdefault((entry.name, described(entry), entry.default), []).append(gait)
     for (name, description, default), names in gaits.items():

@@ -1,17 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Streams the curvature of a chain of oscillators as `eel_msgs/CurvatureSamples`, ahead of the simulation."""
 
-import array
-import math
-
 import numpy as np
-from builtin_interfaces.msg import Time
 from eel_ros.frames import frame_in
 from eel_ros.qos import keep_all
-from std_msgs.msg import Header
 
 from eel_gaits.gaits.cpg import Oscillators
-from eel_gaits.ros.messages import FRAME
+from eel_gaits.ros.messages import FRAME, samples_to_message
 from eel_msgs.msg import CurvatureSamples
 
 AHEAD = 0.5  # s of simulation time, from the present to the last sample
@@ -25,6 +20,11 @@ class SampleStream:
         self._node, self._publisher, self._chain = node, None, None
         self._count = 0  # samples since the start, which lies at `_start`
         self._start, self._listeners = 0.0, 0
+
+    @property
+    def running(self) -> bool:
+        """Whether oscillators are streamed."""
+        return self._chain is not None
 
     def follow(self, numbers, now):
         """Begin at `now` [s of simulation time], or change to the new `numbers` after the samples already sent."""
@@ -68,12 +68,6 @@ class SampleStream:
             self._publish()
 
     def _publish(self):
-        yaw = dict(zip(("yaw", "yaw_rate", "yaw_accel"), self._chain.curvature(), strict=True))
-        flat = dict.fromkeys(("pitch", "pitch_rate", "pitch_accel"), np.zeros(len(self._chain.x)))
-        seconds, nanoseconds = divmod(math.floor(self._chain.time * 1e9 + 0.5), 1_000_000_000)
-        header = Header(
-            stamp=Time(sec=seconds, nanosec=nanoseconds), frame_id=frame_in(self._node.get_namespace(), FRAME)
-        )
-        rows = {"x": self._chain.x, **yaw, **flat}
-        fields = {name: array.array("d", np.ascontiguousarray(row).tobytes()) for name, row in rows.items()}
-        self._publisher.publish(CurvatureSamples(header=header, **fields))
+        chain, frame = self._chain, frame_in(self._node.get_namespace(), FRAME)
+        rows = np.concatenate((np.zeros((3, len(chain.x))), chain.curvature()))
+        self._publisher.publish(samples_to_message(chain.time, chain.x, rows, frame))

@@ -109,13 +109,14 @@ class March {
         return advance(time, slice);
     }
 
-    // Marches through the instants [s], from number `first` on, and observes each. `done`: how many are complete.
-    Status record(std::span<const double> times, std::size_t first, const Profiles& profiles, double* whole,
-                  double* works, std::size_t& done)
+    // Marches through the instants [s], from number `first` on and up to `until` [s], and observes each. `done`: how
+    // many are complete.
+    Status record(std::span<const double> times, std::size_t first, double until, const Profiles& profiles,
+                  double* whole, double* works, std::size_t& done)
     {
         Slice slice{slice_};
         const Observer observer(*swimmer_, profiles, whole);
-        for (done = first; done < times.size(); ++done) {
+        for (done = first; done < times.size() && times[done] <= until; ++done) {
             const Status status = slice.used_up() ? Status::unfinished : advance(times[done], slice);
             if (status != Status::marched) return status;
             if (!observe(observer, done)) return Status::singular;

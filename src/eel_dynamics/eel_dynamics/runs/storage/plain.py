@@ -6,6 +6,7 @@ code. All else comes back equal.
 """
 
 import warnings
+from base64 import b64decode, b64encode
 from collections.abc import Callable
 from dataclasses import asdict
 
@@ -13,6 +14,7 @@ import numpy as np
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.ramp import Ramp
 from eel_gaits.laws.term import Term
+from eel_gaits.sources.sampled_law import SampledLaw
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.budget import Budget
@@ -24,16 +26,24 @@ from eel_dynamics.simulation.stopping import SimulationStopped
 
 HALF_AXES = ("half_width", "half_height")
 FUNCTIONS = {"named": NamedHalfAxis, "polynomial": PolynomialHalfAxis}
+ROWS = "time", "x", "values"  # arrays of a `SampledLaw`
 AS_EXACT = 1e-9  # of the body's length, by which a polynomial may miss a half-axis without a warning
 
 
-def plain_law(law: Law) -> dict:
-    """A law as plain values."""
+def plain_law(law: Law | SampledLaw) -> dict:
+    """A law as plain values. The rows of a `SampledLaw` become text: numbers of 8 bytes in base 64."""
+    if isinstance(law, SampledLaw):
+        rows = {name: b64encode(getattr(law, name).astype("<f8").tobytes()).decode() for name in ROWS}
+        return {"rows": rows, "points": len(law.x), "name": law.name, "transition": law.transition, "about": law.about}
     return asdict(law)
 
 
-def law_of(plain: dict) -> Law:
+def law_of(plain: dict) -> Law | SampledLaw:
     """The law of `plain_law`."""
+    if "rows" in plain:
+        rows = {name: np.frombuffer(b64decode(text), "<f8") for name, text in plain["rows"].items()}
+        rows["values"] = rows["values"].reshape(-1, 2, 3, plain["points"])
+        return SampledLaw(**rows, **{name: plain[name] for name in ("name", "transition", "about")})
     terms = [Term(**term | {"envelope": tuple(Ramp(**ramp) for ramp in term["envelope"])}) for term in plain["terms"]]
     return Law(*terms, name=plain["name"], transition=plain["transition"])
 

@@ -38,7 +38,7 @@ def step_of(point: Point) -> float:
     settings = point.accuracy
     if settings.step is not None:
         return settings.step
-    period = min((term.period for term in point.law.terms if term.period), default=np.inf)
+    period = min((term.period for term in point.law.waves), default=np.inf)
     flow = time_scale(point.start.in_water(np.array(point.scene.current)), point.body.length)
     return min(period, flow, 1.0) / settings.fixed
 

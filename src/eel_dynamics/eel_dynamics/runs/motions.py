@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Whatever tells a motion, as a law: a law itself, a function K(t, X), or a file. And what smoothing did to it."""
+
+import os
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from eel_gaits.input_output.quantity import is_finite
+from eel_gaits.input_output.wording import shown
+from eel_gaits.laws.law import Law
+from eel_gaits.sources.function_law import sampled
+from eel_gaits.sources.motion_file import read_motion
+from eel_gaits.sources.sampled_law import SampledLaw
+
+from eel_dynamics.analysis.analysis import Analysis
+
+LAWS = Law, SampledLaw
+Motion = Law | SampledLaw | Callable | str | os.PathLike
+
+
+def law_from(motion: Motion, duration: float, length: float) -> Law | SampledLaw:
+    """The law of a `motion` for `duration` [s] and a body of `length` [m]. `ValueError` for what does not fit."""
+    if isinstance(motion, LAWS):
+        law = motion
+    elif isinstance(motion, (str, os.PathLike)):
+        law = read_motion(motion, length=length)
+    elif callable(motion):
+        law = sampled(motion, duration, length=length)
+    else:
+        raise ValueError(f"law must be a Law, a SampledLaw, a function K(t, X) or a motion's file, got {shown(motion)}")
+    check_duration(law, duration)
+    return law
+
+
+def check_duration(law: Law | SampledLaw, duration: float):
+    """`ValueError` where the motion of `law` is known for less than `duration` [s]."""
+    if isinstance(law, SampledLaw) and is_finite(duration) and duration > law.duration * (1.0 + 1e-9):
+        raise ValueError(
+            f"duration must be at most {law.duration:g} s, that of the motion {shown(law.name)}, got {duration:g} s"
+        )
+
+
+class SmoothingEffect(NamedTuple):
+    """What a run would be without the smoothing of its measured motion, relative to the run; None: undefined."""
+
+    speed: float | None  # mean speed
+    torque: float | None  # root mean square of the internal torque
+    path: float  # distance of the heads at the end, relative to the length of the path
+
+    def __str__(self) -> str:
+        speed = "undefined" if self.speed is None else f"{self.speed:.3f} times"
+        torque = "" if self.torque is None else f", RMS torque {self.torque:.3f} times"
+        return f"without it: mean speed {speed}{torque}, the head ends {self.path:.2%} of its path elsewhere"
+
+
+def effect_of_smoothing(run, without) -> SmoothingEffect:
+    """The effect on a `run` of a smoothed motion: `without` is the run of the same motion without smoothing."""
+    speeds = [_mean_speed(each) for each in (without, run)]
+    speed = speeds[0] / speeds[1] if None not in speeds and speeds[1] > 0.0 else None
+    torque = None
+    if run.torque is not None and np.any(run.torque):
+        torque = float(np.linalg.norm(without.torque) / np.linalg.norm(run.torque))
+    apart = float(np.linalg.norm(without.position[-1] - run.position[-1]))
+    return SmoothingEffect(speed, torque, apart / max(run.path_length, run.body.length))
+
+
+def _mean_speed(run) -> float | None:
+    try:
+        return Analysis(run).mean_speed
+    except ValueError:  # the motion does not repeat
+        return None

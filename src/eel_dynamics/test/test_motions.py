@@ -1,0 +1,191 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Functions, files and rows in place of a closed-form law: whole runs, and what their sampling and smoothing do."""
+
+import math
+import pickle
+import re
+
+import numpy as np
+import pytest
+from eel_dynamics.runs.command import main
+from eel_dynamics.studies.midlines.command import main as midlines
+from eel_dynamics.studies.midlines.comparison import laid_on
+from eel_gaits.sources.lateral import LateralMidline
+
+from eel_dynamics import Body, MeasuredSimulation, Run, Scene, Simulation, hydrodynamic_wrench, simulate, simulate_batch
+from eel_gaits import Law, Ramp, SampledLaw, Term, kern_fast, sampled, straight
+
+WAVE = Law(Term(amplitude=(1.0, 0.5, 2.0), wavelength=1.0, period=1.0), name="wave")
+PLANE = Scene(planar=True, friction="laminar")
+ARC = np.linspace(0.0, 1.0, 21)
+FINE = np.linspace(0.0, 1.0, 401)
+
+
+@pytest.fixture(scope="module")
+def law():
+    return sampled(WAVE.curvature, 3.0, name="rows")
+
+
+@pytest.fixture(scope="module")
+def closed():
+    return simulate(WAVE, 3.0, scene=PLANE)
+
+
+@pytest.fixture(scope="module")
+def run(law):
+    return simulate(law, 3.0, scene=PLANE, accuracy=1e-2)
+
+
+def write_midlines(path, position_at, *, end=4.0, noise=0.0):
+    """A file of midlines, 50 a second, that swim ahead and turn; position_at(time): (21, 2) [m]."""
+    draw, lines = np.random.default_rng(5), ["time,arc_length,x,y"]
+    for time in np.arange(round(50 * end) + 1) / 50.0:
+        turn = 0.4 * math.sin(5.0 * time) + 0.1 * time
+        rotation = np.array([[math.cos(turn), -math.sin(turn)], [math.sin(turn), math.cos(turn)]])
+        place = position_at(time) @ rotation.T - [0.3 * time, 0.0] + noise * draw.normal(size=(len(ARC), 2))
+        lines += [f"{time},{x},{a},{b}" for x, (a, b) in zip(ARC, place.tolist(), strict=True)]
+    path.write_text("\n".join(lines))
+    return path
+
+
+def kern_midline(time):
+    """Points (21, 2) of the midline of Kern and Koumoutsakos's eel at `time` [s], from its curvature."""
+
+    def integral(values):
+        return np.concatenate(([0.0], np.cumsum(0.5 * (values[1:] + values[:-1]) * np.diff(FINE))))
+
+    angle = integral(kern_fast().curvature(time, FINE)[0][:, 2])
+    return np.stack([np.interp(ARC, FINE, integral(along(angle))) for along in (np.cos, np.sin)], axis=1)
+
+
+def mackerel(x, time):
+    """h(X, t) of a mackerel (Videler and Hess 1984, after Borazjani and Sotiropoulos 2008), begun over a second."""
+    begun = float(Ramp(0.0, 1.0, 1.0).value(time)[0])
+    return begun * (0.02 - 0.0825 * x + 0.1625 * x**2) * np.sin(2.0 * math.pi * (x / 0.95 - time))
+
+
+def test_rows_swim_as_the_closed_form_does_within_the_estimated_error(run, closed):
+    distance = np.max(np.linalg.norm(run.position - closed.position, axis=1)) / closed.path_length
+    torque = np.max(np.abs(run.torque - closed.torque)) / np.max(np.abs(closed.torque))
+    assert 0.0 < run.error_estimate.resampling <= run.error_estimate.worst < 1e-2
+    assert distance <= run.error_estimate.position and torque <= run.error_estimate.torque
+    assert closed.error_estimate.resampling is None
+    assert run.analysis().mean_speed == pytest.approx(closed.analysis().mean_speed, rel=1e-3)
+    assert "from the law's rows" in run.summary() and "a function in" in run.summary()
+
+
+def test_a_function_swims_as_its_rows_do(run):
+    def rows(time, x):
+        return WAVE.curvature(time, x)
+
+    again = simulate(rows, 3.0, scene=PLANE, accuracy=1e-2)
+    assert np.array_equal(again.position, run.position) and again.law.name == "rows"
+
+
+def test_rows_that_are_far_apart_are_seen_in_the_error(law):
+    few = SampledLaw(law.time[::16], law.x[::4], law.values[::16, :, :, ::4])
+    with pytest.warns(UserWarning, match="most of it comes from the rows of the law"):
+        run = simulate(few, 3.0, scene=PLANE)
+    assert run.error_estimate.resampling > 1e-3 and run.warnings[0].startswith("the error is estimated")
+
+
+def test_a_run_of_rows_is_data(run, tmp_path):
+    run.save(tmp_path / "run.nc")
+    assert Run.load(tmp_path / "run.nc") == run == pickle.loads(pickle.dumps(run))
+
+
+def test_rows_in_a_batch_swim_as_alone(run, law):
+    batch = simulate_batch([law, WAVE], 3.0, scenes=PLANE, accuracy=1e-2, stations=51, sample_period=0.05)
+    assert np.array_equal(batch.position[0], run.position) and batch[0].law == law
+    assert batch.error_estimates[0].resampling and batch.error_estimates[1].resampling is None
+
+
+def test_rows_take_over_in_mid_swim_without_a_jump(law):
+    simulation = MeasuredSimulation(scene=PLANE, law=straight())
+    simulation.advance(0.5)
+    before = simulation.observe().curvature
+    simulation.adopt(law, origin=-0.7, transition=0.6)
+    assert np.allclose(simulation.observe().curvature, before, atol=1e-12)
+    simulation.advance(1.4)
+    wanted = law.curvature(2.1, simulation.x)[0]
+    assert np.allclose(simulation.observe().curvature, wanted, atol=1e-9)
+    assert simulation.sampled and simulation.error_estimate.position < 1e-2
+    with pytest.raises(ValueError, match="cannot join the rows of law 'rows'"):
+        simulation.add_samples(1.5, [0.0, 1.0], *np.zeros((6, 2)))
+    simulation.advance(3.0)  # the last row was at 2.3
+    assert simulation.resting
+    simulation.reset()
+    simulation.advance(0.3)
+    assert np.allclose(simulation.observe().curvature, law.curvature(0.3, simulation.x)[0], atol=1e-9)
+
+
+def test_what_does_not_fit_a_motion_is_said(law):
+    with pytest.raises(ValueError, match="duration must be at most 3 s, that of the motion 'rows', got 4 s"):
+        simulate(law, 4.0)
+    with pytest.raises(ValueError, match="duration must be at most 3 s"):
+        simulate_batch([law], 4.0)
+    with pytest.raises(
+        ValueError, match=r"law must be a Law, a SampledLaw, a function K\(t, X\) or a motion's file, got 3"
+    ):
+        simulate(3)
+    with pytest.raises(ValueError, match=r"law 'rows' is for a body of 1 m, the body has 2 m"):
+        Simulation(law=law, body=longer())
+    with pytest.raises(ValueError, match="law 'pitched' has a pitch term"):
+        simulate(sampled(lambda t, x: np.stack((x, x)), 1.0, name="pitched"), 1.0, scene=PLANE)
+    with pytest.raises(ValueError, match="law must be a Law, got SampledLaw"):
+        hydrodynamic_wrench(Simulation().body, law, 0.0, np.zeros(6), np.zeros(6))
+
+
+def longer():
+    x = np.linspace(0.0, 2.0, 41)
+    return Body(x=x, half_width=0.05 * np.sqrt(x), half_height=0.06 * np.sqrt(x))
+
+
+@pytest.mark.parametrize("fish", ["eel", "mackerel"])
+def test_a_published_midline_from_a_noisy_file_has_the_speed_of_the_closed_form(fish, tmp_path):
+    """Noise of 1/1000 of the body's length on each coordinate; the file turns and swims otherwise than the model."""
+    if fish == "eel":
+        law, midline = kern_fast(), kern_midline
+    else:
+        shape = LateralMidline(mackerel)
+        law, midline = sampled(shape.curvature, 4.0), lambda time: shape.position(time, ARC)
+    exact = simulate(law, 4.0, scene=PLANE, estimate=False).mean_speed
+    path = write_midlines(tmp_path / "fish.csv", midline, noise=1e-3)
+    measured = simulate(path, 4.0, scene=PLANE, estimate=False)
+    assert measured.mean_speed == pytest.approx(exact, rel=0.05)
+    assert "generalised cross-validation" in measured.summary()
+
+
+def test_the_command_swims_a_file_and_says_what_smoothing_does(tmp_path, capsys):
+    arc = np.linspace(0.0, 1.0, 9)
+    draw, lines = np.random.default_rng(2), ["time,arc_length,yaw"]
+    for time in np.arange(151) / 50.0:
+        bends = WAVE.curvature(time, arc)[0][:, 2] + 0.05 * draw.normal(size=9)
+        lines += [f"{time},{x},{bend}" for x, bend in zip(arc, bends, strict=True)]
+    path = tmp_path / "bends.csv"
+    path.write_text("\n".join(lines))
+    assert main(["--file", str(path), "--scene", "planar=on", "--accuracy", "draft"]) == 0
+    told = capsys.readouterr().out
+    assert "bends: boyer2010" in told and "residual (RMS)" in told and "times, RMS torque" in told
+    assert main(["--file", str(path), "falling"]) == 2
+    assert "--file takes the place of a gait, got 'falling' too" in capsys.readouterr().err
+    assert main(["falling", "--scale", "2"]) == 2 and "belong to --file" in capsys.readouterr().err
+    assert main(["--file", str(tmp_path / "none.csv")]) == 2 and "no such file" in capsys.readouterr().err
+
+
+def test_the_midlines_that_come_out_are_those_that_went_in(tmp_path, capsys):
+    path = write_midlines(tmp_path / "fish.csv", kern_midline, end=2.0)
+    assert midlines(["--out", str(tmp_path / "fish.png"), str(path)]) == 0
+    told = capsys.readouterr().out
+    apart = float(re.search(r"midlines +([0-9.]+)% of the body's length apart", told)[1])
+    assert 0.0 < apart < 0.3 and (tmp_path / "fish.png").read_bytes().startswith(b"\x89PNG")
+    assert midlines([str(path), "--out", "fish.txt"]) == 2 and "--out must end in" in capsys.readouterr().err
+
+
+def test_a_rigid_motion_is_removed_and_a_mirror_image_is_not():
+    draw = np.random.default_rng(0)
+    points = draw.normal(size=(2, 9, 3))
+    turn = np.linalg.qr(draw.normal(size=(3, 3)))[0]
+    turn *= np.linalg.det(turn)
+    assert np.allclose(laid_on(points @ turn + 0.3, points), points)
+    assert np.max(np.abs(laid_on(points * [1.0, 1.0, -1.0], points) - points)) > 0.1

@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Measured frames: fields at n points along the body at N instants, from the rows of a table, and the law of them.
+
+Each frame is smoothed along the body, and the curvature that it gives in time. So each step finds noise that has no
+correlation along what it smooths, as the cross-validation supposes. The other way round, the noise that the first step
+left would be taken for motion, and the accelerations for what it does.
+"""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from eel_gaits.input_output.wording import shown
+from eel_gaits.sources.body_points import points_for
+from eel_gaits.sources.period import fastest_period
+from eel_gaits.sources.sampled_law import SampledLaw
+from eel_gaits.sources.smoothing import FEWEST, interpolated, smoothed, smoothed_in_time
+from eel_gaits.sources.tables import Table
+
+FEWEST_FRAMES = 16
+LONGEST_GAP = 0.25  # of the fastest motion's period
+TOLERANCE = 5e-5  # part of the greatest curvature by which the rows may miss the splines along the body
+MATERIAL = 0.02  # part of the length by which the arc length of a point may differ from frame to frame
+
+
+class Frames(NamedTuple):
+    """Fields at n points and N instants. Frame i is made of the rows i n to (i + 1) n of the `table`."""
+
+    table: Table
+    time: np.ndarray  # (N,) s, from 0
+    arc: np.ndarray | None  # (n,) arc length of the points, in the file's unit; None where the file has none
+    fields: np.ndarray  # (N, n, fields)
+
+    def error(self, text: str, first: int, last: int | None = None) -> ValueError:
+        """An error about the frames `first` to `last`."""
+        last, count = first if last is None else last, self.fields.shape[1]
+        return self.table.error(text, first * count, (last + 1) * count - 1)
+
+    def check_gaps(self, motion: np.ndarray):
+        """`ValueError` for a gap longer than a quarter of the fastest period in `motion` (N, m)."""
+        gaps, period = np.diff(self.time), fastest_period(self.time, motion)
+        place = int(np.argmax(gaps))
+        if gaps[place] > LONGEST_GAP * period:
+            raise self.error(
+                f"a gap of {gaps[place]:.3g} s in time, more than a quarter of the fastest motion's period "
+                f"({period:.3g} s)",
+                place,
+                place + 1,
+            )
+
+
+def frames_of(table: Table, names: tuple[str, ...]) -> Frames:
+    """The frames of a table with the columns `time`, `names` and, if it has it, `arc_length`.
+
+    Rows of one time are a frame, from nose to tail. `ValueError` names the rows that do not fit.
+    """
+    arc = table.columns.get("arc_length")
+    table.check_finite(("time", *names, *(() if arc is None else ("arc_length",))))
+    time = table.columns["time"]
+    starts = np.concatenate(([0], np.flatnonzero(np.diff(time)) + 1))
+    instants, sizes = time[starts], np.diff(np.append(starts, len(time)))
+    other = np.flatnonzero(sizes != sizes[0])
+    if len(other) and np.all(np.diff(instants) > 0.0):
+        first = starts[other[0]]
+        text = f"a frame of {sizes[other[0]]} points, the first frame has {sizes[0]}"
+        raise table.error(text, first, first + sizes[other[0]] - 1)
+    check_rising(table, instants, starts)
+    if sizes[0] < FEWEST:
+        raise table.error(f"a frame must have {FEWEST} points or more, got {sizes[0]}", 0, sizes[0] - 1)
+    fields = np.stack([table.columns[name].reshape(len(starts), -1) for name in names], axis=-1)
+    found = Frames(table, instants - instants[0], None, fields)
+    return found if arc is None else found._replace(arc=_material(found, arc.reshape(len(starts), -1)))
+
+
+def check_rising(table: Table, instants: np.ndarray, rows: np.ndarray):
+    """`ValueError` where the `instants` of these `rows` do not rise, or are few."""
+    back = np.flatnonzero(np.diff(instants) <= 0.0)
+    if len(back):
+        before, after = instants[back[0]], instants[back[0] + 1]
+        raise table.error(f"time must rise, got {after:g} s after {before:g} s", rows[back[0] + 1])
+    if len(instants) < FEWEST_FRAMES:
+        raise table.error(f"there must be {FEWEST_FRAMES} instants or more, got {len(instants)}")
+
+
+def _material(frames: Frames, arc: np.ndarray) -> np.ndarray:
+    """Arc lengths (n,) of the points, which must rise, and stay the same from frame to frame."""
+    falls = np.argwhere(np.diff(arc, axis=1) <= 0.0)
+    if len(falls):
+        frame, point = falls[0]
+        row = frame * arc.shape[1] + point + 1
+        raise frames.table.error(f"arc_length must rise along a frame, got {arc[frame, point + 1]:g}", row)
+    mean = arc.mean(axis=0)
+    apart = np.abs(arc - mean)
+    frame, point = np.unravel_index(np.argmax(apart), apart.shape)
+    if apart[frame, point] > MATERIAL * (mean[-1] - mean[0]):
+        row = frame * arc.shape[1] + point
+        raise frames.table.error(
+            f"arc_length of point {point + 1} must stay the same, got {arc[frame, point]:g}, on average "
+            f"{mean[point]:g}: resample the midlines at fixed arc lengths",
+            row,
+        )
+    return mean
+
+
+class SmoothedFrames:
+    """Splines along the body through each of the `frames`, whose points lie at the arc lengths `arc` (n,).
+
+    about: what smoothing did, in words; unit: of the fields, of which `factor` make one of the frames'.
+    """
+
+    def __init__(self, frames: Frames, arc: np.ndarray, smooth: bool, unit: str, factor: float = 1.0):
+        count, points, _ = frames.fields.shape
+        found = (smoothed if smooth else interpolated)(arc, frames.fields.swapaxes(0, 1).reshape(points, -1))
+        self._spline, self._count = found.spline, count
+        residual = factor * float(np.sqrt(np.mean((self.at(arc) - frames.fields) ** 2)))
+        self.about = f"{residual:.3g} {unit} along the body ({found.degrees:.1f} of {points} degrees of freedom left)"
+
+    def at(self, arc: np.ndarray, order: int = 0) -> np.ndarray:
+        """Fields (N, m, fields) at the arc lengths `arc` (m,), or their derivatives of this `order` along the body."""
+        return self._spline(arc, order).reshape(len(arc), self._count, -1).swapaxes(0, 1)
+
+
+def law_of_frames(
+    frames: Frames,
+    curvature: Callable[[np.ndarray], np.ndarray],
+    length: float,
+    *,
+    name: str,
+    kind: str,
+    along: str = "",
+    raw: Callable | None = None,
+) -> SampledLaw:
+    """The law of curvature(X) (N, 2, m) [rad/m], of pitch and yaw, at the instants of the `frames`.
+
+    length [m]: of the body. kind: of the data, in words. along: what smoothing along the body did. raw(): makes the law
+    without smoothing; without it, nothing is smoothed in time. `ValueError` for a gap in time.
+    """
+    x = points_for(curvature, length, TOLERANCE)
+    rows, time = curvature(x), frames.time
+    values, degrees = np.zeros((*rows.shape[:2], 3, len(x))), []
+    for axis in np.flatnonzero(np.any(rows, axis=(0, 2))):
+        found = (interpolated if raw is None else smoothed_in_time)(time, rows[:, axis])
+        values[:, axis] = np.stack([found.spline(time, order) for order in range(3)], axis=1)
+        degrees.append(found.degrees)
+    told = "not smoothed"
+    if raw is not None:
+        frames.check_gaps(values[:, :, 0].reshape(len(rows), -1))
+        residual = np.sqrt(np.mean((values[:, :, 0] - rows) ** 2))
+        left = f"{np.mean(degrees):.0f} of {len(time)}" if degrees else "none"
+        told = (
+            "smoothed by quintic splines with generalised cross-validation; residual (RMS) "
+            f"{along}{', ' if along else ''}{residual:.3g} rad/m in time ({left} degrees of freedom left)"
+        )
+    about = f"{kind} of {shown(frames.table.path.name)}, {len(time)} instants, {told}"
+    return SampledLaw(time, x, values, name=name, about=about, raw=raw)

@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Motions in files: measured midlines, curvature or joint angles in a .csv or .npz file, or rows of a law in an .npz.
+
+The columns tell what a file holds; all have `time` [s]:
+
+    x, y, perhaps z, arc_length [m]         midlines: rows of one time are a frame, from nose to tail
+    arc_length [m], yaw, perhaps pitch      measured curvature [rad/m], likewise
+    yaw_1, yaw_2 ..., pitch_1 ...           joint angles [rad], a row for each instant
+
+An .npz holds the same columns, or arrays (N, n) for N instants and n points; or `time`, `x` and `values` of a
+`SampledLaw`, as `save_law` writes them.
+"""
+
+import os
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from eel_gaits.input_output.output_file import replacing
+from eel_gaits.input_output.quantity import is_finite
+from eel_gaits.input_output.wording import shown
+from eel_gaits.sources.frames import SmoothedFrames, frames_of, law_of_frames
+from eel_gaits.sources.joint_angles import joint_columns, law_of_joints
+from eel_gaits.sources.midlines import Midlines
+from eel_gaits.sources.sampled_law import SampledLaw
+from eel_gaits.sources.tables import Table, read_arrays, read_table
+
+LAW = {"time", "x", "values"}  # arrays of a law's rows
+FITTING = 1e-6  # part of the body's length by which a law's rows may be shorter or longer
+
+
+def read_motion(
+    path: str | os.PathLike, *, length: float = 1.0, scale: float = 1.0, smooth: bool = True, name: str | None = None
+) -> SampledLaw:
+    """The law of the motion in a .csv or .npz file, for a body of `length` [m].
+
+    scale: metres in the file's unit of length. smooth: smooth measured data by generalised cross-validation; else the
+    splines go through them. name: of the law; by default that of the file. `ValueError` in one line names file, line,
+    column and value of what does not fit.
+    """
+    path = Path(path)
+    for argument, value in (("length", length), ("scale", scale)):
+        if not is_finite(value) or not value > 0.0:
+            raise ValueError(f"{argument} must be > 0, got {shown(value)}")
+    name = path.stem if name is None else name
+    if path.suffix not in (".csv", ".npz"):
+        raise ValueError(f"{shown(str(path))}: a motion must be in a .csv or .npz file")
+    if path.suffix == ".npz" and path.is_file() and (law := _rows(path, length, name)) is not None:
+        return law
+    table = read_table(path)
+    kind = kind_of(table)
+    if kind == "joints":
+        return law_of_joints(table, length, name, smooth)
+    if kind == "curvature":
+        return _law_of_curvature(table, length, scale, name, smooth)
+    return Midlines(table, length, scale).law(name, smooth)
+
+
+def read_midlines(path: str | os.PathLike, *, length: float = 1.0, scale: float = 1.0) -> Midlines:
+    """The midlines in a .csv or .npz file, as measured. `ValueError` as in `read_motion`, and for another motion."""
+    table = read_table(path)
+    if kind_of(table) != "midlines":
+        raise table.error("it holds no midlines: columns time, x, y")
+    return Midlines(table, length, scale)
+
+
+def save_law(law: SampledLaw, path: str | os.PathLike) -> None:
+    """Write the rows of `law` to an .npz file, which `read_motion` reads. `NotWritten` where that fails."""
+    with replacing(path) as draft:
+        np.savez_compressed(draft, time=law.time, x=law.x, values=law.values)
+
+
+def kind_of(table: Table) -> str:
+    """What the columns of a table tell: midlines, joints or curvature. `ValueError` for anything else."""
+    names = set(table.columns)
+    if "time" in names:
+        if {"x", "y"} <= names:
+            return "midlines"
+        if joint_columns(names):
+            return "joints"
+        if {"arc_length", "yaw"} <= names:
+            return "curvature"
+    raise table.error(
+        "its columns must be time and: x, y (midlines), or yaw_1, yaw_2 ... (joint angles), or arc_length, yaw "
+        f"(curvature), got {shown(sorted(names))}"
+    )
+
+
+def _law_of_curvature(table: Table, length: float, scale: float, name: str, smooth: bool) -> SampledLaw:
+    frames = frames_of(table, ("pitch", "yaw") if "pitch" in table.columns else ("yaw",))
+    arc = scale * frames.arc
+    if abs(arc[0]) > 0.05 * length or abs(arc[-1] - length) > 0.05 * length:
+        points = len(arc) - 1
+        raise table.error(
+            f"arc_length must reach from 0 to the body's length, {length:g} m, got {arc[0]:.4g} to {arc[-1]:.4g} m",
+            0,
+            points,
+        )
+    frames = frames._replace(arc=arc, fields=frames.fields / scale)
+    fitted = SmoothedFrames(frames, arc, smooth, "rad/m")
+
+    def curvature(x: np.ndarray) -> np.ndarray:
+        found = fitted.at(x).swapaxes(1, 2)
+        return found if found.shape[1] == 2 else np.concatenate((np.zeros_like(found), found), axis=1)
+
+    raw = partial(_law_of_curvature, table, length, scale, name, smooth=False) if smooth else None
+    kind = f"curvature at {len(arc)} points"
+    return law_of_frames(frames, curvature, length, name=name, kind=kind, along=fitted.about, raw=raw)
+
+
+def _rows(path: Path, length: float, name: str) -> SampledLaw | None:
+    """The law whose rows an .npz file holds; None where it holds something else."""
+    try:
+        arrays = read_arrays(path)
+        if not set(arrays) >= LAW:
+            return None
+        law = SampledLaw(*(arrays[each] for each in ("time", "x", "values")), name=name, about=f"rows of {path.name}")
+    except ValueError as error:
+        raise ValueError(f"{shown(str(path))}: {error}") from None
+    if abs(law.length - length) > FITTING * length:
+        raise ValueError(f"{shown(str(path))}: x must reach to the body's length, {length:g} m, got {law.length:g} m")
+    return law

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The period of a sampled motion, by the squared difference between the motion and itself at a later time.
+
+d(T) = mean |K(t + T) - K(t)|^2 / (2 mean |K - mean K|^2) is 0 where the motion repeats after T, and about 1 where it is
+unrelated (de Cheveigne and Kawahara, J. Acoust. Soc. Am. 111 (2002), doi:10.1121/1.1458024, likewise for sound).
+"""
+
+import math
+
+import numpy as np
+
+from eel_gaits.laws.term import Term
+
+MOST = 1024  # instants at which motions are compared
+COLUMNS = 12  # of the values that are compared, or a few more
+REPEATED = 0.1  # d(T) below which a motion repeats
+LEFT = 0.5  # of the first rise: the period is looked for only after d(T) has risen above this
+POINTS = 64  # in a period, of the first harmonic
+STANDING = 0.1  # waves on the body below which a harmonic counts as standing
+ALIKE = 0.05  # part by which the periods of pitch and yaw may differ: they are then those of one motion
+HIGHEST = 0.05  # part of the strongest harmonic's amplitude that still counts as motion
+
+
+def period_of(time: np.ndarray, values: np.ndarray) -> float:
+    """The period [s] of `values` (N, m) at `time` (N,) [s]; inf where they do not repeat within 3/4 of the time."""
+    from scipy.interpolate import CubicSpline
+    from scipy.optimize import minimize_scalar
+
+    varied = values[:, :: max(1, values.shape[1] // COLUMNS)]
+    varied = varied - varied.mean(axis=0)
+    power = float(np.mean(np.sum(varied**2, axis=1)))
+    if len(time) < 8 or power <= 1e-20 * float(np.mean(np.sum(values**2, axis=1))):
+        return np.inf
+    curve, span = CubicSpline(time, varied), float(time[-1] - time[0])
+    count = min(MOST, 4 * len(time))
+    rows, step = curve(np.linspace(time[0], time[-1], count)), span / (count - 1)
+
+    def difference(lag: float) -> float:
+        t = np.linspace(time[0], time[-1] - lag, count // 2)
+        return float(np.mean(np.sum((curve(t + lag) - curve(t)) ** 2, axis=1))) / (2.0 * power)
+
+    shifts = np.arange(1, 3 * count // 4)
+    apart = np.array([np.mean(np.sum((rows[shift:] - rows[:-shift]) ** 2, axis=1)) for shift in shifts]) / (2.0 * power)
+    risen = np.argmax(apart > LEFT) if np.any(apart > LEFT) else len(shifts)
+    below = np.flatnonzero(apart[risen:] < REPEATED)
+    if not len(below):
+        return np.inf
+    place = risen + below[0]
+    while place + 1 < len(shifts) and apart[place + 1] <= apart[place]:
+        place += 1
+    around = step * shifts[max(place - 1, 0)], step * shifts[min(place + 1, len(shifts) - 1)]
+    return float(minimize_scalar(difference, bounds=around, method="bounded", options={"xatol": 1e-9 * span}).x)
+
+
+def first_harmonics(time: np.ndarray, x: np.ndarray, curvature: dict[str, np.ndarray]) -> tuple[Term, ...]:
+    """The first harmonic of the `curvature` (N, n) [rad/m] of each axis, as a wave; none where it does not repeat.
+
+    time (N,) [s]; x (n,) [m]. The period is that of the later half of the time, or else of all; the
+    harmonic that of as many whole periods as the later half holds, at least one. Its
+    wave number is the slope of its phase along the body, weighted by the square of its amplitude.
+    """
+    for part in (time >= 0.5 * (time[0] + time[-1]), time >= time[0]):
+        periods = {axis: period_of(time[part], curvature[axis][part]) for axis in ("yaw", "pitch")}
+        shared = next((period for period in periods.values() if np.isfinite(period)), np.inf)
+        if np.isfinite(shared):
+            break
+    return tuple(
+        _harmonic(axis, time, x, curvature[axis], shared)
+        for axis, period in periods.items()
+        if abs(period / shared - 1.0) < ALIKE
+    )
+
+
+def _harmonic(axis: str, time: np.ndarray, x: np.ndarray, rows: np.ndarray, period: float) -> Term:
+    from scipy.interpolate import CubicSpline
+
+    whole = max(1, math.floor(0.5 * (time[-1] - time[0]) / period + 1e-6))
+    instants = time[-1] - period * whole * np.arange(POINTS * whole) / (POINTS * whole)
+    turning = np.exp(2j * math.pi * instants / period)
+    found = 2.0 / len(instants) * turning @ CubicSpline(time, rows)(instants)  # K = Re(found exp(-2 pi i t / T))
+    phase, weight = np.unwrap(np.angle(found)), np.abs(found) ** 2
+    turns = np.polyfit(x, phase, 1, w=np.sqrt(weight))[0] / (2.0 * math.pi) if np.any(weight) else 0.0
+    wavelength = 1.0 / turns if abs(turns) * (x[-1] - x[0]) > STANDING else 0.0
+    return Term(axis=axis, amplitude=np.abs(found), knots=x, wavelength=wavelength, period=period)
+
+
+def fastest_period(time: np.ndarray, values: np.ndarray) -> float:
+    """The period [s] of the fastest harmonic of `values` (N, m) that has 5 % of the strongest one's amplitude."""
+    from scipy.interpolate import CubicSpline
+
+    even = np.linspace(time[0], time[-1], max(64, 2 * len(time)))
+    rows = CubicSpline(time, values)(even)
+    rows = (rows - rows.mean(axis=0)) * np.hanning(len(even))[:, None]
+    amplitude = np.sqrt(np.sum(np.abs(np.fft.rfft(rows, axis=0)) ** 2, axis=1))
+    strong = np.flatnonzero(amplitude >= HIGHEST * amplitude.max())
+    return float((time[-1] - time[0]) / strong[-1]) if amplitude.max() > 0.0 and strong[-1] else np.inf

@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A curvature law as rows: the curvature at instants and at points along the body.
+
+Along the body each row is a natural cubic spline. Between two instants the curvature is the quintic that meets value,
+rate and acceleration at both, as between the samples of a controller. So it is C2 in time and in X.
+"""
+
+from bisect import bisect_right
+from collections.abc import Callable
+from functools import cached_property
+
+import numpy as np
+
+from eel_gaits.input_output.quantity import number, numbers
+from eel_gaits.input_output.wording import shown
+from eel_gaits.laws.law import checked_name
+from eel_gaits.laws.spline import natural_spline
+from eel_gaits.laws.term import Term
+from eel_gaits.sources.body_points import points_for
+from eel_gaits.sources.period import first_harmonics
+
+AXES = {"pitch": 0, "yaw": 1}  # name of the axis: its place in `values`
+FEWEST_ROWS = 2
+LEAST_POINTS = 2
+IN_MESSAGES = 1.0 / 300.0  # part of the greatest curvature by which the points of messages may miss the rows
+
+
+class SampledLaw:
+    """A curvature law as rows. It never changes. Two are equal where name, transition and rows are.
+
+    `ValueError` names what does not fit. raw(): makes the law without smoothing.
+
+    Attributes:
+        time: (N,) s, the law's own time: rises from 0.
+        x: (n,) m, points along the body, from 0 at the nose to the tail.
+        values: (N, 2, 3, n): of pitch and yaw the curvature [rad/m], its rate [rad/m/s] and acceleration [rad/m/s^2].
+        name: as that of a `Law`.
+        transition: as that of a `Law`.
+        about: where the rows come from, in one line; may be empty.
+    """
+
+    def __init__(self, time, x, values, *, name="sampled", transition=0.0, about="", raw: Callable | None = None):
+        self.time, self.x, self.values = (numbers(*each) for each in (("time", time), ("x", x), ("values", values)))
+        self.name, self.transition = checked_name(name), number("transition", transition)
+        self.about, self._raw = about, raw
+        for field, least in (("time", FEWEST_ROWS), ("x", LEAST_POINTS)):
+            row = getattr(self, field)
+            if row.ndim != 1 or len(row) < least or not np.all(np.diff(row) > 0.0) or row[0] != 0.0:
+                raise ValueError(f"{field} must rise from 0 over {least} numbers or more, got {shown(row.tolist())}")
+        shape = len(self.time), 2, 3, len(self.x)
+        if self.values.shape != shape:
+            raise ValueError(f"values must have the shape {shape}, got {self.values.shape}")
+        if not np.all(np.isfinite(self.values)):
+            row, axis, _, point = np.argwhere(~np.isfinite(self.values))[0]
+            where = f"{list(AXES)[axis]} at t = {self.time[row]:g} s, X = {self.x[point]:g} m"
+            raise ValueError(f"values must be finite, got none of {where}")
+        if self.transition < 0.0:
+            raise ValueError(f"transition must be >= 0 s, got {self.transition}")
+        for array in (self.time, self.x, self.values):
+            array.flags.writeable = False
+
+    def __eq__(self, other) -> bool:
+        return isinstance(other, SampledLaw) and self._key == other._key
+
+    def __hash__(self) -> int:
+        return hash(self._key)
+
+    def __repr__(self) -> str:
+        return f"SampledLaw({shown(self.name)}, {len(self.time)} rows of {len(self.x)} points, {self.duration:g} s)"
+
+    def __deepcopy__(self, memo: dict) -> "SampledLaw":
+        return self
+
+    @cached_property
+    def _key(self) -> tuple:
+        arrays = (each.tobytes() for each in (self.time, self.x, self.values))
+        return (self.name, self.transition, *arrays)
+
+    @property
+    def smooth(self) -> bool:
+        """Whether measured data were smoothed."""
+        return self._raw is not None
+
+    @cached_property
+    def unsmoothed(self) -> "SampledLaw | None":
+        """The same motion without smoothing, made on first access; None where nothing was smoothed."""
+        return None if self._raw is None else self._raw()
+
+    @property
+    def duration(self) -> float:
+        """Time [s] of the last row. After it the motion is not known."""
+        return float(self.time[-1])
+
+    @property
+    def length(self) -> float:
+        """Length [m] of the body that the rows are for."""
+        return float(self.x[-1])
+
+    @cached_property
+    def in_plane(self) -> bool:
+        """Whether the body bends only in yaw."""
+        return not np.any(self.values[:, AXES["pitch"]])
+
+    @cached_property
+    def waves(self) -> tuple[Term, ...]:
+        """The first harmonic in yaw and in pitch, of the later half of the rows; none where these do not repeat."""
+        return first_harmonics(self.time, self.x, {axis: self.values[:, place, 0] for axis, place in AXES.items()})
+
+    def with_fewer_points(self) -> "SampledLaw":
+        """The law at as few points as carry its rows to 1/300 of the greatest curvature: for messages."""
+        rows = self.values[:: max(1, len(self.time) // 64), :, 0]
+        x = points_for(lambda x: natural_spline(self.x, rows, x), self.length, IN_MESSAGES)
+        if len(x) >= len(self.x):
+            return self
+        values = natural_spline(self.x, self.values, x)
+        return SampledLaw(self.time, x, values, name=self.name, transition=self.transition, about=self.about)
+
+    def coarser(self) -> "SampledLaw":
+        """The law from every second row and every second point. Its distance shows what sampling does."""
+        rows, points = (np.unique(np.r_[0:size:2, size - 1]) for size in (len(self.time), len(self.x)))
+        values = self.values[rows][..., points]
+        return SampledLaw(self.time[rows], self.x[points], values, name=self.name, transition=self.transition)
+
+    def curvature(self, time, x):
+        """Curvature, its rate and its acceleration at one time, as `Law.curvature`. At rest beyond the last row.
+
+        Args:
+            time: [s], the law's own time.
+            x: [m], shape (M,), arc length from the nose.
+
+        Returns:
+            value [rad/m], rate [rad/m/s], acceleration [rad/m/s^2], each of shape (M, 3), in section axes.
+        """
+        x, time = np.atleast_1d(numbers("x", x)), number("time", time)
+        inside = min(max(time, 0.0), self.duration)
+        row = min(bisect_right(self.time, inside) - 1, len(self.time) - 2)
+        step = self.time[row + 1] - self.time[row]
+        start, end = self.values[row], self.values[row + 1]
+        found = np.zeros((3, len(x), 3))
+        for axis in AXES.values():
+            rows = quintic(start[axis], end[axis], step, (inside - self.time[row]) / step)
+            found[:, :, 1 + axis] = natural_spline(self.x, rows, x)
+        if inside != time:
+            found[1:] = 0.0
+        return found[0], found[1], found[2]
+
+
+def quintic(start, end, step, s):
+    """Value, rate and acceleration (3, ...) at the part `s` (0 to 1) of an interval of `step` [s], from both ends.
+
+    start, end (3, ...): value, rate and acceleration there.
+    """
+    scale = np.reshape([1.0, step, step * step], (3,) + (1,) * (np.ndim(start) - 1))
+    a, b = start * scale, end * scale
+    change = b[0] - a[0] - a[1] - 0.5 * a[2]
+    slope, bend = b[1] - a[1] - a[2], b[2] - a[2]
+    c3 = 10.0 * change - 4.0 * slope + 0.5 * bend
+    c4 = -15.0 * change + 7.0 * slope - bend
+    c5 = 6.0 * change - 3.0 * slope + 0.5 * bend
+    value = a[0] + s * (a[1] + s * (0.5 * a[2] + s * (c3 + s * (c4 + s * c5))))
+    rate = a[1] + s * (a[2] + s * (3.0 * c3 + s * (4.0 * c4 + s * 5.0 * c5)))
+    acceleration = a[2] + s * (6.0 * c3 + s * (12.0 * c4 + s * 20.0 * c5))
+    return np.stack((value, rate, acceleration)) / scale
