@@ -32,10 +32,10 @@ class DepthEnv(SwimmerEnv):
 
     An episode begins level, at a random speed, phase of the gait and small rate of roll; the wanted depth is up to
     `greatest_change` above or below. The action is the bend of the whole body to the left and upwards, added to the
-    gait straight(). The swimmer moves in space, where the model rolls over by itself: the policy must keep it upright.
+    gait straight(). The swimmer moves in space, where it dives and rolls over by itself: the policy must prevent that.
 
-    The reward of a control step is control_period (1 - |error| / (2 greatest_change)) [s], at least 0, with the error
-    of the head's depth. An episode ends, besides by `duration`, where the head rolls beyond `roll_limit`.
+    The reward of a control step is control_period (1 - error / (2 greatest_change)) [s], at least 0, with the size of
+    the error of the head's depth. An episode ends, besides by `duration`, where the head rolls beyond `roll_limit`.
     """
 
     name = "Depth"

@@ -31,9 +31,9 @@ class HeadingEnv(SwimmerEnv):
 
     An episode begins at a random heading, speed and phase of the gait, with a body that is bent a little by itself: the
     policy does not see this bend. The action is the bend of the whole body, added to the gait straight(). The swimmer
-    moves in the plane: in space the model of a straight swimmer rolls over (docs/learning.md).
+    moves in the plane: in space a straight swimmer is unstable, it dives and rolls over (docs/howto/learning.md).
 
-    The reward of a control step is control_period (1 - |error| / pi) [s], where the error is that of the heading
+    The reward of a control step is control_period (1 - error / pi) [s], with the size of the error of the heading
     averaged over the last period of the gait, as the head swings with the gait. An episode ends by `duration` alone.
     """
 
