@@ -90,7 +90,7 @@ class DynamicsNode(ParameterNode):
             received=lambda publisher, seconds: publisher.wait_for_all_acked(Duration(seconds=seconds)),
             publish_error=rclpy_implementation.RCLError,
             values=lambda: self.parameters.values,
-            stopped=lambda: self.run_loop.stopped,
+            stopped=lambda: self.run_loop.requests.stopped,
             report=report,
         )
         inbox = SampleInbox(self, lambda message, info: feed.receive_samples(message, info))

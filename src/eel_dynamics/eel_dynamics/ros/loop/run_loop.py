@@ -25,8 +25,8 @@ class RunLoop:
     While the run stands at its start, it repeats sample 0 ten times a second, so that a controller that answers samples
     begins. It goes on with sample 1, unless a law changes sample 0, or a subscriber has not had it.
 
-    `run` is the thread's function: it returns after the last sample, or after `stop`. A simulation that has stopped
-    waits for a reset; an unattended one (with a duration, as fast as possible) returns and has `given_up`.
+    `run` is the thread's function: it returns after the last sample, or after `requests.stop`. A simulation that has
+    stopped waits for a reset; an unattended one (with a duration, as fast as possible) returns and has `given_up`.
     on_subscribers_complete: called when the subscribers that the run waits for are there. inbox: has `poll()`, which
     passes samples that have come to `requests.take_samples`, and the methods of `WakeUp`.
 
@@ -52,11 +52,6 @@ class RunLoop:
         self.time, self.samples_published, self.standing = 0.0, 0, ""
 
     @property
-    def stopped(self) -> bool:
-        """Whether the run was to end, by `requests.stop`."""
-        return self._queue.stopped
-
-    @property
     def overdue(self) -> float:
         """Wall time [s] that the computation of the next sample has taken so far; 0 in a run as fast as possible."""
         since = self._sample_begun
@@ -72,7 +67,7 @@ class RunLoop:
     def run(self):
         """Run the loop: the thread's function."""
         self.pace.restart(0, time.monotonic())
-        while not self.stopped and self.samples_published <= self._parameters.last_sample and not self.given_up:
+        while not self._queue.stopped and self.samples_published <= self._parameters.last_sample and not self.given_up:
             self._poll()
             self._queue.carry_out(self._perform)
             obstacle = self.obstacles.find(self.time)

@@ -80,3 +80,8 @@ class RunRequests:
     def stop(self):
         """End the run."""
         self._queue.stop()
+
+    @property
+    def stopped(self) -> bool:
+        """Whether `stop` was called."""
+        return self._queue.stopped
