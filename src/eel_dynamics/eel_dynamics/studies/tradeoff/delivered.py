@@ -33,7 +33,7 @@ REFERENCES = tuple(
         Accuracy(name="pair", resolution=points, tolerance=tolerance),
         Accuracy(name="adams", resolution=points + 20.0, tolerance=0.3 * tolerance, method="adams", order=6),
     )
-    for points, tolerance in ((70.0, 1e-11), (160.0, 1e-12))
+    for points, tolerance in ((70.0, 1e-11), (160.0, 1e-12), (320.0, 1e-13))
 )
 AGREED = 0.1  # of the target, to which the references must agree
 LEAST = 1e-11  # least error that a reference resolves

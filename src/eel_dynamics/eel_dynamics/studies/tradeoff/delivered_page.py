@@ -51,8 +51,8 @@ samples of a controller between two instants. Tests of their own compare these w
 {swims} random swims: bends in space and in the plane, periods of 0.2 to 3 s, densities of 200 to 8,000 kg/m^3,
 every friction law, three bodies, heads at rest and moving, 1 to 16 s, targets of 1e-2 to 1e-6. The true error is
 the distance from a reference: {first:g} points with a tolerance of {tolerance:g}, trusted where another method with
-{second:g} points agrees to a tenth of the target; else {finer:g} points and a tenth of the tolerance are tried in the
-same way. The error is known no better than these two agree. An estimate counts as below the error where it is so by
+{second:g} points agrees to a tenth of the target; else {finer:g} points with a tenth of the tolerance, and {finest:g}
+points with a hundredth, are tried in the same way. The error is known no better than these two agree. An estimate counts as below the error where it is so by
 more than that. The cost is nodes times evaluations of all its runs, relative to the delivered run's.
 
 {table}
@@ -65,7 +65,7 @@ Each point is a swim. Below the line an estimate lies on the safe side.
 
 def write_delivered_page(path: Path, trials: list[Trial], count: int, seed: int, picture: str):
     """Write the page to `path`. picture: its path from there. `OSError` where the page cannot be written."""
-    (first, second), (finer, _) = REFERENCES
+    (first, second), (finer, _), (finest, _) = REFERENCES
     text = PAGE.format(
         count=count,
         seed=seed,
@@ -75,6 +75,7 @@ def write_delivered_page(path: Path, trials: list[Trial], count: int, seed: int,
         tolerance=first.tolerance,
         second=second.resolution,
         finer=finer.resolution,
+        finest=finest.resolution,
         table=delivered_table(trials, markdown=True),
         picture=picture,
     )
