@@ -23,6 +23,7 @@ from eel_dynamics.studies.steady_swim import at_speed, swim_times
 STEP = 1e-5  # of the bounds' distance: differences of the derivatives to either side
 SPEED, CHANGE = "mean_speed", "speed_change"
 STEADY = 0.05  # greatest change of the speed within the swim of a gait that is counted as tried
+STRIDE = 0.5  # body lengths per period: of a gait whose speed is not known
 LONGER = 2  # times the periods, of the swim that is kept
 
 
@@ -59,8 +60,11 @@ class GaitProblem:
         """The law at a `place` (P,). `ValueError` where the parameters make none."""
         return point_at(0, self.values(place), self.gait, self.numbers, self.base).law
 
-    def measured(self, places: np.ndarray, speed: float) -> np.ndarray:
-        """Speed [m/s] and cost (N, 2) at `places` (N, P), of swims that begin at `speed` [m/s]; NaN where one stops."""
+    def measured(self, places: np.ndarray, speed: float | None) -> np.ndarray:
+        """Speed [m/s] and cost (N, 2) at `places` (N, P), of swims that begin at `speed` [m/s]; NaN where one stops.
+
+        None: they begin at half a body length per period.
+        """
         with ThreadPoolExecutor(self.threads or available_cores(), thread_name_prefix="swimmer") as pool:
             return np.array(list(pool.map(lambda place: self._measured(place, speed), places)))
 
@@ -110,8 +114,11 @@ class GaitProblem:
     def _stations(self):
         return 51 if self.cost in ("greatest_torque", "tail_excursion", "strouhal") else 2
 
-    def _measured(self, place: np.ndarray, speed: float) -> tuple[float, float]:
+    def _measured(self, place: np.ndarray, speed: float | None) -> tuple[float, float]:
         try:
+            if speed is None:
+                period = swim_times(self.law(place), self.base.body.length, 1)["duration"]
+                speed = STRIDE * self.base.body.length / period
             run = self._swim(place, speed, self.periods, self._stations, estimate=False)
         except (SimulationStopped, ValueError):
             return np.nan, np.nan

@@ -31,6 +31,7 @@ from eel_dynamics.studies.progress_bar import progress_of
 from eel_dynamics.studies.steady_swim import swim_times
 
 SPREAD_OVER_BOUNDS = 16  # gaits per parameter that are tried first
+MORE_STARTS = 2  # from which a search begins where the first ones missed the speed
 MISSED = 0.01  # relative difference of the kept swim's speed from the wanted one that is told
 NOT_KEPT = 0.05  # the same, of a speed that only the swims of the search had, since they began with it
 PENALTY = 20.0  # for a missed speed, in the order of the starts
@@ -96,12 +97,14 @@ def optimise(
 
 def _front(problem: GaitProblem, wanted: np.ndarray, method: str, starts: int, seed: int, progress) -> Front:
     places = _spread(len(problem.names), seed)
-    measured = problem.measured(places, float(wanted[0]))
+    measured = problem.measured(places, None)
     found, runs, before = [], [], []
     for done, speed in enumerate(wanted.tolist()):
         progress(done, len(wanted))
-        order = np.argsort(_merit(measured, speed))[:starts]
-        place = METHODS[method](problem, np.array([*before, *places[order]]), speed, seed)
+        order = np.argsort(_merit(measured, speed))
+        place = METHODS[method](problem, np.array([*before, *places[order[:starts]]]), speed, seed)
+        if place is None:
+            place = METHODS[method](problem, places[order[starts : starts + MORE_STARTS]], speed, seed)
         if place is None:
             continue
         run = problem.run(place, speed)

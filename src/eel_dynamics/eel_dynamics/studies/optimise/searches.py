@@ -13,7 +13,8 @@ from eel_dynamics.runs.storage.tables import needed
 from eel_dynamics.studies.optimise.gait_problem import STEP, GaitProblem, NoSteadySwim
 
 MET = 1e-3  # relative difference of a speed that has been met
-EVALUATIONS, TOLERANCE = 40, 3e-4  # of SLSQP: at most, and the change of the cost that ends it, relative
+EVALUATIONS, TOLERANCE = 25, 3e-4  # of SLSQP: at most, and the change of the cost that ends it, relative
+MISSED_SPEED = 30.0  # weight of the squared logarithm of a missed speed, beside the constraint
 # Penalty of CMA-ES for a missed speed: of the cost's logarithm by the speed's. It is exact where it is steeper
 # than the front, whose cost grows with the second or third power of the speed.
 PENALTY = 6.0
@@ -46,7 +47,7 @@ def _slsqp(problem: GaitProblem, start: np.ndarray, speed: float) -> tuple[float
     with contextlib.suppress(NoSteadySwim, StopIteration):
         scale = abs(found(start)[0][1])
         scipy.optimize.minimize(
-            lambda place: (found(place)[0][1] / scale, found(place)[1][1] / scale),
+            lambda place: _with_missed_speed(*found(place), scale, speed),
             start,
             jac=True,
             method="SLSQP",
@@ -60,6 +61,16 @@ def _slsqp(problem: GaitProblem, start: np.ndarray, speed: float) -> tuple[float
         )
     met = [(measured[1], place) for measured, _, place in known.values() if abs(measured[0] / speed - 1.0) <= MET]
     return met[-1] if met else None
+
+
+def _with_missed_speed(measured, derivatives, scale: float, speed: float) -> tuple[float, np.ndarray]:
+    """Cost by `scale` and the squared miss of the speed, and the derivative (P,): none of it changes the solution.
+
+    Without the second, the line search of SLSQP may refuse a step that brings the speed and costs as much as it should.
+    """
+    missed = np.log(measured[0] / speed)
+    value = measured[1] / scale + MISSED_SPEED * missed**2
+    return value, derivatives[1] / scale + 2.0 * MISSED_SPEED * missed * derivatives[0] / measured[0]
 
 
 def _ended(measured: list[np.ndarray], speed: float) -> bool:
