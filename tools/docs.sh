@@ -17,7 +17,10 @@ if ! cmp -s docs/requirements.txt "$env/stamp"; then
 fi
 
 if [ "${1-}" = notebook ]; then
-    MPLBACKEND=module://matplotlib_inline.backend_inline "$env/bin/jupyter-execute" --inplace docs/tutorials/swim.ipynb
+    mkdir -p out/notebook   # where its recordings stay
+    cp docs/tutorials/swim.ipynb out/notebook/
+    MPLBACKEND=module://matplotlib_inline.backend_inline "$env/bin/jupyter-execute" --inplace out/notebook/swim.ipynb
+    cp out/notebook/swim.ipynb docs/tutorials/
     exit
 fi
 .venv/bin/python tools/reference_pages.py

@@ -52,8 +52,9 @@ samples of a controller between two instants. Tests of their own compare these w
 every friction law, three bodies, heads at rest and moving, 1 to 16 s, targets of 1e-2 to 1e-6. The true error is
 the distance from a reference: {first:g} points with a tolerance of {tolerance:g}, trusted where another method with
 {second:g} points agrees to a tenth of the target; else {finer:g} points with a tenth of the tolerance, and {finest:g}
-points with a hundredth, are tried in the same way. The error is known no better than these two agree. An estimate counts as below the error where it is so by
-more than that. The cost is nodes times evaluations of all its runs, relative to the delivered run's.
+points with a hundredth, are tried in the same way. The error is known no better than these two
+agree. An estimate counts as below the error where it is so by more than that. The cost is nodes times evaluations of
+all its runs, relative to the delivered run's.
 
 {table}
 
