@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# All tests but the long ones. The mechanics run in one process, which keeps account of what they measure. Beside them,
-# the files whose tests start processes and wait most of the time are dealt out to four workers, each in a ROS domain of
-# its own. Arguments go to one pytest.
+# All tests but the long ones. The files that measure (docs/appendix/validation.md) run in one process, which keeps
+# account of what they found. Beside it, all other files are dealt out to four workers, each in a ROS domain of its own:
+# most of them start processes, and wait for them. Arguments go to one pytest.
 set -uo pipefail
 if [ $# -gt 0 ]; then exec python -m pytest "$@"; fi
 
 # A test that hangs where Python's own time-out cannot reach, in compiled code, ends its pytest with all threads' stacks.
 pytest=(python -m pytest -c pyproject.toml -o faulthandler_timeout=420 -o faulthandler_exit_on_timeout=true)
-nodes=(src/eel_dynamics/test/test_node_[!r]*.py)
+mapfile -t measuring < <(grep -lE '\((.*, )?(measured|checks)\b' src/eel_dynamics/test/test_*.py)
 mkdir -p out
 declare -A beside
 stop() {
@@ -18,15 +18,15 @@ stop() {
 }
 trap stop INT TERM
 # a job in the background would ignore SIGINT, and so would pytest
-env --default-signal=INT "${pytest[@]}" --numprocesses=4 --dist=loadfile \
-    "${nodes[@]}" src/eel_ros/test src/eel_gaits/test src/eel_core/test src/eel_viz/test test > out/test-processes.log 2>&1 &
-beside[processes]=$!
+env --default-signal=INT "${pytest[@]}" --numprocesses=4 --dist=loadfile "${measuring[@]/#/--ignore=}" \
+    src/eel_dynamics/test src/eel_ros/test src/eel_gaits/test src/eel_core/test src/eel_viz/test test > out/test-others.log 2>&1 &
+beside[others]=$!
 tools/core_tests.sh tests > out/test-core.log 2>&1 &
 beside[core]=$!
-echo "[test] mechanics here; beside, shown when done: the tests that start processes, and the C++ tests"
-"${pytest[@]}" src/eel_dynamics/test "${nodes[@]/#/--ignore=}"
+echo "[test] what is measured, here; beside, shown when done: all other tests, and the C++ tests"
+"${pytest[@]}" "${measuring[@]}"
 status=$?
-for name in core processes; do
+for name in core others; do
     wait "${beside[$name]}" || status=1
     cat "out/test-$name.log"
 done

@@ -142,7 +142,7 @@ def test_functions_of_the_user_and_two_swims_per_parameter():
             "accuracy of a gradient must be a target, or .* got 'mine'",
         ),
         ({"accuracy": "fastest within 5 ms per second"}, "accuracy of a gradient must be a target"),
-        ({"duration": 1.0}, "measure mean_speed is undefined"),
+        ({"duration": 0.9}, "measure mean_speed is undefined"),
     ],
 )
 def test_bad_input_is_refused_in_one_line(given, words):

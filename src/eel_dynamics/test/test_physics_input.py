@@ -263,7 +263,7 @@ def test_a_law_beyond_all_numbers(amplitude):
         assert "bends the body into" in str(refusal) and simulation.law is None and not simulation.ready
         return
     try:
-        simulation.advance(0.05)
+        simulation.advance(0.01)
     except SimulationStopped as stop:
         assert stop.hint
         assert stop.quantity

@@ -44,9 +44,9 @@ def share_with_ramps(law, body, scene, accuracy, twist, duration):
 
 
 SCENES = [
-    pytest.param(robots_anywhere, 1_000, 0.5, id="robots"),
+    pytest.param(robots_anywhere, 500, 0.5, id="robots"),
     pytest.param(robots_anywhere, 10_000, 0.5, id="ten thousand robots", marks=pytest.mark.soak),
-    pytest.param(anywhere, 1_000, 0.5, id="all sizes"),
+    pytest.param(anywhere, 500, 0.5, id="all sizes"),
     pytest.param(anywhere, 10_000, 1.0, id="ten thousand of all sizes", marks=pytest.mark.soak),
 ]
 

@@ -232,7 +232,8 @@ def test_the_rows_of_a_measured_motion_are_streamed_ahead_of_the_simulation(gene
     before = len(samples)
     client.tick_until(0.5, lambda: len(samples) > before and stamp(samples[-1]) <= 2.5, "rows after a reset")
     client.listen()
-    assert client.set_together(gait="straight").successful and client.latest()[0] == straight()
+    assert client.set_together(gait="straight").successful
+    client.until(lambda: client.messages and client.latest()[0] == straight(), "the gait")
 
 
 def stamp(message):

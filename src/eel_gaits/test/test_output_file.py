@@ -9,6 +9,7 @@ import threading
 
 import pytest
 from eel_gaits.input_output.output_file import Draft, NotWritten, check_output, obstacle, replacing
+from eel_gaits.input_output.wording import shown
 
 OLD = b"PK\x03\x04 of yesterday"
 
@@ -66,7 +67,7 @@ def test_only_a_regular_file_of_the_same_kind_is_replaced(tmp_path):
         "fifo.npz": "it is a FIFO",
         "socket.npz": "it is a socket",
         "/dev/null": "it is a device",
-        "mistyped/run.npz": f"there is no folder '{tmp_path / 'mistyped'}'",
+        "mistyped/run.npz": f"there is no folder {shown(str(tmp_path / 'mistyped'))}",
     }.items():
         with pytest.raises(ValueError, match=r"--out .* cannot be written: ") as refused:
             check_output("--out", tmp_path / name)

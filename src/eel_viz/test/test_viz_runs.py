@@ -12,6 +12,7 @@ import made_up
 import numpy as np
 import pytest
 import rerun as rr
+from eel_gaits.input_output.wording import shown
 from eel_viz.messages import Status
 from eel_viz.recording import recordings, sinks
 from eel_viz.recording.delivery import CHECK_PERIOD
@@ -212,7 +213,7 @@ def test_a_recording_that_cannot_be_completed_stays_a_part(console, tmp_path, li
         file.close_recording(stream)
     assert file.incomplete and (tmp_path / "run.rrd").read_bytes() == b"RRF2 of yesterday"
     (told,) = (line for line in console.warned if "cannot be written any more" in line)
-    assert f"recording {str(part)!r} cannot be written any more: File too large; it ends here" in told
+    assert f"recording {shown(str(part))} cannot be written any more: File too large; it ends here" in told
     assert read(part, entities.SPEED).stamps.tolist() == [0, SECOND, 2 * SECOND]
 
 
@@ -257,7 +258,7 @@ def test_a_file_that_cannot_be_written_is_said_again_and_again_and_tried_again(t
         monkeypatch.setattr(time, "monotonic", lambda later=later: now + later)
         send(made, round(later) * SECOND)
         made.poll()
-    told = f"recording {str(path)!r} cannot be written: there is no folder {str(place)!r}: "
+    told = f"recording {shown(str(path))} cannot be written: there is no folder {shown(str(place))}: "
     told += "nothing of this run is saved; "
     assert console.warned == [told + "it is tried again while running"] * 2
     assert list(tmp_path.iterdir()) == [place]

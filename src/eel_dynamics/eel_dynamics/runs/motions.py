@@ -10,7 +10,7 @@ from eel_gaits.input_output.quantity import is_finite
 from eel_gaits.input_output.wording import shown
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.function_law import sampled
-from eel_gaits.sources.motion_file import read_motion
+from eel_gaits.sources.motion_file import SUFFIXES, read_motion
 from eel_gaits.sources.sampled_law import SampledLaw
 
 from eel_dynamics.analysis.analysis import Analysis
@@ -23,12 +23,14 @@ def law_from(motion: Motion, duration: float, length: float) -> Law | SampledLaw
     """The law of a `motion` for `duration` [s] and a body of `length` [m]. `ValueError` for what does not fit."""
     if isinstance(motion, LAWS):
         law = motion
-    elif isinstance(motion, (str, os.PathLike)):
+    elif isinstance(motion, (str, os.PathLike)) and str(motion).endswith(SUFFIXES):
         law = read_motion(motion, length=length)
     elif callable(motion):
         law = sampled(motion, duration, length=length)
     else:
-        raise ValueError(f"law must be a Law, a SampledLaw, a function K(t, X) or a motion's file, got {shown(motion)}")
+        raise ValueError(
+            f"law must be a Law, a SampledLaw, a function K(t, X) or a .csv or .npz file, got {shown(motion)}"
+        )
     check_duration(law, duration)
     return law
 

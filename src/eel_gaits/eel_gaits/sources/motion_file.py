@@ -27,6 +27,7 @@ from eel_gaits.sources.sampled_law import SampledLaw
 from eel_gaits.sources.tables import Table, read_arrays, read_table
 
 LAW = {"time", "x", "values"}  # arrays of a law's rows
+SUFFIXES = ".csv", ".npz"
 FITTING = 1e-6  # part of the body's length by which a law's rows may be shorter or longer
 
 
@@ -44,7 +45,7 @@ def read_motion(
         if not is_finite(value) or not value > 0.0:
             raise ValueError(f"{argument} must be > 0, got {shown(value)}")
     name = path.stem if name is None else name
-    if path.suffix not in (".csv", ".npz"):
+    if path.suffix not in SUFFIXES:
         raise ValueError(f"{shown(str(path))}: a motion must be in a .csv or .npz file")
     if path.suffix == ".npz" and path.is_file() and (law := _rows(path, length, name)) is not None:
         return law
