@@ -150,7 +150,7 @@ def test_a_companion_with_the_same_steps_would_miss_the_error_of_the_steps(monke
     assert estimate_with(monkeypatch, run, LOOSER=1.0, LONGER_STEPS=1.0).worst < 0.1 * true.worst
 
 
-@pytest.mark.timeout(900)
+@pytest.mark.timeout(3600)  # two thousand take a quarter of an hour on two cores
 @pytest.mark.parametrize(
     ("count", "seed"), [(200, 2026), pytest.param(2000, 11, marks=pytest.mark.soak, id="two thousand")]
 )
