@@ -95,16 +95,10 @@ def _mujoco(python: Path, ours: Ours, duration: float = 10.0):
         results = {}
         for step in (*LINK_STEPS, finest):
             angles = _joint_angles(ours, links, step, duration)
-            middle = (np.arange(links) + 0.5) * ours.body.length / links
             results[step] = measured(
                 python,
                 "mujoco_chain.py",
-                length=ours.body.length,
-                half_width=ours.body.half_width(middle),
-                half_height=ours.body.half_height(middle),
-                density=ours.body.density,
-                water=1000.0,
-                viscosity=VISCOSITY,
+                **_chain(ours, links),
                 step=step,
                 integrator="implicitfast",  # Euler and Runge-Kutta 4 are unstable with servos this stiff
                 targets=angles[:-1] + LAG * (angles[1:] - angles[:-1]) / step,
@@ -133,18 +127,12 @@ def _mujoco(python: Path, ours: Ours, duration: float = 10.0):
 def _prescribed(python: Path, ours: Ours, ends: dict, duration: float):
     """Lines of MuJoCo's chain with prescribed joints; ends: where the chain with servos comes to, by links."""
     for links in LINKS:
-        middle = (np.arange(links) + 0.5) * ours.body.length / links
         results = {}
         for step in (*PRESCRIBED_STEPS, PRESCRIBED_FINEST):
             results[step] = measured(
                 python,
                 "mujoco_prescribed.py",
-                length=ours.body.length,
-                half_width=ours.body.half_width(middle),
-                half_height=ours.body.half_height(middle),
-                density=ours.body.density,
-                water=1000.0,
-                viscosity=VISCOSITY,
+                **_chain(ours, links),
                 step=step,
                 joints=np.stack([_joint_angles(ours, links, 0.5 * step, duration, rate) for rate in range(3)], axis=1),
                 repeats=REPEATS if step > PRESCRIBED_FINEST else 1,
@@ -152,6 +140,19 @@ def _prescribed(python: Path, ours: Ours, ends: dict, duration: float):
         yield from _lines(f"{links} links, joints prescribed", results, ours, duration)
         apart = np.linalg.norm(np.array(results[PRESCRIBED_FINEST]["head"]) - ends[links])
         yield "    from the end with servos", float(apart), "m"
+
+
+def _chain(ours: Ours, links: int) -> dict:
+    """What MuJoCo's chain is in either way of driving it: half-axes (links,) [m] in the middle of each link, water."""
+    middle = (np.arange(links) + 0.5) * ours.body.length / links
+    return {
+        "length": ours.body.length,
+        "half_width": ours.body.half_width(middle),
+        "half_height": ours.body.half_height(middle),
+        "density": ours.body.density,
+        "water": 1000.0,
+        "viscosity": VISCOSITY,
+    }
 
 
 def _joint_angles(ours: Ours, links: int, step: float, duration: float, rate: int = 0):

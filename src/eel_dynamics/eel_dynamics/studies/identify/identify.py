@@ -32,7 +32,7 @@ from eel_dynamics.studies.identify.statistics import gauss_newton_covariance
 from eel_dynamics.studies.points import Point, point_at
 from eel_dynamics.studies.progress_bar import progress_of
 
-UNLIKELY = 1e-3  # probability of such residuals, for the noise given, below which the misfit is told
+UNLIKELY = 1e-3  # probability of such residuals, for the noise given, below which a warning names the misfit
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -32,7 +32,7 @@ from eel_dynamics.studies.steady_swim import swim_times
 
 SPREAD_OVER_BOUNDS = 16  # gaits per parameter that are tried first
 MORE_STARTS = 2  # from which a search begins where the first ones missed the speed
-MISSED = 0.01  # relative difference of the kept swim's speed from the wanted one that is told
+MISSED = 0.01  # relative difference of the kept swim's speed from the wanted one, above which a warning names it
 NOT_KEPT = 0.05  # the same, of a speed that only the swims of the search had, since they began with it
 PENALTY = 20.0  # for a missed speed, in the order of the starts
 
