@@ -57,7 +57,8 @@ def test_a_disk_that_is_full(start, fresh_domain, tmp_path):
     "SIGKILL while the visualiser and `record` record",
     "what was recorded up to the last second opens, the recording as `run.part.rrd`; the run goes on",
 )
-def test_what_is_killed_leaves_what_it_had(start, fresh_domain, tmp_path):
+def test_what_is_killed_leaves_what_it_had(start_to_kill, fresh_domain, tmp_path):
+    start = start_to_kill
     node = visualise(start, "sink:=[save]", f"recording:={tmp_path / 'run.rrd'}")
     recorder = start("record", "-o", str(tmp_path / "bag"))
     node.wait_for_output("saving to")

@@ -80,9 +80,8 @@ def masses(recording) -> np.ndarray:
     "it finds the law on the network and swims from 0; a third recording; the late one has body, law and what follows",
 )
 @pytest.mark.timeout(240)
-def test_nodes_die_and_come_back(start, fresh_domain, tmp_path, monkeypatch):
-    """Over UDP: SIGKILL may leave Fast DDS's shared memory locked (README.md), and then no data comes at all."""
-    monkeypatch.setenv("FASTDDS_BUILTIN_TRANSPORTS", "UDPv4")
+def test_nodes_die_and_come_back(start_to_kill, fresh_domain, tmp_path):
+    start = start_to_kill
     swim = SwimClient(domain=fresh_domain, topics=("curvature",))
     received = swim.received["curvature"]
 
@@ -155,7 +154,8 @@ def test_nodes_die_and_come_back(start, fresh_domain, tmp_path, monkeypatch):
     "the same while the visualiser stands still (SIGSTOP) until the second one's time has passed the first one's",
     "another publisher: a third recording, of the second node alone",
 )
-def test_a_dynamics_node_that_is_found_late_begins_a_new_recording(start, fresh_domain, tmp_path):
+def test_a_dynamics_node_that_is_found_late_begins_a_new_recording(start_to_kill, fresh_domain, tmp_path):
+    start = start_to_kill
     swim = SwimClient(domain=fresh_domain, topics=("curvature",))
     received = swim.received["curvature"]
     start("gait_generator")

@@ -14,6 +14,7 @@ from pathlib import Path
 
 import pytest
 
+from eel_ros import fastdds_profile
 from eel_ros.testing.node_process import NodeProcess
 from eel_ros.testing.ros_domain import reserve_domain
 
@@ -60,13 +61,23 @@ def fresh_domain(monkeypatch):
     domain.claim.close()
 
 
-def starter(folder):
-    """Yields start(executable, *arguments) -> NodeProcess, and ends what it started; output goes to `folder`."""
+# Fast DDS without shared memory. It heeds FASTDDS_BUILTIN_TRANSPORTS only where the discovery range is left to it.
+OVER_UDP = {
+    "ROS_AUTOMATIC_DISCOVERY_RANGE": "SYSTEM_DEFAULT",
+    fastdds_profile.VARIABLE: str(Path(__file__).with_name("loopback_udp.xml")),
+}
+
+
+def starter(folder, **settings: str):
+    """Yields start(executable, *arguments) -> NodeProcess, and ends what it started; output goes to `folder`.
+
+    settings: environment variables beside this process's own.
+    """
     started: list[NodeProcess] = []
 
     def start_node(executable: str, *arguments: str) -> NodeProcess:
         log = folder / f"{Path(executable).name}-{len(started)}.txt"
-        node = NodeProcess(executable, *arguments, environment=dict(os.environ), log=log)
+        node = NodeProcess(executable, *arguments, environment={**os.environ, **settings}, log=log)
         started.append(node)
         return node
 
@@ -79,6 +90,16 @@ def starter(folder):
 def start(tmp_path):
     """start(executable, *arguments) -> NodeProcess; all of them are gone when the test ends."""
     yield from starter(tmp_path)
+
+
+@pytest.fixture
+def start_to_kill(tmp_path):
+    """As `start`, for tests that kill a node while others run.
+
+    A killed node may leave a lock in shared memory behind. Fast DDS's thread of discovery in the nodes that go on then
+    waits for it without end, and they find nobody any more (eProsima/Fast-DDS issues 1144, 5053).
+    """
+    yield from starter(tmp_path, **OVER_UDP)
 
 
 @pytest.fixture
