@@ -92,11 +92,13 @@ class Swimmer(_Shared):
         nose_mass: float,
         nose_drag: float,
         distributed_pressure: bool,
+        righting: float,
     ) -> None:
         """sections: at the nodes. friction: "printed", "laminar" or "blended". resistive: drag along the body.
         first_watched: first of the speeds (0 V1, 1 V2, 2 V3, 3 Omega1, 4 Re/8e4 - 1) whose changes of sign within a
         panel are integrated exactly; 5 for none. nose_mass: m_o [kg]; nose_drag: 1/2 rho_f k_o [kg/m].
-        distributed_pressure: along the body in place of at the tail. `ValueError` names what does not fit."""
+        distributed_pressure: along the body in place of at the tail. righting [m^2/s^2]: g h of the righting moment of
+        weight and buoyancy; 0 for none. `ValueError` names what does not fit."""
 
 class LawTables(_Shared):
     """The m rows of a curvature law, each a field of X for one axis, on the nodes and stations of a swimmer."""
@@ -203,14 +205,14 @@ class March:
 
     def start(self, position: Buffer, orientation: Buffer, twist: Buffer) -> float:
         """Stands at time 0 at a position (3,) [m] with an orientation (4,) (x y z w, world from head) and the head's
-        twist (6,). The kinetic energy [J] of body and water."""
+        twist (6,). The kinetic and potential energy [J]."""
 
     def set_state(self, position: Buffer, orientation: Buffer, twist: Buffer) -> float:
         """Puts the head of the present shape at a position (3,) [m] with an orientation (4,) (x y z w, world from head)
-        and its twist (6,). The kinetic energy [J] of body and water."""
+        and its twist (6,). The kinetic and potential energy [J]."""
 
     def set_twist(self, twist: Buffer) -> float:
-        """Gives the present state the momentum of the twist (6,). The kinetic energy [J] of body and water."""
+        """Gives the present state the momentum of the twist (6,). The kinetic and potential energy [J]."""
 
     def twist(self) -> list[float]:
         """Twist (6,) in the present state. `ValueError` where the inertia is not positive definite."""

@@ -139,7 +139,8 @@ inline Grid grid_from(const py::handle& g)
 inline std::shared_ptr<const Swimmer> swimmer_from(const py::object& grid, const py::object& sections,
                                                    const py::object& stations, const std::string& friction,
                                                    bool resistive, std::size_t first_watched, bool wake,
-                                                   double nose_mass, double nose_drag, bool distributed_pressure)
+                                                   double nose_mass, double nose_drag, bool distributed_pressure,
+                                                   double righting)
 {
     auto swimmer = std::make_shared<Swimmer>();
     swimmer->grid = grid_from(grid);
@@ -155,7 +156,7 @@ inline std::shared_ptr<const Swimmer> swimmer_from(const py::object& grid, const
         throw py::value_error("friction must be 'printed', 'laminar' or 'blended', got '" + friction + "'");
     swimmer->resistive = resistive, swimmer->first_watched = first_watched, swimmer->wake = wake ? 1.0 : 0.0;
     swimmer->nose_mass = nose_mass, swimmer->nose_drag = nose_drag,
-    swimmer->distributed_pressure = distributed_pressure;
+    swimmer->distributed_pressure = distributed_pressure, swimmer->righting = righting;
 
     const auto before = array_of<std::uint64_t>(stations, "nodes_before");
     const std::size_t m = swimmer->stations = before.size();

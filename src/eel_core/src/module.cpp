@@ -37,7 +37,7 @@ py::dict build_info_as_dict()
 py::dict layout(std::size_t samples, std::size_t stations, bool wrench, bool load)
 {
     static constexpr const char* names[Profiles::quantities] = {
-        "position", "orientation", "twist",       "head_acceleration",   "center_of_mass", "kinetic",
+        "position", "orientation", "twist",       "head_acceleration",   "center_of_mass", "energies",
         "powers",   "closure",     "backbone",    "section_orientation", "curvature",      "curvature_rate",
         "torque",   "force",       "fluid_force", "resistive_force",     "tail_force",     "nose_force"};
     const Profiles profiles(samples, stations, wrench, load);
@@ -310,14 +310,14 @@ PYBIND11_MODULE(EEL_CORE_MODULE, module)
     share_in_copies(swimmer);
     swimmer.def(py::init([](const py::object& grid, const py::object& sections, const py::object& stations,
                             const std::string& friction, bool resistive, std::size_t first_watched, bool wake,
-                            double nose_mass, double nose_drag, bool distributed_pressure) {
+                            double nose_mass, double nose_drag, bool distributed_pressure, double righting) {
                     return std::const_pointer_cast<Swimmer>(swimmer_from(grid, sections, stations, friction, resistive,
                                                                          first_watched, wake, nose_mass, nose_drag,
-                                                                         distributed_pressure));
+                                                                         distributed_pressure, righting));
                 }),
                 py::arg("grid"), py::arg("sections"), py::arg("stations"), py::kw_only(), py::arg("friction"),
                 py::arg("resistive"), py::arg("first_watched"), py::arg("wake"), py::arg("nose_mass"),
-                py::arg("nose_drag"), py::arg("distributed_pressure"));
+                py::arg("nose_drag"), py::arg("distributed_pressure"), py::arg("righting"));
 
     auto law_tables = py::class_<LawTables, std::shared_ptr<LawTables>>(module, "LawTables");
     share_in_copies(law_tables);

@@ -59,6 +59,7 @@ def momentum(body, law, time, twist, settings, accuracy=DENSE):
 def expected(reference, law, time, twist, orientation=(0, 0, 0, 1)):
     """The same from the reference: shape, twist relative to the water, rate of its components, head acceleration."""
     shape = law.curvature(time, reference.space.x)
+    reference.up = rotation(orientation)[2]
     drift = rotation(orientation).T @ np.asarray(reference.scene.current, float)
     relative = np.array(twist, float)
     relative[3:] -= drift

@@ -21,6 +21,7 @@ from reference_space import Space
 from scipy.integrate import solve_ivp
 
 STEP = 1e-30  # of the complex steps
+GRAVITY = 9.80665  # m/s^2
 E1 = np.array([1.0, 0.0, 0.0])
 DRAG_ROLL, DRAG_LATERAL, DRAG_VERTICAL, NOSE_ADDED_MASS, NOSE_PRESSURE = 1.0, 1.98, 1.0, 0.32, 0.036
 
@@ -36,6 +37,7 @@ def scene(**changes):
         "perimeter": "ellipse",
         "added_mass": "corrected",
         "tail_pressure": "lumped",
+        "metacentric_height": 0.0,
         "current": (0.0, 0.0, 0.0),
         "density": None,
         "fluid_density": 1000.0,
@@ -73,7 +75,7 @@ class Reference:
         self.body, self.scene = body, settings or scene()
         settings = self.scene
         self.space = Space(sorted({*body.kinks, *splits}), **space)  # `splits`: kinks of the law
-        self.length = body.kinks[-1]
+        self.length, self.up = body.kinks[-1], np.array([0.0, 0.0, 1.0])  # up in the axes of the head: set it anew
         at_tail = np.array([self.length])
         self.a, self.b = body.half_height(self.space.x), body.half_width(self.space.x)
         density = body.density if settings.density is None else settings.density
@@ -168,6 +170,16 @@ class Reference:
         forces = friction * perimeter, 2 * DRAG_LATERAL * a, 2 * DRAG_VERTICAL * b
         return factors * np.outer(roll, E1), factors * np.stack(forces, axis=1) * square[:, 3:]
 
+    def potential_density(self, R):
+        """Potential energy (N,) [J/m] of weight and buoyancy: the weight hangs below each section's axis."""
+        weight = GRAVITY * self.scene.metacentric_height * self.inertia_body[:, 3]
+        return weight * (1.0 - R[:, :, 2] @ self.up)
+
+    def righting(self, R):
+        """Torque (N, 3) per length of weight and buoyancy: how the potential falls as each section turns."""
+        turned = [self.potential_density((np.eye(3) + 1j * STEP * _hat(axis[None])[0]) @ R) for axis in np.eye(3)]
+        return -np.stack(turned, axis=1).imag / STEP
+
     def nose_force(self, mu, mu_rate):
         """Axial force (N) on the nose: added mass times the true acceleration, and pressure drag."""
         acceleration = mu_rate[3] + np.cross(mu[:3], mu[3:])[0]
@@ -192,6 +204,7 @@ class Reference:
         still = np.zeros(6)
         matrix[3, 3] += self.nose_mass
         load[3] += self.nose_force(mu, still)
+        load[:3] += self.space.weights @ self.righting(self.configuration(K)[0])
         return np.linalg.solve(matrix, load - self.momentum_rate(K, K_rate, K_acceleration, mu, still))
 
     def fluid_wrench(self, K, K_rate, K_acceleration, mu, mu_rate):
@@ -228,7 +241,7 @@ class Reference:
         nose = self.nose_force(mu, mu_rate)
         n_sum = -nose * E1 + integrate(rates[1] + rates[3] - to_axes(resistive_force))  # n + V1 p_f
         c_slope = rates[0] + rates[2] + np.cross(to_axes(eta[:, 3:]), p_f) - np.cross(t1, n_sum)
-        c_sum = integrate(c_slope - to_axes(resistive_torque))  # c + V1 sigma_f
+        c_sum = integrate(c_slope - to_axes(resistive_torque) - self.righting(R))  # c + V1 sigma_f
         force, torque = to_section(n_sum - V1 * p_f), to_section(c_sum - V1 * sigma_f)
         tail_energy = wake * self.tail_added @ self.at_tail(eta) ** 2 / 2
         tail_residual = np.concatenate([self.at_tail(torque), self.at_tail(force) + tail_energy * E1])
@@ -246,6 +259,7 @@ class Reference:
             nose_force=nose * E1,
             fluid_energy_density=energy,
             actuator_power=-self.space.weights @ np.sum(torque * K_rate, axis=1),
+            potential=self.space.weights @ self.potential_density(R),
             wake_power=wake * self.at_tail(eta)[3] * (self.tail_added @ self.at_tail(eta) ** 2) / 2,
             nose_power=nose * mu[3],
             drag_power=self.space.weights
@@ -262,6 +276,7 @@ class Reference:
             world = rotation(q)
             drift = world.T @ current
             mu[3:] -= drift  # relative to the water
+            self.up = world[2]
             mu_rate = self.acceleration(*law.curvature(time, self.space.x), mu)
             mu_rate[3:] -= np.cross(mu[:3], drift)
             vector, scalar = q[3] * mu[:3] + np.cross(q[:3], mu[:3]), -q[:3] @ mu[:3]

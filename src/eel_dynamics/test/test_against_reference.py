@@ -46,6 +46,7 @@ SMOOTH_SCENES = [
     {"resistive": False, "tail_pressure": "distributed"},
     {"resistive": False, "current": (0.3, -0.2, 0.1)},
     {"resistive": False, "density": 1300.0, "fluid_density": 800.0},
+    {"resistive": False, "metacentric_height": 0.02, "density": 1300.0},
 ]
 DRAG_SCENES = [
     ({"friction": "laminar"}, KINKS),
@@ -53,6 +54,7 @@ DRAG_SCENES = [
     ({"friction": "none", "current": (0.3, -0.2, 0.1)}, KINKS),
     ({"friction": "laminar", "wake": False, "tail_pressure": "distributed"}, KINKS),
     ({"friction": "laminar", "viscosity": 1e-4, "reactive": False}, KINKS),
+    ({"friction": "laminar", "metacentric_height": -0.03}, KINKS),
     ({"friction": "printed"}, 1e-4),
 ]
 
@@ -89,11 +91,11 @@ def check(measured, kind, body, law, time, twist, q, settings, tolerance, splits
         distance(got.nose_force, fields.nose_force, lateral),
         distance(got.resistive_force[inner], resistive[inner], lateral),
     ]
-    kinetic = np.array(reference.energies(shape[0], shape[1], relative))
+    energies = np.array([*reference.energies(shape[0], shape[1], relative), fields.potential])
     powers = [fields.actuator_power, fields.wake_power, fields.nose_power, fields.drag_power]
     names = ["actuator_power", "wake_power", "nose_power", "drag_power"]
     energy_apart = [
-        distance((got.energy.kinetic_body, got.energy.kinetic_fluid), kinetic),
+        distance([got.energy[name] for name in ("kinetic_body", "kinetic_fluid", "potential")], energies),
         distance([getattr(got.energy, name) for name in names], powers),
     ]
     apart = [*shape_apart, *loads_apart, *energy_apart]

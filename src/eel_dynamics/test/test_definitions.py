@@ -98,7 +98,7 @@ def powers(run, means=MEANS):
     fields = {f"{name}_power": means[name] + SWINGS[name] * np.sin(TURN * time) for name in means}
     for name in means:
         fields[f"{name}_work"] = means[name] * time + SWINGS[name] * (1 - np.cos(TURN * time)) / TURN
-    return dataclasses.replace(run, energy=EnergyLedger(kinetic_body=none, kinetic_fluid=none, residual=none, **fields))
+    return dataclasses.replace(run, energy=EnergyLedger(**dict.fromkeys(EnergyLedger.keys(), none) | fields))
 
 
 @pytest.mark.parametrize("periods", [None, 1, 4])

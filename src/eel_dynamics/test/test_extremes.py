@@ -79,7 +79,7 @@ def test_a_fixed_step_that_is_stable_and_inexact_is_warned_of():
 
 
 def test_what_is_not_finite_is_found_with_its_sample():
-    arrays = {"kinetic": np.ones((5, 2)), "position": np.zeros((5, 3))}
+    arrays = {"energies": np.ones((5, 2)), "position": np.zeros((5, 3))}
     arrays["position"][3, 1] = np.nan
     whole = np.concatenate([array.ravel() for array in arrays.values()])
     out, works = SimpleNamespace(_asdict=lambda: arrays | {"whole": whole}, whole=whole, **arrays), np.zeros((5, 4))

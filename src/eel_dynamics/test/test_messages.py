@@ -151,7 +151,7 @@ def test_joint_states_are_the_actuators_of_the_library():
 def test_energy_has_every_field(swum):
     snapshot, messages = swum
     names = [name for name in messages["energy"].get_fields_and_field_types() if name != "header"]
-    assert len(names) == 7
+    assert len(names) == 8
     for name in names:
         assert getattr(messages["energy"], name) == getattr(snapshot.energy, name)
 

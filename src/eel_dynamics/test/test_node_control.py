@@ -134,7 +134,8 @@ def test_parameters_at_run_time(start, client):
 def test_parameters_are_described(start, client):
     swim = client(topics=())
     start("dynamics")
-    rate, factor, friction = swim.describe("rate", "real_time_factor", "scene.friction")
+    names = "rate", "real_time_factor", "scene.friction", "scene.metacentric_height"
+    rate, factor, friction, height = swim.describe(*names)
     assert (
         not rate.read_only
         and "[Hz]; a change acts at the next reset" in rate.description
@@ -142,6 +143,7 @@ def test_parameters_are_described(start, client):
     )
     assert not factor.read_only and factor.floating_point_range[0].from_value == 0.0
     assert friction.additional_constraints == "one of printed, laminar, blended, none" and friction.description
+    assert "[m]" in height.description and not height.floating_point_range  # top-heavy bodies too
 
 
 @pytest.mark.fault(

@@ -36,15 +36,23 @@ def test_parameters_that_act_at_the_next_reset(start, client, tmp_path):
     path = tmp_path / "fish.csv"
     rows = [(0, 0, 0), (0.2, 0.02, 0.04), (0.6, 0.02, 0.03), (1.0, 0.01, 0.02), (1.2, 0.005, 0.01)]
     path.write_text("x,half_width,half_height\n" + "\n".join(",".join(map(str, row)) for row in rows) + "\n")
-    swim = client(topics=("head_pose", "backbone", "internal_wrench"))
+    swim = client(topics=("head_pose", "backbone", "internal_wrench", "energy"))
     swim.laws.publish(law_to_message(falling()))
     node = start("dynamics", "--ros-args")
     swim.until_time(0.2, "internal_wrench")
     changes = {"body": str(path), "rate": 50, "stations": 21, "accuracy": 1e-3, "initial_position": [1.0, 2.0, -3.0]}
     changes |= {"scene.internal_wrench": False, "scene.density": 900, "initial_linear_velocity": [0.1, 0.0, 0.0]}
+    changes |= {"scene.metacentric_height": 0.01, "initial_orientation": [0.6, 0.0, 0.0, 0.8]}
     answers = swim.set(**changes)
     assert [(each.successful, each.reason) for each in answers] == [(True, "acts at the next reset")] * len(changes)
-    bad = {"body": "whale", "initial_orientation": [0.0] * 4, "stations": 1, "scene.friction": "sticky", "rate": 0.0}
+    bad = {
+        "scene.metacentric_height": float("nan"),
+        "body": "whale",
+        "initial_orientation": [0.0] * 4,
+        "stations": 1,
+        "scene.friction": "sticky",
+        "rate": 0.0,
+    }
     for name, value in bad.items():
         (answer,) = swim.set(**{name: value})
         assert not answer.successful and name.removeprefix("scene.") in answer.reason, answer.reason
@@ -61,6 +69,7 @@ def test_parameters_that_act_at_the_next_reset(start, client, tmp_path):
     swim.until(lambda: len(poses) > poses.index(first) + 5, "samples at 50 Hz")
     stamps = [nanoseconds(each.header.stamp) for each in poses[-5:]]
     assert all(stamp % 20_000_000 == 0 for stamp in stamps) and swim.diagnosis()[2]["accuracy"]
+    assert any(each.potential > 0.0 for each in swim.received["energy"])
     swim.until(lambda: swim.node.count_publishers("internal_wrench") == 0, "the end of a topic")
     assert "ERROR" not in node.output()
 

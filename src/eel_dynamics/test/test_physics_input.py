@@ -131,6 +131,9 @@ def test_body_from_files(tmp_path):
         ({"density": 0.0}, ("density", "0")),
         ({"fluid_density": -1.0}, ("fluid_density", "-1")),
         ({"viscosity": np.inf}, ("viscosity", "inf")),
+        ({"metacentric_height": np.nan}, ("metacentric_height", "nan")),
+        ({"metacentric_height": "low"}, ("metacentric_height", "low")),
+        ({"metacentric_height": True}, ("metacentric_height", "True")),
     ],
 )
 def test_scene(given, words):

@@ -29,6 +29,8 @@ IDENTITIES = {
     "Lighthill": "Planar motion without drag is Lighthill's theory: large amplitude (1971; eqs (1), (61) of the paper) "
     "and, in the limit, the linear one (1960).",
     "No water": "Momentum and angular momentum stay; kinetic energy is the work of the actuators.",
+    "Righting moment": "Weight below buoyancy: a pendulum in water, a torque from a potential, no direction special "
+    "but up.",
     "Rigid body": "The straight rigid body has closed forms: Munk's moment, coasting, Euler's top.",
     "Symmetry": "Another pose, a mirror, the plane, rest, a current.",
     "Convergence": "Orders in time and in space, and what the presets reach on the falling gait over 10 s.",

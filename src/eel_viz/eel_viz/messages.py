@@ -93,6 +93,7 @@ class Status:
 ENERGY_FIELDS = (
     "kinetic_body",
     "kinetic_fluid",
+    "potential",
     "actuator_power",
     "wake_power",
     "nose_power",

@@ -126,6 +126,7 @@ class Swimmer:
         return {
             "kinetic_body": 0.1 * ramp,
             "kinetic_fluid": 0.25 * ramp * (1 + 0.2 * np.sin(4 * np.pi * t)),
+            "potential": 0.02 * ramp,
             "actuator_power": actuator,
             "wake_power": -0.5 * actuator,
             "nose_power": -0.03 * ramp,

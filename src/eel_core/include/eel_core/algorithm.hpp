@@ -31,6 +31,7 @@ bool find_motion(const Swimmer& swimmer, const Law& law, double time, const Stat
     if (!find_twist(swimmer, work)) return false;  // section 6
     add_head_motion(swimmer, work.twist, work.position, work.omega, work.velocity);
     find_loads(swimmer, work);
+    if (swimmer.righting != 0.0) set_righting_torque(swimmer, head_frame(y, M()), work);
     return true;
 }
 

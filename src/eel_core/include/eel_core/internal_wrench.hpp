@@ -11,6 +11,7 @@
 #include "eel_core/drag_kinks.hpp"
 #include "eel_core/loads.hpp"
 #include "eel_core/momentum.hpp"
+#include "eel_core/righting.hpp"
 
 namespace eel_core {
 
@@ -103,6 +104,7 @@ void find_accelerations(const Swimmer& swimmer, const Law& law, Workspace<M>& wo
     const double drag_of_nose = nose_drag(swimmer, work.twist.linear.x);
     auto left = work.tail + work.drag - set_inertial_density(swimmer, work);
     left.linear.x += drag_of_nose;
+    if (swimmer.righting != 0.0) left.angular += work.righting;
     auto head = components_of(left);
     work.inertia.solve(head);
     work.head_acceleration = Components<Twist<M, double>>::make([&](std::size_t k) { return head[k]; });
@@ -110,6 +112,7 @@ void find_accelerations(const Swimmer& swimmer, const Law& law, Workspace<M>& wo
     add_head_motion(swimmer, work.head_acceleration, work.position, work.alpha, work.acceleration);
     work.balance = set_inertial_density(swimmer, work) - work.drag;
     if (swimmer.resistive) add_resistance(swimmer, work);
+    if (swimmer.righting != 0.0) take_righting_torque(swimmer, work);
     work.nose_force = drag_of_nose - swimmer.nose_mass * work.head_acceleration.linear.x;
 }
 

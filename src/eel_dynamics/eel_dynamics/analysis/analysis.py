@@ -14,8 +14,8 @@ import numpy as np
 
 from eel_dynamics.analysis.averaging_window import AveragingWindow
 from eel_dynamics.analysis.friction_power import drag_powers
+from eel_dynamics.model.section_data import GRAVITY
 
-GRAVITY = 9.80665  # m/s^2, standard
 SETTLED = 0.01  # change of the speed within the window, relative
 AT_REST = 1e-9  # of the body's length in a period: slower is round-off, and no motion
 

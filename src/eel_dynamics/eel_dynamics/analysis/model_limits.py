@@ -120,11 +120,11 @@ class ModelLimits:
     def of_ledger(self, energy, most: float = OPEN) -> str:
         """A warning if the residual of an `EnergyLedger` of (T,) arrays exceeds the share `most` of the energy.
 
-        The energy is the greatest sum of kinetic energies and works at the samples; it misses what comes and goes
+        The energy is the greatest sum of energies and works at the samples; it misses what comes and goes
         between two samples, as in a sudden ramp.
         """
-        works = energy.actuator_work, energy.wake_work, energy.nose_work, energy.drag_work
-        passed = np.max(energy.kinetic_body + energy.kinetic_fluid + sum(np.abs(work) for work in works), initial=0.0)
+        signed = energy.potential, energy.actuator_work, energy.wake_work, energy.nose_work, energy.drag_work
+        passed = np.max(energy.kinetic_body + energy.kinetic_fluid + sum(np.abs(each) for each in signed), initial=0.0)
         residual = np.max(np.abs(energy.residual), initial=0.0)
         if residual <= most * passed:
             return ""

@@ -36,10 +36,11 @@ def _of_the_run(run) -> list[str]:
     if run.energy is not None:
         e = run.energy
         kinetic = e.kinetic_body[-1] + e.kinetic_fluid[-1] - e.kinetic_body[0] - e.kinetic_fluid[0]
+        potential = f"potential {e.potential[-1] - e.potential[0]:+.4g}, " if np.any(e.potential) else ""
         lines.append(
             f"energy [J]          actuators {e.actuator_work[-1]:+.4g}, wake {e.wake_work[-1]:+.4g}, "
             f"nose {e.nose_work[-1]:+.4g}, "
-            f"drag {e.drag_work[-1]:+.4g}, kinetic {kinetic:+.4g}, residual {e.residual[-1]:+.1e}"
+            f"drag {e.drag_work[-1]:+.4g}, kinetic {kinetic:+.4g}, {potential}residual {e.residual[-1]:+.1e}"
         )
     return lines
 

@@ -4,6 +4,12 @@
 The switches name the parts of the model of Boyer, Porez and Leroyer (2010): reactive (added mass, wake: eq. 36-37, 60),
 resistive (section 7.2.1), nose (section 7.2.1), and the readings of its printed formulae.
 
+`metacentric_height` is ours: each section's weight acts that far below its buoyancy, along its own axis 3. Weight and
+buoyancy are equal, so they are a torque alone, m g h (e3 x up) per length, with the potential energy
+m g h (1 - e3 . up). It rights the body in roll and in pitch; in a planar scene it does nothing. Only this moment is
+modelled: the mass stays on the backbone. A mass that hangs low would also lag behind a sideways acceleration a, and
+roll the section by m h a per length; the moment of inertia in roll would have m h^2 more.
+
 Without `wake` each section keeps its own water. The balance of the strips (50) then leaves out the terms d/dX of
 V1 sigma_f and of V1 p_f - T_f t1. It also leaves out their sum at the tail: the momentum flux and the pressure of eq.
 (51) and (60). The model is then a chain of bodies in a perfect fluid (Kirchhoff), which sheds nothing. Only drag, and
@@ -14,7 +20,7 @@ a run shows how much of a motion is due to the wake. It is no model of a fish.
 from dataclasses import dataclass, field, fields
 
 import numpy as np
-from eel_gaits.input_output.quantity import documented
+from eel_gaits.input_output.quantity import documented, number
 from eel_gaits.input_output.wording import shown
 
 from eel_dynamics.model.arguments import checked_number, checked_row
@@ -53,6 +59,14 @@ class Scene:
     perimeter: str = _choice("ellipse", PERIMETER, "perimeter of a section: the ellipse's, or half of it as printed")
     added_mass: str = _choice(
         "corrected", ADDED_MASS, "added mass across each half-axis: the ellipse's, or swapped as printed in eq. (37)"
+    )
+    metacentric_height: float = field(
+        default=0.0,
+        metadata={
+            "unit": "m",
+            "description": "height of each section's buoyancy above its weight, along its axis 3: a moment that rights "
+            "roll and pitch; below 0: top-heavy; 0: none",
+        },
     )
     internal_wrench: bool = _switch(True, "internal force and torque along the body at output instants")
     ledger: bool = _switch(True, "energy ledger, integrated along with the motion")
@@ -102,9 +116,11 @@ class Scene:
                     )
             elif item.name == "current":
                 object.__setattr__(self, "current", tuple(checked_row("scene current", value, 3).tolist()))
+            elif item.name == "metacentric_height":
+                object.__setattr__(self, item.name, number("scene metacentric_height", value))
             elif not (item.name == "density" and value is None):
                 zero = not item.metadata.get("exclusive")
-                number = checked_number(f"scene {item.name}", value, item.metadata["unit"], zero=zero)
-                object.__setattr__(self, item.name, number)
+                checked = checked_number(f"scene {item.name}", value, item.metadata["unit"], zero=zero)
+                object.__setattr__(self, item.name, checked)
         if self.planar and self.current[2] != 0.0:
             raise ValueError(f"scene current must lie in the plane z = 0 of a planar scene, got {shown(self.current)}")

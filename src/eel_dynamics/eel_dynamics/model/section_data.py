@@ -22,6 +22,7 @@ from eel_dynamics.model.scene import Scene
 
 WATCHED = {"all": 1, "jumps": 4, "none": 5}  # first of the speeds (V1, V2, V3, Omega1, Re/8e4 - 1) whose changes of
 # sign within a panel are integrated exactly
+GRAVITY = 9.80665  # m/s^2, standard
 TRANSITION = 8.0e4  # Reynolds number at which the printed friction law jumps from laminar to turbulent
 
 
@@ -92,7 +93,17 @@ def core_swimmer(body: Body, scene: Scene, grid: Grid, sections: SectionData, x,
         nose_mass=nose_mass,
         nose_drag=nose_drag,
         distributed_pressure=scene.tail_pressure == "distributed",
+        righting=GRAVITY * scene.metacentric_height,
     )
+
+
+def righting_time(scene: Scene, sections: SectionData, weight: np.ndarray) -> float:
+    """Inverse angular frequency [s] of the straight body's small roll; infinite without a righting moment.
+
+    sections: at the nodes, whose integration weights are weight (n,) [m].
+    """
+    moment = GRAVITY * abs(scene.metacentric_height) * float(weight @ sections.mass)
+    return float(np.sqrt(weight @ sections.inertia1 / moment)) if moment > 0.0 and not scene.planar else np.inf
 
 
 def stations_of(body: Body, scene: Scene, grid: Grid, x: np.ndarray) -> StationData:

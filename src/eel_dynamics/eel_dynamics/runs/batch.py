@@ -79,7 +79,7 @@ class Batch:
     force: np.ndarray | None  # (B, T, M, 3) N, section axes
     fluid_force: np.ndarray | None  # (B, T, M, 3) N/m, section axes; with `load` only
     energy: EnergyLedger | None  # one (B, T) array per field
-    _out: tuple = ()  # profiles, works, kinetic energy at the start, of all, for `__getitem__`
+    _out: tuple = ()  # profiles, works, energy at the start, of all, for `__getitem__`
 
     def __len__(self) -> int:
         return len(self.laws)
@@ -130,7 +130,7 @@ class Batch:
             times=self.time[:done],
             out=_of_one(out, index),
             works=works[index, :done],
-            kinetic_at_start=start[index],
+            energy_at_start=start[index],
             wrench=scene.internal_wrench and has_stations,
             load=self.fluid_force is not None,
             steps=int(self.steps[index]),
@@ -226,7 +226,7 @@ def simulate_batch(
             return
         run = found.run
         _copy(found.out, out, index)
-        works[index], start[index], errors[index] = found.works, found.kinetic_at_start, found.stopped
+        works[index], start[index], errors[index] = found.works, found.energy_at_start, found.stopped
         settings[index], estimates[index] = run.accuracy, run.error_estimate
         counts[:, index] = len(run.time), run.steps, run.evaluations, run.nodes
 
@@ -264,7 +264,7 @@ def _batch_of(swimmers, found, times, x, out, works, start, wrench, load, statio
         head_acceleration=out.head_acceleration,
         center_of_mass=out.center_of_mass,
         x=np.array(x),
-        energy=EnergyLedger.of(out.kinetic, out.powers, works, start[:, None]) if ledger else None,
+        energy=EnergyLedger.of(out.energies, out.powers, works, start[:, None]) if ledger else None,
         _out=(out, works, start),
         **along,
     )
@@ -296,7 +296,7 @@ def _batch_from(contents: Contents, laws=None, bodies=None, scenes=None) -> Batc
         list(arrays["x"]),
         out,
         works,
-        arrays["kinetic_at_start"],
+        arrays["energy_at_start"],
         wrench,
         "fluid_force" in arrays,
         stations,

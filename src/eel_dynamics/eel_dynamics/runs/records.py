@@ -15,8 +15,8 @@ from eel_dynamics.model.axes import turn_quaternion, turn_vector
 SECOND = 1_000_000_000  # ns
 AXES = (1, 2, 3)
 ENERGIES = (
-    *("kinetic_body", "kinetic_fluid", "actuator_power", "wake_power", "nose_power", "drag_power"),
-    "residual",
+    *("kinetic_body", "kinetic_fluid", "potential", "actuator_power", "wake_power", "nose_power"),
+    *("drag_power", "residual"),
 )
 
 

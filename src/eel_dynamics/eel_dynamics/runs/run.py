@@ -346,7 +346,7 @@ class Swim(NamedTuple):
     run: Run
     out: Observations
     works: np.ndarray  # (T, 4) J
-    kinetic_at_start: float  # J
+    energy_at_start: float  # J
     stopped: SimulationStopped | None
 
 
@@ -378,14 +378,14 @@ class SwimRequest(NamedTuple):
             times=self.times[:done],
             out=out,
             works=works[:done],
-            kinetic_at_start=simulation.kinetic_at_start,
+            energy_at_start=simulation.energy_at_start,
             wrench=self.wrench,
             load=self.load,
             steps=steps,
             evaluations=evaluations,
             nodes=len(simulation.grid.x),
         )
-        return Swim(run, out, works, simulation.kinetic_at_start, stopped)
+        return Swim(run, out, works, simulation.energy_at_start, stopped)
 
 
 def _with_stable_step(stopped: SimulationStopped, again, accuracy: Accuracy) -> SimulationStopped:
@@ -447,7 +447,7 @@ def run_of(
     times,
     out,
     works,
-    kinetic_at_start,
+    energy_at_start,
     wrench,
     load,
     steps,
@@ -458,7 +458,7 @@ def run_of(
     """The `Run` of observations `out` and `works`, cut to the samples at `times`, which were reached."""
     if len(times) < len(out.position):
         out = Observations(*(array[: len(times)] for array in out[:-1]), out.whole)
-    energy = EnergyLedger.of(out.kinetic, out.powers, works, kinetic_at_start) if scene.ledger else None
+    energy = EnergyLedger.of(out.energies, out.powers, works, energy_at_start) if scene.ledger else None
     return Run(
         law=law,
         body=body,

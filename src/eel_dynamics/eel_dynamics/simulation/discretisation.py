@@ -14,7 +14,7 @@ from eel_dynamics.model.grid import Grid
 from eel_dynamics.model.inertia import check_inertia
 from eel_dynamics.model.panels import panels_of
 from eel_dynamics.model.scene import Scene
-from eel_dynamics.model.section_data import SectionData, core_swimmer, nose_of, sections_of
+from eel_dynamics.model.section_data import SectionData, core_swimmer, nose_of, righting_time, sections_of
 
 
 class GridSettings(NamedTuple):
@@ -43,6 +43,7 @@ class Discretisation(NamedTuple):
     sections: SectionData  # at the nodes
     swimmer: eel_core.Swimmer  # all of it, for the compiled mechanics
     mass: float  # kg, of the body
+    righting_time: float  # s
     tabulation: Tabulation
 
     def __deepcopy__(self, memo: dict) -> "Discretisation":
@@ -63,4 +64,5 @@ def discretise(body: Body, scene: Scene, settings: GridSettings, stations: bytes
     base = np.where(nodes_before > 0, grid.x[nodes_before - 1], 0.0)
     swimmer = core_swimmer(body, scene, grid, sections, x, settings.kinks)
     tabulation = Tabulation(grid.x, grid.previous, x, base)
-    return Discretisation(grid, sections, swimmer, float(grid.weight @ sections.mass), tabulation)
+    mass, righting = float(grid.weight @ sections.mass), righting_time(scene, sections, grid.weight)
+    return Discretisation(grid, sections, swimmer, mass, righting, tabulation)

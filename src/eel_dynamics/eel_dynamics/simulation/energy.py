@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """The energy ledger: where the work of the actuators goes (eq. 60 times the head's twist).
 
-    d/dt (kinetic_body + kinetic_fluid) = actuator_power + wake_power + nose_power + drag_power
+    d/dt (kinetic_body + kinetic_fluid + potential) = actuator_power + wake_power + nose_power + drag_power
 
 A positive power feeds energy into body and water. The power of the wake is V1(l) T_f(l). It is positive where the tail
 leads, which is a limit of the theory. The power of the nose includes that of its added mass, so kinetic_fluid does not
-include 1/2 m_o V1^2. The power of the drag does not include the nose.
+include 1/2 m_o V1^2. The power of the drag does not include the nose. The potential energy is that of
+the righting moment (`Scene.metacentric_height`), 0 where every section stands upright.
 """
 
 from dataclasses import dataclass, fields
@@ -21,11 +22,12 @@ class EnergyLedger:
 
     kinetic_body: np.ndarray  # J
     kinetic_fluid: np.ndarray  # J
+    potential: np.ndarray  # J, of weight and buoyancy
     actuator_power: np.ndarray  # W
     wake_power: np.ndarray  # W
     nose_power: np.ndarray  # W
     drag_power: np.ndarray  # W
-    residual: np.ndarray  # J, change of the kinetic energy since the start less the integral of the powers
+    residual: np.ndarray  # J, change of all energy since the start less the integral of the powers
     actuator_work: np.ndarray  # J, integrals of the powers since the start
     wake_work: np.ndarray  # J
     nose_work: np.ndarray  # J
@@ -51,16 +53,16 @@ class EnergyLedger:
         return [item.name for item in fields(EnergyLedger)]
 
     @staticmethod
-    def of(kinetic: np.ndarray, powers: np.ndarray, works: np.ndarray, start: float) -> "EnergyLedger":
+    def of(energies: np.ndarray, powers: np.ndarray, works: np.ndarray, start: float) -> "EnergyLedger":
         """A ledger from its numbers.
 
-        kinetic (..., 2) [J]: of body and water. powers (..., 4) [W] and works (..., 4) [J]: of actuators, wake, nose
-        and drag. start [J]: the kinetic energy at the start.
+        energies (..., 3) [J]: kinetic of body and of water, potential. powers (..., 4) [W] and works (..., 4) [J]: of
+        actuators, wake, nose and drag. start [J]: the sum of the energies at the start.
         """
-        if kinetic.ndim == 1:  # an instant, for a node at real time
-            kinetic, powers, works = kinetic.tolist(), powers.tolist(), works.tolist()
-            return EnergyLedger(*kinetic, *powers, sum(kinetic) - start - sum(works), *works)
-        residual = kinetic.sum(axis=-1) - start - works.sum(axis=-1)
-        return EnergyLedger(
-            kinetic[..., 0], kinetic[..., 1], *np.moveaxis(powers, -1, 0), residual, *np.moveaxis(works, -1, 0)
-        )
+        if energies.ndim == 1:  # an instant, for a node at real time
+            energies, powers, works = energies.tolist(), powers.tolist(), works.tolist()
+            return EnergyLedger(*energies, *powers, sum(energies) - start - sum(works), *works)
+        residual = energies.sum(axis=-1) - start - works.sum(axis=-1)
+        columns = (np.moveaxis(each, -1, 0) for each in (energies, powers, works))
+        energies, powers, works = columns
+        return EnergyLedger(*energies, *powers, residual, *works)

@@ -38,9 +38,9 @@ class LawDrivenMarch:
         self._march = eel_core.March(self.discretisation.swimmer, *self._method)
         self._hand_over_law(smoothly=False)
         position, orientation, _ = setup.initial_state
-        self.kinetic_at_start = self._march.start(position, orientation, setup.initial_twist)
-        if not np.isfinite(self.kinetic_at_start):
-            raise SimulationStopped(0.0, "kinetic energy", self.kinetic_at_start, "start slower")
+        self.energy_at_start = self._march.start(position, orientation, setup.initial_twist)
+        if not np.isfinite(self.energy_at_start):
+            raise SimulationStopped(0.0, "kinetic energy", self.energy_at_start, "start slower")
 
     def copy_with(self, setup: SimulationSetup) -> "LawDrivenMarch":
         """A copy in the present state, on a grid for the accuracy of `setup`, which differs in that alone."""
@@ -88,7 +88,7 @@ class LawDrivenMarch:
         self._bounds = self._step_bounds()
         self._hand_over_law(smoothly=False)
         self._march.set_state(state.position, state.orientation, relative)
-        self.kinetic_at_start += energy - present
+        self.energy_at_start += energy - present
 
     def refine(self, needs: ShapeNeeds):
         """Make the grid fine enough for the `needs`. The head's motion does not change."""
@@ -149,7 +149,7 @@ class LawDrivenMarch:
             mass=self.discretisation.mass,
             length=length,
             speed=follower.speed(length),
-            scale=min(follower.time_scale, self._time_scale),
+            scale=min(follower.time_scale, self._time_scale, self.discretisation.righting_time),
             most_evaluations=setup.most_evaluations,
         )
 
@@ -209,7 +209,7 @@ class LawDrivenMarch:
                 if look is not None and status == UNFINISHED:
                     look(self._march.time)
             self.time = self._march.time
-        failure = first_bad_sample(out, works, done, self.kinetic_at_start, self._energy_floor)
+        failure = first_bad_sample(out, works, done, self.energy_at_start, self._energy_floor)
         if failure:
             done, quantity, value = failure
         if done:

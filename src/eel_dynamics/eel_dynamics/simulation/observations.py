@@ -17,7 +17,7 @@ class Observations(NamedTuple):
     twist: np.ndarray  # (T, 6) rad/s, m/s, head's axes
     head_acceleration: np.ndarray  # (T, 6) rad/s^2, m/s^2, true acceleration of the head, head's axes
     center_of_mass: np.ndarray  # (T, 3) m, world
-    kinetic: np.ndarray  # (T, 2) J, body and water
+    energies: np.ndarray  # (T, 3) J, kinetic of body and of water, potential
     powers: np.ndarray  # (T, 4) W, actuators, wake, nose, drag
     closure: np.ndarray  # (T, 2) N m, N: what is left at the nose of the internal wrench
     backbone: np.ndarray  # (T, M, 3) m, world

@@ -2,7 +2,7 @@
 """Checks of a run's samples before they are returned: all are finite, and the energy ledger closes.
 
 A fixed step that is too long does not fail by itself: the motion grows, but every number stays finite. The ledger (eq.
-60 times the head's twist) shows the error: the kinetic energy gains more than the integral of the powers. Where this
+60 times the head's twist) shows the error: the energy gains more than the integral of the powers. Where this
 excess is more than a share of all energy that was there or passed, the motion is not that of the model. A motion below
 `floor`, too small on the body's scale to need steps of its own, passes: its error is relative to the body's length.
 """
@@ -17,7 +17,7 @@ OPEN = 0.2  # share of the energy; at twice the longest useful step of the robot
 def first_bad_sample(out, works: np.ndarray, done: int, start: float, floor: float) -> tuple[int, str, float] | None:
     """The first bad sample of the first `done` ones: its index, the quantity and its value. None where all are good.
 
-    out: `Observations`. works (T, 4) [J]. start [J]: the kinetic energy at the start. floor [J]: energy that counts as
+    out: `Observations`. works (T, 4) [J]. start [J]: the energy at the start. floor [J]: energy that counts as
     none; where it is infinite, the ledger is not checked.
     """
     with np.errstate(over="ignore", invalid="ignore"):
@@ -26,7 +26,7 @@ def first_bad_sample(out, works: np.ndarray, done: int, start: float, floor: flo
             arrays = {**out._asdict(), "works": works}
             del arrays["whole"]
             failures = [_not_finite(name, array[:done]) for name, array in arrays.items()]
-        failures += [_open(out.kinetic[:done], works[:done], start, floor)] if done and np.isfinite(floor) else []
+        failures += [_open(out.energies[:done], works[:done], start, floor)] if done and np.isfinite(floor) else []
     return min((each for each in failures if each), default=None, key=lambda each: each[0])
 
 
@@ -41,9 +41,9 @@ def _not_finite(name: str, array: np.ndarray):
     return sample, f"{name.replace('_', ' ')} is not finite", value
 
 
-def _open(kinetic: np.ndarray, works: np.ndarray, start: float, floor: float):
-    residual = np.abs(kinetic.sum(axis=1) - start - works.sum(axis=1))
-    there = np.maximum(kinetic.sum(axis=1) + np.abs(works).sum(axis=1), start)
+def _open(energies: np.ndarray, works: np.ndarray, start: float, floor: float):
+    residual = np.abs(energies.sum(axis=1) - start - works.sum(axis=1))
+    there = np.maximum(np.abs(energies).sum(axis=1) + np.abs(works).sum(axis=1), start)
     passed = np.maximum.accumulate(there) + floor
     bad = residual > OPEN * passed
     if not bad.any():

@@ -202,7 +202,7 @@ class Simulation:
         """Put the head elsewhere, with another twist, at the present time. The arguments are those of `Simulation`.
 
         The shape and its motion go on. The momentum becomes that of the twist. The ledger leaves out the jump of the
-        kinetic energy. `ValueError` for a state that the scene does not allow, or without a finite energy.
+        energy. `ValueError` for a state that the scene does not allow, or without a finite energy.
         """
         self._march.set_state(checked_state(self.scene, position, orientation, twist))
 
@@ -227,7 +227,7 @@ class Simulation:
         wrench, load = bool(wrench and self.scene.internal_wrench), bool(load)
         out = empty_observations(1, len(self.x), wrench, load)
         self._march.observe(out, wrench, load)
-        return Snapshot.of(out, self.time, self.x, self.works if self.scene.ledger else None, self.kinetic_at_start)
+        return Snapshot.of(out, self.time, self.x, self.works if self.scene.ledger else None, self.energy_at_start)
 
     @property
     def head(self) -> InitialState:
@@ -251,9 +251,9 @@ class Simulation:
         return out, works, *self._march.record(np.array(times, dtype=float), out, works, wrench, load, look)
 
     @property
-    def kinetic_at_start(self) -> float:
-        """Kinetic energy [J] of body and water in the initial state."""
-        return self._march.kinetic_at_start
+    def energy_at_start(self) -> float:
+        """Kinetic and potential energy [J] in the initial state."""
+        return self._march.energy_at_start
 
     @property
     def works(self) -> np.ndarray:

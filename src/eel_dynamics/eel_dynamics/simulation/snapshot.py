@@ -38,11 +38,11 @@ class Snapshot:
 
     @staticmethod
     def of(
-        out: Observations, time: float, x: np.ndarray, works: np.ndarray | None, kinetic_at_start: float
+        out: Observations, time: float, x: np.ndarray, works: np.ndarray | None, energy_at_start: float
     ) -> "Snapshot":
         """A snapshot from `out`, observed once at `time` [s] at the stations x (M,) [m].
 
-        works (4,) [J]: of actuators, wake, nose and drag since the start; None without a ledger. kinetic_at_start [J].
+        works (4,) [J]: of actuators, wake, nose and drag since the start; None without a ledger. energy_at_start [J].
         """
         wrench, load, ledger = len(out.torque) > 0, len(out.fluid_force) > 0, works is not None
         return Snapshot(
@@ -63,7 +63,7 @@ class Snapshot:
             resistive_force=out.resistive_force[0] if load else None,
             tail_force=out.tail_force[0] if load else None,
             nose_force=out.nose_force[0] if load else None,
-            energy=EnergyLedger.of(out.kinetic[0], out.powers[0], works, kinetic_at_start) if ledger else None,
+            energy=EnergyLedger.of(out.energies[0], out.powers[0], works, energy_at_start) if ledger else None,
             closure_torque=float(out.closure[0, 0]) if wrench else None,
             closure_force=float(out.closure[0, 1]) if wrench else None,
             actuator_work=float(works[0]) if ledger else None,

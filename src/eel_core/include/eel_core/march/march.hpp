@@ -57,8 +57,8 @@ class March {
         if (!smoothly) begin();
     }
 
-    // Stands at the start, at time 0, with the momentum of the head's twist relative to the water. Returns the kinetic
-    // energy of body and water [J].
+    // Stands at the start, at time 0, with the momentum of the head's twist relative to the water. Returns the
+    // kinetic and potential energy [J].
     double start(const Vector3<double>& position, const Quaternion<double>& orientation,
                  const Twist<Space, double>& twist)
     {
@@ -79,7 +79,7 @@ class March {
     }
 
     // Puts the head of the present shape elsewhere, with the momentum of its twist relative to the water. Returns the
-    // kinetic energy of body and water [J].
+    // kinetic and potential energy [J].
     double set_state(const Vector3<double>& position, const Quaternion<double>& orientation,
                      const Twist<Space, double>& twist)
     {
@@ -87,16 +87,19 @@ class March {
         return set_twist(twist);
     }
 
-    // Gives the present state the momentum of the head's twist. Returns the kinetic energy of body and water [J].
+    // Gives the present state the momentum of the head's twist. Returns the kinetic and potential
+    // energy [J].
     double set_twist(const Twist<Space, double>& twist)
     {
         Workspace<Space>& work = workspace();
         configure(*swimmer_, settings_.law, time_, work);
-        put_momentum(momentum_of(*swimmer_, twist, work), head_frame(state_, Space()), state_);
+        const Frame3<double> head = head_frame(state_, Space());
+        put_momentum(momentum_of(*swimmer_, twist, work), head, state_);
         add_head_motion(*swimmer_, twist, work.position, work.omega, work.velocity);
+        if (swimmer_->righting != 0.0) set_righting_torque(*swimmer_, head, work);
         begin();
-        const auto [body, water] = kinetic_energies(*swimmer_, work);
-        return body + water;
+        const auto [body, water, potential] = energies_of(*swimmer_, work);
+        return body + water + potential;
     }
 
     // Nodes that are evaluated before a march comes back unfinished.

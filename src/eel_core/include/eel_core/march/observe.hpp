@@ -38,8 +38,8 @@ void put(const Block& value, std::size_t block, std::size_t stations, double* ro
     });
 }
 
-// Kinetic energy of the body, and of the water without the nose's [J], from true velocities.
-inline std::array<double, 2> kinetic_energies(const Swimmer& swimmer, const Workspace<Space>& work)
+// Kinetic energy of the body, and of the water without the nose's, from true velocities; potential energy [J].
+inline std::array<double, 3> energies_of(const Swimmer& swimmer, const Workspace<Space>& work)
 {
     Lanes body(0.0), water(0.0);
     for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
@@ -49,7 +49,7 @@ inline std::array<double, 2> kinetic_energies(const Swimmer& swimmer, const Work
         body += swimmer.grid.weight[k] * section.body_energy(v, omega);
         water += swimmer.grid.weight[k] * section.water_energy(v, omega);
     }
-    return {total(body), total(water)};
+    return {total(body), total(water), potential_energy(swimmer, work)};
 }
 
 inline void put(const Vector3<double>& v, double* to) { to[0] = v.x, to[1] = v.y, to[2] = v.z; }
@@ -107,8 +107,8 @@ class Observer {
 
     void show_energies_and_closure(std::size_t sample, const Workspace<Space>& work) const
     {
-        const auto energies = kinetic_energies(swimmer_, work);
-        std::copy(energies.begin(), energies.end(), at(Profiles::kinetic, sample));
+        const auto energies = energies_of(swimmer_, work);
+        std::copy(energies.begin(), energies.end(), at(Profiles::energies, sample));
 
         const auto left = plus_axial<Space>(work.tail - work.balance, work.nose_force);
         double* const closure = at(Profiles::closure, sample);

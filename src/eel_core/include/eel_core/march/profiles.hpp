@@ -16,7 +16,7 @@ struct Profiles {
         twist,                // (T, 6) rad/s, m/s, over ground, axes of the head
         head_acceleration,    // (T, 6) rad/s^2, m/s^2, true acceleration of the head, its axes
         center_of_mass,       // (T, 3) m, world
-        kinetic,              // (T, 2) J, body and water
+        energies,             // (T, 3) J, kinetic of body and of water, potential
         powers,               // (T, 4) W, actuators, wake, nose, drag
         closure,              // (T, 2) N m, N: what is left of the internal wrench at the nose
         backbone,             // (T, M, 3) m, world
@@ -31,7 +31,7 @@ struct Profiles {
         nose_force,       // (T, 3) N, axes of the nose's section
         quantities
     };
-    static constexpr std::size_t width_of[quantities] = {3, 4, 6, 6, 3, 2, 4, 2, 3, 4, 3, 3, 3, 3, 3, 3, 3, 3};
+    static constexpr std::size_t width_of[quantities] = {3, 4, 6, 6, 3, 3, 4, 2, 3, 4, 3, 3, 3, 3, 3, 3, 3, 3};
 
     std::size_t samples, stations;
     bool wrench, load;

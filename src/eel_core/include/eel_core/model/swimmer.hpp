@@ -23,6 +23,7 @@ struct Swimmer {
     double nose_mass = 0.0;               // [kg], m_o
     double nose_drag = 0.0;               // [kg/m], 1/2 rho_f k_o
     bool distributed_pressure = false;    // -d/dX(T_f t1) along the body in place of -T_f t1 at the tail
+    double righting = 0.0;                // [m^2/s^2], g h of the righting moment; 0: none
 
     // Where profiles are given:
     std::size_t stations = 0;

@@ -72,6 +72,8 @@ struct Workspace {
     Twist<M, double> twist;        // of the head, relative to the water
     Momentum<M, double> momentum;  // of body, water and nose
     Wrench<M, double> tail, drag;  // on the body
+    Vector3<double> up{};          // of the world; as the next, where there is a righting moment
+    Turn<M, double> righting{};    // [N m], torque of weight and buoyancy
     double drag_power = 0.0;       // [W]
     double tail_speed = 0.0;       // V1 at the tail [m/s]
     double tail_energy = 0.0;      // T_f there [J/m]

@@ -48,7 +48,7 @@ def fields_of_run(contents: Contents) -> dict:
     }
 
 
-def contents_of_batch(batch, out: Observations, works: np.ndarray, kinetic_at_start: np.ndarray) -> Contents:
+def contents_of_batch(batch, out: Observations, works: np.ndarray, energy_at_start: np.ndarray) -> Contents:
     """The contents of a `Batch`, with all that was observed of its swimmers; without their warnings."""
     values = {
         "laws": plain.told_once(batch.laws, plain.plain_law),
@@ -59,11 +59,11 @@ def contents_of_batch(batch, out: Observations, works: np.ndarray, kinetic_at_st
         "errors": [plain.plain_stop(each) for each in batch.error],
         "stations": batch.backbone is not None,
     }
-    arrays = {"time": batch.time, "x": batch.x, "samples": batch.samples, "kinetic_at_start": kinetic_at_start}
+    arrays = {"time": batch.time, "x": batch.x, "samples": batch.samples, "energy_at_start": energy_at_start}
     arrays |= {name: getattr(batch, name) for name in COUNTS}
     arrays |= {name: getattr(out, name) for name in OBSERVED}
     arrays |= {"closure_torque": out.closure[..., 0], "closure_force": out.closure[..., 1]}
-    arrays |= _of_ledger(EnergyLedger.of(out.kinetic, out.powers, works, kinetic_at_start[:, None]))
+    arrays |= _of_ledger(EnergyLedger.of(out.energies, out.powers, works, energy_at_start[:, None]))
     return Contents("batch", values, {name: each for name, each in arrays.items() if each.size})
 
 
@@ -84,7 +84,8 @@ def observed_of_batch(contents: Contents) -> tuple[Observations, np.ndarray]:
     if out.closure.size:
         out.closure[..., 0], out.closure[..., 1] = arrays["closure_torque"], arrays["closure_force"]
     ledger = {name: arrays[ENERGY + name] for name in LEDGER}
-    out.kinetic[...] = np.stack([ledger["kinetic_body"], ledger["kinetic_fluid"]], axis=-1)
+    energies = ("kinetic_body", "kinetic_fluid", "potential")
+    out.energies[...] = np.stack([ledger[name] for name in energies], axis=-1)
     parts = ("actuator", "wake", "nose", "drag")
     out.powers[...] = np.stack([ledger[f"{part}_power"] for part in parts], axis=-1)
     return out, np.stack([ledger[f"{part}_work"] for part in parts], axis=-1)

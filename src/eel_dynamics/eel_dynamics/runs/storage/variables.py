@@ -54,11 +54,12 @@ ENERGY = "energy_"  # begins the names of the ledger's arrays
 LEDGER = {
     "kinetic_body": ("J", "kinetic energy of the body"),
     "kinetic_fluid": ("J", "kinetic energy of the water, without the nose's added mass"),
+    "potential": ("J", "potential energy of weight and buoyancy"),
     "actuator_power": ("W", "power of the actuators"),
     "wake_power": ("W", "power of the wake"),
     "nose_power": ("W", "power of the load on the nose"),
     "drag_power": ("W", "power of the drag along the body"),
-    "residual": ("J", "change of the kinetic energy since the start less the works"),
+    "residual": ("J", "change of all energy since the start less the works"),
     "actuator_work": ("J", "work of the actuators since the start"),
     "wake_work": ("J", "work of the wake since the start"),
     "nose_work": ("J", "work of the load on the nose since the start"),
@@ -70,7 +71,7 @@ OF_SWIMMERS = {  # of a batch alone
     "steps": _variable("", "1", "accepted steps in time"),
     "evaluations": _variable("", "1", "evaluations of the head's dynamics"),
     "nodes": _variable("", "1", "nodes along the body"),
-    "kinetic_at_start": _variable("", "J", "kinetic energy of body and water at the start"),
+    "energy_at_start": _variable("", "J", "kinetic and potential energy at the start"),
 }
 
 

@@ -58,7 +58,7 @@ def drift_of(name: str, law: Law, scene: Scene, decades: int = DECADES, compared
     periods = 10.0 ** np.arange(decades + 1)
     times = np.concatenate(([0.0], PERIOD * periods))
     swimmer, out, works = _swum(law, scene, Accuracy.of(ACCURACY).in_scene(scene), times)
-    residual = out.kinetic.sum(axis=1) - swimmer.kinetic_at_start - works.sum(axis=1)
+    residual = out.energies.sum(axis=1) - swimmer.energy_at_start - works.sum(axis=1)
     bend, speed = out.curvature[1:], out.twist[1:, 3:]
     beat = np.full(len(periods), np.nan)
     beat[SETTLED:] = np.linalg.norm(speed[SETTLED:] - speed[SETTLED : SETTLED + 1], axis=1)
