@@ -15,7 +15,17 @@ ROOT = Path(__file__).resolve().parents[1]
 PYTHON_PACKAGES = ("eel_ros", "eel_gaits", "eel_dynamics", "eel_viz")
 EXECUTABLES = {
     "eel_gaits": {"gait_generator", "heading_controller"},
-    "eel_dynamics": {"dynamics", "simulate", "figures", "midlines", "optimise", "sweep", "stability", "tradeoff"},
+    "eel_dynamics": {
+        "dynamics",
+        "simulate",
+        "figures",
+        "identify",
+        "midlines",
+        "optimise",
+        "sweep",
+        "stability",
+        "tradeoff",
+    },
     "eel_viz": {"visualiser", "markers", "record", "echo", "replay", "render"},
 }
 ROSDEP_KEY = {

@@ -2,7 +2,7 @@
 """The examples of README.md and docs: Python runs, and shell lines name commands, options and parameters that exist.
 
 Blocks of a page run one after the other in one name space and one folder. A block below `<!-- listing ... -->` only
-shows a file. A block without a language is shell. `simulate` runs; of other commands the options are
+shows a file. A block without a language is shell. `simulate` and `identify` run; of other commands the options are
 looked up, of nodes the parameters.
 """
 
@@ -25,7 +25,7 @@ from eel_gaits import straight
 
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 BLOCK = re.compile(r"(?:<!-- (listing)[^\n]*-->\n)?^```([^\n`]*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
-RUN = ("simulate",)
+RUN = ("simulate", "identify")
 FOREIGN = ("colcon", "dask", "pip", "python", "python3", "rerun", "rosdep", "source", "sudo", "touch")
 SERVICES = ("reset", "pause", "step", "set_state")
 
@@ -132,7 +132,7 @@ def test_python_of_a_page_runs(page, folder):
 
 @pytest.mark.parametrize("page", with_blocks(""))
 def test_shell_of_a_page_names_what_exists(page, folder):
-    if page.stem in ("motions", "own_body"):
+    if page.stem in ("motions", "own_body", "identify"):
         run_python(page)  # writes the file that its commands read
     for block in blocks(page, ""):
         for words in lines_of(block):

@@ -16,6 +16,7 @@ GIVEN = {  # each with an argument that does not fit, as long as can be
     "simulate out": ["simulate", "--out", LONG + ".npz"],
     "sweep": ["sweep", "--vary", LONG + "=1", "--out", "sweep.nc"],
     "optimise": ["optimise", "--bound", LONG + "=1:2", "--speeds", "0.3"],
+    "identify": ["identify", LONG + ".csv", "--first", "body.lateral_drag=1"],
     "tradeoff": ["tradeoff", LONG],
     "stability": ["stability", "--study", LONG],
     "figures": ["figures", LONG],

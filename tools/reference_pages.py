@@ -49,6 +49,7 @@ COMMANDS = (
     "simulate",
     "sweep",
     "optimise",
+    "identify",
     "tradeoff",
     "stability",
     "figures",

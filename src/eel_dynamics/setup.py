@@ -29,6 +29,7 @@ setup(
             "simulate = eel_dynamics.runs.command:main",
             "midlines = eel_dynamics.studies.midlines.command:main",
             "figures = eel_dynamics.studies.figures.command:main",
+            "identify = eel_dynamics.studies.identify.command:main",
             "optimise = eel_dynamics.studies.optimise.command:main",
             "sweep = eel_dynamics.studies.sweep.command:main",
             "stability = eel_dynamics.studies.stability.command:main",

@@ -1,8 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Coefficients from measured motions: their intervals on made data, what is not determined, and what is refused."""
+"""Coefficients from measured motions: their intervals on made data, what is not determined, the command, and what is
+refused."""
+
+import csv
 
 import numpy as np
 import pytest
+from eel_dynamics.studies.identify.command import main
 from eel_dynamics.studies.identify.statistics import Block, correlation_of, gauss_newton_covariance
 
 from eel_dynamics import Body, MeasuredPath, MeasuredSpeed, Scene, identify, simulate
@@ -43,7 +47,7 @@ def fitted(true_path, seed: int, factor: float = 0.0, **options):
 def test_intervals_cover_the_truth_as_often_as_they_say(true_path, factor):
     """8 trials of 2 parameters: 0.95 of 16 is 15.2, and 12 or fewer have a chance of 1 %; the seeds are fixed.
 
-    The whole measure, of 100 trials, stands in docs/howto/optimise.md.
+    The whole measure, of 100 trials, stands in docs/howto/identify.md.
     """
     found = [fitted(true_path, seed, factor) for seed in range(8)]
     covered = sum(low <= TRUTH[name] <= high for each in found for name in TRUTH for _, low, high in [each[name]])
@@ -178,3 +182,93 @@ def test_bad_input_is_refused_in_one_line(make, words):
     with pytest.raises(ValueError, match=words) as error:
         make()
     assert "\n" not in str(error.value)
+
+
+@pytest.fixture(scope="module")
+def files(true_path, tmp_path_factory):
+    """A folder with a path with errors, the run of another swim, and a table of speeds."""
+    folder, (time, position) = tmp_path_factory.mktemp("measured"), true_path
+    position = position + NOISE * correlated(np.random.default_rng(0), len(time), 0.0)
+    np.savetxt(folder / "path.csv", np.column_stack((time, position)), delimiter=",", header="time,x,y", comments="")
+    np.savez(folder / "path.npz", time=time, x=position[:, 0], y=position[:, 1])
+    scene = Scene(friction="blended", planar=True)
+    run = simulate(turning(period=0.8), 3.0, scene=scene, twist=(0, 0, 0.1, -0.3, 0, 0), stations=3, sample_period=0.05)
+    run.save(folder / "run.nc")
+    run = simulate(straight(period=0.8), 16.0, scene=scene, accuracy=1e-3, stations=2)
+    (folder / "speeds.csv").write_text(f"speed,period\n{run.mean_speed},0.8\n")
+    (folder / "bad.csv").write_text("time,x,y\n0,0,0\n1,nan,0\n")
+    (folder / "back.csv").write_text("time,x,y\n0,0,0\n0,1,0\n")
+    (folder / "other.csv").write_text("time,height\n0,0\n")
+    (folder / "backward.csv").write_text("speed\n-0.3\n")
+    return folder
+
+
+GAIT = ["--gait", "turning", "--set", "period=0.8", "--scene", "planar=on", "--accuracy", "1e-2"]
+ONE = ["--first", "body.lateral_drag=1.6"]
+
+
+def test_the_command_finds_what_the_function_finds_and_writes_it(files, true_path, tmp_path, capsys):
+    first = [word for name, value in GUESS.items() for word in ("--first", f"{name}={value}")]
+    outs = ["--out", str(tmp_path / "fit.png"), "--out", str(tmp_path / "fit.csv")]
+    assert main([str(files / "path.csv"), *GAIT, *first, *outs]) == 0
+    said = capsys.readouterr().out
+    found = fitted(true_path, 0)
+    assert (
+        found.table() in said and "252 measured numbers" not in said and f"{found.residuals[0].size} measured" in said
+    )
+    assert (tmp_path / "fit.png").read_bytes()[:4] == b"\x89PNG"
+    rows = {row["name"]: row for row in csv.DictReader((tmp_path / "fit.csv").open())}
+    for name in GUESS:
+        assert [float(rows[name][key]) for key in ("value", "low", "high")] == pytest.approx(found[name], rel=1e-6)
+
+
+def test_a_run_tells_law_start_body_and_scene(files, tmp_path, capsys):
+    assert (
+        main([str(files / "run.nc"), "--station", "0.5", *ONE, "--accuracy", "1e-3", "--out", f"{tmp_path}/a.csv"]) == 0
+    )
+    (row,) = csv.DictReader((tmp_path / "a.csv").open())
+    assert float(row["value"]) == pytest.approx(TRUTH["body.lateral_drag"], rel=1e-3)
+
+
+def test_speeds_in_a_table_have_the_numbers_of_their_swims(files, tmp_path, capsys):
+    words = ["--gait", "straight", "--scene", "planar=on", "--noise", "0.003", "--accuracy", "1e-2"]
+    assert (
+        main([str(files / "speeds.csv"), *words, *ONE, "--out", f"{tmp_path}/a.csv", "--out", f"{tmp_path}/a.svg"]) == 0
+    )
+    (row,) = csv.DictReader((tmp_path / "a.csv").open())
+    assert float(row["low"]) < TRUTH["body.lateral_drag"] < float(row["high"])
+    assert "</svg>" in (tmp_path / "a.svg").read_text()
+
+
+@pytest.mark.fault(
+    "parameters",
+    "`identify` of a file that is missing, foreign, or holds no path or speed",
+    "one line that names the file, and line and column of a table; status 2",
+)
+@pytest.mark.parametrize(
+    "words, told",
+    [
+        (["nothing.csv", *GAIT], "nothing.csv': there is no such file"),
+        (["nothing.nc"], "nothing.nc' cannot be read: there is no such file"),
+        (["bad.csv", *GAIT], "bad.csv', line 3: x must be finite, got nan"),
+        (["back.csv", *GAIT], "back.csv', line 3: time must rise"),
+        (["other.csv", *GAIT], "its columns must be time, x, y (a path), or speed, got ['height', 'time']"),
+        (["backward.csv", *GAIT], "backward.csv', line 2: speed must be > 0 m/s, got -0.3"),
+        (["path.csv"], "--gait must be given: "),
+        (["run.nc", "--set", "period=1"], "--set belongs to --gait, which is not given"),
+        (
+            ["run.nc", "--station", "0.3"],
+            "--station must be one of its 3 stations, the nearest are 0, 0.5, 1 m, got 0.3",
+        ),
+        (["path.csv", "speeds.csv", *GAIT], "one kind of them, got MeasuredPath, MeasuredSpeed"),
+        (["path.npz", *GAIT, "--level", "2"], "level must be below 1, got 2"),
+        (["path.csv", *GAIT, "--first", "body.drag"], "--first must be NAME=VALUE, got 'body.drag'"),
+        (["path.csv", *GAIT, "--first", "body.drag=x"], "--first must be NAME=NUMBER, got 'body.drag=x'"),
+        (["path.csv", *GAIT, "--out", "fit.pdf"], "--out must end in .png, .svg or .csv, got 'fit.pdf'"),
+    ],
+)
+def test_the_command_refuses_bad_input_in_one_line(files, words, told, capsys, monkeypatch):
+    monkeypatch.chdir(files)
+    assert main([*words, *ONE]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("identify: ") and told in line, line

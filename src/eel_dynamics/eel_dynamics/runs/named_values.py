@@ -32,14 +32,14 @@ def check_names(names: list[str]):
             raise ValueError(f"{name} must be given once, got it {names.count(name)} times")
 
 
-def set_numbers(texts: list[str]) -> dict[str, float]:
-    """The numbers of a gait that --set gives, by name."""
+def set_numbers(texts: list[str], option: str = "--set") -> dict[str, float]:
+    """The numbers that an `option` gives, by name: those of a gait, of --set."""
     found = {}
-    for name, text in named_texts("--set", texts):
+    for name, text in named_texts(option, texts):
         try:
             found[name] = float(text)
         except ValueError:
-            raise ValueError(f"--set must be NAME=NUMBER, got {shown(f'{name}={text}')}") from None
+            raise ValueError(f"{option} must be NAME=NUMBER, got {shown(f'{name}={text}')}") from None
     return found
 
 

@@ -69,7 +69,12 @@ class Fit:
     @property
     def residuals(self) -> tuple[np.ndarray, ...]:
         """Measured less predicted: (T, D) of a path, (1,) of a speed."""
-        return tuple(np.stack([block.residual for block in blocks], axis=-1) for blocks in self._grouped())
+        return tuple(
+            np.stack([block.residual for block in blocks], axis=-1)
+            if isinstance(each, MeasuredPath)
+            else blocks[0].residual
+            for each, blocks in zip(self._measured, self._grouped(), strict=True)
+        )
 
     @property
     def blocks(self) -> list[Block]:

@@ -129,7 +129,7 @@ def identify(
         try:
             point_at(0, first, gait, {**swims.numbers, **each.numbers}, base)
         except ValueError as error:
-            raise ValueError(f"identify {error}") from None
+            raise ValueError(f"parameters {error}") from None
         if isinstance(each, MeasuredPath) and each.station > base.body.length:
             raise ValueError(f"path station must be at most the body's {base.body.length:g} m, got {each.station:g}")
     fit = Fit(swims, measured, first, progress_of(progress, "evaluations"))

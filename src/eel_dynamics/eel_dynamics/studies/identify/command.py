@@ -1,0 +1,181 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`identify`: coefficients of the model from measured swims, with their intervals, as a table and a picture.
+
+identify path.csv --gait turning --set period=0.8 --first body.lateral_drag=1.5 --first body.nose_drag=0.1 --out fit.png
+identify speeds.csv --gait straight --first body.lateral_drag=1.5 --noise 0.005
+identify run.nc --first body.lateral_drag=1.5 --out fit.png --out fit.csv
+"""
+
+import csv
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+
+from eel_gaits.gaits.registry import GAITS
+from eel_gaits.input_output.command_line import Parser, complain
+from eel_gaits.input_output.output_file import NotWritten, check_output, replacing
+from eel_gaits.input_output.wording import shown
+
+from eel_dynamics.accuracy.accuracy import PRESETS
+from eel_dynamics.model.body import NAMED, Body
+from eel_dynamics.model.scene import Scene
+from eel_dynamics.runs.interrupt import end_on_interrupt
+from eel_dynamics.runs.named_values import scene_of, set_numbers
+from eel_dynamics.runs.one_line_warnings import one_line_warnings
+from eel_dynamics.simulation.stopping import SimulationStopped
+from eel_dynamics.studies.identify.drawing import FORMATS, draw_identified
+from eel_dynamics.studies.identify.identify import Identified, identify
+from eel_dynamics.studies.identify.measured_file import MeasuredFile, read_measured
+
+SUFFIXES = (*FORMATS, ".csv")
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Exit status 0; 1 where an output cannot be written to its end; 2 for bad input, a missing package, or parameters
+    that the measurements do not determine; 3 for a swim that stops. An error prints one line with its reason.
+    """
+    if arguments is None:
+        end_on_interrupt()
+    options = _parser().parse_args(arguments)
+    try:
+        with one_line_warnings("identify"):
+            return _identify(options)
+    except NotWritten as error:
+        complain("identify", error)
+        return 1
+    except SimulationStopped as error:
+        complain("identify", error)
+        return 3
+    except (ValueError, ImportError, OSError) as error:
+        complain("identify", error)
+        return 2
+
+
+def _identify(options) -> int:
+    start = time.perf_counter()
+    outs = [_checked_out(out) for out in options.out]
+    first, numbers = set_numbers(options.first, "--first"), set_numbers(options.set)
+    files = [read_measured(path, station=options.station, namespace=options.namespace) for path in options.file]
+    measured = [each for file in files for each in file.measured]
+    found = identify(
+        first,
+        measured,
+        gait=_gait(options, files),
+        numbers=numbers,
+        body=_body(options, files[0]),
+        scene=_scene(options, files[0]),
+        accuracy=options.accuracy,
+        noise=options.noise,
+        level=options.level,
+    )
+    print(found.table())
+    print(f"wall time  {time.perf_counter() - start:.1f} s, {sum(each.count for each in measured)} measured numbers")
+    for out in outs:
+        if out.suffix == ".csv":
+            _write(found, out)
+        else:
+            draw_identified(found, measured, out)
+        print(f"written to {out}")
+    return 0
+
+
+def _gait(options, files: list[MeasuredFile]):
+    """The gait that was asked for, or the law that is in the file."""
+    if options.gait is not None:
+        return options.gait
+    law = files[0].law
+    if law is None:
+        raise ValueError(f"--gait must be given: {shown(options.file[0])} does not tell how the body was moved")
+    if any(each.law != law for each in files):
+        raise ValueError("--gait must be given: the files do not have one law")
+    if options.set:
+        raise ValueError("--set belongs to --gait, which is not given: the law is that of the file")
+
+    def law_of_the_file():
+        return law
+
+    return law_of_the_file
+
+
+def _body(options, file: MeasuredFile) -> Body | None:
+    if options.body is None:
+        return file.body
+    return Body.named(options.body) if options.body in NAMED else Body.from_file(options.body)
+
+
+def _scene(options, file: MeasuredFile) -> Scene:
+    """The scene that was asked for, or that of the file. The friction is blended unless --scene says otherwise."""
+    given = any(text.startswith("friction=") for text in options.scene)
+    if options.scene or file.scene is None:
+        return scene_of(options.scene if given else ["friction=blended", *options.scene])
+    return replace(file.scene, friction="blended") if file.scene.friction == "printed" else file.scene
+
+
+def _checked_out(out: str) -> Path:
+    path = Path(out)
+    if path.suffix not in SUFFIXES:
+        raise ValueError(f"--out must end in {', '.join(SUFFIXES[:-1])} or {SUFFIXES[-1]}, got {shown(out)}")
+    check_output("--out", path)
+    if path.exists():
+        complain("identify", f"{path} exists and will be overwritten")
+    return path
+
+
+def _write(found: Identified, path: Path) -> None:
+    with replacing(path) as draft, draft.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(("name", "value", "standard_error", "low", "high"))
+        writer.writerows(zip(found.names, found.value, found.error, found.low, found.high, strict=True))
+
+
+def _parser() -> Parser:
+    parser = Parser(
+        prog="identify",
+        description="Find coefficients of the model, with their intervals, from measured paths or steady speeds.",
+    )
+    parser.add_argument(
+        "file",
+        nargs="+",
+        help=".csv or .npz with the columns time, x, y (perhaps z), or speed and numbers of the gait; a run (.nc); a "
+        "bag. Paths or speeds, not both",
+    )
+    parser.add_argument(
+        "--first",
+        action="append",
+        required=True,
+        metavar="NAME=VALUE",
+        help="a parameter and its first guess: body.FIELD, scene.FIELD, initial.v_1, a number of the gait; may be "
+        "repeated",
+    )
+    parser.add_argument("--gait", help=f"one of {', '.join(sorted(GAITS))}; by default the law of the run or bag")
+    parser.add_argument(
+        "--set", action="append", default=[], metavar="NAME=VALUE", help="a number of the gait; may be repeated"
+    )
+    parser.add_argument(
+        "--scene",
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        help="physics, as for simulate; by default that of the run. The friction is blended unless it is given here",
+    )
+    parser.add_argument(
+        "--body", help=f"{', '.join(NAMED)}, or a file as for simulate; by default that of the run, or boyer2010"
+    )
+    parser.add_argument("--station", type=float, default=0.0, metavar="X", help="m, of the point that was tracked (0)")
+    parser.add_argument("--namespace", help="of the swimmer in a bag; by default that of the only one")
+    parser.add_argument("--noise", type=float, metavar="SIZE", help="standard deviation of the errors, m or m/s")
+    parser.add_argument("--level", type=float, default=0.95, help="of the intervals (0.95)")
+    parser.add_argument("--accuracy", default=1e-4, help=f"{', '.join(PRESETS)}, or a target (1e-4)")
+    parser.add_argument(
+        "--out",
+        action="append",
+        default=[],
+        metavar="FILE",
+        help=".png, .svg: a picture; .csv: a table; may be repeated",
+    )
+    return parser
+
+
+if __name__ == "__main__":
+    sys.exit(main())

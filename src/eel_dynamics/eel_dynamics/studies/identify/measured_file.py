@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What was measured, from a file: a path or steady speeds in a table, a saved run, or a bag.
+
+    time, x, y, perhaps z      a path: a row for each instant, [s, m]
+    speed, other columns       steady speeds: a row for each swim, [m/s]; the others are numbers of the swim, as period
+
+Tables are .csv files with a header, or .npz archives of columns. A run (.nc) and a bag give the path of a point of the
+backbone, and the law, the body and the scene too.
+"""
+
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from eel_gaits.input_output.wording import shown
+from eel_gaits.laws.law import Law
+from eel_gaits.sources.tables import Table, read_table
+
+from eel_dynamics.model.body import Body
+from eel_dynamics.model.scene import Scene
+from eel_dynamics.runs.run import Run
+from eel_dynamics.studies.identify.measurements import MeasuredPath, MeasuredSpeed
+from eel_dynamics.studies.points import VELOCITIES
+
+TABLES = ".csv", ".npz"
+NEAR = 1e-6  # part of the body's length by which a run's station may lie elsewhere than the one asked for
+
+
+class MeasuredFile(NamedTuple):
+    """The measurements of a file, and what it tells of the swim."""
+
+    measured: list  # of MeasuredPath, or of MeasuredSpeed
+    law: Law | None = None
+    body: Body | None = None
+    scene: Scene | None = None
+
+
+def read_measured(path: str, *, station: float = 0.0, namespace: str | None = None) -> MeasuredFile:
+    """What the file or bag at `path` holds. station [m]: X of the point of a path. namespace: of a bag's swimmer.
+
+    `ValueError` in one line names the file, and the line or column of a table, that does not fit.
+    """
+    if Path(path).suffix in TABLES:
+        return MeasuredFile(_of_table(read_table(path), station))
+    run = Run.load(path) if Path(path).suffix == ".nc" else Run.from_bag(path, namespace)
+    if not isinstance(run.law, Law) or not run.law.terms:
+        raise ValueError(f"{shown(path)}: it holds no law of terms, whose swim could be simulated")
+    twist = dict(zip(VELOCITIES, run.twist[0].tolist(), strict=True)) if run.time[0] == 0.0 else {}
+    numbers = {f"initial.{name}": value for name, value in twist.items() if value}
+    measured = _named(path, MeasuredPath, run.time, _tracked(path, run, station), station, numbers)
+    return MeasuredFile([measured], run.law, run.body, run.scene)
+
+
+def _of_table(table: Table, station: float) -> list:
+    columns = table.columns
+    if {"time", "x", "y"} <= set(columns):
+        names = [name for name in ("x", "y", "z") if name in columns]
+        table.check_finite(("time", *names))
+        back = np.flatnonzero(np.diff(columns["time"]) <= 0.0)
+        if len(back):
+            raise table.error("time must rise: a path has one row for each instant", back[0] + 1)
+        position = np.stack([columns[name] for name in names], axis=1)
+        return [_named(str(table.path), MeasuredPath, columns["time"], position, station)]
+    if "speed" not in columns:
+        raise table.error(f"its columns must be time, x, y (a path), or speed, got {shown(sorted(columns))}")
+    table.check_finite(tuple(columns))
+    low = np.flatnonzero(columns["speed"] <= 0.0)
+    if len(low):
+        raise table.error(f"speed must be > 0 m/s, got {columns['speed'][low[0]]:g}", low[0])
+    others = [name for name in columns if name != "speed"]
+    return [
+        MeasuredSpeed(speed, {name: float(columns[name][row]) for name in others})
+        for row, speed in enumerate(columns["speed"].tolist())
+    ]
+
+
+def _tracked(path: str, run: Run, station: float) -> np.ndarray:
+    """The path (T, 3) [m] of the run's point at the `station` [m]."""
+    if run.backbone is None:
+        if station != 0.0:
+            raise ValueError(f"{shown(path)}: it holds no backbone, --station must be 0, got {station:g}")
+        return run.position
+    place = int(np.argmin(np.abs(run.x - station)))
+    if abs(run.x[place] - station) > NEAR * run.body.length:
+        told = f"the nearest are {', '.join(f'{x:g}' for x in run.x[max(place - 1, 0) : place + 2])} m"
+        raise ValueError(f"{shown(path)}: --station must be one of its {len(run.x)} stations, {told}, got {station:g}")
+    return run.backbone[:, place]
+
+
+def _named(path: str, kind: type, *arguments):
+    """`kind(*arguments)`; its `ValueError` names the file."""
+    try:
+        return kind(*arguments)
+    except ValueError as error:
+        raise ValueError(f"{shown(path)}: {error}") from None
