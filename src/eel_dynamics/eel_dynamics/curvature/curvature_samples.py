@@ -112,11 +112,6 @@ class SampleQueue:
         rows = zip((origin + law.time).tolist(), repeat(law.x), law.values, repeat(waves_of_rows(law)), strict=False)
         return SampleQueue([CurvatureSample(*row) for row in rows], law.name)
 
-    @property
-    def of_one_law(self) -> bool:
-        """Whether the samples are the rows of a law."""
-        return self._law_name is not None
-
     def __len__(self) -> int:
         return len(self._samples)
 

@@ -134,13 +134,8 @@ class LawFollower:
 
     @property
     def between_samples(self) -> bool:
-        """Whether the curvature is a quintic between two samples of a controller."""
+        """Whether the curvature is a quintic between two samples of a controller, or two rows of a law."""
         return self._source.segment is not None
-
-    @property
-    def between_rows(self) -> bool:
-        """Whether the curvature is a quintic between two rows of a law."""
-        return self.between_samples and self.samples.of_one_law
 
     @property
     def time_scale(self) -> float:

@@ -144,7 +144,6 @@ class LawDrivenMarch:
             accuracy=self.accuracy,
             ledger=bool(setup.scene.ledger),
             between_samples=follower.between_samples,
-            between_rows=follower.between_rows,
             nodes=len(self.discretisation.grid.x),
             mass=self.discretisation.mass,
             length=length,

@@ -23,6 +23,7 @@ SLOWEST = 1e-3
 # Momenta below this part of the speed that the law gives to the body need not be exact to the last digit.
 PART_OF_SPEED = 0.5
 # A step takes at most this part of the time between two breakpoints of the shape, where longest_step is LONGEST_STEP.
+# Between two samples the error alone sets the step: a controller's lie close together on the scale of the motion.
 PART_OF_SPAN = 0.25
 # This part holds instead where there is a ledger. Most of the energy that a sudden ramp puts in comes back, and little
 # may be left over.
@@ -51,7 +52,6 @@ def step_bounds_of(
     accuracy: Accuracy,
     ledger: bool,
     between_samples: bool,
-    between_rows: bool,
     nodes: int,
     mass: float,
     length: float,
@@ -61,16 +61,13 @@ def step_bounds_of(
 ) -> eel_core.StepBounds:
     """The bounds of the steps for a body of `length` [m] and `mass` [kg] on a grid of `nodes`.
 
-    ledger: whether the energy ledger is kept. between_samples: whether the curvature is a quintic between two samples,
-    between_rows: between two rows of a law.
+    ledger: whether the energy ledger is kept. between_samples: whether the curvature is a quintic between two samples.
     speed [m/s]: that the law gives to the body. scale [s]: the shortest time scale of the law and the initial velocity.
     most_evaluations: per simulated second.
     """
     longest = accuracy.longest_step * min(scale, 10.0)
     fixed = accuracy.step or (accuracy.fixed and min(scale, 1.0) / accuracy.fixed)
-    part_of_span = PART_OF_RAMP if ledger and not between_samples else PART_OF_SPAN
-    if between_rows:  # they are close together on the scale of the motion
-        part_of_span = 1.0
+    part_of_span = PART_OF_RAMP if ledger else PART_OF_SPAN
     slowest = max(SLOWEST * length / min(scale, 10.0), PART_OF_SPEED * speed)
     return eel_core.StepBounds(
         tolerance=accuracy.tolerance,
@@ -78,7 +75,7 @@ def step_bounds_of(
         smallest=1e-11 * min(scale, 1.0),
         length=length,
         momentum_floor=mass * slowest,
-        part_of_span=min(1.0, part_of_span * accuracy.longest_step / LONGEST_STEP),
+        part_of_span=1.0 if between_samples else min(1.0, part_of_span * accuracy.longest_step / LONGEST_STEP),
         most_steps=most_evaluations / EVALUATIONS[accuracy.method],
         spare_steps=max(LEAST_SPARE, SPARE_STEPS * min(1.0, SPARE_POINTS / nodes)),
     )
