@@ -19,7 +19,7 @@ from eel_dynamics import Run, Scene, simulate
 from eel_gaits import falling, straight
 
 PROFILES = ("backbone", "section_orientation", "curvature", "curvature_rate", "torque", "force", "fluid_force")
-PROFILES += ("resistive_force", "tail_force", "nose_force", "position", "orientation", "twist")
+PROFILES += ("resistive_force", "tail_force", "nose_force", "wake_momentum_rate", "position", "orientation", "twist")
 COMPUTED = ("head_acceleration", "center_of_mass", "energy", "body", "time", "law", "accuracy", "error_estimate")
 COMPUTED += ("steps", "evaluations", "nodes", "closure_torque", "closure_force")
 

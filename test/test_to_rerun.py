@@ -23,7 +23,7 @@ from eel_msgs.msg import CurvatureLaw
 from eel_viz import entities
 
 PROFILES = ("backbone", "section_orientation", "curvature", "curvature_rate", "torque", "force", "fluid_force")
-PROFILES += ("resistive_force", "tail_force", "nose_force", "position", "orientation", "twist")
+PROFILES += ("resistive_force", "tail_force", "nose_force", "wake_momentum_rate", "position", "orientation", "twist")
 
 
 @pytest.fixture(scope="module")

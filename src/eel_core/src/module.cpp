@@ -36,10 +36,25 @@ py::dict build_info_as_dict()
 // Where the quantities of samples lie in one array: name -> (begin, instants, numbers of an instant).
 py::dict layout(std::size_t samples, std::size_t stations, bool wrench, bool load)
 {
-    static constexpr const char* names[Profiles::quantities] = {
-        "position", "orientation", "twist",       "head_acceleration",   "center_of_mass", "energies",
-        "powers",   "closure",     "backbone",    "section_orientation", "curvature",      "curvature_rate",
-        "torque",   "force",       "fluid_force", "resistive_force",     "tail_force",     "nose_force"};
+    static constexpr const char* names[Profiles::quantities] = {"position",
+                                                                "orientation",
+                                                                "twist",
+                                                                "head_acceleration",
+                                                                "center_of_mass",
+                                                                "energies",
+                                                                "powers",
+                                                                "closure",
+                                                                "backbone",
+                                                                "section_orientation",
+                                                                "curvature",
+                                                                "curvature_rate",
+                                                                "torque",
+                                                                "force",
+                                                                "fluid_force",
+                                                                "resistive_force",
+                                                                "tail_force",
+                                                                "nose_force",
+                                                                "wake_momentum_rate"};
     const Profiles profiles(samples, stations, wrench, load);
     py::dict result;
     for (std::size_t q = 0; q < Profiles::quantities; ++q)

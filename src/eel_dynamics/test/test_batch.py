@@ -10,7 +10,15 @@ from eel_gaits import Law, Term, falling, straight, turning
 
 MOTION = ["time", "position", "orientation", "twist", "head_acceleration", "center_of_mass"]
 ALONG = ["x", "backbone", "section_orientation", "curvature", "curvature_rate", "torque", "force"]
-LOADS = ["fluid_force", "resistive_force", "tail_force", "nose_force", "closure_torque", "closure_force"]
+LOADS = [
+    "fluid_force",
+    "resistive_force",
+    "tail_force",
+    "nose_force",
+    "wake_momentum_rate",
+    "closure_torque",
+    "closure_force",
+]
 KERN, BOYER = Body.kern2006(), Body.boyer2010()
 # A light body in water without inertia: its drag brings it to rest in less than a step, and the march diverges.
 HOPELESS, LONG = Scene(density=10.0, reactive=False), Accuracy(name="long steps", resolution=10.0, step=0.02)

@@ -8,6 +8,8 @@ from draws import few, swimmers, twists
 from hypothesis import example, given
 from library_state import Reference, Scene, distance, library_body, reference_scene, rotation, simulate
 from reference import boyer_body
+from scipy.interpolate import make_interp_spline
+from scipy.spatial.transform import Rotation
 
 pytestmark = pytest.mark.identity("No water")
 VACUUM = {"reactive": False, "resistive": False}
@@ -16,10 +18,11 @@ START = np.array([0.3, 0.2, -0.4, -0.5, 0.1, 0.2])
 TOLERANCE = 1e-7
 
 
-def momenta(reference, law, run):
+def momenta(reference, law, run, samples=slice(None)):
     """(T, 6) angular (about the origin) and linear momentum in world axes, by the reference's own integrals."""
     out = []
-    for time, position, q, twist in zip(run.time, run.position, run.orientation, run.twist, strict=True):
+    heads = run.time[samples], run.position[samples], run.orientation[samples], run.twist[samples]
+    for time, position, q, twist in zip(*heads, strict=True):
         L, P = np.split(reference.momentum(*law.curvature(time, reference.space.x)[:2], twist), 2)
         L, P = rotation(q) @ L, rotation(q) @ P
         out.append(np.concatenate([L + np.cross(position, P), P]))
@@ -74,3 +77,37 @@ def test_without_a_wake_body_and_water_keep_their_momentum(measured):
         assert np.abs(run.energy.residual).max() < 1e-6 * np.abs(run.energy.kinetic_fluid).max()
     measured("momentum of body and water over 1.5 s, no wake, no drag", changes[False], TOLERANCE)
     assert changes[True] > 0.1
+
+
+@pytest.mark.parametrize("resistive", (False, True))
+def test_what_body_and_water_lose_in_momentum_is_what_the_tail_gives_to_the_wake(measured, resistive):
+    """The momentum is the reference's, of the run's pose and twist; the rate is the run's, integrated by splines.
+
+    With drag, its integral over the body is lost too; V|V| has kinks between the nodes of that quadrature.
+    """
+    law, scene = falling_law(), {"resistive": resistive, "nose": False, "friction": "laminar"}
+    reference = Reference(boyer_body(), reference_scene(**scene), panels_per_span=1, nodes_per_panel=24)
+    x, weights = reference.space.x, reference.space.weights
+    stations = np.append(x, reference.space.ends[-1])  # and the tail
+    run = simulate(
+        law,
+        1.5,
+        scene=Scene(**scene),
+        accuracy="reference",
+        sample_period=0.005,
+        stations=stations,
+        load=True,
+        estimate=False,
+    )
+    every = slice(None, None, 30)
+    P = momenta(reference, law, run, every)[:, 3:]
+    frames = Rotation.from_quat(run.section_orientation.reshape(-1, 4)).as_matrix()
+    frames = frames.reshape(*run.section_orientation.shape[:2], 3, 3)
+    to_wake = np.einsum("tij,tj->ti", frames[:, -1], run.wake_momentum_rate)
+    drag = np.einsum("x,txij,txj->ti", weights, frames[:, :-1], run.resistive_force[:, :-1])
+    lost = make_interp_spline(run.time, to_wake - drag, k=7).antiderivative()(run.time[every])
+    lost -= lost[0]
+    turned_over = np.trapezoid(np.linalg.norm(to_wake, axis=1), run.time)
+    what = f"momentum lost against that given to the wake{' and taken by drag' if resistive else ''}, 1.5 s"
+    measured(what, np.abs(P[0] - P - lost) / turned_over, 1e-5 if resistive else 1e-7)
+    assert np.linalg.norm(lost[-1]) > 0.01 * turned_over

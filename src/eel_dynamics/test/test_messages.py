@@ -115,6 +115,7 @@ def test_profiles_keep_section_axes(swum):
         assert np.array_equal(getattr(load, f"resistive_{axis + 1}"), snapshot.resistive_force[:, axis])
     assert np.array_equal(xyz(load.tail_force), snapshot.tail_force)
     assert np.array_equal(xyz(load.nose_force), snapshot.nose_force)
+    assert np.array_equal(xyz(load.wake_momentum_rate), snapshot.wake_momentum_rate)
     assert np.any(curvature.yaw) and np.any(wrench.torque_3) and np.any(load.force_2)
 
 

@@ -99,6 +99,7 @@ def test_labels_keep_apart_about_where_they_belong():
     moved = _apart([0.0, 0.1, 0.9, 4.0], 1.0)
     assert np.all(np.diff(moved) >= 1.0 - 1e-12) and moved[-1] == 4.0
     assert np.mean(moved[:3]) == pytest.approx(np.mean([0.0, 0.1, 0.9]))
+    assert _apart([0.0, 4.5, 4.8, 4.9], 1.0, highest=5.0) == [0.0, 3.0, 4.0, 5.0]
 
 
 def test_command_leaves_picture_page_table_and_recording(tmp_path, capsys):

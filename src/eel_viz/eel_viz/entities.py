@@ -14,6 +14,7 @@ FOLLOW = "/world/follow"  # a frame that moves with the swimmer, and never turns
 WHOLE_PATH = "/world/whole_path"  # the frame of all places so far
 BOTH = "/world/both"  # the frame that moves with two swimmers
 LEGEND = "/world/follow/legend"
+WAKE_LEGEND = "/world/follow/legend/wake"
 WATER = "/world/water/near"  # around each frame; below each of them: grid, labels, walls
 PATH_WATER = "/world/water/path"
 BOTH_WATER = "/world/water/both"
@@ -28,6 +29,7 @@ STROBES = "/world/strobes"  # the midline, once a second
 TRAIL = "/world/trail"  # its last seconds, fading
 LOAD = "/world/load/distributed"
 LOAD_ENDS = "/world/load/ends"
+WAKE = "/world/wake"  # threads: momentum that the tail gave to the wake per time, in the last seconds
 
 # --- drawings against X ------------------------------------------------------------------------------------------
 PROFILES = "/profiles"

@@ -73,11 +73,15 @@ class Profiles:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Load:
-    """The fluid's load: `profiles` [N/m], and the forces at `tail` and `nose`, (3,) [N], all in section axes."""
+    """The fluid's load: `profiles` [N/m], and the forces at `tail` and `nose`, (3,) [N], all in section axes.
+
+    `wake` (3,) [N]: momentum that the tail gives to the wake per time, in the tail's axes; None in an older bag.
+    """
 
     profiles: Profiles
     tail: np.ndarray
     nose: np.ndarray
+    wake: np.ndarray | None = None
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -168,10 +172,12 @@ def read_curvature(message) -> Profiles:
 
 def read_load(message) -> Load:
     """From eel_msgs/HydrodynamicLoad."""
+    wake = getattr(message, "wake_momentum_rate", None)
     return Load(
         profiles=_profiles(message, LOAD_FIELDS),
         tail=_vector("tail_force", message.tail_force),
         nose=_vector("nose_force", message.nose_force),
+        wake=None if wake is None else _vector("wake_momentum_rate", wake),
     )
 
 

@@ -77,6 +77,13 @@ class Settings(Drawing):
         "namespace of another swimmer (/: the one without), laid over this one in the arrangement compare; empty: none",
     )
     frames: bool = setting(False, "show the axes of head and tail, 0.12 m long: red forward, green left, blue up")
+    wake: bool = setting(
+        True,
+        "show what the tail left in the wake in the last 3 s, momentum per time; a scheme: the model has no flow there",
+    )
+    wake_scale: float = setting(
+        0.4, "length that shows 1 N, which is 1 N s of momentum left in the wake per second", unit="m/N", minimum=0.0
+    )
     rate: float = setting(
         30.0, "samples per second that a live viewer gets; a file gets all", unit="Hz", minimum=0.1, maximum=1000.0
     )

@@ -46,7 +46,7 @@ def messages(swimmer: made_up.Swimmer, nanoseconds: int) -> dict:
         ("hydrodynamic_load", swimmer.load(t)),
     ):
         for name, array in values.items():
-            vector = name.endswith("_force")
+            vector = name in ("tail_force", "nose_force", "wake_momentum_rate")
             setattr(out[topic], name, Vector3(x=array[0], y=array[1], z=array[2]) if vector else array.tolist())
     for name, value in swimmer.energy(t).items():
         setattr(out["energy"], name, float(value))

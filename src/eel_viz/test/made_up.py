@@ -117,6 +117,7 @@ class Swimmer:
             "resistive_2": 2.0 * ramp * (0.3 + x) * np.cos(wave),
             "resistive_3": 0.1 * ramp * x,
             "tail_force": np.array([-0.4 * ramp, 0.3 * ramp * np.sin(2 * np.pi * t), 0.0]),
+            "wake_momentum_rate": np.array([0.4 * ramp, 2.0 * ramp * np.cos(2 * np.pi * t), 0.1 * ramp]),
             "nose_force": np.array([0.1, 0.0, 0.0]) * ramp,
         }
 

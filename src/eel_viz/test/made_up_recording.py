@@ -26,7 +26,10 @@ def sample(swimmer: made_up.Swimmer, stamp: int) -> dict:
         "internal_wrench": (profiles(wrench, messages.WRENCH_FIELDS),),
         "hydrodynamic_load": (
             messages.Load(
-                profiles=profiles(load, messages.LOAD_FIELDS), tail=load["tail_force"], nose=load["nose_force"]
+                profiles=profiles(load, messages.LOAD_FIELDS),
+                tail=load["tail_force"],
+                nose=load["nose_force"],
+                wake=load["wake_momentum_rate"],
             ),
         ),
         "energy": (swimmer.energy(t),),

@@ -10,7 +10,7 @@ from eel_viz.scene3d import camera
 from eel_viz.scene3d.colours import diverging, diverging_index
 from eel_viz.scene3d.orientation import attitude, world_from_section
 from eel_viz.scene3d.skin import Flanks, Skin
-from eel_viz.scene3d.track import LENGTH, PIECES, POINTS, STROBE_PERIOD
+from eel_viz.scene3d.track import LENGTH, PIECES, POINTS, STROBE_PERIOD, THREADS
 from eel_viz.scene3d.water import GRID, LABELS, WALLS
 from eel_viz.views.blueprint import arrangement
 from made_up_recording import body
@@ -257,7 +257,7 @@ def test_nothing_is_shown_that_no_test_compares_with_the_messages(made):
     plots = (entities.TORQUE, entities.FORCE, entities.CURVATURE)
     compared = {*TIME_SERIES, *NUMBERS, entities.BACKBONE, entities.SKIN, entities.HEAD, entities.TAIL, entities.FOLLOW}
     compared |= {entities.TRACK, entities.STROBES, entities.TRAIL}
-    compared |= {entities.LOAD, entities.LOAD_ENDS, entities.HEAT_MAP_IMAGE}
+    compared |= {entities.LOAD, entities.LOAD_ENDS, entities.WAKE, entities.WAKE_LEGEND, entities.HEAT_MAP_IMAGE}
     compared |= {f"{root}/{part}" for root in plots for part in (entities.CURVES, entities.ENVELOPE, entities.TICKS)}
     compared |= {f"{root}/{part}" for root in (entities.WATER, entities.PATH_WATER) for part in (GRID, LABELS, WALLS)}
     compared |= {entities.SHADOW, entities.RUN, entities.LOG, entities.TORQUE_LAYER, entities.WHOLE_PATH}
@@ -282,6 +282,24 @@ def test_arrows_are_the_load_in_the_world(record_made_up):
         both = world_from_section(backbone.orientation[[0, -1]], np.stack([load.nose, load.tail]))
         np.testing.assert_allclose(ends["vectors"][k], 2.0 * both, atol=SINGLE)
         np.testing.assert_allclose(ends["origins"][k], backbone.position[[0, -1]], atol=SINGLE)
+
+
+def test_the_wake_shows_what_the_tail_gave_and_fades(record_made_up):
+    path, samples = record_made_up(0.4, 100.0, wake_scale=2.0)
+    wake, stamps = read(path, entities.WAKE), drawn_stamps(samples)
+    np.testing.assert_array_equal(wake.stamps, stamps)
+    lines, loads = ([samples[stamp][topic][0] for stamp in stamps] for topic in ("backbone", "hydrodynamic_load"))
+    tails = np.array([line.position[-1] for line in lines])
+    given_away = world_from_section(
+        np.array([line.orientation[-1] for line in lines]), np.array([load.wake for load in loads])
+    )
+    ends = np.concatenate([tails, tails + 2.0 * given_away], axis=1)
+    for stamp, strips in zip(stamps, wake["strips"], strict=True):
+        at = np.maximum(stamp / 1e9 - np.linspace(0.0, LENGTH, THREADS), 0.0)
+        expected = np.stack([np.interp(at, np.array(stamps) / 1e9, column) for column in ends.T], axis=1)
+        np.testing.assert_allclose(np.array(strips).reshape(THREADS, 6), expected, atol=3 * SINGLE)
+    shades = np.array(read(path, entities.WAKE, static=True)["colors"][0], dtype=np.uint32)
+    assert np.all(np.diff(((shades >> 24) & 255).astype(int)) <= 0)
 
 
 @pytest.fixture(scope="module")

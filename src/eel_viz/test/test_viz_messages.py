@@ -62,6 +62,7 @@ def test_arrays_come_through_unchanged(sent):
             np.testing.assert_array_equal(profiles.values[name], fields[name])
     load = reading.read_load(sent["hydrodynamic_load"])
     np.testing.assert_array_equal(load.tail, swimmer.load(STAMP * 1e-9)["tail_force"])
+    np.testing.assert_array_equal(load.wake, swimmer.load(STAMP * 1e-9)["wake_momentum_rate"])
     assert reading.read_energy(sent["energy"]) == swimmer.energy(STAMP * 1e-9)
     head = swimmer.head(STAMP * 1e-9)
     pose, twist = READERS["odom"](sent["odom"])
@@ -105,6 +106,7 @@ BAD = [
     ("internal_wrench", "x[10]", math.nan, "x"),
     ("hydrodynamic_load", "resistive_2[5]", math.nan, "resistive_2"),
     ("hydrodynamic_load", "tail_force.x", math.nan, "tail_force"),
+    ("hydrodynamic_load", "wake_momentum_rate.y", math.nan, "wake_momentum_rate"),
     ("energy", "residual", math.nan, "residual"),
     ("body", "half_width[3]", -0.01, "half_width"),
     ("body", "half_height[3]", math.nan, "half_height"),

@@ -15,7 +15,7 @@ from eel_dynamics.simulation.snapshot import Snapshot
 STACKED = (
     *("time", "position", "orientation", "twist", "head_acceleration", "center_of_mass", "backbone"),
     *("section_orientation", "curvature", "curvature_rate", "torque", "force", "fluid_force", "resistive_force"),
-    *("tail_force", "nose_force", "closure_torque", "closure_force"),
+    *("tail_force", "nose_force", "wake_momentum_rate", "closure_torque", "closure_force"),
 )
 
 

@@ -183,7 +183,8 @@ class Sample:
         for axis in range(3):
             numbers[FORCES[axis]][:] = snapshot.fluid_force[:, axis]
             numbers[RESISTANCES[axis]][:] = snapshot.resistive_force[:, axis]
-        numbers["tail_force"][:], numbers["nose_force"][:] = snapshot.tail_force + 0.0, snapshot.nose_force + 0.0
+        for name in ("tail_force", "nose_force", "wake_momentum_rate"):
+            numbers[name][:] = getattr(snapshot, name) + 0.0
 
     def _fill_energy(self, numbers, snapshot):
         numbers[""][:] = [getattr(snapshot.energy, name) for name in ENERGY_FIELDS]

@@ -28,6 +28,7 @@ from eel_dynamics.simulation.energy import EnergyLedger
 
 NEEDED = ("head_pose", "head_twist", "backbone", "curvature")
 FURTHER = ("internal_wrench", "hydrodynamic_load", "energy")
+ENDS = ("tail_force", "nose_force", "wake_momentum_rate")
 WORKS = ("actuator", "wake", "nose", "drag")
 FEWEST = 4  # samples, for splines through them
 AXIS_OF_NUMBER = {column + 1: name for name, column in AXES.items()}  # as in CurvatureTerm
@@ -114,9 +115,11 @@ def _wrench(rows: dict) -> dict:
 
 def _load(rows: dict) -> dict:
     if "hydrodynamic_load" not in rows:
-        return dict.fromkeys(("fluid_force", "resistive_force", "tail_force", "nose_force"))
+        return dict.fromkeys(("fluid_force", "resistive_force", *ENDS))
     load = rows["hydrodynamic_load"]
-    ends = {name: _numbers((getattr(each, name) for each in load), "xyz") for name in ("tail_force", "nose_force")}
+    ends = dict.fromkeys(ENDS) | {  # an older bag has no wake_momentum_rate
+        name: _numbers((getattr(each, name) for each in load), "xyz") for name in ENDS if hasattr(load[0], name)
+    }
     return {"fluid_force": _by_axes(load, "force"), "resistive_force": _by_axes(load, "resistive"), **ends}
 
 

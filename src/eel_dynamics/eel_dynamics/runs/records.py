@@ -87,6 +87,8 @@ def _sample(run, k: int) -> dict[str, dict]:
             "tail_force": _named("xyz", run.tail_force[k]),
             "nose_force": _named("xyz", run.nose_force[k]),
         }
+        if run.wake_momentum_rate is not None:  # a file of an older version has none
+            found["hydrodynamic_load"]["wake_momentum_rate"] = _named("xyz", run.wake_momentum_rate[k])
     if run.energy is not None:
         found["energy"] = {name: float(run.energy[name][k]) for name in ENERGIES}
     return found

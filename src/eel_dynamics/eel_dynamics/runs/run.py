@@ -80,6 +80,7 @@ class Run:
     resistive_force: np.ndarray | None  # (T, M, 3) N/m, its resistive part
     tail_force: np.ndarray | None  # (T, 3) N, section axes at the tail
     nose_force: np.ndarray | None  # (T, 3) N, section axes at the nose
+    wake_momentum_rate: np.ndarray | None  # (T, 3) N, T_f E1 - V1 M_f V of eq. (60), section axes at the tail
     energy: EnergyLedger | None  # one (T,) array per field
     closure_torque: np.ndarray | None  # (T,) N m, magnitude of the internal torque left over at the nose
     closure_force: np.ndarray | None  # (T,) N, of the internal force left over there, less the load on the nose
@@ -481,6 +482,7 @@ def run_of(
         resistive_force=out.resistive_force if load else None,
         tail_force=out.tail_force if load else None,
         nose_force=out.nose_force if load else None,
+        wake_momentum_rate=out.wake_momentum_rate if load else None,
         energy=energy,
         closure_torque=out.closure[:, 0] if wrench else None,
         closure_force=out.closure[:, 1] if wrench else None,

@@ -30,6 +30,7 @@ class Observations(NamedTuple):
     resistive_force: np.ndarray  # (T, M, 3) N/m, its resistive part
     tail_force: np.ndarray  # (T, 3) N, section axes at the tail
     nose_force: np.ndarray  # (T, 3) N, section axes at the nose
+    wake_momentum_rate: np.ndarray  # (T, 3) N, section axes at the tail
     whole: np.ndarray  # (.,) all of these, one behind the other
 
 

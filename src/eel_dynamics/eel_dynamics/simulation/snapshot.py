@@ -30,6 +30,7 @@ class Snapshot:
     resistive_force: np.ndarray | None  # (M, 3) N/m, section axes
     tail_force: np.ndarray | None  # (3,) N, section axes at the tail
     nose_force: np.ndarray | None  # (3,) N, section axes at the nose
+    wake_momentum_rate: np.ndarray | None  # (3,) N, momentum given to the wake per time, section axes at the tail
     energy: EnergyLedger | None
     closure_torque: float | None  # N m, what is left of the internal torque at the nose
     closure_force: float | None  # N, what is left of the internal force there, less the load on the nose
@@ -63,6 +64,7 @@ class Snapshot:
             resistive_force=out.resistive_force[0] if load else None,
             tail_force=out.tail_force[0] if load else None,
             nose_force=out.nose_force[0] if load else None,
+            wake_momentum_rate=out.wake_momentum_rate[0] if load else None,
             energy=EnergyLedger.of(out.energies[0], out.powers[0], works, energy_at_start) if ledger else None,
             closure_torque=float(out.closure[0, 0]) if wrench else None,
             closure_force=float(out.closure[0, 1]) if wrench else None,

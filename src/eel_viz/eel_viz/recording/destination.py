@@ -13,6 +13,7 @@ import rerun.blueprint as rrb
 from eel_viz.recording.loggers import Rates
 from eel_viz.settings import Settings
 from eel_viz.views.blueprint import arrangement
+from eel_viz.views.views import Layers
 
 APPLICATION = "eel"  # Rerun's application id
 CLOSE_TIMEOUT = 3.0  # s for the last flush of a stream
@@ -91,9 +92,9 @@ class Destination(ABC):
         return rr.ChunkBatcherConfig.DEFAULT()
 
     def _blueprint(self) -> rrb.Blueprint:
-        return arrangement(
-            self.settings.blueprint, live=self.live, compare=bool(self.settings.compare), frames=self.settings.frames
-        )
+        chosen = self.settings
+        layers = Layers(frames=chosen.frames, wake=chosen.wake)
+        return arrangement(chosen.blueprint, live=self.live, compare=bool(chosen.compare), layers=layers)
 
     @abstractmethod
     def _sink(self, number: int) -> rr.FileSink | rr.GrpcSink | None:

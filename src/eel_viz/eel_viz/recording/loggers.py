@@ -62,7 +62,12 @@ class Loggers:
         self._statuses: dict[str, tuple[int, str]] = {}
         self.summary = Summary()
         self._attitude = Attitude()
-        self._scene = SwimmerScene(stream, load_scale=settings.load_scale, end_scale=settings.end_force_scale)
+        self._scene = SwimmerScene(
+            stream,
+            load_scale=settings.load_scale,
+            end_scale=settings.end_force_scale,
+            wake_scale=settings.wake_scale,
+        )
         self._torque, self._force, self._curvature = (
             ProfilePlot(stream, path, names=names, unit=unit, limit=limit, palette=colours.AXIS[3 - len(names) :])
             for path, names, unit, limit in (
@@ -183,9 +188,11 @@ class Loggers:
             self._curvature.draw_envelope(stamp)
 
     def hydrodynamic_load(self, stamp: int, load: Load) -> None:
-        """Log the fluid's force on the body, as arrows in the world."""
+        """Log the fluid's force on the body, as arrows in the world, and what the tail leaves in the wake."""
         if self._due("load", stamp, self._number_period):
             values = {**load.profiles.values, "tail_force": load.tail, "nose_force": load.nose}
+            if load.wake is not None:
+                values["wake_momentum_rate"] = load.wake
             self._numbers(stamp, entities.LOAD_NUMBERS, "HydrodynamicLoad", values, load.profiles.x)
         if self._due("arrows", stamp, self._drawing_period):
             self._scene.load(stamp, load)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Draws the fluid's force on the body as arrows in the world: along the body, and at nose and tail.
+"""Draws the fluid's force on the body as arrows in the world, along the body, and at nose and tail; and the wake.
 
 A load is in section axes, so it needs the backbone of the same stamp; the one that comes first waits for the other.
 """
@@ -14,17 +14,20 @@ from eel_viz.batched_stream import BatchedStream
 from eel_viz.messages import Backbone, Load
 from eel_viz.scene3d import colours
 from eel_viz.scene3d.load_vectors import LoadVectors
+from eel_viz.scene3d.orientation import world_from_section
+from eel_viz.scene3d.track import Wake
 
 MAXIMUM_WAITING = 512  # backbones, or loads; the oldest is dropped
 
 
 class Arrows:
-    """Draws the arrows; their lengths are `load_scale` [m per N/m] and `end_scale` [m per N]."""
+    """Draws arrows, `load_scale` [m per N/m] and `end_scale` [m per N] long, and the wake, `wake_scale` [m per N]."""
 
-    def __init__(self, stream: BatchedStream, *, load_scale: float, end_scale: float) -> None:
+    def __init__(self, stream: BatchedStream, *, load_scale: float, end_scale: float, wake_scale: float) -> None:
         self._stream, self._vectors = stream, LoadVectors(load_scale=load_scale, end_scale=end_scale)
         self._backbones: OrderedDict[int, Backbone] = OrderedDict()
         self._loads: OrderedDict[int, Load] = OrderedDict()
+        self._wake = Wake(stream, wake_scale)
         stream.log_static(entities.LOAD, rr.Arrows3D.from_fields(colors=[colours.TEAL], radii=[0.0022]))
         stream.log_static(entities.LOAD_ENDS, rr.Arrows3D.from_fields(colors=[colours.MAGENTA], radii=[0.004]))
 
@@ -47,6 +50,9 @@ class Arrows:
     def _draw(self, stamp: int, backbone: Backbone, load: Load) -> None:
         self._log(stamp, entities.LOAD, *self._vectors.along(backbone, load))
         self._log(stamp, entities.LOAD_ENDS, *self._vectors.ends(backbone, load))
+        if load.wake is not None:
+            momentum_rate = world_from_section(backbone.orientation[-1], load.wake)
+            self._wake.draw(stamp, backbone.position[-1], momentum_rate)
 
     def _log(self, stamp: int, path: str, origins: np.ndarray, vectors: np.ndarray) -> None:
         self._stream.add_row(

@@ -11,6 +11,7 @@ AXIS = ((230, 134, 40), (0, 170, 130), (86, 180, 233))  # section axes 1, 2, 3
 TEAL = (38, 190, 170)
 AMBER = (236, 178, 50)
 MAGENTA = (222, 80, 150)
+WAKE = (150, 120, 235)
 GREY = (150, 155, 160)
 LABEL = (205, 210, 215)
 TICK = (70, 76, 84)
@@ -46,6 +47,11 @@ DIVERGING = (
 def dim(colour: tuple[int, int, int], factor: float = 0.45) -> tuple[int, int, int]:
     """The same hue, darker: for drawings in the background, such as an envelope."""
     return tuple(int(channel * factor) for channel in colour)
+
+
+def faded(colour: tuple[int, int, int], left: np.ndarray) -> np.ndarray:
+    """`colour` with the shares `left` (n,) of it, the rest that of the water: uint8 (n, 3)."""
+    return (np.outer(left, colour) + np.outer(1.0 - left, WATER_BACKGROUND)).astype(np.uint8)
 
 
 def diverging(values: np.ndarray, limit: float) -> np.ndarray:

@@ -14,7 +14,8 @@ from eel_viz.scene3d import camera, colours
 AHEAD = 1.0  # radii, from the eye
 BAR_AT = (-0.54, -0.425)  # tangents: the middle of the bar
 BAR_SIZE = (0.30, 0.018)
-ARROWS_AT = ((0.19, -0.435), (0.50, -0.435))  # of the load along the body, and at the ends
+ARROWS_AT = ((0.19, -0.395), (0.50, -0.395))  # of the load along the body, and at the ends
+WAKE_AT = (0.345, -0.45)  # of the wake
 STEPS = 33
 
 
@@ -33,8 +34,13 @@ def log_bar(stream: BatchedStream, stamp: int, *, limit: float, unit: str, name:
     _log_texts(stream, stamp, f"{entities.LEGEND}/labels", places, [f"-{limit:g}", f"{name} [{unit}]", f"+{limit:g}"])
 
 
-def log_arrow_scale(stream: BatchedStream, stamp: int, *, load_scale: float, end_scale: float) -> None:
-    """Log what the arrows' lengths mean: `load_scale` [m per N/m] and `end_scale` [m per N]."""
+def log_arrow_scale(
+    stream: BatchedStream, stamp: int, *, load_scale: float, end_scale: float, wake_scale: float
+) -> None:
+    """Log what the lengths of arrows and wake mean: `load_scale` [m per N/m], `end_scale`, `wake_scale` [m per N]."""
+    at = camera.before_eye(AHEAD, WAKE_AT[0] * AHEAD, WAKE_AT[1] * AHEAD)
+    wake = f"momentum to the wake per time (scheme), 1 N: {wake_scale:g} m"
+    _log_texts(stream, stamp, entities.WAKE_LEGEND, [at], [wake], [colours.WAKE])
     texts = [f"1 N/m: {load_scale:g} m", f"1 N: {end_scale:g} m"]
     places = [camera.before_eye(AHEAD, right * AHEAD, up * AHEAD) for right, up in ARROWS_AT]
     _log_texts(stream, stamp, f"{entities.LEGEND}/arrows", places, texts, [colours.TEAL, colours.MAGENTA])

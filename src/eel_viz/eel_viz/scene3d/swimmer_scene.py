@@ -20,10 +20,10 @@ PATH_WATER_PERIOD = 400_000_000  # ns: its frame changes slowly
 
 
 class SwimmerScene:
-    """Draws into `stream`; load_scale [m per N/m] and end_scale [m per N] are those of `Arrows`."""
+    """Draws into `stream`; scales: those of `Arrows`, by name."""
 
-    def __init__(self, stream: BatchedStream, *, load_scale: float, end_scale: float) -> None:
-        self._stream, self._scales = stream, {"load_scale": load_scale, "end_scale": end_scale}
+    def __init__(self, stream: BatchedStream, **scales: float) -> None:
+        self._stream, self._scales = stream, scales
         self._skin: Skin | None = None
         self._flanks: Flanks | None = None
         self._torque_limit = 0.0  # N m: of the colours in the legend
@@ -32,7 +32,7 @@ class SwimmerScene:
         self._water, self._path_water = (WaterBox(stream, root) for root in (entities.WATER, entities.PATH_WATER))
         self._path_water_stamp: int | None = None  # ns
         self._track, self._strobes = Track(stream), Strobes(stream)
-        self._arrows = Arrows(stream, **self._scales)
+        self._arrows = Arrows(stream, **scales)
         stream.log_static(entities.WORLD, rr.ViewCoordinates.RIGHT_HAND_Z_UP)
         stream.log_static(entities.BACKBONE, rr.LineStrips3D.from_fields(colors=[colours.LABEL], radii=[0.0004]))
         stream.log_static(entities.SHADOW, rr.LineStrips3D.from_fields(colors=[(4, 10, 17)], radii=[0.03]))

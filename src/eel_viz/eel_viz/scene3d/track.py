@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Draws where the swimmer was: the path of the head in short pieces and strobes of the midline, both shown up to the
-cursor, and the last seconds of the head as a trail that fades out.
+cursor; and the last seconds of two things, which fade out: the path of the head, and what the tail left in the wake.
 """
 
 import numpy as np
@@ -12,8 +12,39 @@ from eel_viz.scene3d import colours
 
 LENGTH = 3.0  # s: duration of the trail
 PIECES, POINTS = 10, 6  # pieces of one brightness each, and points of a piece
+THREADS = 91  # of the wake
 STROBE_PERIOD = 1_000_000_000  # ns
 ROOM = 64  # positions, at least, between two reallocations of the history
+
+
+class RecentRows:
+    """The last seconds of a quantity of `width` numbers."""
+
+    def __init__(self, width: int) -> None:
+        self._stamps, self._rows = np.empty(0), np.empty((0, width))  # ns: `begin` to `end` are the last seconds
+        self._begin = self._end = 0
+
+    def add(self, stamp: int, row: np.ndarray) -> np.ndarray | None:
+        """Add a `row` (width,) at `stamp` [ns]; returns the previous one, None at first."""
+        previous = self._rows[self._end - 1].copy() if self._end > self._begin else None
+        if self._end == len(self._stamps):  # make room for as many again
+            kept, count = slice(self._begin, self._end), self._end - self._begin
+            stamps, rows = np.empty(2 * count + ROOM), np.empty((2 * count + ROOM, self._rows.shape[1]))
+            stamps[:count], rows[:count] = self._stamps[kept], self._rows[kept]
+            self._stamps, self._rows, self._begin, self._end = stamps, rows, 0, count
+        self._stamps[self._end], self._rows[self._end] = stamp, row
+        self._end += 1
+        while self._end - self._begin > 2 and self._stamps[self._begin + 1] < stamp - LENGTH * 1e9:
+            self._begin += 1
+        return previous
+
+    def at(self, stamps: np.ndarray) -> np.ndarray:
+        """The quantity at `stamps` (...,) [ns], interpolated: float32 (..., width). Before the first row: that row."""
+        known, rows = self._stamps[self._begin : self._end], self._rows[self._begin : self._end]
+        found = np.empty((*stamps.shape, rows.shape[1]), dtype=np.float32)
+        for column in range(rows.shape[1]):
+            found[..., column] = np.interp(stamps, known, rows[:, column])
+        return found
 
 
 class Track:
@@ -21,41 +52,45 @@ class Track:
 
     def __init__(self, stream: BatchedStream) -> None:
         self._stream = stream
-        self._stamps, self._places = np.empty(0), np.empty((0, 3))  # ns, m: rows `begin` to `end` are the last seconds
-        self._begin = self._end = 0
+        self._places = RecentRows(3)  # m
         self._ages = _ages() * 1e9  # ns, (PIECES, POINTS), from the present backwards
         thin = rr.Radius.ui_points(0.8)
         stream.log_static(
             entities.TRACK, rr.LineStrips3D.from_fields(colors=[colours.dim(colours.AMBER)], radii=[thin])
         )
         left = 1.0 - np.arange(PIECES) / PIECES  # of the colour
-        shades = np.outer(left, colours.AMBER) + np.outer(1.0 - left, colours.WATER_BACKGROUND)
         radii = [rr.Radius.ui_points(0.5 + 1.1 * share) for share in left]
-        stream.log_static(entities.TRAIL, rr.LineStrips3D.from_fields(colors=shades.astype(np.uint8), radii=radii))
+        stream.log_static(
+            entities.TRAIL, rr.LineStrips3D.from_fields(colors=colours.faded(colours.AMBER, left), radii=radii)
+        )
 
     def draw(self, stamp: int, position: np.ndarray) -> None:
         """Continue to `position`, (3,) [m] in the world, at `stamp` [ns]."""
-        if self._end > self._begin:
-            piece = np.array([self._places[self._end - 1], position])
-            self._stream.add_row(stamp, entities.TRACK, rr.LineStrips3D, strips=piece[None])
-        stamps, places = self._remember(stamp, position)
-        wanted, trail = stamp - self._ages, np.empty((PIECES, POINTS, 3), dtype=np.float32)
-        for axis in range(3):
-            trail[..., axis] = np.interp(wanted, stamps, places[:, axis])
-        self._stream.add_row(stamp, entities.TRAIL, rr.LineStrips3D, strips=trail)
+        previous = self._places.add(stamp, position)
+        if previous is not None:
+            self._stream.add_row(stamp, entities.TRACK, rr.LineStrips3D, strips=np.array([previous, position])[None])
+        self._stream.add_row(stamp, entities.TRAIL, rr.LineStrips3D, strips=self._places.at(stamp - self._ages))
 
-    def _remember(self, stamp: int, position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Add a position; returns stamps (K,) [ns] and positions (K, 3) [m] of the last seconds."""
-        if self._end == len(self._stamps):  # make room for as many again
-            kept, count = slice(self._begin, self._end), self._end - self._begin
-            stamps, places = np.empty(2 * count + ROOM), np.empty((2 * count + ROOM, 3))
-            stamps[:count], places[:count] = self._stamps[kept], self._places[kept]
-            self._stamps, self._places, self._begin, self._end = stamps, places, 0, count
-        self._stamps[self._end], self._places[self._end] = stamp, position
-        self._end += 1
-        while self._end - self._begin > 2 and self._stamps[self._begin + 1] < stamp - LENGTH * 1e9:
-            self._begin += 1
-        return self._stamps[self._begin : self._end], self._places[self._begin : self._end]
+
+class Wake:
+    """Draws threads from the tail's path: the momentum given to the wake per time, `scale` [m per N] long.
+
+    A scheme: the model has no flow in the wake. So the threads stay where the tail was, also in a current.
+    """
+
+    def __init__(self, stream: BatchedStream, scale: float) -> None:
+        self._stream, self._scale = stream, scale
+        self._ends = RecentRows(6)  # m: the tail's place, and the thread's tip
+        self._ages = np.linspace(0.0, LENGTH * 1e9, THREADS)  # ns
+        shades = colours.faded(colours.WAKE, np.linspace(1.0, 0.0, THREADS))
+        thin = [rr.Radius.ui_points(0.8)]
+        stream.log_static(entities.WAKE, rr.LineStrips3D.from_fields(colors=shades, radii=thin))
+
+    def draw(self, stamp: int, tail: np.ndarray, momentum_rate: np.ndarray) -> None:
+        """Continue to the `tail`, (3,) [m], and the `momentum_rate`, (3,) [N], in the world, at `stamp` [ns]."""
+        self._ends.add(stamp, np.concatenate([tail, tail + self._scale * momentum_rate]))
+        strips = self._ends.at(stamp - self._ages).reshape(THREADS, 2, 3)
+        self._stream.add_row(stamp, entities.WAKE, rr.LineStrips3D, strips=strips)
 
 
 class Strobes:

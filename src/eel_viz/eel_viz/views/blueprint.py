@@ -11,8 +11,10 @@ from eel_gaits.input_output.wording import shown
 from eel_viz import entities
 from eel_viz.settings import BLUEPRINTS
 from eel_viz.views.views import (
+    ALL,
     NARROW,
     WIDE,
+    Layers,
     following_view,
     heat_map_view,
     path_view,
@@ -26,21 +28,21 @@ from eel_viz.views.views import (
 
 
 def arrangement(
-    first: str = "overview", *, live: bool = False, compare: bool = False, frames: bool = False
+    first: str = "overview", *, live: bool = False, compare: bool = False, layers: Layers = ALL
 ) -> rrb.Blueprint:
     """All arrangements as tabs, `first` in front. `ValueError` for an unknown one.
 
     live: the time cursor follows the newest data, otherwise it stands at the start. compare: add the comparison with
-    another run. frames: show the axes of head and tail.
+    another run. layers: what is shown in three dimensions.
     """
     if first not in BLUEPRINTS:
         raise ValueError(f"blueprint must be one of {', '.join(BLUEPRINTS)}, got {shown(first)}")
     tabs = {
-        name: make(frames=frames)
+        name: make(layers=layers)
         for name, make in (("overview", overview), ("torques", torques), ("motion", motion), ("swimmer", swimmer))
     }
     if compare or first == "compare":
-        tabs["compare"] = comparison(frames=frames)
+        tabs["compare"] = comparison(layers=layers)
     return rrb.Blueprint(
         rrb.Tabs(*tabs.values(), active_tab=list(tabs).index(first)),
         rrb.TopPanel(state="hidden"),
@@ -52,11 +54,11 @@ def arrangement(
     )
 
 
-def overview(*, frames: bool = False) -> rrb.Container:
+def overview(*, layers: Layers = ALL) -> rrb.Container:
     """The swimmer, its profiles, its power, and the run's state and residual."""
     return rrb.Horizontal(
         rrb.Vertical(
-            rrb.Tabs(following_view(frames=frames), path_view(frames=frames)),
+            rrb.Tabs(following_view(layers=layers), path_view(layers=layers)),
             rrb.Horizontal(speed_view(), power_view()),
             row_shares=[2.3, 1.0],
         ),
@@ -72,10 +74,10 @@ def overview(*, frames: bool = False) -> rrb.Container:
     )
 
 
-def torques(*, frames: bool = False) -> rrb.Container:
+def torques(*, layers: Layers = ALL) -> rrb.Container:
     """The profiles of torque, force and curvature."""
     return rrb.Horizontal(
-        rrb.Vertical(following_view(frames=frames), heat_map_view(), row_shares=[1.5, 1.0]),
+        rrb.Vertical(following_view(layers=layers), heat_map_view(), row_shares=[1.5, 1.0]),
         rrb.Vertical(
             profile_view(entities.TORQUE, "Internal torque C(X)"),
             profile_view(entities.FORCE, "Internal force N(X)"),
@@ -85,11 +87,11 @@ def torques(*, frames: bool = False) -> rrb.Container:
     )
 
 
-def motion(*, frames: bool = False) -> rrb.Container:
+def motion(*, layers: Layers = ALL) -> rrb.Container:
     """Path, attitude and velocities of the head."""
     return rrb.Horizontal(
         rrb.Vertical(
-            path_view(frames=frames),
+            path_view(layers=layers),
             rrb.Horizontal(speed_view(), series_view("Kinetic energy [J]", entities.KINETIC)),
             row_shares=[2.1, 1.0],
         ),
@@ -103,16 +105,16 @@ def motion(*, frames: bool = False) -> rrb.Container:
     )
 
 
-def swimmer(*, frames: bool = False) -> rrb.Container:
+def swimmer(*, layers: Layers = ALL) -> rrb.Container:
     """The swimmer alone, for films."""
-    return rrb.Horizontal(following_view(frames=frames), name="swimmer")
+    return rrb.Horizontal(following_view(layers=layers), name="swimmer")
 
 
-def comparison(*, frames: bool = False) -> rrb.Container:
+def comparison(*, layers: Layers = ALL) -> rrb.Container:
     """Two runs and their difference."""
     return rrb.Horizontal(
         rrb.Vertical(
-            following_view("Both swimmers, the other as hoops", both=True, frames=frames),
+            following_view("Both swimmers, the other as hoops", both=True, layers=layers),
             rrb.Horizontal(
                 series_view("Heads apart [m]", entities.DISTANCE, legend=0.0),
                 series_view("Speed of both heads [m/s]", entities.SPEED, entities.OTHER_SPEED, legend=2 * NARROW),

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Single views, as functions without data."""
 
+from dataclasses import dataclass
+
 import rerun as rr
 import rerun.blueprint as rrb
 from rerun.blueprint.archetypes import EntityBehavior
@@ -11,9 +13,27 @@ from eel_viz.scene3d import camera, colours
 
 NARROW, WIDE = 4.5, 2.0  # s before the start, for the legend of a narrow or a wide view of some ten seconds
 LOADS = entities.LOAD, entities.LOAD_ENDS
+FRAMES = entities.HEAD, entities.TAIL
+WAKE = entities.WAKE, entities.WAKE_LEGEND
 
 
-def following_view(name: str = "Swimmer", *, both: bool = False, frames: bool = False) -> rrb.Spatial3DView:
+@dataclass(frozen=True, kw_only=True)
+class Layers:
+    """What a user may show or leave out: `frames`, the axes of head and tail, and the `wake`."""
+
+    frames: bool = False
+    wake: bool = True
+
+    @property
+    def hidden(self) -> tuple[str, ...]:
+        """The entities that are not shown."""
+        return (*(() if self.frames else FRAMES), *(() if self.wake else WAKE))
+
+
+ALL = Layers()
+
+
+def following_view(name: str = "Swimmer", *, both: bool = False, layers: Layers = ALL) -> rrb.Spatial3DView:
     """Three dimensions; the camera moves with the swimmer without turning; with `both`, with two swimmers."""
     other_water = entities.WATER if both else entities.BOTH_WATER
     left_out = [
@@ -23,16 +43,14 @@ def following_view(name: str = "Swimmer", *, both: bool = False, frames: bool = 
         other_water,
         *([entities.LEGEND] if both else [entities.OTHER]),
     ]
-    hidden = () if frames else (entities.HEAD, entities.TAIL)
-    return _three_dimensions(
-        name, entities.BOTH if both else entities.FOLLOW, left_out, _hidden(*hidden, *(LOADS if both else ()))
-    )
+    hidden = _hidden(*layers.hidden, *((*LOADS, *WAKE) if both else ()))
+    return _three_dimensions(name, entities.BOTH if both else entities.FOLLOW, left_out, hidden)
 
 
-def path_view(*, frames: bool = False) -> rrb.Spatial3DView:
+def path_view(*, layers: Layers = ALL) -> rrb.Spatial3DView:
     """Three dimensions; the camera keeps all places so far in the picture."""
     left_out = [entities.WATER, entities.BOTH_WATER, entities.LEGEND, entities.OTHER]
-    hidden = _hidden(*LOADS, *(() if frames else (entities.HEAD, entities.TAIL)))
+    hidden = _hidden(*LOADS, *WAKE, *layers.hidden)
     overrides = {path: [_past()] for path in (entities.TRACK, entities.STROBES)}
     return _three_dimensions("Path so far", entities.WHOLE_PATH, left_out, overrides | hidden)
 

@@ -220,6 +220,8 @@ class Observer {
         }
         at(Profiles::tail_force, sample)[0] = swimmer_.distributed_pressure ? 0.0 : -work.tail_energy;
         at(Profiles::nose_force, sample)[0] = work.nose_force;
+        const auto tail = work.frame.node(swimmer_.grid.nodes - 1);
+        put(-tail.local(work.tail.linear), at(Profiles::wake_momentum_rate, sample));
     }
 
     template <class Block>

@@ -29,9 +29,10 @@ struct Profiles {
         resistive_force,  // (T, M, 3) N/m, its resistive part
         tail_force,       // (T, 3) N, axes of the tail's section
         nose_force,       // (T, 3) N, axes of the nose's section
+        wake_momentum_rate,  // (T, 3) N, axes of the tail's section: momentum given to the wake per time
         quantities
     };
-    static constexpr std::size_t width_of[quantities] = {3, 4, 6, 6, 3, 3, 4, 2, 3, 4, 3, 3, 3, 3, 3, 3, 3, 3};
+    static constexpr std::size_t width_of[quantities] = {3, 4, 6, 6, 3, 3, 4, 2, 3, 4, 3, 3, 3, 3, 3, 3, 3, 3, 3};
 
     std::size_t samples, stations;
     bool wrench, load;

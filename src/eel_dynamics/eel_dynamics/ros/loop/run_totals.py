@@ -9,7 +9,7 @@ from eel_dynamics.simulation.stopping import SimulationStopped
 
 CHECKED = (
     *("position", "orientation", "twist", "backbone", "section_orientation", "curvature", "curvature_rate"),
-    *("torque", "force", "fluid_force", "resistive_force", "tail_force", "nose_force"),
+    *("torque", "force", "fluid_force", "resistive_force", "tail_force", "nose_force", "wake_momentum_rate"),
 )
 
 

@@ -47,6 +47,9 @@ VARIABLES = {
     "resistive_force": _variable("time station section", "N/m", "resistive part of fluid_force"),
     "tail_force": _variable("time section", "N", "force of the water on the tail, section axes"),
     "nose_force": _variable("time section", "N", "force of the water on the nose, section axes"),
+    "wake_momentum_rate": _variable(
+        "time section", "N", "momentum given to the wake per time, section axes at the tail"
+    ),
     "closure_torque": _variable("time", "N m", "magnitude of the internal torque left over at the nose"),
     "closure_force": _variable("time", "N", "magnitude of the internal force left over at the nose, less its load"),
 }

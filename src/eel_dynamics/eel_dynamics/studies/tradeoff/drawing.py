@@ -16,6 +16,7 @@ from eel_dynamics.studies.tradeoff.settings import METHODS
 LOOKS = {"adams": (BLUE, "o"), "dormand_prince": (GREEN, "s"), "classical": (ORANGE, "^")}
 DELIVERED_SIZE = (4.5, 3.6)  # inches
 SIZE = 11.0, 5.4  # inches
+LEADER = 1.0, 1.06  # axes: where the line from a model's error to its name begins and ends
 FLOOR = 3.0  # times the reference's own error: differences below it are not significant
 
 
@@ -100,24 +101,23 @@ def _draw_models(axes, models: list[Model], quantity: str, floor: float):
     shown = [model for model in models if model.run is not None and getattr(model, quantity) > floor]
     shown.sort(key=lambda model: getattr(model, quantity))
     low, high = np.log10(axes.get_ylim())
-    heights = _apart([np.log10(getattr(model, quantity)) for model in shown], 0.042 * (high - low))
-    for model, height in zip(shown, heights, strict=True):
-        value = getattr(model, quantity)
-        axes.axhline(value, color=GREY, linewidth=0.8, linestyle=(0, (5, 3)), zorder=0)
-        axes.annotate(
-            model.name.split(" (")[0],
-            (1.0, value),
-            xycoords=axes.get_yaxis_transform(),
-            xytext=(1.08, 10.0**height),
-            textcoords=axes.get_yaxis_transform(),
-            fontsize="small",
-            va="center",
-            arrowprops={"arrowstyle": "-", "color": GREY, "linewidth": 0.6, "relpos": (0.0, 0.5), "shrinkB": 0},
-        )
+    values = [getattr(model, quantity) for model in shown]
+    heights = _apart(list(np.log10(values)), 0.042 * (high - low), high)
+    across = axes.get_yaxis_transform()
+    for model, value, height in zip(shown, values, heights, strict=True):
+        dashes = {"color": GREY, "linewidth": 0.8, "linestyle": (0, (5, 3))}
+        axes.axhline(value, zorder=0, **dashes)
+        leader = {"color": GREY, "linewidth": 0.6, "clip_on": False, "transform": across}
+        axes.plot(LEADER, [value, 10.0**height], **leader)  # in the order of the values: they do not cross
+        axes.text(LEADER[1] + 0.01, 10.0**height, model.name.split(" (")[0], transform=across, fontsize="small",
+                  va="center")  # fmt: skip
 
 
-def _apart(heights: list[float], gap: float) -> list[float]:
-    """Ascending `heights`, moved as little as needed to lie `gap` apart. Labels that touch form one centred group."""
+def _apart(heights: list[float], gap: float, highest: float = np.inf) -> list[float]:
+    """Ascending `heights`, moved as little as needed to lie `gap` apart and not above `highest`.
+
+    Labels that touch form one centred group.
+    """
     groups = []  # [sum of heights, count]
     for height in heights:
         groups.append([height, 1])
@@ -125,7 +125,8 @@ def _apart(heights: list[float], gap: float) -> list[float]:
             total, count = groups.pop()
             groups[-1][0] += total
             groups[-1][1] += count
-    return [total / count + gap * (place - 0.5 * (count - 1)) for total, count in groups for place in range(count)]
+    apart = [total / count + gap * (place - 0.5 * (count - 1)) for total, count in groups for place in range(count)]
+    return [min(height, highest - gap * above) for height, above in zip(apart, range(len(apart))[::-1], strict=True)]
 
 
 def _edge(group: list, gap: float) -> float:
