@@ -100,7 +100,7 @@ def test_nodes_die_and_come_back(start_to_kill, fresh_domain, tmp_path):
         deadline = time.monotonic() + LIMIT
         while not so_far(tmp_path / name).exists() or missing(tmp_path / name):
             assert time.monotonic() < deadline, f"not in {name}: {missing(tmp_path / name)}"
-            swim.spin(0.3)
+            swim.spin(1.0)  # a look takes as long as a second of a node's work
 
     gait = start("gait_generator")
     first = visualise(start, tmp_path / "first.rrd")
