@@ -18,7 +18,7 @@ except ImportError as error:
     ) from None
 
 from eel_dynamics.gym.depth import DepthEnv
-from eel_dynamics.gym.head_motion import HeadMotion
+from eel_gaits.pilot.head_motion import HeadMotion
 from eel_dynamics.gym.heading import HeadingEnv
 from eel_dynamics.gym.knot_action import KnotAction
 from eel_dynamics.gym.law_action import LawAction

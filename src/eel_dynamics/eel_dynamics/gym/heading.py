@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from eel_gaits.input_output.quantity import quantity
 
-from eel_dynamics.gym.head_motion import wrapped
+from eel_gaits.pilot.head_motion import wrapped
 from eel_dynamics.gym.swimmer_env import FASTEST, SPIN, Episode, Observed, Start, SwimmerEnv
 from eel_dynamics.model.scene import Scene
 

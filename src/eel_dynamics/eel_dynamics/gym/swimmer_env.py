@@ -13,7 +13,9 @@ from eel_gaits.input_output.wording import one_line, shown
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.gym.episode_recording import EpisodeRecording
-from eel_dynamics.gym.head_motion import HeadMotion, turned, wrapped
+from eel_gaits.pilot.head_motion import HeadMotion, wrapped
+
+from eel_dynamics.simulation.head_motion import head_motion_of, turned
 from eel_dynamics.gym.knot_action import KnotAction
 from eel_dynamics.gym.law_action import LawAction
 from eel_dynamics.gym.picture import picture
@@ -234,7 +236,7 @@ class SwimmerEnv(gymnasium.Env):
     def _look(self) -> np.ndarray:
         if self._recording is not None:
             self._recording.add(self._simulation.observe(load=False))
-        return self.see(HeadMotion.of(self._simulation.head))
+        return self.see(head_motion_of(self._simulation.head))
 
     def _observation(self) -> np.ndarray:
         values = np.array(self.observe() + self.action.state, dtype=np.float32)

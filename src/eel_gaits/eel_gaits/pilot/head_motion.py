@@ -1,16 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The head's motion as a policy sees it: in REP-103 axes, as on the topic `odom`.
+"""The head's motion as a controller sees it: in REP-103 axes, as on the topic `odom`.
 
-The swimmer heads for +x, y is left, z is up. So a policy that has learned here drives the dynamics node too.
+The swimmer heads for +x, y is left, z is up.
 """
 
 import math
 from typing import NamedTuple
 
 import numpy as np
-
-from eel_dynamics.model.axes import turn_quaternion, turn_vector
-from eel_dynamics.model.initial_state import InitialState
 
 
 class HeadMotion(NamedTuple):
@@ -20,12 +17,6 @@ class HeadMotion(NamedTuple):
     orientation: np.ndarray  # (4,) x y z w, world from head
     angular_velocity: np.ndarray  # (3,) rad/s, head's axes: about forward, left, up
     velocity: np.ndarray  # (3,) m/s, head's axes: forward, left, up
-
-    @staticmethod
-    def of(head: InitialState) -> "HeadMotion":
-        """The motion of a simulation's `head`, which has the library's axes."""
-        angular_velocity, velocity = turn_vector(head.twist.reshape(2, 3))
-        return HeadMotion(turn_vector(head.position), turn_quaternion(head.orientation), angular_velocity, velocity)
 
     @property
     def heading(self) -> float:
@@ -44,11 +35,6 @@ class HeadMotion(NamedTuple):
         """Angle [rad] about the forward axis, positive where the right side is down, from -pi to pi."""
         x, y, z, w = self.orientation.tolist()
         return math.atan2(2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y))
-
-
-def turned(heading: float) -> tuple[float, float, float, float]:
-    """The orientation (x, y, z, w), in either set of axes, of a level head with this `heading` [rad]."""
-    return 0.0, 0.0, math.sin(0.5 * heading), math.cos(0.5 * heading)
 
 
 def wrapped(angle: float) -> float:

@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A law whose size and speed, and whose bends, change while it swims.
+
+    K3(t, X) = amplitude(t) law3(tau(t), X) - left_bend(t)
+    K2(t, X) = amplitude(t) law2(tau(t), X) - up_bend(t) + tilt(t) wave3(tau(t), X) + swirl(t) wave3(tau(t) - T/4, X)
+    d tau / dt = tempo(t)
+
+wave3 is the part of the law that travels in yaw, each wave with its own period T. Each number follows its target as a
+critically damped oscillator, so the curvature, its rate and its acceleration never jump.
+"""
+
+import math
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from eel_gaits.laws.law import Law
+
+AXES = {"pitch": 0, "yaw": 1}
+
+
+class Number(NamedTuple):
+    """A number of the law."""
+
+    rest: float  # without a target
+    unit: str
+    description: str
+
+
+NUMBERS = {
+    "amplitude": Number(1.0, "", "factor of the law's waves"),
+    "tempo": Number(1.0, "", "rate of the law's own time; 1: as the law says"),
+    "left_bend": Number(0.0, "rad/m", "bend of the whole body; positive: turns left"),
+    "up_bend": Number(0.0, "rad/m", "bend of the whole body; positive: climbs"),
+    "tilt": Number(0.0, "", "factor of the yaw waves that the body bends by in pitch too: it tilts the beat"),
+    "swirl": Number(0.0, "", "the same a quarter of a period later: it rolls the body"),
+}
+BENDS = {"left_bend": "yaw", "up_bend": "pitch"}  # both are minus the curvature in the section's axes
+ROLLING = {"tilt": (1.0, 0.0), "swirl": (0.0, 1.0)}  # cosine and sine of the delay
+
+
+class SteeredLaw:
+    """The curvature of a steered law, step by step. The ramps of the law's envelopes count as complete.
+
+    Args:
+        law: its waves; terms without a period are constant bends.
+        response: [s], time constant with which a number follows its target.
+        length: [m], of the body.
+        points: along the body.
+    """
+
+    def __init__(self, law: Law, *, response: float = 0.2, length: float = 1.0, points: int = 21):
+        self.law, self.x, self._rate = law, np.linspace(0.0, length, points), 1.0 / response
+        self._waves = [(term.angular_frequency, AXES[term.axis]) for term in law.terms]
+        self._rows = np.concatenate([_rows(term, self.x) for term in law.terms] + [np.ones((1, points))])
+        self._rest = {name: (number.rest, 0.0, 0.0) for name, number in NUMBERS.items()}
+        self.period = min((term.period for term in law.terms if term.period), default=1.0)  # s, of the fastest wave
+        self.values = self._rest  # of each number: value, rate, acceleration
+        self.greatest_curvature = float(np.max(sum(np.hypot(*_rows(term, self.x)) for term in law.terms)))  # rad/m
+        self.own_time = 0.0  # s, tau
+        self.begin()
+
+    def begin(self, own_time: float = 0.0, **values: float) -> np.ndarray:
+        """Start anew with the law at its `own_time` [s] and all numbers at rest, or at these `values`; the curvature
+        as of `advance`."""
+        self.own_time = own_time
+        self.values = self._rest | {name: (value, 0.0, 0.0) for name, value in values.items()}
+        return self._curvature()
+
+    def advance(self, targets: Mapping[str, float], step: float, response: float | None = None) -> np.ndarray:
+        """The curvature at the end of a step of `step` [s] with these `targets` by name; other numbers stay.
+
+        response [s]: replaces that of the law in this step. Returns (6, points): pitch, its rate and its acceleration, then yaw: rad/m, rad/m/s, rad/m/s^2.
+        """
+        elapsed = step * self.values["tempo"][0]
+        rate = 1.0 / response if response else self._rate
+        for name, target in targets.items():
+            self.values[name], integral = _followed(self.values[name], target, rate, step)
+            if name == "tempo":
+                elapsed = integral
+        self.own_time += elapsed
+        return self._curvature()
+
+    def _curvature(self) -> np.ndarray:
+        size, speed = self.values["amplitude"], self.values["tempo"]
+        factors = np.zeros((2, 3, len(self._rows)))
+        for k, (frequency, axis) in enumerate(self._waves):
+            angle = frequency * self.own_time
+            s, c = math.sin(angle), math.cos(angle)
+            for row, (f, f1) in ((2 * k, (c, -frequency * s)), (2 * k + 1, (-s, -frequency * c))):
+                factors[axis, :, row] = _product(size, f, f1, frequency, speed)
+            if frequency and axis == AXES["yaw"]:
+                for name, (now, later) in ROLLING.items():
+                    if any(self.values[name]):
+                        for row, (f, f1) in (
+                            (2 * k, (now * c + later * s, frequency * (later * c - now * s))),
+                            (2 * k + 1, (later * c - now * s, -frequency * (now * c + later * s))),
+                        ):
+                            factors[AXES["pitch"], :, row] += _product(self.values[name], f, f1, frequency, speed)
+        for name, axis in BENDS.items():
+            factors[AXES[axis], :, -1] = [-value for value in self.values[name]]
+        return factors.reshape(6, -1) @ self._rows
+
+
+def _product(number: tuple, f: float, f1: float, frequency: float, speed: tuple) -> tuple[float, float, float]:
+    """Value, rate and acceleration of a `number` times f(tau), where f'' = -frequency^2 f and tau' is the `speed`."""
+    rate = f1 * speed[0]
+    acceleration = -frequency * frequency * f * speed[0] ** 2 + f1 * speed[1]
+    return (
+        number[0] * f,
+        number[1] * f + number[0] * rate,
+        number[2] * f + 2.0 * number[1] * rate + number[0] * acceleration,
+    )
+
+
+def _rows(term, x: np.ndarray) -> np.ndarray:
+    """Rows (2, len(x)) of a term with its ramps complete: those of the cosine and the sine of its time."""
+    end = max((ramp.end for ramp in term.envelope), default=0.0)
+    size = term.amplitude_at(x) * term.envelope_at(end)[0]
+    angle = term.wave_number * x + term.phase
+    return np.stack((size * np.sin(angle), size * np.cos(angle)))
+
+
+def _followed(jet: tuple, target: float, rate: float, step: float) -> tuple[tuple, float]:
+    """Value, rate and acceleration after `step` [s] of a critically damped oscillator that goes to its `target`.
+
+    jet: the same before. rate [1/s]: of the oscillator. Returns the integral of the value over the step too.
+    """
+    away, slope = jet[0] - target, jet[1] + rate * (jet[0] - target)
+    left = math.exp(-rate * step)
+    distance = (away + slope * step) * left
+    speed = slope * left - rate * distance
+    integral = away * (1.0 - left) / rate + slope * (1.0 - left * (1.0 + rate * step)) / rate**2
+    return (target + distance, speed, -rate * rate * distance - 2.0 * rate * speed), target * step + integral

@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Goals of the pilot: a course to hold, a path of way points, a station. All in REP-103 axes, world frame.
+
+`ValueError` says why a goal is refused: it is not finite, or no swimmer with these `Limits` can reach it.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from eel_gaits.input_output.wording import shown
+
+FARTHEST = 1e5  # m from the origin
+
+
+@dataclass(frozen=True, kw_only=True)
+class Limits:
+    """What the swimmer can do."""
+
+    greatest_speed: float  # m/s, through the water
+    turning_radius: float  # m, of the tightest turn
+    greatest_climb: float  # rad, of the path to the horizontal
+    reach: float  # m, within which a way point counts as reached
+
+
+@dataclass(frozen=True)
+class Course:
+    """Hold this heading and this depth."""
+
+    heading: float  # rad, positive: left
+    depth: float  # m below z = 0
+    speed: float  # m/s, over ground, forward
+
+
+@dataclass(frozen=True)
+class Path:
+    """Swim through these points, one after the other, then stay at the last one."""
+
+    points: np.ndarray  # (n, 3) m
+    speed: float  # m/s, over ground
+
+
+@dataclass(frozen=True)
+class Station:
+    """Stay at this point."""
+
+    point: np.ndarray  # (3,) m
+    speed: float  # m/s, over ground, on the way to it
+
+
+def course(heading: float, depth: float, speed: float, limits: Limits) -> Course:
+    """A course that is possible."""
+    for name, value in (("heading", heading), ("depth", depth)):
+        if not math.isfinite(value):
+            raise ValueError(f"{name} must be finite, got {value}")
+    if abs(depth) > FARTHEST:
+        raise ValueError(f"depth must be at most {FARTHEST:g} m in size, got {depth:g}")
+    return Course(math.remainder(heading, 2.0 * math.pi), float(depth), checked_speed(speed, limits))
+
+
+def path(points, speed: float, limits: Limits) -> Path:
+    """A path whose legs the swimmer can follow from the second point on; how it gets to the first is its affair."""
+    points = _points("path", points)
+    if len(points) < 1:
+        raise ValueError("path must have one point or more, got none")
+    for k in range(1, len(points)):
+        _check_leg(k, points, limits)
+    return Path(points, checked_speed(speed, limits))
+
+
+def station(point, speed: float, limits: Limits) -> Station:
+    """A station that is possible."""
+    return Station(_points("station", [point])[0], checked_speed(speed, limits))
+
+
+def checked_speed(speed: float, limits: Limits) -> float:
+    """`speed` [m/s], if the swimmer can have it."""
+    if not (math.isfinite(speed) and 0.0 < speed <= limits.greatest_speed):
+        raise ValueError(f"speed must be > 0 and <= {limits.greatest_speed:.3g} m/s, got {speed:g}")
+    return float(speed)
+
+
+def _points(name: str, points) -> np.ndarray:
+    points = np.array(points, dtype=float).reshape(-1, 3)
+    for k, point in enumerate(points):
+        if not np.isfinite(point).all() or np.abs(point).max() > FARTHEST:
+            rule = f"finite and at most {FARTHEST:g} m from the origin"
+            raise ValueError(f"{name} point {k + 1} must be {rule}, got {shown(point.tolist())}")
+    return points
+
+
+def _check_leg(k: int, points: np.ndarray, limits: Limits):
+    """`ValueError` where point k + 1 cannot be reached from point k."""
+    leg, before = points[k] - points[k - 1], points[k - 1] - points[k - 2] if k > 1 else None
+    flat = float(np.hypot(leg[0], leg[1]))
+    if flat <= limits.reach:
+        raise ValueError(f"path point {k + 1} must lie more than {limits.reach:g} m ahead of point {k}, got {flat:.3g}")
+    slope = math.atan2(abs(leg[2]), flat)
+    if slope > limits.greatest_climb:
+        most = math.degrees(limits.greatest_climb)
+        raise ValueError(
+            f"path to point {k + 1} must climb or dive by at most {most:.3g} degrees, got {math.degrees(slope):.3g}"
+        )
+    if before is None:
+        return
+    size = math.hypot(before[0], before[1])
+    ahead = (leg[0] * before[0] + leg[1] * before[1]) / size
+    aside = abs(leg[1] * before[0] - leg[0] * before[1]) / size
+    if math.hypot(ahead, aside - limits.turning_radius) < limits.turning_radius - limits.reach:
+        raise ValueError(
+            f"path point {k + 1} must lie outside the turning circle of {limits.turning_radius:.3g} m at point {k}, "
+            f"got {ahead:.3g} m ahead and {aside:.3g} m aside"
+        )

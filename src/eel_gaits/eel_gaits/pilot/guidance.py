@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Guidance: from a goal and the estimate to the velocity over ground and the climb that lead to it.
+
+On a path this is line-of-sight guidance: the swimmer aims at the point of the leg that lies a look-ahead D ahead of it,
+
+    course = bearing of the leg - atan(e / D),   climb = slope of the leg + atan(h / D)
+
+with e the distance to the left of the leg and h that of the leg above the swimmer. Within D of the end of the leg it
+aims at that end. D above two body lengths keeps the
+loop stable: Kelasidi, Liljeback, Pettersen and Gravdahl, Integral line-of-sight guidance for path following control of
+underwater snake robots, IEEE Trans. Robotics 33 (2017), 610-628, doi:10.1109/TRO.2017.2651119. Their integral action
+against a current is here the estimate of the water's velocity, which is taken off the wanted velocity over ground.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from eel_gaits.pilot.estimate import Estimate
+from eel_gaits.pilot.goals import Course, Path, Station
+from eel_gaits.pilot.head_motion import wrapped
+
+STANDOFF = 2.2  # turning radii: what lies behind and nearer than this is swum away from first
+BEHIND = 1.2  # rad to either side of ahead
+
+
+class Demand(NamedTuple):
+    """What guidance wants."""
+
+    heading: float  # rad
+    speed: float  # m/s, through the water
+    climb: float  # rad
+    height: float  # m, of the wanted depth at present, z up
+    possible: bool  # whether the water lets the swimmer make way
+
+
+class CourseGuidance:
+    """Holds heading and depth."""
+
+    done = False
+
+    def __init__(self, goal: Course, look_ahead: float):
+        self._goal, self._look_ahead = goal, look_ahead
+
+    def demand(self, estimate: Estimate, greatest_speed: float) -> Demand:
+        """The demand at present. greatest_speed [m/s]: through the water."""
+        goal, water = self._goal, estimate.water
+        along = water[0] * math.cos(goal.heading) + water[1] * math.sin(goal.heading)
+        speed = goal.speed - float(along)
+        climb = math.atan((-goal.depth - estimate.position[2]) / self._look_ahead)
+        return Demand(goal.heading, min(max(speed, 0.0), greatest_speed), climb, -goal.depth, speed <= greatest_speed)
+
+
+class PathGuidance:
+    """Follows the legs from `start` (3,) through the points of a path.
+
+    Attributes:
+        target: index of the point that is aimed at; the number of points when all are passed.
+        last_miss: [m], the head's least distance to the point that was passed last.
+    """
+
+    def __init__(self, goal: Path, start: np.ndarray, look_ahead: float, close: float):
+        self._points, self._speed = np.vstack((start, goal.points)), goal.speed
+        self._look_ahead, self._close = look_ahead, close
+        self.target, self.last_miss, self._least = 0, math.inf, math.inf
+
+    @property
+    def done(self) -> bool:
+        """Whether all points have been passed."""
+        return self.target == len(self._points) - 1
+
+    def pass_points(self, estimate: Estimate, head: np.ndarray) -> bool:
+        """Go on to the next point where this one is passed, or closer to the `head` (3,) than `close`; whether it is.
+
+        A point is passed where the swimmer crosses the plane through it that is normal to the leg.
+        """
+        point = self._points[self.target + 1]
+        self._least = min(self._least, float(np.linalg.norm(head - point)))
+        leg = point - self._points[self.target]
+        if self._least > self._close and float((point - estimate.position) @ leg) > 0.0:
+            return False
+        self.last_miss = self._least
+        self.target, self._least = self.target + 1, math.inf
+        return True
+
+    def demand(self, estimate: Estimate, greatest_speed: float) -> Demand:
+        """The demand at present, on the leg to the target. greatest_speed [m/s]: through the water."""
+        begin, end = self._points[self.target : self.target + 2]
+        leg, away = end - begin, estimate.position - begin
+        length = math.hypot(leg[0], leg[1])
+        along = float(away[:2] @ leg[:2]) / length
+        left = float(leg[0] * away[1] - leg[1] * away[0]) / length
+        ahead = max(min(self._look_ahead, length - along), self._close)
+        course = math.atan2(leg[1], leg[0]) - math.atan2(left, ahead)
+        height = float(begin[2] + min(1.0, max(0.0, along / length)) * leg[2])
+        climb = math.atan2(leg[2], length) + math.atan((height - estimate.position[2]) / ahead)
+        heading, speed, possible = against_water(course, self._speed, estimate.water, greatest_speed)
+        return Demand(heading, speed, climb, height, possible)
+
+
+class StationGuidance:
+    """Swims to a point and stays there.
+
+    gain: [1/s], of the velocity by the distance. rest: [m], the distance within which the swimmer stops in still water.
+    """
+
+    done = False
+
+    def __init__(self, goal: Station, look_ahead: float, turning_radius: float, gain: float, rest: float):
+        self._goal, self._look_ahead, self._radius = goal, look_ahead, turning_radius
+        self._gain, self._rest, self._resting = gain, rest, False
+
+    def demand(self, estimate: Estimate, greatest_speed: float) -> Demand:
+        """The demand at present. greatest_speed [m/s]: through the water."""
+        away = self._goal.point - estimate.position
+        distance, height = math.hypot(away[0], away[1]), float(self._goal.point[2])
+        climb = math.atan(away[2] / self._look_ahead)
+        still = math.hypot(*estimate.water) < self._gain * self._rest
+        self._resting = still and distance < (2.0 if self._resting else 1.0) * self._rest
+        if self._resting:
+            return Demand(estimate.heading, 0.0, climb, height, True)
+        speed, bearing = min(self._goal.speed, self._gain * distance), math.atan2(away[1], away[0])
+        heading, through, possible = against_water(bearing, speed, estimate.water, greatest_speed)
+        if distance < STANDOFF * self._radius and abs(wrapped(heading - estimate.heading)) > BEHIND:
+            return Demand(estimate.heading, through, climb, height, possible)  # there is no room to turn round
+        return Demand(heading, through, climb, height, possible)
+
+
+def against_water(course: float, speed: float, water: np.ndarray, greatest: float) -> tuple[float, float, bool]:
+    """Heading [rad] and speed through the water [m/s] that give the `course` [rad] and the `speed` [m/s] over ground.
+
+    water (2,) [m/s]. Where that takes more than the `greatest` speed, the speed over ground is less, or the course
+    cannot be kept. Returns also whether the swimmer makes way on its course.
+    """
+    along = float(water[0] * math.cos(course) + water[1] * math.sin(course))
+    across = float(water[1] * math.cos(course) - water[0] * math.sin(course))
+    if abs(across) >= greatest:
+        return course - math.copysign(0.5 * math.pi, across), greatest, False
+    most = math.sqrt(greatest**2 - across**2)
+    ahead = min(speed - along, most)
+    return course + math.atan2(-across, ahead), math.hypot(ahead, across), along + ahead > 0.0

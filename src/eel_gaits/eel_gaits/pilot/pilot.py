@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The pilot: from the motion of the head, sample by sample, to the curvature of the body that leads it to a goal.
+
+Each step estimates the swimmer (estimate.py), guides it (guidance.py) and regulates it (regulator.py). The outcome are
+targets of a steered law (laws/steered_law.py), which makes curvature of them that is twice differentiable in time. A
+pilot sends samples rather than laws: it decides at each step, and a law in closed form would need a blend each time.
+"""
+
+import math
+
+import numpy as np
+
+from eel_gaits.gaits.swimming import straight
+from eel_gaits.laws.law import Law
+from eel_gaits.laws.steered_law import SteeredLaw
+from eel_gaits.pilot.estimate import Estimate, Estimator
+from eel_gaits.pilot.goals import Course, Path, Station
+from eel_gaits.pilot.guidance import CourseGuidance, PathGuidance, StationGuidance
+from eel_gaits.pilot.head_motion import HeadMotion
+from eel_gaits.pilot.progress import Progress
+from eel_gaits.pilot.regulator import Gains, Regulator
+from eel_gaits.pilot.settings import PilotSettings
+
+RESPONSE = 0.2  # periods of the gait in which the numbers of the law follow their targets
+CLOSE = 0.5  # reaches: a way point that is so close is left for the next one
+
+
+class Pilot:
+    """Steers one swimmer. Call `begin` at the start of a run, then `step` for each sample of the head's motion.
+
+    Args:
+        settings: numbers of swimmer and pilot.
+        law: the gait; by default straight().
+        gains: of the regulator.
+
+    Attributes:
+        goal: what is swum to.
+        estimate: the last one; None before the first step.
+        demand: the last one.
+        misses: [m], least distances of the head to the points of the present path that have been passed.
+        news: lines to be reported, the oldest first; whoever reports them empties the list.
+    """
+
+    def __init__(self, settings: PilotSettings | None = None, law: Law | None = None, gains: Gains | None = None):
+        self.settings = settings or PilotSettings()
+        gait = law or straight()
+        self.law = SteeredLaw(gait, response=RESPONSE, length=self.settings.length)
+        self._estimator = Estimator(
+            period=self.law.period, speed_time=self.settings.speed_time, water_time=self.settings.water_time
+        )
+        self._regulator = Regulator(self.settings, gains)
+        self._progress = Progress(self.settings.patience)
+        self.goal: Course | Path | Station = Course(0.0, 0.0, 0.0)
+        self._guidance = None
+        self.estimate: Estimate | None = None
+        self.demand = None
+        self.misses: list[float] = []
+        self.news: list[str] = []
+
+    def begin(self) -> np.ndarray:
+        """Begin a run: the straight body at rest. The curvature (6, points) as of `SteeredLaw.advance`."""
+        self._estimator.restart()
+        self._regulator.restart()
+        self._guidance, self.estimate = None, None
+        return self.law.begin(0.0, amplitude=0.0, tempo=self.settings.slowest_tempo)
+
+    def follow(self, goal: Course | Path | Station):
+        """Change the goal."""
+        self.goal, self._guidance = goal, None
+
+    @property
+    def target(self) -> int:
+        """Index of the way point that is aimed at; 0 without a path."""
+        return self._guidance.target if isinstance(self._guidance, PathGuidance) else 0
+
+    def limit_tempo(self, tempo: float):
+        """Let the gait be no faster than `tempo`, nor slower than the slowest one."""
+        settings = self.settings
+        self._regulator.tempo_limit = min(max(tempo, settings.slowest_tempo), settings.fastest_tempo)
+
+    def step(self, time: float, head: HeadMotion, step: float) -> np.ndarray:
+        """The curvature (6, points) at the end of a step of `step` [s], with the motion of the `head` at `time` [s]."""
+        values = self.law.values
+        through = self.settings.cruise_speed * values["tempo"][0] * min(1.0, values["amplitude"][0])
+        self.estimate = estimate = self._estimator.add(time, head, self.law.own_time, through)
+        guidance = self._guided(estimate, head)
+        self.demand = guidance.demand(estimate, self._regulator.greatest_speed)
+        self._watch(time, head)
+        targets = self._regulator.targets(self.demand, estimate, self.law, step)
+        response = RESPONSE * self.law.period / max(values["tempo"][0], self.settings.slowest_tempo)
+        return self.law.advance(targets, step, response)
+
+    def _guided(self, estimate: Estimate, head: HeadMotion):
+        """The guidance to the present goal. When a path is done, its last point is the station to stay at."""
+        settings, goal = self.settings, self.goal
+        ahead = settings.look_ahead * settings.length
+        reach = settings.reach * settings.length
+        if self._guidance is None:
+            if isinstance(goal, Course):
+                self._guidance = CourseGuidance(goal, ahead)
+            elif isinstance(goal, Path):
+                self.misses = []
+                self._guidance = PathGuidance(goal, estimate.position, ahead, CLOSE * reach)
+            else:
+                radius = settings.limits.turning_radius
+                self._guidance = StationGuidance(goal, ahead, radius, settings.station_gain, reach)
+            self._progress.restart(estimate.time)
+        if isinstance(self._guidance, PathGuidance) and self._guidance.pass_points(estimate, head.position):
+            index, miss = self._guidance.target, self._guidance.last_miss
+            self.misses.append(miss)
+            passed = "reached" if miss <= reach else "missed"
+            self.news.append(f"way point {index} of {len(goal.points)} {passed}: {miss:.3g} m from it")
+            self._progress.restart(estimate.time)
+            if self._guidance.done:
+                self.follow(Station(goal.points[-1], goal.speed))
+                return self._guided(estimate, head)
+        return self._guidance
+
+    def _watch(self, time: float, head: HeadMotion):
+        """Report where the goal does not come nearer."""
+        goal, estimate = self.goal, self.estimate
+        if isinstance(goal, Course):
+            error = abs(math.remainder(goal.heading - estimate.heading, 2.0 * math.pi)) + abs(
+                -goal.depth - estimate.position[2]
+            )
+            close, where = 0.1, f"heading {goal.heading:.3g} rad, depth {goal.depth:.3g} m"
+        else:
+            point = goal.point if isinstance(goal, Station) else goal.points[self.target]
+            error = float(np.linalg.norm(point - head.position))
+            close = self.settings.reach * self.settings.length if isinstance(goal, Path) else self.settings.length
+            where = f"({point[0]:.3g}, {point[1]:.3g}, {point[2]:.3g}) m"
+        if self._progress.stalled(time, error, close):
+            why = "" if self.demand.possible else ": the water is faster than the swimmer may swim"
+            self.news.append(
+                f"the goal {where} cannot be reached: no nearer than {self._progress.least:.3g} "
+                f"for {self.settings.patience:g} s{why}"
+            )

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Regulator: from what guidance wants to the numbers of the steered law. State feedback in the gait's own time.
+
+Bends in pitch turn the plane of the beat up and down. A wave in pitch a quarter of a period behind the one in yaw (the
+number `swirl`) rolls it; this is how the body can hold its roll without a keel. Both see the plane at once, without a
+mean over a period. In the gait's own time the swimmer is the same at any tempo, as drag grows with the square of speed;
+so rates are divided by the tempo, and the numbers follow their targets in a time that goes with the period.
+"""
+
+from dataclasses import dataclass
+
+from eel_gaits.laws.steered_law import SteeredLaw
+from eel_gaits.pilot.estimate import Estimate
+from eel_gaits.pilot.guidance import Demand
+from eel_gaits.pilot.head_motion import wrapped
+from eel_gaits.pilot.settings import PilotSettings
+
+
+@dataclass(frozen=True, kw_only=True)
+class Gains:
+    """Feedback for a body of 1 m and a gait with a period of 1 s, found from the motion linearised over a period."""
+
+    heading: float = 1.3  # bend by error, rad/m per rad
+    heading_rate: float = 0.7  # s/m
+    climb: float = 13.4  # rad/m per rad
+    climb_rate: float = 7.34  # s/m
+    rise: float = -4.28  # rad/m per m/s
+    up_bend: float = 21.6  # of the bend itself, and of its rate [s]
+    up_bend_rate: float = -2.09
+    height: float = 0.01  # 1/m/s, integral action: climb by error of the height and time
+    roll: float = 4.16  # swirl by error, 1/rad
+    roll_rate: float = 0.135  # s/rad
+    swirl: float = 4.8
+    swirl_rate: float = 0.35  # s
+    greatest_swirl: float = 0.6
+
+
+class Regulator:
+    """Turns demands into targets of a `SteeredLaw`. tempo_limit may be lowered, such as where the torque is too great."""
+
+    def __init__(self, settings: PilotSettings, gains: Gains | None = None):
+        self._settings, self._gains = settings, gains or Gains()
+        self._climb_offset = 0.0  # rad, integral of the error of the height
+        self.tempo_limit = settings.fastest_tempo
+
+    def restart(self):
+        """Forget the integral."""
+        self._climb_offset = 0.0
+
+    @property
+    def greatest_speed(self) -> float:
+        """Greatest speed [m/s] through the water at present."""
+        return self._settings.cruise_speed * self.tempo_limit
+
+    def targets(self, demand: Demand, estimate: Estimate, law: SteeredLaw, step: float) -> dict[str, float]:
+        """The targets of the numbers, for a `step` [s]."""
+        settings, gains = self._settings, self._gains
+        tempo, amplitude = self._beat(demand.speed)
+        bend_limit = max(0.0, settings.greatest_curvature - amplitude * law.greatest_curvature)
+        bend_limit = min(settings.greatest_bend, bend_limit)
+        per_tempo = 1.0 / max(law.values["tempo"][0], settings.slowest_tempo)
+        high = demand.height - estimate.position[2]
+        most = settings.greatest_climb
+        if abs(high) < 0.1 * settings.length and demand.speed > 0.0:
+            self._climb_offset = _limited(self._climb_offset + step * gains.height * high, 0.1)
+        climb = _limited(demand.climb, most) + self._climb_offset
+        bend, bend_rate, _ = law.values["up_bend"]
+        swirl, swirl_rate, _ = law.values["swirl"]
+        length = settings.length
+        up = (
+            gains.climb * (climb - estimate.climb)
+            - gains.climb_rate * per_tempo * estimate.climb_rate
+            - gains.rise * per_tempo * estimate.rise / length
+            - gains.up_bend * bend * length
+            - gains.up_bend_rate * per_tempo * bend_rate * length
+        ) / length
+        left = (
+            gains.heading * wrapped(demand.heading - estimate.heading)
+            - gains.heading_rate * per_tempo * estimate.heading_rate
+        ) / length
+        roll = (
+            gains.roll * estimate.roll
+            + gains.roll_rate * per_tempo * estimate.roll_rate
+            - gains.swirl * swirl
+            - gains.swirl_rate * per_tempo * swirl_rate
+        )
+        return {
+            "tempo": tempo,
+            "amplitude": amplitude,
+            "left_bend": _limited(left, bend_limit),
+            "up_bend": _limited(up, bend_limit),
+            "swirl": _limited(roll, gains.greatest_swirl),
+        }
+
+    def _beat(self, speed: float) -> tuple[float, float]:
+        """Tempo and amplitude for a `speed` [m/s] through the water: the speed goes with the tempo."""
+        settings = self._settings
+        wanted = speed / settings.cruise_speed
+        tempo = min(max(wanted, settings.slowest_tempo), self.tempo_limit)
+        largest = min(1.0, wanted / settings.slowest_tempo)
+        return tempo, largest
+
+
+def _limited(value: float, most: float) -> float:
+    return min(max(value, -most), most)
