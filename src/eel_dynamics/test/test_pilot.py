@@ -19,7 +19,9 @@ def test_way_points_of_a_random_course_are_reached(seed):
     whole = random_path(np.random.default_rng(seed), PilotSettings())
     pilot, voyage = swim_path(Path(whole.points[:3], whole.speed))
     assert len(voyage.misses) == 3 and max(voyage.misses) < 0.25, voyage.misses
-    assert pilot.news == [f"way point {k + 1} of 3 reached: {miss:.3g} m from it" for k, miss in enumerate(pilot.misses)]
+    assert pilot.news == [
+        f"way point {k + 1} of 3 reached: {miss:.3g} m from it" for k, miss in enumerate(pilot.misses)
+    ]
     assert np.abs(voyage.roll).max() < 1.0
 
 

@@ -17,8 +17,9 @@ except ImportError as error:
         f"eel_dynamics.gym needs gymnasium ({error}); install it with: pip install 'eel_dynamics[gym]'"
     ) from None
 
-from eel_dynamics.gym.depth import DepthEnv
 from eel_gaits.pilot.head_motion import HeadMotion
+
+from eel_dynamics.gym.depth import DepthEnv
 from eel_dynamics.gym.heading import HeadingEnv
 from eel_dynamics.gym.knot_action import KnotAction
 from eel_dynamics.gym.law_action import LawAction

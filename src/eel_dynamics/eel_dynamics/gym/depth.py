@@ -5,8 +5,8 @@ import math
 from dataclasses import dataclass
 
 from eel_gaits.input_output.quantity import quantity
-
 from eel_gaits.pilot.head_motion import wrapped
+
 from eel_dynamics.gym.swimmer_env import FASTEST, SPIN, Episode, Observed, Start, SwimmerEnv
 
 FARTHEST = 100.0  # m, bound of what is observed

@@ -10,12 +10,10 @@ import numpy as np
 from eel_gaits.gaits.swimming import straight
 from eel_gaits.input_output.quantity import Quantities, described_fields, quantity
 from eel_gaits.input_output.wording import one_line, shown
+from eel_gaits.pilot.head_motion import HeadMotion, wrapped
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.gym.episode_recording import EpisodeRecording
-from eel_gaits.pilot.head_motion import HeadMotion, wrapped
-
-from eel_dynamics.simulation.head_motion import head_motion_of, turned
 from eel_dynamics.gym.knot_action import KnotAction
 from eel_dynamics.gym.law_action import LawAction
 from eel_dynamics.gym.picture import picture
@@ -23,6 +21,7 @@ from eel_dynamics.model.arguments import checked_instance
 from eel_dynamics.model.axes import turn_vector
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
+from eel_dynamics.simulation.head_motion import head_motion_of, turned
 from eel_dynamics.simulation.simulation import Simulation
 from eel_dynamics.simulation.stopping import SimulationStopped
 

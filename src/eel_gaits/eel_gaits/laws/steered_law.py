@@ -71,7 +71,8 @@ class SteeredLaw:
     def advance(self, targets: Mapping[str, float], step: float, response: float | None = None) -> np.ndarray:
         """The curvature at the end of a step of `step` [s] with these `targets` by name; other numbers stay.
 
-        response [s]: replaces that of the law in this step. Returns (6, points): pitch, its rate and its acceleration, then yaw: rad/m, rad/m/s, rad/m/s^2.
+        response [s]: replaces that of the law in this step. Returns (6, points): pitch, its rate and its acceleration,
+        then yaw: rad/m, rad/m/s, rad/m/s^2.
         """
         elapsed = step * self.values["tempo"][0]
         rate = 1.0 / response if response else self._rate

@@ -36,7 +36,7 @@ class Gains:
 
 
 class Regulator:
-    """Turns demands into targets of a `SteeredLaw`. tempo_limit may be lowered, such as where the torque is too great."""
+    """Turns demands into targets of a `SteeredLaw`. `tempo_limit` may be lowered, where the torque is too great."""
 
     def __init__(self, settings: PilotSettings, gains: Gains | None = None):
         self._settings, self._gains = settings, gains or Gains()

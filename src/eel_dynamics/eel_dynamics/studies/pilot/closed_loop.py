@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from eel_gaits.pilot.pilot import Pilot
 
-from eel_dynamics.simulation.head_motion import head_motion_of
 from eel_dynamics.model.scene import Scene
+from eel_dynamics.simulation.head_motion import head_motion_of
 from eel_dynamics.simulation.simulation import Simulation
 
 STEP = 0.02  # s, from one sample of the head's motion to the next
