@@ -38,7 +38,7 @@ def outline(body, x: np.ndarray) -> dict[str, np.ndarray]:
 
     The abscissae are `x` (M,) [m] and points in between, which are denser at the nose.
     """
-    x = np.union1d(x, body.length * np.linspace(0.0, 1.0, 101) ** 2)
+    x = np.array(sorted({*x, *(body.length * np.linspace(0.0, 1.0, 101) ** 2)}))
     return {
         "x": x,
         "half_width": np.asarray(body.half_width(x), dtype=float),
