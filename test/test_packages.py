@@ -24,6 +24,7 @@ EXECUTABLES = {
         "optimise",
         "sweep",
         "stability",
+        "steering",
         "tradeoff",
     },
     "eel_viz": {"visualiser", "markers", "record", "echo", "replay", "render"},

@@ -19,6 +19,7 @@ GIVEN = {  # each with an argument that does not fit, as long as can be
     "identify": ["identify", LONG + ".csv", "--first", "body.lateral_drag=1"],
     "tradeoff": ["tradeoff", LONG],
     "stability": ["stability", "--study", LONG],
+    "steering": ["steering", "--points", LONG],
     "figures": ["figures", LONG],
     "replay": ["replay", LONG],
     "render": ["render", LONG, "-o", "picture.png"],

@@ -52,6 +52,7 @@ COMMANDS = (
     "identify",
     "tradeoff",
     "stability",
+    "steering",
     "figures",
     "midlines",
     "record",

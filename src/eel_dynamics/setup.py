@@ -33,6 +33,7 @@ setup(
             "optimise = eel_dynamics.studies.optimise.command:main",
             "sweep = eel_dynamics.studies.sweep.command:main",
             "stability = eel_dynamics.studies.stability.command:main",
+            "steering = eel_dynamics.studies.steering.command:main",
             "tradeoff = eel_dynamics.studies.tradeoff.command:main",
         ]
     },

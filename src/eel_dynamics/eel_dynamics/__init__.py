@@ -17,6 +17,7 @@ from eel_dynamics.studies.identify.identify import Identified, identify
 from eel_dynamics.studies.identify.measurements import MeasuredPath, MeasuredSpeed
 from eel_dynamics.studies.optimise.front import Front
 from eel_dynamics.studies.optimise.optimise import optimise
+from eel_dynamics.studies.steering.linearisation import PeriodicLinearisation, periodic_linearisation
 from eel_dynamics.studies.sweep.sweep import sweep
 
 __all__ = [
@@ -31,6 +32,7 @@ __all__ = [
     "MeasuredPath",
     "MeasuredSimulation",
     "MeasuredSpeed",
+    "PeriodicLinearisation",
     "Run",
     "Scene",
     "Simulation",
@@ -40,6 +42,7 @@ __all__ = [
     "hydrodynamic_wrench",
     "identify",
     "optimise",
+    "periodic_linearisation",
     "simulate",
     "simulate_batch",
     "sweep",
