@@ -18,6 +18,7 @@ WRITTEN_WHOLE = (
     "docs/appendix/tradeoff.md",
     "docs/appendix/tradeoff_tables.md",
     "docs/explanation/accuracy.md",
+    "docs/explanation/steering.md",
     "docs/figures/README.md",
 )  # by commands of their own
 MARKED = re.compile(r"<!-- ([a-z]+): written by `(.*?)`.*? -->\n(.*?)<!-- end of \1 -->", re.DOTALL)
