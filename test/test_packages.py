@@ -14,7 +14,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[1]
 PYTHON_PACKAGES = ("eel_ros", "eel_gaits", "eel_dynamics", "eel_viz")
 EXECUTABLES = {
-    "eel_gaits": {"gait_generator", "heading_controller"},
+    "eel_gaits": {"gait_generator", "heading_controller", "pilot"},
     "eel_dynamics": {
         "dynamics",
         "simulate",

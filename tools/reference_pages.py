@@ -17,6 +17,7 @@ from eel_gaits.gaits.settings import FILE_GAITS, numbers_of
 from eel_gaits.input_output.quantity import limits
 from eel_gaits.ros.heading_controller import HeadingParameters
 from eel_gaits.ros.node import FILE
+from eel_gaits.ros.pilot_parameters import GROUPS
 from eel_viz.settings import MarkerSettings, Settings
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -42,6 +43,7 @@ NODES = {  # name of the node: heading, prefix and dataclass of its parameters
     ],
     "dynamics": [("", "", DynamicsParameters), ("scene", "scene.", Scene)],
     "heading_controller": [("", "", HeadingParameters)],
+    "pilot": [("", "", kind) for kind in GROUPS],
     "visualiser": [("", "", Settings)],
     "markers": [("", "", MarkerSettings)],
 }

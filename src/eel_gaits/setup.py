@@ -21,6 +21,7 @@ setup(
         "console_scripts": [
             "gait_generator = eel_gaits.ros.node:main",
             "heading_controller = eel_gaits.ros.heading_controller:main",
+            "pilot = eel_gaits.ros.pilot:main",
         ]
     },
 )

@@ -14,6 +14,7 @@ from eel_gaits.pilot.period_means import PeriodMeans
 from eel_gaits.pilot.pilot import Pilot
 from eel_gaits.pilot.progress import Progress
 from eel_gaits.pilot.settings import PilotSettings
+from eel_gaits.pilot.torque_limiter import TorqueLimiter
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -149,3 +150,28 @@ def test_a_goal_that_comes_no_nearer_is_reported_once():
     assert sum(said) == 1 and 0.1 * said.index(True) == pytest.approx(13.0, abs=0.3)
     progress.restart(40.0)
     assert not any(progress.stalled(40.0 + 0.1 * k, 0.5, 1.0) for k in range(400))
+
+
+def test_water_that_carries_the_swimmer_off_is_reported():
+    pilot, still = Pilot(PilotSettings(patience=12.0)), np.zeros(3)
+    pilot.follow(goals.station((5.0, 0.0, 0.0), 0.5, LIMITS))
+    pilot.begin()
+    for k in range(200):
+        head = HeadMotion(np.array((-0.2 * k, 0.0, 0.0)), np.array((0.0, 0.0, 0.0, 1.0)), still, still)
+        pilot.step(0.1 * k, head, 0.1)
+    assert [line.partition(":")[0] for line in pilot.news] == ["the goal (5, 0, 0) m cannot be reached"]
+    assert pilot.news[0].endswith("the water is faster than the swimmer may swim")
+
+
+def test_the_beat_slows_down_where_the_torque_is_too_great():
+    """A swimmer whose torque goes with the square of the tempo."""
+    limiter, tempo, said = TorqueLimiter(0.3, 1.5), 1.5, []
+    for k in range(400):
+        said.append(limiter.exceeded(4.0 * tempo**2, 1.0, 0.02 * k, tempo))
+        tempo += 0.1 * (limiter.tempo - tempo)
+    assert tempo == pytest.approx(0.5, rel=0.05) and not any(said)
+    said = [limiter.exceeded(9.0, 1.0, 8.0 + 0.02 * k, 0.3) for k in range(50)]
+    assert limiter.tempo == 0.3 and sum(said) == 1
+    assert not limiter.exceeded(math.nan, 1.0, 9.1, 0.3)
+    limiter.exceeded(9.0, 0.0, 9.2, 0.3)
+    assert limiter.tempo == 1.5

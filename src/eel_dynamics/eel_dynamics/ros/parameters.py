@@ -110,6 +110,13 @@ class DynamicsParameters:
         0, "joints in yaw of a robot whose motors are on joint_states; 0: none", minimum=0, maximum=MOST_JOINTS
     )
     pitch_joints: int = _parameter(0, "joints in pitch, likewise", minimum=0, maximum=MOST_JOINTS)
+    torque_limit: float = _parameter(
+        0.0,
+        "internal torque about any axis above which each sample is reported; 0: none",
+        "N m",
+        minimum=0.0,
+        changeable=True,
+    )
     wait_for_subscribers: int = _parameter(
         0,
         "subscribers to wait for before the first sample; 0: at real_time_factor 0, those on the network",

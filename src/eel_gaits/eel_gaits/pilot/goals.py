@@ -74,6 +74,27 @@ def station(point, speed: float, limits: Limits) -> Station:
     return Station(_points("station", [point])[0], checked_speed(speed, limits))
 
 
+def described(goal: Course | Path | Station) -> str:
+    """The goal in words."""
+    if isinstance(goal, Course):
+        return f"hold heading {goal.heading:.3g} rad at depth {goal.depth:.3g} m with {goal.speed:.3g} m/s"
+    point = goal.points[-1] if isinstance(goal, Path) else goal.point
+    where = f"({', '.join(f'{value:.3g}' for value in point)}) m with {goal.speed:.3g} m/s"
+    return f"swim through {len(goal.points)} points to {where}" if isinstance(goal, Path) else f"stay at {where}"
+
+
+def check_first_point(goal: Path, position, heading: float, limits: Limits):
+    """`ValueError` where the first point lies within a turning circle at `position` (3,) [m] with this `heading`."""
+    away = goal.points[0] - position
+    ahead = away[0] * math.cos(heading) + away[1] * math.sin(heading)
+    aside = abs(away[1] * math.cos(heading) - away[0] * math.sin(heading))
+    if math.hypot(ahead, aside - limits.turning_radius) < limits.turning_radius - limits.reach:
+        raise ValueError(
+            f"path point 1 must lie outside the turning circle of {limits.turning_radius:.3g} m of the swimmer, "
+            f"got {ahead:.3g} m ahead and {aside:.3g} m aside"
+        )
+
+
 def checked_speed(speed: float, limits: Limits) -> float:
     """`speed` [m/s], if the swimmer can have it."""
     if not (math.isfinite(speed) and 0.0 < speed <= limits.greatest_speed):

@@ -41,13 +41,13 @@ class CourseGuidance:
     done = False
 
     def __init__(self, goal: Course, look_ahead: float):
-        self._goal, self._look_ahead = goal, look_ahead
+        self._goal, self._look_ahead, self.speed = goal, look_ahead, goal.speed
 
     def demand(self, estimate: Estimate, greatest_speed: float) -> Demand:
         """The demand at present. greatest_speed [m/s]: through the water."""
         goal, water = self._goal, estimate.water
         along = water[0] * math.cos(goal.heading) + water[1] * math.sin(goal.heading)
-        speed = goal.speed - float(along)
+        speed = self.speed - float(along)
         climb = math.atan((-goal.depth - estimate.position[2]) / self._look_ahead)
         return Demand(goal.heading, min(max(speed, 0.0), greatest_speed), climb, -goal.depth, speed <= greatest_speed)
 
@@ -61,7 +61,7 @@ class PathGuidance:
     """
 
     def __init__(self, goal: Path, start: np.ndarray, look_ahead: float, close: float):
-        self._points, self._speed = np.vstack((start, goal.points)), goal.speed
+        self._points, self.speed = np.vstack((start, goal.points)), goal.speed
         self._look_ahead, self._close = look_ahead, close
         self.target, self.last_miss, self._least = 0, math.inf, math.inf
 
@@ -95,7 +95,7 @@ class PathGuidance:
         course = math.atan2(leg[1], leg[0]) - math.atan2(left, ahead)
         height = float(begin[2] + min(1.0, max(0.0, along / length)) * leg[2])
         climb = math.atan2(leg[2], length) + math.atan((height - estimate.position[2]) / ahead)
-        heading, speed, possible = against_water(course, self._speed, estimate.water, greatest_speed)
+        heading, speed, possible = against_water(course, self.speed, estimate.water, greatest_speed)
         return Demand(heading, speed, climb, height, possible)
 
 
@@ -109,6 +109,7 @@ class StationGuidance:
 
     def __init__(self, goal: Station, look_ahead: float, turning_radius: float, gain: float, rest: float):
         self._goal, self._look_ahead, self._radius = goal, look_ahead, turning_radius
+        self.speed = goal.speed
         self._gain, self._rest, self._resting = gain, rest, False
 
     def demand(self, estimate: Estimate, greatest_speed: float) -> Demand:
@@ -120,7 +121,7 @@ class StationGuidance:
         self._resting = still and distance < (2.0 if self._resting else 1.0) * self._rest
         if self._resting:
             return Demand(estimate.heading, 0.0, climb, height, True)
-        speed, bearing = min(self._goal.speed, self._gain * distance), math.atan2(away[1], away[0])
+        speed, bearing = min(self.speed, self._gain * distance), math.atan2(away[1], away[0])
         heading, through, possible = against_water(bearing, speed, estimate.water, greatest_speed)
         if distance < STANDOFF * self._radius and abs(wrapped(heading - estimate.heading)) > BEHIND:
             return Demand(estimate.heading, through, climb, height, possible)  # there is no room to turn round

@@ -7,6 +7,7 @@ pilot sends samples rather than laws: it decides at each step, and a law in clos
 """
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -14,12 +15,13 @@ from eel_gaits.gaits.swimming import straight
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.steered_law import SteeredLaw
 from eel_gaits.pilot.estimate import Estimate, Estimator
-from eel_gaits.pilot.goals import Course, Path, Station
+from eel_gaits.pilot.goals import Course, Path, Station, check_first_point
 from eel_gaits.pilot.guidance import CourseGuidance, PathGuidance, StationGuidance
 from eel_gaits.pilot.head_motion import HeadMotion
 from eel_gaits.pilot.progress import Progress
 from eel_gaits.pilot.regulator import Gains, Regulator
 from eel_gaits.pilot.settings import PilotSettings
+from eel_gaits.pilot.torque_limiter import TorqueLimiter
 
 RESPONSE = 0.2  # periods of the gait in which the numbers of the law follow their targets
 CLOSE = 0.5  # reaches: a way point that is so close is left for the next one
@@ -27,6 +29,8 @@ CLOSE = 0.5  # reaches: a way point that is so close is left for the next one
 
 class Pilot:
     """Steers one swimmer. Call `begin` at the start of a run, then `step` for each sample of the head's motion.
+
+    `see` and `steer` are the two parts of `step`, where the times of motion and curvature differ.
 
     Args:
         settings: numbers of swimmer and pilot.
@@ -50,6 +54,7 @@ class Pilot:
         )
         self._regulator = Regulator(self.settings, gains)
         self._progress = Progress(self.settings.patience)
+        self._torque = TorqueLimiter(self.settings.slowest_tempo, self.settings.fastest_tempo)
         self.goal: Course | Path | Station = Course(0.0, 0.0, 0.0)
         self._guidance = None
         self.estimate: Estimate | None = None
@@ -61,34 +66,60 @@ class Pilot:
         """Begin a run: the straight body at rest. The curvature (6, points) as of `SteeredLaw.advance`."""
         self._estimator.restart()
         self._regulator.restart()
+        self._torque.restart()
+        self._regulator.tempo_limit = self._torque.tempo
         self._guidance, self.estimate = None, None
         return self.law.begin(0.0, amplitude=0.0, tempo=self.settings.slowest_tempo)
 
     def follow(self, goal: Course | Path | Station):
-        """Change the goal."""
+        """Change the goal. It is begun with at the next step."""
         self.goal, self._guidance = goal, None
+
+    def checked_path(self, goal: Path) -> Path:
+        """The path, if its first point can be reached from where the swimmer is. `ValueError` otherwise."""
+        if self.estimate is not None:
+            where = self.estimate
+            check_first_point(goal, where.position, where.heading, self.settings.limits)
+        return goal
+
+    def change_speed(self, speed: float):
+        """Swim to the same goal with another `speed` [m/s]."""
+        self.goal = replace(self.goal, speed=speed)
+        if self._guidance is not None:
+            self._guidance.speed = speed
 
     @property
     def target(self) -> int:
         """Index of the way point that is aimed at; 0 without a path."""
         return self._guidance.target if isinstance(self._guidance, PathGuidance) else 0
 
-    def limit_tempo(self, tempo: float):
-        """Let the gait be no faster than `tempo`, nor slower than the slowest one."""
-        settings = self.settings
-        self._regulator.tempo_limit = min(max(tempo, settings.slowest_tempo), settings.fastest_tempo)
+    def limit_torque(self, torque: float, limit: float, time: float):
+        """Slow down where the internal `torque` [N m] at `time` [s] exceeds the `limit` [N m]; 0: there is none."""
+        if self._torque.exceeded(torque, limit, time, self.law.values["tempo"][0]):
+            self.news.append(
+                f"the torque of {torque:.3g} N m exceeds the limit of {limit:.3g} N m at the slowest beat too"
+            )
+        self._regulator.tempo_limit = self._torque.tempo
 
     def step(self, time: float, head: HeadMotion, step: float) -> np.ndarray:
-        """The curvature (6, points) at the end of a step of `step` [s], with the motion of the `head` at `time` [s]."""
+        """See the `head` at `time` [s], and steer for a `step` [s]: the curvature (6, points) at its end."""
+        self.see(time, head)
+        return self.steer(step)
+
+    def see(self, time: float, head: HeadMotion):
+        """Take in the motion of the `head` at `time` [s], and guide the swimmer. Times must rise."""
         values = self.law.values
         through = self.settings.cruise_speed * values["tempo"][0] * min(1.0, values["amplitude"][0])
         self.estimate = estimate = self._estimator.add(time, head, self.law.own_time, through)
         guidance = self._guided(estimate, head)
         self.demand = guidance.demand(estimate, self._regulator.greatest_speed)
         self._watch(time, head)
-        targets = self._regulator.targets(self.demand, estimate, self.law, step)
-        response = RESPONSE * self.law.period / max(values["tempo"][0], self.settings.slowest_tempo)
-        return self.law.advance(targets, step, response)
+
+    def steer(self, step: float) -> np.ndarray:
+        """The curvature (6, points) `step` [s] after that of the last call, or of `begin`."""
+        targets = self._regulator.targets(self.demand, self.estimate, self.law, step)
+        tempo = max(self.law.values["tempo"][0], self.settings.slowest_tempo)
+        return self.law.advance(targets, step, RESPONSE * self.law.period / tempo)
 
     def _guided(self, estimate: Estimate, head: HeadMotion):
         """The guidance to the present goal. When a path is done, its last point is the station to stay at."""

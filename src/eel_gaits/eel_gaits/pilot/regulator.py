@@ -15,6 +15,8 @@ from eel_gaits.pilot.guidance import Demand
 from eel_gaits.pilot.head_motion import wrapped
 from eel_gaits.pilot.settings import PilotSettings
 
+KEEL = 0.004  # metacentric height by length and by tempo squared, about which the gains of the roll change
+
 
 @dataclass(frozen=True, kw_only=True)
 class Gains:
@@ -27,9 +29,12 @@ class Gains:
     rise: float = -4.28  # rad/m per m/s
     up_bend: float = 21.6  # of the bend itself, and of its rate [s]
     up_bend_rate: float = -2.09
+    climb_integral: float = 0.05  # rad/m per rad s, integral action: bend by error of the climb and time
     height: float = 0.01  # 1/m/s, integral action: climb by error of the height and time
     roll: float = 4.16  # swirl by error, 1/rad
     roll_rate: float = 0.135  # s/rad
+    roll_with_keel: float = 1.0  # the same two where weight and buoyancy right the body faster than it beats
+    roll_rate_with_keel: float = 0.5
     swirl: float = 4.8
     swirl_rate: float = 0.35  # s
     greatest_swirl: float = 0.6
@@ -41,11 +46,12 @@ class Regulator:
     def __init__(self, settings: PilotSettings, gains: Gains | None = None):
         self._settings, self._gains = settings, gains or Gains()
         self._climb_offset = 0.0  # rad, integral of the error of the height
+        self._bend_offset = 0.0  # rad/m, integral of the error of the climb
         self.tempo_limit = settings.fastest_tempo
 
     def restart(self):
-        """Forget the integral."""
-        self._climb_offset = 0.0
+        """Forget the integrals."""
+        self._climb_offset = self._bend_offset = 0.0
 
     @property
     def greatest_speed(self) -> float:
@@ -59,11 +65,15 @@ class Regulator:
         bend_limit = max(0.0, settings.greatest_curvature - amplitude * law.greatest_curvature)
         bend_limit = min(settings.greatest_bend, bend_limit)
         per_tempo = 1.0 / max(law.values["tempo"][0], settings.slowest_tempo)
+        keel = min(1.0, max(0.0, settings.metacentric_height * per_tempo**2 / settings.length / KEEL - 0.5))
         high = demand.height - estimate.position[2]
         most = settings.greatest_climb
         if abs(high) < 0.1 * settings.length and demand.speed > 0.0:
             self._climb_offset = _limited(self._climb_offset + step * gains.height * high, 0.1)
         climb = _limited(demand.climb, most) + self._climb_offset
+        if demand.speed > 0.0:
+            more = step * gains.climb_integral * (climb - estimate.climb)
+            self._bend_offset = _limited(self._bend_offset + more, 0.5 * bend_limit)
         bend, bend_rate, _ = law.values["up_bend"]
         swirl, swirl_rate, _ = law.values["swirl"]
         length = settings.length
@@ -71,6 +81,7 @@ class Regulator:
             gains.climb * (climb - estimate.climb)
             - gains.climb_rate * per_tempo * estimate.climb_rate
             - gains.rise * per_tempo * estimate.rise / length
+            + (1.0 + gains.up_bend) * self._bend_offset * length
             - gains.up_bend * bend * length
             - gains.up_bend_rate * per_tempo * bend_rate * length
         ) / length
@@ -79,8 +90,8 @@ class Regulator:
             - gains.heading_rate * per_tempo * estimate.heading_rate
         ) / length
         roll = (
-            gains.roll * estimate.roll
-            + gains.roll_rate * per_tempo * estimate.roll_rate
+            (gains.roll + keel * (gains.roll_with_keel - gains.roll)) * estimate.roll
+            + (gains.roll_rate + keel * (gains.roll_rate_with_keel - gains.roll_rate)) * per_tempo * estimate.roll_rate
             - gains.swirl * swirl
             - gains.swirl_rate * per_tempo * swirl_rate
         )

@@ -23,6 +23,9 @@ class PilotSettings(Quantities):
     speed_time: float = quantity(
         2.2, unit="s", description="time in which the speed follows the gait", minimum=1e-2, maximum=1e3
     )
+    metacentric_height: float = quantity(
+        0.0, unit="m", description="height of the buoyancy above the weight; 0: no keel", minimum=0.0, maximum=1.0
+    )
     slowest_tempo: float = quantity(
         0.3, unit="", description="least tempo of the gait; below it the beat gets smaller", minimum=0.01, maximum=1.0
     )

@@ -36,6 +36,22 @@ class LimitsMonitor:
         if check:
             self._check(snapshot)
 
+    def check_torque(self, snapshot, limit: float):
+        """Report a snapshot with an internal torque above the `limit` [N m]; 0: there is none."""
+        if limit <= 0.0:
+            return
+        if snapshot.torque is None:
+            self._warn("torque", "torque_limit does nothing without scene.internal_wrench")
+            return
+        size = np.abs(snapshot.torque)
+        station, axis = np.unravel_index(np.argmax(size), size.shape)
+        if size[station, axis] > limit:
+            self._report.event(
+                "torque limit",
+                f"torque_{axis + 1} of {size[station, axis]:.3g} N m exceeds torque_limit {limit:g} N m at "
+                f"X = {snapshot.x[station]:.3g} m, t = {snapshot.time:.4g} s",
+            )
+
     def _check(self, snapshot):
         limits, time = self._limits, np.array([snapshot.time])
         bend = snapshot.curvature[None]

@@ -48,6 +48,7 @@ class RunLoop:
         self._controller, self.wall_time = ControllerWait(), Stopwatch()
         self.laws = LawAdopter(simulation, report)
         self.output = SampleOutput(simulation, parameters.rate, parameters.clock_rate, publishers, report)
+        self.output.torque_limit = parameters.torque_limit
         self._sample_begun = None  # s, steady clock: when the computation of the next sample began
         self.time, self.samples_published, self.standing = 0.0, 0, ""
 
@@ -178,6 +179,7 @@ class RunLoop:
     def change(self, parameters):
         """Apply `parameters`; only the changeable ones may differ."""
         self._parameters = parameters
+        self.output.torque_limit = parameters.torque_limit
         self.pace.restart(self.samples_published, time.monotonic(), parameters.real_time_factor)
 
     def set_state(self, position, orientation, twist):
@@ -213,5 +215,5 @@ class RunLoop:
         self._parameters = new.parameters
         self._simulation = self.obstacles.simulation = self.laws.simulation = new.simulation
         self.pace.period, self.output.rate = 1.0 / new.parameters.rate, new.parameters.rate
-        self.output.clock.rate = new.parameters.clock_rate
+        self.output.clock.rate, self.output.torque_limit = new.parameters.clock_rate, new.parameters.torque_limit
         new.begin()

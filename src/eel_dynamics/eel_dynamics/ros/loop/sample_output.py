@@ -19,6 +19,7 @@ class SampleOutput:
 
     Attributes:
         rate: may be replaced at a reset.
+        torque_limit: [N m], above which a sample's torque is reported; 0: none.
         clock: ClockTicks.
         totals: RunTotals since the start.
     """
@@ -27,6 +28,7 @@ class SampleOutput:
         self._simulation, self.rate, self._publishers, self._report = simulation, rate, publishers, report
         self._limits, self._errors = LimitsMonitor(simulation, report), ErrorMonitor(simulation, report)
         self.clock = ClockTicks(clock_rate, publishers)
+        self.torque_limit = 0.0
         self._whole_snapshot_due = True
         self._start_shown, self._start_audience = -math.inf, None  # s, steady clock: last sample 0, and who had it
         self.totals = RunTotals()
@@ -48,9 +50,11 @@ class SampleOutput:
     def _publish(self, sample: int, whole: bool):
         """With `whole`, check everything that the totals use."""
         parts = self._publishers.wanted_parts()
+        parts["wrench"] |= self.torque_limit > 0.0
         snapshot = self._simulation.observe(**{part: wanted or whole for part, wanted in parts.items()})
         self.totals.add(snapshot)
         self._limits.add(snapshot, check=whole)
+        self._limits.check_torque(snapshot, self.torque_limit)
         if whole:
             self._errors.check()
         stamp = nanoseconds(sample, self.rate)

@@ -52,7 +52,7 @@ def random_path(rng: np.random.Generator, settings: PilotSettings) -> Path:
 
 def swim_path(goal: Path, **scene) -> tuple[Pilot, Voyage]:
     """Swim a path, in at most three times the time that its legs take. scene: fields of `Scene`."""
-    pilot = Pilot()
+    pilot = pilot_for(**scene)
     pilot.follow(goal)
     legs = np.linalg.norm(np.diff(goal.points, axis=0, prepend=np.zeros((1, 3))), axis=1)
     longest = 3.0 * float(np.sum(legs)) / goal.speed + 20.0
@@ -76,7 +76,7 @@ def figures_of(seed: int, **scene) -> Figures:
     speed, towards = SHARE_OF_SPEED * settings.cruise_speed, rng.uniform(-math.pi, math.pi)
     current = (speed * math.cos(towards), speed * math.sin(towards), 0.0)
     spot = np.array((rng.uniform(2.0, 5.0), rng.uniform(-2.0, 2.0), rng.uniform(-0.5, 0.5)))
-    pilot = Pilot()
+    pilot = pilot_for(**scene)
     pilot.follow(station(spot, rng.uniform(*SPEED), settings.limits))
     stayed = swim_with(pilot, STATION, scene=motion_alone(current=current, **scene))
     at_end = stayed.time >= stayed.time[-1] - SETTLED
@@ -90,6 +90,11 @@ def figures_of(seed: int, **scene) -> Figures:
         station_roll=float(np.max(np.abs(stayed.roll[at_end]))),
         news=(*(line for line in swum.news if "cannot" in line), *held.news, *stayed.news),
     )
+
+
+def pilot_for(**scene) -> Pilot:
+    """A pilot that knows the keel of a scene with these fields."""
+    return Pilot(PilotSettings(metacentric_height=scene.get("metacentric_height", 0.0)))
 
 
 def motion_alone(**scene) -> Scene:

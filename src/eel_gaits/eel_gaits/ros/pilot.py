@@ -1,0 +1,203 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The pilot: hears `odom` and goals, and answers with the curvature that leads the swimmer there.
+
+Goals are the parameters heading, depth and speed, a path on `goal_path`, a station on `goal_pose`: the last one counts.
+What cannot be reached is refused in one line, and the last goal stays. docs/howto/pilot.md tells more.
+"""
+
+import math
+import sys
+from dataclasses import fields
+
+import numpy as np
+from eel_ros.command_line import USE_SIM_TIME, answer_words
+from eel_ros.frames import frame_in
+from eel_ros.parameter_node import ParameterNode
+from eel_ros.parameters import declare, help_rows, take_overrides, warn_of_unknown
+from eel_ros.qos import keep_all
+from eel_ros.run_node import run_node
+from geometry_msgs.msg import PoseStamped
+from nav_msgs.msg import Odometry, Path
+from rcl_interfaces.msg import SetParametersResult
+
+from eel_gaits.input_output.command_line import complain
+from eel_gaits.input_output.quantity import limits
+from eel_gaits.input_output.wording import shown
+from eel_gaits.pilot import goals
+from eel_gaits.pilot.pilot import Pilot
+from eel_gaits.pilot.settings import PilotSettings
+from eel_gaits.ros.messages import FRAME, samples_to_message
+from eel_gaits.ros.pilot_messages import head_motion, point_of, seconds_of
+from eel_gaits.ros.pilot_parameters import GROUPS, GoalParameters, TimingParameters
+from eel_msgs.msg import CurvatureSamples, SwimState
+
+NAME = "pilot"
+ABOUT = "Swims to goals: hears odom, goal_path and goal_pose, and answers on curvature_samples."
+MOST_WAITING = 50  # samples of odom that wait for the torque of the same time
+
+
+class PilotNode(ParameterNode):
+    """A node with the topics `odom`, `goal_path`, `goal_pose`, `swim_state` (in) and `curvature_samples` (out)."""
+
+    def __init__(self):
+        super().__init__(NAME, automatically_declare_parameters_from_overrides=True)
+        overrides = take_overrides(self)
+        names = {item.name for kind in GROUPS for item in fields(kind)}
+        made = {}
+        for kind, changeable in GROUPS.items():
+            known = kind.__dataclass_fields__
+            made[kind] = kind(**{name: overrides[name] for name in overrides if name in known})
+            declare(self, made[kind], limits, changeable=changeable)
+        warn_of_unknown(self, overrides, names)
+        self._numbers, self._timing = made[GoalParameters], made[TimingParameters]
+        self._pilot = Pilot(made[PilotSettings])
+        self._follow(self._course(self._numbers), "parameters")
+        self._frames = {frame_in(self.get_namespace(), "odom"), ""}
+        self._section_frame = frame_in(self.get_namespace(), FRAME)
+        self._last, self._next, self._answers = math.inf, 0.0, []  # s, s: last odom, next sample; what it was answered
+        self._waiting: list[Odometry] = []
+        self._torques: dict[float, float] = {}  # time [s]: torque [N m]
+        self._publisher = self.create_publisher(CurvatureSamples, "curvature_samples", keep_all())
+        self.create_subscription(Odometry, "odom", self._receive, keep_all())
+        self.create_subscription(Path, "goal_path", self._receive_path, 10)
+        self.create_subscription(PoseStamped, "goal_pose", self._receive_pose, 10)
+        self._swim_state = None
+        self._hear_torque()
+        self.add_on_set_parameters_callback(self._change)
+
+    # -- goals
+
+    def _course(self, numbers: GoalParameters) -> goals.Course:
+        return goals.course(numbers.heading, numbers.depth, numbers.speed, self._pilot.settings.limits)
+
+    def _change(self, parameters) -> SetParametersResult:
+        changes = {each.name: each.value for each in parameters if each.name in GoalParameters.__dataclass_fields__}
+        if not changes:
+            return SetParametersResult(successful=True)
+        present = {item.name: getattr(self._numbers, item.name) for item in fields(GoalParameters)}
+        try:
+            numbers = GoalParameters(**present | changes)
+            course = self._course(numbers)
+        except ValueError as error:
+            self.get_logger().warning(f"refused: {error}")
+            return SetParametersResult(successful=False, reason=str(error))
+        self._numbers = numbers
+        if "heading" in changes or "depth" in changes:
+            self._follow(course, "parameters")
+        elif "speed" in changes:
+            self._pilot.change_speed(numbers.speed)
+        self._hear_torque()
+        return SetParametersResult(successful=True)
+
+    def _receive_path(self, message: Path):
+        def goal():
+            self._check_frame(message.header.frame_id)
+            points = [point_of(each.pose.position) for each in message.poses]
+            return self._pilot.checked_path(goals.path(points, self._numbers.speed, self._pilot.settings.limits))
+
+        self._take("goal_path", goal)
+
+    def _receive_pose(self, message: PoseStamped):
+        def goal():
+            self._check_frame(message.header.frame_id)
+            return goals.station(point_of(message.pose.position), self._numbers.speed, self._pilot.settings.limits)
+
+        self._take("goal_pose", goal)
+
+    def _take(self, topic: str, make):
+        try:
+            self._follow(make(), topic)
+        except ValueError as error:
+            self.get_logger().warning(f"{topic} refused, the last goal stays: {error}")
+
+    def _follow(self, goal, source: str):
+        self._pilot.follow(goal)
+        self.get_logger().info(f"{goals.described(goal)}, from {source}")
+
+    def _check_frame(self, frame: str):
+        """`ValueError` for a frame that is not that of odom."""
+        if frame.lstrip("/") not in self._frames:
+            known = " or ".join(shown(each) for each in sorted(self._frames - {""}))
+            raise ValueError(f"frame_id must be {known}, got {shown(frame)}")
+
+    # -- samples
+
+    def _hear_torque(self):
+        """Subscribe to swim_state while there is a limit of torque."""
+        wanted = self._numbers.torque_limit > 0.0
+        if wanted and self._swim_state is None:
+            self._swim_state = self.create_subscription(SwimState, "swim_state", self._receive_state, keep_all())
+        elif not wanted and self._swim_state is not None:
+            self.destroy_subscription(self._swim_state)
+            self._swim_state = None
+            self._pilot.limit_torque(0.0, 0.0, 0.0)
+
+    def _receive_state(self, message: SwimState):
+        self._torques[seconds_of(message.header.stamp)] = message.greatest_torque
+        self._answer_waiting()
+
+    def _receive(self, odometry: Odometry):
+        self._waiting.append(odometry)
+        self._answer_waiting()
+
+    def _answer_waiting(self):
+        """Answer each odom once the torque of its time is known, so that a run repeats itself."""
+        while self._waiting:
+            now = seconds_of(self._waiting[0].header.stamp)
+            if self._swim_state is not None:
+                if now not in self._torques and len(self._waiting) <= MOST_WAITING:
+                    return
+                torque = self._torques.get(now, math.nan)
+                self._torques = {time: each for time, each in self._torques.items() if time >= now}
+                self._pilot.limit_torque(torque, self._numbers.torque_limit, now)
+            self._answer(now, self._waiting.pop(0))
+
+    def _answer(self, now: float, odometry: Odometry):
+        """Send the samples up to `lead` after `now` [s]. A stamp that goes back is a start; one that is repeated gets
+        the same answers."""
+        if now != self._last:
+            self._answers = []
+            try:
+                head = head_motion(odometry)
+            except ValueError as error:
+                self.get_logger().warning(f"odom left out: {error}", throttle_duration_sec=1.0)
+                return
+            self._frames = {odometry.header.frame_id.lstrip("/"), ""}
+            if not now > self._last:
+                self._start(now)
+            self._last = now
+            self._pilot.see(now, head)
+            period = self._timing.sample_period
+            while self._next <= now + self._timing.lead + 1e-9:
+                self._add(self._next, self._pilot.steer(period), now)
+                self._next += period
+        for answer in self._answers:
+            self._publisher.publish(answer)
+        for line in self._pilot.news:
+            log = self.get_logger().warning if "reached:" not in line else self.get_logger().info
+            log(f"t = {now:.2f} s: {line}")
+        self._pilot.news.clear()
+
+    def _start(self, now: float):
+        """Begin a run at `now` [s], or join one that is under way."""
+        begin = now if now == 0.0 else now + self._timing.lead
+        self._answers, self._next = [], begin + self._timing.sample_period
+        self._add(begin, self._pilot.begin(), -math.inf)
+
+    def _add(self, time: float, rows: np.ndarray, now: float):
+        if time > now:
+            self._answers.append(samples_to_message(time, self._pilot.law.x, rows, self._section_frame))
+
+
+def main(args=None):
+    """Run the node. The exit status is 0 after SIGINT or SIGTERM, and 2 if a parameter or word is refused at start."""
+    words = sys.argv if args is None else args
+    rows = (row for kind in GROUPS for row in help_rows(kind))
+    status = answer_words(NAME, ABOUT, rows, words, complain)
+    if status is not None:
+        return status
+    return run_node(NAME, [*USE_SIM_TIME, *words], PilotNode, lambda node: True, complain=complain)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the pilot reads of messages."""
+
+import numpy as np
+from builtin_interfaces.msg import Time
+from geometry_msgs.msg import Point
+from nav_msgs.msg import Odometry
+
+from eel_gaits.input_output.wording import shown
+from eel_gaits.pilot.head_motion import HeadMotion
+
+
+def seconds_of(stamp: Time) -> float:
+    """The time [s] of a stamp."""
+    return stamp.sec + 1e-9 * stamp.nanosec
+
+
+def point_of(point: Point) -> tuple[float, float, float]:
+    """(x, y, z) [m]."""
+    return point.x, point.y, point.z
+
+
+def head_motion(odometry: Odometry) -> HeadMotion:
+    """The head's motion. `ValueError` where it is not finite, or has no orientation."""
+    pose, twist = odometry.pose.pose, odometry.twist.twist
+    q = pose.orientation
+    orientation = np.array((q.x, q.y, q.z, q.w))
+    vectors = (np.array(point_of(each)) for each in (pose.position, twist.angular, twist.linear))
+    position, angular_velocity, velocity = vectors
+    for name, values in (
+        ("position", position),
+        ("orientation", orientation),
+        ("angular velocity", angular_velocity),
+        ("velocity", velocity),
+    ):
+        if not np.isfinite(values).all():
+            raise ValueError(f"{name} must be finite, got {shown(values.tolist())}")
+    norm = float(np.linalg.norm(orientation))
+    if not 0.99 < norm < 1.01:
+        raise ValueError(f"orientation must be a unit quaternion, got {shown(orientation.tolist())}")
+    return HeadMotion(position, orientation / norm, angular_velocity, velocity)

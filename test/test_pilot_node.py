@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The nodes `pilot` and `dynamics` together, over topics, as fast as possible and in lockstep."""
+
+import math
+import re
+
+from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import Point, Pose, PoseStamped
+from nav_msgs.msg import Path
+from rcl_interfaces.srv import SetParameters
+from rclpy.parameter import Parameter
+from std_msgs.msg import Header
+from swim_client import LIMIT, SwimClient
+
+NAMESPACE = "eel1"
+
+
+def path_message(*points, frame=f"{NAMESPACE}/odom"):
+    poses = [PoseStamped(pose=Pose(position=Point(x=x, y=y, z=z))) for x, y, z in points]
+    return Path(header=Header(frame_id=frame), poses=poses)
+
+
+def test_a_short_course_is_swum_and_goals_that_do_not_fit_are_refused(start, fresh_domain):
+    swim = SwimClient(domain=fresh_domain, topics=(), namespace=NAMESPACE)
+    space = ("--ros-args", "-r", f"__ns:=/{NAMESPACE}", "-p")
+    pilot = start("pilot", *space, "torque_limit:=5.0", "-p", "lead:=0.02", "-p", "headin:=1.0")
+    goals = swim.node.create_publisher(Path, "goal_path", 10)
+    swim.until(lambda: goals.get_subscription_count(), "subscriber of goal_path")
+    assert "ignored: 'headin' (did you mean 'heading'?)" in pilot.output()
+    for message, said in (
+        (path_message((5.0, 0.0, 0.0), frame="map"), "frame_id must be 'eel1/odom', got 'map'"),
+        (path_message((5.0, math.nan, 0.0)), "path point 1 must be finite"),
+        (path_message((5.0, 0.0, 0.0), (6.0, 0.0, 3.0)), "climb or dive by at most 17.2 degrees"),
+        (path_message((5.0, 0.0, 0.0), (9.0, 0.0, 0.0), (9.0, 1.0, 0.0)), "outside the turning circle of 0.95 m"),
+    ):
+        goals.publish(message)
+        pilot.wait_for_output(said, LIMIT)
+    answer = swim.call(
+        SetParameters, "pilot/set_parameters", parameters=[Parameter("speed", value=5.0).to_parameter_msg()]
+    )
+    assert not answer.results[0].successful and "<= 0.98 m/s" in answer.results[0].reason
+    goals.publish(path_message((4.0, 1.0, -0.2), (8.0, -1.0, 0.1)))
+    pilot.wait_for_output("swim through 2 points", LIMIT)
+
+    swim.listen("/diagnostics", DiagnosticArray)
+    pace = ("real_time_factor:=0", "-p", "rate:=50", "-p", "duration:=24", "-p", "subscriber_timeout:=60")
+    dynamics = start("dynamics", *space, "torque_limit:=0.2", "-p", *pace, "-p", "estimate_error:=false")
+    assert dynamics.wait(2 * LIMIT) == 0 and "ERROR" not in dynamics.output(), dynamics.output()
+    pilot.wait_for_output("way point 2 of 2", LIMIT)
+    misses = re.findall(r"way point (\d) of 2 reached: (\S+) m from it", pilot.output())
+    assert [number for number, _ in misses] == ["1", "2"] and all(float(miss) < 0.25 for _, miss in misses), misses
+    assert re.search(r"exceeds torque_limit 0.2 N m at X = \S+ m, t = \S+ s", dynamics.output()), dynamics.output()
+    swim.close()
