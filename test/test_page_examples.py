@@ -27,6 +27,7 @@ PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 BLOCK = re.compile(r"(?:<!-- (listing)[^\n]*-->\n)?^```([^\n`]*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 RUN = ("simulate", "identify")
 FOREIGN = ("colcon", "dask", "pip", "python", "python3", "rerun", "rosdep", "source", "sudo", "touch")
+GOALS = ("goal_path", "goal_pose")  # of the pilot
 SERVICES = ("reset", "pause", "step", "set_state")
 
 
@@ -98,7 +99,7 @@ def check(words: list[str]):
 def check_ros2(words, group, verb, *rest):
     """The ros2 command: topics, parameters and services are the nodes' own."""
     if group == "topic":
-        assert rest[0].removeprefix("/") in OWN, words
+        assert rest[0].removeprefix("/") in (*OWN, *GOALS), words
     elif (group, verb) == ("param", "set"):
         assert rest[1] in parameter_names(rest[0].removeprefix("/")), words
     elif group == "service":

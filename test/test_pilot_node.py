@@ -23,10 +23,10 @@ def path_message(*points, frame=f"{NAMESPACE}/odom"):
 def test_a_short_course_is_swum_and_goals_that_do_not_fit_are_refused(start, fresh_domain):
     swim = SwimClient(domain=fresh_domain, topics=(), namespace=NAMESPACE)
     space = ("--ros-args", "-r", f"__ns:=/{NAMESPACE}", "-p")
-    pilot = start("pilot", *space, "torque_limit:=5.0", "-p", "lead:=0.02", "-p", "headin:=1.0")
+    pilot = start("pilot", *space, "torque_limit:=5.0", "-p", "lead:=0.02", "-p", "headings:=1.0")
     goals = swim.node.create_publisher(Path, "goal_path", 10)
     swim.until(lambda: goals.get_subscription_count(), "subscriber of goal_path")
-    assert "ignored: 'headin' (did you mean 'heading'?)" in pilot.output()
+    assert "ignored: 'headings' (did you mean 'heading'?)" in pilot.output()
     for message, said in (
         (path_message((5.0, 0.0, 0.0), frame="map"), "frame_id must be 'eel1/odom', got 'map'"),
         (path_message((5.0, math.nan, 0.0)), "path point 1 must be finite"),
@@ -44,10 +44,10 @@ def test_a_short_course_is_swum_and_goals_that_do_not_fit_are_refused(start, fre
 
     swim.listen("/diagnostics", DiagnosticArray)
     pace = ("real_time_factor:=0", "-p", "rate:=50", "-p", "duration:=24", "-p", "subscriber_timeout:=60")
-    dynamics = start("dynamics", *space, "torque_limit:=0.2", "-p", *pace, "-p", "estimate_error:=false")
+    dynamics = start("dynamics", *space, "torque_limit:=0.05", "-p", *pace, "-p", "estimate_error:=false")
     assert dynamics.wait(2 * LIMIT) == 0 and "ERROR" not in dynamics.output(), dynamics.output()
     pilot.wait_for_output("way point 2 of 2", LIMIT)
     misses = re.findall(r"way point (\d) of 2 reached: (\S+) m from it", pilot.output())
     assert [number for number, _ in misses] == ["1", "2"] and all(float(miss) < 0.25 for _, miss in misses), misses
-    assert re.search(r"exceeds torque_limit 0.2 N m at X = \S+ m, t = \S+ s", dynamics.output()), dynamics.output()
+    assert re.search(r"exceeds torque_limit 0.05 N m at X = \S+ m, t = \S+ s", dynamics.output()), dynamics.output()
     swim.close()
