@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The example of the environments for learning: its policy holds a heading, alone and over topics."""
+"""The example of the environments for learning: its policies do their tasks, and one holds a heading over topics."""
 
 import json
 import sys
@@ -18,36 +18,55 @@ from eel_viz import entities
 
 ROOT = Path(__file__).resolve().parent.parent
 EXAMPLES = ROOT / "docs" / "examples"
-FOUND = json.loads((EXAMPLES / "hold_heading.json").read_text())
+FOUND = {path.stem: json.loads(path.read_text()) for path in EXAMPLES.glob("policy_*.json")}
 
 
 @pytest.fixture
 def example(monkeypatch):
     """The module of the example."""
     monkeypatch.syspath_prepend(EXAMPLES)
-    import hold_heading
+    import train_policy
 
-    return hold_heading
+    return train_policy
+
+
+def swum(example, name, weights, seeds):
+    return example.swim(example.TASKS[name], np.tile(weights, (len(seeds), 1, 1)), seeds)
 
 
 def test_the_policy_holds_the_heading_of_new_episodes(example):
     """Of the action 0 the error is what it was at the start, and what the hidden bend adds: half a radian in the
     mean of many episodes."""
-    seeds = list(range(5))
-    errors = {}
-    for name, weights in (("policy", np.array(FOUND["weights"])), ("none", np.zeros(10))):
-        swum = example.swim(np.tile(weights, (5, 1)), seeds)
-        errors[name] = np.abs(swum["error"][-40:]).mean(axis=0)
-    assert errors["policy"].max() < 0.2 and errors["none"].mean() > 2.0 * errors["policy"].mean()
+    weights, errors = np.array(FOUND["policy_heading"]["weights"]), {}
+    for name, each in (("policy", weights), ("none", 0.0 * weights)):
+        errors[name] = example.TASKS["heading"].error(swum(example, "heading", each, list(range(5))))
+    assert errors["policy"].max() < 10.0 and errors["none"].mean() > 2.0 * errors["policy"].mean()
+
+
+def test_the_policy_swims_through_the_points_of_new_episodes(example):
+    weights = np.array(FOUND["policy_way_points"]["weights"])
+    assert swum(example, "way_points", weights, [11, 12]).reached.tolist() == [3, 3]
+
+
+def test_the_policy_swims_to_the_depth_of_new_episodes_and_rolls_little(example):
+    weights = np.array(FOUND["policy_depth"]["weights"])
+    found = swum(example, "depth", weights, [21, 22])
+    assert example.TASKS["depth"].error(found).max() < 0.1 and found.length.tolist() == [200, 200]
 
 
 @pytest.mark.soak
-@pytest.mark.timeout(1800)
-def test_training_finds_a_policy_that_holds_the_heading(example):
-    """All of it: some minutes on two cores, most of them in the swims of 1,200 episodes."""
-    found = example.train()
-    assert len(found["curve"]) == 25 and found["curve"][-1][0] > found["curve"][0][0] + 1.0
-    assert example.final_error(np.array(found["weights"])).max() < 0.1
+@pytest.mark.timeout(3600)
+@pytest.mark.parametrize("name", ["heading", "depth", "way_points"])
+def test_training_finds_a_policy_that_does_the_task(example, name):
+    """All of it: some minutes on two cores, most of them in the swims of 1,200 episodes or more."""
+    task = example.TASKS[name]
+    found = example.train(task)
+    assert len(found["curve"]) == task.generations and found["curve"][-1][0] > found["curve"][0][0] + 1.0
+    swims = example.tested(task, np.array(found["weights"]))
+    if name == "way_points":
+        assert swims.reached.mean() > 2.8
+    else:
+        assert task.error(swims).max() < {"heading": 6.0, "depth": 0.1}[name]
 
 
 def test_the_policy_over_topics_swims_as_in_the_environment(start, fresh_domain):
@@ -64,7 +83,7 @@ def test_the_policy_over_topics_swims_as_in_the_environment(start, fresh_domain)
     positions = {nanoseconds(each.header.stamp): each.pose.pose.position for each in swim.received["odom"]}
     swim.close()
 
-    env, weights = AtRest(control_period=0.1), np.array(FOUND["weights"])
+    env, weights = AtRest(control_period=0.1), np.array(FOUND["policy_heading"]["weights"])[0]
     env.target = 0.6
     observation, _ = env.reset()
     for k in range(1, 121):

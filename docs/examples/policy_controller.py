@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A ROS node: the policy of hold_heading.py steers the dynamics node, in lockstep, over odom and curvature_samples.
+"""A ROS node: a policy of train_policy.py steers the dynamics node, in lockstep, over odom and curvature_samples.
 
 dynamics --ros-args -p real_time_factor:=0 -p rate:=10 -p duration:=20 -p scene.planar:=true
 python docs/examples/policy_controller.py --ros-args -p heading:=0.6
@@ -14,11 +14,11 @@ import numpy as np
 import rclpy
 from eel_dynamics.gym import HeadingEnv, HeadMotion
 from eel_ros.qos import keep_all
-from heading_policy import FILE, actions_of
 from nav_msgs.msg import Odometry
 from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
+from row_policy import actions_of, file_of
 
 from eel_msgs.msg import CurvatureSamples
 
@@ -30,7 +30,7 @@ class PolicyController(Node):
 
     def __init__(self):
         super().__init__("policy_controller")
-        found = json.loads(Path(self.declare_parameter("policy", str(FILE)).value).read_text())
+        found = json.loads(Path(self.declare_parameter("policy", str(file_of("heading"))).value).read_text())
         self.weights, self.step = np.array(found["weights"]), found["task"]["control_period"]
         self.env = HeadingEnv(control_period=self.step)
         self.declare_parameter("heading", 0.0, ParameterDescriptor(dynamic_typing=True))  # an integer will do

@@ -103,18 +103,10 @@ class Swimmer(_Shared):
 class LawTables(_Shared):
     """The m rows of a curvature law, each a field of X for one axis, on the nodes and stations of a swimmer."""
 
-    def __init__(
-        self,
-        axis: Sequence[int],
-        node: Buffer,
-        angle: Buffer,
-        moments: Buffer,
-        station: Buffer,
-        station_moments: Buffer,
-    ) -> None:
-        """axis: of each row, 0 pitch, 1 yaw. node (m, n) [rad/m]: the rows at the nodes; angle (m, n) [rad]: their
-        integral from the nose; moments (m, 3, n) [rad]: Magnus moments over the interval that ends at each node.
-        station (m, M), station_moments (m, 3, M): the same at the stations, from the node before each."""
+    def __init__(self, axis: Sequence[int], rows: Buffer, nodes: int, stations: int) -> None:
+        """axis: of each row, 0 pitch, 1 yaw. rows (m, 4 (n + s)) for n nodes and s stations. Each holds the field at
+        the nodes [rad/m]; its three Magnus moments [rad] over the interval that ends at each node, (3, n); the field at
+        the stations; and its moments from the node before each station, (3, s). `ValueError` for another size."""
 
 class Law(_Shared):
     """The curvature K(t, X): the sum of rows times factors of time, with two time derivatives."""

@@ -336,14 +336,11 @@ PYBIND11_MODULE(EEL_CORE_MODULE, module)
 
     auto law_tables = py::class_<LawTables, std::shared_ptr<LawTables>>(module, "LawTables");
     share_in_copies(law_tables);
-    law_tables.def(
-        py::init([](const std::vector<std::size_t>& axis, const py::object& node, const py::object& angle,
-                    const py::object& moments, const py::object& station, const py::object& station_moments) {
-            return std::const_pointer_cast<LawTables>(
-                tables_from(axis, node, angle, moments, station, station_moments));
-        }),
-        py::arg("axis"), py::arg("node"), py::arg("angle"), py::arg("moments"), py::arg("station"),
-        py::arg("station_moments"));
+    law_tables.def(py::init([](const std::vector<std::size_t>& axis, const py::object& rows, std::size_t nodes,
+                               std::size_t stations) {
+                       return std::const_pointer_cast<LawTables>(tables_from(axis, rows, nodes, stations));
+                   }),
+                   py::arg("axis"), py::arg("rows"), py::arg("nodes"), py::arg("stations"));
 
     auto curvature_law = py::class_<Law, std::shared_ptr<Law>>(module, "Law");
     share_in_copies(curvature_law);

@@ -112,6 +112,24 @@ def test_samples_of_a_law_swim_like_the_law():
     assert got.position == pytest.approx(exact.position[-1], abs=2e-3)
 
 
+def test_samples_whose_waves_are_given_swim_alike_on_a_grid_for_these():
+    """21 points could carry 4 waves; the law has one. The next pair of samples does not begin the steps anew."""
+    law, x, found = law_of(5), np.linspace(0.0, 1.0, 21), []
+    for waves in (None, 1.0):
+        simulation = Simulation(scene=Scene(internal_wrench=False, ledger=False), stations=2)
+        for time in np.arange(101) * 0.02:
+            simulation.add_samples(*samples_of(law, time, x), waves=waves)
+        simulation.advance(2.0)
+        found.append((simulation, simulation.head.position))
+    (many, far), (few, near) = found
+    assert len(few.grid.x) < 0.5 * len(many.grid.x)
+    assert np.linalg.norm(near - far) < 1e-4 * np.linalg.norm(far)  # of the preset standard
+    assert few.evaluations[2] < 8 * 100  # a start anew with each pair would take twice as many
+    for bad in (0.0, -1.0, np.nan, 1e4, "many"):
+        with pytest.raises(ValueError, match="curvature samples waves must be > 0 and at most 200, got"):
+            few.add_samples(*samples_of(law, 3.0, x), waves=bad)
+
+
 def test_samples_take_over_smoothly_and_rest_follows_when_they_stop():
     law, controller = law_of(6), law_of(7)
     simulation = Simulation(stations=X, default_transition=0.4)

@@ -12,7 +12,7 @@ from eel_dynamics.gym import DepthEnv, HeadingEnv, KnotAction, LawAction, Swimme
 from gymnasium.utils.env_checker import check_env
 from gymnasium.vector import AutoresetMode
 
-from eel_dynamics import Scene
+from eel_dynamics import Scene, Simulation
 from eel_gaits import Law, Term, helix, straight
 
 TASKS = {"Heading": HeadingEnv, "Depth": DepthEnv, "WayPoints": WayPointsEnv}
@@ -158,6 +158,35 @@ def test_the_body_bends_as_the_action_says():
     seen = env._simulation.observe()
     assert seen.curvature[(0, -1), 2] == pytest.approx((curvature[0], curvature[-1]), abs=1e-9)
     assert seen.curvature_rate[(0, -1), 2] == pytest.approx((rate[0], rate[-1]), abs=1e-9)
+
+
+def test_an_environment_swims_as_a_simulation_with_the_same_samples_to_the_bit():
+    env = HeadingEnv(scene=Scene(planar=True))
+    env.reset(seed=3)
+    start = env._simulation._setup.initial_state
+    simulation = Simulation(scene=env.scene, stations=2, **start._asdict())
+    other = LawAction(straight(), {"left_bend": (-0.5, 0.5)})
+    rows, trim = other.begin(env.action._steered.own_time), np.zeros((6, 21))
+    trim[3] = env._trim
+    simulation.add_samples(0.0, other.x, *(rows - trim), waves=other.waves)
+    for k, action in enumerate(random_actions(env, 40), 1):
+        env.step(action)
+        simulation.add_samples(0.02 * k, other.x, *(other.advance(action, 0.02) - trim), waves=other.waves)
+        simulation.advance(0.02 * k)
+        seen = simulation.observe()
+        assert (env.head.position * (-1, -1, 1)).tolist() == seen.position.tolist()
+        assert env.head.velocity.tolist() == (seen.twist[3:] * (-1, -1, 1)).tolist()
+
+
+def test_the_grid_fits_the_waves_of_the_action():
+    env = DepthEnv()
+    env.reset(seed=1)
+    for action in random_actions(env, 3):
+        env.step(action)
+    assert len(env._simulation.grid.x) == len(Simulation(scene=env.scene, law=straight()).grid.x)
+    assert (
+        LawAction(helix(), {"amplitude": (0.0, 5.0)}).waves > LawAction(helix(), {"amplitude": (0.0, 1.0)}).waves >= 1
+    )
 
 
 def test_positive_bends_turn_left_and_climb():

@@ -49,21 +49,28 @@ class CurvatureSample(NamedTuple):
     waves: float
 
     @staticmethod
-    def checked(time, x, rows, *, length: float, planar: bool, now: float, begun: bool) -> "CurvatureSample":
+    def checked(time, x, rows, *, waves, length: float, planar: bool, now: float, begun: bool) -> "CurvatureSample":
         """A sample from its arguments. `ValueError` names the one that does not fit.
 
-        time [s]; x (n,) [m]; rows (6, n): as in `QUANTITIES`. length [m]: of the body. planar: of the scene. now [s]:
-        the present time. begun: whether the march has begun; before, a sample may lie at the present.
+        time [s]; x (n,) [m]; rows (6, n): as in `QUANTITIES`. waves: on the body; None: what the points can carry.
+        length [m]: of the body. planar: of the scene. now [s]: the present time. begun: whether the march has begun;
+        before, a sample may lie at the present.
         """
-        x = _checked_x(checked_row("curvature samples x", x, None).tobytes(), length)
+        if not (type(x) is np.ndarray and x.dtype == float and x.ndim == 1):
+            x = checked_row("curvature samples x", x, None)
+        x = _checked_x(x.tobytes(), length)
         values = _checked_values(rows, len(x))
-        if planar and values[:3].any():
+        if planar and values[0].any():
             raise ValueError("curvature samples pitch must be 0 in a planar scene")
         if not is_finite(time) or time < now or (time == now and begun):
             raise ValueError(
                 f"curvature samples time must lie ahead of the simulation ({now:.6f} s), got {shown(time)} s"
             )
-        return CurvatureSample(float(time), x, values.reshape(2, 3, len(x)), waves_of_points(len(x)))
+        if waves is None:
+            waves = waves_of_points(len(x))
+        elif not (is_finite(waves) and 0.0 < waves <= MOST_WAVES):
+            raise ValueError(f"curvature samples waves must be > 0 and at most {MOST_WAVES:g}, got {shown(waves)}")
+        return CurvatureSample(float(time), x, values, float(waves))
 
     def same_as(self, other: "CurvatureSample") -> bool:
         """Whether the other sample holds the same numbers."""
@@ -77,7 +84,7 @@ class CurvatureSample(NamedTuple):
 @lru_cache(maxsize=64)
 def _checked_x(x: bytes, length: float) -> np.ndarray:
     """The points (n,) [m] of a sample, from their bytes. Equal ones are one array, which never changes."""
-    x = np.frombuffer(x)
+    x = checked_row("curvature samples x", np.frombuffer(x), None)
     if len(x) < 2 or np.any(np.diff(x) <= 0.0):
         raise ValueError(f"curvature samples x must rise over 2 points or more, got {len(x)} points")
     if x[0] < -1e-9 * length or x[-1] > length * (1.0 + 1e-9):
@@ -86,13 +93,14 @@ def _checked_x(x: bytes, length: float) -> np.ndarray:
 
 
 def _checked_values(rows, points: int) -> np.ndarray:
-    """The rows of a sample as an array (6, points) of finite floats. Rows of floats are checked all at once."""
+    """The six rows of a sample as an array (2, 3, points) of finite floats. Rows of floats are checked all at once."""
     if all(type(row) is np.ndarray and row.dtype == float and row.shape == (points,) for row in rows):
-        values = np.array(rows)
-        if len(values) == len(QUANTITIES) and np.isfinite(values).all():
-            return values
+        values = np.concatenate(rows)
+        if math.isfinite(values.dot(values)):
+            return values.reshape(2, 3, points)
     named = zip(QUANTITIES, rows, strict=True)
-    return np.array([checked_row(f"curvature samples {name}", row, points) for name, row in named])
+    values = np.array([checked_row(f"curvature samples {name}", row, points) for name, row in named])
+    return values.reshape(2, 3, points)
 
 
 class SampleQueue:

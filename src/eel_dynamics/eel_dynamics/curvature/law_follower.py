@@ -129,8 +129,8 @@ class LawFollower:
     @property
     def breakpoints(self) -> list[float]:
         """Times [s] at which a derivative of the curvature jumps, ascending."""
-        end = {self._blend.end} if self._blend is not None else set()
-        return sorted(self._source.breakpoints | end)
+        ends = () if self._blend is None else (self._blend.end,)
+        return sorted({*self._source.breakpoints, *ends})
 
     @property
     def between_samples(self) -> bool:
@@ -188,8 +188,7 @@ class LawFollower:
         first, second = self.samples.first_two
         start = self._last[1] if self._last is not None and self._last[0] is first else self._tabulated(first)
         self._last = second, self._tabulated(second)
-        rows = np.empty((2, 2, 3, self._tabulation.width))  # axis, sample, value and its derivatives
-        rows[:, 0], rows[:, 1] = start, self._last[1]
+        rows = np.concatenate((start, self._last[1]), axis=1)  # axis; value and its derivatives at both
         return TabulatedLaw.between(rows.reshape(12, -1), first.time, second.time)
 
     def _tabulated(self, sample: CurvatureSample) -> np.ndarray:

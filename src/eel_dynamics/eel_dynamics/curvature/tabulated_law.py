@@ -69,11 +69,7 @@ class Tabulation:
 
     def law_tables(self, rows: np.ndarray, axis) -> eel_core.LawTables:
         """Tabulated `rows` (m, width) of the axes `axis` (m,) (0 pitch, 1 yaw), for the compiled mechanics."""
-        n, s, m = self.nodes, self.stations, len(rows)
-        moments, station_moments = rows[:, n : 4 * n].reshape(m, 3, n), rows[:, 4 * n + s :].reshape(m, 3, s)
-        angle = moments[:, 0].cumsum(axis=1)
-        tables = rows[:, :n], angle, moments, rows[:, 4 * n : 4 * n + s], station_moments
-        return eel_core.LawTables(np.asarray(axis).tolist(), *(np.ascontiguousarray(table) for table in tables))
+        return eel_core.LawTables(np.asarray(axis).tolist(), np.ascontiguousarray(rows), self.nodes, self.stations)
 
 
 class TabulatedLaw(NamedTuple):
@@ -119,9 +115,9 @@ class TabulatedLaw(NamedTuple):
         return min((period for period, *_ in self.waves if period > 0.0), default=np.inf)
 
     @property
-    def breakpoints(self) -> set[float]:
+    def breakpoints(self) -> tuple[float, ...]:
         """Times [s] at which a derivative of the source jumps."""
-        return {self.origin + time for time in self.ramp_ends} | set(self.segment or ())
+        return self.segment or tuple(self.origin + time for time in self.ramp_ends)
 
 
 @lru_cache(maxsize=256)

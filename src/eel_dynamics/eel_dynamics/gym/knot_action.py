@@ -26,6 +26,7 @@ class KnotAction:
     """
 
     period = 1.0  # s, over which a task averages: there is no wave
+    waves = None  # on the body: as many as the knots can carry
 
     def __init__(self, knots=5, axes=("yaw",), *, greatest_rate=10.0, greatest_bend=5.0, length: float = 1.0):
         count = isinstance(knots, int) and not isinstance(knots, bool)

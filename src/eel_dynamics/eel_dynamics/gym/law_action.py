@@ -5,12 +5,15 @@ They move a `SteeredLaw`, so the curvature, its rate and its acceleration never 
 """
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from eel_gaits.input_output.wording import shown
 from eel_gaits.laws.law import Law
-from eel_gaits.laws.steered_law import NUMBERS, SteeredLaw
+from eel_gaits.laws.steered_law import BENDS, NUMBERS, SteeredLaw
+from eel_gaits.laws.term import Term
 
+from eel_dynamics.curvature.law_waves import check_law
 from eel_dynamics.model.arguments import checked_instance, checked_number, checked_row
 
 
@@ -25,6 +28,10 @@ class LawAction:
         response: [s], time constant with which a number follows its action.
         length: [m], of the body.
         points: along the body.
+
+    Attributes:
+        x: (points,) [m], points along the body.
+        waves: on the body, at the greatest size of all numbers.
     """
 
     def __init__(self, law: Law, numbers: dict, *, response: float = 0.2, length: float = 1.0, points: int = 21):
@@ -43,6 +50,7 @@ class LawAction:
         self._middle, self._half = 0.5 * (low + high), 0.5 * (high - low)
         self._steered = SteeredLaw(law, response=response, length=length, points=points)
         self.x = self._steered.x
+        self.waves = max(1.0, check_law(_largest(law, numbers), length))
 
     @property
     def size(self) -> int:
@@ -93,3 +101,13 @@ class LawAction:
         found = [value for name in self.names for value in self._steered.values[name][:2]]
         phase = 2.0 * math.pi * math.fmod(self._steered.own_time / self.period, 1.0)
         return [*found, math.sin(phase), math.cos(phase)]
+
+
+def _largest(law: Law, numbers: dict) -> Law:
+    """The law that bends the body most: all `numbers` at their greatest size."""
+    size = {name: max(map(abs, bounds)) for name, bounds in numbers.items()}
+    rolling = math.hypot(size.get("tilt", 0.0), size.get("swirl", 0.0))
+    terms = [term.scaled(size.get("amplitude", 1.0)) for term in law.terms]
+    terms += [replace(term, axis="pitch").scaled(rolling) for term in law.terms if term.axis == "yaw" and term.period]
+    bends = [Term(axis=axis, amplitude=(size.get(name, 0.0),), phase=0.5 * math.pi) for name, axis in BENDS.items()]
+    return Law([*terms, *bends], name=law.name)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The base class of the environments: one swimmer, control steps, and what a task adds to them."""
 
+import math
 from collections import deque
 from dataclasses import dataclass, fields
 from typing import ClassVar, NamedTuple
@@ -212,8 +213,9 @@ class SwimmerEnv(gymnasium.Env):
 
         `step` calls it with the simulation's head. A controller of the dynamics node calls it with that of a message.
         """
-        last = self._headings[-1] if self._headings else head.heading
-        self._headings.append(last + wrapped(head.heading - last))
+        heading = head.heading
+        last = self._headings[-1] if self._headings else heading
+        self._headings.append(last + wrapped(heading - last))
         self.head, self.heading = head, wrapped(sum(self._headings) / len(self._headings))
         return self._observation()
 
@@ -230,7 +232,7 @@ class SwimmerEnv(gymnasium.Env):
     def _command(self, simulation: Simulation, rows: np.ndarray) -> None:
         if self._trim:
             rows[3] -= self._trim
-        simulation.add_samples(self._tick * self.numbers.control_period, self.action.x, *rows)
+        simulation.add_samples(self._tick * self.numbers.control_period, self.action.x, *rows, waves=self.action.waves)
 
     def _look(self) -> np.ndarray:
         if self._recording is not None:
@@ -246,7 +248,7 @@ class SwimmerEnv(gymnasium.Env):
             values = np.asarray(action, dtype=float)
         except (TypeError, ValueError):
             values = np.empty(0)
-        if values.shape != (self.action.size,) or not np.isfinite(values).all():
+        if values.shape != (self.action.size,) or not all(map(math.isfinite, values.tolist())):
             raise gymnasium.error.InvalidAction(
                 f"action must be {self.action.size} finite numbers, got {shown(action)}"
             )

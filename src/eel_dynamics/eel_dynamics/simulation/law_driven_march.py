@@ -99,6 +99,8 @@ class LawDrivenMarch:
     def fit(self, needs: ShapeNeeds):
         """Make the grid fine enough for the `needs` and, once no finer motion is left, not much finer."""
         wanted = GridSettings.of(self.accuracy, *needs)
+        if wanted == self.settings:
+            return
         if self.settings.resolution > MUCH_FINER * wanted.resolution and not self.follower.blending:
             self._change_grid(wanted)
         else:
@@ -170,10 +172,15 @@ class LawDrivenMarch:
         return True
 
     def _pass_event(self) -> float:
-        """Change the source of curvature where that is due at the present; the next time [s] of such a change."""
+        """Change the source of curvature where that is due at the present; the next time [s] of such a change.
+
+        From one pair of samples to the next the curvature has two continuous derivatives, and the motion goes on
+        smoothly: the rate of the momentum depends on the curvature and its rate.
+        """
+        before = self.follower.between_samples
         self.follower.pass_event(self.time, self._fit_samples)
         if self.follower.tabulated_law is not self.tabulated_law:
-            self.follow()
+            self.follow(smoothly=before and self.follower.between_samples)
         return self.follower.next_event(self.time)
 
     def _march_to(self, time: float, interrupted) -> bool:

@@ -66,10 +66,10 @@ class MeasuredSimulation(Simulation):
         if self._companion is not None and len(self._companion.grid.x) == len(self.grid.x):
             self._seat()
 
-    def add_samples(self, time, x, pitch, pitch_rate, pitch_accel, yaw, yaw_rate, yaw_accel):
+    def add_samples(self, time, x, pitch, pitch_rate, pitch_accel, yaw, yaw_rate, yaw_accel, waves=None):
         """As `Simulation.add_samples`."""
         self._bring_up()
-        rows = x, pitch, pitch_rate, pitch_accel, yaw, yaw_rate, yaw_accel
+        rows = x, pitch, pitch_rate, pitch_accel, yaw, yaw_rate, yaw_accel, waves
         super().add_samples(time, *rows)
         self._do_alike(lambda companion: companion.add_samples(time, *rows))
 

@@ -147,20 +147,28 @@ class Simulation:
             self._march = march_from_start(self._setup, needs, law, float(origin), self._march.settings)
         self._needs, self.ready = needs, True
 
-    def add_samples(self, time, x, pitch, pitch_rate, pitch_accel, yaw, yaw_rate, yaw_accel):
+    def add_samples(self, time, x, pitch, pitch_rate, pitch_accel, yaw, yaw_rate, yaw_accel, waves=None):
         """Add a controller's curvature at the instant `time` [s], which lies ahead; before the start it may be 0.
 
         The rows hold the curvature [rad/m], its rate [rad/m/s] and its acceleration [rad/m/s^2] at the points `x` (n,)
         [m]. They are interpolated by natural cubic splines in X, and between two instants by the quintic that meets
         value, rate and acceleration at both. The samples take over as soon as two instants bracket the present.
+        waves: on the body, which the grid must resolve; None: as many as the points can carry, one for eight of them.
         `ValueError` names what does not fit.
         """
         check_points(len(x))
         self._march.follower.samples.check_space(len(x))
         rows = pitch, pitch_rate, pitch_accel, yaw, yaw_rate, yaw_accel
-        length, planar = self.body.length, self.scene.planar
-        given = {"length": length, "planar": planar, "now": self.time, "begun": self._started}
-        sample = CurvatureSample.checked(time, x, rows, **given)
+        sample = CurvatureSample.checked(
+            time,
+            x,
+            rows,
+            waves=waves,
+            length=self.body.length,
+            planar=self.scene.planar,
+            now=self.time,
+            begun=self._started,
+        )
         self._march.add_sample(sample)
         self.ready = True
 
