@@ -12,7 +12,9 @@ import pathlib
 import subprocess
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import partial
 
 from eel_gaits.input_output.wording import shown
 from PIL import Image
@@ -31,6 +33,16 @@ ALONE = "swimmer"  # the arrangement of a bare picture
 LEAST, MOST = 64, 8192  # pixels of a window's side
 
 
+@dataclass(frozen=True, kw_only=True)
+class View:
+    """One view of a picture: its `name`, its `kind` such as "3D", what it complains of; `png()` is its picture."""
+
+    name: str
+    kind: str
+    complaints: list
+    png: Callable[[], bytes]
+
+
 class Drawing:
     """A recording that a viewer shows; `start` and `end` [s] are its first and last simulation time.
 
@@ -42,6 +54,7 @@ class Drawing:
         self._started = time.monotonic()
         self.start, self.end = self._load()
         self._last = b""
+        self._shown: list[str] = []  # views of the arrangement in front
         self._view: str | None = None  # of which pictures are taken; None: of the whole window
 
     def png(self, at: float) -> bytes:
@@ -76,9 +89,24 @@ class Drawing:
                 f"blueprint must be one of {', '.join(tabs) or 'none'} ({self._path.name}), got {shown(name)}"
             )
         root["active_tab"] = tabs[name]
-        self._view = _first_view(boxes, tabs[name]) if bare else None
+        self._shown = _views_in(boxes, tabs[name])
+        self._view = self._shown[0] if bare else None
         self._client.set_blueprint(blueprint, of="recording")
         self._last = b""
+
+    def views(self) -> list[View]:
+        """The views of the arrangement in front, after a picture of it, those in three dimensions first."""
+        found = [
+            View(
+                name=view.name,
+                kind=view.view_class,
+                complaints=view.reports,
+                png=partial(self._client.take_screenshot, view.view_id),
+            )
+            for view in self._client.get_state().views
+            if view.view_id in self._shown
+        ]
+        return sorted(found, key=lambda view: view.kind != "3D")
 
     def _screenshot(self) -> bytes:
         return self._client.take_screenshot(self._view)
@@ -123,13 +151,16 @@ def _cropped(png: bytes, size: tuple[int, int]) -> bytes:
     return kept.getvalue()
 
 
-def _first_view(boxes: dict[str, dict], path: str) -> str:
-    """The id of the first view in the container at `path`."""
+def _views_in(boxes: dict[str, dict], path: str) -> list[str]:
+    """The ids of the views in the container at `path`; of tabs within it, those of the first."""
     kind, _, identifier = path.strip("/").partition("/")
     if kind == "view":
-        return identifier
-    contents = boxes[path.strip("/")]["contents"]
-    return _first_view(boxes, contents if isinstance(contents, str) else contents[0])
+        return [identifier]
+    box = boxes[path.strip("/")]
+    contents = [box["contents"]] if isinstance(box["contents"], str) else box["contents"]
+    if box["container_kind"] == "Tabs":
+        contents = contents[:1]
+    return [view for each in contents for view in _views_in(boxes, each)]
 
 
 @contextlib.contextmanager
