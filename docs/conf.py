@@ -11,7 +11,6 @@ extensions = [
     "myst_nb",  # Markdown, and the notebook as it stands
     "sphinx.ext.autodoc",
     "sphinx.ext.napoleon",
-    "sphinxcontrib.mermaid",
 ]
 root_doc = "index"
 exclude_patterns = ["requirements.*", "examples"]
@@ -19,7 +18,6 @@ nb_execution_mode = "off"  # `make notebook` runs it
 nb_merge_streams = True
 myst_heading_anchors = 3
 napoleon_use_ivar = True
-myst_fence_as_directive = ["mermaid"]
 default_role = "code"
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"  # signatures stay readable; docstrings give shapes and units

@@ -76,19 +76,21 @@ def covered(picture, places):
     return float((~water).sum() / len(places))
 
 
-def check_swimmer(path, name, view):
-    """The swimmer is where the camera of the arrangement's first view must have it; in a mirrored picture it is not."""
-    picture = pixels(view.png())
-    places = midline_in_view(path, name, picture.shape)
-    share, mirrored = covered(picture, places), covered(picture[::-1, ::-1], places)
-    assert share > COVERED > mirrored, (name, share, mirrored)
+def check_swimmer(path, name, picture):
+    """The swimmer is where the camera of the arrangement's first view must have it."""
+    share = covered(picture, midline_in_view(path, name, picture.shape))
+    assert share > COVERED, (name, share)
 
 
 def test_every_arrangement_shows_the_swimmer(pictures, tmp_path):
+    """And what finds it there does not find it in a picture that is turned upside down."""
     for name, png, views in pictures("turning", "helix"):
         assert [(view.name, view.complaints) for view in views if view.complaints] == []
-        check_swimmer(tmp_path / RECORDING, name, views[0])
         assert pixels(png).std() > LEAST_SPREAD, name
+        picture = pixels(views[0].png())
+        check_swimmer(tmp_path / RECORDING, name, picture)
+        with pytest.raises(AssertionError):
+            check_swimmer(tmp_path / RECORDING, name, picture[::-1, ::-1])
 
 
 @pytest.mark.soak
@@ -99,6 +101,6 @@ def test_every_arrangement_of_every_gait_shows_the_swimmer(pictures, tmp_path, g
     for name, png, views in pictures(gait, "falling"):
         (OUT / f"{gait}_{name}.png").write_bytes(png)
         assert [(view.name, view.complaints) for view in views if view.complaints] == []
-        check_swimmer(tmp_path / RECORDING, name, views[0])
+        check_swimmer(tmp_path / RECORDING, name, pixels(views[0].png()))
         for view in views[1:]:
             assert pixels(view.png()).std() > LEAST_SPREAD, (name, view.name)

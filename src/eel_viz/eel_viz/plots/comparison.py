@@ -61,7 +61,7 @@ class Comparison:
         self._farthest = self._worst = self._greatest = 0.0
         self._frame, self._water = FollowFrame(), WaterBox(stream, entities.BOTH_WATER)
         for path, name, colour in (
-            (entities.OTHER_SPEED, names[1], colours.AMBER),
+            (entities.OTHER_SPEED, f"{names[1]} [m/s]", colours.AMBER),
             (entities.DISTANCE, "distance [m]", colours.MAGENTA),
             (entities.TORQUE_DIFFERENCE_MOST, "greatest over X [N m]", colours.MAGENTA),
         ):

@@ -25,7 +25,7 @@ SIZES = {  # inches; name of the file
     "figure7_wrench_along_the_body": (6.4, 5.0),
     "figure8_wrench_in_time": (6.8, 5.0),
     "figure9_head_velocity": (6.8, 3.8),
-    "torque_surface": (6.8, 5.2),
+    "torque_surface": (7.6, 6.4),
     "head_path": (7.0, 6.2),
     "power_ledger": (6.8, 5.8),
     "convergence": (7.6, 3.8),

@@ -15,7 +15,7 @@ def draw_torque_surface(figure, run):
     """Draw the internal torques C2 and C3 [N m] over time and X, each as a surface and, below it, as a map."""
     from matplotlib.ticker import MaxNLocator
 
-    grid = figure.add_gridspec(2, 2, height_ratios=(1.45, 1.0))
+    grid = figure.add_gridspec(2, 2, height_ratios=(1.9, 1.0))
     torques = ((1, "$C_2$, pitch [N m]"), (2, "$C_3$, yaw [N m]"))
     spaces = [figure.add_subplot(grid[0, k], projection="3d") for k in range(2)]
     maps = [figure.add_subplot(grid[1, k]) for k in range(2)]
@@ -45,12 +45,12 @@ def _draw_surface(axes, run, values, size, name):
         vmax=size,
         rcount=len(x),
         ccount=len(time),
-        edgecolor=(0.3, 0.3, 0.3, 0.5),
-        linewidth=0.3,
+        edgecolor=(0.25, 0.25, 0.25, 0.35),
+        linewidth=0.25,
     )
     surface.set_rasterized(True)
-    axes.view_init(elev=34, azim=-58)
-    axes.set_box_aspect((1.7, 1.0, 1.0), zoom=1.15)
+    axes.view_init(elev=38, azim=-62)
+    axes.set_box_aspect((1.5, 1.0, 0.9), zoom=1.3)
     axes.set(xticks=[0, 2, 4, 6, 8, 10], yticks=[0.0, 0.5, 1.0], zlim=(-size, size))
     axes.zaxis.set_major_locator(MaxNLocator(4, symmetric=True))
     axes.set_xlabel("time t [s]", labelpad=4)
