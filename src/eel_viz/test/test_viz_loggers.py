@@ -425,6 +425,20 @@ def test_the_recording_carries_its_blueprint(made):
         arrangement("best")
 
 
+@pytest.mark.parametrize(("duration", "blueprints"), [(0.0, 1), (9.0, 1), (30.0, 2)])
+def test_a_recording_gets_another_blueprint_where_its_legends_would_not_fit(tmp_path, duration, blueprints):
+    from eel_viz.recording.recording_file import FileDestination
+    from eel_viz.settings import Settings
+    from rerun.chunk import RrdReader
+
+    said = []
+    file = FileDestination(Settings(recording=str(tmp_path / "run.rrd")), said.append, said.append)
+    stream = file.open(1, "made up")
+    file.fit(stream, duration)
+    file.close_recording(stream)
+    assert len(RrdReader(str(tmp_path / "run.rrd")).blueprints()) == blueprints
+
+
 def test_a_recording_takes_less_than_a_megabyte_a_second_at_50_hz(record_made_up):
     path, _ = record_made_up(3.0, 50.0)
     assert path.stat().st_size < 3.0 * 1e6

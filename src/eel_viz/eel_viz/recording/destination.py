@@ -13,7 +13,7 @@ import rerun.blueprint as rrb
 from eel_viz.recording.loggers import Rates
 from eel_viz.settings import Settings
 from eel_viz.views.blueprint import arrangement
-from eel_viz.views.views import Layers
+from eel_viz.views.views import USUAL, Look
 
 APPLICATION = "eel"  # Rerun's application id
 CLOSE_TIMEOUT = 3.0  # s for the last flush of a stream
@@ -62,6 +62,11 @@ class Destination(ABC):
         stream.send_recording_name(name)
         return stream
 
+    def fit(self, stream: rr.RecordingStream, duration: float) -> None:
+        """Fit the legends of a recording that ends to its `duration` [s], where that is longer than usual."""
+        if not self.live and duration > 1.2 * USUAL:
+            stream.send_blueprint(self._blueprint(duration), make_active=False, make_default=True)
+
     def close_recording(self, stream: rr.RecordingStream) -> None:
         """Close a recording's stream."""
         close_stream(stream)
@@ -91,10 +96,10 @@ class Destination(ABC):
         """How Rerun batches data before it sends them."""
         return rr.ChunkBatcherConfig.DEFAULT()
 
-    def _blueprint(self) -> rrb.Blueprint:
+    def _blueprint(self, duration: float = USUAL) -> rrb.Blueprint:
         chosen = self.settings
-        layers = Layers(frames=chosen.frames, wake=chosen.wake)
-        return arrangement(chosen.blueprint, live=self.live, compare=bool(chosen.compare), layers=layers)
+        look = Look(frames=chosen.frames, wake=chosen.wake, duration=duration)
+        return arrangement(chosen.blueprint, live=self.live, compare=bool(chosen.compare), look=look)
 
     @abstractmethod
     def _sink(self, number: int) -> rr.FileSink | rr.GrpcSink | None:

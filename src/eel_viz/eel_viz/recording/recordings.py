@@ -52,7 +52,7 @@ class Recording:
         for index, delivery in self.deliveries.items():
             if delivery.accepts_data:
                 self.loggers[index].flush()
-            delivery.close()
+            delivery.close(self.latest * 1e-9)
         self.loggers.clear()
 
 

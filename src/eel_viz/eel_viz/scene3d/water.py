@@ -17,6 +17,7 @@ KEPT = (1.2, 5.0)  # meshes in the radius, between which the mesh stays
 ASIDE, ABOVE, BELOW = 2.4, 0.9, 1.0  # how far the box reaches from the centre at least [radii]
 LAG = 1.5  # meshes: how far the centre moves before the box follows
 LABEL_SIZE = (0.15, 0.085)  # half of a label with the swimmer's thickness, as tangents in the picture
+APART = (0.20, 0.065)  # labels nearer than this would overlap, as tangents in the picture of a small view
 LABELLED = (1.3 * camera.EDGE, 0.93 * camera.EDGE)  # the part of the picture that has labels, as tangents
 GRID, LABELS, WALLS = "grid", "labels", "walls"
 
@@ -95,14 +96,19 @@ class WaterBox:
         self._stream.log(stamp, f"{self._root}/{WALLS}", mesh)
 
     def _clear_labels(self, centre: np.ndarray, radius: float, swimmer: np.ndarray) -> dict:
-        """The labels that lie in the picture and do not cover the swimmer, by their places in the world [m]."""
+        """The labels that lie in the picture, and cover neither the swimmer nor one another, by their places [m]."""
         labels = self._all_labels
         if not labels:
             return {}
         places = camera.in_picture((np.array(list(labels)) - centre) / radius)
         apart = np.abs(places[:, None] - camera.in_picture((swimmer - centre) / radius))
         shown = (np.abs(places) <= LABELLED).all(axis=1) & ~(apart <= LABEL_SIZE).all(axis=2).any(axis=1)
-        return {place: text for (place, text), keep in zip(labels.items(), shown.tolist(), strict=True) if keep}
+        clear, kept = {}, []
+        for (place, text), seen, free in zip(labels.items(), places, shown.tolist(), strict=True):
+            if free and not any((np.abs(seen - other) <= APART).all() for other in kept):
+                clear[place] = text
+                kept.append(seen)
+        return clear
 
     def _labels_of(self, low: np.ndarray, high: np.ndarray, centre: np.ndarray, radius: float) -> dict:
         """All labels of the box between `low` and `high`, each (3,) [meshes]."""

@@ -11,10 +11,10 @@ from eel_gaits.input_output.wording import shown
 from eel_viz import entities
 from eel_viz.settings import BLUEPRINTS
 from eel_viz.views.views import (
-    ALL,
     NARROW,
+    PLAIN,
     WIDE,
-    Layers,
+    Look,
     following_view,
     heat_map_view,
     path_view,
@@ -28,21 +28,21 @@ from eel_viz.views.views import (
 
 
 def arrangement(
-    first: str = "overview", *, live: bool = False, compare: bool = False, layers: Layers = ALL
+    first: str = "overview", *, live: bool = False, compare: bool = False, look: Look = PLAIN
 ) -> rrb.Blueprint:
     """All arrangements as tabs, `first` in front. `ValueError` for an unknown one.
 
     live: the time cursor follows the newest data, otherwise it stands at the start. compare: add the comparison with
-    another run. layers: what is shown in three dimensions.
+    another run.
     """
     if first not in BLUEPRINTS:
         raise ValueError(f"blueprint must be one of {', '.join(BLUEPRINTS)}, got {shown(first)}")
     tabs = {
-        name: make(layers=layers)
+        name: make(look=look)
         for name, make in (("overview", overview), ("torques", torques), ("motion", motion), ("swimmer", swimmer))
     }
     if compare or first == "compare":
-        tabs["compare"] = comparison(layers=layers)
+        tabs["compare"] = comparison(look=look)
     return rrb.Blueprint(
         rrb.Tabs(*tabs.values(), active_tab=list(tabs).index(first)),
         rrb.TopPanel(state="hidden"),
@@ -54,12 +54,12 @@ def arrangement(
     )
 
 
-def overview(*, layers: Layers = ALL) -> rrb.Container:
+def overview(*, look: Look = PLAIN) -> rrb.Container:
     """The swimmer, its profiles, its power, and the run's state and residual."""
     return rrb.Horizontal(
         rrb.Vertical(
-            rrb.Tabs(following_view(layers=layers), path_view(layers=layers)),
-            rrb.Horizontal(speed_view(), power_view()),
+            rrb.Tabs(following_view(look=look), path_view(look=look)),
+            rrb.Horizontal(speed_view(look), power_view(look)),
             row_shares=[2.3, 1.0],
         ),
         rrb.Vertical(
@@ -74,10 +74,10 @@ def overview(*, layers: Layers = ALL) -> rrb.Container:
     )
 
 
-def torques(*, layers: Layers = ALL) -> rrb.Container:
+def torques(*, look: Look = PLAIN) -> rrb.Container:
     """The profiles of torque, force and curvature."""
     return rrb.Horizontal(
-        rrb.Vertical(following_view(layers=layers), heat_map_view(), row_shares=[1.5, 1.0]),
+        rrb.Vertical(following_view(look=look), heat_map_view(), row_shares=[1.5, 1.0]),
         rrb.Vertical(
             profile_view(entities.TORQUE, "Internal torque C(X)"),
             profile_view(entities.FORCE, "Internal force N(X)"),
@@ -87,37 +87,43 @@ def torques(*, layers: Layers = ALL) -> rrb.Container:
     )
 
 
-def motion(*, layers: Layers = ALL) -> rrb.Container:
+def motion(*, look: Look = PLAIN) -> rrb.Container:
     """Path, attitude and velocities of the head."""
     return rrb.Horizontal(
         rrb.Vertical(
-            path_view(layers=layers),
-            rrb.Horizontal(speed_view(), series_view("Kinetic energy [J]", entities.KINETIC)),
+            path_view(look=look),
+            rrb.Horizontal(
+                speed_view(look), series_view("Kinetic energy [J]", entities.KINETIC, legend=NARROW * look.duration)
+            ),
             row_shares=[2.1, 1.0],
         ),
         rrb.Vertical(
-            series_view("Attitude of the head [deg]", entities.ATTITUDE, legend=WIDE),
-            series_view("Velocity of the head in base_link [m/s]", entities.LINEAR, legend=WIDE),
-            series_view("Angular velocity of the head in base_link [rad/s]", entities.ANGULAR, legend=WIDE),
+            series_view("Attitude of the head [deg]", entities.ATTITUDE, legend=WIDE * look.duration),
+            series_view("Velocity of the head in base_link [m/s]", entities.LINEAR, legend=WIDE * look.duration),
+            series_view(
+                "Angular velocity of the head in base_link [rad/s]", entities.ANGULAR, legend=WIDE * look.duration
+            ),
         ),
         column_shares=[1.3, 1.0],
         name="motion",
     )
 
 
-def swimmer(*, layers: Layers = ALL) -> rrb.Container:
+def swimmer(*, look: Look = PLAIN) -> rrb.Container:
     """The swimmer alone, for films."""
-    return rrb.Horizontal(following_view(layers=layers), name="swimmer")
+    return rrb.Horizontal(following_view(look=look), name="swimmer")
 
 
-def comparison(*, layers: Layers = ALL) -> rrb.Container:
+def comparison(*, look: Look = PLAIN) -> rrb.Container:
     """Two runs and their difference."""
     return rrb.Horizontal(
         rrb.Vertical(
-            following_view("Both swimmers, the other as hoops", both=True, layers=layers),
+            following_view("Both swimmers, the other as hoops", both=True, look=look),
             rrb.Horizontal(
                 series_view("Heads apart [m]", entities.DISTANCE, legend=0.0),
-                series_view("Speed of both heads [m/s]", entities.SPEED, entities.OTHER_SPEED, legend=2 * NARROW),
+                series_view(
+                    "Speed of both heads [m/s]", entities.SPEED, entities.OTHER_SPEED, legend=2 * NARROW * look.duration
+                ),
             ),
             row_shares=[1.9, 1.0],
         ),

@@ -11,18 +11,20 @@ from eel_viz import entities
 from eel_viz.plots import heat_map, profile_plot
 from eel_viz.scene3d import camera, colours
 
-NARROW, WIDE = 4.5, 2.0  # s before the start, for the legend of a narrow or a wide view of some ten seconds
+NARROW, WIDE = 0.45, 0.2  # of a run's duration: time before its start, for the legend of a narrow or a wide view
+USUAL = 10.0  # s: duration of a run that has not ended
 LOADS = entities.LOAD, entities.LOAD_ENDS
 FRAMES = entities.HEAD, entities.TAIL
 WAKE = entities.WAKE, entities.WAKE_LEGEND
 
 
 @dataclass(frozen=True, kw_only=True)
-class Layers:
-    """What a user may show or leave out: `frames`, the axes of head and tail, and the `wake`."""
+class Look:
+    """What is shown of `frames`, the axes of head and tail, and of the `wake`; and the `duration` of the run [s]."""
 
     frames: bool = False
     wake: bool = True
+    duration: float = USUAL
 
     @property
     def hidden(self) -> tuple[str, ...]:
@@ -30,10 +32,10 @@ class Layers:
         return (*(() if self.frames else FRAMES), *(() if self.wake else WAKE))
 
 
-ALL = Layers()
+PLAIN = Look()
 
 
-def following_view(name: str = "Swimmer", *, both: bool = False, layers: Layers = ALL) -> rrb.Spatial3DView:
+def following_view(name: str = "Swimmer", *, both: bool = False, look: Look = PLAIN) -> rrb.Spatial3DView:
     """Three dimensions; the camera moves with the swimmer without turning; with `both`, with two swimmers."""
     other_water = entities.WATER if both else entities.BOTH_WATER
     left_out = [
@@ -43,14 +45,14 @@ def following_view(name: str = "Swimmer", *, both: bool = False, layers: Layers 
         other_water,
         *([entities.LEGEND] if both else [entities.OTHER]),
     ]
-    hidden = _hidden(*layers.hidden, *((*LOADS, *WAKE) if both else ()))
+    hidden = _hidden(*look.hidden, *((*LOADS, *WAKE) if both else ()))
     return _three_dimensions(name, entities.BOTH if both else entities.FOLLOW, left_out, hidden)
 
 
-def path_view(*, layers: Layers = ALL) -> rrb.Spatial3DView:
+def path_view(*, look: Look = PLAIN) -> rrb.Spatial3DView:
     """Three dimensions; the camera keeps all places so far in the picture."""
     left_out = [entities.WATER, entities.BOTH_WATER, entities.LEGEND, entities.OTHER]
-    hidden = _hidden(*LOADS, *WAKE, *layers.hidden)
+    hidden = _hidden(*LOADS, *WAKE, *look.hidden)
     overrides = {path: [_past()] for path in (entities.TRACK, entities.STROBES)}
     return _three_dimensions("Path so far", entities.WHOLE_PATH, left_out, overrides | hidden)
 
@@ -93,14 +95,14 @@ def heat_map_view() -> rrb.Spatial2DView:
     )
 
 
-def speed_view() -> rrb.TimeSeriesView:
+def speed_view(look: Look) -> rrb.TimeSeriesView:
     """Speed and depth of the head."""
-    return series_view("Speed and depth of the head", entities.SPEED, entities.DEPTH)
+    return series_view("Speed and depth of the head", entities.SPEED, entities.DEPTH, legend=NARROW * look.duration)
 
 
-def power_view() -> rrb.TimeSeriesView:
+def power_view(look: Look) -> rrb.TimeSeriesView:
     """The powers of the ledger."""
-    return series_view("Power into body and fluid [W]", entities.POWER)
+    return series_view("Power into body and fluid [W]", entities.POWER, legend=NARROW * look.duration)
 
 
 def residual_view() -> rrb.TimeSeriesView:
@@ -116,7 +118,7 @@ def run_tabs() -> rrb.Tabs:
     )
 
 
-def series_view(name: str, *paths: str, legend: float = NARROW) -> rrb.TimeSeriesView:
+def series_view(name: str, *paths: str, legend: float) -> rrb.TimeSeriesView:
     """Values over time. `legend` [s]: the time before the start, which the legend fills; 0: no legend."""
     start = rrb.TimeRangeBoundary.absolute(seconds=-legend)
     return rrb.TimeSeriesView(
