@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The linearised swim: what grows in a period, and what bends in yaw and pitch can do about it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from draws import few, numbers
@@ -114,6 +116,11 @@ def test_what_does_not_fit_is_named(given, words):
 def test_unknown_inputs_are_named(free):
     with pytest.raises(ValueError, match=r"inputs must be of yaw, .* got 'roll'"):
         free.controllability(("roll",))
+    with pytest.raises(ValueError, match="bend must be finite and > 0 rad/m, got -1"):
+        free.feedback(-1.0)
+    stiff = replace(free, input_matrix=np.zeros((9, 6)))
+    with pytest.raises(ValueError, match="no feedback of these bends is stable"):
+        stiff.feedback()
 
 
 def test_the_command_refuses_a_page_that_cannot_be_written(tmp_path, capsys):

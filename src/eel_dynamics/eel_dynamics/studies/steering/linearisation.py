@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Linearisation of a swim over one period of its gait: `periodic_linearisation`.
 
-found = periodic_linearisation(straight(), scene=Scene(metacentric_height=0.01))
-found.multipliers            # (9,) eigenvalues: a disturbance of a mode is so many times as large a period later
-found.growth                 # the greatest, but for those that are 1 as no heading is special
-found.controllability()      # (9,) of each mode, by bends in yaw and pitch; 0: no bend moves it
+    found = periodic_linearisation(straight(), scene=Scene(metacentric_height=0.01))
+    found.multipliers            # (9,) eigenvalues: a disturbance of a mode is so many times as large a period later
+    found.growth                 # the greatest, but for those that are 1 as no heading is special
+    found.controllability()      # (9,) of each mode, by bends in yaw and pitch; 0: no bend moves it
+
+The matrices are central differences of swims over one period, from the settled motion.
 """
 
 from dataclasses import dataclass, replace
@@ -17,7 +19,7 @@ from eel_gaits.laws.law import Law
 from eel_gaits.laws.ramp import Ramp
 from eel_gaits.laws.term import Term
 
-from eel_dynamics.model.arguments import checked_instance, checked_row
+from eel_dynamics.model.arguments import checked_instance, checked_number, checked_row
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.studies.steering.period_map import Motion, PeriodMap, rotation, turned
@@ -132,12 +134,17 @@ class PeriodicLinearisation:
         """(6, 9) gain of the linear-quadratic regulator: inputs [rad/m] = - gain @ states, once a period.
 
         States count with time in periods and length in body lengths; an input of `bend` [rad/m] counts as much as a
-        state of 1.
+        state of 1. `ValueError` where the inputs do not hold a mode that grows.
         """
         from scipy.linalg import solve_discrete_are
 
+        bend = checked_number("bend", bend, "rad/m")
         a, b, cost = self.monodromy, self.input_matrix, np.eye(len(INPUTS)) / bend**2
-        ahead = solve_discrete_are(a, b, np.diag(self._scale**2), cost)
+        try:
+            ahead = solve_discrete_are(a, b, np.diag(self._scale**2), cost)
+        except np.linalg.LinAlgError as error:
+            weakest = self.motion_of(int(np.argmin(self.controllability())))
+            raise ValueError(f"no feedback of these bends is stable, {weakest} is held least ({error})") from None
         return np.linalg.solve(cost + b.T @ ahead @ b, b.T @ ahead @ a)
 
     def bent(self, inputs) -> Law:
