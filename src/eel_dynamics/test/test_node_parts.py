@@ -471,7 +471,11 @@ def test_who_was_given_up_does_not_cost_the_others_the_end_of_a_run(monkeypatch)
 
 def fake_publishers(publish):
     return SimpleNamespace(
-        wanted_parts=dict, publish=publish, tick=lambda nanoseconds: None, audience=tuple, lossless=False
+        wanted_parts=lambda: {"wrench": False, "load": False},
+        publish=publish,
+        tick=lambda nanoseconds: None,
+        audience=tuple,
+        lossless=False,
     )
 
 
