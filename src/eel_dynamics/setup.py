@@ -17,6 +17,7 @@ setup(
         "gym": ["gymnasium"],
         "cluster": ["dask", "distributed", "xarray"],
         "cma": ["cma"],
+        "pictures": ["matplotlib"],
     },
     zip_safe=False,
     maintainer="Eel simulator maintainers",

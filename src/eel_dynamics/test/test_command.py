@@ -43,4 +43,4 @@ def test_out_of_memory_is_one_line(monkeypatch, capsys):
         raise MemoryError("72 GiB")
 
     monkeypatch.setattr(command, "simulate", swum)
-    assert said_of("straight", capsys) == "simulate: the run does not fit into memory: 72 GiB\n"
+    assert said_of("straight", capsys) == "simulate: it does not fit into memory: 72 GiB\n"

@@ -19,7 +19,7 @@ import numpy as np
 from eel_gaits.gaits.registry import GAITS, gait
 from eel_gaits.gaits.sequence_file import sequence_from_file
 from eel_gaits.input_output.command_line import Parser, complain
-from eel_gaits.input_output.output_file import NotWritten, check_output, replacing
+from eel_gaits.input_output.output_file import check_output, replacing
 from eel_gaits.input_output.quantity import described_fields
 from eel_gaits.input_output.wording import one_line, shown
 from eel_gaits.laws.law import Law
@@ -30,10 +30,9 @@ from eel_dynamics.accuracy.accuracy import PRESETS
 from eel_dynamics.analysis.actuators import MOST_JOINTS
 from eel_dynamics.model.body import NAMED, Body
 from eel_dynamics.model.scene import Scene
-from eel_dynamics.runs.interrupt import end_on_interrupt
 from eel_dynamics.runs.named_values import scene_of, set_numbers
-from eel_dynamics.runs.one_line_warnings import one_line_warnings
 from eel_dynamics.runs.run import Run, simulate
+from eel_dynamics.runs.run_command import run_command
 from eel_dynamics.runs.storage.run_contents import contents_of_run
 from eel_dynamics.runs.storage.tables import columns_of
 from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
@@ -44,27 +43,13 @@ SUFFIXES = (".nc", ".npz", ".csv", ".rrd")
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Run the command. Exit status: 0; 1 if the output cannot be written completely; 2 for bad input; 3 for a run that
-    stopped, whose samples until then are written. One line gives the reason."""
-    if arguments is None:
-        end_on_interrupt()
-    options = _parser().parse_args(arguments)
-    try:
-        with one_line_warnings("simulate"):
-            return _swim(options, _checked_out(options.out))
-    except NotWritten as error:
-        complain("simulate", error)
-        return 1
-    except (ValueError, OSError) as error:
-        complain("simulate", error)
-        return 2
-    except MemoryError as error:
-        complain("simulate", f"the run does not fit into memory: {error}")
-        return 2
+    """Exit status as of `run_command`; the samples of a run that stopped are written."""
+    return run_command(_parser(), _swim, arguments)
 
 
-def _swim(options, out: Path | None) -> int:
+def _swim(options) -> int:
     """Simulate, print the summary and write the run; returns the exit status: 0, or 3 for a run that stopped."""
+    out = _checked_out(options.out)
     body = Body.named(options.body) if options.body in NAMED else Body.from_file(options.body)
     law, scene = _law(options, body), scene_of(options.scene)
     duration = options.duration

@@ -7,13 +7,14 @@ figures --out out/figures --format pdf --columns 1       # for a journal
 
 from pathlib import Path
 
-from eel_gaits.input_output.command_line import Parser, complain
-from eel_gaits.input_output.output_file import NotWritten, replacing
+from eel_gaits.input_output.command_line import Parser
+from eel_gaits.input_output.output_file import replacing
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.model.scene import Scene
-from eel_dynamics.runs.interrupt import end_on_interrupt
 from eel_dynamics.runs.run import simulate
+from eel_dynamics.runs.run_command import run_command
+from eel_dynamics.runs.storage.tables import needed
 from eel_dynamics.studies.figures import corrections, kern_comparison, orders
 from eel_dynamics.studies.figures.notes import page
 from eel_dynamics.studies.figures.style import SETTINGS, letter_panels
@@ -38,38 +39,27 @@ JOURNAL = {"font.size": 8.0, "lines.linewidth": 1.0, "pdf.fonttype": 42}  # lett
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Exit status 0; 1 where a file cannot be written to its end; 2 where the folder cannot be created, matplotlib is
-    missing or input is bad. An error prints one line with its reason.
-    """
-    if arguments is None:
-        end_on_interrupt()
-    options = _parser().parse_args(arguments)
-    try:
-        import matplotlib  # noqa: F401
-    except ImportError:
-        complain("figures", "matplotlib is missing; install it with: python -m pip install matplotlib")
-        return 2
+    """Exit status as of `run_command`."""
+    return run_command(_parser(), _figures, arguments)
+
+
+def _figures(options) -> int:
+    needed("matplotlib", "figures", "pictures")
     folder = Path(options.out)
-    try:
-        for reading in corrections.READINGS.values():
-            Accuracy.of(options.accuracy).in_scene(Scene(**reading))  # refused before the folder exists
-        folder.mkdir(exist_ok=True)
-        readings = corrections.swim(accuracy=options.accuracy)
-        print(corrections.table_of(readings))
-        control = simulate(straight(), readings[0].run.time[-1], accuracy=options.accuracy)
-        comparison = kern_comparison.compare()
-        print(kern_comparison.table_of(comparison))
-        errors = {
-            rule.__name__: {drag: rule(drag) for drag in (False, True)} for rule in (orders.in_space, orders.in_time)
-        }
-        for path in draw(drawings_of(readings, errors), folder, options.format, options.columns):
-            print(f"{path}  {path.stat().st_size / 1000.0:.0f} kB")
-        with replacing(folder / "README.md") as draft:
-            draft.write_text(page(readings, control, comparison, errors), encoding="utf-8")
-        print(folder / "README.md")
-    except (ValueError, OSError) as error:
-        complain("figures", error)
-        return 1 if isinstance(error, NotWritten) else 2
+    for reading in corrections.READINGS.values():
+        Accuracy.of(options.accuracy).in_scene(Scene(**reading))  # refused before the folder exists
+    folder.mkdir(exist_ok=True)
+    readings = corrections.swim(accuracy=options.accuracy)
+    print(corrections.table_of(readings))
+    control = simulate(straight(), readings[0].run.time[-1], accuracy=options.accuracy)
+    comparison = kern_comparison.compare()
+    print(kern_comparison.table_of(comparison))
+    errors = {rule.__name__: {drag: rule(drag) for drag in (False, True)} for rule in (orders.in_space, orders.in_time)}
+    for path in draw(drawings_of(readings, errors), folder, options.format, options.columns):
+        print(f"{path}  {path.stat().st_size / 1000.0:.0f} kB")
+    with replacing(folder / "README.md") as draft:
+        draft.write_text(page(readings, control, comparison, errors), encoding="utf-8")
+    print(folder / "README.md")
     return 0
 
 

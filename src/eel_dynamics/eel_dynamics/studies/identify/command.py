@@ -14,16 +14,14 @@ from pathlib import Path
 
 from eel_gaits.gaits.registry import GAITS
 from eel_gaits.input_output.command_line import Parser, complain
-from eel_gaits.input_output.output_file import NotWritten, check_output, replacing
+from eel_gaits.input_output.output_file import check_output, replacing
 from eel_gaits.input_output.wording import shown
 
 from eel_dynamics.accuracy.accuracy import PRESETS
 from eel_dynamics.model.body import NAMED, Body
 from eel_dynamics.model.scene import Scene
-from eel_dynamics.runs.interrupt import end_on_interrupt
 from eel_dynamics.runs.named_values import scene_of, set_numbers
-from eel_dynamics.runs.one_line_warnings import one_line_warnings
-from eel_dynamics.simulation.stopping import SimulationStopped
+from eel_dynamics.runs.run_command import run_command
 from eel_dynamics.studies.identify.drawing import FORMATS, draw_identified
 from eel_dynamics.studies.identify.identify import Identified, identify
 from eel_dynamics.studies.identify.measured_file import MeasuredFile, read_measured
@@ -32,24 +30,8 @@ SUFFIXES = (*FORMATS, ".csv")
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Exit status 0; 1 where an output cannot be written to its end; 2 for bad input, a missing package, or parameters
-    that the measurements do not determine; 3 for a swim that stops. An error prints one line with its reason.
-    """
-    if arguments is None:
-        end_on_interrupt()
-    options = _parser().parse_args(arguments)
-    try:
-        with one_line_warnings("identify"):
-            return _identify(options)
-    except NotWritten as error:
-        complain("identify", error)
-        return 1
-    except SimulationStopped as error:
-        complain("identify", error)
-        return 3
-    except (ValueError, ImportError, OSError) as error:
-        complain("identify", error)
-        return 2
+    """Exit status as of `run_command`."""
+    return run_command(_parser(), _identify, arguments)
 
 
 def _identify(options) -> int:

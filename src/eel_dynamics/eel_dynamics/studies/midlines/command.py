@@ -8,15 +8,14 @@ midlines fish.csv --out midlines.png    # and a picture
 from pathlib import Path
 
 import numpy as np
-from eel_gaits.input_output.command_line import Parser, complain
-from eel_gaits.input_output.output_file import NotWritten, check_output, replacing
+from eel_gaits.input_output.command_line import Parser
+from eel_gaits.input_output.output_file import check_output, replacing
 from eel_gaits.input_output.wording import shown
 from eel_gaits.sources.motion_file import read_midlines
 
 from eel_dynamics.model.body import NAMED, Body
-from eel_dynamics.runs.interrupt import end_on_interrupt
 from eel_dynamics.runs.run import simulate
-from eel_dynamics.simulation.stopping import SimulationStopped
+from eel_dynamics.runs.run_command import run_command
 from eel_dynamics.studies.midlines.comparison import MidlineComparison, compared
 
 SUFFIXES = (".png", ".svg", ".pdf")
@@ -24,21 +23,8 @@ SHOWN = 8  # instants in the picture
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Exit status 0; 1 where the picture cannot be written to its end; 2 for bad input; 3 for a swim that stops."""
-    if arguments is None:
-        end_on_interrupt()
-    options = _parser().parse_args(arguments)
-    try:
-        return _compare(options)
-    except NotWritten as error:
-        complain("midlines", error)
-        return 1
-    except SimulationStopped as error:
-        complain("midlines", error)
-        return 3
-    except (ValueError, OSError, ImportError) as error:
-        complain("midlines", error)
-        return 2
+    """Exit status as of `run_command`."""
+    return run_command(_parser(), _compare, arguments)
 
 
 def _compare(options) -> int:

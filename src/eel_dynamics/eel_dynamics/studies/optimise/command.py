@@ -13,15 +13,14 @@ from pathlib import Path
 import numpy as np
 from eel_gaits.gaits.registry import GAITS
 from eel_gaits.input_output.command_line import Parser, complain
-from eel_gaits.input_output.output_file import NotWritten, check_output, replacing
+from eel_gaits.input_output.output_file import check_output, replacing
 from eel_gaits.input_output.wording import shown
 
 from eel_dynamics.accuracy.accuracy import PRESETS
 from eel_dynamics.analysis.measures import MEASURES
 from eel_dynamics.model.body import NAMED, Body
-from eel_dynamics.runs.interrupt import end_on_interrupt
 from eel_dynamics.runs.named_values import named_texts, scene_of, set_numbers, varied_values
-from eel_dynamics.runs.one_line_warnings import one_line_warnings
+from eel_dynamics.runs.run_command import run_command
 from eel_dynamics.studies.optimise.front import FORMATS, Front
 from eel_dynamics.studies.optimise.optimise import optimise
 from eel_dynamics.studies.optimise.searches import METHODS
@@ -32,21 +31,8 @@ MOST_SPEEDS = 1000
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Exit status 0; 1 where an output cannot be written to its end; 2 for bad input, a missing package, or where no
-    gait reaches the speeds. An error prints one line with its reason.
-    """
-    if arguments is None:
-        end_on_interrupt()
-    options = _parser().parse_args(arguments)
-    try:
-        with one_line_warnings("optimise"):
-            return _optimise(options)
-    except NotWritten as error:
-        complain("optimise", error)
-        return 1
-    except (ValueError, ImportError, OSError) as error:
-        complain("optimise", error)
-        return 2
+    """Exit status as of `run_command`."""
+    return run_command(_parser(), _optimise, arguments)
 
 
 def _optimise(options) -> int:

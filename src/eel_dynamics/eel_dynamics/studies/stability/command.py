@@ -8,59 +8,49 @@ stability --page docs/appendix/stability.md --out docs/images
 
 from pathlib import Path
 
-from eel_gaits.input_output.command_line import Parser, complain
-from eel_gaits.input_output.output_file import NotWritten, check_output, replacing
+from eel_gaits.input_output.command_line import Parser
+from eel_gaits.input_output.output_file import check_output, replacing
 from eel_gaits.input_output.wording import shown
 
-from eel_dynamics.runs.interrupt import end_on_interrupt
+from eel_dynamics.runs.run_command import run_command
+from eel_dynamics.runs.storage.tables import needed
+from eel_dynamics.studies.figures.style import SETTINGS
+from eel_dynamics.studies.stability.studies import STUDIES
 
 BEGIN, END = "<!-- {}: written by `stability` -->", "<!-- end of {} -->"
-STUDIES = "maps", "condition", "drift", "plane"
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Exit status 0; 1 where a file cannot be written to its end; 2 where matplotlib is missing or input is bad.
+    """Exit status as of `run_command`."""
+    return run_command(_parser(), _study, arguments)
 
-    An error prints one line with its reason.
-    """
-    if arguments is None:
-        end_on_interrupt()
-    options = _parser().parse_args(arguments)
-    try:
-        import matplotlib
-        from matplotlib.figure import Figure
 
-        from eel_dynamics.studies.figures.style import SETTINGS
-        from eel_dynamics.studies.stability.studies import STUDIES as found
-    except ImportError:
-        complain("stability", "matplotlib is missing; install it with: python -m pip install matplotlib")
-        return 2
-    try:
-        if options.points < 2:
-            raise ValueError(f"points must be >= 2, got {options.points}")
+def _study(options) -> int:
+    matplotlib = needed("matplotlib", "stability", "pictures")
+    from matplotlib.figure import Figure
+
+    if options.points < 2:
+        raise ValueError(f"points must be >= 2, got {options.points}")
+    if options.page:
+        _check_page(options.page, options.study or STUDIES)
+    folder = Path(options.out)
+    folder.mkdir(exist_ok=True)
+    for name in options.study or STUDIES:
+        study = STUDIES[name](options.points)
+        print(f"{study.text}\n")
+        for picture, (_, fill) in study.pictures.items():
+            with matplotlib.rc_context(SETTINGS):
+                figure = Figure(figsize=(5.6, 4.2), layout="constrained")
+                fill(figure)
+                for suffix in ("png", "svg"):
+                    metadata = {"Date": None} if suffix == "svg" else {"Software": None}
+                    with replacing(folder / f"stability_{picture}.{suffix}") as draft:
+                        figure.savefig(draft, metadata=metadata)
         if options.page:
-            _check_page(options.page, options.study or STUDIES)
-        folder = Path(options.out)
-        folder.mkdir(exist_ok=True)
-        for name in options.study or STUDIES:
-            study = found[name](options.points)
-            print(f"{study.text}\n")
-            for picture, (_, fill) in study.pictures.items():
-                with matplotlib.rc_context(SETTINGS):
-                    figure = Figure(figsize=(5.6, 4.2), layout="constrained")
-                    fill(figure)
-                    for suffix in ("png", "svg"):
-                        metadata = {"Date": None} if suffix == "svg" else {"Software": None}
-                        with replacing(folder / f"stability_{picture}.{suffix}") as draft:
-                            figure.savefig(draft, metadata=metadata)
-            if options.page:
-                page = Path(options.page)
-                text = with_study(page.read_text(encoding="utf-8"), name, study)
-                with replacing(page) as draft:
-                    draft.write_text(text, encoding="utf-8")
-    except (ValueError, OSError) as error:
-        complain("stability", error)
-        return 1 if isinstance(error, NotWritten) else 2
+            page = Path(options.page)
+            text = with_study(page.read_text(encoding="utf-8"), name, study)
+            with replacing(page) as draft:
+                draft.write_text(text, encoding="utf-8")
     return 0
 
 

@@ -8,61 +8,48 @@ steering --page docs/explanation/steering.md         # the page, and its picture
 import os
 from pathlib import Path
 
-from eel_gaits.input_output.command_line import Parser, complain
-from eel_gaits.input_output.output_file import NotWritten, check_output, replacing
+from eel_gaits.input_output.command_line import Parser
+from eel_gaits.input_output.output_file import check_output, replacing
 
-from eel_dynamics.runs.interrupt import end_on_interrupt
+from eel_dynamics.runs.run_command import run_command
+from eel_dynamics.runs.storage.tables import needed
+from eel_dynamics.studies.figures.style import SETTINGS
+from eel_dynamics.studies.steering.drawing import SIZE, draw_multipliers
+from eel_dynamics.studies.steering.page import scans_of, write_page
 
 FEWEST = 2
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Exit status 0; 1 where a file cannot be written to its end; 2 where matplotlib is missing or input is bad.
+    """Exit status as of `run_command`."""
+    return run_command(_parser(), _scan, arguments)
 
-    An error prints one line with its reason.
-    """
-    if arguments is None:
-        end_on_interrupt()
-    options = _parser().parse_args(arguments)
-    try:
-        if options.points < FEWEST:
-            raise ValueError(f"--points must be {FEWEST} or more, got {options.points}")
-        if options.page:
-            check_output("--page", options.page)
-    except (ValueError, OSError) as error:
-        complain("steering", error)
-        return 2
-    try:
-        import matplotlib
-        from matplotlib.figure import Figure
-    except ImportError:
-        complain("steering", "matplotlib is missing; install it with: python -m pip install matplotlib")
-        return 2
-    from eel_dynamics.studies.figures.style import SETTINGS
-    from eel_dynamics.studies.steering.drawing import SIZE, draw_multipliers
-    from eel_dynamics.studies.steering.page import scans_of, write_page
 
-    try:
-        folder = Path(options.out)
-        folder.mkdir(exist_ok=True)
-        scans = scans_of(options.points)
-        for scan in scans:
-            for height, growth in zip(scan.heights, scan.growth, strict=True):
-                print(f"{scan.name}: metacentric height {1e3 * height:.3g} mm, growth {growth:.4g} a period")
-        with matplotlib.rc_context(SETTINGS):
-            figure = Figure(figsize=SIZE, layout="constrained")
-            draw_multipliers(figure, scans)
-            for suffix in ("png", "svg"):
-                metadata = {"Date": None} if suffix == "svg" else {"Software": None}
-                with replacing(folder / f"steering.{suffix}") as draft:
-                    figure.savefig(draft, metadata=metadata)
-        if options.page:
-            picture = os.path.relpath(folder / "steering.svg", Path(options.page).parent)
-            write_page(Path(options.page), scans, picture)
-            print(f"written to {options.page}")
-    except (ValueError, OSError) as error:
-        complain("steering", error)
-        return 1 if isinstance(error, NotWritten) else 2
+def _scan(options) -> int:
+    if options.points < FEWEST:
+        raise ValueError(f"--points must be {FEWEST} or more, got {options.points}")
+    if options.page:
+        check_output("--page", options.page)
+    matplotlib = needed("matplotlib", "steering", "pictures")
+    from matplotlib.figure import Figure
+
+    folder = Path(options.out)
+    folder.mkdir(exist_ok=True)
+    scans = scans_of(options.points)
+    for scan in scans:
+        for height, growth in zip(scan.heights, scan.growth, strict=True):
+            print(f"{scan.name}: metacentric height {1e3 * height:.3g} mm, growth {growth:.4g} a period")
+    with matplotlib.rc_context(SETTINGS):
+        figure = Figure(figsize=SIZE, layout="constrained")
+        draw_multipliers(figure, scans)
+        for suffix in ("png", "svg"):
+            metadata = {"Date": None} if suffix == "svg" else {"Software": None}
+            with replacing(folder / f"steering.{suffix}") as draft:
+                figure.savefig(draft, metadata=metadata)
+    if options.page:
+        picture = os.path.relpath(folder / "steering.svg", Path(options.page).parent)
+        write_page(Path(options.page), scans, picture)
+        print(f"written to {options.page}")
     return 0
 
 

@@ -12,13 +12,13 @@ import sys
 from pathlib import Path
 
 from eel_gaits.gaits.registry import GAITS, gait
-from eel_gaits.input_output.command_line import Parser, complain
-from eel_gaits.input_output.output_file import NotWritten, check_output, replacing
+from eel_gaits.input_output.command_line import Parser
+from eel_gaits.input_output.output_file import check_output, replacing
 
 from eel_dynamics.model.body import NAMED, Body
 from eel_dynamics.model.scene import Scene
-from eel_dynamics.runs.interrupt import end_on_interrupt
 from eel_dynamics.runs.named_values import set_numbers
+from eel_dynamics.runs.run_command import run_command
 from eel_dynamics.studies.tradeoff import measuring, models
 from eel_dynamics.studies.tradeoff.delivered import COUNT, SEED, deliver, delivered_table
 from eel_dynamics.studies.tradeoff.delivered_page import write_delivered_page
@@ -29,31 +29,25 @@ from eel_dynamics.studies.tradeoff.table import model_table, trade_table, write_
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Exit status 0; 1 where a file cannot be written to its end; 2 for bad input or a missing package.
+    """Exit status as of `run_command`."""
+    return run_command(_parser(), _trade, arguments)
 
-    An error prints one line with its reason.
-    """
-    if arguments is None:
-        end_on_interrupt()
-    options = _parser().parse_args(arguments)
-    try:
-        if options.delivered:
-            if options.count < 1:
-                raise ValueError(f"--count must be 1 or more, got {options.count}")
-            if options.seed < 0:
-                raise ValueError(f"--seed must be 0 or more, got {options.seed}")
-            return _deliver(options)
-        found = _measure_all(options)
-        for trade, poorer in found:
-            print(f"\n{trade.law.name}, {trade.duration:g} s. {reference_line(trade)}\n")
-            print(trade_table(trade, everything=options.all))
-            print()
-            print(model_table(poorer, trade))
-        for path in _write_all(options, found):
-            print(f"written to {path}")
-    except (ValueError, OSError, ImportError) as error:
-        complain("tradeoff", error)
-        return 1 if isinstance(error, NotWritten) else 2
+
+def _trade(options) -> int:
+    if options.delivered:
+        if options.count < 1:
+            raise ValueError(f"--count must be 1 or more, got {options.count}")
+        if options.seed < 0:
+            raise ValueError(f"--seed must be 0 or more, got {options.seed}")
+        return _deliver(options)
+    found = _measure_all(options)
+    for trade, poorer in found:
+        print(f"\n{trade.law.name}, {trade.duration:g} s. {reference_line(trade)}\n")
+        print(trade_table(trade, everything=options.all))
+        print()
+        print(model_table(poorer, trade))
+    for path in _write_all(options, found):
+        print(f"written to {path}")
     return 0
 
 

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What all commands have in common: errors of one line, the exit status, and Ctrl-C."""
+
+import argparse
+import signal
+from collections.abc import Callable
+
+from eel_gaits.input_output.command_line import Parser, complain
+from eel_gaits.input_output.output_file import NotWritten
+
+from eel_dynamics.runs.one_line_warnings import one_line_warnings
+from eel_dynamics.simulation.stopping import SimulationStopped
+
+
+def run_command(parser: Parser, work: Callable[[argparse.Namespace], int], arguments: list[str] | None) -> int:
+    """Do the `work` of a command with its `arguments`; None: those of this process, which Ctrl-C then ends at once.
+
+    Returns the exit status: that of the work; 1 where an output cannot be written to its end; 2 for bad input, a
+    missing package or too little memory; 3 for a swim that stops. An error prints one line with its reason.
+    """
+    if arguments is None:
+        end_on_interrupt()
+    options, name = parser.parse_args(arguments), parser.prog
+    try:
+        with one_line_warnings(name):
+            return work(options)
+    except NotWritten as error:
+        complain(name, error)
+        return 1
+    except (ValueError, OSError, ImportError) as error:
+        complain(name, error)
+        return 2
+    except MemoryError as error:
+        complain(name, f"it does not fit into memory: {error}")
+        return 2
+    except SimulationStopped as error:
+        complain(name, error)
+        return 3
+
+
+def end_on_interrupt():
+    """Let Ctrl-C end the process at once, even in compiled code, for which Python's own handler would wait."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
+__all__ = ["run_command"]
