@@ -24,7 +24,7 @@ FOLDER = Path(__file__).resolve().parent.parent / "docs" / "images"
 MOMENT = 8.3  # s: a strong bend
 SIZE, BAR = (1280, 720), 36  # pixels: window, and the empty bar at its top
 COLOURS = 256
-FILM, FILM_SIZE, FPS, QUALITY = "falling.webp", (800, 450), 10.0, 45
+FILM, FILM_SIZE, FPS, QUALITY = "falling.webp", (800, 450), 10.0, 36
 FILMED = (0.4, 8.3)  # s: start and end
 
 

@@ -5,7 +5,7 @@ render RUN.rrd -o picture.png                # --at 7.0: at another time
 render RUN.rrd -o frames/ --fps 30           # frames/frame_00000.png ..., and frames/film.mp4 where ffmpeg is
 render RUN.rrd -o swim.webp --fps 15 --size 960x540
 render RUN.rrd -o swim.webp --fps 15 --size 800x450 --bare    # the swimmer alone
-render RUN.rrd -o pair.webp --fps 15 --size 480x400 --bare --beside OTHER.rrd
+render RUN.rrd -o pair.webp --fps 15 --size 640x400 --bare --beside OTHER.rrd
 """
 
 import argparse
@@ -130,7 +130,8 @@ def parser() -> Parser:
     made.add_argument(
         "--bare",
         action="store_true",
-        help="the first view of the arrangement alone, without the viewer's frame (default arrangement: swimmer)",
+        help="the first view of the arrangement alone, without the viewer's frame (default arrangement: swimmer); "
+        "a size 1.4 times as wide as high, or more, shows the whole swimmer and the legend",
     )
     made.add_argument(
         "--beside", metavar="OTHER", help="another recording, drawn to the right at the same times and in the same size"

@@ -102,7 +102,8 @@ class WaterBox:
             return {}
         places = camera.in_picture((np.array(list(labels)) - centre) / radius)
         apart = np.abs(places[:, None] - camera.in_picture((swimmer - centre) / radius))
-        shown = (np.abs(places) <= LABELLED).all(axis=1) & ~(apart <= LABEL_SIZE).all(axis=2).any(axis=1)
+        above_legend = places[:, 1] >= -camera.CLEAR["down"]
+        shown = above_legend & (np.abs(places) <= LABELLED).all(axis=1) & ~(apart <= LABEL_SIZE).all(axis=2).any(axis=1)
         clear, kept = {}, []
         for (place, text), seen, free in zip(labels.items(), places, shown.tolist(), strict=True):
             if free and not any((np.abs(seen - other) <= APART).all() for other in kept):
