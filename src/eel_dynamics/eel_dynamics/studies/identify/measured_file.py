@@ -5,7 +5,7 @@
     speed, other columns       steady speeds: a row for each swim, [m/s]; the others are numbers of the swim, as period
 
 Tables are .csv files with a header, or .npz archives of columns. A run (.nc) and a bag give the path of a point of the
-backbone, and the law, the body and the scene too.
+backbone, the law and the body; a run the scene too.
 """
 
 from pathlib import Path
@@ -48,7 +48,7 @@ def read_measured(path: str, *, station: float = 0.0, namespace: str | None = No
     twist = dict(zip(VELOCITIES, run.twist[0].tolist(), strict=True)) if run.time[0] == 0.0 else {}
     numbers = {f"initial.{name}": value for name, value in twist.items() if value}
     measured = _named(path, MeasuredPath, run.time, _tracked(path, run, station), station, numbers)
-    return MeasuredFile([measured], run.law, run.body, run.scene)
+    return MeasuredFile([measured], run.law, run.body, run.scene if Path(path).suffix == ".nc" else None)
 
 
 def _of_table(table: Table, station: float) -> list:
