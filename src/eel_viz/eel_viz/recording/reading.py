@@ -9,6 +9,7 @@ Names of components are those after the colon in Rerun (`Scalars:scalars` is `sc
 """
 
 import os
+import warnings
 from dataclasses import dataclass
 
 import numpy as np
@@ -48,7 +49,9 @@ def read(path: str | os.PathLike[str], entity: str, *, static: bool = False) -> 
     stamps: set[int] = set()
     with complete_file(path) as readable:
         empty = readable.stat().st_size <= HEAD
-        chunks = [] if empty else list(RrdReader(str(readable)).stream().filter(content=entity))
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", message="RRD file has no footer")  # a file that is still being written
+            chunks = [] if empty else list(RrdReader(str(readable)).stream().filter(content=entity))
     for chunk in chunks:
         if chunk.is_static != static or str(chunk.entity_path).strip("/") != entity.strip("/"):
             continue
