@@ -160,6 +160,12 @@ def read_body(message) -> Body:
     return Body(length=message.length, mass=message.mass, x=x, half_width=half_width, half_height=half_height)
 
 
+def read_path(message) -> np.ndarray:
+    """From nav_msgs/Path: the positions (n, 3) [m]."""
+    points = [(each.pose.position.x, each.pose.position.y, each.pose.position.z) for each in message.poses]
+    return _finite("poses", np.array(points, dtype=float).reshape(-1, 3))
+
+
 def read_wrench(message) -> Profiles:
     """From eel_msgs/InternalWrench: torques [N m], forces [N]."""
     return _profiles(message, WRENCH_FIELDS)

@@ -1,17 +1,24 @@
 # SPDX-License-Identifier: Apache-2.0
 """Everything that is logged, read back and compared number by number with what was given."""
 
+import math
+from types import SimpleNamespace as NS
+
 import made_up
 import numpy as np
 import pytest
 from eel_viz.plots import heat_map
+from eel_viz.recording.dispatcher import Dispatcher
 from eel_viz.recording.reading import read
+from eel_viz.recording.recording_file import FileDestination
+from eel_viz.recording.recordings import Recordings
 from eel_viz.scene3d import camera
 from eel_viz.scene3d.colours import diverging, diverging_index
 from eel_viz.scene3d.orientation import attitude, world_from_section
 from eel_viz.scene3d.skin import Flanks, Skin
 from eel_viz.scene3d.track import LENGTH, PIECES, POINTS, STROBE_PERIOD, THREADS
 from eel_viz.scene3d.water import GRID, LABELS, WALLS
+from eel_viz.settings import Settings
 from eel_viz.views.blueprint import arrangement
 from made_up_recording import body
 
@@ -61,6 +68,22 @@ def assert_exact(path, entity, component, samples, expected):
     columns = read(path, entity)
     np.testing.assert_array_equal(columns.stamps_of[component], list(samples), err_msg=entity)
     np.testing.assert_array_equal(columns[component], expected, err_msg=f"{entity} {component}")
+
+
+def test_way_points_of_a_goal_are_drawn_and_a_bad_goal_is_left_out(tmp_path):
+    path, said = tmp_path / "goal.rrd", []
+    destination = FileDestination(Settings(recording=str(path)), said.append, said.append)
+    recordings = Recordings([destination], name="eel", log_warning=said.append, has_several_publishers=lambda _: False)
+    dispatcher = Dispatcher(recordings, namespace="", log_warning=said.append)
+    points = [(4.0, 1.0, -0.5), (8.0, -1.0, 0.25)]
+    for goal in (points, [(math.nan, 0.0, 0.0)]):
+        poses = [NS(pose=NS(position=NS(x=x, y=y, z=z))) for x, y, z in goal]
+        dispatcher.dispatch("goal_path", NS(poses=poses))
+    dispatcher.close()
+    spheres = read(path, entities.WAY_POINTS, static=True)
+    np.testing.assert_array_equal(spheres["half_sizes"][0], np.full((2, 3), 0.25))
+    np.testing.assert_array_equal(read(path, entities.COURSE, static=True)["strips"][0][0], points)
+    assert [text for text in said if "goal_path: poses" in text], said
 
 
 def test_scalars_are_exact_and_complete(made):

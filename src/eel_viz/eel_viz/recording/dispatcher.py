@@ -51,6 +51,7 @@ class Dispatcher:
         self._first_backbone: float | None = None  # s
         self._last_law = None
         self._others = {"body": self._body, "curvature_law": self._law, "diagnostics": self._diagnostics}
+        self._others |= {"goal_path": self._path, "goal_pose": self._pose}
 
     @property
     def topics(self) -> tuple[str, ...]:
@@ -125,6 +126,12 @@ class Dispatcher:
         if message != self._last_law:  # a law that is published again is not logged again
             self._last_law = message
             self._recordings.law(message.name)
+
+    def _path(self, message) -> None:
+        self._recordings.course(messages.read_path(message))
+
+    def _pose(self, message) -> None:
+        self._recordings.course(messages.read_pose(message.pose).position[None])
 
     def _diagnostics(self, message) -> None:
         statuses = [

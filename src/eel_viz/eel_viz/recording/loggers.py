@@ -30,6 +30,7 @@ from eel_viz.stations import same
 ENVELOPE_PERIOD = 500_000_000  # ns
 HEAT_MAP_PERIOD = 200_000_000
 SUMMARY_PERIOD = 200_000_000
+REACH = 0.25  # body lengths, within which a way point counts as reached
 LOG_NAMES = reprlib.Repr()
 LOG_NAMES.maxstring = 220  # characters of a law's name, which is not checked before
 LEVELS = ("INFO", "WARN", "ERROR", "WARN")
@@ -113,6 +114,11 @@ class Loggers:
             self._comparison.this.summary.body = body
         values = {name: getattr(body, name) for name in ("length", "mass", "x", "half_width", "half_height")}
         self._stream.log_static(entities.BODY_NUMBERS, rr.DynamicArchetype("BodyGeometry", components=values))
+
+    def course(self, points: np.ndarray) -> None:
+        """Log the way points (n, 3) [m] of a goal, valid at all times."""
+        body = self.summary.body
+        self._scene.course(points, REACH * (body.length if body else 1.0))
 
     def head_pose(self, stamp: int, pose: Pose) -> None:
         """Log path, attitude and depth of the head."""

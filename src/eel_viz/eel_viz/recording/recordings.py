@@ -10,6 +10,8 @@ import time
 from collections import deque
 from collections.abc import Callable
 
+import numpy as np
+
 from eel_viz.messages import Body, Status
 from eel_viz.recording.delivery import DeliveryMonitor
 from eel_viz.recording.destination import Destination, LogFunction
@@ -77,6 +79,7 @@ class Recordings:
         self._position: dict[str, tuple[int, int]] = {}  # topic: number of its recording, last stamp [ns]
         self._body: Body | None = None
         self._law: str | None = None
+        self._course: np.ndarray | None = None  # (n, 3) m, way points
         self._compared: dict[str, tuple] = {}  # method of the compared run's loggers: its last arguments
         self._statuses: tuple[int, list[Status]] = (0, [])
         self._resets: deque[float] = deque(maxlen=RESETS)
@@ -122,6 +125,12 @@ class Recordings:
         self._law = name
         for loggers in self._newest.loggers.values():
             loggers.law(self.latest, name)
+
+    def course(self, points: np.ndarray) -> None:
+        """Log the way points (n, 3) [m] of a goal, now and in later recordings."""
+        self._course = points
+        for loggers in self._newest.loggers.values():
+            loggers.course(points)
 
     def diagnostics(self, stamp: int, statuses: list[Status]) -> None:
         """Log statuses at `stamp` [ns], or at the newest stamp if theirs is wall time."""
@@ -199,6 +208,8 @@ class Recordings:
                 loggers.body(self._body)
             if self._law is not None:
                 loggers.law(recording.latest, self._law)
+            if self._course is not None:
+                loggers.course(self._course)
             loggers.diagnostics(recording.latest, self._statuses[1])
             for method, values in self._compared.items():
                 getattr(loggers.other, method)(*values)
@@ -249,6 +260,9 @@ class ComparedRecordings:
     def law(self, name: str) -> None:
         """As `Recordings.law`."""
         self._recordings.log_compared("law", 0, name)
+
+    def course(self, points: np.ndarray) -> None:
+        """Do nothing: the course of the first swimmer is shown."""
 
     def diagnostics(self, stamp: int, statuses: list[Status]) -> None:
         """As `Recordings.diagnostics`."""

@@ -19,7 +19,7 @@ from eel_ros.process_end import leave_at_once
 from eel_ros.qos import keep_all
 from eel_ros.run_node import run_node
 from geometry_msgs.msg import PoseStamped, TwistStamped
-from nav_msgs.msg import Odometry
+from nav_msgs.msg import Odometry, Path
 from rclpy.qos import QoSProfile
 
 from eel_msgs.msg import Backbone, BodyGeometry, Curvature, CurvatureLaw, EnergyLedger, HydrodynamicLoad, InternalWrench
@@ -112,6 +112,8 @@ class Visualiser(ParameterNode):
         """Subscribe to the topics of the swimmer in the namespace `space`."""
         self._subscribe(space, dispatcher, "body", BodyGeometry, LATCHED)  # first: the others need it
         self._subscribe(space, dispatcher, "curvature_law", CurvatureLaw, LATCHED, LIVE)
+        self._subscribe(space, dispatcher, "goal_path", Path, LIVE)
+        self._subscribe(space, dispatcher, "goal_pose", PoseStamped, LIVE)
         for topic, kind in SAMPLED.items():
             self._subscribe(space, dispatcher, topic, kind, LIVE)
         self._subscribe("", dispatcher, "diagnostics", DiagnosticArray, LIVE)

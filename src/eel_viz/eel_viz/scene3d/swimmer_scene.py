@@ -49,6 +49,16 @@ class SwimmerScene:
         # until a torque comes; not static, for static colours would hide later ones
         self._stream.add_row(0, entities.TORQUE_LAYER, rr.Mesh3D, vertex_colors=self._flanks.shades)
 
+    def course(self, points: np.ndarray, reach: float) -> None:
+        """Draw the legs between the way `points` (n, 3) [m], and a sphere of the radius `reach` [m] about each."""
+        thin = rr.Radius.ui_points(0.8)
+        legs = rr.LineStrips3D([points.astype(np.float32)], colors=[colours.LABEL], radii=[thin])
+        self._stream.log_static(entities.COURSE, legs)
+        spheres = rr.Ellipsoids3D(
+            centers=points, half_sizes=np.full((len(points), 3), reach), colors=[colours.AMBER], line_radii=[thin]
+        )
+        self._stream.log_static(entities.WAY_POINTS, spheres)
+
     def head(self, stamp: int, pose: Pose) -> None:
         """Draw the path of the head, and its axes."""
         self._track.draw(stamp, pose.position)
