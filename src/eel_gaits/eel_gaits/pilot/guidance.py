@@ -6,10 +6,10 @@ On a path this is line-of-sight guidance: the swimmer aims at the point of the l
     course = bearing of the leg - atan(e / D),   climb = slope of the leg + atan(h / D)
 
 with e the distance to the left of the leg and h that of the leg above the swimmer. Within D of the end of the leg it
-aims at that end. D above two body lengths keeps the
-loop stable: Kelasidi, Liljeback, Pettersen and Gravdahl, Integral line-of-sight guidance for path following control of
-underwater snake robots, IEEE Trans. Robotics 33 (2017), 610-628, doi:10.1109/TRO.2017.2651119. Their integral action
-against a current is here the estimate of the water's velocity, which is taken off the wanted velocity over ground.
+aims at that end. D above two body lengths keeps the loop stable: a rule of thumb of Kelasidi and others, IEEE Robotics
+and Automation Magazine, March 2016. Integral action against a current is due to Kelasidi, Liljeback, Pettersen and
+Gravdahl, Integral Line-of-Sight Guidance for Path Following Control of Underwater Snake Robots, IEEE Trans. Robotics.
+Here it is the estimate of the water's velocity, which is taken off the wanted velocity over ground.
 """
 
 import math
