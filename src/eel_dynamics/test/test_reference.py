@@ -118,10 +118,10 @@ def test_nodes_converge():
 
 
 def test_without_fluid_the_momentum_stays():
-    """A march of 1 s in vacuum: the momentum in world axes about the origin is constant to the march's tolerance."""
+    """A march of 0.3 s in vacuum: the momentum in world axes about the origin is constant to the march's tolerance."""
     reference = Reference(boyer_body(), scene(reactive=False, **SMOOTH), panels_per_span=1, nodes_per_panel=12)
     law, start = falling_law(), np.array([0.1, 0.2, -0.3, -0.5, 0.1, 0.2])
-    times = (0.0, 0.5, 1.0)
+    times = (0.0, 0.15, 0.3)
     momenta = []
     for time, position, q, twist in zip(times, *reference.march(law, times, twist=start, rtol=1e-11), strict=False):
         L, P = np.split(reference.momentum(*law.curvature(time, reference.space.x)[:2], twist), 2)
