@@ -23,7 +23,9 @@ def path_message(*points, frame=f"{NAMESPACE}/odom"):
 def test_a_short_course_is_swum_and_goals_that_do_not_fit_are_refused(start, fresh_domain):
     swim = SwimClient(domain=fresh_domain, topics=(), namespace=NAMESPACE)
     space = ("--ros-args", "-r", f"__ns:=/{NAMESPACE}", "-p")
-    pilot = start("pilot", *space, "torque_limit:=5.0", "-p", "lead:=0.02", "-p", "headings:=1.0")
+    pilot = start(
+        "pilot", *space, "torque_limit:=5.0", "-p", "lead:=0.02", "-p", "patience:=2.0", "-p", "headings:=1.0"
+    )
     goals = swim.node.create_publisher(Path, "goal_path", 10)
     swim.until(lambda: goals.get_subscription_count(), "subscriber of goal_path")
     assert "ignored: 'headings' (did you mean 'heading'?)" in pilot.output()
@@ -49,5 +51,7 @@ def test_a_short_course_is_swum_and_goals_that_do_not_fit_are_refused(start, fre
     pilot.wait_for_output("way point 2 of 2", LIMIT)
     misses = re.findall(r"way point (\d) of 2 reached: (\S+) m from it", pilot.output())
     assert [number for number, _ in misses] == ["1", "2"] and all(float(miss) < 0.25 for _, miss in misses), misses
+    pilot.wait_for_output("cannot be reached: no nearer", LIMIT)  # it has no brake, and coasts past the last point
+    assert "ERROR" not in pilot.output(), pilot.output()
     assert re.search(r"exceeds torque_limit 0.05 N m at X = \S+ m, t = \S+ s", dynamics.output()), dynamics.output()
     swim.close()

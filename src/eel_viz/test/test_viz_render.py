@@ -59,8 +59,8 @@ def test_a_bare_picture_is_the_view_alone_in_the_size_that_was_asked_for(can_dra
     from made_up_recording import record
 
     record(tmp_path / "made_up.rrd", 2.0, 50.0)
-    for size in ((800, 450), (480, 360)):
-        with drawn(tmp_path / "made_up.rrd", size=size, bare=True) as drawing:
+    for size, blueprint in (((800, 450), ""), ((480, 360), "motion")):  # there it is one of six views
+        with drawn(tmp_path / "made_up.rrd", size=size, blueprint=blueprint, bare=True) as drawing:
             picture = pixels(drawing.png(1.5))
         assert picture.shape == (size[1], size[0], 3)
         edge = picture[:5].reshape(-1, 3)

@@ -5,7 +5,7 @@
     import eel_dynamics.gym
 
     env = gymnasium.make("Eel/Heading-v0")
-    envs = gymnasium.make_vec("Eel/Heading-v0", num_envs=16)      # in threads
+    envs = gymnasium.make_vec("Eel/Heading-v0", num_envs=16)
 
 `SwimmerEnv` is the base class for tasks of your own. `ImportError` without gymnasium.
 """

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Many swimmers at once, in threads: the mechanics run without Python's lock."""
 
-import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from typing import ClassVar
@@ -29,7 +28,7 @@ class ThreadedVectorEnv(VectorEnv):
     Args:
         num_envs: how many.
         task: class of the environments.
-        threads: how many; None: one per core.
+        threads: how many. More than one gain only where a control step takes milliseconds of the mechanics.
         autoreset_mode: see above.
         max_episode_steps: control steps after which an episode is truncated; None: by the task's `duration` alone.
         settings: of each environment.
@@ -43,12 +42,12 @@ class ThreadedVectorEnv(VectorEnv):
         num_envs: int = 1,
         *,
         task: type[SwimmerEnv] | None = None,
-        threads: int | None = None,
+        threads: int = 1,
         autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
         max_episode_steps: int | None = None,
         **settings,
     ):
-        for name, count in (("num_envs", num_envs), ("threads", threads or 1)):
+        for name, count in (("num_envs", num_envs), ("threads", threads)):
             if checked_number(name, count, "") != int(count):
                 raise ValueError(f"{name} must be a whole number, got {shown(count)}")
         try:
@@ -66,7 +65,7 @@ class ThreadedVectorEnv(VectorEnv):
         self.single_observation_space, self.single_action_space = first.observation_space, first.action_space
         self.observation_space = batch_space(first.observation_space, self.num_envs)
         self.action_space = batch_space(first.action_space, self.num_envs)
-        self._threads = min(self.num_envs, int(threads or len(os.sched_getaffinity(0))))
+        self._threads = min(self.num_envs, int(threads))
         self._pool = ThreadPoolExecutor(self._threads)
         self._observations = np.zeros(self.observation_space.shape, dtype=np.float32)
         self._over = np.zeros(self.num_envs, dtype=bool)

@@ -174,8 +174,11 @@ class PilotNode(ParameterNode):
         for answer in self._answers:
             self._publisher.publish(answer)
         for line in self._pilot.news:
-            log = self.get_logger().warning if "reached:" not in line else self.get_logger().info
-            log(f"t = {now:.2f} s: {line}")
+            text = f"t = {now:.2f} s: {line}"
+            if "reached:" in line:  # rclpy takes one severity from a line of code
+                self.get_logger().info(text)
+            else:
+                self.get_logger().warning(text)
         self._pilot.news.clear()
 
     def _start(self, now: float):

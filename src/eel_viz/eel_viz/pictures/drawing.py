@@ -91,6 +91,8 @@ class Drawing:
         root["active_tab"] = tabs[name]
         self._shown = _views_in(boxes, tabs[name])
         self._view = self._shown[0] if bare else None
+        if bare:
+            blueprint["/viewport"]["ViewportBlueprint"]["maximized"] = self._view
         self._client.set_blueprint(blueprint, of="recording")
         self._last = b""
 
