@@ -6,6 +6,7 @@ import time
 from collections import defaultdict
 
 from diagnostic_msgs.msg import DiagnosticArray
+from eel_ros.testing.service_call import answer_of
 from geometry_msgs.msg import PoseStamped, TwistStamped
 from nav_msgs.msg import Odometry
 from rcl_interfaces.srv import DescribeParameters, GetParameters, SetParameters
@@ -137,16 +138,21 @@ class SwimClient:
         )
 
     def call(self, kind, name, **request):
-        return self._call_often(1, kind, name, **request)
+        answer = answer_of(self._service(kind, name), kind.Request(**request))
+        self.until(answer, f"answer from {name}")
+        return answer()
 
     def _call_often(self, count, kind, name, **request):
         """The answer to the last of `count` calls that are on their way together; a service's history holds ten."""
+        answers = [self._service(kind, name).call_async(kind.Request(**request)) for _ in range(count)]
+        self.until(lambda: all(answer.done() for answer in answers), f"answer from {name}")
+        return answers[-1].result()
+
+    def _service(self, kind, name):
         if name not in self._services:
             self._services[name] = self.node.create_client(kind, name)
         self.until(self._services[name].service_is_ready, f"service {name}")
-        answers = [self._services[name].call_async(kind.Request(**request)) for _ in range(count)]
-        self.until(lambda: all(answer.done() for answer in answers), f"answer from {name}")
-        return answers[-1].result()
+        return self._services[name]
 
     def reset(self):
         return self.call(Trigger, "dynamics/reset")

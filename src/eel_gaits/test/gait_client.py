@@ -4,6 +4,7 @@
 import time
 
 from eel_gaits.ros.messages import law_from_message
+from eel_ros.testing.service_call import answer_of
 from rcl_interfaces.srv import (
     DescribeParameters,
     GetParameters,
@@ -78,9 +79,9 @@ class GaitClient:
         service = self.node.create_client(kind, f"{self.generator}/{name}")
         try:
             self.until(service.service_is_ready, f"service {name}")
-            answer = service.call_async(kind.Request(**request))
-            self.until(answer.done, f"answer from {name}")
-            return answer.result()
+            answer = answer_of(service, kind.Request(**request))
+            self.until(answer, f"answer from {name}")
+            return answer()
         finally:
             self.node.destroy_client(service)
 

@@ -27,6 +27,7 @@ TAIL = "/world/eel/tail"
 TRACK = "/world/track"  # the whole path of the head, piece by piece
 STROBES = "/world/strobes"  # the midline, once a second
 COURSE = "/world/course/legs"  # between the way points of a goal
+TUBE = "/world/course/tube"  # about the legs, as wide as the spheres
 WAY_POINTS = "/world/course/points"  # spheres within which they count as reached
 TRAIL = "/world/trail"  # its last seconds, fading
 LOAD = "/world/load/distributed"

@@ -14,7 +14,7 @@ from eel_viz.recording.recording_file import FileDestination
 from eel_viz.recording.recordings import Recordings
 from eel_viz.scene3d import camera
 from eel_viz.scene3d.colours import diverging, diverging_index
-from eel_viz.scene3d.orientation import attitude, world_from_section
+from eel_viz.scene3d.orientation import attitude, world_from_body, world_from_section
 from eel_viz.scene3d.skin import Flanks, Skin
 from eel_viz.scene3d.track import LENGTH, PIECES, POINTS, STROBE_PERIOD, THREADS
 from eel_viz.scene3d.water import GRID, LABELS, WALLS
@@ -83,6 +83,11 @@ def test_way_points_of_a_goal_are_drawn_and_a_bad_goal_is_left_out(tmp_path):
     spheres = read(path, entities.WAY_POINTS, static=True)
     np.testing.assert_array_equal(spheres["half_sizes"][0], np.full((2, 3), 0.25))
     np.testing.assert_array_equal(read(path, entities.COURSE, static=True)["strips"][0][0], points)
+    tube = read(path, entities.TUBE, static=True)
+    along = np.subtract(points[1], points[0])
+    np.testing.assert_allclose(tube["lengths"][0], [np.linalg.norm(along)], rtol=1e-6)
+    axes = world_from_body(np.array(tube["quaternions"][0]))
+    np.testing.assert_allclose(axes[0, :, 2], along / np.linalg.norm(along), atol=1e-6)
     assert [text for text in said if "goal_path: poses" in text], said
 
 

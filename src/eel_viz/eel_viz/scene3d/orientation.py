@@ -31,6 +31,14 @@ def world_from_section(orientation: np.ndarray, vectors: np.ndarray) -> np.ndarr
     return np.einsum("...ij,...j->...i", world_from_body(orientation), np.asarray(vectors) * (-1.0, -1.0, 1.0))
 
 
+def turns_of_up_into(directions: np.ndarray) -> np.ndarray:
+    """Quaternions (n, 4) x y z w that turn the world's axis 3 into unit vectors (n, 3), by the shortest way."""
+    x, y, z = directions.T
+    turns = np.stack((-y, x, np.zeros_like(x), 1.0 + z), axis=1)
+    turns[z < -1.0 + 1e-9] = (1.0, 0.0, 0.0, 0.0)  # straight down, every way is as short
+    return turns / np.linalg.norm(turns, axis=1)[:, None]
+
+
 def attitude(orientation: np.ndarray) -> tuple[float, float, float]:
     """Heading, pitch, roll [rad] of one unit quaternion: yaw about z (0 = +x, positive to the left), pitch positive
     nose up, roll positive right side down (Z-Y-X angles, pitch with the sign turned)."""

@@ -10,6 +10,7 @@ from eel_viz.messages import Backbone, Body, Load, Pose
 from eel_viz.scene3d import colours, legend
 from eel_viz.scene3d.arrows import Arrows
 from eel_viz.scene3d.camera import FollowFrame, PathFrame
+from eel_viz.scene3d.orientation import turns_of_up_into
 from eel_viz.scene3d.skin import Flanks, Skin
 from eel_viz.scene3d.track import Strobes, Track
 from eel_viz.scene3d.water import WaterBox
@@ -50,7 +51,8 @@ class SwimmerScene:
         self._stream.add_row(0, entities.TORQUE_LAYER, rr.Mesh3D, vertex_colors=self._flanks.shades)
 
     def course(self, points: np.ndarray, reach: float) -> None:
-        """Draw the legs between the way `points` (n, 3) [m], and a sphere of the radius `reach` [m] about each."""
+        """Draw the legs between the way `points` (n, 3) [m], a sphere of the radius `reach` [m] about each point, and a
+        tube as wide about each leg."""
         thin = rr.Radius.ui_points(0.8)
         legs = rr.LineStrips3D([points.astype(np.float32)], colors=[colours.LABEL], radii=[thin])
         self._stream.log_static(entities.COURSE, legs)
@@ -58,6 +60,18 @@ class SwimmerScene:
             centers=points, half_sizes=np.full((len(points), 3), reach), colors=[colours.AMBER], line_radii=[thin]
         )
         self._stream.log_static(entities.WAY_POINTS, spheres)
+        along = np.diff(points, axis=0)
+        lengths = np.linalg.norm(along, axis=1)
+        tube = rr.Capsules3D(
+            lengths=lengths,
+            radii=np.full(len(lengths), reach),
+            translations=points[:-1],
+            quaternions=turns_of_up_into(along / np.maximum(lengths, 1e-9)[:, None]),
+            colors=[colours.AMBER],
+            line_radii=[thin],
+            fill_mode="majorwireframe",
+        )
+        self._stream.log_static(entities.TUBE, tube)
 
     def head(self, stamp: int, pose: Pose) -> None:
         """Draw the path of the head, and its axes."""

@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A call of a service that is answered on a busy machine too.
+
+A node drops its reply to a client that it has not matched within 0.1 s, with "client will not receive response"
+(ros2/rmw_fastrtps issue 842). Such a client waits for ever, so the request is sent again.
+"""
+
+import time
+from collections.abc import Callable
+
+REPEAT = 20.0  # s without an answer
+
+
+def answer_of(service, request) -> Callable[[], object]:
+    """Send the `request` with the client `service`; the result gives the answer, or None as long as there is none."""
+    sent, last = [service.call_async(request)], time.monotonic()
+
+    def answer():
+        nonlocal last
+        for each in sent:
+            if each.done():
+                return each.result()
+        if time.monotonic() - last > REPEAT:
+            sent.append(service.call_async(request))
+            last = time.monotonic()
+        return None
+
+    return answer
