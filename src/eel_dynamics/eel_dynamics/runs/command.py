@@ -19,7 +19,7 @@ import numpy as np
 from eel_gaits.gaits.registry import GAITS, gait
 from eel_gaits.gaits.sequence_file import sequence_from_file
 from eel_gaits.input_output.command_line import Parser, complain
-from eel_gaits.input_output.output_file import check_output, replacing
+from eel_gaits.input_output.output_file import replacing
 from eel_gaits.input_output.quantity import described_fields
 from eel_gaits.input_output.wording import one_line, shown
 from eel_gaits.laws.law import Law
@@ -32,7 +32,7 @@ from eel_dynamics.model.body import NAMED, Body
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.named_values import scene_of, set_numbers
 from eel_dynamics.runs.run import Run, simulate
-from eel_dynamics.runs.run_command import run_command
+from eel_dynamics.runs.run_command import checked_out, run_command
 from eel_dynamics.runs.storage.run_contents import contents_of_run
 from eel_dynamics.runs.storage.tables import columns_of
 from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
@@ -211,15 +211,9 @@ def _check_actuators(options, scene: Scene):
 def _checked_out(out: str | None) -> Path | None:
     if out is None:
         return None
-    path = Path(out)
-    if path.suffix not in SUFFIXES:
-        raise ValueError(f"--out must end in {', '.join(SUFFIXES[:-1])} or {SUFFIXES[-1]}, got {shown(out)}")
-    if path.suffix == ".rrd" and find_spec("eel_viz") is None:
+    if Path(out).suffix == ".rrd" and find_spec("eel_viz") is None:
         raise ValueError("--out .rrd needs the package eel_viz, with rerun-sdk, which is not installed")
-    check_output("--out", path)
-    if path.exists():
-        complain("simulate", f"{path} exists and will be overwritten")
-    return path
+    return checked_out("simulate", out, SUFFIXES)
 
 
 def _write(run: Run, path: Path):

@@ -4,9 +4,11 @@
 import argparse
 import signal
 from collections.abc import Callable
+from pathlib import Path
 
 from eel_gaits.input_output.command_line import Parser, complain
-from eel_gaits.input_output.output_file import NotWritten
+from eel_gaits.input_output.output_file import NotWritten, check_output
+from eel_gaits.input_output.wording import shown
 
 from eel_dynamics.runs.one_line_warnings import one_line_warnings
 from eel_dynamics.simulation.stopping import SimulationStopped
@@ -38,9 +40,20 @@ def run_command(parser: Parser, work: Callable[[argparse.Namespace], int], argum
         return 3
 
 
+def checked_out(command: str, out: str, suffixes: tuple[str, ...]) -> Path:
+    """The path of an output of the `command`, which says so where the file exists. `ValueError` for another suffix."""
+    path = Path(out)
+    if path.suffix not in suffixes:
+        raise ValueError(f"--out must end in {', '.join(suffixes[:-1])} or {suffixes[-1]}, got {shown(out)}")
+    check_output("--out", path)
+    if path.exists():
+        complain(command, f"{path} exists and will be overwritten")
+    return path
+
+
 def end_on_interrupt():
     """Let Ctrl-C end the process at once, even in compiled code, for which Python's own handler would wait."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
-__all__ = ["run_command"]
+__all__ = ["checked_out", "run_command"]

@@ -13,15 +13,15 @@ from dataclasses import replace
 from pathlib import Path
 
 from eel_gaits.gaits.registry import GAITS
-from eel_gaits.input_output.command_line import Parser, complain
-from eel_gaits.input_output.output_file import check_output, replacing
+from eel_gaits.input_output.command_line import Parser
+from eel_gaits.input_output.output_file import replacing
 from eel_gaits.input_output.wording import shown
 
 from eel_dynamics.accuracy.accuracy import PRESETS
 from eel_dynamics.model.body import NAMED, Body
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.named_values import scene_of, set_numbers
-from eel_dynamics.runs.run_command import run_command
+from eel_dynamics.runs.run_command import checked_out, run_command
 from eel_dynamics.studies.identify.drawing import FORMATS, draw_identified
 from eel_dynamics.studies.identify.identify import Identified, identify
 from eel_dynamics.studies.identify.measured_file import MeasuredFile, read_measured
@@ -36,7 +36,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 def _identify(options) -> int:
     start = time.perf_counter()
-    outs = [_checked_out(out) for out in options.out]
+    outs = [checked_out("identify", out, SUFFIXES) for out in options.out]
     first, numbers = set_numbers(options.first, "--first"), set_numbers(options.set)
     files = [read_measured(path, station=options.station, namespace=options.namespace) for path in options.file]
     measured = [each for file in files for each in file.measured]
@@ -92,16 +92,6 @@ def _scene(options, file: MeasuredFile) -> Scene:
     if options.scene or file.scene is None:
         return scene_of(options.scene if given else ["friction=blended", *options.scene])
     return replace(file.scene, friction="blended") if file.scene.friction == "printed" else file.scene
-
-
-def _checked_out(out: str) -> Path:
-    path = Path(out)
-    if path.suffix not in SUFFIXES:
-        raise ValueError(f"--out must end in {', '.join(SUFFIXES[:-1])} or {SUFFIXES[-1]}, got {shown(out)}")
-    check_output("--out", path)
-    if path.exists():
-        complain("identify", f"{path} exists and will be overwritten")
-    return path
 
 
 def _write(found: Identified, path: Path) -> None:

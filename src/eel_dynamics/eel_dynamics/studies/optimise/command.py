@@ -12,15 +12,15 @@ from pathlib import Path
 
 import numpy as np
 from eel_gaits.gaits.registry import GAITS
-from eel_gaits.input_output.command_line import Parser, complain
-from eel_gaits.input_output.output_file import check_output, replacing
+from eel_gaits.input_output.command_line import Parser
+from eel_gaits.input_output.output_file import replacing
 from eel_gaits.input_output.wording import shown
 
 from eel_dynamics.accuracy.accuracy import PRESETS
 from eel_dynamics.analysis.measures import MEASURES
 from eel_dynamics.model.body import NAMED, Body
 from eel_dynamics.runs.named_values import named_texts, scene_of, set_numbers, varied_values
-from eel_dynamics.runs.run_command import run_command
+from eel_dynamics.runs.run_command import checked_out, run_command
 from eel_dynamics.studies.optimise.front import FORMATS, Front
 from eel_dynamics.studies.optimise.optimise import optimise
 from eel_dynamics.studies.optimise.searches import METHODS
@@ -37,7 +37,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 def _optimise(options) -> int:
     start = time.perf_counter()
-    outs = [_checked_out(out) for out in options.out]
+    outs = [checked_out("optimise", out, SUFFIXES) for out in options.out]
     bounds = {name: _bounds(name, text) for name, text in named_texts("--bound", options.bound)}
     scene = options.scene if any(text.startswith("friction=") for text in options.scene) else [SMOOTH, *options.scene]
     front = optimise(
@@ -84,16 +84,6 @@ def _speeds(text: str) -> list[float]:
 def _check_count(count: int):
     if count > MOST_SPEEDS:
         raise ValueError(f"at most {MOST_SPEEDS}")
-
-
-def _checked_out(out: str) -> Path:
-    path = Path(out)
-    if path.suffix not in SUFFIXES:
-        raise ValueError(f"--out must end in {', '.join(SUFFIXES[:-1])} or {SUFFIXES[-1]}, got {shown(out)}")
-    check_output("--out", path)
-    if path.exists():
-        complain("optimise", f"{path} exists and will be overwritten")
-    return path
 
 
 def _write(front: Front, path: Path):
