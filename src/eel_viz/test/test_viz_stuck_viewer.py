@@ -17,7 +17,7 @@ from eel_viz.viewer import free_port, native_viewer
 from eel_viz import entities
 
 CHILD = str(Path(__file__).with_name("stuck_viewer.py"))
-ALLOWED = 20.0  # MB of memory, while more than that goes into the file, and to who reads
+ALLOWED = 20.0  # MB of memory, while more than that goes into the file
 
 
 @pytest.fixture
@@ -51,8 +51,12 @@ def show(tmp_path):
 
 
 def growth(process, full: float) -> tuple[float, list[str]]:
-    """[MB] of memory, at most, from when the file has `full` MB, and all buffers are as full as they get; what was
-    said."""
+    """[MB] by which the memory grew from when the file has `full` MB, and all buffers are as full as they get; what was
+    said.
+
+    What waits for the disk comes and goes with the load of the machine: so the least memory in the last third of the
+    data is compared with the least in the first third.
+    """
     process.stdin.write("go\n")
     process.stdin.flush()
     rows = []
@@ -61,16 +65,18 @@ def growth(process, full: float) -> tuple[float, list[str]]:
             break
         rows.append(json.loads(line))
     assert process.wait(90) == 0
-    late = [row for row in rows if row[1] >= full]
-    assert late[-1][1] - late[0][1] > 1.2 * ALLOWED, rows
-    return max(row[2] for row in late) - late[0][2], rows[-1][3]
+    third = (rows[-1][1] - full) / 3.0
+    assert 2.0 * third > 1.2 * ALLOWED, rows  # what is kept in memory would be seen
+    first = [row[2] for row in rows if full <= row[1] <= full + third]
+    last = [row[2] for row in rows if row[1] >= full + 2.0 * third]
+    return min(last) - min(first), rows[-1][3]
 
 
 @pytest.mark.fault(
     "subscribers", "a viewer's port that accepts and never answers", "said; nobody waits, memory stays bounded"
 )
 def test_a_server_that_never_reads(mute, show, tmp_path):
-    grown, said = growth(show("connect", mute, 45.0), 10.0)
+    grown, said = growth(show("connect", mute, 55.0), 10.0)
     assert grown < ALLOWED
     assert any("does not answer" in line or "has not read" in line for line in said), said
     stamps = read(tmp_path / "run.rrd", entities.POSITION).stamps
