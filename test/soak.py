@@ -75,8 +75,11 @@ class Soak:
             )
 
 
-def soak(start, duration: float, *, limit: float, memory_limit: str = "32MiB") -> Soak:
-    """Swim for `duration` [s of simulation], within `limit` [s]; AssertionError where a node does not end well."""
+def soak(start, duration: float, *, limit: float, look: float = LOOK, memory_limit: str = "32MiB") -> Soak:
+    """Swim for `duration` [s of simulation], within `limit` [s]; AssertionError where a node does not end well.
+
+    look [s]: wall time between two looks at the memory.
+    """
     samples = round(duration * RATE) + 1
     listener = start(sys.executable, "-c", LISTENER, str(samples))
     listener.wait_for_output("listening")
@@ -85,7 +88,7 @@ def soak(start, duration: float, *, limit: float, memory_limit: str = "32MiB") -
         "-p", "stop_with_publisher:=true",
     )  # fmt: skip
     visualiser.wait_for_output("look at it")
-    gait = start("gait_generator")
+    gait, clock = start("gait_generator"), Clock()
     dynamics = start(
         "dynamics", "--ros-args", "-p", f"duration:={duration}", "-p", f"rate:={RATE}", "-p", "real_time_factor:=0",
         "-p", "wait_for_subscribers:=2", "-p", "subscriber_timeout:=60",
@@ -93,11 +96,10 @@ def soak(start, duration: float, *, limit: float, memory_limit: str = "32MiB") -
     dynamics.wait_for_output("adopted")
     began = time.monotonic()
     processes = dict(zip(NODES, (dynamics, gait, visualiser), strict=True))
-    clock = Clock()
     times, memory = [], {node: [] for node in NODES}
     while dynamics.status is None:
         assert time.monotonic() - began < limit, f"at {clock.time:g} s after {limit:g} s"
-        clock.receive(LOOK)
+        clock.receive(look)
         try:
             looked = {name: anonymous_memory(node.process.pid) for name, node in processes.items()}
         except (OSError, IndexError):  # one has just ended

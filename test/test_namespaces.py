@@ -100,10 +100,17 @@ def test_two_dynamics_nodes_with_the_same_topics(start, fresh_domain):
     swim = SwimClient(domain=fresh_domain, topics=("head_pose",), clock=True)
     swim.laws.publish(law_to_message(falling()))
 
+    def statuses(name):
+        return [each for array in swim.received["/diagnostics"] for each in array.status if each.name == name]
+
     def status(name):
         """(level, message, values) of the newest status of the node `name`; level 0 while there is none."""
-        newest = [each for array in swim.received["/diagnostics"] for each in array.status if each.name == name][-1:]
+        newest = statuses(name)[-1:]
         return next(((s.level[0], s.message, {v.key: v.value for v in s.values}) for s in newest), (0, "", {}))
+
+    def published(name):
+        """The number of samples that the node had published by each of its statuses."""
+        return [{v.key: v.value for v in each.values}["samples_published"] for each in statuses(name)]
 
     first = start("dynamics", "--ros-args", "-r", "__node:=first")
     swim.until_time(0.1)
@@ -115,12 +122,14 @@ def test_two_dynamics_nodes_with_the_same_topics(start, fresh_domain):
         values = status(other)[2]
         told = f"{other} (host {values['host']}, process {values['process']}, started {values['started']})"
         assert told in texts[name] and node.output().count(told) == 1, node.output()
-    stands = status("/second")[2]["samples_published"]
+    swim.until(lambda: len(set(published("/second")[-2:])) == 1, "the second node to publish no more")
+    stands, looks = published("/second")[-1], len(published("/second"))
     before = len(swim.received["head_pose"])
     swim.until(lambda: len(swim.received["head_pose"]) > before + 50, "samples of the first node")
     stamps = [nanoseconds(message.header.stamp) for message in swim.received["head_pose"][before:]]
     assert stamps == sorted(set(stamps)), "two swims on one topic"
     clocks = {nanoseconds(message.clock) for message in swim.received["/clock"][-20:]}
     assert min(clocks) > 0, "the node that waits ticks /clock"
-    assert status("/second")[2]["samples_published"] == stands
+    swim.until(lambda: len(published("/second")) > looks, "another status of the second node")
+    assert published("/second")[-1] == stands
     swim.close()

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # All tests but the long ones. The files that measure (docs/appendix/validation.md) run in one process, which keeps
-# account of what they found. Beside it, all other files are dealt out to four workers, each in a ROS domain of its own:
+# account of what they found. Beside it, all other files are dealt out to four workers, the longest folders first, each in a
+# ROS domain of its own:
 # most of them start processes, and wait for them. Arguments go to one pytest.
 set -uo pipefail
 if [ $# -gt 0 ]; then exec python -m pytest "$@"; fi
@@ -19,7 +20,7 @@ stop() {
 trap stop INT TERM
 # a job in the background would ignore SIGINT, and so would pytest
 env --default-signal=INT "${pytest[@]}" --numprocesses=4 --dist=loadfile "${measuring[@]/#/--ignore=}" \
-    src/eel_dynamics/test src/eel_ros/test src/eel_gaits/test src/eel_core/test src/eel_viz/test test > out/test-others.log 2>&1 &
+    test src/eel_viz/test src/eel_dynamics/test src/eel_gaits/test src/eel_ros/test src/eel_core/test > out/test-others.log 2>&1 &
 beside[others]=$!
 tools/core_tests.sh tests > out/test-core.log 2>&1 &
 beside[core]=$!
