@@ -108,7 +108,8 @@ def describe(summary: RunSummary) -> str:
         "final pose": f"x {x:+.4f}  y {y:+.4f}  z {z:+.4f} m,  quaternion x y z w {turn}",
         "path of the head": f"{summary.path_length:.4f} m in {summary.duration:g} s",
         "greatest torque": f"{summary.torque:.4f} N m at X = {summary.torque_x:.3f} m, t = {summary.torque_time:.2f} s",
-        "energy": f"actuators {summary.work:+.4f} J, wake {summary.wake:+.4f} J, drag {summary.drag:+.4f} J, "
+        "energy": f"actuators {summary.work:+.4f} J, wake {summary.wake:+.4f} J, "
+        f"drag and nose {summary.drag:+.4f} J, "
         f"kinetic at the end {summary.kinetic:.4f} J",
         "energy residual": f"{summary.residual:.2e} J, {summary.residual / abs(summary.work):.1e} of the actuators' "
         f"work (limit {RESIDUAL_LIMIT:g})",
