@@ -13,7 +13,7 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 from eel_dynamics.model.axes import turn_vector
-from eel_dynamics.studies.figures.style import BLUE, ORANGE, SETTINGS
+from eel_dynamics.studies.pictures.style import BLUE, ORANGE, SETTINGS
 from eel_gaits.gaits.registry import GAITS
 from eel_gaits.input_output.quantity import described_fields
 from PIL import Image

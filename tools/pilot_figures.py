@@ -11,13 +11,12 @@ from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
 
-import matplotlib
 import numpy as np
-from eel_dynamics.studies.figures.style import BLUE, ORANGE, SETTINGS
+from eel_dynamics.studies.pictures.picture_file import write_picture
+from eel_dynamics.studies.pictures.style import BLUE, ORANGE
 from eel_dynamics.studies.pilot.courses import figures_of, random_path, swim_path
-from eel_gaits.input_output.output_file import replacing
 from eel_gaits.pilot.settings import PilotSettings
-from matplotlib.figure import Figure
+from matplotlib.patches import Circle
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE, PICTURE = ROOT / "docs/howto/pilot.md", ROOT / "docs/images/pilot.png"
@@ -78,21 +77,21 @@ def draw(path: Path):
     goal = random_path(np.random.default_rng(SHOWN), settings)
     _, voyage = swim_path(goal)
     points, reach = np.vstack((np.zeros(3), goal.points)), settings.reach * settings.length
-    with matplotlib.rc_context(SETTINGS):
-        figure = Figure(figsize=(7.0, 5.0), layout="constrained")
+
+    def fill(figure):
         views = figure.subplots(2, 1, sharex=True, height_ratios=(2.0, 1.0))
         for axes, column, name in zip(views, (1, 2), ("y, to the left [m]", "z, up [m]"), strict=True):
             axes.plot(points[:, 0], points[:, column], "--", color="0.6", linewidth=0.8, label="legs")
             axes.plot(voyage.head[:, 0], voyage.head[:, column], color=BLUE, linewidth=0.9, label="head")
             for x, value in goal.points[:, (0, column)]:
-                axes.add_patch(matplotlib.patches.Circle((x, value), reach, color=ORANGE, alpha=0.4, linewidth=0.0))
+                axes.add_patch(Circle((x, value), reach, color=ORANGE, alpha=0.4, linewidth=0.0))
             axes.set_aspect("equal")
             axes.set_ylabel(name)
         views[0].plot([], [], "o", color=ORANGE, alpha=0.4, label="within a quarter of the length")
         views[0].legend(loc="best")
         views[1].set_xlabel("x, ahead [m]")
-        with replacing(path) as draft:
-            figure.savefig(draft, format="png", dpi=110, metadata={"Software": None})
+
+    write_picture(fill, (7.0, 5.0), path, settings={"savefig.dpi": 110})
 
 
 def main() -> int:

@@ -19,7 +19,7 @@ from eel_dynamics.studies.figures import (
     orders,
     paper_drawings,
 )
-from eel_dynamics.studies.figures.style import letter_panels
+from eel_dynamics.studies.pictures.style import letter_panels
 from matplotlib.figure import Figure
 
 from eel_dynamics import Body, simulate

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from eel_gaits.laws.steered_law import NUMBERS, SteeredLaw
 from eel_gaits.pilot import goals
+from eel_gaits.pilot.attitude import attitude
 from eel_gaits.pilot.estimate import Plane
 from eel_gaits.pilot.guidance import PathGuidance, against_water
 from eel_gaits.pilot.head_motion import HeadMotion
@@ -34,6 +35,12 @@ def product(one, other):
 
 def about(axis, angle):
     return np.array([*(math.sin(0.5 * angle) * np.eye(3)[axis]), math.cos(0.5 * angle)])
+
+
+@given(ANGLES, st.floats(-1.5, 1.5), ANGLES, st.floats(0.1, 10.0))
+def test_heading_climb_and_roll_are_those_of_the_turns_whatever_the_norm(heading, climb, roll, norm):
+    turns = product(about(2, heading), product(about(1, -climb), about(0, roll)))
+    assert attitude(norm * turns) == pytest.approx((heading, climb, roll), abs=1e-12)
 
 
 @settings(max_examples=10, deadline=None)

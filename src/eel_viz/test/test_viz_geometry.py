@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from eel_viz.scene3d import camera
 from eel_viz.scene3d.centre_line import Resampling
-from eel_viz.scene3d.orientation import attitude, world_from_body, world_from_section
+from eel_viz.scene3d.orientation import world_from_body, world_from_section
 from eel_viz.scene3d.skin import Flanks, Skin
 
 
@@ -47,18 +47,6 @@ def test_section_axes_are_half_a_turn_from_the_body_axes():
         np.testing.assert_array_equal(world_from_section(at_rest, np.array(section)), world)
     left = about_z(np.array(np.pi / 2))  # nose to +y, so the tail is at -y
     np.testing.assert_allclose(world_from_section(left, np.array([1.0, 0, 0])), (0, -1, 0), atol=1e-15)
-
-
-@pytest.mark.parametrize(
-    ("quaternion", "expected"),
-    [
-        (about_z(np.array(0.3)), (0.3, 0.0, 0.0)),
-        ((0.0, np.sin(-0.1), 0.0, np.cos(-0.1)), (0.0, 0.2, 0.0)),  # about -y: nose up
-        ((np.sin(0.2), 0.0, 0.0, np.cos(0.2)), (0.0, 0.0, 0.4)),
-    ],
-)
-def test_attitude_signs(quaternion, expected):
-    np.testing.assert_allclose(attitude(np.array(quaternion)), expected, atol=1e-14)
 
 
 def test_the_line_between_stations_converges_at_fourth_order():

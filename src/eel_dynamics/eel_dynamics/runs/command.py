@@ -9,7 +9,6 @@ simulate straight --set wavelength=0.8 --scene friction=laminar --accuracy 1e-6 
 """
 
 import argparse
-import csv
 import sys
 import time
 from importlib.util import find_spec
@@ -30,11 +29,11 @@ from eel_dynamics.accuracy.accuracy import PRESETS
 from eel_dynamics.analysis.actuators import MOST_JOINTS
 from eel_dynamics.model.body import NAMED, Body
 from eel_dynamics.model.scene import Scene
-from eel_dynamics.runs.named_values import scene_of, set_numbers
+from eel_dynamics.runs.command_options import add_repeated, body_of, scene_of, set_numbers
 from eel_dynamics.runs.run import Run, simulate
 from eel_dynamics.runs.run_command import checked_out, run_command
 from eel_dynamics.runs.storage.run_contents import contents_of_run
-from eel_dynamics.runs.storage.tables import columns_of
+from eel_dynamics.runs.storage.tables import columns_of, write_columns
 from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.simulation.stopping import SimulationStopped
 
@@ -50,7 +49,7 @@ def main(arguments: list[str] | None = None) -> int:
 def _swim(options) -> int:
     """Simulate, print the summary and write the run; returns the exit status: 0, or 3 for a run that stopped."""
     out = _checked_out(options.out)
-    body = Body.named(options.body) if options.body in NAMED else Body.from_file(options.body)
+    body = body_of(options.body)
     law, scene = _law(options, body), scene_of(options.scene)
     duration = options.duration
     if duration is None:
@@ -136,9 +135,7 @@ def _parser() -> Parser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("gait", nargs="?", help=f"one of {', '.join(sorted(GAITS))} (falling)")
-    parser.add_argument(
-        "--set", action="append", default=[], metavar="NAME=VALUE", help="a number of the gait; may be repeated"
-    )
+    add_repeated(parser, "--set", "NAME=VALUE", "a number of the gait")
     parser.add_argument(
         "--sequence",
         metavar="FILE",
@@ -164,13 +161,7 @@ def _parser() -> Parser:
         default="boyer2010",
         help=f"{', '.join(NAMED)}, or a .csv or .npz file with columns x, half_width, half_height [m]",
     )
-    parser.add_argument(
-        "--scene",
-        action="append",
-        default=[],
-        metavar="NAME=VALUE",
-        help="physics, a field of the list below; may be repeated",
-    )
+    add_repeated(parser, "--scene", "NAME=VALUE", "physics, a field of the list below")
     parser.add_argument(
         "--sample-period", type=float, help="s (0.05, or a 20th of the gait's period where that is less)"
     )
@@ -231,10 +222,7 @@ def _write(run: Run, path: Path):
             np.savez_compressed(draft, **contents_of_run(run).arrays, **errors)
         return
     columns = columns_of(run) | {name: np.full(len(run.time), value) for name, value in errors.items()}
-    with replacing(path) as draft, draft.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(columns)
-        writer.writerows(np.column_stack([*columns.values()]).tolist())
+    write_columns(columns, path)
 
 
 if __name__ == "__main__":

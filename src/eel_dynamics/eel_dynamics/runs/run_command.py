@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What all commands have in common: errors of one line, the exit status, and Ctrl-C."""
+"""What all commands have in common: errors of one line, the exit status, Ctrl-C, and the check of outputs."""
 
 import argparse
 import signal

@@ -9,6 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from eel_gaits.pilot import attitude
+
 
 class HeadMotion(NamedTuple):
     """Pose and twist of the head, in REP-103 axes."""
@@ -21,20 +23,17 @@ class HeadMotion(NamedTuple):
     @property
     def heading(self) -> float:
         """Angle [rad] about the vertical, positive to the left, from -pi to pi."""
-        x, y, z, w = self.orientation.tolist()
-        return math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
+        return attitude.heading(self.orientation.tolist())
 
     @property
     def climb(self) -> float:
         """Angle [rad] of the head above the horizontal."""
-        x, y, z, w = self.orientation.tolist()
-        return math.asin(max(-1.0, min(1.0, 2.0 * (x * z - w * y))))
+        return attitude.climb(self.orientation.tolist())
 
     @property
     def roll(self) -> float:
         """Angle [rad] about the forward axis, positive where the right side is down, from -pi to pi."""
-        x, y, z, w = self.orientation.tolist()
-        return math.atan2(2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y))
+        return attitude.roll(self.orientation.tolist())
 
 
 def wrapped(angle: float) -> float:

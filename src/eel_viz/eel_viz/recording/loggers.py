@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import rerun as rr
+from eel_gaits.pilot.attitude import attitude
 
 from eel_viz import entities
 from eel_viz.batched_stream import BatchedStream
@@ -22,7 +23,6 @@ from eel_viz.plots.profile_plot import ProfilePlot
 from eel_viz.plots.series import Attitude, log_styles
 from eel_viz.plots.state_text import Summary
 from eel_viz.scene3d import colours
-from eel_viz.scene3d.orientation import attitude
 from eel_viz.scene3d.swimmer_scene import SwimmerScene
 from eel_viz.settings import Settings
 from eel_viz.stations import same
@@ -129,7 +129,7 @@ class Loggers:
             scalars = self._stream.add_scalars
             scalars(stamp, entities.POSITION, pose.position)
             scalars(stamp, entities.ORIENTATION, pose.orientation)
-            scalars(stamp, entities.ATTITUDE, self._attitude.continued(attitude(pose.orientation)))
+            scalars(stamp, entities.ATTITUDE, self._attitude.continued(attitude(pose.orientation.tolist())))
             scalars(stamp, entities.DEPTH, -pose.position[2:])
         if self._due("track", stamp, self._drawing_period):
             self._scene.head(stamp, pose)

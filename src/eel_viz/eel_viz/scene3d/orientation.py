@@ -4,8 +4,6 @@
 The section axes of the messages differ from them by half a turn about z: 1 = -x, 2 = -y, 3 = +z.
 """
 
-import math
-
 import numpy as np
 
 
@@ -37,13 +35,3 @@ def turns_of_up_into(directions: np.ndarray) -> np.ndarray:
     turns = np.stack((-y, x, np.zeros_like(x), 1.0 + z), axis=1)
     turns[z < -1.0 + 1e-9] = (1.0, 0.0, 0.0, 0.0)  # straight down, every way is as short
     return turns / np.linalg.norm(turns, axis=1)[:, None]
-
-
-def attitude(orientation: np.ndarray) -> tuple[float, float, float]:
-    """Heading, pitch, roll [rad] of one unit quaternion: yaw about z (0 = +x, positive to the left), pitch positive
-    nose up, roll positive right side down (Z-Y-X angles, pitch with the sign turned)."""
-    x, y, z, w = (float(value) for value in orientation)
-    heading = math.atan2(2 * (x * y + z * w), 1 - 2 * (y * y + z * z))
-    pitch = math.asin(max(-1.0, min(1.0, 2 * (x * z - y * w))))
-    roll = math.atan2(2 * (y * z + x * w), 1 - 2 * (x * x + y * y))
-    return heading, pitch, roll

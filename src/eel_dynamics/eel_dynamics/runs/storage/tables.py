@@ -1,9 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Contents of runs and batches as labelled arrays (xarray) and tables (pandas), which are needed for these alone."""
+"""Contents of runs and batches as labelled arrays (xarray) and tables (pandas, .csv).
 
+xarray and pandas are needed for theirs alone.
+"""
+
+import csv
 from importlib import import_module
+from pathlib import Path
 
 import numpy as np
+from eel_gaits.input_output.output_file import replacing
 
 from eel_dynamics.runs.storage.netcdf import attributes_of
 from eel_dynamics.runs.storage.variables import LABELS, LEDGER, Contents
@@ -42,6 +48,14 @@ def columns_of(run) -> dict[str, np.ndarray]:
     }
     columns |= {name: run.twist[:, k] for k, name in enumerate(LABELS["component"])}
     return columns | ({} if run.energy is None else {name: run.energy[name] for name in LEDGER})
+
+
+def write_columns(columns: dict, path: Path):
+    """Write `columns`, (n,) each by name, as a table (.csv). `NotWritten` where it cannot be completed."""
+    with replacing(path) as draft, draft.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(columns)
+        writer.writerows(zip(*(np.asarray(values).tolist() for values in columns.values()), strict=True))
 
 
 def frame_of(run):

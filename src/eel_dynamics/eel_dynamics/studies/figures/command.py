@@ -17,7 +17,8 @@ from eel_dynamics.runs.run_command import run_command
 from eel_dynamics.runs.storage.tables import needed
 from eel_dynamics.studies.figures import corrections, kern_comparison, orders
 from eel_dynamics.studies.figures.notes import page
-from eel_dynamics.studies.figures.style import SETTINGS, letter_panels
+from eel_dynamics.studies.pictures.picture_file import write_picture
+from eel_dynamics.studies.pictures.style import letter_panels
 from eel_gaits import straight
 
 SIZES = {  # inches; name of the file
@@ -31,8 +32,7 @@ SIZES = {  # inches; name of the file
     "power_ledger": (6.8, 5.8),
     "convergence": (7.6, 3.8),
 }
-FORMATS = ("svg", "png")
-DATELESS = {"svg": {"Date": None}, "png": {"Software": None}, "pdf": {"CreationDate": None}}  # the same file each time
+FORMATS, KNOWN_FORMATS = ("svg", "png"), ("svg", "png", "pdf")
 COLUMN, PAGE = 3.4, 7.0  # inches: widths of a journal's column, and of its page
 PAGE_WIDE = ("figure5_body", "figure6_configurations", "torque_surface", "convergence")  # whatever the columns
 JOURNAL = {"font.size": 8.0, "lines.linewidth": 1.0, "pdf.fonttype": 42}  # letters as letters, not as curves
@@ -68,19 +68,15 @@ def draw(drawings: dict, folder: Path, formats=FORMATS, columns: int | None = No
 
     columns: of a journal's page, 1 or 2, that a figure is wide; None: a size for screens.
     """
-    import matplotlib
-    from matplotlib.figure import Figure
+    for name, fill in drawings.items():
 
-    with matplotlib.rc_context(SETTINGS | (JOURNAL if columns else {})):
-        for name, fill in drawings.items():
-            figure = Figure(figsize=size_of(name, columns), layout="constrained")
+        def fill_and_letter(figure, fill=fill):
             fill(figure)
             letter_panels(figure)
-            for suffix in formats:
-                path = folder / f"{name}.{suffix}"
-                with replacing(path) as draft:
-                    figure.savefig(draft, format=suffix, metadata=DATELESS[suffix])
-                yield path
+
+        paths = [folder / f"{name}.{suffix}" for suffix in formats]
+        write_picture(fill_and_letter, size_of(name, columns), *paths, settings=JOURNAL if columns else None)
+        yield from paths
 
 
 def size_of(name: str, columns: int | None) -> tuple[float, float]:
@@ -118,7 +114,7 @@ def _parser() -> Parser:
         "them; half a minute.",
     )
     parser.add_argument("--out", default="docs/figures", metavar="FOLDER", help="where to (docs/figures)")
-    parser.add_argument("--format", nargs="+", choices=DATELESS, default=FORMATS, help="file formats (svg png)")
+    parser.add_argument("--format", nargs="+", choices=KNOWN_FORMATS, default=FORMATS, help="file formats (svg png)")
     parser.add_argument(
         "--columns",
         type=int,

@@ -6,7 +6,7 @@ from itertools import product
 import numpy as np
 
 from eel_dynamics.studies.figures.orders import ConvergenceErrors
-from eel_dynamics.studies.figures.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, legend_above, mark_pitch, plain
+from eel_dynamics.studies.pictures.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, legend_above, mark_pitch, plain
 
 PERIOD = 1.0  # s, of the falling gait
 

@@ -4,7 +4,7 @@
 import numpy as np
 
 from eel_dynamics.model.body import Body
-from eel_dynamics.studies.figures.style import (
+from eel_dynamics.studies.pictures.style import (
     AS_PRINTED,
     BLACK,
     BLUE,

@@ -6,24 +6,22 @@ identify speeds.csv --gait straight --first body.lateral_drag=1.5 --noise 0.005
 identify run.nc --first body.lateral_drag=1.5 --out fit.png --out fit.csv
 """
 
-import csv
 import sys
 import time
 from dataclasses import replace
-from pathlib import Path
 
 from eel_gaits.gaits.registry import GAITS
 from eel_gaits.input_output.command_line import Parser
-from eel_gaits.input_output.output_file import replacing
 from eel_gaits.input_output.wording import shown
 
 from eel_dynamics.accuracy.accuracy import PRESETS
-from eel_dynamics.model.body import NAMED, Body
+from eel_dynamics.model.body import NAMED
 from eel_dynamics.model.scene import Scene
-from eel_dynamics.runs.named_values import scene_of, set_numbers
+from eel_dynamics.runs.command_options import add_repeated, body_of, scene_of, set_numbers
 from eel_dynamics.runs.run_command import checked_out, run_command
+from eel_dynamics.runs.storage.tables import write_columns
 from eel_dynamics.studies.identify.drawing import FORMATS, draw_identified
-from eel_dynamics.studies.identify.identify import Identified, identify
+from eel_dynamics.studies.identify.identify import identify
 from eel_dynamics.studies.identify.measured_file import MeasuredFile, read_measured
 
 SUFFIXES = (*FORMATS, ".csv")
@@ -45,7 +43,7 @@ def _identify(options) -> int:
         measured,
         gait=_gait(options, files),
         numbers=numbers,
-        body=_body(options, files[0]),
+        body=files[0].body if options.body is None else body_of(options.body),
         scene=_scene(options, files[0]),
         accuracy=options.accuracy,
         noise=options.noise,
@@ -55,7 +53,8 @@ def _identify(options) -> int:
     print(f"wall time  {time.perf_counter() - start:.1f} s, {sum(each.count for each in measured)} measured numbers")
     for out in outs:
         if out.suffix == ".csv":
-            _write(found, out)
+            columns = {"name": found.names, "value": found.value, "standard_error": found.error}
+            write_columns(columns | {"low": found.low, "high": found.high}, out)
         else:
             draw_identified(found, measured, out)
         print(f"written to {out}")
@@ -80,25 +79,11 @@ def _gait(options, files: list[MeasuredFile]):
     return law_of_the_file
 
 
-def _body(options, file: MeasuredFile) -> Body | None:
-    if options.body is None:
-        return file.body
-    return Body.named(options.body) if options.body in NAMED else Body.from_file(options.body)
-
-
 def _scene(options, file: MeasuredFile) -> Scene:
     """The scene that was asked for, or that of the file. The friction is blended unless --scene says otherwise."""
-    given = any(text.startswith("friction=") for text in options.scene)
     if options.scene or file.scene is None:
-        return scene_of(options.scene if given else ["friction=blended", *options.scene])
+        return scene_of(options.scene, friction="blended")
     return replace(file.scene, friction="blended") if file.scene.friction == "printed" else file.scene
-
-
-def _write(found: Identified, path: Path) -> None:
-    with replacing(path) as draft, draft.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(("name", "value", "standard_error", "low", "high"))
-        writer.writerows(zip(found.names, found.value, found.error, found.low, found.high, strict=True))
 
 
 def _parser() -> Parser:
@@ -112,25 +97,12 @@ def _parser() -> Parser:
         help=".csv or .npz with the columns time, x, y (perhaps z), or speed and numbers of the gait; a run (.nc); a "
         "bag. Paths or speeds, not both",
     )
-    parser.add_argument(
-        "--first",
-        action="append",
-        required=True,
-        metavar="NAME=VALUE",
-        help="a parameter and its first guess: body.FIELD, scene.FIELD, initial.v_1, a number of the gait; may be "
-        "repeated",
-    )
+    about = "a parameter and its first guess: body.FIELD, scene.FIELD, initial.v_1, a number of the gait"
+    add_repeated(parser, "--first", "NAME=VALUE", about, required=True)
     parser.add_argument("--gait", help=f"one of {', '.join(sorted(GAITS))}; by default the law of the run or bag")
-    parser.add_argument(
-        "--set", action="append", default=[], metavar="NAME=VALUE", help="a number of the gait; may be repeated"
-    )
-    parser.add_argument(
-        "--scene",
-        action="append",
-        default=[],
-        metavar="NAME=VALUE",
-        help="physics, as for simulate; by default that of the run. The friction is blended unless it is given here",
-    )
+    add_repeated(parser, "--set", "NAME=VALUE", "a number of the gait")
+    about = "physics, as for simulate; by default that of the run. The friction is blended unless it is given here"
+    add_repeated(parser, "--scene", "NAME=VALUE", about)
     parser.add_argument(
         "--body", help=f"{', '.join(NAMED)}, or a file as for simulate; by default that of the run, or boyer2010"
     )
@@ -139,13 +111,7 @@ def _parser() -> Parser:
     parser.add_argument("--noise", type=float, metavar="SIZE", help="standard deviation of the errors, m or m/s")
     parser.add_argument("--level", type=float, default=0.95, help="of the intervals (0.95)")
     parser.add_argument("--accuracy", default=1e-4, help=f"{', '.join(PRESETS)}, or a target (1e-4)")
-    parser.add_argument(
-        "--out",
-        action="append",
-        default=[],
-        metavar="FILE",
-        help=".png, .svg: a picture; .csv: a table; may be repeated",
-    )
+    add_repeated(parser, "--out", "FILE", ".png, .svg: a picture; .csv: a table")
     return parser
 
 

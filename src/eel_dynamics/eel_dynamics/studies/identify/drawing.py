@@ -4,10 +4,10 @@
 from pathlib import Path
 
 import numpy as np
-from eel_gaits.input_output.output_file import replacing
 
-from eel_dynamics.studies.figures.style import BLUE, GREY, ORANGE
 from eel_dynamics.studies.identify.measurements import MeasuredPath
+from eel_dynamics.studies.pictures.picture_file import write_picture
+from eel_dynamics.studies.pictures.style import BLUE, GREY, ORANGE
 
 FORMATS = ".png", ".svg"
 SIZE = 10.0, 3.4  # inches
@@ -19,20 +19,16 @@ def draw_identified(found, measured: list, path: Path) -> None:
 
     `ImportError` without matplotlib; `NotWritten` where the file cannot be completed.
     """
-    import matplotlib
-    from matplotlib.figure import Figure
+    write_picture(lambda figure: _draw(figure, found, measured), SIZE, path)
 
-    from eel_dynamics.studies.figures.style import SETTINGS
 
-    with matplotlib.rc_context(SETTINGS), replacing(path) as draft:
-        figure = Figure(figsize=SIZE, layout="constrained")
-        left, middle, right = figure.subplots(1, 3)
-        if isinstance(measured[0], MeasuredPath):
-            _draw_paths(left, middle, found, measured)
-        else:
-            _draw_speeds(left, middle, found, measured)
-        _draw_intervals(right, found)
-        figure.savefig(draft, format=path.suffix[1:], metadata={"Date": None} if path.suffix == ".svg" else None)
+def _draw(figure, found, measured: list) -> None:
+    left, middle, right = figure.subplots(1, 3)
+    if isinstance(measured[0], MeasuredPath):
+        _draw_paths(left, middle, found, measured)
+    else:
+        _draw_speeds(left, middle, found, measured)
+    _draw_intervals(right, found)
 
 
 def _draw_paths(left, middle, found, measured: list) -> None:

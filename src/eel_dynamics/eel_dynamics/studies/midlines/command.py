@@ -9,14 +9,16 @@ from pathlib import Path
 
 import numpy as np
 from eel_gaits.input_output.command_line import Parser
-from eel_gaits.input_output.output_file import check_output, replacing
+from eel_gaits.input_output.output_file import check_output
 from eel_gaits.input_output.wording import shown
 from eel_gaits.sources.motion_file import read_midlines
 
-from eel_dynamics.model.body import NAMED, Body
+from eel_dynamics.model.body import NAMED
+from eel_dynamics.runs.command_options import body_of
 from eel_dynamics.runs.run import simulate
 from eel_dynamics.runs.run_command import run_command
 from eel_dynamics.studies.midlines.comparison import MidlineComparison, compared
+from eel_dynamics.studies.pictures.picture_file import write_picture
 
 SUFFIXES = (".png", ".svg", ".pdf")
 SHOWN = 8  # instants in the picture
@@ -33,7 +35,7 @@ def _compare(options) -> int:
         if out.suffix not in SUFFIXES:
             raise ValueError(f"--out must end in {', '.join(SUFFIXES)}, got {shown(options.out)}")
         check_output("--out", out)
-    body = Body.named(options.body) if options.body in NAMED else Body.from_file(options.body)
+    body = body_of(options.body)
     midlines = read_midlines(options.file, length=body.length, scale=options.scale)
     law = midlines.law(Path(options.file).stem)
     stations = midlines.arc / midlines.arc[-1] * body.length
@@ -45,39 +47,28 @@ def _compare(options) -> int:
     print(f"motion              {law.about}")
     print(f"midlines            {found}")
     if out is not None:
-        _draw(found, out)
+        instants = np.unique(np.linspace(len(found.time) // 2, len(found.time) - 1, SHOWN).astype(int))
+        write_picture(lambda figure: _draw(figure, found, instants), (6.4, 1.1 * len(instants) + 0.8), out)
         print(f"written to          {out}")
     return 0
 
 
-def _draw(found: MidlineComparison, out: Path):
-    """Draw the last instants, without the rigid motion: what was measured as points, the run's as lines."""
-    import matplotlib
-    from matplotlib.figure import Figure
-
-    from eel_dynamics.studies.figures.style import SETTINGS
-
-    last = np.unique(np.linspace(len(found.time) // 2, len(found.time) - 1, SHOWN).astype(int))
-    with matplotlib.rc_context(SETTINGS):
-        figure = Figure(figsize=(6.4, 1.1 * len(last) + 0.8), layout="constrained")
-        axes = figure.add_subplot()
-        for row, instant in enumerate(last):
-            measured, line = (
-                _upright(each[instant], found.measured[instant]) for each in (found.measured, found.found)
-            )
-            shift = np.array([0.0, -0.25 * found.length * row])
-            (points,) = axes.plot(*(measured + shift).T, ".", color="0.3", markersize=4)
-            (curve,) = axes.plot(*(line + shift).T, color="C0", linewidth=1.2)
-            place = 1.02 * found.length, shift[1]
-            axes.annotate(f"{found.time[instant]:.2f} s", place, va="center", annotation_clip=False)
-        points.set_label("measured")
-        curve.set_label("of the run, rigid motion removed")
-        axes.set(title=f"Midlines: {found.rms:.2%} of the body's length apart (RMS)", xlabel="along the body [m]")
-        axes.set_aspect("equal")
-        axes.set_yticks([])
-        figure.legend(loc="outside lower center", ncols=2)
-        with replacing(out) as draft:
-            figure.savefig(draft, format=out.suffix[1:])
+def _draw(figure, found: MidlineComparison, instants: np.ndarray):
+    """Draw the `instants` (n,), without the rigid motion: what was measured as points, the run's as lines."""
+    axes = figure.add_subplot()
+    for row, instant in enumerate(instants):
+        measured, line = (_upright(each[instant], found.measured[instant]) for each in (found.measured, found.found))
+        shift = np.array([0.0, -0.25 * found.length * row])
+        (points,) = axes.plot(*(measured + shift).T, ".", color="0.3", markersize=4)
+        (curve,) = axes.plot(*(line + shift).T, color="C0", linewidth=1.2)
+        place = 1.02 * found.length, shift[1]
+        axes.annotate(f"{found.time[instant]:.2f} s", place, va="center", annotation_clip=False)
+    points.set_label("measured")
+    curve.set_label("of the run, rigid motion removed")
+    axes.set(title=f"Midlines: {found.rms:.2%} of the body's length apart (RMS)", xlabel="along the body [m]")
+    axes.set_aspect("equal")
+    axes.set_yticks([])
+    figure.legend(loc="outside lower center", ncols=2)
 
 
 def _upright(points: np.ndarray, reference: np.ndarray) -> np.ndarray:

@@ -5,28 +5,24 @@ optimise straight --bound period=0.4:3 --bound amplitude_0=0:2 --bound amplitude
 optimise kern_fast --body kern2006 --bound period=0.5:2 --bound bend_tail=0:8 --speeds 0.3,0.4 --out front.png
 """
 
-import csv
 import sys
 import time
-from pathlib import Path
 
-import numpy as np
 from eel_gaits.gaits.registry import GAITS
 from eel_gaits.input_output.command_line import Parser
-from eel_gaits.input_output.output_file import replacing
 from eel_gaits.input_output.wording import shown
 
 from eel_dynamics.accuracy.accuracy import PRESETS
 from eel_dynamics.analysis.measures import MEASURES
-from eel_dynamics.model.body import NAMED, Body
-from eel_dynamics.runs.named_values import named_texts, scene_of, set_numbers, varied_values
+from eel_dynamics.model.body import NAMED
+from eel_dynamics.runs.command_options import add_repeated, body_of, named_texts, scene_of, set_numbers, varied_values
 from eel_dynamics.runs.run_command import checked_out, run_command
-from eel_dynamics.studies.optimise.front import FORMATS, Front
+from eel_dynamics.runs.storage.tables import write_columns
+from eel_dynamics.studies.optimise.front import FORMATS
 from eel_dynamics.studies.optimise.optimise import optimise
 from eel_dynamics.studies.optimise.searches import METHODS
 
 SUFFIXES = (*FORMATS, ".csv")
-SMOOTH = "friction=blended"  # unless --scene says otherwise
 MOST_SPEEDS = 1000
 
 
@@ -39,14 +35,13 @@ def _optimise(options) -> int:
     start = time.perf_counter()
     outs = [checked_out("optimise", out, SUFFIXES) for out in options.out]
     bounds = {name: _bounds(name, text) for name, text in named_texts("--bound", options.bound)}
-    scene = options.scene if any(text.startswith("friction=") for text in options.scene) else [SMOOTH, *options.scene]
     front = optimise(
         bounds,
         _speeds(options.speeds),
         gait=options.gait,
         numbers=set_numbers(options.set),
-        body=Body.named(options.body) if options.body in NAMED else Body.from_file(options.body),
-        scene=scene_of(scene),
+        body=body_of(options.body),
+        scene=scene_of(options.scene, friction="blended"),
         cost=options.cost,
         periods=options.periods,
         accuracy=options.accuracy,
@@ -59,7 +54,10 @@ def _optimise(options) -> int:
         print("* a parameter at its bound, or a gait that is slower and costs more than another")
     print(f"wall time  {time.perf_counter() - start:.1f} s, {len(front.tried)} gaits tried")
     for out in outs:
-        _write(front, out)
+        if out.suffix == ".csv":
+            write_columns(front.columns, out)
+        else:
+            front.draw(out)
         print(f"written to {out}")
     return 0
 
@@ -86,34 +84,17 @@ def _check_count(count: int):
         raise ValueError(f"at most {MOST_SPEEDS}")
 
 
-def _write(front: Front, path: Path):
-    if path.suffix != ".csv":
-        front.draw(path)
-        return
-    with replacing(path) as draft, draft.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(front.columns)
-        writer.writerows(np.column_stack([*front.columns.values()]).tolist())
-
-
 def _parser() -> Parser:
     parser = Parser(
         prog="optimise",
         description="Find the gait of least cost at each speed. The friction is blended unless --scene says otherwise.",
     )
     parser.add_argument("gait", nargs="?", default="straight", help=f"one of {', '.join(sorted(GAITS))} (straight)")
-    parser.add_argument(
-        "--bound",
-        action="append",
-        required=True,
-        metavar="NAME=LOW:HIGH",
-        help="a parameter and its bounds: a number of the gait, scene.FIELD, body.FIELD; may be repeated",
-    )
+    about = "a parameter and its bounds: a number of the gait, scene.FIELD, body.FIELD"
+    add_repeated(parser, "--bound", "NAME=LOW:HIGH", about, required=True)
     parser.add_argument("--speeds", required=True, metavar="SPEEDS", help="m/s: a,b,c or start:end:count")
-    parser.add_argument(
-        "--set", action="append", default=[], metavar="NAME=VALUE", help="what is held fixed; may be repeated"
-    )
-    parser.add_argument("--scene", action="append", default=[], metavar="NAME=VALUE", help="physics, as for simulate")
+    add_repeated(parser, "--set", "NAME=VALUE", "what is held fixed")
+    add_repeated(parser, "--scene", "NAME=VALUE", "physics, as for simulate")
     parser.add_argument("--body", default="boyer2010", help=f"{', '.join(NAMED)}, or a file as for simulate")
     parser.add_argument("--cost", default="cost_of_transport", help=f"one of {', '.join(MEASURES)} (cost_of_transport)")
     parser.add_argument("--method", default="gradient", help=f"{' or '.join(METHODS)} (gradient); cma needs cma")
@@ -121,13 +102,7 @@ def _parser() -> Parser:
     parser.add_argument("--accuracy", default=1e-3, help=f"{', '.join(PRESETS)}, or a target (1e-3)")
     parser.add_argument("--starts", type=int, default=1, metavar="N", help="gaits from which a search begins (1)")
     parser.add_argument("--seed", type=int, default=0, metavar="N", help="of what is random (0)")
-    parser.add_argument(
-        "--out",
-        action="append",
-        default=[],
-        metavar="FILE",
-        help=".png, .svg: a picture; .csv: a table; may be repeated",
-    )
+    add_repeated(parser, "--out", "FILE", ".png, .svg: a picture; .csv: a table")
     return parser
 
 

@@ -4,7 +4,7 @@
 import numpy as np
 
 from eel_dynamics.analysis.measures import described
-from eel_dynamics.studies.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE
+from eel_dynamics.studies.pictures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE
 
 SIZE = 9.0, 5.6  # inches
 LOOKS = (  # of the parameters: colour, dash, mark

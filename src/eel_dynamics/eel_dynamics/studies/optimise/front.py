@@ -5,12 +5,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from eel_gaits.input_output.output_file import replacing
 from eel_gaits.input_output.wording import shown
 
 from eel_dynamics.analysis.measures import described
 from eel_dynamics.model.equality import same_fields
 from eel_dynamics.runs.run import Run
+from eel_dynamics.studies.optimise.drawing import SIZE, draw_front
+from eel_dynamics.studies.pictures.picture_file import write_picture
 
 BOUND = 1e-3  # of the bounds' distance: nearer to one of them is at it
 FORMATS = (".png", ".svg")
@@ -90,13 +91,4 @@ class Front:
         path = Path(path)
         if path.suffix not in FORMATS:
             raise ValueError(f"path must end in {' or '.join(FORMATS)}, got {shown(str(path))}")
-        import matplotlib
-        from matplotlib.figure import Figure
-
-        from eel_dynamics.studies.figures.style import SETTINGS
-        from eel_dynamics.studies.optimise.drawing import SIZE, draw_front
-
-        with matplotlib.rc_context(SETTINGS), replacing(path) as draft:
-            figure = Figure(figsize=SIZE, layout="constrained")
-            draw_front(figure, self)
-            figure.savefig(draft, metadata={"Date": None} if path.suffix == ".svg" else {"Software": None})
+        write_picture(lambda figure: draw_front(figure, self), SIZE, path)

@@ -14,9 +14,10 @@ from eel_gaits.input_output.wording import shown
 
 from eel_dynamics.runs.run_command import run_command
 from eel_dynamics.runs.storage.tables import needed
-from eel_dynamics.studies.figures.style import SETTINGS
+from eel_dynamics.studies.pictures.picture_file import write_picture
 from eel_dynamics.studies.stability.studies import STUDIES
 
+SIZE = 5.6, 4.2  # inches
 BEGIN, END = "<!-- {}: written by `stability` -->", "<!-- end of {} -->"
 
 
@@ -26,9 +27,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _study(options) -> int:
-    matplotlib = needed("matplotlib", "stability", "pictures")
-    from matplotlib.figure import Figure
-
+    needed("matplotlib", "stability", "pictures")
     if options.points < 2:
         raise ValueError(f"points must be >= 2, got {options.points}")
     if options.page:
@@ -38,14 +37,8 @@ def _study(options) -> int:
     for name in options.study or STUDIES:
         study = STUDIES[name](options.points)
         print(f"{study.text}\n")
-        for picture, (_, fill) in study.pictures.items():
-            with matplotlib.rc_context(SETTINGS):
-                figure = Figure(figsize=(5.6, 4.2), layout="constrained")
-                fill(figure)
-                for suffix in ("png", "svg"):
-                    metadata = {"Date": None} if suffix == "svg" else {"Software": None}
-                    with replacing(folder / f"stability_{picture}.{suffix}") as draft:
-                        figure.savefig(draft, metadata=metadata)
+        for picture, (_, draw) in study.pictures.items():
+            write_picture(draw, SIZE, *(folder / f"stability_{picture}.{suffix}" for suffix in ("png", "svg")))
         if options.page:
             page = Path(options.page)
             text = with_study(page.read_text(encoding="utf-8"), name, study)

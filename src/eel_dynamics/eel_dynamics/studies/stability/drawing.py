@@ -7,7 +7,7 @@ model. A plus marks a warning of an open energy ledger.
 
 import numpy as np
 
-from eel_dynamics.studies.figures.style import BLACK
+from eel_dynamics.studies.pictures.style import BLACK
 from eel_dynamics.studies.stability.maps import STOPPED, Measured
 
 DECADES = 3.0  # range of the colours, above and below the target

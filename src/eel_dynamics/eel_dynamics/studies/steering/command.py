@@ -9,11 +9,11 @@ import os
 from pathlib import Path
 
 from eel_gaits.input_output.command_line import Parser
-from eel_gaits.input_output.output_file import check_output, replacing
+from eel_gaits.input_output.output_file import check_output
 
 from eel_dynamics.runs.run_command import run_command
 from eel_dynamics.runs.storage.tables import needed
-from eel_dynamics.studies.figures.style import SETTINGS
+from eel_dynamics.studies.pictures.picture_file import write_picture
 from eel_dynamics.studies.steering.drawing import SIZE, draw_multipliers
 from eel_dynamics.studies.steering.page import scans_of, write_page
 
@@ -30,22 +30,15 @@ def _scan(options) -> int:
         raise ValueError(f"--points must be {FEWEST} or more, got {options.points}")
     if options.page:
         check_output("--page", options.page)
-    matplotlib = needed("matplotlib", "steering", "pictures")
-    from matplotlib.figure import Figure
-
+    needed("matplotlib", "steering", "pictures")
     folder = Path(options.out)
     folder.mkdir(exist_ok=True)
     scans = scans_of(options.points)
     for scan in scans:
         for height, growth in zip(scan.heights, scan.growth, strict=True):
             print(f"{scan.name}: metacentric height {1e3 * height:.3g} mm, growth {growth:.4g} a period")
-    with matplotlib.rc_context(SETTINGS):
-        figure = Figure(figsize=SIZE, layout="constrained")
-        draw_multipliers(figure, scans)
-        for suffix in ("png", "svg"):
-            metadata = {"Date": None} if suffix == "svg" else {"Software": None}
-            with replacing(folder / f"steering.{suffix}") as draft:
-                figure.savefig(draft, metadata=metadata)
+    paths = folder / "steering.png", folder / "steering.svg"
+    write_picture(lambda figure: draw_multipliers(figure, scans), SIZE, *paths)
     if options.page:
         picture = os.path.relpath(folder / "steering.svg", Path(options.page).parent)
         write_page(Path(options.page), scans, picture)

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from eel_dynamics.studies.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE
+from eel_dynamics.studies.pictures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE
 from eel_dynamics.studies.steering.linearisation import OUT_OF_PLANE, STATES
 from eel_dynamics.studies.steering.study import Scan
 

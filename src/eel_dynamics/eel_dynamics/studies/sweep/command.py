@@ -15,8 +15,15 @@ from eel_gaits.input_output.output_file import NotWritten
 
 from eel_dynamics.accuracy.accuracy import PRESETS
 from eel_dynamics.analysis.measures import MEASURES
-from eel_dynamics.model.body import NAMED, Body
-from eel_dynamics.runs.named_values import check_names, named_texts, set_numbers, varied_values
+from eel_dynamics.model.body import NAMED
+from eel_dynamics.runs.command_options import (
+    add_repeated,
+    body_of,
+    check_names,
+    named_texts,
+    set_numbers,
+    varied_values,
+)
 from eel_dynamics.runs.one_line_warnings import one_line_warnings
 from eel_dynamics.studies.sweep.sweep import check_points, sweep
 
@@ -41,7 +48,7 @@ def _sweep(options) -> int:
             gait=options.gait,
             numbers=numbers,
             duration=options.duration,
-            body=Body.named(options.body) if options.body in NAMED else Body.from_file(options.body),
+            body=body_of(options.body),
             accuracy=options.accuracy,
             sample_period=options.sample_period,
             out=options.out,
@@ -85,16 +92,9 @@ def _parser() -> Parser:
         "again after an end that was not planned, it goes on where it was.",
     )
     parser.add_argument("gait", nargs="?", default="straight", help=f"one of {', '.join(sorted(GAITS))} (straight)")
-    parser.add_argument(
-        "--vary",
-        action="append",
-        required=True,
-        metavar="NAME=VALUES",
-        help="a number of the gait, scene.FIELD, body or accuracy; values a,b,c or start:end:count; may be repeated",
-    )
-    parser.add_argument(
-        "--set", action="append", default=[], metavar="NAME=VALUE", help="a number of the gait; may be repeated"
-    )
+    about = "a number of the gait, scene.FIELD, body or accuracy; values a,b,c or start:end:count"
+    add_repeated(parser, "--vary", "NAME=VALUES", about, required=True)
+    add_repeated(parser, "--set", "NAME=VALUE", "a number of the gait")
     parser.add_argument("--duration", type=float, default=10.0, help="s (10)")
     parser.add_argument("--accuracy", default="standard", help=f"{', '.join(PRESETS)}, or a target (standard)")
     parser.add_argument("--body", default="boyer2010", help=f"{', '.join(NAMED)}, or a file as for simulate")

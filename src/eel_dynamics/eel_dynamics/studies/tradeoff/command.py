@@ -13,12 +13,13 @@ from pathlib import Path
 
 from eel_gaits.gaits.registry import GAITS, gait
 from eel_gaits.input_output.command_line import Parser
-from eel_gaits.input_output.output_file import check_output, replacing
+from eel_gaits.input_output.output_file import check_output
 
-from eel_dynamics.model.body import NAMED, Body
+from eel_dynamics.model.body import NAMED
 from eel_dynamics.model.scene import Scene
-from eel_dynamics.runs.named_values import set_numbers
+from eel_dynamics.runs.command_options import add_repeated, body_of, set_numbers
 from eel_dynamics.runs.run_command import run_command
+from eel_dynamics.studies.pictures.picture_file import write_picture
 from eel_dynamics.studies.tradeoff import measuring, models
 from eel_dynamics.studies.tradeoff.delivered import COUNT, SEED, deliver, delivered_table
 from eel_dynamics.studies.tradeoff.delivered_page import write_delivered_page
@@ -75,7 +76,7 @@ def _say(text: str):
 def _measure_all(options) -> list[tuple]:
     numbers = set_numbers(options.set)
     laws = [gait(name, **numbers) for name in options.gaits]
-    body = Body.named(options.body) if options.body in NAMED else Body.from_file(options.body)
+    body = body_of(options.body)
     least = measuring.SAMPLE_PERIOD  # a single sample has no error
     if not least <= options.duration < float("inf"):
         raise ValueError(f"--duration must be finite and >= {least} s, got {options.duration}")
@@ -127,21 +128,11 @@ def _draw(trade, poorer, folder: Path):
     return _save(lambda figure: draw_trade(figure, trade, poorer), SIZE, folder / f"tradeoff_{trade.law.name}")
 
 
-def _save(draw, size, stem: Path):
-    """Draw with `draw(figure)` into `stem` with .png and .svg; yields the paths."""
-    import matplotlib
-    from matplotlib.figure import Figure
-
-    from eel_dynamics.studies.figures.style import SETTINGS
-
-    with matplotlib.rc_context(SETTINGS):
-        figure = Figure(figsize=size, layout="constrained")
-        draw(figure)
-        for suffix in ("png", "svg"):
-            path = stem.with_name(f"{stem.name}.{suffix}")
-            with replacing(path) as draft:
-                figure.savefig(draft, metadata={"Date": None} if suffix == "svg" else {"Software": None})
-            yield path
+def _save(draw, size, stem: Path) -> list[Path]:
+    """Draw with `draw(figure)` into `stem` with .png and .svg; returns the paths."""
+    paths = [stem.with_name(f"{stem.name}.{suffix}") for suffix in ("png", "svg")]
+    write_picture(draw, size, *paths)
+    return paths
 
 
 def _parser() -> Parser:
@@ -152,9 +143,7 @@ def _parser() -> Parser:
     )
     names = ", ".join(sorted(GAITS))
     parser.add_argument("gaits", nargs="*", default=["falling"], metavar="GAIT", help=f"of {names} (falling)")
-    parser.add_argument(
-        "--set", action="append", default=[], metavar="NAME=VALUE", help="a number of the gaits; may be repeated"
-    )
+    add_repeated(parser, "--set", "NAME=VALUE", "a number of the gaits")
     parser.add_argument("--duration", type=float, default=10.0, help="s (10)")
     parser.add_argument("--body", default="boyer2010", help=f"{', '.join(NAMED)}, or a file as for simulate")
     parser.add_argument("--repeats", type=int, default=5, help="rounds of timing, of which the median counts (5)")

@@ -7,7 +7,7 @@ Methods differ in colour (Okabe and Ito) and in mark, so that they can be told a
 import numpy as np
 
 from eel_dynamics.accuracy.accuracy import PRESETS
-from eel_dynamics.studies.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE
+from eel_dynamics.studies.pictures.style import BLACK, BLUE, GREEN, GREY, ORANGE
 from eel_dynamics.studies.tradeoff.delivered import LEAST
 from eel_dynamics.studies.tradeoff.measuring import Trade, front
 from eel_dynamics.studies.tradeoff.models import Model

@@ -1,18 +1,26 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The options --set, --scene and --vary of the commands: each is NAME=VALUE, and may be given several times.
+"""The options that commands share: --set, --scene, --vary (NAME=VALUE, may be repeated), --body and --out.
 
 A value is a number, true or false (on or off), or a word.
 """
 
+from argparse import ArgumentParser
 from collections.abc import Callable
 from dataclasses import fields
 
 import numpy as np
 from eel_gaits.input_output.wording import shown
 
+from eel_dynamics.model.body import NAMED, Body
 from eel_dynamics.model.scene import Scene
 
 TRUTH = {"true": True, "on": True, "false": False, "off": False}
+
+
+def add_repeated(parser: ArgumentParser, option: str, metavar: str, about: str, required: bool = False):
+    """Add an `option` that may be repeated to the `parser` of a command; its value is a list."""
+    about = f"{about}; may be repeated"
+    parser.add_argument(option, action="append", default=[], metavar=metavar, required=required, help=about)
 
 
 def named_texts(option: str, texts: list[str]) -> list[tuple[str, str]]:
@@ -43,10 +51,18 @@ def set_numbers(texts: list[str], option: str = "--set") -> dict[str, float]:
     return found
 
 
-def scene_of(texts: list[str]) -> Scene:
-    """The scene that --scene gives. `ValueError` names the field that there is not, or whose value does not fit."""
+def body_of(text: str) -> Body:
+    """The body that --body gives: a name, or a file. `ValueError` where it does not fit; `OSError`: not readable."""
+    return Body.named(text) if text in NAMED else Body.from_file(text)
+
+
+def scene_of(texts: list[str], **defaults) -> Scene:
+    """The scene that --scene gives. `ValueError` names the field that there is not, or whose value does not fit.
+
+    defaults: fields that the command sets where --scene does not.
+    """
     known = {item.name: item for item in fields(Scene)}
-    found = {}
+    found = dict(defaults)
     for name, text in named_texts("--scene", texts):
         if name not in known:
             raise ValueError(f"scene has no field {shown(name)}, it has: {', '.join(known)}")
