@@ -12,7 +12,7 @@ import pytest
 from eel_dynamics.ros.messages import Sample, body_message, diagnostic_array
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.runs.command import main
-from eel_dynamics.runs.records import records
+from eel_dynamics.runs.exchange.records import records
 from eel_viz.recording.dispatcher import SAMPLES
 from eel_viz.recording.reading import read
 from rclpy.serialization import deserialize_message

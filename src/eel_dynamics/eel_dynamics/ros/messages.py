@@ -28,7 +28,7 @@ from eel_dynamics.model.axes import QUATERNION, VECTOR, turn_quaternion, turn_ve
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.ros.parameters import DynamicsParameters, unit_quaternion
 from eel_dynamics.ros.serialised_message import SerialisedMessage
-from eel_dynamics.runs.records import outline
+from eel_dynamics.runs.exchange.records import outline
 from eel_msgs.msg import (
     Backbone,
     BodyGeometry,

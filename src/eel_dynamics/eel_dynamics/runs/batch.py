@@ -31,7 +31,9 @@ from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.broadcast import swimmers_of
 from eel_dynamics.runs.companion import with_error_estimate
 from eel_dynamics.runs.motions import check_duration
-from eel_dynamics.runs.run import Run, SwimRequest, check_memory, checked_times, default_sample_period, run_of
+from eel_dynamics.runs.observed_run import fields_of_observations
+from eel_dynamics.runs.run import Run, SwimRequest
+from eel_dynamics.runs.sampling import check_memory, checked_times, default_sample_period
 from eel_dynamics.runs.storage import plain
 from eel_dynamics.runs.storage.netcdf import loaded, write
 from eel_dynamics.runs.storage.run_contents import contents_of_batch, observed_of_batch, with_warnings
@@ -121,22 +123,26 @@ class Batch:
         out, works, start = self._out
         scene, done = self.scenes[index], self.samples[index]
         has_stations = self.backbone is not None
-        return run_of(
+        observed = fields_of_observations(
+            _of_one(out, index),
+            times=self.time[:done],
+            works=works[index, :done],
+            energy_at_start=start[index],
+            scene=scene,
+            wrench=scene.internal_wrench and has_stations,
+            load=self.fluid_force is not None,
+        )
+        return Run(
             law=self.laws[index],
             body=self.bodies[index],
             scene=scene,
             accuracy=self.accuracies[index],
             x=self.x[index],
-            times=self.time[:done],
-            out=_of_one(out, index),
-            works=works[index, :done],
-            energy_at_start=start[index],
-            wrench=scene.internal_wrench and has_stations,
-            load=self.fluid_force is not None,
             steps=int(self.steps[index]),
             evaluations=int(self.evaluations[index]),
             nodes=int(self.nodes[index]),
             error_estimate=self.error_estimates[index],
+            **observed,
         )
 
     def save(self, path) -> None:

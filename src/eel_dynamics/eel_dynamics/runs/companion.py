@@ -116,14 +116,10 @@ def _finished(request, accuracy: Accuracy):
     return swim if swim.stopped is None else None
 
 
-def stable_step(swim, accuracy) -> float | None:
-    """The longest step [s], by halving that of `accuracy`, at which `swim(accuracy)` does not stop; None if none is."""
-    step = accuracy.step
-    for _ in range(HALVINGS):
-        step *= 0.5
-        try:
-            swim(replace(accuracy, step=step))
-        except SimulationStopped:
-            continue
-        return step
-    return None
+def stable_step(request, accuracy: Accuracy) -> float | None:
+    """The longest step [s], by halving that of `accuracy`, with which the swim of `request` comes to its end.
+
+    None if `HALVINGS` give none.
+    """
+    steps = [accuracy.step * 0.5**halvings for halvings in range(1, HALVINGS + 1)]
+    return next((step for step in steps if _finished(request, replace(accuracy, step=step)) is not None), None)

@@ -1,19 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Simulates one run of a law: `simulate`, and the `Run` that it returns."""
 
-import math
-import os
 import warnings
 from collections.abc import Callable
-from contextvars import ContextVar
 from dataclasses import dataclass, fields
-from functools import cached_property, partial
-from importlib.metadata import entry_points
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from eel_gaits.input_output.quantity import is_finite
-from eel_gaits.input_output.wording import one_line, shown
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
 
@@ -23,33 +17,29 @@ from eel_dynamics.analysis.actuators import Actuators, actuators_of
 from eel_dynamics.analysis.analysis import Analysis
 from eel_dynamics.analysis.model_limits import warnings_of
 from eel_dynamics.analysis.run_summary import describe
-from eel_dynamics.model.arguments import checked_instance, checked_number, checked_stations
+from eel_dynamics.model.arguments import checked_instance, checked_stations
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.equality import same_fields
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.broadcast import SwimmerArguments
 from eel_dynamics.runs.companion import stable_step, with_error_estimate
+from eel_dynamics.runs.exchange.eel_viz_functions import recorder_of_runs
+from eel_dynamics.runs.exchange.recorded_run import fields_of_bag
+from eel_dynamics.runs.exchange.records import records
 from eel_dynamics.runs.motions import Motion, SmoothingEffect, effect_of_smoothing, law_from
+from eel_dynamics.runs.observed_run import fields_of_observations
 from eel_dynamics.runs.progress_monitor import ProgressMonitor
-from eel_dynamics.runs.recorded_run import fields_of_messages
-from eel_dynamics.runs.records import records
+from eel_dynamics.runs.sampling import check_memory, checked_times, default_sample_period
 from eel_dynamics.runs.storage.netcdf import loaded, write
 from eel_dynamics.runs.storage.run_contents import contents_of_run, fields_of_run
 from eel_dynamics.runs.storage.tables import dataset_of, frame_of
 from eel_dynamics.simulation.energy import EnergyLedger
-from eel_dynamics.simulation.observations import Observations, size_of
+from eel_dynamics.simulation.observations import Observations
 from eel_dynamics.simulation.simulation import Simulation
 from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.simulation.stopping import SimulationStopped
 
-MOST_SAMPLES = 10_000_000  # of a run: the motion alone takes gigabytes
-SAMPLE_PERIOD = 0.05  # s, where the gait is no faster than a period of 1 s
-SAMPLES_OF_PERIOD = 20  # by default, of the law's shortest period
 MOST_UNSMOOTHED = 5_000.0  # evaluations per simulated second of a motion without smoothing
-ALIKE = 0.99  # a period that is found from rows is not exact
-MOST_DEFAULT_SAMPLES = 20_000  # of a run whose sample period follows from the law
-MOST_MEMORY = 0.8  # share of the machine's memory for the samples
-_searching = ContextVar("searching", default=False)  # whether a stable step is searched for
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -184,16 +174,7 @@ class Run:
         head's acceleration, the works and the centre of mass come from splines. `steps`, `evaluations` and `nodes` are
         0. `ValueError` in one line where the bag holds no run; `ImportError` without the package eel_viz.
         """
-        if body is not None:
-            checked_instance("body", body, Body)
-        if scene is not None:
-            checked_instance("scene", scene, Scene)
-        messages = _of_eel_viz("eel_dynamics.bags", "messages", "from_bag", "rosbags and rerun-sdk")
-        try:
-            return Run(**fields_of_messages(messages(path, namespace), body, scene))
-        except ValueError as error:
-            told = "" if shown(os.fspath(path)) in str(error) else f"bag {shown(os.fspath(path))} holds no run: "
-            raise ValueError(f"{told}{one_line(error)}") from None
+        return Run(**fields_of_bag(path, namespace, body, scene))
 
     def to_xarray(self):
         """An `xarray.Dataset` of all arrays with dimensions and units. Its attributes are those of a file of `save`.
@@ -216,35 +197,14 @@ class Run:
         visualiser, such as blueprint="torques", skin_rate=50. Loads are shown if the run was simulated with load=True.
         `ImportError` without the package eel_viz and rerun-sdk.
         """
-        to_rerun = _of_eel_viz("eel_dynamics.drawing", "rerun", "to_rerun", "rerun-sdk")
-        runs = [self] if compare is None else [self, compare]
-        to_rerun(
-            target, [records(run) for run in runs], [f"{run.law.name} {run.accuracy.name}" for run in runs], **settings
-        )
+        record, runs = recorder_of_runs(), [self] if compare is None else [self, compare]
+        names = [f"{run.law.name} {run.accuracy.name}" for run in runs]
+        record(target, [records(run) for run in runs], names, **settings)
 
     @cached_property
     def refined(self) -> "Run":
         """The same run with a tenth of the error, simulated on first access."""
-        return self._with(self.law, self.accuracy.tightened(0.1))
-
-    def _with(self, law: Law | SampledLaw, accuracy: Accuracy, most_evaluations: float = MOST_EVALUATIONS) -> "Run":
-        """The bare run with another law or accuracy."""
-        return simulate(
-            law,
-            float(self.time[-1]),
-            body=self.body,
-            scene=self.scene,
-            accuracy=accuracy,
-            sample_period=float(self.time[1] - self.time[0]) if len(self.time) > 1 else 1.0,
-            stations=self.x,
-            position=self.position[0],
-            orientation=self.orientation[0] / np.linalg.norm(self.orientation[0]),
-            twist=self.twist[0],
-            load=self.fluid_force is not None,
-            estimate=False,
-            most_evaluations=most_evaluations,
-            progress=lambda reached, left: None,
-        )
+        return _simulated_again(self, self.law, self.accuracy.tightened(0.1))
 
     @cached_property
     def smoothing(self) -> SmoothingEffect | None:
@@ -255,23 +215,12 @@ class Run:
         law = getattr(self.law, "unsmoothed", None)
         if law is None:
             return None
-        return effect_of_smoothing(self, self._with(law, self.accuracy.as_it_is(), MOST_UNSMOOTHED))
+        return effect_of_smoothing(self, _simulated_again(self, law, self.accuracy.as_it_is(), MOST_UNSMOOTHED))
 
     @property
     def body_mass(self) -> float:
         """Mass of the body in this scene [kg]."""
         return self.body.volume * (self.body.density if self.scene.density is None else self.scene.density)
-
-
-def _of_eel_viz(group: str, name: str, user: str, needs: str) -> Callable:
-    """A function of the package eel_viz, which knows of this one. `ImportError` where that is not installed."""
-    found = entry_points(group=group, name=name)
-    try:
-        (function,) = (each.load() for each in found)
-    except (ValueError, ImportError) as error:
-        reason = error if found else "it is not installed"
-        raise ImportError(f"{user} needs the package eel_viz, with {needs}: {reason}") from error
-    return function
 
 
 def simulate(
@@ -308,21 +257,6 @@ def simulate(
     law = law_from(law, duration, length)
     sample_period = default_sample_period([law], duration) if sample_period is None else sample_period
     times = checked_times(duration, sample_period)
-    again = partial(
-        simulate,
-        law,
-        duration,
-        body=body,
-        scene=scene,
-        sample_period=sample_period,
-        stations=stations,
-        position=position,
-        orientation=orientation,
-        twist=twist,
-        load=load,
-        estimate=False,
-        most_evaluations=most_evaluations,
-    )
     swimmer = SwimmerArguments.of(law, body, scene, accuracy, position, orientation, twist, most_evaluations)
     x, wrench = checked_stations(stations, swimmer.body.length), swimmer.scene.internal_wrench
     check_memory(1, len(times), len(x), wrench, bool(load), runs=2 if estimate else 1)
@@ -332,13 +266,33 @@ def simulate(
     if swim.stopped is not None:
         stopped, settings = swim.stopped, swim.run.accuracy
         stopped.run = swim.run
-        if settings.step is not None and not _searching.get():
-            stopped = _with_stable_step(stopped, again, settings)
-        raise stopped
+        raise stopped if settings.step is None else _with_stable_step(stopped, request, settings)
     run = (with_error_estimate(swim, request) if estimate else swim).run
     if run.error_estimate is not None and (missed := run.error_estimate.missed(run.accuracy.target, duration)):
         warnings.warn(missed, stacklevel=2)
     return run
+
+
+def _simulated_again(
+    run: Run, law: Law | SampledLaw, accuracy: Accuracy, most_evaluations: float = MOST_EVALUATIONS
+) -> Run:
+    """The swim of `run` with another law or accuracy; its error is not estimated."""
+    return simulate(
+        law,
+        float(run.time[-1]),
+        body=run.body,
+        scene=run.scene,
+        accuracy=accuracy,
+        sample_period=float(run.time[1] - run.time[0]) if len(run.time) > 1 else 1.0,
+        stations=run.x,
+        position=run.position[0],
+        orientation=run.orientation[0] / np.linalg.norm(run.orientation[0]),
+        twist=run.twist[0],
+        load=run.fluid_force is not None,
+        estimate=False,
+        most_evaluations=most_evaluations,
+        progress=lambda reached, left: None,
+    )
 
 
 class Swim(NamedTuple):
@@ -370,127 +324,36 @@ class SwimRequest(NamedTuple):
         simulation = self.simulation(accuracy)
         out, works, done, stopped = simulation.record(self.times, self.wrench, self.load, look)
         steps, _, evaluations = simulation.evaluations
-        run = run_of(
+        observed = fields_of_observations(
+            out,
+            times=self.times[:done],
+            works=works[:done],
+            energy_at_start=simulation.energy_at_start,
+            scene=self.swimmer.scene,
+            wrench=self.wrench,
+            load=self.load,
+        )
+        run = Run(
             law=self.swimmer.law,
             body=self.swimmer.body,
             scene=self.swimmer.scene,
             accuracy=simulation.accuracy,
             x=self.x,
-            times=self.times[:done],
-            out=out,
-            works=works[:done],
-            energy_at_start=simulation.energy_at_start,
-            wrench=self.wrench,
-            load=self.load,
             steps=steps,
             evaluations=evaluations,
             nodes=len(simulation.grid.x),
+            **observed,
         )
         return Swim(run, out, works, simulation.energy_at_start, stopped)
 
 
-def _with_stable_step(stopped: SimulationStopped, again, accuracy: Accuracy) -> SimulationStopped:
+def _with_stable_step(stopped: SimulationStopped, request: SwimRequest, accuracy: Accuracy) -> SimulationStopped:
     """The same error, with a stable step in its hint."""
-    token = _searching.set(True)
-    try:
-        step = stable_step(lambda trial: again(accuracy=trial), accuracy)
-    finally:
-        _searching.reset(token)
+    step = stable_step(request, accuracy)
     hint = f"a step of {step:.3g} s is stable" if step else "no shorter step that was tried is stable"
     told = SimulationStopped(stopped.time, stopped.quantity, stopped.value, f"{hint}; it was {accuracy.step:.3g} s")
     told.run, told.diverged = stopped.run, True
     return told
-
-
-def default_sample_period(laws, duration) -> float:
-    """The sample period [s] where none is given: `SAMPLE_PERIOD`, or fine enough to analyse the fastest of `laws`.
-
-    The finer ones divide the `duration`. A run of more than `MOST_DEFAULT_SAMPLES` is not made by default.
-    """
-    shortest = min((term.period for law in laws for term in law.waves), default=np.inf)
-    fine = shortest / SAMPLES_OF_PERIOD
-    if fine >= ALIKE * SAMPLE_PERIOD or not is_finite(duration) or not 0.0 < duration <= MOST_DEFAULT_SAMPLES * fine:
-        return SAMPLE_PERIOD
-    return duration / math.ceil(duration / fine - 1e-9)
-
-
-def checked_times(duration, sample_period) -> np.ndarray:
-    """Times (T,) [s] of the samples; `ValueError` for a bad duration or period, or more than `MOST_SAMPLES`."""
-    duration = checked_number("duration", duration, "s", zero=True)
-    sample_period = checked_number("sample_period", sample_period, "s")
-    steps = duration / sample_period + 1e-9
-    if not steps < MOST_SAMPLES:
-        raise ValueError(
-            f"duration must be at most {MOST_SAMPLES:,} samples of sample_period, got {duration:g} s at "
-            f"{sample_period:g} s: {steps:.4g} samples"
-        )
-    return np.arange(int(steps) + 1) * sample_period
-
-
-def check_memory(swimmers: int, samples: int, stations: int, wrench: bool, load: bool, runs: int = 1):
-    """`ValueError` if the profiles of so many `runs` of each swimmer would not fit into memory."""
-    needed = 8.0 * runs * swimmers * size_of(samples, stations, wrench, load)
-    there = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") * MOST_MEMORY
-    if needed > there:
-        raise ValueError(
-            f"stations must be fewer (or samples, or swimmers): {swimmers} swimmer{'s' if swimmers > 1 else ''} of "
-            f"{samples} samples at {stations} stations take {needed / 1e9:.3g} GB, of {there / 1e9:.3g} GB"
-        )
-
-
-def run_of(
-    *,
-    law,
-    body,
-    scene,
-    accuracy,
-    x,
-    times,
-    out,
-    works,
-    energy_at_start,
-    wrench,
-    load,
-    steps,
-    evaluations,
-    nodes,
-    error_estimate=None,
-) -> Run:
-    """The `Run` of observations `out` and `works`, cut to the samples at `times`, which were reached."""
-    if len(times) < len(out.position):
-        out = Observations(*(array[: len(times)] for array in out[:-1]), out.whole)
-    energy = EnergyLedger.of(out.energies, out.powers, works, energy_at_start) if scene.ledger else None
-    return Run(
-        law=law,
-        body=body,
-        scene=scene,
-        accuracy=accuracy,
-        time=times,
-        position=out.position,
-        orientation=out.orientation,
-        twist=out.twist,
-        head_acceleration=out.head_acceleration,
-        center_of_mass=out.center_of_mass,
-        x=x,
-        backbone=out.backbone,
-        section_orientation=out.section_orientation,
-        curvature=out.curvature,
-        curvature_rate=out.curvature_rate,
-        torque=out.torque if wrench else None,
-        force=out.force if wrench else None,
-        fluid_force=out.fluid_force if load else None,
-        resistive_force=out.resistive_force if load else None,
-        tail_force=out.tail_force if load else None,
-        nose_force=out.nose_force if load else None,
-        wake_momentum_rate=out.wake_momentum_rate if load else None,
-        energy=energy,
-        closure_torque=out.closure[:, 0] if wrench else None,
-        closure_force=out.closure[:, 1] if wrench else None,
-        steps=steps,
-        evaluations=evaluations,
-        nodes=nodes,
-        error_estimate=error_estimate,
-    )
 
 
 __all__ = ["Run", "SimulationStopped", "simulate"]

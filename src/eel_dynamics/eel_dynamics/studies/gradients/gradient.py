@@ -32,7 +32,8 @@ from eel_dynamics.model.equality import same_fields
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.model.section_data import TRANSITION
 from eel_dynamics.runs.companion import relative_errors
-from eel_dynamics.runs.run import Run, default_sample_period
+from eel_dynamics.runs.run import Run
+from eel_dynamics.runs.sampling import default_sample_period
 from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.studies.gradients.fixed_discretisation import fixed_steps, on_one_grid, step_of
 from eel_dynamics.studies.gradients.friction_jump import share_across_jump

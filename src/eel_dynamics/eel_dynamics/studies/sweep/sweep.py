@@ -24,7 +24,7 @@ from eel_dynamics.model.arguments import checked_number
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.batch import available_cores
-from eel_dynamics.runs.run import SAMPLE_PERIOD, checked_times
+from eel_dynamics.runs.sampling import SAMPLE_PERIOD, checked_times
 from eel_dynamics.runs.storage.tables import needed
 from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.studies.points import Point, SwimSettings, batch_of_points, label_of, point_at

@@ -5,25 +5,28 @@ What messages do not carry is computed from them: the head's acceleration and th
 of mass by splines along the body.
 """
 
+import os
 import warnings
 from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
 from eel_gaits.input_output.quantity import is_finite
-from eel_gaits.input_output.wording import one_line
+from eel_gaits.input_output.wording import one_line, shown
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.ramp import Ramp
 from eel_gaits.laws.term import AXES, Term
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.budget import Budget
+from eel_dynamics.model.arguments import checked_instance
 from eel_dynamics.model.axes import turn_quaternion, turn_vector
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.grid import Grid
 from eel_dynamics.model.panels import panels_of
 from eel_dynamics.model.scene import Scene
-from eel_dynamics.runs.records import ENERGIES
+from eel_dynamics.runs.exchange.eel_viz_functions import messages_of_bag
+from eel_dynamics.runs.exchange.records import ENERGIES
 from eel_dynamics.simulation.energy import EnergyLedger
 
 NEEDED = ("head_pose", "head_twist", "backbone", "curvature")
@@ -32,6 +35,20 @@ ENDS = ("tail_force", "nose_force", "wake_momentum_rate")
 WORKS = ("actuator", "wake", "nose", "drag")
 FEWEST = 4  # samples, for splines through them
 AXIS_OF_NUMBER = {column + 1: name for name, column in AXES.items()}  # as in CurvatureTerm
+
+
+def fields_of_bag(path, namespace: str | None, body: Body | None, scene: Scene | None) -> dict:
+    """The fields of `Run.from_bag`, whose arguments these are. `ValueError` and `ImportError` as there."""
+    if body is not None:
+        checked_instance("body", body, Body)
+    if scene is not None:
+        checked_instance("scene", scene, Scene)
+    messages = messages_of_bag()
+    try:
+        return fields_of_messages(messages(path, namespace), body, scene)
+    except ValueError as error:
+        told = "" if shown(os.fspath(path)) in str(error) else f"bag {shown(os.fspath(path))} holds no run: "
+        raise ValueError(f"{told}{one_line(error)}") from None
 
 
 def fields_of_messages(messages: Iterable[tuple[str, object]], body: Body | None, scene: Scene | None) -> dict:

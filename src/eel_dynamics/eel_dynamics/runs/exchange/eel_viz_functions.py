@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Functions of the package eel_viz, found by their entry points: it knows of this package, but is not needed by it."""
+
+from collections.abc import Callable
+from importlib.metadata import entry_points
+
+
+def messages_of_bag() -> Callable:
+    """The function (path, namespace) that yields topic and message of the swimmer in a bag.
+
+    `ImportError` where eel_viz is not installed, or cannot be imported.
+    """
+    return _function("eel_dynamics.bags", "messages", "from_bag", "rosbags and rerun-sdk")
+
+
+def recorder_of_runs() -> Callable:
+    """The function (target, records of each run, names, **settings) that records runs to Rerun.
+
+    `ImportError` where eel_viz is not installed, or cannot be imported.
+    """
+    return _function("eel_dynamics.drawing", "rerun", "to_rerun", "rerun-sdk")
+
+
+def _function(group: str, name: str, user: str, needs: str) -> Callable:
+    found = entry_points(group=group, name=name)
+    try:
+        (function,) = (each.load() for each in found)
+    except (ValueError, ImportError) as error:
+        reason = error if found else "it is not installed"
+        raise ImportError(f"{user} needs the package eel_viz, with {needs}: {reason}") from error
+    return function

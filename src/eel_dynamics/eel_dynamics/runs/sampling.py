@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The samples of a run: when they are taken, and whether they fit into memory."""
+
+import math
+import os
+
+import numpy as np
+from eel_gaits.input_output.quantity import is_finite
+
+from eel_dynamics.model.arguments import checked_number
+from eel_dynamics.simulation.observations import size_of
+
+MOST_SAMPLES = 10_000_000  # of a run: the motion alone takes gigabytes
+SAMPLE_PERIOD = 0.05  # s, where the gait is no faster than a period of 1 s
+SAMPLES_OF_PERIOD = 20  # by default, of the law's shortest period
+ALIKE = 0.99  # a period that is found from rows is not exact
+MOST_DEFAULT_SAMPLES = 20_000  # of a run whose sample period follows from the law
+MOST_MEMORY = 0.8  # share of the machine's memory for the samples
+
+
+def default_sample_period(laws, duration) -> float:
+    """The sample period [s] where none is given: `SAMPLE_PERIOD`, or fine enough to analyse the fastest of `laws`.
+
+    The finer ones divide the `duration`. A run of more than `MOST_DEFAULT_SAMPLES` is not made by default.
+    """
+    shortest = min((term.period for law in laws for term in law.waves), default=np.inf)
+    fine = shortest / SAMPLES_OF_PERIOD
+    if fine >= ALIKE * SAMPLE_PERIOD or not is_finite(duration) or not 0.0 < duration <= MOST_DEFAULT_SAMPLES * fine:
+        return SAMPLE_PERIOD
+    return duration / math.ceil(duration / fine - 1e-9)
+
+
+def checked_times(duration, sample_period) -> np.ndarray:
+    """Times (T,) [s] of the samples; `ValueError` for a bad duration or period, or more than `MOST_SAMPLES`."""
+    duration = checked_number("duration", duration, "s", zero=True)
+    sample_period = checked_number("sample_period", sample_period, "s")
+    steps = duration / sample_period + 1e-9
+    if not steps < MOST_SAMPLES:
+        raise ValueError(
+            f"duration must be at most {MOST_SAMPLES:,} samples of sample_period, got {duration:g} s at "
+            f"{sample_period:g} s: {steps:.4g} samples"
+        )
+    return np.arange(int(steps) + 1) * sample_period
+
+
+def check_memory(swimmers: int, samples: int, stations: int, wrench: bool, load: bool, runs: int = 1):
+    """`ValueError` if the profiles of so many `runs` of each swimmer would not fit into memory."""
+    needed = 8.0 * runs * swimmers * size_of(samples, stations, wrench, load)
+    there = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") * MOST_MEMORY
+    if needed > there:
+        raise ValueError(
+            f"stations must be fewer (or samples, or swimmers): {swimmers} swimmer{'s' if swimmers > 1 else ''} of "
+            f"{samples} samples at {stations} stations take {needed / 1e9:.3g} GB, of {there / 1e9:.3g} GB"
+        )
