@@ -34,10 +34,10 @@ PAGE = """# Can it be steered?
 
 Made by `steering --page {page}`. The paper's robot, in the scene's default physics.
 
-A swim is linearised over one period of its gait. The settled motion repeats itself, but for position and heading. A
-small disturbance at the start of a period is, at its end, a matrix times the disturbance (the monodromy matrix). Its
-eigenvalues are the multipliers: a disturbance along a mode is so many times as large one period later. Above 1 it
-grows. In Python this is `periodic_linearisation(law, scene=...)`.
+The motion is linearised over one period of the gait. The settled motion repeats itself, except for position and
+heading. The monodromy matrix maps a small disturbance at the start of a period to the disturbance at its end. Its
+eigenvalues, the *multipliers*, are the factors by which a disturbance along a mode changes in one period. Above 1 in
+magnitude the disturbance grows. In Python this is `periodic_linearisation(law, scene=...)`.
 
 ## What grows
 The gait `straight` at 1 Hz without ballast. Disturbances in the plane (heading, speed, drift) decouple from those out
@@ -46,67 +46,69 @@ of it (roll, pitch, vertical), by the mirror symmetry of body and gait.
 {without}
 
 **One mode grows, by a factor of {growth:.2f} = e^{exponent:.3f} a period.** It is roll, with some pitch. A swim that
-begins from rest takes some periods to get there, so that a fit over its first periods gives e^1.45
-([stability](stability.md)). Multipliers of 1 belong to the attitude, which nothing restores.
+begins from rest reaches this rate after some periods; a fit over its first periods gives e^1.45
+([stability](../appendix/stability.md#a-planar-law-in-space)). Multipliers of 1 belong to the attitude, which nothing
+restores.
 
-The columns *held by* tell whether a controller can move the mode (the least singular value of [A - multiplier, B],
-the test of Popov, Belevitch and Hautus; time in periods, bends as angles between head and tail). 0 says: no
-controller whatever moves it with these bends. For the multiplier of 1 it tells whether all three angles can be moved
-at once. Bends are uniform along the body, and come and go within the period, over a quarter of it each.
+The columns *held by* show whether a controller can influence the mode. The value is the least singular value of
+[A - multiplier, B], the test of Popov, Belevitch and Hautus, with time in periods and bends as angles between head and
+tail. At 0 no controller can influence the mode with these bends. For the multiplier of 1 it shows whether all three
+angles can be influenced at once. Bends are uniform along the body, and come and go within the period, over a quarter
+of it each.
 
 ## What bends can do
 - **Yaw alone cannot touch roll**, to first order. A bend in yaw keeps the swimmer in its plane.
-- **Pitch can.** By how much a bend in pitch of 1 rad/m moves the growing mode, in rad of roll, by the part of the
-  period in which the bend comes, and goes again:
+- **Pitch can.** The table shows by how much a bend in pitch of 1 rad/m changes the growing mode, in rad of roll. The
+  rows differ in the part of the period in which the bend comes, and goes again. The columns are its course between:
 
 {kicks}
 
-  A bend acts one way in one quarter of the period and the other way in the next. What a constant bend leaves depends
-  on how it comes and goes. One that beats as the cosine of the gait's phase acts the same way twice.
+  A bend acts one way in one quarter of the period and the other way in the next. So the effect of a constant bend
+  depends on how it comes and goes. A bend that varies as the cosine of the gait's phase acts the same way in both.
 - **Yaw and pitch together hold all nine modes**, with and without ballast.
 
-A linear-quadratic controller that acts once a period, in the model itself and not in its linearisation:
+This table shows a linear-quadratic controller that acts once a period, in the full model, not in its linearisation:
 
 {recovered}
 
-So bends in yaw and pitch are enough, if the controller knows the attitude and uses bends that beat with the gait.
-This controller knows the whole state exactly, and its model is the true one: sensors, delays and a wrong model take
-their share.
+So bends in yaw and pitch are enough, if the controller knows the attitude and its bends vary with the gait.
+This controller knows the whole state exactly, and its model has no error. Noise of sensors, delays and an inexact model
+make the result worse. The [pilot](../howto/pilot.md) holds the roll with such bends from the motion of the head alone.
 
 ## What ballast does
-`Scene(metacentric_height=h)` lets the weight act h below the buoyancy ([model](model.md#weight-and-buoyancy)). With
-10 mm the same gait has
+With `Scene(metacentric_height=h)` the weight acts h below the buoyancy ([model](model.md#weight-and-buoyancy)). With
+10 mm the same gait has the multipliers
 
 {with_ballast}
 
-Growth becomes a growing swing. Ballast that is strong enough ends it. The moment that turns the swimmer over comes
-from the water, and grows with the square of the frequency; that of the weight does not. So the height that steadies a
-gait goes with the square of the frequency, and slow or small strokes need little. No more than {highest:g} mm fit
-into the body.
+The growth becomes an oscillation that grows. Enough ballast ends it. The moment that turns the swimmer over comes
+from the water, and grows with the square of the frequency. The moment of the weight does not. So the height that
+stabilises a gait grows with the square of the frequency, and slow or small strokes need little. No more than
+{highest:g} mm fit into the body.
 
 {gaits}
 
-*Growth*: the greatest multiplier but the neutral ones. *Sway*: the greatest angle between the head's axis 3 and up
+*Growth*: the greatest magnitude of the multipliers, without the neutral ones.
+*Sway*: the greatest angle between the head's axis 3 and up
 over the last {seen} of {swim} periods, after a push of 1 degree of roll. Roll drag goes with the square of the rate.
-It does nothing to a small disturbance, and bounds a large one: with ballast a swim that is unstable to first order
+It hardly acts on a small disturbance, and bounds a large one. So with ballast a gait that is unstable to first order
 sways, and does not turn over.
 
 ![Multipliers over the metacentric height]({picture})
 
-Where a curve falls and rises again, two swings meet in frequency and feed each other.
+Where a curve falls and rises again, two oscillations have the same frequency and interact.
 
 ## What is left out
-Only the moment of the weight is modelled. The mass stays on the backbone. A mass that hangs low would do two things
-more:
+Only the moment of the weight is modelled. The mass stays on the backbone. A mass below it would have two more
+effects:
 - Its moment of inertia in roll is larger by m h^2. The radius of gyration in roll is {gyration:.0f} mm with the
   water, so at 10 mm this is {missing:.0%} more, and at 20 mm {missing_twice:.0%}. The rolling is somewhat slower than
   here.
-- It lags behind a sideways acceleration, and rolls the body as a lean does of so many rad as the acceleration is of
-  g. In the straight gait at 1 Hz this is {whole:.2g} for the whole body, and {tail:.2g} for the tail alone; at 0.5 Hz
-  a quarter of it. So the roll of the whole is hardly changed, and the torque along the body is.
+- It lags behind a sideways acceleration a, and rolls the body like a lean of a/g rad. In the straight gait at 1 Hz
+  this is {whole:.2g} for the whole body, and {tail:.2g} for the tail alone; at 0.5 Hz
+  a quarter of it. So the roll of the whole body hardly changes, but the torque along the body does.
 
-So take heights beyond some 20 mm as a trend. The multipliers of the model are known to {error:.0e}, by coarser
-settings.
+So results for heights beyond some 20 mm show a trend only. Coarser settings change the multipliers by at most {error:.0e}.
 """
 
 
