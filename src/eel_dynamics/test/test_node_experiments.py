@@ -4,10 +4,12 @@
 import math
 
 import pytest
+import yaml
 from eel_gaits.input_output.wording import shown
 from eel_gaits.ros.messages import law_to_message
 from geometry_msgs.msg import Point, Pose, Quaternion, Twist, Vector3
-from rcl_interfaces.srv import ListParameters
+from rcl_interfaces.srv import ListParameters, SetParameters
+from rclpy.parameter import parameter_dict_from_yaml_file
 from swim_client import LIMIT, nanoseconds
 
 from eel_gaits import Law, Term, falling
@@ -97,16 +99,36 @@ def test_a_law_that_the_next_scene_does_not_allow_is_a_refused_reset(start, clie
     assert swim.reset().success
 
 
-def test_a_node_takes_its_own_dump(start, client):
-    """As `ros2 param load` does it: every parameter, one by one, also those that are read-only."""
+def test_a_node_takes_its_own_dump(start, client, tmp_path):
+    """As `ros2 param dump` writes it and `ros2 param load` reads it: every parameter, also those that are read-only.
+    The viscosity of water, 1e-06, is a text by then."""
     swim = client(topics=())
     start("dynamics", "--ros-args", "-p", "accuracy:=0.001", "-p", "scene.density:=900")
     names = swim.call(ListParameters, "dynamics/list_parameters").result.names
     assert {"start_type_description_service", "duration", "scene.current", "body"} <= set(names)
-    answers = swim.set(**dict(zip(names, swim.get(*names), strict=True)))
-    assert all(each.successful for each in answers), answers
-    refused = swim.set(duration=5.0, rat=1.0)
-    assert "read-only" in refused[0].reason and "did you mean 'rate'?" in refused[1].reason
+    dump = {"/dynamics": {"ros__parameters": dict(zip(names, map(plain, swim.get(*names)), strict=True))}}
+    path = tmp_path / "run.yaml"
+    path.write_text(yaml.dump(dump))
+    parameters = list(parameter_dict_from_yaml_file(str(path), target_nodes=["/dynamics"]).values())
+    assert any(each.name == "scene.viscosity" and each.value.string_value == "1e-06" for each in parameters)
+    answers = swim.call(SetParameters, "dynamics/set_parameters", parameters=parameters).results
+    assert len(answers) == len(names) and all(each.successful for each in answers), answers
+    bad = {
+        "duration": (5.0, "read-only"),
+        "rat": (1.0, "no parameter 'rat' (did you mean 'rate'?)"),
+        "rate": ("nan", "rate out of range Min: 0.0, Max: 10000.0, value: nan"),
+        "scene.planar": (1, "scene.planar must be true or false, got 1"),
+        "initial_position": ("[1.0, 2, x]", "initial_position must be a list of numbers, got '[1.0, 2, x]'"),
+    }
+    for answer, (_, told) in zip(
+        swim.set(**{name: value for name, (value, _) in bad.items()}), bad.values(), strict=True
+    ):
+        assert not answer.successful and told in answer.reason, answer.reason
+
+
+def plain(value):
+    """A parameter's value without arrays, which YAML does not know."""
+    return value if isinstance(value, (bool, int, float, str)) else list(value)
 
 
 @pytest.mark.fault(

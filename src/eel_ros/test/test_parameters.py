@@ -4,6 +4,7 @@
 from dataclasses import dataclass, field
 
 import pytest
+from eel_ros.parameter_node import ParameterNode
 from eel_ros.parameters import declare, default_of, help_rows, take_overrides, warn_of_unknown
 from rclpy.context import Context
 from rclpy.node import Node
@@ -25,13 +26,13 @@ class Tank:
 
 @pytest.fixture
 def make_node(ros_domain):
-    """make_node(*words): a node with these ROS arguments, and what it logged as warnings."""
+    """make_node(*words, kind): a node with these ROS arguments."""
     made = []
 
-    def make(*words):
+    def make(*words, kind=Node):
         context = Context()
         context.init(args=["--ros-args", *words], domain_id=ros_domain)
-        node = Node(
+        node = kind(
             "tank",
             context=context,
             start_parameter_services=False,
@@ -75,6 +76,33 @@ def test_a_declared_parameter_is_set_within_its_range_alone(make_node):
     (result,) = node.set_parameters([Parameter("depth", value=3.0)])
     assert not result.successful, "not changeable"
     assert node.get_parameter("pumps").value == 2 and node.get_parameter("depth").value == 2.0
+
+
+def test_numbers_in_any_form_are_taken_for_floats_and_misfits_are_named(make_node):
+    """`ros2 param set` hands over 1e-06, nan and [1.0, 2] as texts."""
+    node = make_node(kind=ParameterNode)
+    declare(node, Tank(), limits, changeable=True)
+    for name, given, held in (
+        ("depth", 7, 7.0),
+        ("depth", "1e+02", 100.0),
+        ("size", [1, 2], [1.0, 2.0]),
+        ("size", "[1.0, 2e-3]", [1.0, 0.002]),
+        ("wall", "1e-06", "1e-06"),
+    ):
+        result = node.set_parameters_atomically([Parameter(name, value=given)])
+        assert result.successful, result.reason
+        assert node.get_parameter(name).value == held and type(node.get_parameter(name).value) is not int
+    for name, given, reason in (
+        ("depth", "deep", "depth must be a number, got 'deep'"),
+        ("depth", True, "depth must be a number, got True"),
+        ("size", "[1.0, [2]]", "size must be a list of numbers, got '[1.0, [2]]'"),
+        ("size", "[1.0, true]", "size must be a list of numbers, got '[1.0, true]'"),
+        ("pumps", "2", "pumps must be an integer, got '2'"),
+        ("pump", 2, "no parameter 'pump' (did you mean 'pumps'?)"),
+    ):
+        result = node.set_parameters_atomically([Parameter(name, value=given)])
+        assert not result.successful and result.reason == reason
+    assert (node.get_parameter("depth").value, node.get_parameter("pumps").value) == (100.0, 1)
 
 
 def test_changeable_for_all_replaces_the_metadata(make_node):
