@@ -35,21 +35,21 @@ FAMILIES = {  # heading: gaits
 }
 HEAD = """\
 # Manoeuvres
-`make manoeuvres` writes this page. Each gait swims for 20 s with its own numbers, from rest, on the robot of the paper
-(1 m). Speed, Strouhal number and cost of transport are means over the later half. Displacement, heading and roll are
-those of the whole swim, in the axes of REP-103: x ahead, y to the left, z up; a positive heading is to the left, a
+`make manoeuvres` writes this page. Each gait runs for 20 s with its default numbers, from rest, on the robot of the
+paper (1 m). Speed, Strouhal number and cost of transport are means over the later half. Displacement, heading and roll
+are those of the whole run, in the axes of REP-103: x ahead, y to the left, z up. A positive heading is to the left; a
 positive roll lifts the left side. The roll is the integral of the head's rotation about its own axis. The pictures show
 the shape over a period, the path of the centre of mass, the internal torque along the body, and the speed.
 ```
 simulate c_start --set yaw_bend=-4.0 --duration 4                    # to the left: the library has the paper's sign
-gait_generator --ros-args -p gait:=c_start -p left_bend:=4.0         # the node has that of REP-103
+gait_generator --ros-args -p gait:=c_start -p left_bend:=4.0         # to the left: the node has that of REP-103
 gait_generator --ros-args -p gait:=sequence -p file:=patrol.yaml     # gaits that follow one another
 ```
-`simulate --sequence patrol.yaml` swims a sequence offline. The node streams `cpg` as samples on `curvature_samples`;
-new numbers act half a second later, and nothing jumps.
+`simulate --sequence patrol.yaml` simulates a sequence offline. The node streams `cpg` as samples on
+`curvature_samples`. New numbers act half a second later, without a jump.
 
 ## Laws made of laws
-All are twice differentiable in time, and a law again: one message, live and offline.
+Each operation gives a law again: one message, the same live and offline. All are twice differentiable in time.
 
 | in Python | in a sequence | what |
 |---|---|---|
@@ -81,10 +81,11 @@ steps:
       - {gait: straight, duration: 2.0}
       - {gait: still, duration: 1.0}
 ```
-A fade multiplies a term's envelope by ramps. Where a ramp is still under way, the envelope becomes a product of sums of
-ramps (`factor` in [Ramp.msg](../../src/eel_msgs/msg/Ramp.msg)). A law that starts from rest needs no fade.
+`ramped_in`, `ramped_out` and `followed_by` multiply the envelope of a term by ramps. If a ramp of the term overlaps,
+the envelope becomes a product of sums of ramps (`factor` in [Ramp.msg](../../src/eel_msgs/msg/Ramp.msg)). A law that
+starts from rest needs no such ramp.
 
-## All of them
+## All gaits
 | gait | displacement [m] | heading | roll | speed [m/s] | Strouhal | cost of transport [J/m/kg] |
 |---|---|---|---|---|---|---|
 """

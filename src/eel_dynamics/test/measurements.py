@@ -27,12 +27,12 @@ MAMBA = {"amplitude": np.radians(40.0), "links": 10, "frequency": 120.0 / 360.0,
 AMPLITUDES = (1.0, 2.0, 4.0, 6.0, 8.0)  # rad/L, of a uniform wave
 HEADING = "## Against measurements"
 INTRODUCTION = """\
-Robots and animals, as far as texts that are free to read tell of them. Nothing is fitted to what is compared. The eel
-has the body of Kern and Koumoutsakos, 0.6 m long (silver eels of Methling et al., PLoS ONE 6 (2011), e20797), in water
-with blended friction. Its midline is that of the gait `anguilliform`, whose tail goes as far as that of live eels,
-0.155 L from side to side [D, G]. Wavelength (0.6 to 0.8 L) and growth (e^1 to e^3 from head to tail) are not told
-there: they are varied, and our column shows the range. It is the error bar of our ignorance of the gait, and holds no
-error of the model.
+The table compares the model with robots and animals, from sources that are free to read. Nothing is fitted to what is
+compared. The eel has the body of Kern and Koumoutsakos, 0.6 m long (silver eels of Methling et al., PLoS ONE 6 (2011),
+e20797), and swims with blended friction. Its gait is `anguilliform`, with the tail excursion of live eels,
+0.155 L from side to side [D, G]. These sources do not give the wavelength and the growth of the amplitude from head to
+tail. So these are varied over 0.6 to 0.8 L and e^1 to e^3, and our column shows the range. This range is the
+uncertainty of the gait, without the error of the model.
 """
 
 SOURCES = {

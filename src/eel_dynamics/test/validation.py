@@ -46,22 +46,21 @@ IDENTITIES = {
 HEAD = """\
 # Validation
 
-Written by `make validation` from what the tests of the mechanics measured; not by hand. Each line is an assertion of
-`make test`: the worst value over all its cases (random laws, states, bodies and scenes, drawn anew only when a test
-changes; samples; parametrisations) beside its tolerance, whose reason stands in the test. Values without a unit are
+`make validation` writes this page from what the tests of the mechanics measure. Each line is an assertion of
+`make test`. It has the worst value over all cases (random laws, states, bodies and scenes, samples, parameters) beside
+its tolerance. The reason of the tolerance stands in the test. Values without a unit are
 relative to the greatest magnitude of what is compared. Round-off differs from machine to machine in its last digits.
 
 ## What this shows, and what it does not
-These checks show that the equations of the model are solved right, and that they are the equations meant. They do not
-show that the model is the water. It is inviscid slender-body theory with fitted drag; measured against other people's
-numbers, no claim better than these is supported:
+These checks show that the equations of the model are solved correctly. They do not validate the model against real
+water. It is inviscid slender-body theory with fitted drag. Published comparisons support no better accuracy than:
 
 | against | difference | source |
 |---|---|---|
 | Navier-Stokes, planar gaits | up to 10 % | Boyer et al., IEEE T-RO 24 (2008) |
 | a swimming robot (AmphiBot III), speed | up to 16 % | Porez, Boyer, Ijspeert, Int. J. Robotics Res. 33 (2014) |
 
-The theory lets the wake feed energy in where the tail leads, V1(l) > 0; the ledger shows it, no check hides it.
+Where the tail leads, V1(l) > 0, the theory lets the wake feed energy into the body. The ledger shows it.
 """
 
 

@@ -108,7 +108,8 @@ effects:
   this is {whole:.2g} for the whole body, and {tail:.2g} for the tail alone; at 0.5 Hz
   a quarter of it. So the roll of the whole body hardly changes, but the torque along the body does.
 
-So results for heights beyond some 20 mm show a trend only. Coarser settings change the multipliers by at most {error:.0e}.
+So results for heights beyond some 20 mm show a trend only.
+Coarser settings change the multipliers by at most {error:.0e}.
 """
 
 

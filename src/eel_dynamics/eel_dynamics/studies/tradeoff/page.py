@@ -13,7 +13,7 @@ from eel_dynamics.studies.tradeoff.models import Model
 from eel_dynamics.studies.tradeoff.settings import CHECK, REFERENCE
 from eel_dynamics.studies.tradeoff.table import WANTED, cheapest, digits_table, model_table, trade_table
 
-PAGE = """# What exactness costs, and what a scene requires
+PAGE = """# Accuracy against cost, and the effect of simpler models
 
 Made by `tradeoff {gaits} --page {page}`{machine}.
 
@@ -23,28 +23,27 @@ to another machine as ratios only.{digit}
 
 {table}
 {picture}
-Each point is a setting: on the left with its error of the position, on the right of the torque. The dashed lines tell
-by how much a poorer model, solved exactly, is off. A setting whose own error is a tenth of that is exact enough
-wherever that physics is in doubt. What makes no difference to a gait may be left out of its scene: `Scene(...)` says
-what is modelled, and what is off costs nothing.
+Each point is a setting, on the left with its error of the position, on the right of the torque. The dashed lines are
+the errors of simpler models, solved exactly. Where some part of the physics is uncertain, a setting with a tenth of
+that part's error is accurate enough. Physics that makes no difference to a gait can be switched off in `Scene(...)`.
 
-A word or a number (`accuracy="standard"`, `accuracy=1e-4`) chooses settings by a rule that is on the safe side for
-swims of all kinds, and the run measures its own error: [accuracy](../explanation/accuracy.md). All settings and
+A preset or a target (`accuracy="standard"`, `accuracy=1e-4`) chooses settings by a conservative rule, and the
+run measures its own error: [accuracy](../explanation/accuracy.md). All settings and
 models, for {count} gaits: [{tables}]({tables}).
 """
-TABLES = """# What exactness costs: all tables
+TABLES = """# Accuracy against cost: all tables
 
 Made by `tradeoff {gaits} --page {page}`{machine}. The short of it: [{short}]({short}).
 
-Times are of the processor, medians of {repeats} rounds in which all settings take turns. Errors are against a run of
+Times are processor times, medians of {repeats} rounds in which all settings take turns. Errors are against a run of
 {points:g} points per body length and a tolerance of {tolerance:g} per step: of the head's position at the end by its
 path, and of the torque field (51 stations, 201 instants) by its greatest magnitude.
 
-`P`, `T`: on the Pareto front of pose, of torque: no other setting is both cheaper and more exact. `adams` takes one
-evaluation a step, of variable length; `dormand-prince` is the pair of orders 5(4), six evaluations a step, of a length
-chosen by the tolerance; `classical` is the Runge-Kutta method of order 4 with fixed steps. `no kinks`: the
-places along the body where cross flow and roll change their sign, and the printed friction jumps, are not looked for.
-The second table of a gait holds the poorer models.
+`P`, `T`: on the Pareto front of pose or torque: no other setting costs less and is more accurate. `adams`: one
+evaluation per step, variable steps. `dormand-prince`: the pair of orders 5(4), six evaluations per step, variable
+steps. `classical`: the Runge-Kutta method of order 4 with fixed steps. `no kinks`: the
+places along the body where cross flow and roll change sign, and the printed friction jumps, are not located.
+The second table of each gait shows the simpler models.
 """
 
 
