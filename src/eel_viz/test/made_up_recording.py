@@ -4,7 +4,8 @@
 from pathlib import Path
 
 import made_up
-from eel_viz.recording.loggers import Loggers, Rates
+from eel_viz.recording.loggers import Loggers
+from eel_viz.recording.rates import Rates
 from eel_viz.recording.recording_file import FileDestination
 from eel_viz.settings import Settings
 

@@ -372,7 +372,8 @@ def test_the_water_encloses_the_swimmer_and_its_labels_say_where(long_swim, root
 
 
 def test_stations_may_change_in_mid_run(record_made_up, tmp_path):
-    from eel_viz.recording.loggers import Loggers, Rates
+    from eel_viz.recording.loggers import Loggers
+    from eel_viz.recording.rates import Rates
     from eel_viz.recording.recording_file import FileDestination
     from eel_viz.settings import Settings
     from made_up_recording import sample
@@ -394,7 +395,8 @@ def test_stations_may_change_in_mid_run(record_made_up, tmp_path):
 
 
 def test_the_order_of_topics_does_not_matter(tmp_path):
-    from eel_viz.recording.loggers import Loggers, Rates
+    from eel_viz.recording.loggers import Loggers
+    from eel_viz.recording.rates import Rates
     from eel_viz.recording.recording_file import FileDestination
     from eel_viz.settings import Settings
     from made_up_recording import sample
@@ -425,7 +427,8 @@ def test_the_order_of_topics_does_not_matter(tmp_path):
 
 
 def test_a_lower_rate_for_a_live_viewer(tmp_path):
-    from eel_viz.recording.loggers import Loggers, Rates
+    from eel_viz.recording.loggers import Loggers
+    from eel_viz.recording.rates import Rates
     from eel_viz.recording.recording_file import FileDestination
     from eel_viz.settings import Settings
     from made_up_recording import sample

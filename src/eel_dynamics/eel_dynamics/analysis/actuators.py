@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from eel_gaits.input_output.wording import shown
 
-from eel_dynamics.analysis.analysis import area, power_density
+from eel_dynamics.analysis.power_density import area, power_density
 
 
 @dataclass(frozen=True)

@@ -12,8 +12,10 @@ from functools import cached_property
 
 import numpy as np
 
+from eel_dynamics.analysis.averaged_path import AveragedPath
 from eel_dynamics.analysis.averaging_window import AveragingWindow
 from eel_dynamics.analysis.friction_power import drag_powers
+from eel_dynamics.analysis.power_density import area, positive_power, power_density, torque_of
 from eel_dynamics.model.section_data import GRAVITY
 
 SETTLED = 0.01  # change of the speed within the window, relative
@@ -26,6 +28,7 @@ class Analysis:
 
     def __init__(self, run, periods: int | None = None):
         self.run, self.window = run, AveragingWindow(run, periods)
+        self._path = AveragedPath(self.window)
 
     # -- motion
 
@@ -36,14 +39,7 @@ class Analysis:
         The averaged centre moves with |c(t + T) - c(t)| / T; its mean over the window (Kern and Koumoutsakos, J. Exp.
         Biol. 209 (2006), average over a cycle likewise). A window of one period holds one such value.
         """
-        window, period = self.window, self.window.period
-        if window.periods == 1:
-            return (
-                float(np.linalg.norm(window.center_of_mass(window.end) - window.center_of_mass(window.start))) / period
-            )
-        time = window.instants(window.start, window.end - period)
-        way = window.center_of_mass(time + period) - window.center_of_mass(time)
-        return float(area(np.linalg.norm(way, axis=1), time)) / period / (time[-1] - time[0])
+        return self._path.mean_speed()
 
     @cached_property
     def speed_change(self) -> float | None:
@@ -51,13 +47,8 @@ class Analysis:
 
         A window of one period is compared with the period before it. Undefined where there is none, and at rest.
         """
-        window, period = self.window, self.window.period
-        first = window.start if window.periods > 1 else window.start - period
-        if first < self.run.time[0] - 1e-9 * period or not self.moves:
-            return None
-        start = np.array([first, window.end - period])
-        before, after = np.linalg.norm(window.center_of_mass(start + period) - window.center_of_mass(start), axis=1)
-        return float(abs(after - before) / period / self.mean_speed)
+        change = self._path.speed_change()
+        return change / self.mean_speed if change is not None and self.moves else None
 
     @property
     def settled(self) -> bool:
@@ -96,22 +87,7 @@ class Analysis:
         along the path of the averaged centre of mass; then the greatest distance between two points of a period. In a
         window of a single period the mean path is the chord from its start to its end.
         """
-        window, period = self.window, self.window.period
-        if window.periods == 1:
-            time = window.instants(window.start, window.end)
-            chord = window.tail(window.end) - window.tail(window.start)
-            apart = window.tail(time) - np.outer((time - time[0]) / period, chord)
-            way = window.center_of_mass(window.end) - window.center_of_mass(window.start)
-            return _width(_across(apart, np.broadcast_to(way, apart.shape), self.moves))
-        total, half = window.tail.antiderivative(), 0.5 * period
-        widths = []
-        for beat in range(window.periods - 1):
-            start = window.start + half + beat * period
-            time = window.instants(start, start + period)
-            apart = window.tail(time) - (total(time + half) - total(time - half)) / period
-            way = window.center_of_mass(time + half) - window.center_of_mass(time - half)
-            widths.append(_width(_across(apart, way, self.moves)))
-        return float(np.mean(widths))
+        return self._path.tail_excursion(self.moves)
 
     @property
     def strouhal(self) -> float | None:
@@ -207,12 +183,12 @@ class Analysis:
     @property
     def peak_torque(self) -> np.ndarray:
         """Greatest magnitude [N m] of the internal torque in the window at each station, (M,)."""
-        return np.max(np.linalg.norm(_torque(self.run)[self.window.inside], axis=2), axis=0)
+        return np.max(np.linalg.norm(torque_of(self.run)[self.window.inside], axis=2), axis=0)
 
     @property
     def rms_torque(self) -> np.ndarray:
         """Root of the mean square [N m] of the internal torque in the window at each station, (M,)."""
-        return np.sqrt(np.maximum(0.0, self.window.mean(np.sum(_torque(self.run) ** 2, axis=2))))
+        return np.sqrt(np.maximum(0.0, self.window.mean(np.sum(torque_of(self.run) ** 2, axis=2))))
 
     @property
     def _ledger(self):
@@ -224,41 +200,3 @@ class Analysis:
         if not self.actuator_power > 0.0 or self.tail_leads:
             return None
         return useful() / self.actuator_power
-
-
-def positive_power(run) -> np.ndarray:
-    """Integral of max(-C . dK/dt, 0) over the body (T,) [W] at each sample of `run`."""
-    return area(np.maximum(power_density(run), 0.0), run.x)
-
-
-def power_density(run) -> np.ndarray:
-    """Power of the actuators per length, -C . dK/dt (T, M) [W/m], at the stations of `run`. `ValueError` where these do
-    not reach from nose to tail."""
-    length = run.body.length
-    if len(run.x) < 2 or run.x[0] > 1e-9 * length or run.x[-1] < (1.0 - 1e-9) * length:
-        raise ValueError(f"run must have stations from 0 to {length:g} m, got {run.x[0]:g} to {run.x[-1]:g} m")
-    return -np.sum(_torque(run) * run.curvature_rate, axis=2)
-
-
-def area(values: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """Integral of `values` (..., n) by `x` (n,), by the trapezoidal rule."""
-    return np.sum(0.5 * (values[..., 1:] + values[..., :-1]) * np.diff(x), axis=-1)
-
-
-def _torque(run) -> np.ndarray:
-    if run.torque is None:
-        raise ValueError("torque needs a run with scene internal_wrench on")
-    return run.torque
-
-
-def _across(apart: np.ndarray, way: np.ndarray, moves: bool) -> np.ndarray:
-    """`apart` (n, 3) [m] less its part along `way` (n, 3)."""
-    if not moves:
-        return apart
-    along = way / np.linalg.norm(way, axis=1, keepdims=True)
-    return apart - np.sum(apart * along, axis=1, keepdims=True) * along
-
-
-def _width(points: np.ndarray) -> float:
-    """Greatest distance [m] between two of the `points` (n, 3)."""
-    return float(np.max(np.linalg.norm(points[:, None] - points[None], axis=2)))

@@ -11,6 +11,7 @@ contain sqrt(X) are smooth in u. A tail that ends in an edge or a point has such
 half-axes. There X = l - length (1 - u)^2.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from typing import NamedTuple
@@ -107,6 +108,17 @@ class Grid:
     def points_at(self, x) -> PanelPoints:
         """The points at X = `x` (M,) [m], ascending."""
         return PanelPoints(*self.rows_at(x, "integral"), self.fraction_at(x))
+
+    def interpolation_at(self, x) -> Callable[[np.ndarray], np.ndarray]:
+        """The function from fields at the nodes (..., n) to their values at X = `x` (M,) [m]: (..., M)."""
+        rows, first, _ = self.rows_at(x, "value")
+        last = len(self.x) - 1
+
+        def values(fields: np.ndarray) -> np.ndarray:
+            nodes = (np.minimum(first + j, last).astype(np.int64) for j in range(rows.shape[1]))
+            return sum(rows[:, j] * fields[..., node] for j, node in enumerate(nodes))
+
+        return values
 
     def panel_at(self, x) -> np.ndarray:
         """Index (M,) of the panel that holds X = `x` (M,) [m]. A kink belongs to the panel that it ends."""

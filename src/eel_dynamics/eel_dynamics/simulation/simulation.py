@@ -21,7 +21,7 @@ from eel_dynamics.curvature.curvature_samples import CurvatureSample, check_poin
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.initial_state import InitialState
 from eel_dynamics.model.scene import Scene
-from eel_dynamics.simulation.discretisation import Discretisation, GridSettings
+from eel_dynamics.simulation.discretisation import Discretisation
 from eel_dynamics.simulation.law_driven_march import march_from_start
 from eel_dynamics.simulation.observations import Observations, empty_observations
 from eel_dynamics.simulation.simulation_setup import SimulationSetup, checked_state
@@ -69,39 +69,37 @@ class Simulation:
             stations=stations,
             initial_state=(position, orientation, twist),
             default_transition=default_transition,
-            law=law,
             most_evaluations=most_evaluations,
             swim_time=swim_time,
         )
         self.body, self.scene, self.x = setup.body, setup.scene, setup.x
-        self._needs = setup.shape_needs(law)
-        self._march = march_from_start(setup, self._needs, law)
+        self._march = march_from_start(setup, setup.shape_needs(law), law)
         self.ready, self._started = law is not None, False
 
     @property
     def time(self) -> float:
         """Present time [s]."""
-        return self._march.time
+        return self._march.compiled.time
 
     @property
     def state(self) -> np.ndarray:
         """(13,) position, orientation, momentum about the head, in the world's axes."""
-        return self._march.state
+        return self._march.compiled.state
 
     @property
     def accuracy(self) -> Accuracy:
         """The settings in force."""
-        return self._march.accuracy
+        return self._setup.settings
 
     @property
     def grid(self):
         """The nodes along the body (`model.grid.Grid`)."""
-        return self._march.discretisation.grid
+        return self.discretisation.grid
 
     @property
     def discretisation(self) -> Discretisation:
         """Body and scene on the grid."""
-        return self._march.discretisation
+        return self._march.compiled.discretisation
 
     # -- law and samples
 
@@ -113,7 +111,7 @@ class Simulation:
     @property
     def tabulated_law(self) -> eel_core.Law:
         """The law or the samples that drive the body, on the grid."""
-        return self._march.tabulated_law
+        return self._march.compiled.tabulated_law
 
     @property
     def samples_until(self) -> float | None:
@@ -142,10 +140,10 @@ class Simulation:
             raise ValueError(f"law origin must be finite, got {shown(origin)} s")
         blend = self._setup.transition_to(law, transition)
         if self._started:
-            self._march.adopt(law, float(origin), blend, needs, self._needs)
+            self._march.adopt(law, float(origin), blend, needs)
         else:
             self._march = march_from_start(self._setup, needs, law, float(origin), self._march.settings)
-        self._needs, self.ready = needs, True
+        self.ready = True
 
     def add_samples(self, time, x, pitch, pitch_rate, pitch_accel, yaw, yaw_rate, yaw_accel, waves=None):
         """Add a controller's curvature at the instant `time` [s], which lies ahead; before the start it may be 0.
@@ -169,25 +167,14 @@ class Simulation:
             now=self.time,
             begun=self._started,
         )
-        self._march.add_sample(sample)
+        self._march.follower.add(sample)
         self.ready = True
 
     def copy_with(self, accuracy: Accuracy) -> "Simulation":
         """A copy in the present state that continues with the settings `accuracy`."""
-        position, orientation, twist = self._setup.initial_state
-        other = Simulation(
-            body=self.body,
-            scene=self.scene,
-            accuracy=accuracy,
-            stations=self.x,
-            position=position,
-            orientation=orientation,
-            twist=twist,
-            default_transition=self._setup.default_transition,
-            most_evaluations=self._setup.most_evaluations,
-        )
+        other = Simulation(**self._setup.arguments | {"accuracy": accuracy})
         other._march = self._march.copy_with(other._setup)
-        other._needs, other.ready, other._started = self._needs, self.ready, self._started
+        other.ready, other._started = self.ready, self._started
         return other
 
     # -- march
@@ -220,9 +207,7 @@ class Simulation:
         `ValueError` for a law that cannot begin from the initial state; the simulation then stays as it is.
         """
         law, setup = self.law, self._setup
-        needs = setup.shape_needs(law)
-        grid = GridSettings.of(self.accuracy, *needs)  # it may be finer than needed, for samples
-        self._march, self._needs = march_from_start(setup, needs, law, grid=grid), needs
+        self._march = march_from_start(setup, setup.shape_needs(law), law)
         self.ready, self._started = law is not None, False
 
     # -- observe
@@ -234,7 +219,7 @@ class Simulation:
         """
         wrench, load = bool(wrench and self.scene.internal_wrench), bool(load)
         out = empty_observations(1, len(self.x), wrench, load)
-        self._march.observe(out, wrench, load)
+        self._march.compiled.observe(out, wrench, load)
         return Snapshot.of(out, self.time, self.x, self.works if self.scene.ledger else None, self.energy_at_start)
 
     @property
@@ -266,12 +251,12 @@ class Simulation:
     @property
     def works(self) -> np.ndarray:
         """(4,) J of actuators, wake, nose and drag since the start."""
-        return self._march.works
+        return self._march.compiled.works
 
     @property
     def evaluations(self) -> tuple[int, int, int]:
         """Numbers of steps, rejected steps and evaluations of the head's dynamics so far."""
-        return self._march.counts
+        return self._march.compiled.counts
 
     @property
     def error_estimate(self) -> ErrorEstimate | None:
@@ -281,7 +266,7 @@ class Simulation:
     @property
     def memory(self) -> int:
         """Bytes that an evaluation reads and writes."""
-        return self._march.memory
+        return self._march.compiled.memory
 
 
 @cache

@@ -64,7 +64,6 @@ class SimulationSetup:
     initial_state: InitialState
     default_transition: float  # s
     most_evaluations: float  # by simulated second
-    law: Law | SampledLaw | None  # the first
     swim_time: Callable[[Scene, float], float]  # s of wall time by simulated second, of a scene and a target
 
     @staticmethod
@@ -76,7 +75,6 @@ class SimulationSetup:
         stations,
         initial_state: tuple,
         default_transition: float,
-        law: Law | SampledLaw | None,
         most_evaluations: float,
         swim_time: Callable[[Scene, float], float],
     ) -> "SimulationSetup":
@@ -92,7 +90,23 @@ class SimulationSetup:
             raise ValueError(f"default_transition must be finite and > 0 s, got {shown(default_transition)}")
         most_evaluations = checked_number("most_evaluations", most_evaluations, "per simulated second")
         transition = float(default_transition)
-        return SimulationSetup(body, scene, accuracy, x, start, transition, most_evaluations, law, swim_time)
+        return SimulationSetup(body, scene, accuracy, x, start, transition, most_evaluations, swim_time)
+
+    @property
+    def arguments(self) -> dict:
+        """The arguments of `Simulation` that give such a set-up, without a law."""
+        position, orientation, twist = self.initial_state
+        return {
+            "body": self.body,
+            "scene": self.scene,
+            "accuracy": self.accuracy,
+            "stations": self.x,
+            "position": position,
+            "orientation": orientation,
+            "twist": twist,
+            "default_transition": self.default_transition,
+            "most_evaluations": self.most_evaluations,
+        }
 
     def __deepcopy__(self, memo: dict) -> "SimulationSetup":
         return self

@@ -10,7 +10,7 @@ from collections.abc import Callable
 import rerun as rr
 import rerun.blueprint as rrb
 
-from eel_viz.recording.loggers import Rates
+from eel_viz.recording.rates import Rates
 from eel_viz.settings import Settings
 from eel_viz.views.blueprint import arrangement
 from eel_viz.views.views import USUAL, Look

@@ -11,8 +11,8 @@ from collections.abc import Sequence
 import rerun as rr
 
 from eel_viz.recording.destination import Destination, LogFunction
-from eel_viz.recording.loggers import Rates
 from eel_viz.recording.merged_messages import Messages, record_messages
+from eel_viz.recording.rates import Rates
 from eel_viz.recording.recording_file import FileDestination
 from eel_viz.settings import Settings
 

@@ -6,9 +6,6 @@ Geometry is drawn in single precision at one rate. Scalars and profiles are logg
 order. Rows are sent in batches (see `batched_stream`): call `send_due` regularly, and `flush` at the end.
 """
 
-import reprlib
-from dataclasses import dataclass
-
 import numpy as np
 import rerun as rr
 from eel_gaits.pilot.attitude import attitude
@@ -17,11 +14,13 @@ from eel_viz import entities
 from eel_viz.batched_stream import BatchedStream
 from eel_viz.messages import Backbone, Body, Load, Pose, Profiles, Status, Twist
 from eel_viz.plots.comparison import Comparison
+from eel_viz.plots.event_log import EventLog
 from eel_viz.plots.heat_map import HeatMap
 from eel_viz.plots.limit import Limit
 from eel_viz.plots.profile_plot import ProfilePlot
 from eel_viz.plots.series import Attitude, log_styles
 from eel_viz.plots.state_text import Summary
+from eel_viz.recording.rates import Rates, Slots, period_of
 from eel_viz.scene3d import colours
 from eel_viz.scene3d.swimmer_scene import SwimmerScene
 from eel_viz.settings import Settings
@@ -31,21 +30,6 @@ ENVELOPE_PERIOD = 500_000_000  # ns
 HEAT_MAP_PERIOD = 200_000_000
 SUMMARY_PERIOD = 200_000_000
 REACH = 0.25  # body lengths, within which a way point counts as reached
-LOG_NAMES = reprlib.Repr()
-LOG_NAMES.maxstring = 220  # characters of a law's name, which is not checked before
-LEVELS = ("INFO", "WARN", "ERROR", "WARN")
-
-
-@dataclass(frozen=True, kw_only=True)
-class Rates:
-    """How often numbers and drawings are logged [Hz of simulation time]; 0: with every message.
-
-    `tick` [s of wall time]: how long rows may wait for a batch.
-    """
-
-    numbers: float = 0.0
-    drawings: float = 25.0
-    tick: float = 0.2
 
 
 class Loggers:
@@ -56,11 +40,11 @@ class Loggers:
 
     def __init__(self, recording: rr.RecordingStream, settings: Settings, rates: Rates, name: str = "eel") -> None:
         self._stream = stream = BatchedStream(recording, tick=rates.tick)
-        self._number_period = _period(rates.numbers)
-        self._drawing_period = _period(rates.drawings)
-        self._slots: dict[str, int] = {}
+        self._number_period = period_of(rates.numbers)
+        self._drawing_period = period_of(rates.drawings)
+        self._due = Slots().due
         self._stations: dict[str, np.ndarray] = {}
-        self._statuses: dict[str, tuple[int, str]] = {}
+        self._events = EventLog(stream)
         self.summary = Summary()
         self._attitude = Attitude()
         self._scene = SwimmerScene(
@@ -217,7 +201,7 @@ class Loggers:
         self.summary.law = name
         if self._comparison:
             self._comparison.this.law(stamp, name)
-        self._text(stamp, f"law {LOG_NAMES.repr(name)} published", "INFO")
+        self._events.law(stamp, name)
 
     def diagnostics(self, stamp: int, statuses: list[Status]) -> None:
         """Log each status whose level or message has changed; the values go into the summary."""
@@ -226,20 +210,9 @@ class Loggers:
         for status in statuses:
             if self.summary.add_status(stamp, status.message, status.values):
                 self._summarise(self.summary.stamp)
-            if self._statuses.get(status.name) != (status.level, status.message):
-                self._statuses[status.name] = (status.level, status.message)
-                self._text(stamp, f"{status.name}: {status.message}", LEVELS[min(status.level, 3)])
+            self._events.status(stamp, status)
 
     # --- logging ----------------------------------------------------------------------------------------
-    def _due(self, what: str, stamp: int, period: int) -> bool:
-        """Whether `stamp` [ns] lies in a new slot of `period` [ns]."""
-        if period:
-            slot = (stamp + 1000) // period  # stamps are rounded to ns
-            if self._slots.get(what) == slot:
-                return False
-            self._slots[what] = slot
-        return True
-
     def _numbers(
         self, stamp: int, path: str, name: str, values: dict[str, np.ndarray], x: np.ndarray | None = None
     ) -> None:
@@ -252,10 +225,3 @@ class Loggers:
 
     def _summarise(self, stamp: int) -> None:
         self._stream.log(stamp, entities.RUN, rr.TextDocument(self.summary.text(), media_type="text/markdown"))
-
-    def _text(self, stamp: int, text: str, level: str) -> None:
-        self._stream.log(stamp, entities.LOG, rr.TextLog(text, level=level))
-
-
-def _period(rate: float) -> int:
-    return round(1e9 / rate) if rate else 0

@@ -12,7 +12,7 @@ from eel_gaits.input_output.wording import shown
 
 from eel_viz.recording.delivery import space_error, write_error
 from eel_viz.recording.destination import Destination, LogFunction
-from eel_viz.recording.loggers import Rates
+from eel_viz.recording.rates import Rates
 from eel_viz.recording.rrd_frames import cut_to_whole_messages, is_complete
 from eel_viz.settings import Settings
 
