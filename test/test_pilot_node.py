@@ -52,6 +52,8 @@ def test_a_short_course_is_swum_and_goals_that_do_not_fit_are_refused(start, fre
     misses = re.findall(r"way point (\d) of 2 reached: (\S+) m from it", pilot.output())
     assert [number for number, _ in misses] == ["1", "2"] and all(float(miss) < 0.25 for _, miss in misses), misses
     pilot.wait_for_output("cannot be reached: no nearer", LIMIT)  # it has no brake, and coasts past the last point
+    assert re.search(r"WARN.* the goal .* cannot be reached", pilot.output()), pilot.output()
+    assert re.search(r"INFO.* way point 2 of 2 reached", pilot.output()), pilot.output()
     assert "ERROR" not in pilot.output(), pilot.output()
     assert re.search(r"exceeds torque_limit 0.05 N m at X = \S+ m, t = \S+ s", dynamics.output()), dynamics.output()
     swim.close()

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The environments for learning: Gymnasium's own check, seeds, threads, actions, and what is refused."""
 
+import math
 import subprocess
 import sys
 import warnings
@@ -12,7 +13,7 @@ from eel_dynamics.gym import DepthEnv, HeadingEnv, KnotAction, LawAction, Swimme
 from gymnasium.utils.env_checker import check_env
 from gymnasium.vector import AutoresetMode
 
-from eel_dynamics import Scene, Simulation
+from eel_dynamics import Scene, Simulation, SimulationStopped
 from eel_gaits import Law, Term, helix, straight
 
 TASKS = {"Heading": HeadingEnv, "Depth": DepthEnv, "WayPoints": WayPointsEnv}
@@ -295,3 +296,26 @@ def test_a_task_of_ones_own_needs_a_reward_alone():
         observation, reward, *_ = env.step([0.0])
     assert reward > 0.2 and observation.shape == (4,)  # bend, its rate, phase of the wave
     assert "left_bend [rad/m], -0.5 to 0.5" in env.describe()
+
+
+def test_each_episode_has_a_recording_of_its_own_also_one_that_stops(tmp_path, monkeypatch):
+    pytest.importorskip("eel_viz")
+    older = tmp_path / "Heading-0.rrd"
+    older.write_bytes(b"of another environment")
+    env = HeadingEnv(render_mode="rerun", recordings=tmp_path, control_period=0.1)
+    assert env.metadata["render_fps"] == 10
+
+    def stop(*_):
+        raise SimulationStopped(0.1, "momentum is not finite", math.nan, "swim slower")
+
+    env.reset(seed=1)
+    env.step(np.zeros(1))
+    with monkeypatch.context() as patch:
+        patch.setattr(Simulation, "advance", stop)
+        assert "not finite" in env.step(np.zeros(1))[4]["stopped"]
+    env.reset()
+    env.step(np.zeros(1))
+    env.close()
+    assert sorted(path.name for path in tmp_path.iterdir()) == [f"Heading-{number}.rrd" for number in range(3)]
+    assert older.read_bytes() == b"of another environment"
+    assert all((tmp_path / f"Heading-{number}.rrd").read_bytes().startswith(b"RRF") for number in (1, 2))

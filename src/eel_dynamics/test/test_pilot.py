@@ -8,7 +8,7 @@ import pytest
 from eel_dynamics.studies.pilot.closed_loop import swim_with
 from eel_dynamics.studies.pilot.courses import figures_of, motion_alone, random_path, swim_path
 from eel_gaits.pilot.goals import Path, course, station
-from eel_gaits.pilot.pilot import Pilot
+from eel_gaits.pilot.pilot import News, Pilot
 from eel_gaits.pilot.settings import PilotSettings
 
 LIMITS = PilotSettings().limits
@@ -19,7 +19,7 @@ def test_way_points_of_a_random_course_are_reached():
     pilot, voyage = swim_path(Path(whole.points[:3], whole.speed))
     assert len(voyage.misses) == 3 and max(voyage.misses) < 0.25, voyage.misses
     assert pilot.news == [
-        f"way point {k + 1} of 3 reached: {miss:.3g} m from it" for k, miss in enumerate(pilot.misses)
+        News(f"way point {k + 1} of 3 reached: {miss:.3g} m from it", good=True) for k, miss in enumerate(pilot.misses)
     ]
     assert np.abs(voyage.roll).max() < 1.0
 

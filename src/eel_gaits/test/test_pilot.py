@@ -115,6 +115,15 @@ def test_guidance_aims_at_the_leg_and_goes_from_point_to_point():
     assert demand(6.0, 7.95, 1.0) == (True, None) and guidance.done
 
 
+def test_a_way_point_straight_below_is_dived_to_on_the_present_heading():
+    pilot, still = Pilot(), np.zeros(3)
+    pilot.begin()
+    pilot.follow(pilot.checked_path(goals.path([(0.0, 0.0, -1.0)], 0.5, LIMITS)))
+    pilot.step(0.0, HeadMotion(still, about(2, 0.4), still, still), STEP)
+    assert pilot.demand.heading == pytest.approx(0.4) and pilot.demand.possible
+    assert pilot.demand.height == -1.0 and pilot.demand.climb < -0.3
+
+
 @pytest.mark.parametrize(
     ("make", "said"),
     [
@@ -166,8 +175,9 @@ def test_water_that_carries_the_swimmer_off_is_reported():
     for k in range(200):
         head = HeadMotion(np.array((-0.2 * k, 0.0, 0.0)), np.array((0.0, 0.0, 0.0, 1.0)), still, still)
         pilot.step(0.1 * k, head, 0.1)
-    assert [line.partition(":")[0] for line in pilot.news] == ["the goal (5, 0, 0) m cannot be reached"]
-    assert pilot.news[0].endswith("the water is faster than the swimmer may swim")
+    (news,) = pilot.news
+    assert news.text.startswith("the goal (5, 0, 0) m cannot be reached: ") and not news.good
+    assert news.text.endswith("the water is faster than the swimmer may swim")
 
 
 def test_the_beat_slows_down_where_the_torque_is_too_great():

@@ -159,6 +159,21 @@ def test_two_recordings_are_drawn_side_by_side_where_both_have_times():
         SideBySide(filled("red", 0.0, 1.0), filled("blue", 2.0, 3.0))
 
 
+@pytest.mark.parametrize(("suffix", "unit"), [("gif", 10), ("webp", 1)])
+def test_an_animation_lasts_as_long_as_it_should(tmp_path, suffix, unit):
+    """At 30 pictures a second none lasts a whole number of the format's units."""
+    for k in range(12):
+        Image.new("RGB", (8, 8), (20 * k, 0, 0)).save(tmp_path / f"frame_{k:05d}.png")
+    film(tmp_path, 12, tmp_path / f"film.{suffix}", fps=30.0)
+    total = 0
+    with Image.open(tmp_path / f"film.{suffix}") as image:
+        for k in range(image.n_frames):
+            image.seek(k)
+            image.load()
+            total += image.info["duration"]
+    assert total == pytest.approx(400, abs=unit)
+
+
 def test_the_times_of_a_film():
     assert times(TenSeconds, fps=30, start=None, end=None, speed=1.0)[-1] == pytest.approx(10.0)
     assert len(times(TenSeconds, fps=30, start=None, end=None, speed=1.0)) == 301

@@ -2,20 +2,23 @@
 """Everything that is logged, read back and compared number by number with what was given."""
 
 import math
+from dataclasses import replace
 from types import SimpleNamespace as NS
 
 import made_up
 import numpy as np
 import pytest
-from eel_gaits.pilot.attitude import attitude
+from eel_gaits.pilot.attitude import attitude, world_from_body
 from eel_viz.plots import heat_map
 from eel_viz.recording.dispatcher import Dispatcher
+from eel_viz.recording.loggers import Loggers
+from eel_viz.recording.rates import Rates
 from eel_viz.recording.reading import read
 from eel_viz.recording.recording_file import FileDestination
 from eel_viz.recording.recordings import Recordings
 from eel_viz.scene3d import camera
 from eel_viz.scene3d.colours import diverging, diverging_index
-from eel_viz.scene3d.orientation import world_from_body, world_from_section
+from eel_viz.scene3d.orientation import world_from_section
 from eel_viz.scene3d.skin import Flanks, Skin
 from eel_viz.scene3d.track import LENGTH, PIECES, POINTS, STROBE_PERIOD, THREADS
 from eel_viz.scene3d.water import GRID, LABELS, WALLS
@@ -90,6 +93,20 @@ def test_way_points_of_a_goal_are_drawn_and_a_bad_goal_is_left_out(tmp_path):
     axes = world_from_body(np.array(tube["quaternions"][0]))
     np.testing.assert_allclose(axes[0, :, 2], along / np.linalg.norm(along), atol=1e-6)
     assert [text for text in said if "goal_path: poses" in text], said
+
+
+def test_way_points_that_come_before_the_body_get_its_size(tmp_path):
+    path, said = tmp_path / "goal.rrd", []
+    settings = Settings(recording=str(path))
+    destination = FileDestination(settings, said.append, said.append)
+    stream = destination.open(1, "goal")
+    loggers = Loggers(stream, settings, Rates())
+    loggers.course(np.array([(4.0, 1.0, -0.5), (8.0, -1.0, 0.25)]))
+    loggers.body(replace(body(), length=0.4))
+    loggers.flush()
+    destination.close_recording(stream)
+    spheres = read(path, entities.WAY_POINTS, static=True)
+    np.testing.assert_allclose(spheres["half_sizes"][-1], np.full((2, 3), 0.1), rtol=1e-6)
 
 
 def test_scalars_are_exact_and_complete(made):
@@ -372,8 +389,6 @@ def test_the_water_encloses_the_swimmer_and_its_labels_say_where(long_swim, root
 
 
 def test_stations_may_change_in_mid_run(record_made_up, tmp_path):
-    from eel_viz.recording.loggers import Loggers
-    from eel_viz.recording.rates import Rates
     from eel_viz.recording.recording_file import FileDestination
     from eel_viz.settings import Settings
     from made_up_recording import sample
@@ -395,8 +410,6 @@ def test_stations_may_change_in_mid_run(record_made_up, tmp_path):
 
 
 def test_the_order_of_topics_does_not_matter(tmp_path):
-    from eel_viz.recording.loggers import Loggers
-    from eel_viz.recording.rates import Rates
     from eel_viz.recording.recording_file import FileDestination
     from eel_viz.settings import Settings
     from made_up_recording import sample
@@ -427,8 +440,6 @@ def test_the_order_of_topics_does_not_matter(tmp_path):
 
 
 def test_a_lower_rate_for_a_live_viewer(tmp_path):
-    from eel_viz.recording.loggers import Loggers
-    from eel_viz.recording.rates import Rates
     from eel_viz.recording.recording_file import FileDestination
     from eel_viz.settings import Settings
     from made_up_recording import sample

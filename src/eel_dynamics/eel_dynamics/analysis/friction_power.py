@@ -2,9 +2,9 @@
 """Power of the axial friction, k1 of section 7.2.1, apart from the rest of the drag."""
 
 import numpy as np
+from eel_gaits.pilot.attitude import world_from_body
 
 import eel_core
-from eel_dynamics.model.axes import matrix_of
 from eel_dynamics.simulation.simulation import Simulation
 
 
@@ -19,6 +19,6 @@ def drag_powers(run) -> np.ndarray:
     instant, powers = eel_core.Instant(simulation.discretisation.swimmer), np.zeros((len(run.time), 4))
     for sample, time in enumerate(run.time):
         relative = run.twist[sample].copy()
-        relative[3:] -= matrix_of(run.orientation[sample]).T @ run.scene.current
+        relative[3:] -= world_from_body(run.orientation[sample]).T @ run.scene.current
         powers[sample] = instant.drag_powers(simulation.tabulated_law, float(time), relative)
     return powers

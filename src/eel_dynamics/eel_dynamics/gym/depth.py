@@ -7,9 +7,18 @@ from dataclasses import dataclass
 from eel_gaits.input_output.quantity import quantity
 from eel_gaits.pilot.head_motion import wrapped
 
-from eel_dynamics.gym.swimmer_env import FASTEST, SPIN, Episode, Observed, Start, SwimmerEnv
+from eel_dynamics.gym.swimmer_env import (
+    FARTHEST,
+    FASTEST,
+    GREATEST_START_SPEED,
+    SPIN,
+    Episode,
+    Observed,
+    Start,
+    SwimmerEnv,
+)
 
-FARTHEST = 100.0  # m, bound of what is observed
+LEAST_CHANGE = 0.05  # body lengths: the reward of a task that holds its depth needs a scale too
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,7 +44,8 @@ class DepthEnv(SwimmerEnv):
     gait straight(). The swimmer moves in space, where it dives and rolls over by itself: the policy must prevent that.
 
     The reward of a control step is control_period (1 - error / (2 greatest_change)) [s], at least 0, with the size of
-    the error of the head's depth. An episode ends, besides by `duration`, where the head rolls beyond `roll_limit`.
+    the error of the head's depth; a `greatest_change` below a twentieth of the body's length counts as that. An episode
+    ends, besides by `duration`, where the head rolls beyond `roll_limit`.
     """
 
     name = "Depth"
@@ -63,7 +73,7 @@ class DepthEnv(SwimmerEnv):
         draw = self.np_random.uniform
         self.target = draw(-1.0, 1.0) * self.numbers.greatest_change
         return Start(
-            speed=draw(0.0, 0.5),
+            speed=draw(0.0, GREATEST_START_SPEED),
             roll_rate=draw(-1.0, 1.0) * self.numbers.greatest_roll_rate,
             own_time=draw(0.0, self.action.period),
         )
@@ -84,7 +94,7 @@ class DepthEnv(SwimmerEnv):
 
     def reward(self) -> float:
         """See the class."""
-        scale = 2.0 * max(self.numbers.greatest_change, 0.05 * self.body.length)
+        scale = 2.0 * max(self.numbers.greatest_change, LEAST_CHANGE * self.body.length)
         return self.numbers.control_period * max(0.0, 1.0 - abs(self.error) / scale)
 
     def ended(self) -> bool:

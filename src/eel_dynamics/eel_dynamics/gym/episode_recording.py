@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """An episode as a `Run`, and its Rerun recording."""
 
+import contextlib
 import os
 from pathlib import Path
 
@@ -20,7 +21,10 @@ STACKED = (
 
 
 class EpisodeRecording:
-    """Collects the snapshots of an episode, and writes it to a folder: TASK-0.rrd, TASK-1.rrd and so on."""
+    """Collects the snapshots of an episode, and writes it to a folder: TASK-0.rrd, TASK-1.rrd and so on.
+
+    A file that is there already stays: other environments may record to the same folder.
+    """
 
     def __init__(self, folder, name: str):
         self._folder, self._name, self._number = Path(os.fspath(folder)), name, 0
@@ -36,8 +40,21 @@ class EpisodeRecording:
         if len(snapshots) < 2:
             return
         self._folder.mkdir(parents=True, exist_ok=True)
-        run_of(snapshots, simulation, self._name).to_rerun(self._folder / f"{self._name}-{self._number}.rrd")
-        self._number += 1
+        path = self._new_file()
+        try:
+            run_of(snapshots, simulation, self._name).to_rerun(path)
+        except BaseException:
+            path.unlink(missing_ok=True)
+            raise
+
+    def _new_file(self) -> Path:
+        """The path of a new, empty file with the next number."""
+        while True:
+            path = self._folder / f"{self._name}-{self._number}.rrd"
+            self._number += 1
+            with contextlib.suppress(FileExistsError):
+                path.open("xb").close()
+                return path
 
 
 def run_of(snapshots: list[Snapshot], simulation: Simulation, name: str) -> Run:

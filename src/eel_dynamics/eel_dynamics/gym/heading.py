@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from eel_gaits.input_output.quantity import quantity
 from eel_gaits.pilot.head_motion import wrapped
 
-from eel_dynamics.gym.swimmer_env import FASTEST, SPIN, Episode, Observed, Start, SwimmerEnv
+from eel_dynamics.gym.swimmer_env import FASTEST, GREATEST_START_SPEED, SPIN, Episode, Observed, Start, SwimmerEnv
 from eel_dynamics.model.scene import Scene
 
 
@@ -62,7 +62,7 @@ class HeadingEnv(SwimmerEnv):
         draw = self.np_random.uniform
         return Start(
             heading=self.target + draw(-1.0, 1.0) * self.numbers.greatest_error,
-            speed=draw(0.0, 0.5),
+            speed=draw(0.0, GREATEST_START_SPEED),
             own_time=draw(0.0, self.action.period),
             left_trim=draw(-1.0, 1.0) * self.numbers.greatest_trim,
         )

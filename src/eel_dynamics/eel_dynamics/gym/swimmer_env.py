@@ -2,7 +2,6 @@
 """The base class of the environments: one swimmer, control steps, and what a task adds to them."""
 
 import math
-from collections import deque
 from dataclasses import dataclass, fields
 from typing import ClassVar, NamedTuple
 
@@ -11,12 +10,13 @@ import numpy as np
 from eel_gaits.gaits.swimming import straight
 from eel_gaits.input_output.quantity import Quantities, described_fields, quantity
 from eel_gaits.input_output.wording import one_line, shown
-from eel_gaits.pilot.head_motion import HeadMotion, wrapped
+from eel_gaits.pilot.head_motion import HeadMotion
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.gym.episode_recording import EpisodeRecording
 from eel_dynamics.gym.knot_action import KnotAction
 from eel_dynamics.gym.law_action import LawAction
+from eel_dynamics.gym.mean_heading import MeanHeading
 from eel_dynamics.gym.picture import picture
 from eel_dynamics.model.arguments import checked_instance
 from eel_dynamics.model.axes import turn_vector
@@ -26,7 +26,8 @@ from eel_dynamics.simulation.head_motion import head_motion_of, turned
 from eel_dynamics.simulation.simulation import Simulation
 from eel_dynamics.simulation.stopping import SimulationStopped
 
-FASTEST, SPIN = 10.0, 50.0  # m/s, rad/s: bounds of what is observed
+FASTEST, SPIN, FARTHEST = 10.0, 50.0, 100.0  # m/s, rad/s, m: bounds of what is observed
+GREATEST_START_SPEED = 0.5  # m/s, that the tasks draw: near that of straight()
 
 
 class Observed(NamedTuple):
@@ -103,6 +104,7 @@ class SwimmerEnv(gymnasium.Env):
                 f"render_mode must be one of {', '.join(self.metadata['render_modes'])}, got {shown(render_mode)}"
             )
         self.render_mode = render_mode
+        self.metadata = self.metadata | {"render_fps": round(1.0 / self.numbers.control_period)}
         self.scene = self.default_scene() if scene is None else checked_instance("scene", scene, Scene)
         self.body = Body.boyer2010() if body is None else checked_instance("body", body, Body)
         if action is not None and not isinstance(action, (LawAction, KnotAction)):
@@ -115,7 +117,7 @@ class SwimmerEnv(gymnasium.Env):
         self._settings = {"accuracy": Accuracy.of(accuracy), "stations": 51 if render_mode else 2}
         self._recording = EpisodeRecording(recordings, self.name) if render_mode == "rerun" else None
         self._simulation: Simulation | None = None
-        self._headings: deque = deque(maxlen=max(1, round(self.action.period / self.numbers.control_period)))
+        self._mean_heading = MeanHeading(max(1, round(self.action.period / self.numbers.control_period)))
         self._trim, self._tick = 0.0, 0
         self.head: HeadMotion | None = None
         self.heading = 0.0
@@ -182,6 +184,7 @@ class SwimmerEnv(gymnasium.Env):
             self._simulation.advance(self._tick * self.numbers.control_period)
             observation = self._look()
         except SimulationStopped as stopped:
+            self._finish_recording()
             self._simulation = None
             return self._observation(), 0.0, True, False, {"stopped": one_line(stopped)}
         truncated = self._tick * self.numbers.control_period >= self.numbers.duration * (1.0 - 1e-9)
@@ -205,7 +208,7 @@ class SwimmerEnv(gymnasium.Env):
 
         `reset` calls it, and so does a controller of the dynamics node at the start of a run.
         """
-        self._headings.clear()
+        self._mean_heading.clear()
         return self.action.begin(own_time)
 
     def see(self, head: HeadMotion) -> np.ndarray:
@@ -213,10 +216,7 @@ class SwimmerEnv(gymnasium.Env):
 
         `step` calls it with the simulation's head. A controller of the dynamics node calls it with that of a message.
         """
-        heading = head.heading
-        last = self._headings[-1] if self._headings else heading
-        self._headings.append(last + wrapped(heading - last))
-        self.head, self.heading = head, wrapped(sum(self._headings) / len(self._headings))
+        self.head, self.heading = head, self._mean_heading.add(head.heading)
         return self._observation()
 
     def describe(self) -> str:

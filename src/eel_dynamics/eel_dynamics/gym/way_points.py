@@ -7,10 +7,17 @@ from dataclasses import dataclass
 from eel_gaits.input_output.quantity import quantity
 from eel_gaits.pilot.head_motion import wrapped
 
-from eel_dynamics.gym.swimmer_env import FASTEST, SPIN, Episode, Observed, Start, SwimmerEnv
+from eel_dynamics.gym.swimmer_env import (
+    FARTHEST,
+    FASTEST,
+    GREATEST_START_SPEED,
+    SPIN,
+    Episode,
+    Observed,
+    Start,
+    SwimmerEnv,
+)
 from eel_dynamics.model.scene import Scene
-
-FARTHEST = 100.0  # m, bound of what is observed
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -78,7 +85,7 @@ class WayPointsEnv(SwimmerEnv):
             x, y = x + numbers.distance * math.cos(bearing), y + numbers.distance * math.sin(bearing)
             self.points.append((x, y))
         self._distance, self._reached = numbers.distance, False
-        return Start(speed=draw(0.0, 0.5), own_time=draw(0.0, self.action.period))
+        return Start(speed=draw(0.0, GREATEST_START_SPEED), own_time=draw(0.0, self.action.period))
 
     def observe(self) -> list[float]:
         """Bearing and distance of the point, turn to the next, yaw rate, velocity in the plane."""

@@ -32,15 +32,3 @@ def turn_world(quaternion: np.ndarray) -> np.ndarray:
     """
     x, y, z, w = np.moveaxis(np.asarray(quaternion, dtype=float), -1, 0)
     return np.stack([-y, x, w, -z], axis=-1)
-
-
-def matrix_of(quaternion: np.ndarray) -> np.ndarray:
-    """Rotation matrix (3, 3) of the unit `quaternion` (4,), order x y z w."""
-    x, y, z, w = quaternion
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-        ]
-    )

@@ -5,8 +5,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-
-from eel_dynamics.model.axes import matrix_of
+from eel_gaits.pilot.attitude import world_from_body
 
 
 class InitialState(NamedTuple):
@@ -20,7 +19,7 @@ class InitialState(NamedTuple):
         """Twist (6,) of the head relative to water that flows with the `current` (3,) [m/s]."""
         relative = self.twist - 0.0
         if current.any():
-            relative[3:] -= matrix_of(self.orientation).T @ current
+            relative[3:] -= world_from_body(self.orientation).T @ current
         return relative
 
     def against_water(self, current: np.ndarray) -> "InitialState":
@@ -28,7 +27,7 @@ class InitialState(NamedTuple):
         if not current.any():
             return self
         twist = self.twist.copy()
-        twist[3:] += matrix_of(self.orientation).T @ current
+        twist[3:] += world_from_body(self.orientation).T @ current
         return self._replace(twist=twist)
 
 

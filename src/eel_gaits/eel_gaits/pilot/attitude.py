@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Heading, climb and roll of a head, in REP-103 axes: x forward, y left, z up.
+"""An orientation as angles and as a matrix, in REP-103 axes: x forward, y left, z up.
 
-They are the Z-Y-X angles of the orientation, but the climb has the sign of the pitch turned. An `orientation` is a
-quaternion (4,) x y z w, world from head, of any norm but 0.
+Heading, climb and roll are the Z-Y-X angles, but the climb has the sign of the pitch turned. They take a quaternion
+(4,) x y z w, world from head, of any norm but 0.
 """
 
 import math
 from collections.abc import Sequence
+
+import numpy as np
 
 
 def heading(orientation: Sequence[float]) -> float:
@@ -30,3 +32,20 @@ def roll(orientation: Sequence[float]) -> float:
 def attitude(orientation: Sequence[float]) -> tuple[float, float, float]:
     """Heading, climb and roll [rad]."""
     return heading(orientation), climb(orientation), roll(orientation)
+
+
+def world_from_body(orientation: np.ndarray) -> np.ndarray:
+    """Rotation matrices of unit quaternions `orientation`, shape (..., 4); returns (..., 3, 3), columns = body axes."""
+    q = np.asarray(orientation, dtype=float)
+    x, y, z, w = q[..., 0], q[..., 1], q[..., 2], q[..., 3]
+    matrix = np.empty((*q.shape[:-1], 3, 3))
+    matrix[..., 0, 0] = 1 - 2 * (y * y + z * z)
+    matrix[..., 0, 1] = 2 * (x * y - z * w)
+    matrix[..., 0, 2] = 2 * (x * z + y * w)
+    matrix[..., 1, 0] = 2 * (x * y + z * w)
+    matrix[..., 1, 1] = 1 - 2 * (x * x + z * z)
+    matrix[..., 1, 2] = 2 * (y * z - x * w)
+    matrix[..., 2, 0] = 2 * (x * z - y * w)
+    matrix[..., 2, 1] = 2 * (y * z + x * w)
+    matrix[..., 2, 2] = 1 - 2 * (x * x + y * y)
+    return matrix

@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from eel_gaits.pilot.attitude import world_from_body
 from eel_gaits.pilot.head_motion import HeadMotion, wrapped
 from eel_gaits.pilot.period_means import PeriodMeans
 
@@ -86,29 +87,17 @@ class Estimator:
 class Plane(NamedTuple):
     """The plane of the beat."""
 
-    roll: float
-    climb: float
-    roll_rate: float
-    climb_rate: float
+    roll: float  # rad
+    climb: float  # rad
+    roll_rate: float  # rad/s
+    climb_rate: float  # rad/s
 
     @staticmethod
     def of(head: HeadMotion, heading: float) -> "Plane":
         """The plane normal to the head's up axis; its angles [rad] are about a level frame of this `heading` [rad]."""
-        forward, left, up = matrix_of(head.orientation).T
+        forward, left, up = world_from_body(head.orientation).T
         turning = head.angular_velocity[0] * forward + head.angular_velocity[1] * left  # without that about `up`
         c, s = math.cos(heading), math.sin(heading)
         ahead, aside = (lambda v: c * v[0] + s * v[1]), (lambda v: c * v[1] - s * v[0])
         climb = math.asin(max(-1.0, min(1.0, -ahead(up))))
         return Plane(math.atan2(-aside(up), up[2]), climb, float(ahead(turning)), float(-aside(turning)))
-
-
-def matrix_of(quaternion) -> np.ndarray:
-    """Rotation matrix (3, 3) of the unit `quaternion` (4,), order x y z w."""
-    x, y, z, w = quaternion
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-        ]
-    )

@@ -85,14 +85,7 @@ def described(goal: Course | Path | Station) -> str:
 
 def check_first_point(goal: Path, position, heading: float, limits: Limits):
     """`ValueError` where the first point lies within a turning circle at `position` (3,) [m] with this `heading`."""
-    away = goal.points[0] - position
-    ahead = away[0] * math.cos(heading) + away[1] * math.sin(heading)
-    aside = abs(away[1] * math.cos(heading) - away[0] * math.sin(heading))
-    if math.hypot(ahead, aside - limits.turning_radius) < limits.turning_radius - limits.reach:
-        raise ValueError(
-            f"path point 1 must lie outside the turning circle of {limits.turning_radius:.3g} m of the swimmer, "
-            f"got {ahead:.3g} m ahead and {aside:.3g} m aside"
-        )
+    _check_turn("1", "of the swimmer", goal.points[0] - position, (math.cos(heading), math.sin(heading)), limits)
 
 
 def checked_speed(speed: float, limits: Limits) -> float:
@@ -125,11 +118,18 @@ def _check_leg(k: int, points: np.ndarray, limits: Limits):
         )
     if before is None:
         return
-    size = math.hypot(before[0], before[1])
-    ahead = (leg[0] * before[0] + leg[1] * before[1]) / size
-    aside = abs(leg[1] * before[0] - leg[0] * before[1]) / size
+    _check_turn(f"{k + 1}", f"at point {k}", leg, before[:2] / math.hypot(before[0], before[1]), limits)
+
+
+def _check_turn(point: str, where: str, leg: np.ndarray, forward, limits: Limits):
+    """`ValueError` where a `point` lies within a turning circle.
+
+    leg (3,) [m]: to it. forward (2,): horizontal direction in which the swimmer comes to where the leg begins.
+    """
+    ahead = leg[0] * forward[0] + leg[1] * forward[1]
+    aside = abs(leg[1] * forward[0] - leg[0] * forward[1])
     if math.hypot(ahead, aside - limits.turning_radius) < limits.turning_radius - limits.reach:
         raise ValueError(
-            f"path point {k + 1} must lie outside the turning circle of {limits.turning_radius:.3g} m at point {k}, "
+            f"path point {point} must lie outside the turning circle of {limits.turning_radius:.3g} m {where}, "
             f"got {ahead:.3g} m ahead and {aside:.3g} m aside"
         )

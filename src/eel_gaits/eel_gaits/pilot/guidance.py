@@ -89,6 +89,8 @@ class PathGuidance:
         begin, end = self._points[self.target : self.target + 2]
         leg, away = end - begin, estimate.position - begin
         length = math.hypot(leg[0], leg[1])
+        if length == 0.0:  # the point lies straight above or below the start
+            return self._on_the_spot(end, estimate, greatest_speed)
         along = float(away[:2] @ leg[:2]) / length
         left = float(leg[0] * away[1] - leg[1] * away[0]) / length
         ahead = max(min(self._look_ahead, length - along), self._close)
@@ -96,6 +98,12 @@ class PathGuidance:
         height = float(begin[2] + min(1.0, max(0.0, along / length)) * leg[2])
         climb = math.atan2(leg[2], length) + math.atan((height - estimate.position[2]) / ahead)
         heading, speed, possible = against_water(course, self.speed, estimate.water, greatest_speed)
+        return Demand(heading, speed, climb, height, possible)
+
+    def _on_the_spot(self, end: np.ndarray, estimate: Estimate, greatest_speed: float) -> Demand:
+        """The demand of a leg that leads to no side: swim on, and climb or dive to the depth of its `end` (3,)."""
+        climb, height = math.atan((end[2] - estimate.position[2]) / self._look_ahead), float(end[2])
+        heading, speed, possible = against_water(estimate.heading, self.speed, estimate.water, greatest_speed)
         return Demand(heading, speed, climb, height, possible)
 
 

@@ -6,8 +6,8 @@ targets of a steered law (laws/steered_law.py), which makes curvature of them th
 pilot sends samples rather than laws: it decides at each step, and a law in closed form would need a blend each time.
 """
 
-import math
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from eel_gaits.laws.steered_law import SteeredLaw
 from eel_gaits.pilot.estimate import Estimate, Estimator
 from eel_gaits.pilot.goals import Course, Path, Station, check_first_point
 from eel_gaits.pilot.guidance import CourseGuidance, PathGuidance, StationGuidance
-from eel_gaits.pilot.head_motion import HeadMotion
+from eel_gaits.pilot.head_motion import HeadMotion, wrapped
 from eel_gaits.pilot.progress import Progress
 from eel_gaits.pilot.regulator import Gains, Regulator
 from eel_gaits.pilot.settings import PilotSettings
@@ -25,6 +25,14 @@ from eel_gaits.pilot.torque_limiter import TorqueLimiter
 
 RESPONSE = 0.2  # periods of the gait in which the numbers of the law follow their targets
 CLOSE = 0.5  # reaches: a way point that is so close is left for the next one
+ON_COURSE = 0.1  # error of the heading [rad] and of the depth [m] together, below which a course counts as held
+
+
+class News(NamedTuple):
+    """Something that the pilot reports."""
+
+    text: str
+    good: bool = False  # False: a warning
 
 
 class Pilot:
@@ -42,7 +50,7 @@ class Pilot:
         estimate: the last one; None before the first step.
         demand: the last one.
         misses: [m], least distances of the head to the points of the present path that have been passed.
-        news: lines to be reported, the oldest first; whoever reports them empties the list.
+        news: what is to be reported, the oldest first; whoever reports it empties the list.
     """
 
     def __init__(self, settings: PilotSettings | None = None, law: Law | None = None, gains: Gains | None = None):
@@ -60,7 +68,7 @@ class Pilot:
         self.estimate: Estimate | None = None
         self.demand = None
         self.misses: list[float] = []
-        self.news: list[str] = []
+        self.news: list[News] = []
 
     def begin(self) -> np.ndarray:
         """Begin a run: the straight body at rest. The curvature (6, points) as of `SteeredLaw.advance`."""
@@ -96,9 +104,8 @@ class Pilot:
     def limit_torque(self, torque: float, limit: float, time: float):
         """Slow down where the internal `torque` [N m] at `time` [s] exceeds the `limit` [N m]; 0: there is none."""
         if self._torque.exceeded(torque, limit, time, self.law.values["tempo"][0]):
-            self.news.append(
-                f"the torque of {torque:.3g} N m exceeds the limit of {limit:.3g} N m at the slowest beat too"
-            )
+            text = f"the torque of {torque:.3g} N m exceeds the limit of {limit:.3g} N m at the slowest beat too"
+            self.news.append(News(text))
         self._regulator.tempo_limit = self._torque.tempo
 
     def step(self, time: float, head: HeadMotion, step: float) -> np.ndarray:
@@ -139,8 +146,10 @@ class Pilot:
         if isinstance(self._guidance, PathGuidance) and self._guidance.pass_points(estimate, head.position):
             index, miss = self._guidance.target, self._guidance.last_miss
             self.misses.append(miss)
-            passed = "reached" if miss <= reach else "missed"
-            self.news.append(f"way point {index} of {len(goal.points)} {passed}: {miss:.3g} m from it")
+            reached = miss <= reach
+            passed = "reached" if reached else "missed"
+            text = f"way point {index} of {len(goal.points)} {passed}: {miss:.3g} m from it"
+            self.news.append(News(text, good=reached))
             self._progress.restart(estimate.time)
             if self._guidance.done:
                 self.follow(Station(goal.points[-1], goal.speed))
@@ -151,10 +160,8 @@ class Pilot:
         """Report where the goal does not come nearer."""
         goal, estimate = self.goal, self.estimate
         if isinstance(goal, Course):
-            error = abs(math.remainder(goal.heading - estimate.heading, 2.0 * math.pi)) + abs(
-                -goal.depth - estimate.position[2]
-            )
-            close, where = 0.1, f"heading {goal.heading:.3g} rad, depth {goal.depth:.3g} m"
+            error = abs(wrapped(goal.heading - estimate.heading)) + abs(-goal.depth - estimate.position[2])
+            close, where = ON_COURSE, f"heading {goal.heading:.3g} rad, depth {goal.depth:.3g} m"
         else:
             point = goal.point if isinstance(goal, Station) else goal.points[self.target]
             error = float(np.linalg.norm(point - head.position))
@@ -162,7 +169,6 @@ class Pilot:
             where = f"({point[0]:.3g}, {point[1]:.3g}, {point[2]:.3g}) m"
         if self._progress.stalled(time, error, close):
             why = "" if self.demand.possible else ": the water is faster than the swimmer may swim"
-            self.news.append(
-                f"the goal {where} cannot be reached: no nearer than {self._progress.least:.3g} "
-                f"for {self.settings.patience:g} s{why}"
-            )
+            least, patience = self._progress.least, self.settings.patience
+            text = f"the goal {where} cannot be reached: no nearer than {least:.3g} for {patience:g} s{why}"
+            self.news.append(News(text))

@@ -16,6 +16,9 @@ from eel_gaits.pilot.head_motion import wrapped
 from eel_gaits.pilot.settings import PilotSettings
 
 KEEL = 0.004  # metacentric height by length and by tempo squared, about which the gains of the roll change
+NEAR = 0.1  # body lengths from the wanted depth within which the error of the height is integrated: no windup on a dive
+MOST_CLIMB_OFFSET = 0.1  # rad, that this integral may add to the climb
+SHARE_OF_BEND = 0.5  # of the limit of the bend, that the integral of the error of the climb may take
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -67,13 +70,12 @@ class Regulator:
         per_tempo = 1.0 / max(law.values["tempo"][0], settings.slowest_tempo)
         keel = min(1.0, max(0.0, settings.metacentric_height * per_tempo**2 / settings.length / KEEL - 0.5))
         high = demand.height - estimate.position[2]
-        most = settings.greatest_climb
-        if abs(high) < 0.1 * settings.length and demand.speed > 0.0:
-            self._climb_offset = _limited(self._climb_offset + step * gains.height * high, 0.1)
-        climb = _limited(demand.climb, most) + self._climb_offset
+        if abs(high) < NEAR * settings.length and demand.speed > 0.0:
+            self._climb_offset = _limited(self._climb_offset + step * gains.height * high, MOST_CLIMB_OFFSET)
+        climb = _limited(demand.climb, settings.greatest_climb) + self._climb_offset
         if demand.speed > 0.0:
             more = step * gains.climb_integral * (climb - estimate.climb)
-            self._bend_offset = _limited(self._bend_offset + more, 0.5 * bend_limit)
+            self._bend_offset = _limited(self._bend_offset + more, SHARE_OF_BEND * bend_limit)
         bend, bend_rate, _ = law.values["up_bend"]
         swirl, swirl_rate, _ = law.values["swirl"]
         length = settings.length
@@ -108,8 +110,8 @@ class Regulator:
         settings = self._settings
         wanted = speed / settings.cruise_speed
         tempo = min(max(wanted, settings.slowest_tempo), self.tempo_limit)
-        largest = min(1.0, wanted / settings.slowest_tempo)
-        return tempo, largest
+        amplitude = min(1.0, wanted / settings.slowest_tempo)
+        return tempo, amplitude
 
 
 def _limited(value: float, most: float) -> float:

@@ -4,6 +4,8 @@
 import math
 
 RECOVERY = 0.02  # 1/s, by which the greatest tempo grows again
+LONGEST_STEP = 1.0  # s, that count of a longer gap between two torques
+AT_SLOWEST = 1.05  # times the slowest tempo: a beat that is no faster has no room left
 
 
 class TorqueLimiter:
@@ -26,13 +28,13 @@ class TorqueLimiter:
         if limit <= 0.0:
             self.tempo = self._fastest
             return False
-        step = min(1.0, max(0.0, time - self._time))
+        step = min(LONGEST_STEP, max(0.0, time - self._time))
         self._time = time
         if not torque > limit:  # nor NaN
             self.tempo = min(self._fastest, self.tempo * (1.0 + RECOVERY * step))
             return False
         self.tempo = max(self._slowest, min(self.tempo, tempo * math.sqrt(limit / torque)))
-        if self._said or tempo > 1.05 * self._slowest:
+        if self._said or tempo > AT_SLOWEST * self._slowest:
             return False
         self._said = True
         return True

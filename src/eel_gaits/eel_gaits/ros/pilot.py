@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The pilot: hears `odom` and goals, and answers with the curvature that leads the swimmer there.
+"""The pilot: subscribes to `odom` and goals, and answers with the curvature that leads the swimmer there.
 
 Goals are the parameters heading, depth and speed, a path on `goal_path`, a station on `goal_pose`: the last one counts.
 What cannot be reached is refused in one line, and the last goal stays. docs/howto/pilot.md tells more.
@@ -32,7 +32,7 @@ from eel_gaits.ros.pilot_parameters import GROUPS, GoalParameters, TimingParamet
 from eel_msgs.msg import CurvatureSamples, SwimState
 
 NAME = "pilot"
-ABOUT = "Swims to goals: hears odom, goal_path and goal_pose, and answers on curvature_samples."
+ABOUT = "Swims to goals: subscribes to odom, goal_path and goal_pose, and answers on curvature_samples."
 MOST_WAITING = 50  # samples of odom that wait for the torque of the same time
 
 
@@ -57,12 +57,13 @@ class PilotNode(ParameterNode):
         self._last, self._next, self._answers = math.inf, 0.0, []  # s, s: last odom, next sample; what it was answered
         self._waiting: list[Odometry] = []
         self._torques: dict[float, float] = {}  # time [s]: torque [N m]
+        self._torque_comes = False  # whether swim_state has come, and none has been missed since
         self._publisher = self.create_publisher(CurvatureSamples, "curvature_samples", keep_all())
         self.create_subscription(Odometry, "odom", self._receive, keep_all())
         self.create_subscription(Path, "goal_path", self._receive_path, 10)
         self.create_subscription(PoseStamped, "goal_pose", self._receive_pose, 10)
         self._swim_state = None
-        self._hear_torque()
+        self._subscribe_to_torque()
         self.add_on_set_parameters_callback(self._change)
 
     # -- goals
@@ -86,7 +87,7 @@ class PilotNode(ParameterNode):
             self._follow(course, "parameters")
         elif "speed" in changes:
             self._pilot.change_speed(numbers.speed)
-        self._hear_torque()
+        self._subscribe_to_torque()
         return SetParametersResult(successful=True)
 
     def _receive_path(self, message: Path):
@@ -117,36 +118,51 @@ class PilotNode(ParameterNode):
     def _check_frame(self, frame: str):
         """`ValueError` for a frame that is not that of odom."""
         if frame.lstrip("/") not in self._frames:
-            known = " or ".join(shown(each) for each in sorted(self._frames - {""}))
+            known = " or ".join(shown(each) for each in sorted(self._frames - {""})) or "empty"
             raise ValueError(f"frame_id must be {known}, got {shown(frame)}")
 
     # -- samples
 
-    def _hear_torque(self):
+    def _subscribe_to_torque(self):
         """Subscribe to swim_state while there is a limit of torque."""
         wanted = self._numbers.torque_limit > 0.0
         if wanted and self._swim_state is None:
             self._swim_state = self.create_subscription(SwimState, "swim_state", self._receive_state, keep_all())
         elif not wanted and self._swim_state is not None:
             self.destroy_subscription(self._swim_state)
-            self._swim_state = None
+            self._swim_state, self._torque_comes = None, False
+            self._torques.clear()
             self._pilot.limit_torque(0.0, 0.0, 0.0)
+            self._answer_waiting()
 
     def _receive_state(self, message: SwimState):
-        self._torques[seconds_of(message.header.stamp)] = message.greatest_torque
+        now = seconds_of(message.header.stamp)
+        self._torques = {time: torque for time, torque in self._torques.items() if time < now}  # none of an earlier run
+        self._torques[now], self._torque_comes = message.greatest_torque, True
+        if math.isnan(message.greatest_torque):
+            self._warn_of_torque("swim_state holds no torque; the dynamics node needs internal_wrench")
         self._answer_waiting()
+
+    def _warn_of_torque(self, reason: str):
+        self.get_logger().warning(f"torque_limit is not kept: {reason}", throttle_duration_sec=10.0)
 
     def _receive(self, odometry: Odometry):
         self._waiting.append(odometry)
         self._answer_waiting()
 
     def _answer_waiting(self):
-        """Answer each odom once the torque of its time is known, so that a run repeats itself."""
+        """Answer each odom once the torque of its time is known, so that a run repeats itself.
+
+        Nothing waits before swim_state has come, nor once it stays away.
+        """
         while self._waiting:
             now = seconds_of(self._waiting[0].header.stamp)
             if self._swim_state is not None:
-                if now not in self._torques and len(self._waiting) <= MOST_WAITING:
-                    return
+                if now not in self._torques and self._torque_comes:
+                    if len(self._waiting) <= MOST_WAITING:
+                        return
+                    self._torque_comes = False
+                    self._warn_of_torque(f"swim_state stays away, at t = {now:.2f} s")
                 torque = self._torques.get(now, math.nan)
                 self._torques = {time: each for time, each in self._torques.items() if time >= now}
                 self._pilot.limit_torque(torque, self._numbers.torque_limit, now)
@@ -173,9 +189,9 @@ class PilotNode(ParameterNode):
                 self._next += period
         for answer in self._answers:
             self._publisher.publish(answer)
-        for line in self._pilot.news:
-            text = f"t = {now:.2f} s: {line}"
-            if "reached:" in line:  # rclpy takes one severity from a line of code
+        for news in self._pilot.news:
+            text = f"t = {now:.2f} s: {news.text}"
+            if news.good:  # rclpy takes one severity from a line of code
                 self.get_logger().info(text)
             else:
                 self.get_logger().warning(text)

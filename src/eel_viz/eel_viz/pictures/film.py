@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Makes a film of pictures: with ffmpeg if it is installed, or as an animated GIF or WebP without it."""
 
+import itertools
 import os
 import pathlib
 import shutil
@@ -12,6 +13,7 @@ from eel_gaits.input_output.wording import shown
 ANIMATIONS = (".gif", ".webp")
 FRAME = "frame_%05d.png"
 QUALITY = 60  # of a .webp
+UNITS = {".gif": 10, ".webp": 1}  # ms, whole numbers of which a picture of an animation lasts
 FILMS = (".mp4", ".webm", ".mkv", ".mov", *ANIMATIONS)
 
 
@@ -48,6 +50,12 @@ def film(
             _encode(program, pathlib.Path(folder) / FRAME, count, draft, fps)
 
 
+def durations(count: int, fps: float, unit: int) -> list[int]:
+    """How long each of `count` pictures lasts [ms], in whole `unit` [ms]: `fps` per second on the whole."""
+    ends = [round(1000.0 * k / fps / unit) for k in range(count + 1)]
+    return [unit * max(1, end - begin) for begin, end in itertools.pairwise(ends)]
+
+
 def _encode(program: str, pictures: pathlib.Path, count: int, path: pathlib.Path, fps: float) -> None:
     even = "pad=ceil(iw/2)*2:ceil(ih/2)*2"  # most codecs need even sizes
     command = [program, "-y", "-v", "error", "-framerate", f"{fps:g}", "-i", str(pictures)]
@@ -69,7 +77,7 @@ def _animate(pictures: list[pathlib.Path], path: pathlib.Path, fps: float, quali
         path,
         save_all=True,
         append_images=(picture(name) for name in others),
-        duration=1000 / fps,
+        duration=durations(len(pictures), fps, UNITS[path.suffix]),
         loop=0,
         quality=quality,
     )

@@ -29,7 +29,6 @@ from eel_viz.stations import same
 ENVELOPE_PERIOD = 500_000_000  # ns
 HEAT_MAP_PERIOD = 200_000_000
 SUMMARY_PERIOD = 200_000_000
-REACH = 0.25  # body lengths, within which a way point counts as reached
 
 
 class Loggers:
@@ -101,8 +100,7 @@ class Loggers:
 
     def course(self, points: np.ndarray) -> None:
         """Log the way points (n, 3) [m] of a goal, valid at all times."""
-        body = self.summary.body
-        self._scene.course(points, REACH * (body.length if body else 1.0))
+        self._scene.course(points)
 
     def head_pose(self, stamp: int, pose: Pose) -> None:
         """Log path, attitude and depth of the head."""

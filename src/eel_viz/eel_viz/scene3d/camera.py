@@ -57,7 +57,7 @@ class FollowFilter:
     """
 
     RATE = 0.8  # w [rad/s]
-    JUMP = 2.0  # s without a call, after which the filter jumps to the point
+    JUMP = 2.0  # s without a call, or back in time, after which the filter jumps to the point
 
     def __init__(self) -> None:
         self._stamp: int | None = None
@@ -68,7 +68,7 @@ class FollowFilter:
         """The filtered position, (3,) [m], at `stamp` [ns], when the point is at `target`, (3,) [m]."""
         elapsed = np.inf if self._stamp is None else (stamp - self._stamp) * 1e-9
         self._stamp = stamp
-        if elapsed > self.JUMP:
+        if abs(elapsed) > self.JUMP:
             self.position, self._velocity = np.array(target, dtype=float), np.zeros(3)
             return self.position
         turn, decay = self.RATE * elapsed, np.exp(-self.RATE * elapsed)

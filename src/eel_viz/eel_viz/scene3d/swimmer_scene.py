@@ -10,7 +10,7 @@ from eel_viz.messages import Backbone, Body, Load, Pose
 from eel_viz.scene3d import colours, legend
 from eel_viz.scene3d.arrows import Arrows
 from eel_viz.scene3d.camera import FollowFrame, PathFrame
-from eel_viz.scene3d.orientation import turns_of_up_into
+from eel_viz.scene3d.course import Course
 from eel_viz.scene3d.skin import Flanks, Skin
 from eel_viz.scene3d.track import Strobes, Track
 from eel_viz.scene3d.water import WaterBox
@@ -33,7 +33,7 @@ class SwimmerScene:
         self._water, self._path_water = (WaterBox(stream, root) for root in (entities.WATER, entities.PATH_WATER))
         self._path_water_stamp: int | None = None  # ns
         self._track, self._strobes = Track(stream), Strobes(stream)
-        self._arrows = Arrows(stream, **scales)
+        self._arrows, self._course = Arrows(stream, **scales), Course(stream)
         stream.log_static(entities.WORLD, rr.ViewCoordinates.RIGHT_HAND_Z_UP)
         stream.log_static(entities.BACKBONE, rr.LineStrips3D.from_fields(colors=[colours.LABEL], radii=[0.0004]))
         stream.log_static(entities.SHADOW, rr.LineStrips3D.from_fields(colors=[(4, 10, 17)], radii=[0.03]))
@@ -42,6 +42,7 @@ class SwimmerScene:
 
     def body(self, body: Body) -> None:
         """Take the sections, and log what never changes of skin and torque layer."""
+        self._course.resize(body.length)
         sections = body.x, body.half_width, body.half_height
         self._skin, self._flanks = Skin(*sections), Flanks(*sections)
         fixed = rr.Mesh3D.from_fields(triangle_indices=self._skin.triangles, vertex_colors=self._skin.shades)
@@ -50,28 +51,9 @@ class SwimmerScene:
         # until a torque comes; not static, for static colours would hide later ones
         self._stream.add_row(0, entities.TORQUE_LAYER, rr.Mesh3D, vertex_colors=self._flanks.shades)
 
-    def course(self, points: np.ndarray, reach: float) -> None:
-        """Draw the legs between the way `points` (n, 3) [m], a sphere of the radius `reach` [m] about each point, and a
-        tube as wide about each leg."""
-        thin = rr.Radius.ui_points(0.8)
-        legs = rr.LineStrips3D([points.astype(np.float32)], colors=[colours.LABEL], radii=[thin])
-        self._stream.log_static(entities.COURSE, legs)
-        spheres = rr.Ellipsoids3D(
-            centers=points, half_sizes=np.full((len(points), 3), reach), colors=[colours.AMBER], line_radii=[thin]
-        )
-        self._stream.log_static(entities.WAY_POINTS, spheres)
-        along = np.diff(points, axis=0)
-        lengths = np.linalg.norm(along, axis=1)
-        tube = rr.Capsules3D(
-            lengths=lengths,
-            radii=np.full(len(lengths), reach),
-            translations=points[:-1],
-            quaternions=turns_of_up_into(along / np.maximum(lengths, 1e-9)[:, None]),
-            colors=[colours.AMBER],
-            line_radii=[thin],
-            fill_mode="majorwireframe",
-        )
-        self._stream.log_static(entities.TUBE, tube)
+    def course(self, points: np.ndarray) -> None:
+        """Draw the way `points` (n, 3) [m] of a goal."""
+        self._course.draw(points)
 
     def head(self, stamp: int, pose: Pose) -> None:
         """Draw the path of the head, and its axes."""

@@ -66,4 +66,4 @@ def swim_with(
     table = np.array(found)
     parts = np.split(table, [1, 4, 7, 8, 9, 10], axis=1)
     flat = [part[:, 0] if part.shape[1] == 1 else part for part in parts]
-    return Voyage(*flat, misses=tuple(pilot.misses), news=tuple(pilot.news))
+    return Voyage(*flat, misses=tuple(pilot.misses), news=tuple(news.text for news in pilot.news))

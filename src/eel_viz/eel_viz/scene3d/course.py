@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Draws the way points of a goal: the legs between them, and how near counts as reached."""
+
+import numpy as np
+import rerun as rr
+from eel_gaits.pilot.settings import PilotSettings
+
+from eel_viz import entities
+from eel_viz.batched_stream import BatchedStream
+from eel_viz.scene3d import colours
+from eel_viz.scene3d.orientation import turns_of_up_into
+
+REACH = PilotSettings().reach  # body lengths, within which a way point counts as reached
+
+
+class Course:
+    """Draws the last course, valid at all times: its legs, a sphere about each point, a tube as wide about each leg.
+
+    Before the body's length is known they are as wide as for a body of 1 m.
+    """
+
+    def __init__(self, stream: BatchedStream) -> None:
+        self._stream, self._length = stream, 1.0  # m, of the body
+        self._points: np.ndarray | None = None  # (n, 3) m
+
+    def resize(self, length: float) -> None:
+        """Take the body's `length` [m]; a course that is there already is drawn again."""
+        self._length = length
+        if self._points is not None:
+            self.draw(self._points)
+
+    def draw(self, points: np.ndarray) -> None:
+        """Draw the way `points` (n, 3) [m] in the world."""
+        self._points, reach = points, REACH * self._length
+        thin = rr.Radius.ui_points(0.8)
+        legs = rr.LineStrips3D([points.astype(np.float32)], colors=[colours.LABEL], radii=[thin])
+        self._stream.log_static(entities.COURSE, legs)
+        spheres = rr.Ellipsoids3D(
+            centers=points, half_sizes=np.full((len(points), 3), reach), colors=[colours.AMBER], line_radii=[thin]
+        )
+        self._stream.log_static(entities.WAY_POINTS, spheres)
+        along = np.diff(points, axis=0)
+        lengths = np.linalg.norm(along, axis=1)
+        tube = rr.Capsules3D(
+            lengths=lengths,
+            radii=np.full(len(lengths), reach),
+            translations=points[:-1],
+            quaternions=turns_of_up_into(along / np.maximum(lengths, 1e-9)[:, None]),
+            colors=[colours.AMBER],
+            line_radii=[thin],
+            fill_mode="majorwireframe",
+        )
+        self._stream.log_static(entities.TUBE, tube)
