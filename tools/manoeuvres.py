@@ -16,6 +16,7 @@ from eel_dynamics.model.axes import turn_vector
 from eel_dynamics.studies.pictures.style import BLUE, ORANGE, SETTINGS
 from eel_gaits.gaits.registry import GAITS
 from eel_gaits.input_output.quantity import described_fields
+from eel_gaits.pilot.attitude import heading
 from PIL import Image
 
 from eel_dynamics import simulate
@@ -99,8 +100,7 @@ class Swim:
         self.run = simulate(GAITS[name](), DURATION, accuracy="standard", sample_period=SAMPLE, estimate=False)
         self.path = turn_vector(self.run.center_of_mass)
         self.speed = np.linalg.norm(np.gradient(self.path, self.run.time, axis=0), axis=1)
-        x, y, z, w = self.run.orientation.T
-        self.heading = np.unwrap(np.arctan2(2.0 * (x * y + z * w), 1.0 - 2.0 * (y * y + z * z)))
+        self.heading = np.unwrap([heading(orientation) for orientation in self.run.orientation])
         rate = -self.run.twist[:, 0]  # axis 1 points to the tail
         self.roll = np.concatenate(([0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]) * SAMPLE)))
         self.period, self.cost = 1.0, None

@@ -3,6 +3,7 @@
 refused."""
 
 import csv
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -194,6 +195,10 @@ def files(true_path, tmp_path_factory):
     scene = Scene(friction="blended", planar=True)
     run = simulate(turning(period=0.8), 3.0, scene=scene, twist=(0, 0, 0.1, -0.3, 0, 0), stations=3, sample_period=0.05)
     run.save(folder / "run.nc")
+    replace(run, body=run.body.changed(lateral_drag=1.2)).save(folder / "other_body.nc")
+    replace(run, scene=replace(run.scene, fluid_density=900.0)).save(folder / "other_scene.nc")
+    leaning = np.tile((0.1, 0.0, 0.0, np.sqrt(0.99)), (len(run.time), 1))
+    replace(run, orientation=leaning).save(folder / "leaning.nc")
     run = simulate(straight(period=0.8), 16.0, scene=scene, accuracy=1e-3, stations=2)
     (folder / "speeds.csv").write_text(f"speed,period\n{run.mean_speed},0.8\n")
     (folder / "bad.csv").write_text("time,x,y\n0,0,0\n1,nan,0\n")
@@ -255,6 +260,9 @@ def test_speeds_in_a_table_have_the_numbers_of_their_swims(files, tmp_path, caps
         (["other.csv", *GAIT], "its columns must be time, x, y (a path), or speed, got ['height', 'time']"),
         (["backward.csv", *GAIT], "backward.csv', line 2: speed must be > 0 m/s, got -0.3"),
         (["path.csv"], "--gait must be given: "),
+        (["run.nc", "other_body.nc"], "--body must be given: the files do not have one body"),
+        (["run.nc", "other_scene.nc"], "--scene must be given: the files do not have one scene"),
+        (["leaning.nc"], "leaning.nc': its head must be level at the start"),
         (["run.nc", "--set", "period=1"], "--set belongs to --gait, which is not given"),
         (
             ["run.nc", "--station", "0.3"],

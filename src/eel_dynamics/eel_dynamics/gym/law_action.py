@@ -16,6 +16,9 @@ from eel_gaits.laws.term import Term
 from eel_dynamics.curvature.law_waves import check_law
 from eel_dynamics.model.arguments import checked_instance, checked_number, checked_row
 
+# Bounds of the observation by those of a critically damped number, which are 1 and 2/e of its greatest target.
+ROOM_OF_VALUE, ROOM_OF_RATE = 1.5, 2.0
+
 
 class LawAction:
     """Turns actions into the curvature of the body at the ends of control steps.
@@ -90,8 +93,8 @@ class LawAction:
             unit = NUMBERS[name].unit
             size = max(abs(middle) + half, abs(NUMBERS[name].rest))
             named += [
-                (name, unit, 1.5 * size),
-                (f"{name} rate", f"{unit}/s" if unit else "1/s", 2.0 * size * self._rate),
+                (name, unit, ROOM_OF_VALUE * size),
+                (f"{name} rate", f"{unit}/s" if unit else "1/s", ROOM_OF_RATE * size * self._rate),
             ]
         return [*named, ("sine of the wave's phase", "", 1.0), ("cosine of the wave's phase", "", 1.0)]
 

@@ -22,7 +22,7 @@ from eel_dynamics.model.arguments import checked_instance
 from eel_dynamics.model.axes import turn_vector
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
-from eel_dynamics.simulation.head_motion import head_motion_of, turned
+from eel_dynamics.simulation.head_motion import head_motion_of, level_orientation
 from eel_dynamics.simulation.simulation import Simulation
 from eel_dynamics.simulation.stopping import SimulationStopped
 
@@ -164,7 +164,7 @@ class SwimmerEnv(gymnasium.Env):
             body=self.body,
             scene=self.scene,
             position=turn_vector(start.position),
-            orientation=turned(start.heading),
+            orientation=level_orientation(start.heading),
             twist=(-start.roll_rate, 0.0, 0.0, -start.speed, 0.0, 0.0),
             **self._settings,
         )

@@ -18,6 +18,6 @@ def head_motion_of(head: InitialState) -> HeadMotion:
     return HeadMotion(turn_vector(head.position), turn_quaternion(head.orientation), angular_velocity, velocity)
 
 
-def turned(heading: float) -> tuple[float, float, float, float]:
+def level_orientation(heading: float) -> tuple[float, float, float, float]:
     """The orientation (x, y, z, w), in either set of axes, of a level head with this `heading` [rad]."""
     return 0.0, 0.0, math.sin(0.5 * heading), math.cos(0.5 * heading)

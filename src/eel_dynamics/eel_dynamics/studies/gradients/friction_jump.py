@@ -2,6 +2,7 @@
 """Where the printed friction law jumps between two neighbouring swims."""
 
 import numpy as np
+from eel_gaits.pilot.attitude import world_from_body
 
 from eel_dynamics.model.section_data import TRANSITION
 
@@ -23,7 +24,6 @@ def _is_turbulent(run) -> np.ndarray:
     from scipy.interpolate import CubicSpline
 
     velocity = CubicSpline(run.time, run.backbone, axis=0)(run.time, 1) - run.scene.current
-    x, y, z, w = np.moveaxis(run.section_orientation, -1, 0)
-    along = np.stack((1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + z * w), 2.0 * (x * z - y * w)), axis=-1)
+    along = world_from_body(run.section_orientation)[..., 0]  # axis 1 of each section
     speed = np.abs(np.sum(velocity * along, axis=-1))
     return speed * run.x > TRANSITION * run.scene.viscosity

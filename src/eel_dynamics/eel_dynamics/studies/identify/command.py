@@ -43,8 +43,8 @@ def _identify(options) -> int:
         measured,
         gait=_gait(options, files),
         numbers=numbers,
-        body=files[0].body if options.body is None else body_of(options.body),
-        scene=_scene(options, files[0]),
+        body=_common("body", files) if options.body is None else body_of(options.body),
+        scene=_scene(options, files),
         accuracy=options.accuracy,
         noise=options.noise,
         level=options.level,
@@ -79,11 +79,20 @@ def _gait(options, files: list[MeasuredFile]):
     return law_of_the_file
 
 
-def _scene(options, file: MeasuredFile) -> Scene:
-    """The scene that was asked for, or that of the file. The friction is blended unless --scene says otherwise."""
-    if options.scene or file.scene is None:
+def _common(name: str, files: list[MeasuredFile]):
+    """The body or the scene, by its `name`, of all files that hold one. `ValueError` where they are not the same."""
+    known = [getattr(file, name) for file in files if getattr(file, name) is not None]
+    if any(each != known[0] for each in known[1:]):
+        raise ValueError(f"--{name} must be given: the files do not have one {name}")
+    return known[0] if known else None
+
+
+def _scene(options, files: list[MeasuredFile]) -> Scene:
+    """The scene that was asked for, or that of the files. The friction is blended unless --scene says otherwise."""
+    scene = None if options.scene else _common("scene", files)
+    if scene is None:
         return scene_of(options.scene, friction="blended")
-    return replace(file.scene, friction="blended") if file.scene.friction == "printed" else file.scene
+    return replace(scene, friction="blended") if scene.friction == "printed" else scene
 
 
 def _parser() -> Parser:

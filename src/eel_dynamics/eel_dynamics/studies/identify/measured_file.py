@@ -8,6 +8,7 @@ Tables are .csv files with a header, or .npz archives of columns. A run (.nc) an
 backbone, the law and the body; a run the scene too.
 """
 
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -23,6 +24,7 @@ from eel_dynamics.studies.identify.measurements import MeasuredPath, MeasuredSpe
 from eel_dynamics.studies.points import VELOCITIES
 
 TABLES = ".csv", ".npz"
+LEVEL = 1e-6  # rad, about: the x and y of the quaternion of a head that counts as level
 NEAR = 1e-6  # part of the body's length by which a run's station may lie elsewhere than the one asked for
 
 
@@ -32,7 +34,7 @@ class MeasuredFile(NamedTuple):
     measured: list  # of MeasuredPath, or of MeasuredSpeed
     law: Law | None = None
     body: Body | None = None
-    scene: Scene | None = None
+    scene: Scene | None = None  # of the motion alone
 
 
 def read_measured(path: str, *, station: float = 0.0, namespace: str | None = None) -> MeasuredFile:
@@ -45,10 +47,13 @@ def read_measured(path: str, *, station: float = 0.0, namespace: str | None = No
     run = Run.load(path) if Path(path).suffix == ".nc" else Run.from_bag(path, namespace)
     if not isinstance(run.law, Law) or not run.law.terms:
         raise ValueError(f"{shown(path)}: it holds no law of terms, whose swim could be simulated")
+    if run.time[0] == 0.0 and np.abs(run.orientation[0, :2]).max() > LEVEL:
+        raise ValueError(f"{shown(path)}: its head must be level at the start, got a lean that no parameter gives")
     twist = dict(zip(VELOCITIES, run.twist[0].tolist(), strict=True)) if run.time[0] == 0.0 else {}
     numbers = {f"initial.{name}": value for name, value in twist.items() if value}
+    scene = replace(run.scene, internal_wrench=False, ledger=False) if Path(path).suffix == ".nc" else None
     measured = _named(path, MeasuredPath, run.time, _tracked(path, run, station), station, numbers)
-    return MeasuredFile([measured], run.law, run.body, run.scene if Path(path).suffix == ".nc" else None)
+    return MeasuredFile([measured], run.law, run.body, scene)
 
 
 def _of_table(table: Table, station: float) -> list:

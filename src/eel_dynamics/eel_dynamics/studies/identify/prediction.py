@@ -90,10 +90,10 @@ def placement_of(path: MeasuredPath, positions: np.ndarray) -> np.ndarray:
     cosine = np.sum(ours[:, :2] * theirs[:, :2])
     sine = np.sum(ours[:, 0] * theirs[:, 1] - ours[:, 1] * theirs[:, 0])
     turn = float(np.arctan2(sine, cosine))
-    return np.append(path.position.mean(axis=0) - turned(positions.mean(axis=0)[None], turn)[0], turn)
+    return np.append(path.position.mean(axis=0) - turned_about_vertical(positions.mean(axis=0)[None], turn)[0], turn)
 
 
-def turned(vectors: np.ndarray, turn: float) -> np.ndarray:
+def turned_about_vertical(vectors: np.ndarray, turn: float) -> np.ndarray:
     """`vectors` (..., D) turned about the vertical by `turn` [rad]."""
     found = vectors.copy()
     found[..., 0] = np.cos(turn) * vectors[..., 0] - np.sin(turn) * vectors[..., 1]
@@ -106,8 +106,8 @@ def placed(path: MeasuredPath, found: Predicted, placement: np.ndarray) -> tuple
     count, axes = path.position.shape
     own = found.value.reshape(count, axes)
     derivative = np.moveaxis(found.derivative.reshape(count, axes, -1), 1, -1)
-    value = turned(own, placement[-1])
+    value = turned_about_vertical(own, placement[-1])
     across = np.zeros_like(value)
     across[:, 0], across[:, 1] = -value[:, 1], value[:, 0]
     by_placement = np.concatenate((np.broadcast_to(np.eye(axes), (count, axes, axes)), across[:, :, None]), axis=2)
-    return value + placement[:-1], np.moveaxis(turned(derivative, placement[-1]), -1, 1), by_placement
+    return value + placement[:-1], np.moveaxis(turned_about_vertical(derivative, placement[-1]), -1, 1), by_placement

@@ -22,7 +22,7 @@ from eel_gaits.laws.term import Term
 from eel_dynamics.model.arguments import checked_instance, checked_number, checked_row
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
-from eel_dynamics.studies.steering.period_map import Motion, PeriodMap, rotation, turned
+from eel_dynamics.studies.steering.period_map import Motion, PeriodMap, rotation, turned_by
 
 STATES = ("roll", "pitch", "heading", "roll_rate", "pitch_rate", "yaw_rate", "surge", "sway", "heave")
 OUT_OF_PLANE = ("roll", "pitch", "roll_rate", "pitch_rate", "heave")
@@ -203,7 +203,7 @@ def _linearised(one: PeriodMap, scene: Scene, rise: float) -> PeriodicLinearisat
 
     def differences(changes: np.ndarray, above: list[Law], below: list[Law]) -> np.ndarray:
         both = np.concatenate([changes, -changes])
-        moved = one.swim(turned(start.orientation, both[:, :3]), start.twist + both[:, 3:], above + below)
+        moved = one.swim(turned_by(start.orientation, both[:, :3]), start.twist + both[:, 3:], above + below)
         first, second = np.split(states_after(start, end, moved), 2)
         return (first - second).T / 2.0
 

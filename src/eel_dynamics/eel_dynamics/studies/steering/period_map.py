@@ -49,7 +49,7 @@ def rotation(quaternion):
     return Rotation.from_quat(quaternion)
 
 
-def turned(orientation: np.ndarray, by: np.ndarray) -> np.ndarray:
+def turned_by(orientation: np.ndarray, by: np.ndarray) -> np.ndarray:
     """The `orientation` (4,) turned in the world by the rotation vectors `by` (B, 3) [rad]: (B, 4)."""
     from scipy.spatial.transform import Rotation
 
@@ -143,7 +143,7 @@ class PeriodMap:
         """The start with a changed twist, relative to its size, and with a righting moment another lean [rad]."""
         lean = np.append(change[6:], np.zeros(9 - len(change)))
         twist = start.twist + self._scale(start) * change[:6]
-        return Motion(start.position, turned(start.orientation, lean[None])[0], twist)
+        return Motion(start.position, turned_by(start.orientation, lean[None])[0], twist)
 
     def _slope(self, start: Motion) -> np.ndarray:
         """The derivative of the defect by those changes, by differences to either side."""
@@ -164,7 +164,8 @@ class PeriodMap:
         if np.linalg.norm(way) < 1e-3 * self.body.length:  # where there is none, the head points there
             way = -rotation(start.orientation).apply([1.0, 0.0, 0.0])[:2]
         about = np.array([[0.0, 0.0, math.pi - math.atan2(way[1], way[0])]])
-        turn = rotation(turned(np.array([0.0, 0.0, 0.0, 1.0]), about)[0])
+        turn = rotation(turned_by(np.array([0.0, 0.0, 0.0, 1.0]), about)[0])
         return tuple(
-            Motion(turn.apply(each.position), turned(each.orientation, about)[0], each.twist) for each in (start, end)
+            Motion(turn.apply(each.position), turned_by(each.orientation, about)[0], each.twist)
+            for each in (start, end)
         )

@@ -20,7 +20,7 @@ from eel_dynamics.studies.steering.linearisation import (
     periodic_linearisation,
     states_after,
 )
-from eel_dynamics.studies.steering.period_map import PeriodMap, rotation, turned
+from eel_dynamics.studies.steering.period_map import PeriodMap, rotation, turned_by
 from eel_gaits import straight, turning
 
 HIGHEST = 0.05  # m, half of the robot's greatest height: no ballast hangs lower
@@ -90,7 +90,7 @@ def sway(found: PeriodicLinearisation) -> float:
         accuracy=1e-4,
         sample_period=found.period / 16,
         stations=2,
-        orientation=turned(found.start.orientation, np.array([[PUSH, 0.0, 0.0]]))[0],
+        orientation=turned_by(found.start.orientation, np.array([[PUSH, 0.0, 0.0]]))[0],
         twist=found.start.twist,
         estimate=False,
     )
@@ -110,7 +110,7 @@ def recovery(found: PeriodicLinearisation, lean: float, bend: float) -> tuple[np
     for _ in range(CONTROLLED):
         inputs = -gain @ state
         greatest = max(greatest, float(np.abs(inputs).max()))
-        start = turned(found.start.orientation, state[None, :3]), (found.start.twist + state[3:])[None]
+        start = turned_by(found.start.orientation, state[None, :3]), (found.start.twist + state[3:])[None]
         state = states_after(found.start, found.end, one.swim(*start, [found.bent(inputs)]))[0]
         roll.append(state[0])
     return np.array(roll), greatest
