@@ -35,18 +35,18 @@ class Observed(NamedTuple):
 
     name: str
     unit: str
-    bound: float  # greatest size; a larger value is cut to it
+    bound: float  #: greatest size; a larger value is cut to it
 
 
 class Start(NamedTuple):
     """The head at the start of an episode, level, in REP-103 axes."""
 
-    position: tuple[float, float, float] = (0.0, 0.0, 0.0)  # m, world
-    heading: float = 0.0  # rad, positive: left
-    speed: float = 0.0  # m/s, forward
-    roll_rate: float = 0.0  # rad/s
-    own_time: float = 0.0  # s, of the law
-    left_trim: float = 0.0  # rad/m, a bend that the body has by itself, and that the policy does not see
+    position: tuple[float, float, float] = (0.0, 0.0, 0.0)  #: m, world
+    heading: float = 0.0  #: rad, positive: left
+    speed: float = 0.0  #: m/s, forward
+    roll_rate: float = 0.0  #: rad/s
+    own_time: float = 0.0  #: s, of the law
+    left_trim: float = 0.0  #: rad/m, a bend that the body has by itself, and that the policy does not see
 
 
 @dataclass(frozen=True, kw_only=True)

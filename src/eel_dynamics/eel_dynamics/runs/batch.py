@@ -60,27 +60,27 @@ class Batch:
     bodies: tuple[Body, ...]
     scenes: tuple[Scene, ...]
     accuracies: tuple[Accuracy, ...]
-    time: np.ndarray  # (T,) s
-    samples: np.ndarray  # (B,) int, number of valid samples
-    error: tuple[SimulationStopped | None, ...]  # why each swimmer stopped: time, quantity, value, hint
-    steps: np.ndarray  # (B,) int, accepted steps in time
-    evaluations: np.ndarray  # (B,) int, of the head's dynamics, for the motion alone
-    nodes: np.ndarray  # (B,) int, along the body
-    error_estimates: tuple[ErrorEstimate | None, ...]  # None where none was wanted, or the swimmer stopped
-    position: np.ndarray  # (B, T, 3) m, head, world
-    orientation: np.ndarray  # (B, T, 4) x y z w, world from head
-    twist: np.ndarray  # (B, T, 6) (Omega, V) rad/s, m/s, head's axes
-    head_acceleration: np.ndarray  # (B, T, 6) rad/s^2, m/s^2, head's axes
-    center_of_mass: np.ndarray  # (B, T, 3) m, world
-    x: np.ndarray  # (B, M) m, stations
-    backbone: np.ndarray | None  # (B, T, M, 3) m, world
-    section_orientation: np.ndarray | None  # (B, T, M, 4) x y z w, world from section
-    curvature: np.ndarray | None  # (B, T, M, 3) rad/m
-    curvature_rate: np.ndarray | None  # (B, T, M, 3) rad/m/s
-    torque: np.ndarray | None  # (B, T, M, 3) N m, section axes
-    force: np.ndarray | None  # (B, T, M, 3) N, section axes
-    fluid_force: np.ndarray | None  # (B, T, M, 3) N/m, section axes; with `load` only
-    energy: EnergyLedger | None  # one (B, T) array per field
+    time: np.ndarray  #: (T,) s
+    samples: np.ndarray  #: (B,) int, number of valid samples
+    error: tuple[SimulationStopped | None, ...]  #: why each swimmer stopped: time, quantity, value, hint
+    steps: np.ndarray  #: (B,) int, accepted steps in time
+    evaluations: np.ndarray  #: (B,) int, of the head's dynamics, for the motion alone
+    nodes: np.ndarray  #: (B,) int, along the body
+    error_estimates: tuple[ErrorEstimate | None, ...]  #: None where none was wanted, or the swimmer stopped
+    position: np.ndarray  #: (B, T, 3) m, head, world
+    orientation: np.ndarray  #: (B, T, 4) x y z w, world from head
+    twist: np.ndarray  #: (B, T, 6) (Omega, V) rad/s, m/s, head's axes
+    head_acceleration: np.ndarray  #: (B, T, 6) rad/s^2, m/s^2, head's axes
+    center_of_mass: np.ndarray  #: (B, T, 3) m, world
+    x: np.ndarray  #: (B, M) m, stations
+    backbone: np.ndarray | None  #: (B, T, M, 3) m, world
+    section_orientation: np.ndarray | None  #: (B, T, M, 4) x y z w, world from section
+    curvature: np.ndarray | None  #: (B, T, M, 3) rad/m
+    curvature_rate: np.ndarray | None  #: (B, T, M, 3) rad/m/s
+    torque: np.ndarray | None  #: (B, T, M, 3) N m, section axes
+    force: np.ndarray | None  #: (B, T, M, 3) N, section axes
+    fluid_force: np.ndarray | None  #: (B, T, M, 3) N/m, section axes; with `load` only
+    energy: EnergyLedger | None  #: one (B, T) array per field
     _out: tuple = ()  # profiles, works, energy at the start, of all, for `__getitem__`
 
     def __len__(self) -> int:

@@ -130,7 +130,7 @@ class Progress:
 def _parser() -> Parser:
     parser = Parser(
         prog="simulate",
-        description="Swim a gait offline and print the summary.",
+        description="Simulate a gait, a sequence of gaits or a measured motion without ROS, and print a summary.",
         epilog=f"fields of the scene, with default, meaning, unit, and bounds or choices:\n{described_fields(Scene)}",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )

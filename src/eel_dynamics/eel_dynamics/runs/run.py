@@ -53,31 +53,31 @@ class Run:
     body: Body
     scene: Scene
     accuracy: Accuracy
-    time: np.ndarray  # (T,) s
-    position: np.ndarray  # (T, 3) m, head, world
-    orientation: np.ndarray  # (T, 4) x y z w, world from head
-    twist: np.ndarray  # (T, 6) (Omega, V) rad/s, m/s, head's axes
-    head_acceleration: np.ndarray  # (T, 6) angular and true acceleration of the head, rad/s^2, m/s^2, head's axes
-    center_of_mass: np.ndarray  # (T, 3) m, world
-    x: np.ndarray  # (M,) m, stations of the profiles
-    backbone: np.ndarray  # (T, M, 3) m, world
-    section_orientation: np.ndarray  # (T, M, 4) x y z w, world from section
-    curvature: np.ndarray  # (T, M, 3) rad/m
-    curvature_rate: np.ndarray  # (T, M, 3) rad/m/s
-    torque: np.ndarray | None  # (T, M, 3) N m, section axes: of the part behind a section on the part ahead
-    force: np.ndarray | None  # (T, M, 3) N, section axes; force[..., 0] > 0 is tension
-    fluid_force: np.ndarray | None  # (T, M, 3) N/m, of the water on the body, section axes
-    resistive_force: np.ndarray | None  # (T, M, 3) N/m, its resistive part
-    tail_force: np.ndarray | None  # (T, 3) N, section axes at the tail
-    nose_force: np.ndarray | None  # (T, 3) N, section axes at the nose
-    wake_momentum_rate: np.ndarray | None  # (T, 3) N, T_f E1 - V1 M_f V of eq. (60), section axes at the tail
-    energy: EnergyLedger | None  # one (T,) array per field
-    closure_torque: np.ndarray | None  # (T,) N m, magnitude of the internal torque left over at the nose
-    closure_force: np.ndarray | None  # (T,) N, of the internal force left over there, less the load on the nose
-    steps: int  # accepted steps in time
-    evaluations: int  # of the head's dynamics, for the motion alone
-    nodes: int  # along the body
-    error_estimate: ErrorEstimate | None = None  # None where none was wanted, or for fewer than two samples
+    time: np.ndarray  #: (T,) s
+    position: np.ndarray  #: (T, 3) m, head, world
+    orientation: np.ndarray  #: (T, 4) x y z w, world from head
+    twist: np.ndarray  #: (T, 6) (Omega, V) rad/s, m/s, head's axes
+    head_acceleration: np.ndarray  #: (T, 6) angular and true acceleration of the head, rad/s^2, m/s^2, head's axes
+    center_of_mass: np.ndarray  #: (T, 3) m, world
+    x: np.ndarray  #: (M,) m, stations of the profiles
+    backbone: np.ndarray  #: (T, M, 3) m, world
+    section_orientation: np.ndarray  #: (T, M, 4) x y z w, world from section
+    curvature: np.ndarray  #: (T, M, 3) rad/m
+    curvature_rate: np.ndarray  #: (T, M, 3) rad/m/s
+    torque: np.ndarray | None  #: (T, M, 3) N m, section axes: of the part behind a section on the part ahead
+    force: np.ndarray | None  #: (T, M, 3) N, section axes; force[..., 0] > 0 is tension
+    fluid_force: np.ndarray | None  #: (T, M, 3) N/m, of the water on the body, section axes
+    resistive_force: np.ndarray | None  #: (T, M, 3) N/m, its resistive part
+    tail_force: np.ndarray | None  #: (T, 3) N, section axes at the tail
+    nose_force: np.ndarray | None  #: (T, 3) N, section axes at the nose
+    wake_momentum_rate: np.ndarray | None  #: (T, 3) N, T_f E1 - V1 M_f V of eq. (60), section axes at the tail
+    energy: EnergyLedger | None  #: one (T,) array per field
+    closure_torque: np.ndarray | None  #: (T,) N m, magnitude of the internal torque left over at the nose
+    closure_force: np.ndarray | None  #: (T,) N, of the internal force left over there, less the load on the nose
+    steps: int  #: accepted steps in time
+    evaluations: int  #: of the head's dynamics, for the motion alone
+    nodes: int  #: along the body
+    error_estimate: ErrorEstimate | None = None  #: None where none was wanted, or for fewer than two samples
 
     def __eq__(self, other) -> bool:
         return self is other or same_fields(self, other)

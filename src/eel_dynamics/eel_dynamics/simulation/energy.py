@@ -18,20 +18,23 @@ from eel_dynamics.model.equality import same_fields
 
 @dataclass(frozen=True, eq=False, repr=False)
 class EnergyLedger:
-    """The ledger of one instant (floats) or of a run ((T,) arrays). In a current it is relative to the water."""
+    """The energy ledger of one instant (floats) or of a run ((T,) arrays). Velocities are relative to the water.
 
-    kinetic_body: np.ndarray  # J
-    kinetic_fluid: np.ndarray  # J
-    potential: np.ndarray  # J, of weight and buoyancy
-    actuator_power: np.ndarray  # W
-    wake_power: np.ndarray  # W
-    nose_power: np.ndarray  # W
-    drag_power: np.ndarray  # W
-    residual: np.ndarray  # J, change of all energy since the start less the integral of the powers
-    actuator_work: np.ndarray  # J, integrals of the powers since the start
-    wake_work: np.ndarray  # J
-    nose_work: np.ndarray  # J
-    drag_work: np.ndarray  # J
+    Energies, works and the residual are in J, powers in W. A power > 0 brings energy into body and water.
+    """
+
+    kinetic_body: np.ndarray  #: J
+    kinetic_fluid: np.ndarray  #: J
+    potential: np.ndarray  #: J, of weight and buoyancy
+    actuator_power: np.ndarray  #: W
+    wake_power: np.ndarray  #: W
+    nose_power: np.ndarray  #: W
+    drag_power: np.ndarray  #: W
+    residual: np.ndarray  #: J, change of all energy since the start less the integral of the powers
+    actuator_work: np.ndarray  #: J, integrals of the powers since the start
+    wake_work: np.ndarray  #: J
+    nose_work: np.ndarray  #: J
+    drag_work: np.ndarray  #: J
 
     def __eq__(self, other) -> bool:
         return same_fields(self, other)

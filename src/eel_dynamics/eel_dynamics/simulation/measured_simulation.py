@@ -24,12 +24,12 @@ FAILURES = SimulationStopped, ValueError, ArithmeticError, MemoryError
 class MeasuredSimulation(Simulation):
     """A `Simulation`, with the same arguments, and an estimate of its error.
 
-    A controller may answer to what it observes. The estimate knows nothing of that: it is the error that the same
-    curvature leads to.
+    With a controller in the loop, the estimate is the error for the same curvature. It does not contain what the
+    controller would have done with a more accurate observation.
 
     Attributes:
-        measured_since: [s]. The companion begins again from the present state where the distance has become so great
-            that it no longer grows: then it says nothing more.
+        measured_since: [s], start of the estimate. The companion begins again from the present state when the
+            difference has become so great that it no longer grows, and so is no estimate any more.
         lost_at: [s], the first such time; None if there was none.
     """
 

@@ -26,10 +26,10 @@ class HydrodynamicWrench:
     `numpy.asarray` gives the sum of the parts.
     """
 
-    inertia: np.ndarray  # (6,) - d/dt of the water's momentum along the body
-    wake: np.ndarray  # (6,) momentum and pressure through the plane of the tail
-    resistive: np.ndarray  # (6,) drag along the body
-    nose: np.ndarray  # (6,) added mass and drag of the nose
+    inertia: np.ndarray  #: (6,) - d/dt of the water's momentum along the body
+    wake: np.ndarray  #: (6,) momentum and pressure through the plane of the tail
+    resistive: np.ndarray  #: (6,) drag along the body
+    nose: np.ndarray  #: (6,) added mass and drag of the nose
 
     @property
     def total(self) -> np.ndarray:

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Derivatives of what a swim amounts to, by its parameters."""
+"""Derivatives of the measures of a run with respect to its parameters."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Derivatives of what a swim amounts to, by its parameters: `gradient`.
+"""Derivatives of the measures of a run with respect to its parameters: `gradient`.
 
     found = gradient(["mean_speed", "cost_of_transport"], {"period": 1.0, "body.lateral_drag": 1.98}, gait="straight")
     found["mean_speed"]["period"]             # -0.6 m/s per s
@@ -48,15 +48,15 @@ COMPANION_STEP = 2.0  # times the steps, of the companions
 class Gradient:
     """Derivatives of N measures by P parameters."""
 
-    of: tuple[str, ...]  # names of the measures
-    by: tuple[str, ...]  # names of the parameters
-    at: np.ndarray  # (P,) values of the parameters
-    value: np.ndarray  # (N,) measures there
-    derivative: np.ndarray  # (N, P) measure's unit by parameter's unit: the Jacobian
-    error: np.ndarray  # (N, P) estimated errors of the derivatives; NaN without an estimate
-    steps: np.ndarray  # (P,) differences of the parameters to either side
+    of: tuple[str, ...]  #: names of the measures
+    by: tuple[str, ...]  #: names of the parameters
+    at: np.ndarray  #: (P,) values of the parameters
+    value: np.ndarray  #: (N,) measures there
+    derivative: np.ndarray  #: (N, P) measure's unit by parameter's unit: the Jacobian
+    error: np.ndarray  #: (N, P) estimated errors of the derivatives; NaN without an estimate
+    steps: np.ndarray  #: (P,) differences of the parameters to either side
     warnings: tuple[str, ...]
-    run: Run  # the swim at these values
+    run: Run  #: the swim at these values
 
     def __getitem__(self, measure: str) -> dict[str, float]:
         """The derivatives of a `measure` by the name of the parameter."""
@@ -91,7 +91,7 @@ def gradient(
     progress: "Callable[[int, int], None] | bool | None" = False,
     most_evaluations: float = MOST_EVALUATIONS,
 ) -> Gradient:
-    """Derivatives of measures of a run by its parameters, at the values given.
+    """Derivatives of measures of a run with respect to its parameters, at the values given.
 
     of: names of `analysis.measures.MEASURES` ("head_x", "mean_speed", "actuator_work", "cost_of_transport",
     "greatest_torque", ...), or a smooth function run -> {name: number}. parameters: value by name, with the names of

@@ -40,16 +40,16 @@ class Identified:
     """P parameters that were fitted to measurements."""
 
     names: tuple[str, ...]
-    value: np.ndarray  # (P,)
-    error: np.ndarray  # (P,) standard errors
-    low: np.ndarray  # (P,) interval
-    high: np.ndarray  # (P,)
-    level: float  # probability with which an interval covers the true value
-    covariance: np.ndarray  # (P, P)
-    noise: float  # standard deviation of the measurements' errors [m] or [m/s]
-    correlation: float  # of one error of a path with the next, at the median time between samples
-    residuals: tuple[np.ndarray, ...]  # measured less predicted: (T, D) [m] of each path, (1,) [m/s] of each speed
-    runs: tuple[Run, ...]  # the swims with the values found, one per measurement
+    value: np.ndarray  #: (P,)
+    error: np.ndarray  #: (P,) standard errors
+    low: np.ndarray  #: (P,) interval
+    high: np.ndarray  #: (P,)
+    level: float  #: probability with which an interval covers the true value
+    covariance: np.ndarray  #: (P, P)
+    noise: float  #: standard deviation of the measurements' errors [m] or [m/s]
+    correlation: float  #: of one error of a path with the next, at the median time between samples
+    residuals: tuple[np.ndarray, ...]  #: measured less predicted: (T, D) [m] of each path, (1,) [m/s] of each speed
+    runs: tuple[Run, ...]  #: the swims with the values found, one per measurement
     warnings: tuple[str, ...]
 
     def __getitem__(self, name: str) -> tuple[float, float, float]:

@@ -81,7 +81,7 @@ def _upright(points: np.ndarray, reference: np.ndarray) -> np.ndarray:
 
 def _parser() -> Parser:
     parser = Parser(
-        prog="midlines", description="Swim a file of midlines, and compare what comes out with what went in."
+        prog="midlines", description="Simulate a file of midlines, and compare the computed ones with those measured."
     )
     parser.add_argument("file", help="a .csv or .npz file with the columns time, x, y: docs/howto/motions.md")
     parser.add_argument(

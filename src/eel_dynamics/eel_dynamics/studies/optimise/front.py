@@ -25,16 +25,16 @@ class Front:
     long as the swims of the search.
     """
 
-    cost_name: str
-    names: tuple[str, ...]  # of the parameters
-    low: np.ndarray  # (P,) bounds of the parameters
-    high: np.ndarray  # (P,)
-    wanted: np.ndarray  # (S,) m/s
-    values: np.ndarray  # (S, P)
-    speed: np.ndarray  # (S,) m/s
-    cost: np.ndarray  # (S,), unit of the measure `cost_name`
+    cost_name: str  #: measure that was minimised
+    names: tuple[str, ...]  #: of the parameters
+    low: np.ndarray  #: (P,) bounds of the parameters
+    high: np.ndarray  #: (P,)
+    wanted: np.ndarray  #: (S,) m/s
+    values: np.ndarray  #: (S, P)
+    speed: np.ndarray  #: (S,) m/s
+    cost: np.ndarray  #: (S,), unit of the measure `cost_name`
     runs: tuple[Run, ...]
-    tried: np.ndarray  # (N, 2) speed [m/s] and cost of the gaits that were tried
+    tried: np.ndarray  #: (N, 2) speed [m/s] and cost of the gaits that were tried
     warnings: tuple[str, ...]
 
     def __len__(self) -> int:

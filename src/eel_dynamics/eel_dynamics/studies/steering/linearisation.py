@@ -44,17 +44,17 @@ class PeriodicLinearisation:
     gait.
     """
 
-    law: Law  # t = 0 is the start of a period after all ramps
+    law: Law  #: t = 0 is the start of a period after all ramps
     body: Body
     scene: Scene
-    period: float  # s
-    start: Motion  # of the settled motion, at the start of a period; it swims towards -x
+    period: float  #: s
+    start: Motion  #: of the settled motion, at the start of a period; it swims towards -x
     end: Motion
-    defect: float  # rad, and relative to the twist: by how much it does not repeat
-    rise: float  # part of the period, in which a bend comes, and goes again
-    monodromy: np.ndarray  # (9, 9) states at the end by states at the start
-    input_matrix: np.ndarray  # (9, 6) states at the end by inputs
-    error: float  # greatest change of a multiplier with coarser settings; NaN without an estimate
+    defect: float  #: rad, and relative to the twist: by how much it does not repeat
+    rise: float  #: part of the period, in which a bend comes, and goes again
+    monodromy: np.ndarray  #: (9, 9) states at the end by states at the start
+    input_matrix: np.ndarray  #: (9, 6) states at the end by inputs
+    error: float  #: greatest change of a multiplier with coarser settings; NaN without an estimate
 
     def __repr__(self) -> str:
         return f"PeriodicLinearisation({shown(self.law.name)}, {self.scene!r}, growth {self.growth:.4g} a period)"

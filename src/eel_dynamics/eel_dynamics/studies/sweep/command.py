@@ -88,8 +88,8 @@ def _sweep(options) -> int:
 def _parser() -> Parser:
     parser = Parser(
         prog="sweep",
-        description="Swim every combination of parameters, and keep what each run amounts to in a NetCDF file. Called "
-        "again after an end that was not planned, it goes on where it was.",
+        description="Simulate every combination of parameters, and keep the measures of each run in a NetCDF file. "
+        "After an interruption the same command resumes.",
     )
     parser.add_argument("gait", nargs="?", default="straight", help=f"one of {', '.join(sorted(GAITS))} (straight)")
     about = "a number of the gait, scene.FIELD, body or accuracy; values a,b,c or start:end:count"
