@@ -263,8 +263,8 @@ def described_task(task: type[SwimmerEnv]) -> str:
     """The docstring of a task, with what it observes and its numbers."""
     seen = "\n".join(f"    {each.name} [{each.unit or '1'}], at most {each.bound:g}" for each in task.observed)
     observed = f"Observed, before the state of the action:\n{seen}"
-    told = (task.__doc__ or "A task.").rstrip()
-    return f"{told}\n\n{observed}\n\nNumbers:\n{described_fields(task.Numbers)}\n"
+    text = (task.__doc__ or "A task.").rstrip()
+    return f"{text}\n\n{observed}\n\nNumbers:\n{described_fields(task.Numbers)}\n"
 
 
 def checked_numbers(task: str, kind: type[Episode], given: dict) -> Episode:

@@ -29,11 +29,11 @@ class SideBySide:
     def png(self, at: float) -> bytes:
         """Both pictures at simulation time `at` [s] as one PNG, twice as wide as either."""
         left, right = (Image.open(io.BytesIO(each.png(at))).convert("RGB") for each in self._both)
-        joined, told = Image.new("RGB", (left.width + right.width, left.height)), io.BytesIO()
+        joined, file = Image.new("RGB", (left.width + right.width, left.height)), io.BytesIO()
         joined.paste(left, (0, 0))
         joined.paste(right, (left.width, 0))
-        joined.save(told, format="PNG")
-        return told.getvalue()
+        joined.save(file, format="PNG")
+        return file.getvalue()
 
 
 @contextlib.contextmanager

@@ -130,11 +130,11 @@ class Fit:
 
     def _check_determined(self) -> None:
         scale = np.where(self.values, self.values, 1.0)
-        told = undetermined(self.blocks, self.names, scale)
-        if told:
+        combination = undetermined(self.blocks, self.names, scale)
+        if combination:
             raise ValueError(
-                f"parameters must be ones that the measurements determine; these do not change with {told}: leave one "
-                "out, or measure another swim"
+                f"parameters must be ones that the measurements determine; these do not change with {combination}: "
+                "leave one out, or measure another swim"
             )
 
     def _predicted(self) -> list[Predicted]:

@@ -145,8 +145,8 @@ def _checked_measurements(measured) -> list:
     measured = [measured] if isinstance(measured, (MeasuredPath, MeasuredSpeed)) else list(measured)
     kinds = {type(each) for each in measured}
     if len(kinds) != 1 or not kinds <= {MeasuredPath, MeasuredSpeed}:
-        told = ", ".join(sorted(kind.__name__ for kind in kinds)) or "none"
-        raise ValueError(f"measured must be MeasuredPath or MeasuredSpeed, one kind of them, got {told}")
+        given = ", ".join(sorted(kind.__name__ for kind in kinds)) or "none"
+        raise ValueError(f"measured must be MeasuredPath or MeasuredSpeed, one kind of them, got {given}")
     return measured
 
 

@@ -87,8 +87,10 @@ def _tracked(path: str, run: Run, station: float) -> np.ndarray:
         return run.position
     place = int(np.argmin(np.abs(run.x - station)))
     if abs(run.x[place] - station) > NEAR * run.body.length:
-        told = f"the nearest are {', '.join(f'{x:g}' for x in run.x[max(place - 1, 0) : place + 2])} m"
-        raise ValueError(f"{shown(path)}: --station must be one of its {len(run.x)} stations, {told}, got {station:g}")
+        nearest = f"the nearest are {', '.join(f'{x:g}' for x in run.x[max(place - 1, 0) : place + 2])} m"
+        raise ValueError(
+            f"{shown(path)}: --station must be one of its {len(run.x)} stations, {nearest}, got {station:g}"
+        )
     return run.backbone[:, place]
 
 

@@ -80,5 +80,7 @@ def undetermined(blocks: list[Block], names: tuple[str, ...], values: np.ndarray
     if least > SINGULAR * size[0]:
         return ""
     share = combinations[-1] / combinations[-1][np.argmax(np.abs(combinations[-1]))]
-    told = [f"{name} ({part:+.0%})" for name, part in zip(names, 0.01 * share, strict=True) if abs(part) > 0.01 * NAMED]
-    return " with ".join(told)
+    parts = [
+        f"{name} ({part:+.0%})" for name, part in zip(names, 0.01 * share, strict=True) if abs(part) > 0.01 * NAMED
+    ]
+    return " with ".join(parts)

@@ -39,8 +39,10 @@ def _scan(options) -> int:
             print(f"{scan.name}: metacentric height {1e3 * height:.3g} mm, growth {growth:.4g} a period")
     paths = folder / "steering.png", folder / "steering.svg"
     write_picture(lambda figure: draw_multipliers(figure, scans), SIZE, *paths)
+    for path in paths:
+        print(f"written to {path}")
     if options.page:
-        picture = os.path.relpath(folder / "steering.svg", Path(options.page).parent)
+        picture = os.path.relpath(paths[1], Path(options.page).parent)
         write_page(Path(options.page), scans, picture)
         print(f"written to {options.page}")
     return 0

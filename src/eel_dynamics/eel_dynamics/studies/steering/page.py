@@ -180,8 +180,8 @@ def _recovered(first: dict[float, PeriodicLinearisation]) -> str:
     for height, found in first.items():
         for lean in LEANS:
             roll, bend = recovery(found, np.radians(lean), BEND)
-            told = ", ".join(f"{np.degrees(roll[k - 1]):.2g}" for k in (1, 2, 4, 8, CONTROLLED))
-            lines.append(f"| {1e3 * height:g} mm | {lean:g}° | {told}° | {bend:.2g} rad/m |")
+            rolls = ", ".join(f"{np.degrees(roll[k - 1]):.2g}" for k in (1, 2, 4, 8, CONTROLLED))
+            lines.append(f"| {1e3 * height:g} mm | {lean:g}° | {rolls}° | {bend:.2g} rad/m |")
     return "\n".join(lines)
 
 
