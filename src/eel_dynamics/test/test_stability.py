@@ -37,11 +37,12 @@ def test_maps_keep_the_target_and_tell_what_stops():
 
 def test_a_page_keeps_what_is_not_the_studys():
     study = Study("| new |", {"gait": ("a map", None)})
-    page = command.with_study(f"a\n{command.BEGIN.format('maps')}\nold\n{command.END.format('maps')}\nb", "maps", study)
-    assert "| new |" in page and "![a map](images/stability_gait.svg)" in page and "old" not in page
+    page = f"a\n{command.BEGIN.format('maps')}\nold\n{command.END.format('maps')}\nb"
+    page = command.with_study(page, "maps", study, "../images")
+    assert "| new |" in page and "![a map](../images/stability_gait.svg)" in page and "old" not in page
     assert page.endswith("\nb") and page.startswith("a\n")
     with pytest.raises(ValueError, match="the page must have the lines"):
-        command.with_study(page, "drift", study)
+        command.with_study(page, "drift", study, "images")
 
 
 def test_a_long_run_gathers_nothing():

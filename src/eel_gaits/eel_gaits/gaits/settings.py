@@ -156,7 +156,7 @@ def _as_ros_expects(entry: Field) -> Field:
         if entry.name == opposite:
             metadata = entry.metadata | {"minimum": -entry.metadata["maximum"], "maximum": -entry.metadata["minimum"]}
             metadata["description"] = _as_left(metadata["description"])
-            turned = field(default=-entry.default, metadata=metadata)
+            turned = field(default=0.0 - entry.default, metadata=metadata)  # not -0.0
             turned.name = name
             return turned
     return entry

@@ -6,6 +6,7 @@ stability --study drift         # one of them: maps, condition, drift, plane
 stability --page docs/appendix/stability.md --out docs/images
 """
 
+import os
 from pathlib import Path
 
 from eel_gaits.input_output.command_line import Parser
@@ -38,10 +39,11 @@ def _study(options) -> int:
         study = STUDIES[name](options.points)
         print(f"{study.text}\n")
         for picture, (_, draw) in study.pictures.items():
-            write_picture(draw, SIZE, *(folder / f"stability_{picture}.{suffix}" for suffix in ("png", "svg")))
+            write_picture(draw, SIZE, folder / f"stability_{picture}.svg")
         if options.page:
             page = Path(options.page)
-            text = with_study(page.read_text(encoding="utf-8"), name, study)
+            link = os.path.relpath(folder, page.parent)
+            text = with_study(page.read_text(encoding="utf-8"), name, study, link)
             with replacing(page) as draft:
                 draft.write_text(text, encoding="utf-8")
     return 0
@@ -55,13 +57,13 @@ def _check_page(page: str, studies):
         _around(text, name)
 
 
-def with_study(page: str, name: str, study) -> str:
+def with_study(page: str, name: str, study, folder: str) -> str:
     """The text of the page with the tables and pictures of the study `name` between its marker lines.
 
-    `ValueError` where the marker lines are missing.
+    folder: of the pictures, as seen from the page. `ValueError` where the marker lines are missing.
     """
     before, first, last, after = _around(page, name)
-    pictures = [f"![{title}](images/stability_{picture}.svg)" for picture, (title, _) in study.pictures.items()]
+    pictures = [f"![{title}]({folder}/stability_{picture}.svg)" for picture, (title, _) in study.pictures.items()]
     text = "\n".join([study.text, *(["", *pictures] if pictures else [])])
     return f"{before}{first}\n{text}\n{last}{after}"
 
