@@ -12,6 +12,8 @@ from rclpy.parameter import Parameter
 from std_msgs.msg import Header
 from swim_client import LIMIT, SwimClient
 
+from eel_msgs.msg import SwimState
+
 NAMESPACE = "eel1"
 
 
@@ -43,6 +45,12 @@ def test_a_short_course_is_swum_and_goals_that_do_not_fit_are_refused(start, fre
     assert not answer.results[0].successful and "<= 0.98 m/s" in answer.results[0].reason
     goals.publish(path_message((4.0, 1.0, -0.2), (8.0, -1.0, 0.1)))
     pilot.wait_for_output("swim through 2 points", LIMIT)
+
+    states = swim.node.create_publisher(SwimState, "swim_state", 10)
+    swim.until(lambda: states.get_subscription_count(), "subscriber of swim_state")
+    states.publish(SwimState(greatest_torque=math.nan))
+    pilot.wait_for_output("torque_limit is not kept: swim_state holds no torque", LIMIT)
+    swim.node.destroy_publisher(states)
 
     swim.listen("/diagnostics", DiagnosticArray)
     pace = ("real_time_factor:=0", "-p", "rate:=50", "-p", "duration:=24", "-p", "subscriber_timeout:=60")
