@@ -22,13 +22,12 @@ import sys
 import rclpy
 from rclpy.qos import HistoryPolicy, QoSProfile
 from eel_viz.bags.definitions import message_class
-from eel_viz.bags.record import OWN
+from eel_viz.topics import OWN, SAMPLED
 
 rclpy.init()
 node = rclpy.create_node("listener")
 every = QoSProfile(history=HistoryPolicy.KEEP_ALL)
-others = ("body", "curvature_law", "curvature_samples", "joint_states")
-counts = dict.fromkeys((topic for topic in OWN if topic not in others), 0)
+counts = dict.fromkeys((topic for topic in SAMPLED if topic != "joint_states"), 0)
 last = {}
 for topic in counts:
     def count(data, topic=topic):

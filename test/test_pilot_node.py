@@ -10,7 +10,7 @@ from nav_msgs.msg import Path
 from rcl_interfaces.srv import SetParameters
 from rclpy.parameter import Parameter
 from std_msgs.msg import Header
-from swim_client import LIMIT, SwimClient
+from swim_client import LATCHED, LIMIT, SwimClient
 
 from eel_msgs.msg import SwimState
 
@@ -45,6 +45,11 @@ def test_a_short_course_is_swum_and_goals_that_do_not_fit_are_refused(start, fre
     assert not answer.results[0].successful and "<= 0.98 m/s" in answer.results[0].reason
     goals.publish(path_message((4.0, 1.0, -0.2), (8.0, -1.0, 0.1)))
     pilot.wait_for_output("swim through 2 points", LIMIT)
+    swim.listen("goal", Path, LATCHED)  # late
+    swim.until(lambda: swim.received["goal"], "the goal in force")
+    goal = swim.received["goal"][0]
+    assert goal.header.frame_id == f"{NAMESPACE}/odom"
+    assert [(p.pose.position.x, p.pose.position.y, p.pose.position.z) for p in goal.poses] == [(4, 1, -0.2), (8, -1, 0.1)]
 
     states = swim.node.create_publisher(SwimState, "swim_state", 10)
     swim.until(lambda: states.get_subscription_count(), "subscriber of swim_state")

@@ -15,8 +15,9 @@ OWN = {  # relative: below the swimmer's namespace
     "body": "eel_msgs/msg/BodyGeometry",
     "curvature_law": "eel_msgs/msg/CurvatureLaw",
     "curvature_samples": "eel_msgs/msg/CurvatureSamples",
+    "goal": "nav_msgs/msg/Path",
 }
 GLOBAL = {"/clock": "rosgraph_msgs/msg/Clock", "/diagnostics": "diagnostic_msgs/msg/DiagnosticArray"}
-SAMPLED = tuple(name for name in OWN if name not in ("body", "curvature_law", "curvature_samples"))  # once a sample
-LATCHED = ("body", "curvature_law")  # transient local
+LATCHED = ("body", "curvature_law", "goal")  # transient local
+SAMPLED = tuple(name for name in OWN if name not in (*LATCHED, "curvature_samples"))  # once a sample
 SWIMMER = "head_pose"  # without publishers of this topic the swimmer has gone

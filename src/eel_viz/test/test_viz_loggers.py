@@ -74,25 +74,25 @@ def assert_exact(path, entity, component, samples, expected):
     np.testing.assert_array_equal(columns[component], expected, err_msg=f"{entity} {component}")
 
 
-def test_way_points_of_a_goal_are_drawn_and_a_bad_goal_is_left_out(tmp_path):
+def test_way_points_of_the_newest_goal_are_drawn_and_a_bad_goal_is_left_out(tmp_path):
     path, said = tmp_path / "goal.rrd", []
     destination = FileDestination(Settings(recording=str(path)), said.append, said.append)
     recordings = Recordings([destination], name="eel", log_warning=said.append, has_several_publishers=lambda _: False)
     dispatcher = Dispatcher(recordings, namespace="", log_warning=said.append)
     points = [(4.0, 1.0, -0.5), (8.0, -1.0, 0.25)]
-    for goal in (points, [(math.nan, 0.0, 0.0)]):
+    for goal in ([], points, [(math.nan, 0.0, 0.0)]):
         poses = [NS(pose=NS(position=NS(x=x, y=y, z=z))) for x, y, z in goal]
-        dispatcher.dispatch("goal_path", NS(poses=poses))
+        dispatcher.dispatch("goal", NS(poses=poses))
     dispatcher.close()
     spheres = read(path, entities.WAY_POINTS, static=True)
-    np.testing.assert_array_equal(spheres["half_sizes"][0], np.full((2, 3), 0.25))
-    np.testing.assert_array_equal(read(path, entities.COURSE, static=True)["strips"][0][0], points)
+    np.testing.assert_array_equal(spheres["half_sizes"][-1], np.full((2, 3), 0.25))
+    np.testing.assert_array_equal(read(path, entities.COURSE, static=True)["strips"][-1][0], points)
     tube = read(path, entities.TUBE, static=True)
     along = np.subtract(points[1], points[0])
-    np.testing.assert_allclose(tube["lengths"][0], [np.linalg.norm(along)], rtol=1e-6)
-    axes = world_from_body(np.array(tube["quaternions"][0]))
+    np.testing.assert_allclose(tube["lengths"][-1], [np.linalg.norm(along)], rtol=1e-6)
+    axes = world_from_body(np.array(tube["quaternions"][-1]))
     np.testing.assert_allclose(axes[0, :, 2], along / np.linalg.norm(along), atol=1e-6)
-    assert [text for text in said if "goal_path: poses" in text], said
+    assert [text for text in said if "goal: poses" in text], said
 
 
 def test_way_points_that_come_before_the_body_get_its_size(tmp_path):

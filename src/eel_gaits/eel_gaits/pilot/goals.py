@@ -74,6 +74,13 @@ def station(point, speed: float, limits: Limits) -> Station:
     return Station(_points("station", [point])[0], checked_speed(speed, limits))
 
 
+def way_points(goal: Course | Path | Station) -> np.ndarray:
+    """The points (n, 3) [m] that the goal leads to; a course has none."""
+    if isinstance(goal, Path):
+        return goal.points
+    return goal.point[None] if isinstance(goal, Station) else np.empty((0, 3))
+
+
 def described(goal: Course | Path | Station) -> str:
     """The goal in words."""
     if isinstance(goal, Course):

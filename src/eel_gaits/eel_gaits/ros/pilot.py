@@ -2,7 +2,7 @@
 """The pilot: subscribes to `odom` and goals, and answers with the curvature that leads the swimmer there.
 
 Goals are the parameters heading, depth and speed, a path on `goal_path`, a station on `goal_pose`: the last one counts.
-What cannot be reached is refused in one line, and the last goal stays. docs/howto/pilot.md tells more.
+What cannot be reached is refused in one line, and the last goal stays. The goal in force is on `goal`. docs/howto/pilot.md tells more.
 """
 
 import math
@@ -14,7 +14,7 @@ from eel_ros.command_line import USE_SIM_TIME, answer_words
 from eel_ros.frames import frame_in
 from eel_ros.parameter_node import ParameterNode
 from eel_ros.parameters import declare, help_rows, take_overrides, warn_of_unknown
-from eel_ros.qos import keep_all
+from eel_ros.qos import keep_all, latched
 from eel_ros.run_node import run_node
 from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import Odometry, Path
@@ -27,7 +27,7 @@ from eel_gaits.pilot import goals
 from eel_gaits.pilot.pilot import Pilot
 from eel_gaits.pilot.settings import PilotSettings
 from eel_gaits.ros.messages import FRAME, samples_to_message
-from eel_gaits.ros.pilot_messages import head_motion, point_of, seconds_of
+from eel_gaits.ros.pilot_messages import head_motion, path_message, point_of, seconds_of
 from eel_gaits.ros.pilot_parameters import GROUPS, GoalParameters, TimingParameters
 from eel_msgs.msg import CurvatureSamples, SwimState
 
@@ -37,7 +37,7 @@ MOST_WAITING = 50  # samples of odom that wait for the torque of the same time
 
 
 class PilotNode(ParameterNode):
-    """A node with the topics `odom`, `goal_path`, `goal_pose`, `swim_state` (in) and `curvature_samples` (out)."""
+    """A node with the topics `odom`, `goal_path`, `goal_pose`, `swim_state` (in), `curvature_samples`, `goal` (out)."""
 
     def __init__(self):
         super().__init__(NAME, automatically_declare_parameters_from_overrides=True)
@@ -51,6 +51,7 @@ class PilotNode(ParameterNode):
         warn_of_unknown(self, overrides, names)
         self._numbers, self._timing = made[GoalParameters], made[TimingParameters]
         self._pilot = Pilot(made[PilotSettings])
+        self._goal = self.create_publisher(Path, "goal", latched(1))  # the goal in force
         self._follow(self._course(self._numbers), "parameters")
         self._frames = {frame_in(self.get_namespace(), "odom"), ""}
         self._section_frame = frame_in(self.get_namespace(), FRAME)
@@ -113,6 +114,7 @@ class PilotNode(ParameterNode):
 
     def _follow(self, goal, source: str):
         self._pilot.follow(goal)
+        self._goal.publish(path_message(goals.way_points(goal), frame_in(self.get_namespace(), "odom")))
         self.get_logger().info(f"{goals.described(goal)}, from {source}")
 
     def _check_frame(self, frame: str):

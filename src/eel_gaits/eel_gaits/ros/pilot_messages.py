@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the pilot reads of messages."""
+"""What the pilot reads of messages, and the goal as one."""
 
 import numpy as np
 from builtin_interfaces.msg import Time
-from geometry_msgs.msg import Point
-from nav_msgs.msg import Odometry
+from geometry_msgs.msg import Point, Pose, PoseStamped
+from nav_msgs.msg import Odometry, Path
+from std_msgs.msg import Header
 
 from eel_gaits.input_output.wording import shown
 from eel_gaits.pilot.head_motion import HeadMotion
@@ -18,6 +19,13 @@ def seconds_of(stamp: Time) -> float:
 def point_of(point: Point) -> tuple[float, float, float]:
     """(x, y, z) [m]."""
     return point.x, point.y, point.z
+
+
+def path_message(points: np.ndarray, frame: str) -> Path:
+    """The `points` (n, 3) [m] in this `frame`, without a time."""
+    header = Header(frame_id=frame)
+    positions = [Point(x=x, y=y, z=z) for x, y, z in points.tolist()]
+    return Path(header=header, poses=[PoseStamped(header=header, pose=Pose(position=each)) for each in positions])
 
 
 def head_motion(odometry: Odometry) -> HeadMotion:

@@ -51,7 +51,7 @@ class Dispatcher:
         self._first_backbone: float | None = None  # s
         self._last_law = None
         self._others = {"body": self._body, "curvature_law": self._law, "diagnostics": self._diagnostics}
-        self._others |= {"goal_path": self._path, "goal_pose": self._pose}
+        self._others |= {"goal": self._goal}
 
     @property
     def topics(self) -> tuple[str, ...]:
@@ -127,11 +127,8 @@ class Dispatcher:
             self._last_law = message
             self._recordings.law(message.name)
 
-    def _path(self, message) -> None:
+    def _goal(self, message) -> None:
         self._recordings.course(messages.read_path(message))
-
-    def _pose(self, message) -> None:
-        self._recordings.course(messages.read_pose(message.pose).position[None])
 
     def _diagnostics(self, message) -> None:
         statuses = [

@@ -127,7 +127,7 @@ class Recordings:
             loggers.law(self.latest, name)
 
     def course(self, points: np.ndarray) -> None:
-        """Log the way points (n, 3) [m] of a goal, now and in later recordings."""
+        """Log the way points (n, 3) [m] of a goal, now and in later recordings; it may have none."""
         self._course = points
         for loggers in self._newest.loggers.values():
             loggers.course(points)

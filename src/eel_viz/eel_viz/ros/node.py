@@ -112,8 +112,7 @@ class Visualiser(ParameterNode):
         """Subscribe to the topics of the swimmer in the namespace `space`."""
         self._subscribe(space, dispatcher, "body", BodyGeometry, LATCHED)  # first: the others need it
         self._subscribe(space, dispatcher, "curvature_law", CurvatureLaw, LATCHED, LIVE)
-        self._subscribe(space, dispatcher, "goal_path", Path, LIVE)
-        self._subscribe(space, dispatcher, "goal_pose", PoseStamped, LIVE)
+        self._subscribe(space, dispatcher, "goal", Path, LATCHED, LIVE)
         for topic, kind in SAMPLED.items():
             self._subscribe(space, dispatcher, topic, kind, LIVE)
         self._subscribe("", dispatcher, "diagnostics", DiagnosticArray, LIVE)
