@@ -49,7 +49,8 @@ def test_a_short_course_is_swum_and_goals_that_do_not_fit_are_refused(start, fre
     swim.until(lambda: swim.received["goal"], "the goal in force")
     goal = swim.received["goal"][0]
     assert goal.header.frame_id == f"{NAMESPACE}/odom"
-    assert [(p.pose.position.x, p.pose.position.y, p.pose.position.z) for p in goal.poses] == [(4, 1, -0.2), (8, -1, 0.1)]
+    places = [each.pose.position for each in goal.poses]
+    assert [(place.x, place.y, place.z) for place in places] == [(4.0, 1.0, -0.2), (8.0, -1.0, 0.1)]
 
     states = swim.node.create_publisher(SwimState, "swim_state", 10)
     swim.until(lambda: states.get_subscription_count(), "subscriber of swim_state")

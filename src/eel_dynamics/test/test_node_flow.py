@@ -11,7 +11,6 @@ import time
 import numpy as np
 import pytest
 from eel_gaits.ros.messages import law_to_message
-from eel_ros import fastdds_profile
 from geometry_msgs.msg import PoseStamped
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rosgraph_msgs.msg import Clock
@@ -19,6 +18,7 @@ from swim_client import LIMIT, LOSSLESS, SAMPLES, nanoseconds
 
 from eel_gaits import Law, Term, falling
 from eel_msgs.msg import CurvatureSamples
+from eel_ros import fastdds_profile
 
 FLAT_OUT = ("--ros-args", "-p", "real_time_factor:=0", "-p", "wait_for_subscribers:=1")
 

@@ -2,7 +2,8 @@
 """The pilot: subscribes to `odom` and goals, and answers with the curvature that leads the swimmer there.
 
 Goals are the parameters heading, depth and speed, a path on `goal_path`, a station on `goal_pose`: the last one counts.
-What cannot be reached is refused in one line, and the last goal stays. The goal in force is on `goal`. docs/howto/pilot.md tells more.
+What cannot be reached is refused in one line, and the last goal stays. The goal in force is on the topic `goal`.
+docs/howto/pilot.md says more.
 """
 
 import math
