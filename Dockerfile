@@ -19,7 +19,7 @@ RUN python3 -m venv --system-site-packages /opt/eel \
 
 # Binaries for every x86-64 machine: the image may run elsewhere than where it was built.
 RUN source /opt/ros/jazzy/setup.bash && source /opt/eel/bin/activate \
-    && levels="$([ "$(uname -m)" = x86_64 ] && echo 'v2;v3;v4')" \
+    && if [ "$(uname -m)" = x86_64 ]; then levels='v2;v3;v4'; else levels=''; fi \
     && python -m colcon build --cmake-args -DBUILD_TESTING=OFF "-DEEL_CORE_LEVELS=$levels"
 
 RUN printf '%s\n' '#!/bin/bash' 'source /opt/ros/jazzy/setup.bash' 'source /opt/eel/bin/activate' \

@@ -35,13 +35,12 @@ ROSDEP_KEY = {
     "matplotlib": "python3-matplotlib",
     "yaml": "python3-yaml",
     "PIL": "python3-pil",
-    "xarray": "python3-xarray",
     "rosbags": "python3-rosbags-pip",
 }
 with (ROOT / "pyproject.toml").open("rb") as settings:
     CONTRACTS = tomllib.load(settings)["tool"]["importlinter"]["contracts"]
 (MAY_IMPORT_ROS,) = (each["allowed_importers"] for each in CONTRACTS if each["type"] == "protected")
-OPTIONAL = {"pytest", "dask", "distributed", "eel_viz", "gymnasium"}  # used where it is installed
+OPTIONAL = {"pytest", "dask", "distributed", "eel_viz", "gymnasium", "xarray"}  # used where it is installed
 FROM_REQUIREMENTS = {
     "rerun",
     "rerun_bindings",

@@ -29,17 +29,18 @@ def triples(points):
 
 @pytest.fixture
 def show(start, network):
-    """show(*samples, topics, spaces, said): publishes them in turn in the namespace /eel1 until the node `markers` has
-    drawn markers in the `spaces` and has `said` a text; the last MarkerArray, the last Path, and the node's process."""
+    """show(*samples, topics, spaces, said, words): publishes them in turn in the namespace /eel1 until the node
+    `markers`, with the ROS arguments `words`, has drawn markers in the `spaces` and has `said` a text; the last
+    MarkerArray, the last Path, and the node's process."""
     arrays, paths = [], []
     network.create_subscription(MarkerArray, "/eel1/markers", arrays.append, 10)
     network.create_subscription(Path, "/eel1/midline", paths.append, 10)
     body = network.create_publisher(BodyGeometry, "/eel1/body", LATCHED)
     body.publish(body_message(STATIONS))
 
-    def run(*samples, topics=DRAWN, spaces=("skin", "load", "end_force"), said=""):
+    def run(*samples, topics=DRAWN, spaces=("skin", "load", "end_force"), said="", words=()):
         publishers = {topic: network.create_publisher(TOPICS[topic], f"/eel1/{topic}", 10) for topic in topics}
-        node = start("markers", "--ros-args", "-r", "__ns:=/eel1")
+        node = start("markers", "--ros-args", "-r", "__ns:=/eel1", *words)
         limit = time.monotonic() + LIMIT
         while not (
             arrays and paths and {marker.ns for marker in arrays[-1].markers} == {*spaces} and said in node.output()
@@ -50,8 +51,10 @@ def show(start, network):
                     publisher.publish(sample[topic])
             for _ in range(5):
                 network.executor_of_test.spin_once(timeout_sec=0.02)
+        run.publishers = publishers
         return arrays[-1], paths[-1], node
 
+    run.arrays = arrays
     return run
 
 
@@ -92,6 +95,23 @@ def test_markers_are_the_swimmer(show, sample):
             assert np.allclose(triples(marker.points), (origin, origin + arrow), rtol=0, atol=1e-12)
             assert marker.scale.x >= SHAFT and marker.color.a == 1.0
     assert node.interrupt() == 0, node.output()
+
+
+def test_the_last_sample_of_a_run_that_pauses_is_drawn(show, sample, network):
+    """It comes once, right after another has been drawn, at two markers in a second."""
+    show(sample, words=("-p", "rate:=2.0"))
+    last, drawn = messages(Swimmer(STATIONS), 1_310_000_000), len(show.arrays)
+    limit = time.monotonic() + LIMIT
+    while len(show.arrays) == drawn:
+        assert time.monotonic() < limit
+        for topic, publisher in show.publishers.items():
+            publisher.publish(sample[topic])
+        network.executor_of_test.spin_once(timeout_sec=0.02)
+    for topic, publisher in show.publishers.items():
+        publisher.publish(last[topic])
+    while show.arrays[-1].markers[0].header != last["backbone"].header:
+        assert time.monotonic() < limit, "the last sample is not drawn"
+        network.executor_of_test.spin_once(timeout_sec=0.02)
 
 
 @pytest.mark.fault(

@@ -67,9 +67,8 @@ class Body:
         if x is not None:
             x = checked_row("body x", x, None)
             if len(x) < 4 or np.any(np.diff(x) <= 0.0) or x[0] != 0.0:
-                raise ValueError(
-                    f"body x must rise from 0 over 4 points or more, got {len(x)} points from {x[:1]} to {x[-1:]}"
-                )
+                ends = f" from {x[0]:g} to {x[-1]:g}" if len(x) else ""
+                raise ValueError(f"body x must rise from 0 over 4 points or more, got {len(x)} points{ends}")
             length = x[-1] if length is None else length
             if abs(x[-1] - checked_number("body length", length, "m")) > 1e-9 * x[-1]:
                 raise ValueError(f"body x must end at the length {length} m, got {x[-1]}")

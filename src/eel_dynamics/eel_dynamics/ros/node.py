@@ -202,7 +202,8 @@ class DynamicsNode(ParameterNode):
         while not steps.done.is_set():
             await NextTurn()
         response.success, response.stamp = not steps.failure, time_message(steps.time)
-        response.message = steps.failure or f"{request.samples} samples published, paused at t = {steps.time:g} s"
+        many = "s" if request.samples > 1 else ""
+        response.message = steps.failure or f"{request.samples} sample{many} published, paused at t = {steps.time:g} s"
         return response
 
     def _set_state(self, request, response):

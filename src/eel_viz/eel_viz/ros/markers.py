@@ -36,7 +36,8 @@ LOOK = 0.5  # s between two look-ups of the publishers
 
 
 class Markers(ParameterNode):
-    """Joins the messages of one stamp, and publishes at most `rate` of them per second of wall time."""
+    """Joins the messages of one stamp, and publishes at most `rate` of them per second of wall time. The last one is
+    always published, so that a run that pauses is shown where it stands."""
 
     def __init__(self) -> None:
         super().__init__(NAME, automatically_declare_parameters_from_overrides=True)
@@ -45,6 +46,7 @@ class Markers(ParameterNode):
         self._forces = ForceMarkers(self._settings)
         self._waiting: OrderedDict[int, dict] = OrderedDict()  # stamp [ns]: messages by topic
         self._expected: set[str] = set(TOPICS)
+        self._newest: dict | None = None  # the last complete sample that has not been drawn
         self._drawn = self._looked = 0.0  # s, steady clock
         self._reported: set[tuple[str, str]] = set()  # topic and field of messages that cannot be shown
         self._markers = self.create_publisher(MarkerArray, "markers", 10)
@@ -54,10 +56,11 @@ class Markers(ParameterNode):
             self.create_subscription(kind, topic, lambda message, topic=topic: self._receive(topic, message), DEPTH)
 
     def poll(self) -> bool:
-        """Look up which topics have publishers; True: the node continues."""
+        """Look up which topics have publishers, and draw what is due; True: the node continues."""
         if time.monotonic() - self._looked > LOOK:
             self._looked = time.monotonic()
             self._expected = {"backbone"} | {topic for topic in TOPICS if self.count_publishers(topic)}
+        self._draw_if_due()
         return True
 
     def _receive_body(self, message: BodyGeometry) -> None:
@@ -76,12 +79,16 @@ class Markers(ParameterNode):
         sample[topic] = message
         if self._expected <= sample.keys():
             del self._waiting[stamp]
-            now = time.monotonic()
-            if now - self._drawn >= 1.0 / self._settings.rate:
-                self._drawn = now
-                self._draw(sample)
+            self._newest = sample
+            self._draw_if_due()
         elif len(self._waiting) > DEPTH:
             self._waiting.popitem(last=False)
+
+    def _draw_if_due(self) -> None:
+        now = time.monotonic()
+        if self._newest is not None and now - self._drawn >= 1.0 / self._settings.rate:
+            self._drawn, sample, self._newest = now, self._newest, None
+            self._draw(sample)
 
     def _draw(self, sample: dict) -> None:
         """Publish the `sample`, messages by topic, without those that cannot be shown."""
