@@ -64,6 +64,8 @@ def test_parameters_that_act_at_the_next_reset(start, client, tmp_path):
         lambda: len(swim.received["backbone"][-1].x) == 21 and seconds(swim.received["backbone"][-1]) > 0.1, "new run"
     )
     swim.until(lambda: swim.received["body"][-1].length == 1.2, "the new body")
+    late = client(topics=())
+    assert late.latest("body").length == late.received["body"][0].length == 1.2, "the body of an earlier run"
     swim.until(lambda: any(each.pose.position.y == 2.0 for each in swim.received["head_pose"]), "the new pose")
     first = next(each for each in swim.received["head_pose"] if each.pose.position.y == 2.0)
     assert (first.pose.position.x, first.pose.position.z, seconds(first)) == (1.0, -3.0, 0.0)

@@ -97,7 +97,7 @@ class DynamicsNode(ParameterNode):
         self.run_loop = RunLoop(simulation, values, self.sample_publishers, report, self._wait_for_body_received, inbox)
         self.status = Status(self.run_loop, report, values.accuracy)
         self._diagnostics = self.create_publisher(DiagnosticArray, "/diagnostics", 10)
-        self._body = self.create_publisher(BodyGeometry, "body", LATCHED)
+        self._body = self.create_publisher(BodyGeometry, "body", latched(1))
         self._body.publish(body_message(simulation.body, scene, simulation.x, values.section_frame))
 
         feed = LawFeed(
