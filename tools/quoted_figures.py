@@ -17,6 +17,7 @@ WRITTEN_WHOLE = (
     "docs/appendix/validation.md",
     "docs/appendix/tradeoff.md",
     "docs/appendix/tradeoff_tables.md",
+    "docs/appendix/transcript.md",
     "docs/explanation/accuracy.md",
     "docs/explanation/steering.md",
     "docs/figures/README.md",
