@@ -70,10 +70,8 @@ def test_pip_installs_the_library_without_ros(tmp_path):
     options = [
         "--target",
         tmp_path / "installed",
-        "-C",
-        "cmake.build-type=Debug",
-        "-C",
-        "cmake.define.EEL_CORE_LEVELS=v2",
+        "--config-settings=cmake.build-type=Debug",
+        "--config-settings=cmake.define.EEL_CORE_LEVELS=v2",
     ]
     done = subprocess.run([*install, *options, *sources], env=environment, capture_output=True, text=True, timeout=380)
     assert done.returncode == 0, done.stdout + done.stderr

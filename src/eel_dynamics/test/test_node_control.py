@@ -119,7 +119,7 @@ def test_parameters_at_run_time(start, client):
     for name, value, words in (
         ("real_time_factor", 0.0, ("real_time_factor", "> 0", "got 0")),
         ("real_time_factor", -1.0, ("real_time_factor", "-1")),
-        ("subscriber_timeout", "long", ("DOUBLE", "STRING")),
+        ("subscriber_timeout", "long", ("subscriber_timeout must be a number", "'long'")),
         ("rate", -10.0, ("rate", "out of range")),
         ("duration", 10.0, ("read-only", "duration")),
     ):
