@@ -5,6 +5,7 @@ from shell import Shell
 
 DYNAMICS = "ros2 run eel_dynamics dynamics --ros-args"
 GAITS = "ros2 run eel_gaits gait_generator --ros-args"
+WRITE_FISH = "printf 'x,half_width,half_height\\n0,0,0\\n0.2,0.02,0.04\\n0.6,0.02,0.03\\n1.2,0.01,0.01\\n' > fish.csv"
 SAMPLE = (
     "{header: {stamp: {sec: %d}}, x: [0.0, 1.0], yaw: [1.0, 1.0]"
     + "".join(f", {name}: [0.0, 0.0]" for name in ("pitch", "pitch_rate", "pitch_accel", "yaw_rate", "yaw_accel"))
@@ -71,7 +72,7 @@ def experiments_change(shell: Shell) -> None:
     shell.run("ros2 param dump /dynamics > run.yaml; grep viscosity run.yaml")
     shell.run("ros2 param load /dynamics run.yaml > answers; grep -c successful answers; grep failed answers")
     shell.say("settings for the next reset")
-    shell.run("printf 'x,half_width,half_height\\n0,0,0\\n0.2,0.02,0.04\\n0.6,0.02,0.03\\n1.2,0.01,0.01\\n' > fish.csv")
+    shell.run(WRITE_FISH)
     shell.run('ros2 param set /dynamics body "$PWD/fish.csv"')
     for setting in (
         "rate 50",
@@ -220,7 +221,7 @@ def bad_input(shell: Shell) -> None:
     ):
         shell.run(f"ros2 param set /dynamics {setting}")
     shell.say("a body file that is gone at the next reset")
-    shell.run("printf 'x,half_width,half_height\\n0,0,0\\n0.2,0.02,0.04\\n0.6,0.02,0.03\\n1.2,0.01,0.01\\n' > fish.csv")
+    shell.run(WRITE_FISH)
     shell.run("ros2 param set /dynamics body fish.csv")
     shell.run("rm fish.csv; ros2 service call /dynamics/reset std_srvs/srv/Trigger")
     for setting in ("gait wurst", "period -1.0", "perod 0.5"):
