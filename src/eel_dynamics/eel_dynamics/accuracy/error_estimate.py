@@ -6,7 +6,7 @@ Their distance is thus an estimate of the run's error that lies on the safe side
 convergence: observed orders are 2.3 to 4.9. It sees the growth of errors, which no error of a single step does.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -41,6 +41,14 @@ class ErrorEstimate:
     def worst(self) -> float:
         """The greater of the two."""
         return max(self.position, self.torque or 0.0)
+
+    def at_least(self, share: float, other: "ErrorEstimate") -> "ErrorEstimate":
+        """The same, with no error below `share` of that of `other`, where this is known."""
+        position, torque = (
+            value if least is None or not np.isfinite(least) else max(value, share * least)
+            for value, least in ((self.position, other.position), (self.torque, other.torque))
+        )
+        return replace(self, position=position, torque=torque)
 
     def round_off(self, duration: float) -> float:
         """The relative error that round-off has grown to after `duration` [s] at the `growth_rate`."""

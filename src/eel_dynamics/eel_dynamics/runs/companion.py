@@ -53,6 +53,9 @@ def with_error_estimate(swim, request):
     companion = _finished(request, coarser)
     for refinement in range(MOST_REFINEMENTS + 1):
         error = ErrorEstimate(np.inf, None) if companion is None else relative_errors(swim.run, companion.run)
+        if refinement and companion is not None:  # it falls with the tolerance at most: else the two agree by chance
+            tighter = swim.run.accuracy.tolerance / companion.run.accuracy.tolerance
+            error = error.at_least(tighter, companion.run.error_estimate)
         others += [] if companion is None else [companion.run]
         cost = sum(each.evaluations * each.nodes for each in others)
         error = replace(error, evaluations=sum(each.evaluations for each in others), cost=cost)

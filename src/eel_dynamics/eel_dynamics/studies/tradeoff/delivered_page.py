@@ -30,7 +30,8 @@ of the points (always on another grid) and longest steps of 1.5 times the length
 order. It includes the growth of errors in a sensitive motion, which the error of a single step does not.
 
 **If the estimate is above two thirds of the target**, the run becomes the companion of a finer run, up to three
-times. If the estimate is still above the target, `simulate` warns. `run.warnings` has the same line, with the
+times. The new estimate counts for no less than the last one times the ratio of the tolerances: where two runs are
+nearer than that, they agree by chance. If the estimate is still above the target, `simulate` warns. `run.warnings` has the same line, with the
 estimate and the time in which errors grow by a factor of e. A warning also says so if the growth of round-off alone
 exceeds a tenth of the target. In `simulate_batch` this is `batch.above_target`, in `sweep` the measures
 error_position and error_torque.
@@ -54,9 +55,9 @@ and the samples of a controller between two instants. Separate tests compare the
 {swims} random swims: bends in space and in the plane, periods of 0.2 to 3 s, densities of 200 to 8,000 kg/m^3,
 every friction law, three bodies, starts at rest and in motion, 1 to 16 s, targets of 1e-2 to 1e-6. The true error is
 the distance from a reference: {first:g} points with a tolerance of {tolerance:g}, trusted where another method with
-{second:g} points agrees to a tenth of the target; else {finer:g} points with a tenth of the tolerance, and {finest:g}
-points with a hundredth, are tried in the same way. The error is known no better than these two
-agree. An estimate counts as below the error if it is below by more than that. The cost is nodes times evaluations of
+{second:g} points agrees to a tenth of the target and of the estimate; else {finer:g} points with a tenth of the
+tolerance, and {finest:g} points with a hundredth, are tried in the same way. If none agree so well, the two that agree
+best count, if to a tenth of the target. The error is known no better than these two agree. An estimate counts as below the error if it is below by more than that. The cost is nodes times evaluations of
 all runs, relative to the delivered run.
 
 {table}
