@@ -11,6 +11,7 @@ from functools import partial
 
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
+from eel_ros.fastdds_profile import use_profile
 from geometry_msgs.msg import PoseStamped, TwistStamped
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
@@ -34,6 +35,7 @@ class Reception:
 
     def __init__(self, domain: int) -> None:
         self.messages: dict[str, list] = defaultdict(list)
+        use_profile()
         self._context = rclpy.Context()
         rclpy.init(context=self._context, domain_id=domain)
         self._node = rclpy.create_node("reception", context=self._context)

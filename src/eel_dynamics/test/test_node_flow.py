@@ -391,6 +391,7 @@ def test_samples_of_too_many_points_and_too_many_of_them_are_refused(start, clie
     rows = {name: array.array("d", bytes(8 * 1601)) for name in ROWS}
     swim.deliver([CurvatureSamples(header=instant(2000.0 + k).header, x=x.tolist(), **rows) for k in range(600)])
     assert "ahead of the simulation" not in node.output()
+    swim.spin(1.1)
     swim.deliver([CurvatureSamples(header=instant(2900.0 + k).header, x=x.tolist(), **rows) for k in range(30)])
     limit = "ahead of the simulation must be at most 10000, of 1000000 points, got 625 of 1000625"
     swim.until(lambda: limit in node.output(), "limit")

@@ -9,6 +9,8 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from rosidl_generator_py.import_type_support_impl import UnsupportedTypeSupport
 
+from eel_ros.fastdds_profile import use_profile
+
 CANNOT_START = (
     ValueError,
     RuntimeError,
@@ -28,6 +30,7 @@ def start(
     If that fails, `complain(name, error)` gets the reason, with the command that repairs a damaged build, and the
     result is None.
     """
+    use_profile()
     try:
         rclpy.init(args=words, signal_handler_options=SignalHandlerOptions.NO)
         return make()

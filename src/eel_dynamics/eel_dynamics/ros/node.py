@@ -15,7 +15,6 @@ from eel_gaits.input_output.command_line import complain
 from eel_gaits.input_output.wording import one_line
 from eel_gaits.ros.messages import law_from_message
 from eel_ros.command_line import answer_words
-from eel_ros.fastdds_profile import use_prompt_repair
 from eel_ros.parameter_node import ParameterNode
 from eel_ros.parameters import help_rows
 from eel_ros.process_end import ProcessEnd, leave_at_once
@@ -241,7 +240,6 @@ def main(args=None) -> int:
     """Run the node. Exit status: 0 after its duration, SIGINT or SIGTERM; 1 if it fails, or if an unattended simulation
     (with a duration, as fast as possible) stops; 2 if it cannot start."""
     end, words = ProcessEnd(), sys.argv if args is None else args
-    use_prompt_repair()
     status = answer_words(NAME, ABOUT, parameter_rows(), words, complain)
     if status is not None:
         return status

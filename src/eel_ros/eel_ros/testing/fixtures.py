@@ -45,6 +45,7 @@ def pytest_configure(config):
 def ros_domain(tmp_path_factory):
     """The number of a ROS domain that nobody else on this machine uses; in the environment for the whole session."""
     domain = reserve_domain()
+    fastdds_profile.use_profile()
     os.environ.pop("ROS_LOCALHOST_ONLY", None)
     os.environ.update(domain.environment())
     os.environ["ROS_LOG_DIR"] = str(tmp_path_factory.mktemp("ros_log"))

@@ -36,7 +36,7 @@ NAME = "visualiser"
 ABOUT = "Shows and records every topic of a swimmer in Rerun."
 LATCHED, LIVE = keep_all(latched=True), keep_all()  # the first gets earlier messages, the second matches any publisher
 LOOK = 0.5  # s between two look-ups of the publishers
-GONE = 1.0  # s without publishers and messages, after which `stop_with_publisher` ends the node
+GONE = 0.5  # s without publishers and messages, after which `stop_with_publisher` ends the node
 
 SAMPLED = {
     "head_pose": PoseStamped,
