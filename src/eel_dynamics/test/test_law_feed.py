@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Laws as the node receives them: taken once, checked, adopted."""
+
+from types import SimpleNamespace
+
+import pytest
+from eel_dynamics.ros.diagnostics import Report
+from eel_dynamics.ros.loop.law_feed import LawAdopter, LawFeed
+from fake_log import Log
+
+from eel_dynamics import Scene, Simulation
+from eel_gaits import Law, falling
+
+
+class FakeRun:
+    def __init__(self, time=0.0):
+        self.time, self.laws = time, []
+
+    def take_law(self, law, origin):
+        self.laws.append((law, origin))
+
+
+def message(name="wave", sec=0, nanosec=0):
+    return SimpleNamespace(name=name, header=SimpleNamespace(stamp=SimpleNamespace(sec=sec, nanosec=nanosec)))
+
+
+def feed(run, log, law_of=lambda message: Law(name=message.name)):
+    def opened(message):
+        return message.name, lambda: message
+
+    return LawFeed(run, Report(log), parse=opened, law_of=law_of, samples_of=None)
+
+
+def info(number):
+    return {"source_timestamp": 1000 + number, "publication_sequence_number": number}
+
+
+def test_a_law_delivered_twice_is_adopted_once():
+    run = FakeRun()
+    law_feed = feed(run, Log())
+    for number, name in ((1, "a"), (2, "b"), (1, "a"), (2, "b"), (3, "a")):
+        law_feed.receive_law(message(name), info(number))
+    assert [law.name for law, _ in run.laws] == ["a", "b", "a"]
+
+
+def test_origin_is_the_stamp():
+    run = FakeRun()
+    feed(run, Log()).receive_law(message(sec=3, nanosec=500_000_000), info(1))
+    assert run.laws[0][1] == 3.5
+
+
+@pytest.mark.parametrize(
+    ("stamp", "words"),
+    [
+        ({"sec": -1}, ("header.stamp", "-1")),
+        ({"nanosec": 2_000_000_000}, ("header.stamp", "2000000000")),
+        ({"sec": 1_700_000_000}, ("1700000000", "wall time", "use_sim_time")),
+        ({"sec": 3611}, ("3611",)),
+    ],
+)
+def test_bad_stamp_is_refused(stamp, words):
+    run, log = FakeRun(time=10.0), Log()
+    feed(run, log).receive_law(message(**stamp), info(1))
+    assert not run.laws
+    ((level, text),) = log.lines
+    assert level == "error" and all(word in text for word in words), text
+
+
+def test_stamp_up_to_an_hour_ahead_is_taken():
+    run = FakeRun(time=10.0)
+    feed(run, Log()).receive_law(message(sec=3609), info(1))
+    assert run.laws[0][1] == 3609.0
+
+
+def test_bad_law_is_one_error_that_names_the_field():
+    def refuse(message):
+        raise ValueError("terms[0].period must be >= 0 s, got -1.0")
+
+    run, log = FakeRun(), Log()
+    law_feed = feed(run, log, refuse)
+    law_feed.receive_law(message("jump"), info(1))
+    assert not run.laws
+    assert log.lines == [("error", "law 'jump' refused: terms[0].period must be >= 0 s, got -1.0")]
+
+
+@pytest.mark.fault(
+    "samples",
+    "a law that arrives while samples drive the body",
+    "the law is adopted; one warning names the samples lost",
+)
+@pytest.mark.parametrize("last", [0.0, 0.5])
+def test_a_law_that_replaces_samples_says_which_it_drops(last):
+    simulation, log = Simulation(scene=Scene(planar=True)), Log()
+    adopter = LawAdopter(simulation, Report(log))
+    rows = {name: [0.0, 0.0] for name in ("pitch", "pitch_rate", "pitch_accel", "yaw", "yaw_rate", "yaw_accel")}
+    adopter.adopt(falling(pitch_bend=0.0), 0.0)
+    for time in (0.1, 0.2, last) if last else ():
+        adopter.add_samples({"time": time, "x": [0.0, 1.0], **rows})
+    adopter.adopt(Law(name="next"), 0.0)
+    warnings = [text for level, text in log.lines if level == "warning"]
+    assert warnings == ["curvature samples up to t = 0.5 s are dropped: law 'next' is newer"][: bool(last)]
+    assert log.lines[-1 - bool(last)] == ("info", "law 'next' adopted at t = 0 s")

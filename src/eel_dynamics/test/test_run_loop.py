@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The loop of a run, without ROS: requests, sample 0, ticks of the clock."""
+
+import threading
+from types import SimpleNamespace
+
+import pytest
+from eel_dynamics.ros.diagnostics import Report
+from eel_dynamics.ros.loop.clock_ticks import ClockTicks
+from eel_dynamics.ros.loop.run_loop import RunLoop
+from eel_dynamics.ros.parameters import DynamicsParameters
+from fake_log import Log
+
+from eel_dynamics import Simulation
+from eel_gaits import falling
+
+
+def fake_publishers(publish):
+    return SimpleNamespace(
+        wanted_parts=lambda: {"wrench": False, "load": False},
+        publish=publish,
+        tick=lambda nanoseconds: None,
+        audience=tuple,
+        lossless=False,
+    )
+
+
+@pytest.mark.parametrize(
+    ("wanted", "done_at"), [(lambda run: run.requests.reset(), 0.0), (lambda run: run.requests.put(int), 0.25)]
+)
+def test_a_request_knows_when_it_was_carried_out(wanted, done_at):
+    """However many samples the run has published before the other thread looks: it may be thousands."""
+    requests, stamps = [], []
+
+    def publish(snapshot, nanoseconds):
+        stamps.append(nanoseconds)
+        if nanoseconds == 250_000_000 and not requests:
+            requests.append(wanted(run))
+
+    publishers = fake_publishers(publish)
+    simulation = Simulation(law=falling(), accuracy=1e-2)
+    run = RunLoop(simulation, DynamicsParameters(real_time_factor=0.0, duration=1.0), publishers, Report(Log()))
+    run.run()
+    assert stamps[-1] == 10**9 and run.time == 1.0
+    assert requests[0].done.is_set() and requests[0].time == done_at
+
+
+def test_a_reset_that_the_law_refuses_leaves_the_run_as_it_is(monkeypatch):
+    """No law is known that can be blended into and cannot begin; the march refuses here in its place."""
+    stamps, log = [], Log()
+
+    def refuse(*_, **__):
+        raise ValueError("law 'x' cannot be begun: kinetic energy")
+
+    def publish(snapshot, nanoseconds):
+        stamps.append(nanoseconds)
+        if nanoseconds == 250_000_000:
+            monkeypatch.setattr("eel_dynamics.simulation.simulation.march_from_start", refuse)
+            run.requests.reset()
+
+    publishers = fake_publishers(publish)
+    simulation = Simulation(law=falling(), accuracy=1e-2)
+    run = RunLoop(simulation, DynamicsParameters(real_time_factor=0.0, duration=1.0), publishers, Report(log))
+    run.run()
+    assert stamps == sorted(set(stamps)) and stamps[-1] == 10**9 and not run.given_up
+    assert ("error", "reset refused: law 'x' cannot be begun: kinetic energy") in log.lines
+
+
+def test_a_run_that_stands_at_its_start_repeats_sample_0_and_goes_on_with_sample_1(monkeypatch):
+    """A controller that answers the third sample 0; nobody publishes a law."""
+    monkeypatch.setattr("eel_dynamics.ros.loop.sample_output.START_PERIOD", 0.0)
+    stamps, x = [], [0.0, 1.0]
+
+    def publish(snapshot, nanoseconds):
+        stamps.append(nanoseconds)
+        if len(stamps) == 3:
+            rows = {f"{axis}{of}": [0.0, 0.0] for axis in ("pitch", "yaw") for of in ("", "_rate", "_accel")}
+            run.requests.take_samples({"time": 0.01, "x": x, **rows})
+
+    run = RunLoop(
+        Simulation(accuracy=1e-2),
+        DynamicsParameters(real_time_factor=1000.0, duration=0.05),
+        fake_publishers(publish),
+        Report(Log()),
+    )
+    run.run()
+    assert stamps == [0, 0, 0, *(10_000_000 * k for k in range(1, 6))] and run.samples_published == 6
+
+
+def clock_of(run_for, **parameters):
+    """What a run publishes, in order: ("tick", simulation time [ns]) of /clock, and ("sample", its stamp [ns])."""
+    told = []
+    publishers = fake_publishers(lambda snapshot, stamp: told.append(("sample", stamp)))
+    publishers.tick = lambda stamp: told.append(("tick", stamp))
+    values = DynamicsParameters(duration=run_for, **parameters)
+    RunLoop(Simulation(accuracy=1e-2, law=falling()), values, publishers, Report(Log())).run()
+    return told
+
+
+@pytest.mark.parametrize("factor", [0.0, 1.0])
+def test_the_clock_has_a_rate_of_its_own_and_is_never_behind_a_sample(factor):
+    told = clock_of(0.04, rate=50.0, clock_rate=200.0, real_time_factor=factor)
+    assert [stamp for what, stamp in told if what == "tick"] == [5_000_000 * k for k in range(9)]
+    assert [each for each in told if each[0] == "sample" or each[1] % 20_000_000 == 0] == [
+        (what, 20_000_000 * k) for k in range(3) for what in ("tick", "sample")
+    ]
+
+
+def test_a_clock_slower_than_the_samples_comes_with_the_first_sample_at_its_time_or_after():
+    told = clock_of(0.5, rate=100.0, clock_rate=8.0, real_time_factor=0.0)
+    assert [stamp for what, stamp in told if what == "tick"] == [125_000_000 * k for k in range(5)]
+    after = [told[k + 1][1] for k, (what, _) in enumerate(told) if what == "tick"]
+    assert after == [0, 130_000_000, 250_000_000, 380_000_000, 500_000_000]
+
+
+def test_without_a_rate_of_its_own_the_clock_comes_with_each_sample():
+    told = clock_of(0.03, rate=100.0, real_time_factor=0.0)
+    assert told == [(what, 10_000_000 * k) for k in range(4) for what in ("tick", "sample")]
+
+
+def test_a_clock_that_stands_does_not_go_back_to_the_last_sample():
+    told, now = [], 0.0
+    clock = ClockTicks(100.0, SimpleNamespace(tick=told.append))
+    clock.reach(0)
+    clock.go_on(30_000_000, 0, now)
+    for _ in range(3):
+        now += 1e9  # s: later than any clock's time
+        clock.repeat(0, now)
+    assert told == [0, 10_000_000, 20_000_000, 30_000_000, *[30_000_000] * 3]
+    clock.restart()
+    clock.reach(0)
+    assert told[-1] == 0
+
+
+def test_steps_of_a_paused_run_end_with_the_last_of_them_or_say_why():
+    stamps, steps = [], []
+
+    def publish(snapshot, nanoseconds):
+        stamps.append(nanoseconds)
+
+    run = RunLoop(
+        Simulation(accuracy=1e-2, law=falling()),
+        DynamicsParameters(real_time_factor=0.0, duration=1.0),
+        fake_publishers(publish),
+        Report(Log()),
+    )
+    thread = threading.Thread(target=run.run)
+    run.requests.pause(True)
+    thread.start()
+    for count in (3, 2):
+        steps.append(run.requests.step(count))
+        assert steps[-1].done.wait(60.0) and not steps[-1].failure
+    assert [each.time for each in steps] == [0.03, 0.05]
+    assert [stamp for stamp in stamps if stamp] == [10_000_000 * k for k in range(1, 6)]
+    run.requests.pause(False)
+    thread.join()
+    late = run.requests.step(1)
+    run.requests.put(run.requests.stop)
+    run.run()
+    assert "refused at t = 1 s: the run is not paused" in late.failure or not late.done.is_set()
