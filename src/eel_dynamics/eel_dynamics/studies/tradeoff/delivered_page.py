@@ -31,10 +31,10 @@ order. It includes the growth of errors in a sensitive motion, which the error o
 
 **If the estimate is above two thirds of the target**, the run becomes the companion of a finer run, up to three
 times. The new estimate counts for no less than the last one times the ratio of the tolerances: where two runs are
-nearer than that, they agree by chance. If the estimate is still above the target, `simulate` warns. `run.warnings` has the same line, with the
-estimate and the time in which errors grow by a factor of e. A warning also says so if the growth of round-off alone
-exceeds a tenth of the target. In `simulate_batch` this is `batch.above_target`, in `sweep` the measures
-error_position and error_torque.
+nearer than that, they agree by chance. If the estimate is still above the target, `simulate` warns. `run.warnings` has
+the same line, with the estimate and the time in which errors grow by a factor of e. A warning also says so if the growth
+of round-off alone exceeds a tenth of the target. In `simulate_batch` this is `batch.above_target`, in `sweep` the
+measures error_position and error_torque.
 
 **Without a target.** `estimate=False` gives the run without a companion. Settings given one by one are kept; their
 error is measured, and not compared with a target. The same holds for a budget of time. `Simulation` measures no error.
@@ -57,8 +57,9 @@ every friction law, three bodies, starts at rest and in motion, 1 to 16 s, targe
 the distance from a reference: {first:g} points with a tolerance of {tolerance:g}, trusted where another method with
 {second:g} points agrees to a tenth of the target and of the estimate; else {finer:g} points with a tenth of the
 tolerance, and {finest:g} points with a hundredth, are tried in the same way. If none agree so well, the two that agree
-best count, if to a tenth of the target. The error is known no better than these two agree. An estimate counts as below the error if it is below by more than that. The cost is nodes times evaluations of
-all runs, relative to the delivered run.
+best count, if to a tenth of the target. The error is known no better than these two agree. An estimate counts as below
+the error if it is below by more than that. The cost is nodes times evaluations of all runs, relative to the delivered
+run. `make soak` swims 2,000 others, of up to 60 s.
 
 {table}
 
