@@ -99,3 +99,14 @@ def test_a_body_bent_into_turns_gets_more_points():
     assert len(swimmer.grid.x) == more
     run = simulate(rolled, 4.0, accuracy=1e-3)
     assert run.error_estimate.worst < 1e-3
+
+
+@pytest.mark.parametrize("target", ["x", -1.0, 5.0, np.nan, True])
+def test_a_target_is_checked(target):
+    with pytest.raises(ValueError, match=r"accuracy target must be 1e-10 to 0.1, or None, got"):
+        Accuracy(name="mine", resolution=30.0, target=target)
+
+
+def test_a_step_and_a_target_exclude_each_other():
+    with pytest.raises(ValueError, match=r"accuracy step cannot be given beside a target, got 0.01 s"):
+        Accuracy(name="mine", resolution=30.0, step=0.01, target=1e-3)

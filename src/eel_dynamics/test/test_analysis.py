@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from eel_dynamics.analysis.friction_power import drag_powers
 
-from eel_dynamics import Body, Scene, Simulation, simulate
-from eel_gaits import Law, Ramp, Term, straight
+from eel_dynamics import Body, Scene, Simulation, simulate, simulate_batch
+from eel_gaits import Law, Ramp, Term, sequence, straight
 
 pytestmark = pytest.mark.identity("Read off a run")
 
@@ -92,3 +92,35 @@ def test_undefined_and_refused(run):
         bare.actuators(4)
     with pytest.raises(ValueError, match="joints"):
         run.actuators(0)
+
+
+def test_friction_power_of_a_function_of_time_is_that_of_its_law():
+    law, powers = straight(), []
+    for motion in (law, law.curvature):
+        run = simulate(motion, 3.0, scene=Scene(friction="laminar"), accuracy="draft", estimate=False, stations=21)
+        powers.append(drag_powers(run))
+        np.testing.assert_allclose(powers[-1].sum(axis=1), run.energy.drag_power, atol=1e-12)
+    np.testing.assert_allclose(powers[1], powers[0], atol=0.01 * np.abs(powers[0]).max())
+
+
+def test_a_wave_that_has_died_out_is_not_the_gait():
+    """The later half has the second gait alone, and its figures."""
+    second = straight(period=0.5) * 0.6
+    settings = {"accuracy": "draft", "estimate": False, "sample_period": 0.025, "stations": 21}
+    found = simulate(sequence([(straight(), 6.0), (second, None)]), 14.0, **settings).analysis()
+    alone = simulate(second, 14.0, **settings).analysis()
+    assert found.window.period == alone.window.period == 0.5
+    for name in ("frequency", "strouhal", "stride", "slip"):
+        assert getattr(found, name) == pytest.approx(getattr(alone, name), rel=0.05)
+
+
+def test_the_gait_s_period_does_not_depend_on_the_stations():
+    """At the head, X = 0, the second wave is the stronger one."""
+    grown = (Ramp(0.0, 1.0, 1.0),)
+    law = Law(
+        Term(axis="yaw", amplitude=(0.0, 5.0), wavelength=1.0, period=1.0, envelope=grown),
+        Term(axis="yaw", amplitude=(0.01,), period=0.5, envelope=grown),
+    )
+    batch = simulate_batch([law], 6.0, accuracy="draft", estimate=False)
+    run = simulate(law, 6.0, accuracy="draft", estimate=False, stations=21)
+    assert batch[0].analysis().window.period == run.analysis().window.period == 1.0

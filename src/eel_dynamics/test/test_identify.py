@@ -199,6 +199,8 @@ def files(true_path, tmp_path_factory):
     replace(run, scene=replace(run.scene, fluid_density=900.0)).save(folder / "other_scene.nc")
     leaning = np.tile((0.1, 0.0, 0.0, np.sqrt(0.99)), (len(run.time), 1))
     replace(run, orientation=leaning).save(folder / "leaning.nc")
+    turned, current = np.tile((0.0, 0.0, np.sqrt(0.5), np.sqrt(0.5)), (len(run.time), 1)), (0.3, 0.0, 0.0)
+    replace(run, orientation=turned, scene=replace(run.scene, current=current)).save(folder / "turned.nc")
     run = simulate(straight(period=0.8), 16.0, scene=scene, accuracy=1e-3, stations=2)
     (folder / "speeds.csv").write_text(f"speed,period\n{run.mean_speed},0.8\n")
     (folder / "bad.csv").write_text("time,x,y\n0,0,0\n1,nan,0\n")
@@ -263,6 +265,7 @@ def test_speeds_in_a_table_have_the_numbers_of_their_swims(files, tmp_path, caps
         (["run.nc", "other_body.nc"], "--body must be given: the files do not have one body"),
         (["run.nc", "other_scene.nc"], "--scene must be given: the files do not have one scene"),
         (["leaning.nc"], "leaning.nc': its head must be level at the start"),
+        (["turned.nc"], "in a current its head must point along x at the start, got a heading of 90 deg"),
         (["run.nc", "--set", "period=1"], "--set belongs to --gait, which is not given"),
         (
             ["run.nc", "--station", "0.3"],

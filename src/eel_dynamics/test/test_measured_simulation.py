@@ -126,3 +126,12 @@ def test_a_copy_with_other_settings_goes_on_from_the_present():
     simulation.advance(3.0)
     distance = np.linalg.norm(fine.state[:3] - simulation.state[:3])
     assert 0.0 < distance < 1e-2
+
+
+def test_a_recorded_motion_is_measured_too():
+    simulation = MeasuredSimulation(law=straight(), accuracy="draft")
+    simulation.record(np.linspace(0.0, 4.0, 41), True, False)
+    stepped = MeasuredSimulation(law=straight(), accuracy="draft")
+    for time in np.linspace(0.1, 4.0, 40):
+        stepped.advance(float(time))
+    assert 0.3 < simulation.error_estimate.position / stepped.error_estimate.position < 3.0

@@ -281,3 +281,11 @@ def test_a_gait_that_has_not_settled_is_told():
 def replace_time(run: Run, end: float) -> Run:
     """The run until `end` [s]."""
     return simulate(run.law, end, accuracy=1e-2, stations=5)
+
+
+def test_a_run_that_begins_later_is_not_simulated_again():
+    """The start of its motion is not known."""
+    run = simulate(straight(), 1.0, accuracy="draft", estimate=False, stations=3)
+    later = replace(run, time=run.time + 3.0)
+    with pytest.raises(ValueError, match="run must begin at t = 0 to be simulated again, got 3 s"):
+        later.refined  # noqa: B018

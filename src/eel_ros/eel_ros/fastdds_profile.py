@@ -5,9 +5,9 @@ Discovery: nodes that start together miss each other's first announcements. By d
 times in half a second, and then every 3 s, so that they often found each other only after 3 s.
 
 Lost packets: a run as fast as possible publishes thousands of messages a second, and packets are dropped when a
-subscriber's process is not scheduled for some milliseconds. The reliable protocol resends them, but by default it checks
-for losses only every 3 s. After several losses the wait at the end of a run (5 s) was too short, and messages were
-missing (in 1 of 6 runs on a busy machine).
+subscriber's process is not scheduled for some milliseconds. The reliable protocol resends them, but by default it
+checks for losses only every 3 s. After several losses the wait at the end of a run (5 s) was too short, and messages
+were missing (in 1 of 6 runs on a busy machine).
 """
 
 import os

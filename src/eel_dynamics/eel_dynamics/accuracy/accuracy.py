@@ -64,7 +64,8 @@ class Accuracy:
         step: [s]; where given, the steps are those of the classical Runge-Kutta method (order 4), of this length.
         method: "dormand_prince" (order 5) or "adams" (order 1 to 6), or "classical" where the steps are fixed.
         order: of the method; 5 where none is given ("classical": 4).
-        target: the relative error that the settings are for; None where they were given one by one.
+        target: the relative error that the settings are for, 1e-10 to 0.1; None where they were given one by one. With
+            a target, resolution, tolerance, method and order are chosen for it once the scene is known.
         fixed: where given, so many steps of the classical method per shortest period of the law (or per second).
         kinks: which kinks of the drag along the body are found and integrated exactly: "all", the "jumps" alone, or
             "none". V|V| has a kink where cross flow or roll change their sign; the printed friction law jumps.
@@ -106,6 +107,10 @@ class Accuracy:
             )
         if not isinstance(self.kinks, str) or self.kinks not in KINKS:
             raise ValueError(f"accuracy kinks must be one of {', '.join(KINKS)}, got {shown(self.kinks)}")
+        if self.target is not None and not (is_finite(self.target) and FINEST <= self.target <= COARSEST):
+            raise ValueError(f"accuracy target must be {FINEST:g} to {COARSEST:g}, or None, got {shown(self.target)}")
+        if self.target is not None and self.step is not None:
+            raise ValueError(f"accuracy step cannot be given beside a target, got {shown(self.step)} s")
         if not (is_finite(self.tolerance) and self.tolerance > 0.0):
             raise ValueError(f"accuracy tolerance must be > 0, got {shown(self.tolerance)}")
         if not (is_finite(self.longest_step) and 0.0 < self.longest_step <= 1.0):

@@ -17,6 +17,7 @@ from eel_gaits.sources.sampled_law import SampledLaw
 LONGEST_COMMON = 12  # of the strongest wave's periods, after which the whole gait must repeat
 FEWEST_SAMPLES = 8  # in a period
 WHOLE = 1e-4  # part of a period that may be missing: the period of measured rows is not exact
+PLACES = 33  # along the body, at which the strength of a wave is evaluated
 FINE = 64  # points in a period at which a path or its width is evaluated
 
 
@@ -58,15 +59,17 @@ def common_period(law: Law | SampledLaw, x, time) -> float:
 class AveragingWindow:
     """The last `periods` whole periods of `run` (None: as many as make up the later half of the run, at least one).
 
-    run, periods; period [s]: after which the gait repeats; start, end [s]; wave: the strongest wave (yaw, else pitch).
+    run, periods; period [s]: after which the gait of the later half repeats; start, end [s]; wave: the strongest wave
+    (yaw, else pitch).
     `ValueError` where the run is too short or its samples too few.
     """
 
     def __init__(self, run, periods: int | None = None):
         time = np.asarray(run.time, dtype=float)
-        self.run, self.period = run, common_period(run.law, run.x, time)
-        self.wave = strongest(run.law, run.x, time)
-        self.travelling_wave = strongest(run.law, run.x, time, axes=("yaw",), travelling=True)
+        x, later = np.linspace(0.0, run.body.length, PLACES), time[time >= 0.5 * (time[0] + time[-1])]
+        self.run, self.period = run, common_period(run.law, x, later)
+        self.wave = strongest(run.law, x, later)
+        self.travelling_wave = strongest(run.law, x, later, axes=("yaw",), travelling=True)
         whole = math.floor((time[-1] - time[0]) / self.period + WHOLE)
         if whole < 1:
             raise ValueError(f"run must hold a whole period of {self.period:g} s, got {time[-1] - time[0]:g} s")

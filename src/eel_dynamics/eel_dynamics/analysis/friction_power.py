@@ -5,6 +5,7 @@ import numpy as np
 from eel_gaits.pilot.attitude import world_from_body
 
 import eel_core
+from eel_dynamics.curvature.law_follower import LawFollower
 from eel_dynamics.simulation.simulation import Simulation
 
 
@@ -16,9 +17,11 @@ def drag_powers(run) -> np.ndarray:
     with the run's settings; their sum is the ledger's `drag_power`.
     """
     simulation = Simulation(body=run.body, scene=run.scene, accuracy=run.accuracy.as_it_is(), stations=2, law=run.law)
+    follower, now = LawFollower(simulation.discretisation.tabulation, law=run.law), 0.0
     instant, powers = eel_core.Instant(simulation.discretisation.swimmer), np.zeros((len(run.time), 4))
     for sample, time in enumerate(run.time):
         relative = run.twist[sample].copy()
         relative[3:] -= world_from_body(run.orientation[sample]).T @ run.scene.current
-        powers[sample] = instant.drag_powers(simulation.tabulated_law, float(time), relative)
+        follower.pass_events(now, now := float(time))
+        powers[sample] = instant.drag_powers(follower.tabulated_law, float(time), relative)
     return powers

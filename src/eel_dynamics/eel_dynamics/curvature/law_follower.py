@@ -19,6 +19,8 @@ from eel_dynamics.curvature.curvature_samples import CurvatureSample, SampleQueu
 from eel_dynamics.curvature.law_speed import speed_of
 from eel_dynamics.curvature.tabulated_law import TabulatedLaw, Tabulation
 
+DEFAULT_TRANSITION = 1.0  # s
+
 
 class Blend(NamedTuple):
     """The difference (6, width) between two motions at `start` [s]. It dies out until `end` [s].
@@ -41,7 +43,7 @@ class LawFollower:
     def __init__(
         self,
         tabulation: Tabulation,
-        default_transition: float,
+        default_transition: float = DEFAULT_TRANSITION,
         law: Law | SampledLaw | None = None,
         origin: float = 0.0,
     ):
@@ -120,6 +122,12 @@ class LawFollower:
                 prepare(self.samples.next_ones)
                 self._take_over(self._segment(), now, self._default_transition)
                 self.sampled, self.resting = True, False
+
+    def pass_events(self, now: float, time: float):
+        """Change the source at each event from `now` to `time` [s], for who reads the law and does not march."""
+        while (event := self.next_event(now)) < time:
+            now = event
+            self.pass_event(now, lambda samples: None)
 
     def _forget_samples(self):
         self.samples, self.sampled, self.resting = SampleQueue(), False, False

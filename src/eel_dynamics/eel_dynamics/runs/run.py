@@ -203,7 +203,7 @@ class Run:
 
     @cached_property
     def refined(self) -> "Run":
-        """The same run with a tenth of the error, simulated on first access."""
+        """The same run with a tenth of the error, simulated on first access. `ValueError` if it begins after t = 0."""
         return _simulated_again(self, self.law, self.accuracy.tightened(0.1))
 
     @cached_property
@@ -276,7 +276,9 @@ def simulate(
 def _simulated_again(
     run: Run, law: Law | SampledLaw, accuracy: Accuracy, most_evaluations: float = MOST_EVALUATIONS
 ) -> Run:
-    """The swim of `run` with another law or accuracy; its error is not estimated."""
+    """The swim of `run` with another law or accuracy; its error is not estimated. `ValueError` if it began later."""
+    if run.time[0] != 0.0:
+        raise ValueError(f"run must begin at t = 0 to be simulated again, got {run.time[0]:g} s")
     return simulate(
         law,
         float(run.time[-1]),

@@ -80,6 +80,12 @@ class MeasuredSimulation(Simulation):
             self._compare(interrupted)
         return reached
 
+    def record(self, *arguments):
+        """As `Simulation.record`. The error is estimated once, at its end."""
+        recorded = super().record(*arguments)
+        self._compare(None)
+        return recorded
+
     def set_state(self, position, orientation, twist):
         """As `Simulation.set_state`. The estimate begins again."""
         super().set_state(position, orientation, twist)

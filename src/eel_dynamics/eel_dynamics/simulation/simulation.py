@@ -18,6 +18,7 @@ import eel_core
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.error_estimate import ErrorEstimate
 from eel_dynamics.curvature.curvature_samples import CurvatureSample, check_points
+from eel_dynamics.curvature.law_follower import DEFAULT_TRANSITION
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.initial_state import InitialState
 from eel_dynamics.model.scene import Scene
@@ -58,7 +59,7 @@ class Simulation:
         position=(0.0, 0.0, 0.0),
         orientation=(0.0, 0.0, 0.0, 1.0),
         twist=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-        default_transition: float = 1.0,
+        default_transition: float = DEFAULT_TRANSITION,
         law: Law | SampledLaw | None = None,
         most_evaluations: float = MOST_EVALUATIONS,
     ):

@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from eel_gaits.input_output.wording import shown
 from eel_gaits.laws.law import Law
+from eel_gaits.pilot.attitude import heading
 from eel_gaits.sources.tables import Table, read_table
 
 from eel_dynamics.model.body import Body
@@ -49,6 +50,12 @@ def read_measured(path: str, *, station: float = 0.0, namespace: str | None = No
         raise ValueError(f"{shown(path)}: it holds no law of terms, whose swim could be simulated")
     if run.time[0] == 0.0 and np.abs(run.orientation[0, :2]).max() > LEVEL:
         raise ValueError(f"{shown(path)}: its head must be level at the start, got a lean that no parameter gives")
+    turned = abs(heading(run.orientation[0])) > LEVEL
+    if run.time[0] == 0.0 and turned and np.any(run.scene.current[:2]):
+        raise ValueError(
+            f"{shown(path)}: in a current its head must point along x at the start, "
+            f"got a heading of {np.degrees(heading(run.orientation[0])):g} deg that no parameter gives"
+        )
     twist = dict(zip(VELOCITIES, run.twist[0].tolist(), strict=True)) if run.time[0] == 0.0 else {}
     numbers = {f"initial.{name}": value for name, value in twist.items() if value}
     scene = replace(run.scene, internal_wrench=False, ledger=False) if Path(path).suffix == ".nc" else None

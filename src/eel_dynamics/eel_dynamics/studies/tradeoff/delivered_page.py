@@ -32,9 +32,9 @@ order. It includes the growth of errors in a sensitive motion, which the error o
 **If the estimate is above two thirds of the target**, the run becomes the companion of a finer run, up to three
 times. The new estimate counts for no less than the last one times the ratio of the tolerances: where two runs are
 nearer than that, they agree by chance. If the estimate is still above the target, `simulate` warns. `run.warnings` has
-the same line, with the estimate and the time in which errors grow by a factor of e. A warning also says so if the growth
-of round-off alone exceeds a tenth of the target. In `simulate_batch` this is `batch.above_target`, in `sweep` the
-measures error_position and error_torque.
+the same line, with the estimate and the time in which errors grow by a factor of e. A warning also says so if the
+growth of round-off alone exceeds a tenth of the target. In `simulate_batch` this is `batch.above_target`, in `sweep`
+the measures error_position and error_torque.
 
 **Without a target.** `estimate=False` gives the run without a companion. Settings given one by one are kept; their
 error is measured, and not compared with a target. The same holds for a budget of time. `Simulation` measures no error.
