@@ -201,8 +201,8 @@ def test_late_subscriber_is_told_what_it_missed_and_an_early_one_misses_nothing(
     early, late = client(topics=("odom", "backbone")), client(topics=())
     early.laws.publish(law_to_message(falling()))
     node = start("dynamics", "--ros-args", "-p", "real_time_factor:=0", "-p", "subscriber_timeout:=60")
-    early.until(lambda: len(early.received["odom"]) > 300, "300 samples")
     for topic in ("odom", "backbone"):
+        early.until(lambda topic=topic: len(early.received[topic]) > 300, "300 samples")
         assert [nanoseconds(each.header.stamp) for each in early.received[topic][:300]] == [
             k * 10**7 for k in range(300)
         ]
