@@ -107,6 +107,21 @@ def test_a_repeated_sample_0_is_recorded_once(start, network, tmp_path):
     assert [message.pose.position.x for _, message in bag] == [1.0, 2.0, 3.0, 3.0]
 
 
+def test_sample_0_of_the_run_after_a_reset_is_recorded(start, network, tmp_path):
+    """It has the same bytes as that of the run before."""
+    recorder = start("record", "-o", str(tmp_path / "bag"))
+    recorder.wait_for_output("recording to")
+    publisher = network.create_publisher(TOPICS["head_pose"], "head_pose", 1000)
+    found(publisher)
+    for stamp in (0, 0, 10, 20, 0, 0, 10):
+        publisher.publish(messages(made_up.Swimmer(51), stamp)["head_pose"])
+    assert publisher.wait_for_all_acked()
+    recorder.process.send_signal(signal.SIGINT)
+    assert recorder.wait(90.0) == 0, recorder.output()
+    bag = contents(tmp_path / "bag")["/head_pose"]
+    assert [stamp_of(message) for _, message in bag] == [0, 10, 20, 0, 10]
+
+
 @pytest.mark.parametrize("kind", TYPES)
 def test_definitions_are_complete_and_their_hashes_are_those_of_the_types(kind):
     store = get_typestore(Stores.EMPTY)

@@ -4,7 +4,7 @@
 Messages are written undecoded. The bag is completed once a second (see `growing_bag`), so that it opens however the
 recorder ends. The swimmer's topics are subscribed to from the start, so that no message of a run as fast as possible is
 lost; other topics as soon as they are discovered. Stamps in the bag are times of reception. Sample 0, which the
-dynamics node repeats while its run stands at the start, is written once.
+dynamics node repeats while its run stands at the start, is written once for each run.
 """
 
 import argparse
@@ -53,7 +53,7 @@ class Recorder(Node):
         self._subscribed: dict[str, tuple[object, QoSProfile]] = {}
         self._offers: dict[str, list[QoSProfile]] = {}
         self._connections: dict[str, object] = {}
-        self._start: dict[str, bytes] = {}  # topic: the last sample 0
+        self._start: dict[str, bytes] = {}  # topic: the last sample 0 of a run that stands at it
         self._refused: set[str] = set()
         self._began = self._looked = self._last_message = time.monotonic()
         self._present = False
@@ -129,7 +129,9 @@ class Recorder(Node):
                 self._connect(topic, kind)
             self._last_message = time.monotonic()
             self._present |= topic == self.resolve_topic_name(SWIMMER)  # a law alone is not a swimmer
-            if sampled and not any(data[STAMP]):
+            if sampled and any(data[STAMP]):
+                self._start.pop(topic, None)  # the run goes on: the next sample 0 is that of another run
+            elif sampled:
                 if data == self._start.get(topic):
                     return
                 self._start[topic] = data
