@@ -110,6 +110,11 @@ def test_speeds_of_several_gaits_give_a_coefficient():
         identify({"body.lateral_drag": 2.0}, measured, noise=1e-5, **FAST)
 
 
+def test_the_friction_is_blended_where_no_scene_is_given():
+    found = identify({"body.lateral_drag": 2.0}, MeasuredSpeed(0.6), noise=0.01, accuracy=1e-2, threads=1)
+    assert found.runs[0].scene.friction == "blended"
+
+
 def test_correlated_errors_are_weighted_as_least_squares_asks():
     """A straight line through 400 errors with rho = 0.8: its slope's error against trials, and rho itself."""
     time, slopes, stated, factors = np.arange(400.0), [], [], []

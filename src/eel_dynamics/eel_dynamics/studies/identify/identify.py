@@ -102,9 +102,9 @@ def identify(
     parameters: first guesses by name, with the names of `studies.points`: "body.lateral_drag", "scene.density",
     "initial.v_1" and the like. Those of body and scene stay above 0. measured: one or several paths, or steady speeds;
     each may have `numbers` of its own. Of each path a displacement and a turn about the vertical are fitted too, as the
-    axes of a laboratory are its own. gait, numbers, body, scene, accuracy, threads: as in `optimise`. noise: standard
-    deviation of the errors [m] or [m/s], where it is known; None: from the residuals. level: of the intervals.
-    progress: as in `sweep`, by evaluations.
+    axes of a laboratory are its own. gait, numbers, body, accuracy, threads: as in `optimise`. scene: by default that
+    of the library with blended friction. noise: standard deviation of the errors [m] or [m/s], where it is known; None:
+    from the residuals. level: of the intervals. progress: as in `sweep`, by evaluations.
 
     `ValueError` names what does not fit, and parameters that the measurements do not determine; `SimulationStopped`: a
     swim stopped.
@@ -121,7 +121,7 @@ def identify(
         0,
         None,
         Body.boyer2010() if body is None else checked_instance("body", body, Body),
-        Scene() if scene is None else checked_instance("scene", scene, Scene),
+        Scene(friction="blended") if scene is None else checked_instance("scene", scene, Scene),
         fixed_steps(accuracy),
     )
     swims = Swims(gait, dict(numbers or {}), base, threads)
