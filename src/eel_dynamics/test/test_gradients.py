@@ -11,7 +11,7 @@ from eel_dynamics.studies.gradients.friction_jump import share_across_jump
 from eel_dynamics.studies.points import Point, point_at
 
 from eel_dynamics import Accuracy, Body, Scene, SimulationStopped, gradient, simulate
-from eel_gaits import straight
+from eel_gaits import sampled, straight
 
 SMOOTH = Scene(friction="laminar")
 SHORT = {"duration": 2.5, "accuracy": 1e-3, "stations": 11}
@@ -142,6 +142,10 @@ def test_functions_of_the_user_and_two_swims_per_parameter():
             "accuracy of a gradient must be a target, or .* got 'mine'",
         ),
         ({"accuracy": "fastest within 5 ms per second"}, "accuracy of a gradient must be a target"),
+        (
+            {"gait": lambda period: sampled(straight(period=period).curvature, 2.5)},
+            "gradient gait must return a Law, whose terms are known, got SampledLaw",
+        ),
         ({"duration": 0.9}, "measure mean_speed is undefined"),
     ],
 )

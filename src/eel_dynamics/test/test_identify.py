@@ -11,7 +11,7 @@ from eel_dynamics.studies.identify.command import main
 from eel_dynamics.studies.identify.statistics import Block, correlation_of, gauss_newton_covariance
 
 from eel_dynamics import Body, MeasuredPath, MeasuredSpeed, Scene, identify, simulate
-from eel_gaits import straight, turning
+from eel_gaits import sampled, straight, turning
 
 PLANE = Scene(friction="blended", planar=True)
 TRUTH = {"body.lateral_drag": 1.98, "body.nose_drag": 0.036}  # of the paper's robot
@@ -153,7 +153,13 @@ def test_coefficients_that_cannot_be_told_apart_are_named(true_path, guess, told
         identify(guess, MeasuredPath(*true_path, numbers={"period": 0.8}), gait="turning", **FAST)
 
 
+def rows(period=1.0):
+    """A gait without terms."""
+    return sampled(straight(period=period).curvature, 3.0)
+
+
 TIME, PLACES = np.arange(10.0) / 10.0, np.zeros((10, 2))
+NO_TERMS = "^gait must return a Law, whose terms are known, got SampledLaw"
 
 
 @pytest.mark.parametrize(
@@ -182,6 +188,8 @@ TIME, PLACES = np.arange(10.0) / 10.0, np.zeros((10, 2))
             lambda: identify(GUESS, MeasuredPath(TIME, PLACES, station=3.0)),
             "path station must be at most the body's 1 m",
         ),
+        (lambda: identify(GUESS, MeasuredPath(TIME, PLACES), gait=rows), NO_TERMS),
+        (lambda: identify(GUESS, MeasuredSpeed(0.3), gait=rows), NO_TERMS),
     ],
 )
 def test_bad_input_is_refused_in_one_line(make, words):

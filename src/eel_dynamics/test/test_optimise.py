@@ -8,7 +8,7 @@ import pytest
 from eel_dynamics.studies.optimise.command import main
 
 from eel_dynamics import Scene, optimise, simulate_batch
-from eel_gaits import straight
+from eel_gaits import sampled, straight
 
 PLANE = Scene(friction="blended", planar=True)
 BOUNDS = {"period": (0.6, 2.5), "amplitude_0": (0.2, 2.0)}
@@ -93,6 +93,10 @@ def test_a_speed_out_of_reach_is_told():
         ({"periods": 2}, "periods must be a whole number >= 4, got 2"),
         ({"cost": "price"}, "cost must be of head_x, .* got 'price'"),
         ({"gait": "still", "bounds": {"scene.density": (900.0, 1000.0)}}, "law 'still' has no periodic term"),
+        (
+            {"gait": lambda period: sampled(straight(period=period).curvature, 3.0)},
+            "^optimise gait must return a Law, whose terms are known, got SampledLaw",
+        ),
     ],
 )
 def test_bad_input_is_refused_in_one_line(given, words):

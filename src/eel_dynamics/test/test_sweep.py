@@ -18,7 +18,7 @@ from eel_dynamics.studies.sweep.command import main
 from eel_dynamics.studies.sweep.sweep_key import key_of
 
 from eel_dynamics import Accuracy, Body, Scene, simulate, sweep
-from eel_gaits import Law, Term, straight
+from eel_gaits import Law, Term, sampled, straight
 
 xarray = pytest.importorskip("xarray")
 distributed = pytest.importorskip("distributed")
@@ -55,6 +55,19 @@ def test_labelled_and_equal_to_single_runs(client, tmp_path):
     assert not out.with_name("periods.nc.parts").exists()
     # what is complete is not simulated again
     assert sweep(grid, scheduler="tcp://127.0.0.1:1", out=out, **SHORT).head_x.equals(data.head_x)
+
+
+def test_a_gait_may_return_rows(tmp_path):
+    def rows(period, wavelength=1.0):
+        return sampled(straight(period=period, wavelength=wavelength).curvature, 1.2)
+
+    out = tmp_path / "rows.nc"
+    data = sweep({"period": [0.5, 0.8]}, gait=rows, out=out, **SHORT)
+    alone = measures_of(simulate(rows(0.8), **SHORT))
+    assert not data.stopped.any() and float(data.head_x.sel(period=0.8)) == alone["head_x"]
+    assert sweep({"period": [0.5, 0.8]}, gait=rows, out=out, **SHORT).equals(data)
+    with pytest.raises(ValueError, match="not of this sweep"):
+        sweep({"period": [0.5, 0.8]}, gait=rows, numbers={"wavelength": 0.9}, out=out, **SHORT)
 
 
 def test_the_limit_of_evaluations_can_be_raised_and_lowered(client, tmp_path):

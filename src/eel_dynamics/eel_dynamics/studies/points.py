@@ -93,6 +93,13 @@ def point_at(index: int, values: dict, gait: "str | Callable[..., Law]", numbers
         raise ValueError(f"at {at}: {error}") from None
 
 
+def law_of_terms(law) -> Law:
+    """The `law` that a gait returned. `ValueError` for anything but a `Law`: a `SampledLaw` has no terms."""
+    if not isinstance(law, Law):
+        raise ValueError(f"gait must return a Law, whose terms are known, got {shown(law)}")
+    return law
+
+
 def label_of(value):
     """The label of a value on its axis."""
     if _named(value):

@@ -37,7 +37,7 @@ from eel_dynamics.runs.sampling import default_sample_period
 from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.studies.gradients.fixed_discretisation import fixed_steps, on_one_grid, step_of
 from eel_dynamics.studies.gradients.friction_jump import share_across_jump
-from eel_dynamics.studies.points import Point, SwimSettings, batch_of_points, point_at
+from eel_dynamics.studies.points import Point, SwimSettings, batch_of_points, law_of_terms, point_at
 from eel_dynamics.studies.progress_bar import progress_of
 
 RELATIVE_STEP = 1e-5  # of a parameter; of one unit where its value is 0
@@ -185,9 +185,11 @@ def _periods(run: Run) -> int | None:
 
 def _point(values: dict, gait, numbers: dict | None, base: Point) -> Point:
     try:
-        return point_at(0, values, gait, numbers or {}, base)
+        point = point_at(0, values, gait, numbers or {}, base)
+        law_of_terms(point.law)
     except ValueError as error:
         raise ValueError(f"gradient {error}") from None
+    return point
 
 
 def _run(batch, index: int) -> Run:

@@ -15,7 +15,7 @@ import numpy as np
 from eel_dynamics.runs.run import Run
 from eel_dynamics.studies.gradients.gradient import gradient
 from eel_dynamics.studies.identify.measurements import MeasuredPath, MeasuredSpeed
-from eel_dynamics.studies.points import Point, point_at
+from eel_dynamics.studies.points import Point, law_of_terms, point_at
 from eel_dynamics.studies.steady_swim import at_speed, swim_times
 
 PERIODS = 12  # of a swim at a measured speed
@@ -66,8 +66,8 @@ class Swims(NamedTuple):
 
 
 def path_times(path: MeasuredPath, law) -> dict[str, float]:
-    """Duration and sample period [s] of the swim of a `path`."""
-    shortest = min((term.period for term in law.terms if term.period), default=np.inf)
+    """Duration and sample period [s] of the swim of a `path`. `ValueError` for a law without terms."""
+    shortest = min((term.period for term in law_of_terms(law).terms if term.period), default=np.inf)
     duration = float(path.time[-1])
     count = np.ceil(duration / min(LONGEST_SAMPLE, shortest / SAMPLES))
     return {"duration": duration, "sample_period": duration / max(4.0, count)}

@@ -4,7 +4,6 @@
 import hashlib
 import inspect
 import sys
-from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +14,7 @@ import eel_dynamics
 import eel_gaits
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.shapes import NamedHalfAxis
+from eel_dynamics.runs.storage.plain import plain_law
 from eel_dynamics.runs.storage.tables import needed
 
 PACKAGES = (Path(eel_gaits.__file__).parent, Path(eel_dynamics.__file__).parent)
@@ -36,7 +36,7 @@ def key_of(points, how) -> str:
         if id(point.body) not in bodies:
             bodies[id(point.body)] = _content_of_body(point.body)
         content.update(bodies[id(point.body)])
-        content.update(repr((asdict(point.law), point.scene, point.accuracy)).encode())
+        content.update(repr((plain_law(point.law), point.scene, point.accuracy)).encode())
         content.update(np.concatenate(point.start).tobytes())
     return content.hexdigest()[:32]
 
