@@ -55,6 +55,15 @@ def test_finer_is_more_exact_and_the_reference_has_converged(trade):
         assert row.memory > 8 * 30 * row.nodes  # 30 fields and more
 
 
+def test_times_nodes_and_memory_are_of_the_run_whose_errors_are_told(trade):
+    for row in trade.rows:
+        timed = measuring._ready(falling(), BODY, Scene(), row.accuracy)
+        timed.advance(2.5)
+        assert (row.nodes, row.memory) == (len(timed.grid.x), timed.memory)
+        assert row.nodes == row.run.nodes and timed.evaluations[2] == row.evaluations
+        assert np.array_equal(timed.head.position, row.run.position[-1])
+
+
 def test_front_holds_what_nothing_beats():
     rows = [SimpleNamespace(e=e, c=c) for e, c in ((1.0, 1.0), (0.5, 2.0), (0.6, 3.0), (0.5, 2.5), (0.1, 9.0))]
     found = measuring.front(rows, lambda row: row.e, lambda row: row.c)

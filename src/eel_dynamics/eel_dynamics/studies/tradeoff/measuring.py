@@ -2,9 +2,10 @@
 """Error and cost of each setting, against a converged run.
 
 Errors are those of `accuracy`: of the head's position at the end relative to the length of its path (or of the body, if
-longer), and of the torque field relative to its greatest magnitude. Times are CPU times of one core: they equal wall
-times on an idle machine, and stay meaningful on a busy one. They are medians over repeats. In each repeat all settings
-take turns, so that a disturbance does not fall on a single setting.
+longer), and of the torque field relative to its greatest magnitude. Times are those of the same steps on the same
+nodes, without the samples. They are CPU times of one core: they equal wall times on an idle machine, and stay
+meaningful on a busy one. They are medians over repeats. In each repeat all settings take turns, so that a disturbance
+does not fall on a single setting.
 """
 
 import statistics
@@ -28,7 +29,7 @@ STATIONS = 51
 
 @dataclass(frozen=True)
 class Measured:
-    """Relative errors and cost of a setting. Times are for the motion alone: no ledger, no wrench, one sample."""
+    """Relative errors and cost of a setting. Times are without the ledger and without samples."""
 
     accuracy: Accuracy
     nodes: int
@@ -78,7 +79,7 @@ def swim(law: Law, duration: float, body: Body, scene: Scene, accuracy: Accuracy
         law,
         duration,
         body=body,
-        scene=replace(scene, ledger=False, internal_wrench=True),
+        scene=_measured_in(scene),
         accuracy=accuracy,
         sample_period=SAMPLE_PERIOD,
         stations=STATIONS,
@@ -111,14 +112,13 @@ def measure(
             runs[accuracy] = swim(law, duration, body, scene, accuracy)
         except SimulationStopped:
             unstable.append(accuracy)
-    lean = replace(scene, ledger=False, internal_wrench=False)
     marching = {accuracy: [] for accuracy in runs}
     whole = {accuracy: [] for accuracy in runs}
     for repeat in range(repeats):
         say(f"times, round {repeat + 1} of {repeats}")
         for accuracy in runs:
             start = time.thread_time()
-            swimmer = _ready(law, body, lean, accuracy)
+            swimmer = _ready(law, body, scene, accuracy)
             begin = time.thread_time()
             swimmer.advance(duration)
             end = time.thread_time()
@@ -131,7 +131,7 @@ def measure(
         rows.append(
             Measured(
                 accuracy=accuracy,
-                nodes=nodes_of(swimmer := _ready(law, body, lean, accuracy)),
+                nodes=run.nodes,
                 step=duration / max(1, run.steps),
                 pose_error=pose,
                 torque_error=torque,
@@ -139,7 +139,7 @@ def measure(
                 microseconds=1e6 * statistics.median(marching[accuracy]) / max(1, run.evaluations),
                 seconds=seconds,
                 times_real_time=duration / seconds,
-                memory=swimmer.memory,
+                memory=_ready(law, body, scene, accuracy).memory,
                 run=run,
             )
         )
@@ -156,12 +156,12 @@ def front(rows: list, error: Callable, cost: Callable) -> list:
     return result
 
 
-def nodes_of(swimmer: Simulation) -> int:
-    """Number of nodes along the body."""
-    return len(swimmer.grid.x)
+def _measured_in(scene: Scene) -> Scene:
+    """`scene` with the torque and without the ledger: errors and times are of the grid that the torque needs."""
+    return replace(scene, ledger=False, internal_wrench=True)
 
 
 def _ready(law: Law, body: Body, scene: Scene, accuracy: Accuracy) -> Simulation:
-    swimmer = Simulation(body=body, scene=scene, accuracy=accuracy, stations=2)
+    swimmer = Simulation(body=body, scene=_measured_in(scene), accuracy=accuracy, stations=2)
     swimmer.adopt(law)
     return swimmer

@@ -17,9 +17,9 @@ PAGE = """# Accuracy against cost, and the effect of simpler models
 
 Made by `tradeoff {gaits} --page {page}`{machine}.
 
-The {gait} gait, {duration:g} s, the motion alone (no ledger, no wrench, one sample), set-up included. Each row is the
-cheapest of the measured settings whose errors, of pose and of torque, are both below the first column. Times carry over
-to another machine as ratios only.{digit}
+The {gait} gait, {duration:g} s, on the nodes that the torque needs; the time is without the ledger and without samples,
+set-up included. Each row is the cheapest of the measured settings whose errors, of pose and of torque, are both below
+the first column. Times carry over to another machine as ratios only.{digit}
 
 {table}
 {picture}
@@ -35,9 +35,10 @@ TABLES = """# Accuracy against cost: all tables
 
 Made by `tradeoff {gaits} --page {page}`{machine}. The short of it: [{short}]({short}).
 
-Times are processor times, medians of {repeats} rounds in which all settings take turns. Errors are against a run of
-{points:g} points per body length and a tolerance of {tolerance:g} per step: of the head's position at the end by its
-path, and of the torque field (51 stations, 201 instants) by its greatest magnitude.
+Times are processor times without ledger and samples, medians of {repeats} rounds in which all settings take turns.
+Errors are of runs with the same steps on the same nodes, against a run of {points:g} points per body length and a
+tolerance of {tolerance:g} per step: of the head's position at the end by its path, and of the torque field (51
+stations, 201 instants) by its greatest magnitude.
 
 `P`, `T`: on the Pareto front of pose or torque: no other setting costs less and is more accurate. `adams`: one
 evaluation per step, variable steps. `dormand-prince`: the pair of orders 5(4), six evaluations per step, variable

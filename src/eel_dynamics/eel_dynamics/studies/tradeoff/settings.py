@@ -39,6 +39,6 @@ def settings(scene: Scene, quick: bool = False) -> list[Accuracy]:
                     rows.append(replace(rows[-1], name=f"{name}, no kinks", kinks="none"))
         for step in STEPS[part]:
             rows.append(Accuracy(name=f"{nodes}, step {step:g} s", resolution=resolution, step=step))
-    # The presets lose their target: with it they would take other settings for timing, where the wrench is off.
+    # The presets lose their target: every run then takes these settings as they are.
     presets = [Accuracy.of(name).in_scene(scene) for name in PRESETS]
     return rows + [each.as_it_is() for each in presets]
