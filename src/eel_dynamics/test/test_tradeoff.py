@@ -163,6 +163,29 @@ def test_the_counts_of_delivered_errors():
     assert cells == ["position, motion alone", "4", "3", "2", "1", "1", "1", "1", "0.833", "4.00", "0", "1.50"]
 
 
+@pytest.mark.parametrize(
+    "words, told",
+    [
+        ("--delivered straight", "--delivered does not go with GAIT"),
+        ("--delivered --set period=0.5 --duration 10", "--delivered does not go with --set, --duration"),
+        ("--delivered --body kern2006 --repeats 0", "--delivered does not go with --body, --repeats"),
+        ("--delivered --quick --all --csv", "--delivered does not go with --quick, --all, --csv"),
+        ("--delivered --rerun trade.rrd", "--delivered does not go with --rerun"),
+        ("--count 500 --seed 0", "--delivered must be given for --count, --seed"),
+    ],
+)
+def test_options_that_do_not_go_together_are_named(words, told, capsys):
+    assert main(words.split()) == 2
+    assert capsys.readouterr() == ("", f"tradeoff: {told}\n")
+
+
+def test_pictures_of_what_is_delivered_need_no_page(tmp_path, capsys):
+    assert main(["--delivered", "--count", "2", "--seed", "3", "--pictures", str(tmp_path)]) == 0
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["delivered.png", "delivered.svg"]
+    assert main(["--delivered", "--pictures", str(tmp_path / "none")]) == 2
+    assert "must be a folder that exists" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize("words, named", [("--count 0", "--count"), ("--seed -1", "--seed")])
 def test_bad_numbers_of_random_swims_are_named(words, named, capsys):
     assert main(["--delivered", *words.split()]) == 2

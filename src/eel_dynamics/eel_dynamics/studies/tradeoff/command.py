@@ -28,6 +28,19 @@ from eel_dynamics.studies.tradeoff.page import reference_line, write_page
 from eel_dynamics.studies.tradeoff.settings import settings
 from eel_dynamics.studies.tradeoff.table import model_table, trade_table, write_csv
 
+OF_GAITS = {  # options that do not go with --delivered: their defaults
+    "gaits": ["falling"],
+    "set": [],
+    "duration": 10.0,  # s
+    "body": "boyer2010",
+    "repeats": 5,
+    "quick": False,
+    "all": False,
+    "csv": False,
+    "rerun": None,
+}
+OF_SWIMS = {"count": COUNT, "seed": SEED}  # options of --delivered alone: their defaults
+
 
 def main(arguments: list[str] | None = None) -> int:
     """Exit status as of `run_command`."""
@@ -35,6 +48,8 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _trade(options) -> int:
+    _fill_in_defaults(options)
+    _check_outputs(options)
     if options.delivered:
         if options.count < 1:
             raise ValueError(f"--count must be 1 or more, got {options.count}")
@@ -52,17 +67,44 @@ def _trade(options) -> int:
     return 0
 
 
+def _fill_in_defaults(options):
+    """`ValueError` names options that were given, and do not go with --delivered or without it."""
+    for defaults, allowed in ((OF_GAITS, not options.delivered), (OF_SWIMS, options.delivered)):
+        given = []
+        for name, default in defaults.items():
+            value = getattr(options, name)
+            if value is None or value is False or value == []:
+                setattr(options, name, default)
+            else:
+                given.append("GAIT" if name == "gaits" else f"--{name}")
+        if given and not allowed:
+            told = "does not go with" if options.delivered else "must be given for"
+            raise ValueError(f"--delivered {told} {', '.join(given)}")
+
+
+def _check_outputs(options):
+    for folder in (
+        options.pictures,
+        options.page and Path(options.page).parent,
+        options.rerun and Path(options.rerun).parent,
+    ):
+        if folder and not Path(folder).is_dir():
+            raise ValueError(f"{folder} must be a folder that exists")
+    for option, name in (("--page", options.page), ("--rerun", options.rerun)):
+        if name:
+            check_output(option, name)
+
+
 def _deliver(options) -> int:
     """Measure what the targets deliver; print it, and write page and picture if they are asked for."""
-    if options.page:
-        check_output("--page", options.page)
     trials = deliver(options.count, options.seed, _say)
     print(delivered_table(trials))
-    if options.page:
-        page = Path(options.page)
-        folder = Path(options.pictures or page.parent)
+    if options.pictures or options.page:
+        folder = Path(options.pictures or Path(options.page).parent)
         for path in _save(lambda figure: draw_delivered(figure, trials), DELIVERED_SIZE, folder / "delivered"):
             print(f"written to {path}")
+    if options.page:
+        page = Path(options.page)
         picture = os.path.relpath(folder / "delivered.png", page.parent)
         write_delivered_page(page, trials, options.count, options.seed, picture)
         print(f"written to {page}")
@@ -82,16 +124,6 @@ def _measure_all(options) -> list[tuple]:
         raise ValueError(f"--duration must be finite and >= {least} s, got {options.duration}")
     if not options.repeats >= 1:
         raise ValueError(f"--repeats must be 1 or more, got {options.repeats}")
-    for folder in (
-        options.pictures,
-        options.page and Path(options.page).parent,
-        options.rerun and Path(options.rerun).parent,
-    ):
-        if folder and not Path(folder).is_dir():
-            raise ValueError(f"{folder} must be a folder that exists")
-    for option, name in (("--page", options.page), ("--rerun", options.rerun)):
-        if name:
-            check_output(option, name)
     found = []
     for law in laws:
         fixed = {"duration": options.duration, "body": body, "scene": Scene(), "say": _say}
@@ -142,14 +174,16 @@ def _parser() -> Parser:
         "error of models that leave physics out. Takes about a minute per gait.",
     )
     names = ", ".join(sorted(GAITS))
-    parser.add_argument("gaits", nargs="*", default=["falling"], metavar="GAIT", help=f"of {names} (falling)")
+    parser.add_argument("gaits", nargs="*", metavar="GAIT", help=f"of {names} (falling)")
     add_repeated(parser, "--set", "NAME=VALUE", "a number of the gaits")
-    parser.add_argument("--duration", type=float, default=10.0, help="s (10)")
-    parser.add_argument("--body", default="boyer2010", help=f"{', '.join(NAMED)}, or a file as for simulate")
-    parser.add_argument("--repeats", type=int, default=5, help="rounds of timing, of which the median counts (5)")
+    parser.add_argument("--duration", type=float, help="s (10)")
+    parser.add_argument("--body", help=f"{', '.join(NAMED)}, or a file as for simulate")
+    parser.add_argument("--repeats", type=int, help="rounds of timing, of which the median counts (5)")
     parser.add_argument("--quick", action="store_true", help="a ninth of the settings, for a look")
     parser.add_argument("--all", action="store_true", help="print every setting, not the fronts and presets alone")
-    parser.add_argument("--pictures", metavar="FOLDER", help="for tradeoff_GAIT.png and .svg (out)")
+    parser.add_argument(
+        "--pictures", metavar="FOLDER", help="for tradeoff_GAIT.png and .svg (out), or delivered.png and .svg"
+    )
     parser.add_argument("--csv", action="store_true", help="everything measured, as .csv beside the pictures")
     parser.add_argument("--page", metavar="FILE.md", help="write tables and picture as a page")
     parser.add_argument("--rerun", metavar="FILE.rrd", help="write the runs and the trade as a Rerun recording")
@@ -157,10 +191,10 @@ def _parser() -> Parser:
         "--delivered",
         action="store_true",
         help="instead: measure what the targets deliver over random swims, and how well runs judge their own error "
-        "(a minute or two); --page writes docs/explanation/accuracy.md",
+        "(a minute or two); of the other options only --count, --seed, --pictures and --page go with it",
     )
-    parser.add_argument("--count", type=int, default=COUNT, help=f"of the random swims ({COUNT})")
-    parser.add_argument("--seed", type=int, default=SEED, help=f"of the random swims ({SEED})")
+    parser.add_argument("--count", type=int, help=f"of the random swims ({COUNT})")
+    parser.add_argument("--seed", type=int, help=f"of the random swims ({SEED})")
     return parser
 
 
