@@ -6,10 +6,12 @@ the law, of at least `WINDOW` together. They begin `SETTLING` after the start, a
 """
 
 import math
+from time import monotonic
 
 import numpy as np
 
 from eel_dynamics.analysis.model_limits import ModelLimits
+from eel_dynamics.ros.diagnostics import REPEAT
 
 SETTLING = 5.0  # s after the start in which speed and tail are not checked: a swimmer starts from rest
 WINDOW = 5.0  # s
@@ -23,6 +25,7 @@ class LimitsMonitor:
         self._limits = ModelLimits(simulation.body, simulation.scene, simulation.x)
         self._current = np.array(simulation.scene.current)
         self._report, self._reported = report, set()
+        self._excess, self._above, self._told = (0.0, ""), 0, -math.inf  # see check_torque; s, steady clock
         self.restart()
 
     def restart(self):
@@ -33,7 +36,8 @@ class LimitsMonitor:
         self._warn("slenderness", self._limits.of_body())
 
     def end(self):
-        """End the reported violations."""
+        """End the reported violations, and report the torque."""
+        self.report_torque()
         for kind in self._reported:
             self._report.end(kind)
         self._reported = set()
@@ -46,17 +50,31 @@ class LimitsMonitor:
             self._check(snapshot)
 
     def check_torque(self, snapshot, limit: float):
-        """Report a snapshot with an internal torque above the `limit` [N m]; 0: there is none."""
-        if limit <= 0.0:
+        """Report once a second of wall time the greatest internal torque above the `limit` [N m]; 0: there is none."""
+        if limit > 0.0:
+            if snapshot.torque is None:
+                self._warn("torque", "torque_limit does nothing without scene.internal_wrench")
+            else:
+                self._compare_torque(snapshot, limit)
+        if monotonic() - self._told >= REPEAT:
+            self.report_torque()
+
+    def report_torque(self):
+        """Report the greatest torque above the limit since the last report."""
+        if not self._above:
             return
-        if snapshot.torque is None:
-            self._warn("torque", "torque_limit does nothing without scene.internal_wrench")
-            return
+        many = f" (the greatest of {self._above} samples above it)" if self._above > 1 else ""
+        self._report.event("torque limit", self._excess[1] + many, differing=True)
+        self._excess, self._above, self._told = (0.0, ""), 0, monotonic()
+
+    def _compare_torque(self, snapshot, limit: float):
         size = np.abs(snapshot.torque)
         station, axis = np.unravel_index(np.argmax(size), size.shape)
         if size[station, axis] > limit:
-            self._report.event(
-                "torque limit",
+            self._above += 1
+        if size[station, axis] > max(limit, self._excess[0]):
+            self._excess = (
+                size[station, axis],
                 f"torque_{axis + 1} of {size[station, axis]:.3g} N m exceeds torque_limit {limit:g} N m at "
                 f"X = {snapshot.x[station]:.3g} m, t = {snapshot.time:.4g} s",
             )

@@ -76,6 +76,7 @@ class RunLoop:
                 self._idle(obstacle)
             elif self._wait_for_turn():
                 self._next_sample()
+        self.output.end()
         self.obstacles.end_steps(self.time, "the run has ended")
 
     def _perform(self, action) -> tuple[float, str]:
