@@ -191,3 +191,23 @@ def test_a_torque_above_the_limit_is_reported_a_second_later_though_it_has_falle
         f"torque_3 of 2 N m {at}, t = 0 s",
         f"torque_3 of 5 N m {at}, t = 0.4 s (the greatest of 2 samples above it)",
     ]
+
+
+def test_a_controller_that_answers_less_than_a_sample_ahead_is_told_so():
+    """It answers each sample of 50 Hz for 0.01 s later, at most; the run waits for 0.02 s."""
+    log, x = Log(), np.array([0.0, 1.0])
+
+    def publish(snapshot, nanoseconds):
+        instant = 1e-9 * nanoseconds + 0.01 if nanoseconds < 100_000_000 else 0.03
+        rows = {f"{axis}{of}": np.zeros(2) for axis in ("pitch", "yaw") for of in ("", "_rate", "_accel")}
+        run.requests.take_samples({"time": instant, "x": x, **rows})
+
+    values = DynamicsParameters(real_time_factor=0.0, rate=50.0, duration=0.2, subscriber_timeout=0.2)
+    run = RunLoop(Simulation(accuracy=1e-2), values, fake_publishers(publish), Report(log))
+    run.run()
+    missing, refused = (text for level, text in log.lines if level != "info" and "run out" not in text)
+    assert missing == (
+        "no curvature sample for t >= 0.02 s within 0.2 s, the newest is for t = 0.01 s: at real_time_factor 0 a "
+        "controller's samples must lie at least 1/rate = 0.02 s ahead of the simulation"
+    )
+    assert refused == ("curvature samples refused: header.stamp must lie ahead of the simulation (0.1 s), got 0.03 s")
