@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The model's own limits: each is found where it lies, said once, and not found where it does not."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from eel_dynamics.analysis.model_limits import ModelLimits, cross_axes
@@ -8,10 +10,11 @@ from eel_dynamics.ros.loop.limits_monitor import LimitsMonitor
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.term import Term
 
-from eel_dynamics import Body, Scene, simulate
+from eel_dynamics import Body, Scene, Simulation, simulate
 from eel_gaits import backward, falling, still, straight
 
 ROBOT = Body.boyer2010()
+OBSERVED = "curvature", "backbone", "section_orientation", "center_of_mass"  # what the monitor checks besides the tail
 
 
 def bent(axis: str, curvature: float) -> Law:
@@ -138,15 +141,61 @@ class Lines:
 
 
 def test_the_node_says_each_once_and_keeps_it_until_a_reset():
-    from eel_dynamics import Simulation
-
     swimmer, report = Simulation(twist=(0.0, 0.0, 0.0, 0.5, 0.1, 0.0)), Lines()
     monitor = LimitsMonitor(swimmer, report)
     swimmer.adopt(bent("yaw", 8.0))
     for sample in range(20):
         swimmer.advance(0.01 * sample)
         monitor.add(swimmer.observe(), check=sample % 5 == 4)
-    assert sorted(report.logged) == ["contact", "tail"]
-    assert set(report.lasting) == {"contact", "tail"}
+    assert report.logged == ["contact"]
+    assert set(report.lasting) == {"contact"}
     monitor.restart()
     assert not report.lasting
+
+
+def watched(swimmer, report, powers, per_second=10, check_every=7):
+    """Adds samples with the wake's `powers` [W] to a monitor of `swimmer`, from t = 0 on."""
+    monitor, snapshot = LimitsMonitor(swimmer, report), swimmer.observe()
+    for sample, power in enumerate(powers):
+        told = SimpleNamespace(**{name: getattr(snapshot, name) for name in OBSERVED}, time=sample / per_second)
+        told.energy = SimpleNamespace(wake_power=power)
+        monitor.add(told, check=sample % check_every == 0)
+    return monitor
+
+
+@pytest.mark.parametrize("check_every", [1, 7, 1000])
+def test_the_node_watches_the_tail_over_simulated_time(check_every):
+    """However often wall time lets it check: after 5 s of settling, in windows of 5 s, while they last."""
+    report = Lines()
+    start = [1.0] * 40 + [-1.0] * 10
+    swim = [0.0, 1.0, -1.0, -1.0, -1.0] * 10  # leads for 20 %
+    leads = [1.0, 1.0, -1.0, -1.0, -1.0] * 10  # leads for 40 %
+    watched(Simulation(law=straight()), report, start + swim * 2 + [0.0], check_every=check_every)
+    assert "tail" not in report.logged
+    watched(Simulation(law=straight()), report, start + leads + [0.0], check_every=check_every)
+    assert "for 39% of the time from t = 5 s to 10 s" in report.lasting["tail"]
+    watched(Simulation(law=straight()), report, start + leads + swim + [0.0], check_every=check_every)
+    assert report.logged.count("tail") == 2 and "tail" not in report.lasting
+
+
+def test_the_node_watches_the_tail_over_whole_periods_and_leaves_out_the_start_of_each_law():
+    slow = Law(Term(axis="yaw", amplitude=(1.0,), period=20.0))
+    report, powers = Lines(), [-1.0] * 160 + [1.0] * 40  # each period of 20 s leads for 20 % of it
+    watched(Simulation(law=slow), report, powers * 3)
+    assert report.logged == []
+    swimmer = Simulation(law=straight())
+    monitor = watched(swimmer, report, [-1.0] * 80)
+    swimmer.adopt(falling())
+    for sample in range(80, 129):
+        monitor.add(SimpleNamespace(time=0.1 * sample, energy=SimpleNamespace(wake_power=1.0)), check=False)
+    assert report.logged == []
+
+
+def test_the_node_has_no_warning_of_a_swim_from_rest_and_has_one_of_a_swim_backwards():
+    for law, found in ((straight(), []), (backward(), ["tail"])):
+        swimmer, report = Simulation(law=law, accuracy="draft"), Lines()
+        monitor = LimitsMonitor(swimmer, report)
+        for sample in range(241):
+            swimmer.advance(0.05 * sample)
+            monitor.add(swimmer.observe(), check=sample % 30 in {0, 1})
+        assert report.logged == found

@@ -4,15 +4,17 @@
 import threading
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 from eel_dynamics.ros.diagnostics import Report
 from eel_dynamics.ros.loop.clock_ticks import ClockTicks
+from eel_dynamics.ros.loop.limits_monitor import LimitsMonitor
 from eel_dynamics.ros.loop.run_loop import RunLoop
 from eel_dynamics.ros.parameters import DynamicsParameters
 from fake_log import Log
 
 from eel_dynamics import Simulation
-from eel_gaits import falling
+from eel_gaits import falling, straight
 
 
 def fake_publishers(publish):
@@ -158,3 +160,54 @@ def test_steps_of_a_paused_run_end_with_the_last_of_them_or_say_why():
     run.requests.put(run.requests.stop)
     run.run()
     assert "refused at t = 1 s: the run is not paused" in late.failure or not late.done.is_set()
+
+
+def test_the_greatest_torque_above_the_limit_is_in_the_log(monkeypatch):
+    """The first excess at once, and of all later ones the greatest, at the end of the run, which takes no second."""
+    log, torques = Log(), []
+    publishers = fake_publishers(lambda snapshot, stamp: torques.append(float(abs(snapshot.torque).max())))
+    values = DynamicsParameters(real_time_factor=0.0, duration=1.0, torque_limit=0.1)
+    monkeypatch.setattr("eel_dynamics.ros.loop.limits_monitor.REPEAT", 1000.0)
+    RunLoop(Simulation(accuracy=1e-2, law=straight()), values, publishers, Report(log)).run()
+    above = [torque for torque in torques if torque > 0.1]
+    assert len(above) > 2 and max(above) > 2.0 * above[0]
+    first, last = (text for level, text in log.lines if level == "warning")
+    assert f"of {above[0]:.3g} N m exceeds torque_limit 0.1 N m at X = " in first
+    assert f"of {max(above):.3g} N m exceeds" in last
+    assert last.endswith(
+        f"t = {torques.index(max(above)) / 100:.4g} s (the greatest of {len(above) - 1} samples above it)"
+    )
+
+
+def test_a_torque_above_the_limit_is_reported_a_second_later_though_it_has_fallen(monkeypatch):
+    now, log = [0.0], Log()
+    monkeypatch.setattr("eel_dynamics.ros.loop.limits_monitor.monotonic", lambda: now[0])
+    monitor = LimitsMonitor(Simulation(), Report(log))
+    for wall, torque in ((0.0, 2.0), (0.4, 5.0), (0.8, 3.0), (1.2, 0.0), (2.4, 0.0)):
+        now[0] = wall
+        monitor.check_torque(SimpleNamespace(torque=np.array([[0.0, 0.0, -torque]]), x=[0.5], time=wall), 1.0)
+    at = "exceeds torque_limit 1 N m at X = 0.5 m"
+    assert [text for _, text in log.lines] == [
+        f"torque_3 of 2 N m {at}, t = 0 s",
+        f"torque_3 of 5 N m {at}, t = 0.4 s (the greatest of 2 samples above it)",
+    ]
+
+
+def test_a_controller_that_answers_less_than_a_sample_ahead_is_told_so():
+    """It answers each sample of 50 Hz for 0.01 s later, at most; the run waits for 0.02 s."""
+    log, x = Log(), np.array([0.0, 1.0])
+
+    def publish(snapshot, nanoseconds):
+        instant = 1e-9 * nanoseconds + 0.01 if nanoseconds < 100_000_000 else 0.03
+        rows = {f"{axis}{of}": np.zeros(2) for axis in ("pitch", "yaw") for of in ("", "_rate", "_accel")}
+        run.requests.take_samples({"time": instant, "x": x, **rows})
+
+    values = DynamicsParameters(real_time_factor=0.0, rate=50.0, duration=0.2, subscriber_timeout=0.2)
+    run = RunLoop(Simulation(accuracy=1e-2), values, fake_publishers(publish), Report(log))
+    run.run()
+    missing, refused = (text for level, text in log.lines if level != "info" and "run out" not in text)
+    assert missing == (
+        "no curvature sample for t >= 0.02 s within 0.2 s, the newest is for t = 0.01 s: at real_time_factor 0 a "
+        "controller's samples must lie at least 1/rate = 0.02 s ahead of the simulation"
+    )
+    assert refused == ("curvature samples refused: header.stamp must lie ahead of the simulation (0.1 s), got 0.03 s")

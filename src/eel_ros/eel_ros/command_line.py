@@ -1,15 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """The command line of a node: --help lists its parameters; other arguments than ROS arguments are refused."""
 
+import re
 import reprlib
 import sys
 from collections.abc import Callable, Iterable
 
+from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.utilities import remove_ros_args
 
 USE_SIM_TIME = ("--ros-args", "-p", "use_sim_time:=true", "--")  # before the user's arguments, which override it
 SHOWN = reprlib.Repr()
 SHOWN.maxstring = 80  # characters of a refused argument
+POSITIONS = re.compile(r",? at \S+\.c:\d+")  # in the C sources of rcl
 
 
 def answer_words(
@@ -27,7 +30,7 @@ def answer_words(
     try:
         rest = remove_ros_args(words)[1:]
     except RuntimeError as error:  # from rcl's parser
-        complain(name, error)
+        complain(name, refusal(error))
         return 2
     if not rest:
         return None
@@ -41,3 +44,12 @@ def answer_words(
         lines.append(f"  {key:<24}  {description} (default {shown_default})")
     sys.stdout.write("\n".join([*lines, ""]))
     return 0
+
+
+def refusal(error: RuntimeError) -> str:
+    """The text of rcl's `error` for ROS arguments that it does not understand, without positions in its C sources."""
+    text = str(error)
+    if isinstance(error, rclpy_implementation.UnknownROSArgsError):  # its text is a list of the words
+        return f"unknown ROS arguments {text.strip('[]')} (parameters come as -p NAME:=VALUE)"
+    text = POSITIONS.sub("", text)
+    return f"{text} (parameters come as -p NAME:=VALUE)" if "parameter" in text or "params" in text else text

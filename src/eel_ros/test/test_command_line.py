@@ -47,3 +47,18 @@ def test_another_word_is_refused_and_shown_in_short(answer):
 def test_bad_ros_arguments_are_refused(answer):
     status, ((_, text),) = answer("--ros-args", "-p", "depth")
     assert status == 2 and "depth" in text
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (("depth:=1.0",), "unknown ROS arguments 'depth:=1.0' ("),
+        (("-p", "depth:=1.0", "lid:=true", "--lid"), "unknown ROS arguments 'lid:=true', '--lid' ("),
+        (("-p", "depth=1.0"), "Couldn't parse parameter override rule: '-p depth=1.0'. Error: "),
+        (("--params-file", "none.yaml"), "Couldn't parse params file: '--params-file none.yaml'. Error: "),
+    ],
+)
+def test_ros_arguments_are_refused_in_the_users_terms(answer, words, told):
+    status, ((_, text),) = answer("--ros-args", *words)
+    assert status == 2 and told in text and text.endswith(" (parameters come as -p NAME:=VALUE)")
+    assert ".c:" not in text and "/src/" not in text

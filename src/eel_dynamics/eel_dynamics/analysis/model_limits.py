@@ -110,12 +110,16 @@ class ModelLimits:
             return ""
         return f"Reynolds number U l/nu is {reynolds:.3g}, below {LEAST_REYNOLDS:g}: viscosity rules, not inertia"
 
-    def of_tail(self, wake_power) -> str:
-        """A warning if the tail leads for a good part of the time; wake_power (T,) [W] has the sign of V1(l)."""
+    def of_tail(self, wake_power, span: str = "") -> str:
+        """A warning if the tail leads for a good part of the time; wake_power (T,) [W] has the sign of V1(l).
+
+        span: of the samples, for the text.
+        """
         share = float(np.mean(np.asarray(wake_power) > 0.0)) if len(wake_power) else 0.0
         if share < TAIL_LEADS:
             return ""
-        return f"the tail leads, V1(l) > 0, for {share:.0%} of the time: the wake feeds energy in, as the theory has it"
+        often = f"{share:.0%} of the time{span}"
+        return f"the tail leads, V1(l) > 0, for {often}: the wake feeds energy in, as the theory has it"
 
     def of_ledger(self, energy, most: float = OPEN) -> str:
         """A warning if the residual of an `EnergyLedger` of (T,) arrays exceeds the share `most` of the energy.

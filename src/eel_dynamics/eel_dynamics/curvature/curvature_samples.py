@@ -63,9 +63,8 @@ class CurvatureSample(NamedTuple):
         if planar and values[0].any():
             raise ValueError("curvature samples pitch must be 0 in a planar scene")
         if not is_finite(time) or time < now or (time == now and begun):
-            raise ValueError(
-                f"curvature samples time must lie ahead of the simulation ({now:.6f} s), got {shown(time)} s"
-            )
+            got = f"{time:.9g}" if is_finite(time) else shown(time)
+            raise ValueError(f"curvature samples time must lie ahead of the simulation ({now:.9g} s), got {got} s")
         if waves is None:
             waves = waves_of_points(len(x))
         elif not (is_finite(waves) and 0.0 < waves <= MOST_WAVES):

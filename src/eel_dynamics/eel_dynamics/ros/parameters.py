@@ -112,7 +112,7 @@ class DynamicsParameters:
     pitch_joints: int = _parameter(0, "joints in pitch, likewise", minimum=0, maximum=MOST_JOINTS)
     torque_limit: float = _parameter(
         0.0,
-        "internal torque about any axis above which each sample is reported; 0: none",
+        "internal torque about any axis above which the greatest is reported, once a second of wall time; 0: none",
         "N m",
         minimum=0.0,
         changeable=True,

@@ -90,7 +90,10 @@ class LawFeed:
 
 def refused(error: Exception) -> str:
     """The log line for curvature samples that are refused with `error`."""
-    return f"curvature samples refused: {str(error).removeprefix('curvature samples ')}"
+    reason = str(error).removeprefix("curvature samples ")
+    if reason.startswith("time "):
+        reason = f"header.stamp{reason.removeprefix('time')}"
+    return f"curvature samples refused: {reason}"
 
 
 class LawAdopter:
@@ -162,6 +165,15 @@ class LawAdopter:
         """Whether a controller's samples drive the swimmer and do not reach simulation time `instant` [s] yet."""
         until = self.simulation.samples_until
         return until is not None and until < instant and not self.simulation.resting
+
+    def report_missing(self, instant: float, period: float, waited: float):
+        """Log that samples up to `instant` [s], a `period` [s] ahead, were `waited` [s] for in vain."""
+        self._report.event(
+            "missing samples",
+            f"no curvature sample for t >= {instant:.9g} s within {waited:g} s, the newest is for t = "
+            f"{self.simulation.samples_until:.9g} s: at real_time_factor 0 a controller's samples must lie at least "
+            f"1/rate = {period:.9g} s ahead of the simulation",
+        )
 
     def reset(self):
         """Set the law's own t = 0 back to simulation time 0."""

@@ -1,30 +1,43 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Monitors the model's limits during a run: each violation is logged once, and stays in /diagnostics until a reset."""
+"""Monitors the model's limits during a run: each violation is logged once, and stays in /diagnostics until a reset.
+
+That the tail leads ends with the first window in which it does not. The windows are simulated time: whole periods of
+the law, of at least `WINDOW` together. They begin `SETTLING` after the start, and after each new law.
+"""
+
+import math
+from time import monotonic
 
 import numpy as np
 
 from eel_dynamics.analysis.model_limits import ModelLimits
+from eel_dynamics.ros.diagnostics import REPEAT
 
-SETTLING = 5.0  # s after the start in which the speed is not checked: a swimmer starts from rest
+SETTLING = 5.0  # s after the start in which speed and tail are not checked: a swimmer starts from rest
+WINDOW = 5.0  # s
 
 
 class LimitsMonitor:
     """Checks snapshots of a `simulation` against the model's limits, and reports violations to `report`."""
 
     def __init__(self, simulation, report):
+        self._simulation = simulation
         self._limits = ModelLimits(simulation.body, simulation.scene, simulation.x)
         self._current = np.array(simulation.scene.current)
         self._report, self._reported = report, set()
+        self._excess, self._above, self._told = (0.0, ""), 0, -math.inf  # see check_torque; s, steady clock
         self.restart()
 
     def restart(self):
         """Forget all snapshots and reported violations, and check the body."""
-        self._wake_power, self._since = [], None
+        self._wake_power, self._window, self._law = [], (math.inf, math.inf), None
+        self._since = None
         self.end()
         self._warn("slenderness", self._limits.of_body())
 
     def end(self):
-        """End the reported violations."""
+        """End the reported violations, and report the torque."""
+        self.report_torque()
         for kind in self._reported:
             self._report.end(kind)
         self._reported = set()
@@ -32,25 +45,55 @@ class LimitsMonitor:
     def add(self, snapshot, check: bool):
         """Add a snapshot; with `check`, compare all since the last check with the limits."""
         if snapshot.energy is not None:
-            self._wake_power.append(float(snapshot.energy.wake_power))
+            self._check_tail(snapshot.time, float(snapshot.energy.wake_power))
         if check:
             self._check(snapshot)
 
     def check_torque(self, snapshot, limit: float):
-        """Report a snapshot with an internal torque above the `limit` [N m]; 0: there is none."""
-        if limit <= 0.0:
+        """Report once a second of wall time the greatest internal torque above the `limit` [N m]; 0: there is none."""
+        if limit > 0.0:
+            if snapshot.torque is None:
+                self._warn("torque", "torque_limit does nothing without scene.internal_wrench")
+            else:
+                self._compare_torque(snapshot, limit)
+        if monotonic() - self._told >= REPEAT:
+            self.report_torque()
+
+    def report_torque(self):
+        """Report the greatest torque above the limit since the last report."""
+        if not self._above:
             return
-        if snapshot.torque is None:
-            self._warn("torque", "torque_limit does nothing without scene.internal_wrench")
-            return
+        many = f" (the greatest of {self._above} samples above it)" if self._above > 1 else ""
+        self._report.event("torque limit", self._excess[1] + many, differing=True)
+        self._excess, self._above, self._told = (0.0, ""), 0, monotonic()
+
+    def _compare_torque(self, snapshot, limit: float):
         size = np.abs(snapshot.torque)
         station, axis = np.unravel_index(np.argmax(size), size.shape)
         if size[station, axis] > limit:
-            self._report.event(
-                "torque limit",
+            self._above += 1
+        if size[station, axis] > max(limit, self._excess[0]):
+            self._excess = (
+                size[station, axis],
                 f"torque_{axis + 1} of {size[station, axis]:.3g} N m exceeds torque_limit {limit:g} N m at "
                 f"X = {snapshot.x[station]:.3g} m, t = {snapshot.time:.4g} s",
             )
+
+    def _check_tail(self, time: float, wake_power: float):
+        law, (begin, end) = self._simulation.law, self._window
+        if law is not self._law or begin == math.inf:
+            self._law, self._wake_power = law, []
+            self._window = time + SETTLING, time + SETTLING + window_of(law)
+        elif time >= begin:
+            self._wake_power.append(wake_power)
+            if time >= end and len(self._wake_power) > 1:
+                text = self._limits.of_tail(self._wake_power, f" from t = {begin:.4g} s to {time:.4g} s")
+                if text:
+                    self._warn("tail", text)
+                elif "tail" in self._reported:
+                    self._reported.remove("tail")
+                    self._report.end("tail", f"the tail no longer leads at t = {time:.4g} s")
+                self._wake_power, self._window = [], (time, time + window_of(law))
 
     def _check(self, snapshot):
         limits, time = self._limits, np.array([snapshot.time])
@@ -59,9 +102,6 @@ class LimitsMonitor:
         self._warn(
             "contact", limits.of_contact(time, bend, snapshot.backbone[None], snapshot.section_orientation[None])
         )
-        if len(self._wake_power) > 1:
-            self._warn("tail", limits.of_tail(self._wake_power))
-        self._wake_power = []
         centre = snapshot.center_of_mass - snapshot.time * self._current
         if self._since is None or snapshot.time < self._since[0]:
             self._since = snapshot.time, centre.copy()
@@ -75,3 +115,9 @@ class LimitsMonitor:
         if text and kind not in self._reported:
             self._reported.add(kind)
             self._report.begin(kind, text)
+
+
+def window_of(law) -> float:
+    """Length [s] of the windows in which the tail is checked, for a swimmer that follows `law`."""
+    period = max((term.period for term in getattr(law, "terms", ())), default=0.0)
+    return period * math.ceil(WINDOW / period) if period > 0.0 else WINDOW

@@ -7,6 +7,7 @@ catch up: later samples are due later. It keeps its accuracy, not its pace.
 
 import math
 import time
+from collections.abc import Callable
 
 FEW_PERIODS = 5
 SHORTEST_DELAY = 0.02  # s: shorter delays come from the operating system's scheduling
@@ -49,9 +50,13 @@ class Pace:
 
 
 class ControllerWait:
-    """Decides whether to wait for a controller that sends samples of a law: once per gap, up to a time-out."""
+    """Decides whether to wait for a controller that sends samples of a law: once per gap, up to a time-out.
 
-    def __init__(self):
+    time_out(seconds): called when that long a wait [s] was in vain.
+    """
+
+    def __init__(self, time_out: Callable[[float], None]):
+        self._time_out = time_out
         self._since = None  # s, steady clock: since when its samples are missing
 
     def waits(self, missing: bool, now: float, timeout: float) -> bool:
@@ -61,7 +66,12 @@ class ControllerWait:
             return False
         if self._since is None:
             self._since = now
-        return now - self._since < timeout
+        if now - self._since < timeout:
+            return True
+        if self._since > -math.inf:
+            self._since = -math.inf
+            self._time_out(timeout)
+        return False
 
 
 class Stopwatch:

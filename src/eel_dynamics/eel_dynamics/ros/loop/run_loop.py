@@ -45,8 +45,8 @@ class RunLoop:
         self.requests = RunRequests(self, self._queue, report)
         self._poll = inbox.poll if inbox is not None else lambda: None
         self.pace = Pace(1.0 / parameters.rate, parameters.real_time_factor)
-        self._controller, self.wall_time = ControllerWait(), Stopwatch()
-        self.laws = LawAdopter(simulation, report)
+        self.laws, self.wall_time = LawAdopter(simulation, report), Stopwatch()
+        self._controller = ControllerWait(lambda s: self.laws.report_missing(self._next_time, self.pace.period, s))
         self.output = SampleOutput(simulation, parameters.rate, parameters.clock_rate, publishers, report)
         self.output.torque_limit = parameters.torque_limit
         self._sample_begun = None  # s, steady clock: when the computation of the next sample began
@@ -76,6 +76,7 @@ class RunLoop:
                 self._idle(obstacle)
             elif self._wait_for_turn():
                 self._next_sample()
+        self.output.end()
         self.obstacles.end_steps(self.time, "the run has ended")
 
     def _perform(self, action) -> tuple[float, str]:

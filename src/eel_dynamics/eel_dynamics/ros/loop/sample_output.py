@@ -19,7 +19,7 @@ class SampleOutput:
 
     Attributes:
         rate: may be replaced at a reset.
-        torque_limit: [N m], above which a sample's torque is reported; 0: none.
+        torque_limit: [N m], above which the greatest torque is reported; 0: none.
         clock: ClockTicks.
         totals: RunTotals since the start.
     """
@@ -60,6 +60,10 @@ class SampleOutput:
         stamp = nanoseconds(sample, self.rate)
         self.clock.reach(stamp)
         self._publishers.publish(snapshot, stamp)
+
+    def end(self):
+        """Report what is left to report at the end of the run."""
+        self._limits.report_torque()
 
     # -- sample 0
 
