@@ -250,8 +250,10 @@ def test_advance_without_a_law_and_backwards():
     [
         (-0.1, [0.0, 1.0], [0.0, 0.0], "time"),
         (np.nan, [0.0, 1.0], [0.0, 0.0], "time"),
-        (1.0, [1.0, 0.0], [0.0, 0.0], "x"),
-        (1.0, [0.0, 1.0], [0.0], "pitch"),
+        (1.0, [1.0, 0.9], [0.0, 0.0], r"x must rise, got 0\.9 after 1 at index 1$"),
+        (1.0, [0.0], [0.0], "x must have 2 points or more, got 1$"),
+        (1.0, [0.0, 1.0], [0.0], "pitch must be 2 numbers, got 1$"),
+        (1.0, [0.0, 1.0], np.array([]), "pitch must be 2 numbers, got 0$"),
         (1.0, [0.0, 1.0], [0.0, np.nan], "pitch"),
     ],
 )
