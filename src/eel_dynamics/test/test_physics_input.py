@@ -200,6 +200,7 @@ def test_pitch_in_a_planar_scene():
         ({"duration": np.array([1.0])}, ("duration", "array")),
         ({"duration": 10**400}, ("duration",)),
         ({"duration": 1.0, "sample_period": "0.1"}, ("sample_period must be finite and > 0 s, got '0.1'",)),
+        ({"duration": 5.0, "sample_period": 10}, ("sample_period must be at most the duration of 5 s, got 10 s",)),
         ({"duration": 1e9}, ("duration", "sample_period", r"2e\+10 samples")),
         ({"duration": 1e300}, ("duration", "sample_period", "10,000,000 samples")),
         ({"duration": 1e300, "sample_period": 1e-300}, ("duration", "sample_period", "inf samples")),
@@ -211,6 +212,10 @@ def test_pitch_in_a_planar_scene():
 def test_simulate(given, words):
     with refused(*words):
         simulate(falling_law(), **given)
+
+
+def test_a_short_run_has_a_sample_at_its_end_by_default():
+    assert simulate(falling_law(), 0.02).time.tolist() == [0.0, 0.02]
 
 
 def test_law_of_the_wrong_kind():
@@ -245,8 +250,10 @@ def test_advance_without_a_law_and_backwards():
     [
         (-0.1, [0.0, 1.0], [0.0, 0.0], "time"),
         (np.nan, [0.0, 1.0], [0.0, 0.0], "time"),
-        (1.0, [1.0, 0.0], [0.0, 0.0], "x"),
-        (1.0, [0.0, 1.0], [0.0], "pitch"),
+        (1.0, [1.0, 0.9], [0.0, 0.0], r"x must rise, got 0\.9 after 1 at index 1$"),
+        (1.0, [0.0], [0.0], "x must have 2 points or more, got 1$"),
+        (1.0, [0.0, 1.0], [0.0], "pitch must be 2 numbers, got 1$"),
+        (1.0, [0.0, 1.0], np.array([]), "pitch must be 2 numbers, got 0$"),
         (1.0, [0.0, 1.0], [0.0, np.nan], "pitch"),
     ],
 )

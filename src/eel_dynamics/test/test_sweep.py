@@ -260,6 +260,11 @@ def test_a_measure_that_is_no_number_is_refused_by_name(client, value):
         sweep({"period": [0.5]}, scheduler=client, measure=measure, **SHORT)
 
 
+def test_a_sample_period_above_the_duration_is_refused():
+    with pytest.raises(ValueError, match=r"^sample_period must be at most the duration of 0.1 s, got 0.3 s$"):
+        sweep({"period": [0.5]}, duration=0.1, sample_period=0.3)
+
+
 @pytest.mark.parametrize("given", [{"workers": 0}, {"workers": -1}, {"chunk": -1}, {"chunk": "a"}, {"chunk": 0}])
 def test_counts_that_cannot_be_are_refused_by_name(given):
     ((name, value),) = given.items()

@@ -84,8 +84,12 @@ class CurvatureSample(NamedTuple):
 def _checked_x(x: bytes, length: float) -> np.ndarray:
     """The points (n,) [m] of a sample, from their bytes. Equal ones are one array, which never changes."""
     x = checked_row("curvature samples x", np.frombuffer(x), None)
-    if len(x) < 2 or np.any(np.diff(x) <= 0.0):
-        raise ValueError(f"curvature samples x must rise over 2 points or more, got {len(x)} points")
+    if len(x) < 2:
+        raise ValueError(f"curvature samples x must have 2 points or more, got {len(x)}")
+    falls = np.flatnonzero(np.diff(x) <= 0.0)
+    if len(falls):
+        index = falls[0] + 1
+        raise ValueError(f"curvature samples x must rise, got {x[index]:g} after {x[index - 1]:g} at index {index}")
     if x[0] < -1e-9 * length or x[-1] > length * (1.0 + 1e-9):
         raise ValueError(f"curvature samples x must lie within 0 to {length} m, got {x[0]} to {x[-1]}")
     return x

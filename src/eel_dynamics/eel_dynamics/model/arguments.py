@@ -40,7 +40,8 @@ def _checked_tuple(name: str, values: tuple, size: int | None) -> np.ndarray:
 def _checked_row(name: str, values, size: int | None) -> np.ndarray:
     array = numbers(name, values)
     if array.ndim != 1 or (size is not None and len(array) != size):
-        raise ValueError(f"{name} must be {'a row of' if size is None else size} numbers, got {shown(values)}")
+        got = shown(values) if array.ndim != 1 else len(array)
+        raise ValueError(f"{name} must be {'a row of' if size is None else size} numbers, got {got}")
     if not np.isfinite(array).all():
         index = np.flatnonzero(~np.isfinite(array))[0]
         raise ValueError(f"{name} must be finite, got {array[index]} at index {index}")

@@ -163,7 +163,10 @@ def _parser() -> Parser:
     )
     add_repeated(parser, "--scene", "NAME=VALUE", "physics, a field of the list below")
     parser.add_argument(
-        "--sample-period", type=float, help="s (0.05, or a 20th of the gait's period where that is less)"
+        "--sample-period",
+        type=float,
+        help="s (0.05, or a 20th of the gait's period where that is less); the last sample is "
+        "at its last whole multiple within the duration",
     )
     parser.add_argument("--stations", type=int, default=51, help="points along the body (51)")
     parser.add_argument(

@@ -243,9 +243,10 @@ def simulate(
     """Simulate `law` for `duration` [s], with samples every `sample_period` [s] from t = 0 on.
 
     law: a `Law`, a `SampledLaw`, a function K(t, X) (`eel_gaits.sampled`), or a file (`eel_gaits.read_motion`).
-    sample_period: None for 0.05 s, or a 20th of the law's shortest period where that is less. stations: number of
-    equidistant stations, or their X (M,) [m]. position (3,) [m], orientation (4,) (x y z w), twist (6,) ((Omega, V) in
-    the head's axes): the head's initial state. load: compute the water's load along the body too.
+    sample_period: None for 0.05 s, or a 20th of the law's shortest period where that is less. The last
+    sample is at the last whole multiple of it: at 0.9 s for a duration of 1 s and a sample period of 0.3 s. stations:
+    number of equidistant stations, or their X (M,) [m]. position (3,) [m], orientation (4,) (x y z w), twist (6,)
+    ((Omega, V) in the head's axes): the head's initial state. load: compute the water's load along the body too.
     The steps in time do not depend on the sampling. estimate: measure the error (`Run.error_estimate`); where it
     exceeds the target, return a finer run, or warn if none is fine enough. False: the bare run. most_evaluations:
     of the head's dynamics per simulated second; a law that needs more is refused, or stopped. progress(time, left):

@@ -21,20 +21,26 @@ MOST_MEMORY = 0.8  # share of the machine's memory for the samples
 def default_sample_period(laws, duration) -> float:
     """The sample period [s] where none is given: `SAMPLE_PERIOD`, or fine enough to analyse the fastest of `laws`.
 
-    The finer ones divide the `duration`. A run of more than `MOST_DEFAULT_SAMPLES` is not made by default.
+    The finer ones divide the `duration`; none is longer than it. A run of more than `MOST_DEFAULT_SAMPLES` is
+    not made by default.
     """
     shortest = min((term.period for law in laws for term in law.waves), default=np.inf)
     fine = shortest / SAMPLES_OF_PERIOD
     if fine >= ALIKE * SAMPLE_PERIOD or not is_finite(duration) or not 0.0 < duration <= MOST_DEFAULT_SAMPLES * fine:
-        return SAMPLE_PERIOD
+        return min(SAMPLE_PERIOD, duration) if is_finite(duration) and duration > 0.0 else SAMPLE_PERIOD
     return duration / math.ceil(duration / fine - 1e-9)
 
 
 def checked_times(duration, sample_period) -> np.ndarray:
-    """Times (T,) [s] of the samples; `ValueError` for a bad duration or period, or more than `MOST_SAMPLES`."""
+    """Times (T,) [s] of the samples, the multiples of `sample_period` [s] up to `duration` [s].
+
+    `ValueError` for a bad duration or period, for a period above the duration, or for more than `MOST_SAMPLES`.
+    """
     duration = checked_number("duration", duration, "s", zero=True)
     sample_period = checked_number("sample_period", sample_period, "s")
     steps = duration / sample_period + 1e-9
+    if duration > 0.0 and steps < 1.0:
+        raise ValueError(f"sample_period must be at most the duration of {duration:g} s, got {sample_period:g} s")
     if not steps < MOST_SAMPLES:
         raise ValueError(
             f"duration must be at most {MOST_SAMPLES:,} samples of sample_period, got {duration:g} s at "

@@ -150,8 +150,10 @@ class Simulation:
         """Add a controller's curvature at the instant `time` [s], which lies ahead; before the start it may be 0.
 
         The rows hold the curvature [rad/m], its rate [rad/m/s] and its acceleration [rad/m/s^2] at the points `x` (n,)
-        [m]. They are interpolated by natural cubic splines in X, and between two instants by the quintic that meets
-        value, rate and acceleration at both. The samples take over as soon as two instants bracket the present.
+        [m]. They are interpolated by natural cubic splines in X; beyond the first and the last point, where these do
+        not lie at nose and tail, each row goes on in a straight line with its slope there. Between two
+        instants they follow the quintic that meets value, rate and acceleration at both. The samples take over as soon
+        as two instants bracket the present.
         waves: on the body, which the grid must resolve; None: as many as the points can carry, one for eight of them.
         `ValueError` names what does not fit.
         """

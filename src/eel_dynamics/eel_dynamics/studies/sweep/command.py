@@ -103,7 +103,10 @@ def _parser() -> Parser:
     )
     parser.add_argument("--measures", metavar="NAMES", help=f"what to keep, with commas: {', '.join(MEASURES)} (all)")
     parser.add_argument(
-        "--sample-period", type=float, help="s (0.05, or a 20th of a point's period where that is less)"
+        "--sample-period",
+        type=float,
+        help="s (0.05, or a 20th of a point's period where that is less); the last sample is "
+        "at its last whole multiple within the duration",
     )
     parser.add_argument("--out", required=True, metavar="FILE.nc", help="NetCDF file; parts lie in FILE.nc.parts")
     parser.add_argument("--overwrite", action="store_true", help="replace what the output holds of another sweep")

@@ -24,7 +24,7 @@ from eel_dynamics.model.arguments import checked_number
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.batch import available_cores
-from eel_dynamics.runs.sampling import SAMPLE_PERIOD, checked_times
+from eel_dynamics.runs.sampling import checked_times, default_sample_period
 from eel_dynamics.runs.storage.tables import needed
 from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.studies.points import Point, SwimSettings, batch_of_points, label_of, point_at
@@ -76,7 +76,7 @@ def sweep(
     """
     xarray = needed("xarray", "a sweep")
     names, axes = _checked_grid(grid)
-    checked_times(duration, SAMPLE_PERIOD if sample_period is None else sample_period)
+    checked_times(duration, default_sample_period([], duration) if sample_period is None else sample_period)
     measure = measure if callable(measure) else checked_measures("measure", measure, bool(estimate))
     limit = checked_number("most_evaluations", most_evaluations, "per simulated second")
     _check_count("workers", workers)
