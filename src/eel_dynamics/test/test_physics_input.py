@@ -10,7 +10,7 @@ import pytest
 from cases import falling_law, random_law
 
 from eel_dynamics import Accuracy, Body, Scene, Simulation, SimulationStopped, hydrodynamic_wrench, simulate
-from eel_gaits import Law, Term
+from eel_gaits import Law, Term, straight
 
 X = np.linspace(0, 1, 21)
 ROUND = 0.05 * np.sqrt(X * (1.2 - X))
@@ -218,6 +218,25 @@ def test_a_short_run_has_a_sample_at_its_end_by_default():
     assert simulate(falling_law(), 0.02).time.tolist() == [0.0, 0.02]
 
 
+@pytest.mark.parametrize("call", [simulate, lambda law, **given: Simulation(law=law, **given)])
+def test_a_file_or_a_name_in_place_of_a_body_is_told_how(call):
+    with refused(r"body must be a Body, got 'nobody\.csv'", r"Body\.from_file\(", r"Body\.kern2006\(\)$"):
+        call(straight(), body="nobody.csv")
+
+
+@pytest.mark.parametrize(
+    "law, end",
+    [
+        (straight, r"call it, straight\(\)"),
+        ("straight", r"write gait\('straight'\)"),
+        (lambda t: t, r"which does not take \(t, X\)"),
+    ],
+)
+def test_what_is_nearly_a_law_is_told_how(law, end):
+    with refused(rf"law must be a Law, .*, got .*{end}$"):
+        simulate(law, 5.0)
+
+
 def test_law_of_the_wrong_kind():
     for call in (
         lambda: simulate("falling", duration=1.0),
@@ -252,7 +271,7 @@ def test_advance_without_a_law_and_backwards():
         (np.nan, [0.0, 1.0], [0.0, 0.0], "time"),
         (1.0, [1.0, 0.9], [0.0, 0.0], r"x must rise, got 0\.9 after 1 at index 1$"),
         (1.0, [0.0], [0.0], "x must have 2 points or more, got 1$"),
-        (1.0, [0.0, 1.0], [0.0], "pitch must be 2 numbers, got 1$"),
+        (1.0, [0.0, 1.0], [0.0], r"pitch must be 2 numbers, got 1: \[0.0\]$"),
         (1.0, [0.0, 1.0], np.array([]), "pitch must be 2 numbers, got 0$"),
         (1.0, [0.0, 1.0], [0.0, np.nan], "pitch"),
     ],

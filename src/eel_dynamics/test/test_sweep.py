@@ -265,6 +265,11 @@ def test_a_sample_period_above_the_duration_is_refused():
         sweep({"period": [0.5]}, duration=0.1, sample_period=0.3)
 
 
+def test_a_law_in_place_of_a_gait_is_refused():
+    with pytest.raises(ValueError, match=r"gait must be the name of a gait, or a function that returns a law, got Law"):
+        sweep({"period": [0.5]}, gait=straight(), **SHORT)
+
+
 @pytest.mark.parametrize("given", [{"workers": 0}, {"workers": -1}, {"chunk": -1}, {"chunk": "a"}, {"chunk": 0}])
 def test_counts_that_cannot_be_are_refused_by_name(given):
     ((name, value),) = given.items()

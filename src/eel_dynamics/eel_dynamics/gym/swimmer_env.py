@@ -20,7 +20,7 @@ from eel_dynamics.gym.mean_heading import MeanHeading
 from eel_dynamics.gym.picture import picture
 from eel_dynamics.model.arguments import checked_instance
 from eel_dynamics.model.axes import turn_vector
-from eel_dynamics.model.body import Body
+from eel_dynamics.model.body import Body, checked_body
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.simulation.head_motion import head_motion_of, level_orientation
 from eel_dynamics.simulation.simulation import Simulation
@@ -106,7 +106,7 @@ class SwimmerEnv(gymnasium.Env):
         self.render_mode = render_mode
         self.metadata = self.metadata | {"render_fps": round(1.0 / self.numbers.control_period)}
         self.scene = self.default_scene() if scene is None else checked_instance("scene", scene, Scene)
-        self.body = Body.boyer2010() if body is None else checked_instance("body", body, Body)
+        self.body = checked_body(body)
         if action is not None and not isinstance(action, (LawAction, KnotAction)):
             raise ValueError(f"action must be a LawAction or a KnotAction, got {shown(action)}")
         self.action = self.default_action() if action is None else action

@@ -8,6 +8,8 @@ import numpy as np
 from eel_gaits.input_output.quantity import is_finite, numbers
 from eel_gaits.input_output.wording import shown
 
+FEW = 8  # numbers of a row that a message shows
+
 
 def checked_instance(name: str, value, kind: type | tuple[type, ...]):
     """`value`, if it is a `kind`, or one of several."""
@@ -40,7 +42,9 @@ def _checked_tuple(name: str, values: tuple, size: int | None) -> np.ndarray:
 def _checked_row(name: str, values, size: int | None) -> np.ndarray:
     array = numbers(name, values)
     if array.ndim != 1 or (size is not None and len(array) != size):
-        got = shown(values) if array.ndim != 1 else len(array)
+        got = shown(values)
+        if array.ndim == 1:
+            got = f"{len(array)}: {got}" if 0 < len(array) <= FEW else f"{len(array)}"
         raise ValueError(f"{name} must be {'a row of' if size is None else size} numbers, got {got}")
     if not np.isfinite(array).all():
         index = np.flatnonzero(~np.isfinite(array))[0]

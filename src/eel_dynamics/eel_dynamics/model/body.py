@@ -216,6 +216,16 @@ class Body:
         return tuple(values.tolist())
 
 
+def checked_body(body) -> Body:
+    """`body`, if it is a `Body`; for None that of Boyer, Porez and Leroyer 2010. `ValueError` for anything else."""
+    if isinstance(body, (str, os.PathLike)):
+        raise ValueError(
+            f"body must be a Body, got {shown(body)}: Body.from_file(...) reads a file, and names are class methods "
+            "such as Body.kern2006()"
+        )
+    return Body.boyer2010() if body is None else checked_instance("body", body, Body)
+
+
 def _named_shape(name: str, length: float) -> dict:
     half_axes = {axis: NamedHalfAxis(name, axis, length) for axis in ("half_width", "half_height")}
     return {"name": name, "length": length, "kinks": tuple(kink * length for kink in KINKS[name]), **half_axes}

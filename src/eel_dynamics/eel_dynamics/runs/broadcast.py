@@ -18,7 +18,7 @@ from eel_dynamics.model.arguments import (
     checked_quaternion,
     checked_row,
 )
-from eel_dynamics.model.body import Body
+from eel_dynamics.model.body import Body, checked_body
 from eel_dynamics.model.initial_state import InitialState
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.motions import LAWS
@@ -44,7 +44,7 @@ class SwimmerArguments(NamedTuple):
         """Check the arguments of `simulate`. `ValueError` names what does not fit."""
         swimmer = SwimmerArguments(
             checked_instance("law", law, LAWS),
-            Body.boyer2010() if body is None else checked_instance("body", body, Body),
+            checked_body(body),
             Scene() if scene is None else checked_instance("scene", scene, Scene),
             Accuracy.of(accuracy),
             checked_row("position", position, 3),

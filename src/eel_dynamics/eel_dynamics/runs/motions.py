@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Whatever tells a motion, as a law: a law itself, a function K(t, X), or a file. And what smoothing did to it."""
 
+import inspect
 import os
 from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
+from eel_gaits.gaits.registry import GAITS
 from eel_gaits.input_output.quantity import is_finite
 from eel_gaits.input_output.wording import shown
 from eel_gaits.laws.law import Law
@@ -26,13 +28,30 @@ def law_from(motion: Motion, duration: float, length: float) -> Law | SampledLaw
     elif isinstance(motion, (str, os.PathLike)) and str(motion).endswith(SUFFIXES):
         law = read_motion(motion, length=length)
     elif callable(motion):
+        if not _takes(motion, 0.0, None):
+            name = getattr(motion, "__name__", type(motion).__name__)
+            raise _no_motion(motion, f": call it, {name}()" if _takes(motion) else ", which does not take (t, X)")
         law = sampled(motion, duration, length=length)
     else:
-        raise ValueError(
-            f"law must be a Law, a SampledLaw, a function K(t, X) or a .csv or .npz file, got {shown(motion)}"
-        )
+        raise _no_motion(motion, f": write gait({motion!r})" if isinstance(motion, str) and motion in GAITS else "")
     check_duration(law, duration)
     return law
+
+
+def _no_motion(motion, hint: str) -> ValueError:
+    kinds = "a Law, a SampledLaw, a function K(t, X) or a .csv or .npz file"
+    return ValueError(f"law must be {kinds}, got {shown(motion)}{hint}")
+
+
+def _takes(function: Callable, *arguments) -> bool:
+    """Whether `function` can be called with these arguments; true where it does not tell."""
+    try:
+        inspect.signature(function).bind(*arguments)
+    except TypeError:
+        return False
+    except ValueError:  # it has no signature
+        return True
+    return True
 
 
 def check_duration(law: Law | SampledLaw, duration: float):

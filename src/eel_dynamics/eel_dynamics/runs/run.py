@@ -17,8 +17,8 @@ from eel_dynamics.analysis.actuators import Actuators, actuators_of
 from eel_dynamics.analysis.analysis import Analysis
 from eel_dynamics.analysis.model_limits import warnings_of
 from eel_dynamics.analysis.run_summary import describe
-from eel_dynamics.model.arguments import checked_instance, checked_stations
-from eel_dynamics.model.body import Body
+from eel_dynamics.model.arguments import checked_stations
+from eel_dynamics.model.body import Body, checked_body
 from eel_dynamics.model.equality import same_fields
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.broadcast import SwimmerArguments
@@ -254,7 +254,7 @@ def simulate(
     than a minute gives a warning. `ValueError` names what does not fit; `SimulationStopped` carries the samples so far
     as `run`.
     """
-    length = (Body.boyer2010() if body is None else checked_instance("body", body, Body)).length
+    length = checked_body(body).length
     law = law_from(law, duration, length)
     sample_period = default_sample_period([law], duration) if sample_period is None else sample_period
     times = checked_times(duration, sample_period)

@@ -25,7 +25,7 @@ from eel_dynamics.model.arguments import (
     checked_row,
     checked_stations,
 )
-from eel_dynamics.model.body import Body
+from eel_dynamics.model.body import Body, checked_body
 from eel_dynamics.model.initial_state import InitialState, time_scale
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.simulation.discretisation import Discretisation, GridSettings, discretise
@@ -82,7 +82,7 @@ class SimulationSetup:
 
         initial_state: (position, orientation, twist).
         """
-        body = Body.boyer2010() if body is None else checked_instance("body", body, Body)
+        body = checked_body(body)
         scene = Scene() if scene is None else checked_instance("scene", scene, Scene)
         accuracy, x = Accuracy.of(accuracy), checked_stations(stations, body.length)
         start = checked_state(scene, *initial_state)

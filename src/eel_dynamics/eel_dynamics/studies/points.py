@@ -86,6 +86,8 @@ def point_at(index: int, values: dict, gait: "str | Callable[..., Law]", numbers
 
     gait: its name, or a function of numbers that returns a law. `ValueError` tells the point and what does not fit.
     """
+    if not (isinstance(gait, str) or callable(gait)):
+        raise ValueError(f"gait must be the name of a gait, or a function that returns a law, got {shown(gait)}")
     try:
         return _point(index, {**numbers, **values}, gait, base)
     except (ValueError, TypeError) as error:

@@ -21,7 +21,7 @@ from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.budget import Budget
 from eel_dynamics.model.arguments import checked_instance
 from eel_dynamics.model.axes import turn_quaternion, turn_vector
-from eel_dynamics.model.body import Body
+from eel_dynamics.model.body import Body, checked_body
 from eel_dynamics.model.grid import Grid
 from eel_dynamics.model.panels import panels_of
 from eel_dynamics.model.scene import Scene
@@ -40,7 +40,7 @@ AXIS_OF_NUMBER = {column + 1: name for name, column in AXES.items()}  # as in Cu
 def fields_of_bag(path, namespace: str | None, body: Body | None, scene: Scene | None) -> dict:
     """The fields of `Run.from_bag`, whose arguments these are. `ValueError` and `ImportError` as there."""
     if body is not None:
-        checked_instance("body", body, Body)
+        checked_body(body)
     if scene is not None:
         checked_instance("scene", scene, Scene)
     messages = messages_of_bag()

@@ -73,7 +73,7 @@ def write(contents: Contents, path) -> None:
 def read(path, kind: str) -> Contents:
     """The contents of a file that `write` made of a `kind` ("run" or "batch").
 
-    `ValueError` in one line for a file that is truncated, foreign, of another version or of another kind.
+    `ValueError` in one line for a file that is truncated, foreign, a sweep, of another version or of another kind.
     """
     from scipy.io import netcdf_file
 
@@ -82,12 +82,16 @@ def read(path, kind: str) -> Contents:
     named = f"{kind} file {shown(os.fspath(path))}"
     try:
         if not Path(path).is_file():
-            raise ValueError("there is no such file")
+            raise ValueError("it is a folder" if Path(path).is_dir() else "there is no such file")
         with netcdf_file(os.fspath(path), "r", mmap=False) as file:
             about = {name: getattr(file, name, None) for name in ("software", "kind", "format", "eel")}
-            arrays = {name: _native(np.asarray(each.data)) for name, each in file.variables.items()}
+            of_sweep = about["kind"] is None and hasattr(file, "sweep")
+            variables = {} if of_sweep else file.variables
+            arrays = {name: _native(np.asarray(each.data)) for name, each in variables.items()}
     except Exception as error:  # SciPy raises nearly anything for a damaged file
         raise ValueError(f"{named} cannot be read: {_reason(error)}") from None
+    if of_sweep:
+        raise ValueError(f"{named} holds a sweep, not a {kind}: xarray.open_dataset opens it")
     if None in about.values():
         raise ValueError(f"{named} is no {kind} of eel_dynamics")
     if about["format"] != FORMAT:

@@ -27,7 +27,7 @@ from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.analysis.analysis import Analysis
 from eel_dynamics.analysis.measures import checked_measures
 from eel_dynamics.model.arguments import checked_instance, checked_number
-from eel_dynamics.model.body import Body
+from eel_dynamics.model.body import Body, checked_body
 from eel_dynamics.model.equality import same_fields
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.model.section_data import TRANSITION
@@ -113,7 +113,7 @@ def gradient(
     base = Point(
         0,
         None,
-        Body.boyer2010() if body is None else checked_instance("body", body, Body),
+        checked_body(body),
         Scene() if scene is None else checked_instance("scene", scene, Scene),
         fixed_steps(accuracy),
     )

@@ -20,7 +20,7 @@ from eel_gaits.input_output.quantity import number
 from eel_gaits.input_output.wording import shown
 
 from eel_dynamics.model.arguments import checked_instance, checked_number
-from eel_dynamics.model.body import Body
+from eel_dynamics.model.body import Body, checked_body
 from eel_dynamics.model.equality import same_fields
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.run import Run
@@ -120,7 +120,7 @@ def identify(
     base = Point(
         0,
         None,
-        Body.boyer2010() if body is None else checked_instance("body", body, Body),
+        checked_body(body),
         Scene(friction="blended") if scene is None else checked_instance("scene", scene, Scene),
         fixed_steps(accuracy),
     )

@@ -20,7 +20,7 @@ from eel_gaits.input_output.wording import shown
 
 from eel_dynamics.analysis.measures import checked_measures, measures_of
 from eel_dynamics.model.arguments import checked_instance, checked_row
-from eel_dynamics.model.body import Body
+from eel_dynamics.model.body import Body, checked_body
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.studies.gradients.fixed_discretisation import fixed_steps
 from eel_dynamics.studies.optimise.front import Front
@@ -82,7 +82,7 @@ def optimise(
     base = Point(
         0,
         None,
-        Body.boyer2010() if body is None else checked_instance("body", body, Body),
+        checked_body(body),
         replace(scene, current=(0.0, 0.0, 0.0), internal_wrench=scene.internal_wrench or cost == "greatest_torque"),
         fixed_steps(accuracy),
     )

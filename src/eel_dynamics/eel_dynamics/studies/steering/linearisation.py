@@ -20,7 +20,7 @@ from eel_gaits.laws.ramp import Ramp
 from eel_gaits.laws.term import Term
 
 from eel_dynamics.model.arguments import checked_instance, checked_number, checked_row
-from eel_dynamics.model.body import Body
+from eel_dynamics.model.body import Body, checked_body
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.studies.steering.period_map import Motion, PeriodMap, rotation, turned_by
 
@@ -180,7 +180,7 @@ def periodic_linearisation(
     not fit, a law that does not repeat, or one whose motion does not settle.
     """
     checked_instance("law", law, Law)
-    body = Body.boyer2010() if body is None else checked_instance("body", body, Body)
+    body = checked_body(body)
     scene = Scene() if scene is None else checked_instance("scene", scene, Scene)
     if isinstance(steps, bool) or not isinstance(steps, (int, np.integer)) or steps < 20:
         raise ValueError(f"steps must be a whole number of 20 or more, got {shown(steps)}")

@@ -21,7 +21,7 @@ from eel_gaits.laws.law import Law
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.analysis.measures import checked_measures, checked_point, described
 from eel_dynamics.model.arguments import checked_number
-from eel_dynamics.model.body import Body
+from eel_dynamics.model.body import Body, checked_body
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.batch import available_cores
 from eel_dynamics.runs.sampling import checked_times, default_sample_period
@@ -84,7 +84,7 @@ def sweep(
     base = Point(
         -1,
         None,
-        Body.boyer2010() if body is None else body,
+        checked_body(body),
         Scene() if scene is None else scene,
         Accuracy.of(accuracy),
     )
