@@ -76,6 +76,12 @@ def test_motors_add_up_like_one_over_n_squared(measured, run):
     assert np.all(motors.pitch.angle == 0.0)
 
 
+def test_actuators_are_shown_in_a_line_and_tell_their_window(run):
+    motors, window = run.actuators(8), f"{run.time[0]:g} to {run.time[-1]:g} s"
+    assert repr(motors) == f"Actuators(8 joints, {len(run.time)} samples, {window})"
+    assert motors.table().splitlines()[0].endswith(f"(peak, RMS over the whole run, {window})")
+
+
 def test_undefined_and_refused(run):
     still = simulate(Law(Term(amplitude=(0.0,), wavelength=1.0, period=1.0)), 2.0, sample_period=0.05)
     a = still.analysis()

@@ -75,7 +75,7 @@ class Joints:
         return -(self._value @ torque)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Actuators:
     """The demand on n joints in pitch and yaw, and the difference of their power from the continuous body's."""
 
@@ -84,6 +84,13 @@ class Actuators:
     pitch: Motors
     yaw: Motors
     continuous_power: np.ndarray  # (T,) W, -integral of C . dK/dt over the body
+
+    def __repr__(self) -> str:
+        return f"Actuators({len(self.x)} joints, {len(self.time)} samples, {self._span})"
+
+    @property
+    def _span(self) -> str:
+        return f"{self.time[0]:g} to {self.time[-1]:g} s" if len(self.time) else "no time"
 
     @property
     def power(self) -> np.ndarray:
@@ -102,8 +109,11 @@ class Actuators:
         return float(np.sqrt(np.mean(self.power_difference**2)) / scale) if scale > 0.0 else None
 
     def table(self) -> str:
-        """A text table of peak and RMS values of each joint, and the difference of the powers."""
-        lines = ["joint  X [m]   axis   angle [rad]     speed [rad/s]   torque [N m]    power [W]      (peak, RMS)"]
+        """A text table of each joint's peak and RMS values over the whole run, and the difference of the powers."""
+        lines = [
+            "joint  X [m]   axis   angle [rad]     speed [rad/s]   torque [N m]    power [W]      "
+            f"(peak, RMS over the whole run, {self._span})"
+        ]
         for joint, x in enumerate(self.x):
             for name, motors in (("pitch", self.pitch), ("yaw", self.yaw)):
                 peak, rms = motors.peak, motors.rms
