@@ -354,7 +354,11 @@ def test_bad_samples_are_refused(start, client):
     short, late, odd = instant(1e3), instant(0.0), instant(1e3)
     short.yaw = [1.0]
     odd.pitch = [math.nan] * 11
-    for message, words in ((short, ("yaw", "11", "1")), (late, ("header.stamp", "ahead", "got 0 s")), (odd, ("pitch", "nan"))):
+    for message, words in (
+        (short, ("yaw", "11", "1")),
+        (late, ("header.stamp", "ahead", "got 0 s")),
+        (odd, ("pitch", "nan")),
+    ):
 
         def said(message=message, words=words):
             """Whether the error is logged; the sample is sent again and again, as errors of one kind are logged once a

@@ -30,6 +30,11 @@ inline constexpr std::size_t width = 2;
 inline constexpr std::size_t filled =
     8;  // nodes are filled up to a multiple of this on every machine: one grid for all
 
+#if defined(__AVX512F__)
+// Without a mask some operations make GCC 12 warn of its own header (bug 105593).
+inline constexpr __mmask8 all_lanes = 0xff;
+#endif
+
 class Mask;
 
 class Lanes {
@@ -160,7 +165,7 @@ inline double root(double value) { return std::sqrt(value); }
 inline Lanes root(Lanes value)
 {
 #if defined(__AVX512F__)
-    return Lanes(_mm512_sqrt_pd(value.native()));
+    return Lanes(_mm512_maskz_sqrt_pd(all_lanes, value.native()));
 #elif defined(__AVX__)
     return Lanes(_mm256_sqrt_pd(value.native()));
 #else
@@ -174,7 +179,7 @@ inline double round_down(double value) { return std::floor(value); }
 inline Lanes round_down(Lanes value)
 {
 #if defined(__AVX512F__)
-    return Lanes(_mm512_roundscale_pd(value.native(), _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC));
+    return Lanes(_mm512_maskz_roundscale_pd(all_lanes, value.native(), _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC));
 #elif defined(__AVX__)
     return Lanes(_mm256_floor_pd(value.native()));
 #else
