@@ -11,7 +11,6 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <new>
 #include <utility>
 #if defined(__x86_64__)
@@ -50,13 +49,8 @@ class Lanes {
     explicit Lanes(Native native) : native_(native) {}
 
     // From and to neighbouring doubles, which need not be aligned.
-    static Lanes load(const double* from)
-    {
-        Native native;
-        std::memcpy(&native, from, sizeof native);
-        return Lanes(native);
-    }
-    void store(double* to) const { std::memcpy(to, &native_, sizeof native_); }
+    static Lanes load(const double* from) { return Lanes(*reinterpret_cast<const Neighbours*>(from)); }
+    void store(double* to) const { *reinterpret_cast<Neighbours*>(to) = native_; }
 
     double operator[](std::size_t lane) const { return native_[lane]; }
     Native native() const { return native_; }
@@ -74,6 +68,9 @@ class Lanes {
     friend Mask operator>=(Lanes a, Lanes b);
 
   private:
+    // The same in memory, unaligned. Unlike memcpy it tells GCC that a store changes doubles alone.
+    using Neighbours __attribute__((aligned(alignof(double)))) = Native;
+
     template <std::size_t... Lane>
     Lanes(double value, std::index_sequence<Lane...>) : native_{(static_cast<void>(Lane), value)...}
     {
@@ -189,15 +186,20 @@ inline Lanes round_down(Lanes value)
 #endif
 }
 
-// Sum of the lanes.
+// Sum of the lanes: the upper half on the lower one, until two are left.
 inline double total(double value) { return value; }
-inline double total(Lanes value)
+template <class Vector, std::size_t... Low>
+double sum_of_halves(Vector lanes, std::index_sequence<Low...>)
 {
-    if constexpr (width == 2) return value[0] + value[1];
-    if constexpr (width == 4) return (value[0] + value[2]) + (value[1] + value[3]);
-    if constexpr (width == 8)
-        return ((value[0] + value[4]) + (value[2] + value[6])) + ((value[1] + value[5]) + (value[3] + value[7]));
+    constexpr std::size_t half = sizeof...(Low);
+    if constexpr (half == 1)
+        return lanes[0] + lanes[1];
+    else
+        return sum_of_halves(
+            __builtin_shufflevector(lanes, lanes, Low...) + __builtin_shufflevector(lanes, lanes, (Low + half)...),
+            std::make_index_sequence<half / 2>());
 }
+inline double total(Lanes value) { return sum_of_halves(value.native(), std::make_index_sequence<width / 2>()); }
 
 inline double last(Lanes value) { return value[width - 1]; }
 

@@ -77,14 +77,26 @@ class FromNose {
             const Stretch& stretch = stretches_[s];
             const Column* column = columns(stretch);
             const double* f = integrand.row(first_row) + stretch.begin;
-            std::array<std::array<Lanes, parts>, count> sum;
+            // Few sums would wait for their last term: the nodes go to two sets of them in turn.
+            constexpr std::size_t sets = count * parts < 6 ? 2 : 1;
+            std::array<std::array<std::array<Lanes, parts>, count>, sets> sum{};
             const Value before = stretch.begin > 0 ? known.node(stretch.begin - 1) : at_nose;
-            Components<Value>::each(before, [&](std::size_t c, double value) { sum[c].fill(Lanes(value)); });
-            for (std::size_t node = stretch.begin; node < stretch.end; ++node, ++f, ++column)
-                for (std::size_t c = 0; c < count; ++c)
-                    for (std::size_t part = 0; part < parts; ++part) sum[c][part] += f[c * stride] * (*column)[part];
+            Components<Value>::each(before, [&](std::size_t c, double value) { sum[0][c].fill(Lanes(value)); });
+            const auto add_node = [&](std::size_t node, std::size_t set) {
+                for (std::size_t part = 0; part < parts; ++part) {
+                    const Lanes weight = column[node][part];
+                    for (std::size_t c = 0; c < count; ++c) sum[set][c][part] += f[c * stride + node] * weight;
+                }
+            };
+            const std::size_t nodes = stretch.end - stretch.begin;
+            std::size_t node = 0;
+            for (; node + sets <= nodes; node += sets)
+                for (std::size_t set = 0; set < sets; ++set) add_node(node + set, set);
+            if (node < nodes) add_node(node, 0);
             for (std::size_t part = 0; part < parts; ++part)
-                result.store(parts * s + part, Components<Block>::make([&](std::size_t c) { return sum[c][part]; }));
+                result.store(parts * s + part, Components<Block>::make([&](std::size_t c) {
+                                 return sets == 1 ? sum[0][c][part] : sum[0][c][part] + sum[sets - 1][c][part];
+                             }));
         }
     }
 
