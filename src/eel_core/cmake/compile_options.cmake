@@ -11,6 +11,10 @@ set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 # A product and a sum may become one rounding; sums keep their order, and NaN and infinity are seen: no -ffast-math.
 # Nobody looks at errno or at floating-point traps after arithmetic.
 set(eel_core_compile_options -ffp-contract=fast -fno-math-errno -fno-trapping-math)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # Order instructions before registers are given out too: long formulas in vectors gain, and x86 leaves it off.
+  list(APPEND eel_core_compile_options -fschedule-insns -fsched-pressure)
+endif()
 set(eel_core_link_options "")
 if(EEL_CORE_SANITIZE)
   set(sanitizers -fsanitize=address,undefined -fno-sanitize-recover=all)

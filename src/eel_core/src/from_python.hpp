@@ -130,8 +130,8 @@ inline Grid grid_from(const py::handle& g)
     grid.set_steps();
     for (std::size_t degree = 0; degree <= grid.widest; ++degree) {
         Row row(grid.blocks);
-        if (degree < grid.widest) std::copy_n(series.data() + degree * n, n, row.row(0));
-        grid.legendre.push_back(row);
+        std::copy_n(series.data() + degree * n, n, row.row(0));
+        grid.series.push_back(row);
     }
     return grid;
 }

@@ -44,7 +44,8 @@ Workspace<Space> bent(const Swimmer& swimmer)
 
 double energy(const Swimmer& swimmer, const Frame3<double>& head, Workspace<Space>& work)
 {
-    set_righting_torque(swimmer, head, work);
+    work.head = head;
+    set_righting_torque(swimmer, work);
     return potential_energy(swimmer, work);
 }
 

@@ -27,11 +27,12 @@ template <class M>
 bool find_motion(const Swimmer& swimmer, const Law& law, double time, const State& y, Workspace<M>& work)
 {
     configure(swimmer, law, time, work);  // eq. (25)
-    work.momentum = momentum_in_head(y, head_frame(y, M()));
+    work.head = head_frame(y, M());
+    work.momentum = momentum_in_head(y, work.head);
     if (!find_twist(swimmer, work)) return false;  // section 6
     add_head_motion(swimmer, work.twist, work.position, work.omega, work.velocity);
     find_loads(swimmer, work);
-    if (swimmer.righting != 0.0) set_righting_torque(swimmer, head_frame(y, M()), work);
+    if (swimmer.righting != 0.0) set_righting_torque(swimmer, work);
     return true;
 }
 
@@ -41,9 +42,8 @@ bool rate_of_state(const Swimmer& swimmer, const Law& law, const Vector3<double>
                    Workspace<M>& work, State& rate)
 {
     if (!find_motion(swimmer, law, time, y, work)) return false;
-    const auto head = head_frame(y, M());
-    put_velocity(work.twist, head, current, y, rate);
-    put_momentum(momentum_rate(swimmer, work), head, rate);
+    put_velocity(work.twist, work.head, current, y, rate);
+    put_momentum(momentum_rate(swimmer, work), work.head, rate);
     return true;
 }
 

@@ -85,27 +85,18 @@ inline double zero_between(const Grid& grid, const Row& values, std::size_t i, d
     return t;
 }
 
-// Weights [m] of the nodes of a panel for the integral from its start to its fraction `t`: by Legendre polynomials.
+// Weights [m] of the nodes of a panel for the integral from its start to its fraction `t`, by Clenshaw's recurrence.
 inline void set_weights_upto(const Grid& grid, std::size_t first, std::size_t count, double t,
-                             std::vector<double>& integral, std::vector<double>& weights)
+                             std::vector<double>& weights)
 {
-    integral[0] = t;  // of each polynomial from the panel's start
     const double z = 2.0 * t - 1.0;
-    double low = 1.0, middle = z;
-    for (std::size_t m = 1; m < count; ++m) {
-        const Grid::Legendre& degree = grid.recurrence[m];
-        const double high = degree.upper * z * middle - degree.lower * low;
-        integral[m] = degree.integral * (high - low);
-        low = middle, middle = high;
-    }
-    integral[count] = 0.0;  // for an even number of terms
     for (std::size_t k = 0; k < count; k += width) {
-        Lanes even(0.0), odd(0.0);  // two sums, so that each waits less for its last term
-        for (std::size_t m = 0; m < count; m += 2) {
-            even += integral[m] * grid.legendre[m].from(first + k);
-            odd += integral[m + 1] * grid.legendre[m + 1].from(first + k);
+        Lanes sum(0.0), before(0.0);
+        for (std::size_t m = count; m > 0; --m) {
+            const Lanes next = 2.0 * z * sum + (grid.series[m].from(first + k) - before);
+            before = sum, sum = next;
         }
-        (even + odd).store(weights.data() + k);
+        (z * sum + (grid.series[0].from(first + k) - before)).store(weights.data() + k);
     }
 }
 
@@ -125,7 +116,7 @@ void add_kink(const Swimmer& swimmer, Speed speed, std::size_t i, double at_nose
     kink.first = first;
     kink.fraction = zero_between(grid, values, i, before, of_friction && swimmer.first_watched <= lateral);
     kink.jump = (of_friction ? 1.0 : 2.0) * (value >= 0.0 ? 1.0 : -1.0);
-    set_weights_upto(grid, first, count, kink.fraction, work.legendre_integral, kink.weights);
+    set_weights_upto(grid, first, count, kink.fraction, kink.weights);
     Row& weight = work.load_weight[of_friction ? std::size_t{0} : speed];
     for (std::size_t k = 0; k < count; k += width) {
         const std::size_t node = first + k;

@@ -17,15 +17,24 @@ Vector3<T> turning(const Frame3<T>& frame, const Vector2<T>& bending)
     return bending.x * frame.axis2 + bending.y * frame.axis3;
 }
 
-// Axes of the sections and, in space, their angular velocities. Sets `factor`, which holds until the next instant.
-inline void orient_sections(const Swimmer& swimmer, const Law& law, Workspace<Space>& work)
+// Rotations over the intervals that end at the nodes, to `quaternion`: apart from their product, in which each block
+// waits for the one before.
+inline void turn_intervals(const Swimmer& swimmer, const Law& law, Workspace<Space>& work)
 {
-    Quaternion<Lanes> before{0.0, 0.0, 0.0, 1.0};
     for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
         const auto pitch = law.combine(law.tables->moments, Law::pitch, work.factor, 0, k);
         const auto yaw = law.combine(law.tables->moments, Law::yaw, work.factor, 0, k);
-        const Quaternion<Lanes> interval = magnus({pitch[0], yaw[0]}, {pitch[1], yaw[1]}, {pitch[2], yaw[2]});
-        const Quaternion<Lanes> q = before * successive_products(interval);
+        work.quaternion.store(k, magnus({pitch[0], yaw[0]}, {pitch[1], yaw[1]}, {pitch[2], yaw[2]}));
+    }
+}
+
+// Axes of the sections and, in space, their angular velocities.
+inline void orient_sections(const Swimmer& swimmer, const Law& law, Workspace<Space>& work)
+{
+    turn_intervals(swimmer, law, work);
+    Quaternion<Lanes> before{0.0, 0.0, 0.0, 1.0};
+    for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
+        const Quaternion<Lanes> q = before * successive_products(work.quaternion[k]);
         before = {last(q.x), last(q.y), last(q.z), last(q.w)};
         const Frame3<Lanes> frame = q.frame();
         const Vector2<Lanes> rate = law.combine_both(law.tables->node, work.factor, 1, k);
@@ -47,18 +56,19 @@ inline void orient_sections(const Swimmer& swimmer, const Law& law, Workspace<Pl
     }
 }
 
+// Shape of the body and velocities due to its change. Sets `factor`, which holds until the next instant.
 template <class M>
 void configure(const Swimmer& swimmer, const Law& law, double time, Workspace<M>& work)
 {
     work.factor.resize(law.tables->rows());
     law.set_factors(time, work.factor);
     orient_sections(swimmer, law, work);
+    swimmer.grid.from_nose.integrate(work.frame, work.position);
     for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
         const auto t1 = work.frame[k].t1();
         work.integrand.store(k, {work.omega[k], cross(work.omega[k], t1)});
     }
     constexpr std::size_t linear = Components<Turn<M, Lanes>>::count;  // row of the linear part
-    swimmer.grid.from_nose.integrate(work.frame, work.position);
     swimmer.grid.from_nose.integrate(work.integrand, work.velocity, linear);
 }
 

@@ -19,10 +19,10 @@ Vector3<T> righting_torque(T moment, const Vector3<T>& axis3, const Vector3<doub
     return moment * cross(axis3, up);
 }
 
-// `up` and `righting` from the axes of the head in the world.
-inline void set_righting_torque(const Swimmer& swimmer, const Frame3<double>& head, Workspace<Space>& work)
+// `up` and `righting` from `head`.
+inline void set_righting_torque(const Swimmer& swimmer, Workspace<Space>& work)
 {
-    work.up = head.local(Vector3{0.0, 0.0, 1.0});
+    work.up = work.head.local(Vector3{0.0, 0.0, 1.0});
     Vector3<Lanes> torque{};
     for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
         const Lanes moment = swimmer.righting * (swimmer.grid.weight[k] * swimmer.sections.mass[k]);
@@ -30,7 +30,7 @@ inline void set_righting_torque(const Swimmer& swimmer, const Frame3<double>& he
     }
     work.righting = total_of(torque);
 }
-inline void set_righting_torque(const Swimmer&, const Frame2<double>&, Workspace<Plane>&) {}
+inline void set_righting_torque(const Swimmer&, Workspace<Plane>&) {}
 
 // Takes the torque out of the `density` of the balance and its integral, as any load.
 inline void take_righting_torque(const Swimmer& swimmer, Workspace<Space>& work)

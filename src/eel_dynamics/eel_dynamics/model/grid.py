@@ -17,7 +17,7 @@ from functools import cache
 from typing import NamedTuple
 
 import numpy as np
-from numpy.polynomial import legendre
+from numpy.polynomial import chebyshev, legendre
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -68,7 +68,7 @@ class Grid:
     first (n,): index of the first node of a node's panel; count (n,): points of that panel;
     matrix (n, p_max) [m]: integral from the panel's start to node i is sum_j matrix[i, j] f[first[i] + j];
     fraction (n,): the panel's variable; barycentric (n,): weights of the nodes in their panel's interpolation;
-    series (p_max, n) [m]: coefficients of Legendre polynomials, which times their integrals give those rows anywhere.
+    series (p_max + 1, n) [m]: those rows at any place, as coefficients of Chebyshev polynomials.
     """
 
     panels: tuple[Panel, ...]
@@ -88,7 +88,7 @@ class Grid:
         total = sum(panel.points for panel in panels)
         widest = max(panel.points for panel in panels)
         x, weight, matrix = np.empty(total), np.empty(total), np.zeros((total, widest))
-        fractions, barycentric, series = np.empty(total), np.empty(total), np.zeros((widest, total))
+        fractions, barycentric, series = np.empty(total), np.empty(total), np.zeros((widest + 1, total))
         first, count = np.empty(total, dtype=np.uintp), np.empty(total, dtype=np.uintp)
         begin = 0
         for panel in panels:
@@ -100,7 +100,7 @@ class Grid:
             weight[span] = matrix[begin + panel.points - 1, : panel.points]
             first[span], count[span] = begin, panel.points
             fractions[span], barycentric[span] = fraction, barycentric_weights(panel.points)
-            series[: panel.points, span] = np.linalg.inv(_basis(panel.points)) * scale
+            series[: panel.points + 1, span] = _integral_series(panel.points) * scale
             begin += panel.points
         previous = np.concatenate(([0.0], x[:-1]))
         return Grid(panels, x, weight, previous, first, count, matrix, fractions, barycentric, series)
@@ -185,20 +185,21 @@ def barycentric_weights(points: int) -> np.ndarray:
 
 def interpolation_matrix(points: int, at) -> np.ndarray:
     """Values at `at` (M,) in [0, 1] of the polynomial through the Radau points: (M, points)."""
-    return np.linalg.solve(_basis(points).T, legendre.legvander(2.0 * np.asarray(at) - 1.0, points - 1).T).T
+    return chebyshev.chebvander(2.0 * np.asarray(at, dtype=float) - 1.0, points - 1) @ _series(points)
 
 
 def integration_matrix(points: int, upto) -> np.ndarray:
     """Integral from 0 to `upto` (M,) in [0, 1] of the polynomial through the Radau points: (M, points)."""
-    z = 2.0 * np.asarray(upto, dtype=float) - 1.0
-    high = legendre.legvander(z, points)
-    integrals = np.empty((len(z), points))
-    integrals[:, 0] = 0.5 * (z + 1.0)
-    for k in range(1, points):
-        integrals[:, k] = 0.5 * (high[:, k + 1] - high[:, k - 1]) / (2 * k + 1)
-    return np.linalg.solve(_basis(points).T, integrals.T).T
+    return chebyshev.chebvander(2.0 * np.asarray(upto, dtype=float) - 1.0, points) @ _integral_series(points)
 
 
 @cache
-def _basis(points: int) -> np.ndarray:
-    return legendre.legvander(2.0 * radau_points(points) - 1.0, points - 1)
+def _series(points: int) -> np.ndarray:
+    """The polynomial through values at the Radau points as a Chebyshev series: (points, points)."""
+    return np.linalg.inv(chebyshev.chebvander(2.0 * radau_points(points) - 1.0, points - 1))
+
+
+@cache
+def _integral_series(points: int) -> np.ndarray:
+    """The integral from 0 of that polynomial as a Chebyshev series: (points + 1, points)."""
+    return 0.5 * chebyshev.chebint(_series(points), lbnd=-1)

@@ -82,13 +82,18 @@ class Lanes {
 // Of each lane, whether something holds.
 class Mask {
   public:
-    explicit Mask(Lanes::Bits native) : native_(native) {}
+#if defined(__AVX512F__)
+    using Native = __mmask8;
+#else
+    using Native = Lanes::Bits;
+#endif
+    explicit Mask(Native native) : native_(native) {}
 
     // As the bits of a whole number, the first lane lowest.
     unsigned bits() const
     {
 #if defined(__AVX512F__)
-        return static_cast<unsigned>(_mm512_movepi64_mask(reinterpret_cast<__m512i>(native_)));
+        return native_;
 #elif defined(__AVX__)
         return static_cast<unsigned>(_mm256_movemask_pd(reinterpret_cast<__m256d>(native_)));
 #else
@@ -102,23 +107,33 @@ class Mask {
     // The lanes whose number, from 0 on, is below `count`.
     static Mask below(std::size_t count)
     {
-        Lanes::Bits number, limit;
+#if defined(__AVX512F__)
+        return Mask(static_cast<Native>(count < width ? (1u << count) - 1u : ~0u));
+#else
+        Native number, limit;
         for (std::size_t lane = 0; lane < width; ++lane) {
             number[lane] = static_cast<std::int64_t>(lane);
             limit[lane] = static_cast<std::int64_t>(count);
         }
         return Mask(number < limit);
+#endif
     }
 
     friend Lanes select(Mask mask, Lanes yes, Lanes no);
 
   private:
-    Lanes::Bits native_;
+    Native native_;
 };
 
+#if defined(__AVX512F__)
+inline Mask operator<(Lanes a, Lanes b) { return Mask(_mm512_cmp_pd_mask(a.native_, b.native_, _CMP_LT_OQ)); }
+inline Mask operator>(Lanes a, Lanes b) { return Mask(_mm512_cmp_pd_mask(a.native_, b.native_, _CMP_GT_OQ)); }
+inline Mask operator>=(Lanes a, Lanes b) { return Mask(_mm512_cmp_pd_mask(a.native_, b.native_, _CMP_GE_OQ)); }
+#else
 inline Mask operator<(Lanes a, Lanes b) { return Mask(a.native_ < b.native_); }
 inline Mask operator>(Lanes a, Lanes b) { return Mask(a.native_ > b.native_); }
 inline Mask operator>=(Lanes a, Lanes b) { return Mask(a.native_ >= b.native_); }
+#endif
 
 // Allocates doubles such that a block of lanes lies within one line of the cache.
 template <class T>
@@ -141,7 +156,14 @@ concept Number = std::same_as<T, double> || std::same_as<T, Lanes>;
 
 // -- choices
 
-inline Lanes select(Mask mask, Lanes yes, Lanes no) { return Lanes(mask.native_ ? yes.native() : no.native()); }
+inline Lanes select(Mask mask, Lanes yes, Lanes no)
+{
+#if defined(__AVX512F__)
+    return Lanes(_mm512_mask_blend_pd(mask.native_, no.native(), yes.native()));
+#else
+    return Lanes(mask.native_ ? yes.native() : no.native());
+#endif
+}
 inline double select(bool condition, double yes, double no) { return condition ? yes : no; }
 
 // The size of `value` with the sign of `sign`.

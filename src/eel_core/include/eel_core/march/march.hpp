@@ -93,10 +93,10 @@ class March {
     {
         Workspace<Space>& work = workspace();
         configure(*swimmer_, settings_.law, time_, work);
-        const Frame3<double> head = head_frame(state_, Space());
-        put_momentum(momentum_of(*swimmer_, twist, work), head, state_);
+        work.head = head_frame(state_, Space());
+        put_momentum(momentum_of(*swimmer_, twist, work), work.head, state_);
         add_head_motion(*swimmer_, twist, work.position, work.omega, work.velocity);
-        if (swimmer_->righting != 0.0) set_righting_torque(*swimmer_, head, work);
+        if (swimmer_->righting != 0.0) set_righting_torque(*swimmer_, work);
         begin();
         const auto [body, water, potential] = energies_of(*swimmer_, work);
         return body + water + potential;

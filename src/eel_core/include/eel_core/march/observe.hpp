@@ -87,7 +87,7 @@ class Observer {
     void show_head(const State& y, const Vector3<double>& current, std::size_t sample,
                    const Workspace<Space>& work) const
     {
-        const Frame3<double> head = head_frame(y, Space());
+        const Frame3<double> head = work.head;
         std::copy_n(y.begin(), 3, at(Profiles::position, sample));
         std::copy_n(y.begin() + 3, 4, at(Profiles::orientation, sample));
         double* const twist = at(Profiles::twist, sample);
@@ -119,7 +119,7 @@ class Observer {
     void place_stations(const Law& law, const State& y, std::size_t sample, const Workspace<Space>& work,
                         StationWork& here) const
     {
-        const Frame3<double> head = head_frame(y, Space());
+        const Frame3<double> head = work.head;
         const Quaternion<Lanes> head_turn{y[3], y[4], y[5], y[6]};
         const Vector3<double> nose{y[0], y[1], y[2]};
         swimmer_.to_station.integrate(work.frame, 0, Vector3<double>{}, work.position, here.position);

@@ -80,8 +80,6 @@ class FromNose {
             // Few sums would wait for their last term: the nodes go to two sets of them in turn.
             constexpr std::size_t sets = count * parts < 6 ? 2 : 1;
             std::array<std::array<std::array<Lanes, parts>, count>, sets> sum{};
-            const Value before = stretch.begin > 0 ? known.node(stretch.begin - 1) : at_nose;
-            Components<Value>::each(before, [&](std::size_t c, double value) { sum[0][c].fill(Lanes(value)); });
             const auto add_node = [&](std::size_t node, std::size_t set) {
                 for (std::size_t part = 0; part < parts; ++part) {
                     const Lanes weight = column[node][part];
@@ -93,10 +91,12 @@ class FromNose {
             for (; node + sets <= nodes; node += sets)
                 for (std::size_t set = 0; set < sets; ++set) add_node(node + set, set);
             if (node < nodes) add_node(node, 0);
+            const Value before = stretch.begin > 0 ? known.node(stretch.begin - 1) : at_nose;
             for (std::size_t part = 0; part < parts; ++part)
-                result.store(parts * s + part, Components<Block>::make([&](std::size_t c) {
-                                 return sets == 1 ? sum[0][c][part] : sum[0][c][part] + sum[sets - 1][c][part];
-                             }));
+                result.store(parts * s + part, before + Components<Block>::make([&](std::size_t c) {
+                                                   return sets == 1 ? sum[0][c][part]
+                                                                    : sum[0][c][part] + sum[sets - 1][c][part];
+                                               }));
         }
     }
 
@@ -121,16 +121,10 @@ struct Grid {
     FromNose from_nose;
 
     // What finds and integrates up to a place within a panel (`drag_kinks`):
-    Row fraction;         // of the node's panel, in its own variable
-    Row by_step, by_two;  // one by the fraction since the node before; between the nodes before and behind
-    Row barycentric;      // weights of the interpolation within the panel
-    struct Legendre {
-        double upper, lower;  // P_(m+1) = upper z P_m - lower P_(m-1)
-        double integral;      // of P_m from the start: integral (P_(m+1) - P_(m-1)), by the panel's fraction
-    };
-    std::vector<Legendre> recurrence;  // by the degree m
-    std::vector<Row> legendre;  // [m], one more than the widest panel's nodes: coefficients of Legendre polynomials,
-                                // whose integrals give rows as `PanelRows`
+    Row fraction;             // of the node's panel, in its own variable
+    Row by_step, by_two;      // one by the fraction since the node before; between the nodes before and behind
+    Row barycentric;          // weights of the interpolation within the panel
+    std::vector<Row> series;  // [m]: rows as those of `PanelRows`, as series of Chebyshev polynomials T_m
 
     // Sets what follows from `fraction`, `first` and `count`.
     void set_steps()
@@ -142,12 +136,6 @@ struct Grid {
             const double behind = i + 1 < first[i] + count[i] ? at[i + 1] : 2.0;
             by_step.row(0)[i] = 1.0 / (at[i] - before);
             by_two.row(0)[i] = 1.0 / (behind - before);
-        }
-        recurrence.clear();
-        for (std::size_t m = 0; m <= widest; ++m) {
-            const double degree = static_cast<double>(m);
-            recurrence.push_back(
-                {(2.0 * degree + 1.0) / (degree + 1.0), degree / (degree + 1.0), 0.5 / (2.0 * degree + 1.0)});
         }
     }
 };

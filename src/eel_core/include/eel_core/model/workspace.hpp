@@ -35,7 +35,6 @@ struct Workspace {
         friction_laminar = friction_excess = turbulent_part = Row(n);
         for (Row& row : speed) row = Row(n);
         for (Row& row : load_weight) row = Row(n);
-        legendre_integral.resize(swimmer.grid.widest + 1);
         kink_density = Field<Wrench<M, double>>(blocks_of(swimmer.grid.widest));
         for (Kink& kink : kinks) kink.weights.resize(swimmer.grid.widest + width);
     }
@@ -64,10 +63,10 @@ struct Workspace {
     static constexpr std::size_t most_kinks = 24;  // beyond, signs change too often to be integrated apart
     std::array<Kink, most_kinks> kinks;
     std::size_t kink_count = 0;
-    std::vector<double> legendre_integral;  // of the polynomials of a panel, up to a kink
     Field<Wrench<M, double>> kink_density;  // of the balance, at the nodes of a kink's panel: what jumps
 
     // Of the whole body:
+    Frame<M, double> head;  // axes of the head in the world
     Factored<M::freedoms> inertia;
     Twist<M, double> twist;        // of the head, relative to the water
     Momentum<M, double> momentum;  // of body, water and nose

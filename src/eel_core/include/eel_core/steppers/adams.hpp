@@ -14,6 +14,7 @@
 #pragma once
 
 #include <algorithm>
+#include <span>
 
 #include "eel_core/head_dynamics.hpp"
 
@@ -23,6 +24,18 @@ namespace eel_core {
 inline void add_scaled(double factor, const State& x, State& y)
 {
     for (std::size_t k = 0; k < state_space; ++k) y[k] += factor * x[k];
+}
+
+// sum_j weight_j x_j, for each entry.
+inline State weighted_sum(std::span<const double> weight, std::span<const State> x)
+{
+    State result;
+    for (std::size_t k = 0; k < state_space; k += width) {
+        Lanes sum(0.0);
+        for (std::size_t j = 0; j < x.size(); ++j) sum += weight[j] * Lanes::load(x[j].data() + k);
+        sum.store(result.data() + k);
+    }
+    return result;
 }
 
 class Adams {
@@ -49,7 +62,6 @@ class Adams {
         terms_ = std::min(order_, known_ + 1);
         const std::size_t top = terms_ + (may_rise_ ? 1 : 0);  // the last g, for the error
         set_weights(length, top);
-        State mean{}, result = y;
         double beta = 1.0, to_end = length, to_start = 0.0;  // s, to rates before from the step's end and start
         for (std::size_t j = 0; j < top; ++j) {
             if (j > 0) {
@@ -58,9 +70,9 @@ class Adams {
                 to_end += length_[j - 1];
             }
             for (std::size_t k = 0; k < state_space; ++k) starred_[j][k] = beta * difference_[j][k];
-            if (j < terms_) add_scaled(weight_[j], starred_[j], mean);
         }
-        add_scaled(length, mean, result);
+        State result = y;
+        add_scaled(length, weighted_sum(weight_, std::span(starred_).first(terms_)), result);
         return result;
     }
 

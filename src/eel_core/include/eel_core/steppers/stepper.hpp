@@ -111,14 +111,17 @@ class Stepper {
         for (std::size_t k = 3; k < 7; ++k) y[k] /= length;
     }
 
+    std::span<const State> rates(std::size_t count) const { return std::span(rate_).first(count); }
+
     State interpolated(double theta) const
     {
-        State result = begin_, sum{};
+        Method::Weights weight;
         for (std::size_t i = 0; i < method_.stages; ++i) {
             const auto& d = method_.dense[i];
-            add_scaled(theta * (d[0] + theta * (d[1] + theta * (d[2] + theta * d[3]))), rate_[i], sum);
+            weight[i] = theta * (d[0] + theta * (d[1] + theta * (d[2] + theta * d[3])));
         }
-        add_scaled(length_, sum, result);
+        State result = begin_;
+        add_scaled(length_, weighted_sum(weight, rates(method_.stages)), result);
         normalise(result);
         return result;
     }
@@ -144,7 +147,7 @@ class Stepper {
                 trial_ = adams_.step(length, end_);
             } else {
                 trial_ = end_;
-                for (std::size_t j = 0; j < stage; ++j) add_scaled(length * method_.a[stage][j], rate_[j], trial_);
+                add_scaled(length, weighted_sum(method_.a[stage], rates(stage)), trial_);
             }
             if (stage == last) normalise(trial_);
             if (!evaluate(settings, start + method_.c[stage] * length, trial_, rate_[stage])) return Status::singular;
@@ -154,7 +157,7 @@ class Stepper {
             for (std::size_t k = 0; k < state_space; ++k) rate_[1][k] = (trial_[k] - end_[k]) / length;
             defect = adams_.defect(adams_.terms(), rate_[last]);
         } else {
-            for (std::size_t i = 0; i <= last; ++i) add_scaled(method_.error[i], rate_[i], defect);
+            defect = weighted_sum(method_.error, rates(method_.stages));
         }
         double sum = 0.0;
         for (std::size_t k = 0; k < state_space; ++k) sum += std::abs(trial_[k]) + std::abs(rate_[last][k]);
