@@ -112,17 +112,18 @@ def test_labels_keep_apart_about_where_they_belong():
 
 
 def test_command_leaves_picture_page_table_and_recording(tmp_path, capsys):
-    words = f"straight --quick --repeats 1 --duration 1 --csv --pictures {tmp_path} --page {tmp_path}/page.md"
+    words = f"straight --quick --repeats 1 --duration 1 --csv --pictures {tmp_path}/images --page {tmp_path}/page.md"
     pytest.importorskip("rerun")
+    (tmp_path / "images").mkdir()
     assert main([*words.split(), "--rerun", str(tmp_path / "trade.rrd")]) == 0
     said = capsys.readouterr().out
     for preset in ("draft", "standard", "fine", "reference"):
         assert preset in said
-    for name in ("tradeoff_straight.png", "tradeoff_straight.svg", "page.md", "trade.rrd"):
+    for name in ("images/tradeoff_straight.png", "images/tradeoff_straight.svg", "page.md", "trade.rrd"):
         assert (tmp_path / name).stat().st_size > 1500, name
     page, tables = ((tmp_path / name).read_text() for name in ("page.md", "page_tables.md"))
-    assert "![" in page and page.count("\n| ") == 7 and tables.count("\n| ") > 20
-    lines = (tmp_path / "tradeoff_straight.csv").read_text().splitlines()
+    assert "](images/tradeoff_straight.png)" in page and page.count("\n| ") == 7 and tables.count("\n| ") > 20
+    lines = (tmp_path / "images" / "tradeoff_straight.csv").read_text().splitlines()
     assert len(lines) == 1 + len(settings(Scene(), quick=True))
     from rerun.chunk import RrdReader
 

@@ -145,9 +145,7 @@ def _write_all(options, found):
             yield path
     if options.page:
         page = Path(options.page)
-        picture = (folder / f"tradeoff_{found[0][0].law.name}.png").resolve()
-        beside = picture.is_relative_to(page.resolve().parent)
-        yield write_page(page, found, str(picture.relative_to(page.resolve().parent)) if beside else None)
+        yield write_page(page, found, folder)
         yield page
     if options.rerun:
         from eel_dynamics.studies.tradeoff.stream import stream

@@ -2,6 +2,7 @@
 """Writes docs/appendix/tradeoff.md (six rows, a picture) and tradeoff_tables.md beside it (all that was measured)."""
 
 import math
+import os
 import platform
 from datetime import date
 from pathlib import Path
@@ -15,14 +16,16 @@ from eel_dynamics.studies.tradeoff.table import WANTED, cheapest, digits_table, 
 
 PAGE = """# Accuracy against cost, and the effect of simpler models
 
-Made by `tradeoff {gaits} --page {page}`{machine}.
+Made by `tradeoff {gaits} --pictures {pictures} --page {page}`{machine}.
 
 The {gait} gait, {duration:g} s, on the nodes that the torque needs; the time is without the ledger and without samples,
 set-up included. Each row is the cheapest of the measured settings whose errors, of pose and of torque, are both below
 the first column. Times carry over to another machine as ratios only.{digit}
 
 {table}
-{picture}
+
+![The trade of the {gait} gait]({picture})
+
 Each point is a setting, on the left with its error of the position, on the right of the torque. The dashed lines are
 the errors of simpler models, solved exactly. Where some part of the physics is uncertain, a setting with a tenth of
 that part's error is accurate enough. Physics that makes no difference to a gait can be switched off in `Scene(...)`.
@@ -33,7 +36,7 @@ models, for {count} gaits: [{tables}]({tables}).
 """
 TABLES = """# Accuracy against cost: all tables
 
-Made by `tradeoff {gaits} --page {page}`{machine}. The short of it: [{short}]({short}).
+Made by `tradeoff {gaits} --pictures {pictures} --page {page}`{machine}. The short of it: [{short}]({short}).
 
 Times are processor times without ledger and samples, medians of {repeats} rounds in which all settings take turns.
 Errors are of runs with the same steps on the same nodes, against a run of {points:g} points per body length and a
@@ -48,21 +51,22 @@ The second table of each gait shows the simpler models.
 """
 
 
-def write_page(path: Path, found: list[tuple], picture: str | None) -> Path:
+def write_page(path: Path, found: list[tuple], pictures: Path) -> Path:
     """Write the page to `path`, and all tables to a page beside it, whose path is returned.
 
-    found: pairs of a trade and its models. picture: path of the first gait's picture, relative to the page; None: no
-    picture. `OSError` where a page cannot be written.
+    found: pairs of a trade and its models. pictures: folder of their pictures. `OSError` where a page cannot be
+    written.
     """
     first, tables = found[0][0], path.with_name(f"{path.stem}_tables{path.suffix}")
-    shown = {"gaits": " ".join(trade.law.name for trade, _ in found), "page": path, "machine": machine()}
+    shown = {"gaits": " ".join(trade.law.name for trade, _ in found), "machine": machine()}
+    shown |= {"page": path, "pictures": pictures}
     short = PAGE.format(
         **shown,
         gait=first.law.name,
         duration=first.duration,
         digit=digit_line(first),
         table=digits_table(first, markdown=True),
-        picture=f"\n![The trade of the {first.law.name} gait]({picture})\n" if picture else "",
+        picture=os.path.relpath(pictures / f"tradeoff_{first.law.name}.png", path.parent),
         count=len(found),
         tables=tables.name,
     )
