@@ -87,11 +87,10 @@ class Observer {
     void show_head(const State& y, const Vector3<double>& current, std::size_t sample,
                    const Workspace<Space>& work) const
     {
-        const Frame3<double> head = work.head;
         std::copy_n(y.begin(), 3, at(Profiles::position, sample));
         std::copy_n(y.begin() + 3, 4, at(Profiles::orientation, sample));
         double* const twist = at(Profiles::twist, sample);
-        put(work.twist.angular, twist), put(work.twist.linear + head.local(current), twist + 3);
+        put(work.twist.angular, twist), put(work.twist.linear + work.head.local(current), twist + 3);
         double* const acceleration = at(Profiles::head_acceleration, sample);
         put(work.head_acceleration.angular, acceleration), put(work.head_acceleration.linear, acceleration + 3);
 
@@ -101,7 +100,7 @@ class Observer {
             const Lanes part = swimmer_.grid.weight[k] * swimmer_.sections[k].mass;
             mass += part, moment += part * work.position[k];
         }
-        const Vector3<double> centre = head.parent((1.0 / total(mass)) * total_of(moment));
+        const Vector3<double> centre = work.head.parent((1.0 / total(mass)) * total_of(moment));
         put(Vector3{y[0], y[1], y[2]} + centre, at(Profiles::center_of_mass, sample));
     }
 
@@ -119,7 +118,6 @@ class Observer {
     void place_stations(const Law& law, const State& y, std::size_t sample, const Workspace<Space>& work,
                         StationWork& here) const
     {
-        const Frame3<double> head = work.head;
         const Quaternion<Lanes> head_turn{y[3], y[4], y[5], y[6]};
         const Vector3<double> nose{y[0], y[1], y[2]};
         swimmer_.to_station.integrate(work.frame, 0, Vector3<double>{}, work.position, here.position);
@@ -136,7 +134,7 @@ class Observer {
                 here.base[k] * magnus({pitch[0], yaw[0]}, {pitch[1], yaw[1]}, {pitch[2], yaw[2]});
             here.frame.store(k, turn.frame());
             here.curvature.store(k, curvature);
-            show(Profiles::backbone, sample, k, nose + head.parent(here.position[k]));
+            show(Profiles::backbone, sample, k, nose + work.head.parent(here.position[k]));
             show(Profiles::section_orientation, sample, k, head_turn * turn);
             show(Profiles::curvature, sample, k, Vector3<Lanes>{0.0, curvature.x, curvature.y});
             show(Profiles::curvature_rate, sample, k, Vector3<Lanes>{0.0, rate.x, rate.y});

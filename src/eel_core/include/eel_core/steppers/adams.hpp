@@ -38,6 +38,13 @@ inline State weighted_sum(std::span<const double> weight, std::span<const State>
     return result;
 }
 
+// y + length sum_j weight_j rate_j.
+inline State stepped(State y, double length, std::span<const double> weight, std::span<const State> rate)
+{
+    add_scaled(length, weighted_sum(weight, rate), y);
+    return y;
+}
+
 class Adams {
   public:
     static constexpr std::size_t highest =
@@ -71,9 +78,7 @@ class Adams {
             }
             for (std::size_t k = 0; k < state_space; ++k) starred_[j][k] = beta * difference_[j][k];
         }
-        State result = y;
-        add_scaled(length, weighted_sum(weight_, std::span(starred_).first(terms_)), result);
-        return result;
+        return stepped(y, length, weight_, std::span(starred_).first(terms_));
     }
 
     // The error by the step's length of a step of so many terms, with the `rate` at its end.

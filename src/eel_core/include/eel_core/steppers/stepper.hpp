@@ -120,8 +120,7 @@ class Stepper {
             const auto& d = method_.dense[i];
             weight[i] = theta * (d[0] + theta * (d[1] + theta * (d[2] + theta * d[3])));
         }
-        State result = begin_;
-        add_scaled(length_, weighted_sum(weight, rates(method_.stages)), result);
+        State result = stepped(begin_, length_, weight, rates(method_.stages));
         normalise(result);
         return result;
     }
@@ -143,12 +142,8 @@ class Stepper {
             begin_anew_ = false;
         }
         for (std::size_t stage = method_.adams > 0 ? last : 1; stage <= last; ++stage) {
-            if (method_.adams > 0) {
-                trial_ = adams_.step(length, end_);
-            } else {
-                trial_ = end_;
-                add_scaled(length, weighted_sum(method_.a[stage], rates(stage)), trial_);
-            }
+            trial_ =
+                method_.adams > 0 ? adams_.step(length, end_) : stepped(end_, length, method_.a[stage], rates(stage));
             if (stage == last) normalise(trial_);
             if (!evaluate(settings, start + method_.c[stage] * length, trial_, rate_[stage])) return Status::singular;
         }

@@ -58,8 +58,8 @@ def write_page(path: Path, found: list[tuple], pictures: Path) -> Path:
     written.
     """
     first, tables = found[0][0], path.with_name(f"{path.stem}_tables{path.suffix}")
-    shown = {"gaits": " ".join(trade.law.name for trade, _ in found), "machine": machine()}
-    shown |= {"page": path, "pictures": pictures}
+    gaits = " ".join(trade.law.name for trade, _ in found)
+    shown = {"gaits": gaits, "pictures": pictures, "page": path, "machine": machine()}
     short = PAGE.format(
         **shown,
         gait=first.law.name,
