@@ -56,7 +56,7 @@ quotes: build   ## write the figures that README.md and docs quote, from the new
 lint: build   ## rules, format, imports, spelling and quoted figures, Python and C++
 	@$(RUN) tools/lint.sh
 
-build:   ## the virtual environment and the six packages (PYTHON=... chooses the Python)
+build:   ## the virtual environment and the packages (PYTHON=... chooses the Python)
 	@PYTHON="$(PYTHON)" tools/build.sh
 
 clean:   ## remove what build made; out/ stays

@@ -9,7 +9,7 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
-from eel_dynamics.studies.tradeoff.settings import REFERENCE
+from eel_studies.tradeoff.settings import REFERENCE
 from measuring import times_in_turn
 from peer_processes import environment, measured
 

@@ -4,11 +4,11 @@
 import statistics
 import time
 
-import eel_dynamics.gym  # noqa: F401, it registers the environments
 import gymnasium
 import numpy as np
 from measuring import median_ratio, times_in_turn
 
+import eel_gym  # noqa: F401, it registers the environments
 from eel_dynamics import Simulation
 from eel_gaits import straight
 

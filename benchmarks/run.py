@@ -16,7 +16,7 @@ import numpy as np
 from against_paper_scheme import paper_scheme
 from against_peers import peers
 from batch import batch
-from eel_dynamics.studies.tradeoff.settings import REFERENCE
+from eel_studies.tradeoff.settings import REFERENCE
 from growth import growth
 from gym_steps import gym
 from integrators import integrators

@@ -8,12 +8,12 @@ from pathlib import Path
 import gymnasium
 import numpy as np
 import pytest
-from eel_dynamics.gym import HeadingEnv
 from eel_viz.recording.reading import read
 from nav_msgs.msg import Odometry
 from swim_client import LIMIT, SwimClient, nanoseconds
 
 from eel_dynamics import Scene
+from eel_gym import HeadingEnv
 from eel_viz import entities
 
 ROOT = Path(__file__).resolve().parent.parent

@@ -69,7 +69,7 @@ build_packages() {
         key_of "$(cat .venv/stamp)" "$(.venv/bin/python -I src/eel_core/eel_core/processor.py)")"
     stamped install/stamp "$key" && return
     need_compiler
-    say "colcon build of the six packages"
+    say "colcon build of the packages"
     rm -f install/stamp
     # With MAKEFLAGS, or colcon lets make start nothing beside while the machine has other work.
     PATH="$root/.venv/bin:$PATH" AMENT_PREFIX_PATH="$root/.venv" CMAKE_PREFIX_PATH="$root/.venv" MAKEFLAGS="-j$(nproc)" \

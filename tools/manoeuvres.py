@@ -12,11 +12,11 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
+from eel_base.attitude import heading
+from eel_base.quantity import described_fields
 from eel_dynamics.model.axes import turn_vector
-from eel_dynamics.studies.pictures.style import BLUE, ORANGE, SETTINGS
 from eel_gaits.gaits.registry import GAITS
-from eel_gaits.input_output.quantity import described_fields
-from eel_gaits.pilot.attitude import heading
+from eel_studies.pictures.style import BLUE, ORANGE, SETTINGS
 from PIL import Image
 
 from eel_dynamics import simulate

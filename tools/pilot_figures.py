@@ -12,10 +12,10 @@ from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
-from eel_dynamics.studies.pictures.picture_file import write_picture
-from eel_dynamics.studies.pictures.style import BLUE, ORANGE
-from eel_dynamics.studies.pilot.courses import figures_of, random_path, swim_path
 from eel_gaits.pilot.settings import PilotSettings
+from eel_studies.pictures.picture_file import write_picture
+from eel_studies.pictures.style import BLUE, ORANGE
+from eel_studies.pilot.courses import figures_of, random_path, swim_path
 from matplotlib.patches import Circle
 
 ROOT = Path(__file__).resolve().parent.parent

@@ -10,11 +10,11 @@ import sys
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 
+from eel_base.quantity import limits
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_gaits.gaits.registry import GAITS, Transition
 from eel_gaits.gaits.settings import FILE_GAITS, numbers_of
-from eel_gaits.input_output.quantity import limits
 from eel_gaits.ros.heading_controller import HeadingParameters
 from eel_gaits.ros.node import FILE
 from eel_gaits.ros.pilot_parameters import GROUPS

@@ -12,7 +12,6 @@ from pathlib import Path
 
 import numpy as np
 import rclpy
-from eel_dynamics.gym import HeadingEnv, HeadMotion
 from eel_ros.qos import keep_all
 from nav_msgs.msg import Odometry
 from rcl_interfaces.msg import ParameterDescriptor
@@ -20,6 +19,7 @@ from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from row_policy import actions_of, file_of
 
+from eel_gym import HeadingEnv, HeadMotion
 from eel_msgs.msg import CurvatureSamples
 
 FIELDS = "pitch", "pitch_rate", "pitch_accel", "yaw", "yaw_rate", "yaw_accel"

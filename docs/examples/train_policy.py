@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Learn a task of eel_dynamics.gym: CMA-ES trains a policy of one row of weights for each value of the action.
+"""Learn a task of eel_gym: CMA-ES trains a policy of one row of weights for each value of the action.
 
     python docs/examples/train_policy.py heading                     # trains, tests, writes policy_heading.json
     python docs/examples/train_policy.py depth --draw depth.png      # draws the policy of policy_depth.json
@@ -15,11 +15,11 @@ import time
 from pathlib import Path
 from typing import NamedTuple
 
-import eel_dynamics.gym  # noqa: F401, it registers the environments
 import gymnasium
 import numpy as np
 from row_policy import actions_of, file_of
 
+import eel_gym  # noqa: F401, it registers the environments
 from eel_dynamics import Scene
 
 POPULATION, EPISODES, SEED = 12, 4, 1

@@ -14,9 +14,6 @@ setup(
     extras_require={
         "test": ["pytest"],
         "data": ["xarray"],
-        "gym": ["gymnasium"],
-        "cluster": ["dask", "distributed", "xarray"],
-        "cma": ["cma"],
         "pictures": ["matplotlib"],
     },
     zip_safe=False,
@@ -28,14 +25,6 @@ setup(
         "console_scripts": [
             "dynamics = eel_dynamics.ros.node:main",
             "simulate = eel_dynamics.runs.command:main",
-            "midlines = eel_dynamics.studies.midlines.command:main",
-            "figures = eel_dynamics.studies.figures.command:main",
-            "identify = eel_dynamics.studies.identify.command:main",
-            "optimise = eel_dynamics.studies.optimise.command:main",
-            "sweep = eel_dynamics.studies.sweep.command:main",
-            "stability = eel_dynamics.studies.stability.command:main",
-            "steering = eel_dynamics.studies.steering.command:main",
-            "tradeoff = eel_dynamics.studies.tradeoff.command:main",
         ]
     },
 )

@@ -1,5 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Dynamics of an elongated swimmer in three dimensions, after Boyer, Porez and Leroyer (2010)."""
+"""Dynamics of an elongated swimmer in three dimensions, after Boyer, Porez and Leroyer (2010).
+
+`sweep`, `optimise`, `identify`, `gradient` and the other studies are those of `eel_studies`, imported when first used.
+"""
+
+from importlib import import_module
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.model.body import Body
@@ -12,38 +17,40 @@ from eel_dynamics.simulation.prescribed import HydrodynamicWrench, hydrodynamic_
 from eel_dynamics.simulation.simulation import Simulation
 from eel_dynamics.simulation.snapshot import Snapshot
 from eel_dynamics.simulation.stopping import SimulationStopped
-from eel_dynamics.studies.gradients.gradient import Gradient, gradient
-from eel_dynamics.studies.identify.identify import Identified, identify
-from eel_dynamics.studies.identify.measurements import MeasuredPath, MeasuredSpeed
-from eel_dynamics.studies.optimise.front import Front
-from eel_dynamics.studies.optimise.optimise import optimise
-from eel_dynamics.studies.steering.linearisation import PeriodicLinearisation, periodic_linearisation
-from eel_dynamics.studies.sweep.sweep import sweep
 
 __all__ = [
     "Accuracy",
     "Batch",
     "Body",
     "EnergyLedger",
-    "Front",
-    "Gradient",
     "HydrodynamicWrench",
-    "Identified",
-    "MeasuredPath",
     "MeasuredSimulation",
-    "MeasuredSpeed",
-    "PeriodicLinearisation",
     "Run",
     "Scene",
     "Simulation",
     "SimulationStopped",
     "Snapshot",
-    "gradient",
     "hydrodynamic_wrench",
+    "simulate",
+    "simulate_batch",
+]
+
+STUDIES = (
+    "Front",
+    "Gradient",
+    "Identified",
+    "MeasuredPath",
+    "MeasuredSpeed",
+    "PeriodicLinearisation",
+    "gradient",
     "identify",
     "optimise",
     "periodic_linearisation",
-    "simulate",
-    "simulate_batch",
     "sweep",
-]
+)
+
+
+def __getattr__(name: str):
+    if name in STUDIES:
+        return getattr(import_module("eel_studies"), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -2,7 +2,6 @@
 """Random scenes over more than any swimmer has: bodies, waters, laws, ramps, settings, throws."""
 
 import numpy as np
-from eel_dynamics.studies.stability.maps import spindle
 
 from eel_dynamics import Accuracy, Body, Scene
 from eel_gaits import Law, Ramp, Term, falling, straight
@@ -31,7 +30,7 @@ def shapes(count, rng):
         most = 500.0 if rng.random() < 0.1 else 50.0  # needles are stiff, and take most of the time
         slenderness = 10.0 ** rng.uniform(np.log10(5.0), np.log10(most))
         if rng.random() < 0.5:
-            return spindle(length, slenderness)
+            return Body.spindle(length, slenderness)
         half = 0.5 * length / slenderness
         return pointed(half * rng.uniform(0.2, 1.0), half, length)
 

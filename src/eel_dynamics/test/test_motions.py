@@ -3,22 +3,18 @@
 
 import math
 import pickle
-import re
 
 import numpy as np
 import pytest
 from eel_dynamics.runs.command import main
-from eel_dynamics.studies.midlines.command import main as midlines
-from eel_dynamics.studies.midlines.comparison import laid_on
 from eel_gaits.sources.lateral import LateralMidline
+from midline_files import ARC, kern_midline, write_midlines
 
 from eel_dynamics import Body, MeasuredSimulation, Run, Scene, Simulation, hydrodynamic_wrench, simulate, simulate_batch
 from eel_gaits import Law, Ramp, SampledLaw, Term, kern_fast, sampled, straight
 
 WAVE = Law(Term(amplitude=(1.0, 0.5, 2.0), wavelength=1.0, period=1.0), name="wave")
 PLANE = Scene(planar=True, friction="laminar")
-ARC = np.linspace(0.0, 1.0, 21)
-FINE = np.linspace(0.0, 1.0, 401)
 
 
 @pytest.fixture(scope="module")
@@ -34,28 +30,6 @@ def closed():
 @pytest.fixture(scope="module")
 def run(law):
     return simulate(law, 3.0, scene=PLANE, accuracy=1e-2)
-
-
-def write_midlines(path, position_at, *, end=4.0, noise=0.0):
-    """A file of midlines, 50 a second, that swim ahead and turn; position_at(time): (21, 2) [m]."""
-    draw, lines = np.random.default_rng(5), ["time,arc_length,x,y"]
-    for time in np.arange(round(50 * end) + 1) / 50.0:
-        turn = 0.4 * math.sin(5.0 * time) + 0.1 * time
-        rotation = np.array([[math.cos(turn), -math.sin(turn)], [math.sin(turn), math.cos(turn)]])
-        place = position_at(time) @ rotation.T - [0.3 * time, 0.0] + noise * draw.normal(size=(len(ARC), 2))
-        lines += [f"{time},{x},{a},{b}" for x, (a, b) in zip(ARC, place.tolist(), strict=True)]
-    path.write_text("\n".join(lines))
-    return path
-
-
-def kern_midline(time):
-    """Points (21, 2) of the midline of Kern and Koumoutsakos's eel at `time` [s], from its curvature."""
-
-    def integral(values):
-        return np.concatenate(([0.0], np.cumsum(0.5 * (values[1:] + values[:-1]) * np.diff(FINE))))
-
-    angle = integral(kern_fast().curvature(time, FINE)[0][:, 2])
-    return np.stack([np.interp(ARC, FINE, integral(along(angle))) for along in (np.cos, np.sin)], axis=1)
 
 
 def mackerel(x, time):
@@ -171,21 +145,3 @@ def test_the_command_swims_a_file_and_says_what_smoothing_does(tmp_path, capsys)
     assert "--file takes the place of a gait, got 'falling' too" in capsys.readouterr().err
     assert main(["falling", "--scale", "2"]) == 2 and "belong to --file" in capsys.readouterr().err
     assert main(["--file", str(tmp_path / "none.csv")]) == 2 and "no such file" in capsys.readouterr().err
-
-
-def test_the_midlines_that_come_out_are_those_that_went_in(tmp_path, capsys):
-    path = write_midlines(tmp_path / "fish.csv", kern_midline, end=2.0)
-    assert midlines(["--out", str(tmp_path / "fish.png"), str(path)]) == 0
-    told = capsys.readouterr().out
-    apart = float(re.search(r"midlines +([0-9.]+)% of the body's length apart", told)[1])
-    assert 0.0 < apart < 0.3 and (tmp_path / "fish.png").read_bytes().startswith(b"\x89PNG")
-    assert midlines([str(path), "--out", "fish.txt"]) == 2 and "--out must end in" in capsys.readouterr().err
-
-
-def test_a_rigid_motion_is_removed_and_a_mirror_image_is_not():
-    draw = np.random.default_rng(0)
-    points = draw.normal(size=(2, 9, 3))
-    turn = np.linalg.qr(draw.normal(size=(3, 3)))[0]
-    turn *= np.linalg.det(turn)
-    assert np.allclose(laid_on(points @ turn + 0.3, points), points)
-    assert np.max(np.abs(laid_on(points * [1.0, 1.0, -1.0], points) - points)) > 0.1

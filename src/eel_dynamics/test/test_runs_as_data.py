@@ -11,7 +11,7 @@ from eel_dynamics.analysis.measures import measures_of
 from eel_dynamics.runs import command
 from eel_dynamics.runs.storage import netcdf
 
-from eel_dynamics import Accuracy, Batch, Body, Run, Scene, SimulationStopped, simulate, simulate_batch, sweep
+from eel_dynamics import Accuracy, Batch, Body, Run, Scene, SimulationStopped, simulate, simulate_batch
 from eel_gaits import Law, Ramp, Term, falling, kern_fast, straight, turning
 
 SHORT = {"accuracy": 1e-2, "sample_period": 0.1, "stations": 7}
@@ -185,16 +185,6 @@ def test_a_missing_package_is_one_line(run, name, method, monkeypatch):
 
 def cut(data: bytes, part: float) -> bytes:
     return data[: int(part * len(data))]
-
-
-@pytest.mark.parametrize("kind", [Run, Batch])
-def test_a_file_of_a_sweep_says_what_opens_it(kind, tmp_path):
-    xarray = pytest.importorskip("xarray")
-    path = tmp_path / "periods.nc"
-    sweep({"period": [0.5]}, duration=1.0, accuracy=1e-2, stations=5, out=path)
-    with pytest.raises(ValueError, match=f"holds a sweep, not a {kind.__name__.lower()}: xarray.open_dataset opens it"):
-        kind.load(path)
-    assert xarray.open_dataset(path).sizes["period"] == 1
 
 
 @pytest.mark.fault(

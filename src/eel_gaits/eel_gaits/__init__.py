@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Curvature laws of elongated swimmers, and a ROS 2 node that publishes them. Nothing imported here needs ROS."""
 
+from eel_base.quantity import Quantities, quantity
+
 from eel_gaits.gaits.bursts import burst_and_coast, c_start
 from eel_gaits.gaits.cpg import cpg
 from eel_gaits.gaits.diving import diving, falling, rising, spiral
@@ -12,7 +14,6 @@ from eel_gaits.gaits.rolling import helix, roll_over, rolling
 from eel_gaits.gaits.sequence_file import sequence_from_file
 from eel_gaits.gaits.snakes import joint_wave, serpenoid
 from eel_gaits.gaits.swimming import backward, still, straight, turning
-from eel_gaits.input_output.quantity import Quantities, quantity
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.ramp import Ramp
 from eel_gaits.laws.sequence import sequence

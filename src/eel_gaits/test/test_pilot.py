@@ -5,9 +5,9 @@ import math
 
 import numpy as np
 import pytest
+from eel_base.attitude import attitude
 from eel_gaits.laws.steered_law import NUMBERS, SteeredLaw
 from eel_gaits.pilot import goals
-from eel_gaits.pilot.attitude import attitude
 from eel_gaits.pilot.estimate import Plane
 from eel_gaits.pilot.guidance import PathGuidance, against_water
 from eel_gaits.pilot.head_motion import HeadMotion

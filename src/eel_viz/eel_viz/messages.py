@@ -10,7 +10,7 @@ from functools import lru_cache
 from math import isfinite
 
 import numpy as np
-from eel_gaits.input_output.wording import shown
+from eel_base.wording import shown
 
 UNIT_TOLERANCE = 1e-6  # of a quaternion's norm
 

@@ -5,8 +5,8 @@ import ipaddress
 from dataclasses import dataclass, field, fields
 from typing import Self
 
-from eel_gaits.input_output.quantity import is_finite, limits
-from eel_gaits.input_output.wording import shown
+from eel_base.quantity import is_finite, limits
+from eel_base.wording import shown
 
 
 def setting(default, description: str, *, unit: str = "", minimum: float | None = None, maximum: float | None = None):

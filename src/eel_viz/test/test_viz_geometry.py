@@ -4,7 +4,7 @@
 import made_up
 import numpy as np
 import pytest
-from eel_gaits.pilot.attitude import world_from_body
+from eel_base.attitude import world_from_body
 from eel_viz.scene3d import camera
 from eel_viz.scene3d.centre_line import Resampling
 from eel_viz.scene3d.orientation import world_from_section

@@ -8,7 +8,7 @@ from types import SimpleNamespace as NS
 import made_up
 import numpy as np
 import pytest
-from eel_gaits.pilot.attitude import attitude, world_from_body
+from eel_base.attitude import attitude, world_from_body
 from eel_viz.plots import heat_map
 from eel_viz.recording.dispatcher import Dispatcher
 from eel_viz.recording.loggers import Loggers

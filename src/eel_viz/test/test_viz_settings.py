@@ -6,7 +6,7 @@ import sys
 from dataclasses import fields
 
 import pytest
-from eel_gaits.input_output.quantity import limits
+from eel_base.quantity import limits
 from eel_viz.settings import Settings
 
 

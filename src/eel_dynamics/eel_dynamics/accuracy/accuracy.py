@@ -20,8 +20,8 @@ from dataclasses import dataclass, fields, replace
 from functools import lru_cache
 
 import numpy as np
-from eel_gaits.input_output.quantity import is_finite
-from eel_gaits.input_output.wording import shown
+from eel_base.quantity import is_finite
+from eel_base.wording import shown
 
 from eel_dynamics.accuracy.budget import Budget
 from eel_dynamics.model.section_data import WATCHED

@@ -5,7 +5,7 @@ import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
-from eel_gaits.input_output.wording import shown
+from eel_base.wording import shown
 
 UNITS = {"us": 1e-6, "ms": 1e-3, "s": 1.0}
 PATTERN = re.compile(r"fastest within\s+([0-9.eE+-]+)\s*(us|ms|s) per second")

@@ -9,7 +9,7 @@ import math
 from functools import cached_property
 
 import numpy as np
-from eel_gaits.input_output.wording import shown
+from eel_base.wording import shown
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.term import Term
 from eel_gaits.sources.sampled_law import SampledLaw

@@ -2,7 +2,7 @@
 """Power of the axial friction, k1 of section 7.2.1, apart from the rest of the drag."""
 
 import numpy as np
-from eel_gaits.pilot.attitude import world_from_body
+from eel_base.attitude import world_from_body
 
 import eel_core
 from eel_dynamics.curvature.law_follower import LawFollower

@@ -4,7 +4,7 @@
 from functools import cache
 
 import numpy as np
-from eel_gaits.input_output.wording import shown
+from eel_base.wording import shown
 
 from eel_dynamics.analysis.analysis import Analysis
 

@@ -9,8 +9,8 @@ from operator import attrgetter
 from typing import NamedTuple
 
 import numpy as np
-from eel_gaits.input_output.quantity import is_finite
-from eel_gaits.input_output.wording import shown
+from eel_base.quantity import is_finite
+from eel_base.wording import shown
 from eel_gaits.sources.sampled_law import SampledLaw
 
 from eel_dynamics.curvature.law_waves import MOST_WAVES, waves_of_rows

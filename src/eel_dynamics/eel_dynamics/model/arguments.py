@@ -5,8 +5,8 @@ import math
 from functools import lru_cache
 
 import numpy as np
-from eel_gaits.input_output.quantity import is_finite, numbers
-from eel_gaits.input_output.wording import shown
+from eel_base.quantity import is_finite, numbers
+from eel_base.wording import shown
 
 FEW = 8  # numbers of a row that a message shows
 

@@ -11,7 +11,7 @@ from functools import cache, cached_property, lru_cache
 from pathlib import Path
 
 import numpy as np
-from eel_gaits.input_output.wording import shown
+from eel_base.wording import shown
 
 from eel_dynamics.model.arguments import checked_instance, checked_number, checked_row
 from eel_dynamics.model.body_file import columns_of
@@ -181,6 +181,23 @@ class Body:
     @lru_cache(maxsize=64)
     def _kern2006(length: float) -> "Body":
         return Body(**_named_shape("kern2006", length))
+
+    @staticmethod
+    def spindle(length: float, slenderness: float) -> "Body":
+        """A body with a round nose and a blunt tail of half the height, twice as high as wide.
+
+        length: [m]. slenderness: length / (2 x greatest half-height).
+        """
+        length = checked_number("body length", length, "m")
+        half = length / (2.0 * checked_number("body slenderness", slenderness, ""))
+
+        def half_height(x):
+            s = np.asarray(x, dtype=float) / length
+            return half * np.sqrt(np.clip(1.0 - np.clip(1.0 - s / 0.05, 0.0, None) ** 2, 0.0, None)) * (1.0 - 0.5 * s)
+
+        return Body(
+            length=length, half_width=lambda x: 0.5 * half_height(x), half_height=half_height, kinks=(0.05 * length,)
+        )
 
     @staticmethod
     def named(name: str) -> "Body":

@@ -7,7 +7,7 @@ from pathlib import Path
 from zipfile import BadZipFile
 
 import numpy as np
-from eel_gaits.input_output.wording import one_line, shown
+from eel_base.wording import one_line, shown
 
 COLUMNS = ("x", "half_width", "half_height")
 

@@ -8,7 +8,7 @@ from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
-from eel_gaits.input_output.wording import shown
+from eel_base.wording import shown
 from numpy.polynomial import chebyshev
 
 DEGREE = 48  # of the polynomial through the square on each panel, for its derivative

@@ -5,7 +5,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from eel_gaits.pilot.attitude import world_from_body
+from eel_base.attitude import world_from_body
 
 
 class InitialState(NamedTuple):

@@ -20,8 +20,8 @@ a run shows how much of a motion is due to the wake. It is no model of a fish.
 from dataclasses import dataclass, field, fields
 
 import numpy as np
-from eel_gaits.input_output.quantity import documented, number
-from eel_gaits.input_output.wording import shown
+from eel_base.quantity import documented, number
+from eel_base.wording import shown
 
 from eel_dynamics.model.arguments import checked_number, checked_row
 

@@ -3,7 +3,7 @@
 
 from dataclasses import fields, replace
 
-from eel_gaits.input_output.quantity import limits
+from eel_base.quantity import limits
 from eel_ros.frames import frame_in
 from eel_ros.parameters import AT_RESET, as_parameter, declare, default_of, take_overrides, warn_of_unknown
 from rcl_interfaces.msg import SetParametersResult

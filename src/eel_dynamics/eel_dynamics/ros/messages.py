@@ -13,9 +13,9 @@ from collections.abc import Callable
 import numpy as np
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
-from eel_gaits.input_output.wording import shown
+from eel_base.attitude import heading
+from eel_base.wording import shown
 from eel_gaits.laws.law import MAXIMUM_TERMS
-from eel_gaits.pilot.attitude import heading
 from geometry_msgs.msg import PoseStamped, TransformStamped, TwistStamped
 from nav_msgs.msg import Odometry
 from rclpy.serialization import deserialize_message

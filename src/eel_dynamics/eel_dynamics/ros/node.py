@@ -11,8 +11,8 @@ import traceback
 
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
-from eel_gaits.input_output.command_line import complain
-from eel_gaits.input_output.wording import one_line
+from eel_base.command_line import complain
+from eel_base.wording import one_line
 from eel_gaits.ros.messages import law_from_message
 from eel_ros.command_line import answer_words
 from eel_ros.parameter_node import ParameterNode

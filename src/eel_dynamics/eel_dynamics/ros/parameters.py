@@ -9,8 +9,8 @@ namespace, the defaults of its frames begin with it.
 import math
 from dataclasses import Field, dataclass, field, fields
 
-from eel_gaits.input_output.quantity import is_finite, limits
-from eel_gaits.input_output.wording import shown
+from eel_base.quantity import is_finite, limits
+from eel_base.wording import shown
 from eel_ros.parameters import AT_RESET
 
 from eel_dynamics.analysis.actuators import MOST_JOINTS

@@ -4,8 +4,8 @@
 from typing import NamedTuple
 
 import numpy as np
-from eel_gaits.input_output.quantity import numbers
-from eel_gaits.input_output.wording import shown
+from eel_base.quantity import numbers
+from eel_base.wording import shown
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
 

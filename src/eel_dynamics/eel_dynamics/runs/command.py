@@ -15,12 +15,12 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
+from eel_base.command_line import Parser, complain
+from eel_base.output_file import replacing
+from eel_base.quantity import described_fields
+from eel_base.wording import one_line, shown
 from eel_gaits.gaits.registry import GAITS, gait
 from eel_gaits.gaits.sequence_file import sequence_from_file
-from eel_gaits.input_output.command_line import Parser, complain
-from eel_gaits.input_output.output_file import replacing
-from eel_gaits.input_output.quantity import described_fields
-from eel_gaits.input_output.wording import one_line, shown
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.motion_file import read_motion
 from eel_gaits.sources.sampled_law import SampledLaw

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import fields
 
 import numpy as np
-from eel_gaits.input_output.wording import shown
+from eel_base.wording import shown
 
 from eel_dynamics.model.body import NAMED, Body
 from eel_dynamics.model.scene import Scene

@@ -7,9 +7,9 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
+from eel_base.quantity import is_finite
+from eel_base.wording import shown
 from eel_gaits.gaits.registry import GAITS
-from eel_gaits.input_output.quantity import is_finite
-from eel_gaits.input_output.wording import shown
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.function_law import sampled
 from eel_gaits.sources.motion_file import SUFFIXES, read_motion

@@ -5,7 +5,7 @@ import contextlib
 import warnings
 from collections.abc import Iterator
 
-from eel_gaits.input_output.command_line import complain
+from eel_base.command_line import complain
 
 
 @contextlib.contextmanager

@@ -6,9 +6,9 @@ import signal
 from collections.abc import Callable
 from pathlib import Path
 
-from eel_gaits.input_output.command_line import Parser, complain
-from eel_gaits.input_output.output_file import NotWritten, check_output
-from eel_gaits.input_output.wording import shown
+from eel_base.command_line import Parser, complain
+from eel_base.output_file import NotWritten, check_output
+from eel_base.wording import shown
 
 from eel_dynamics.runs.one_line_warnings import one_line_warnings
 from eel_dynamics.simulation.stopping import SimulationStopped

@@ -5,7 +5,7 @@ import math
 import os
 
 import numpy as np
-from eel_gaits.input_output.quantity import is_finite
+from eel_base.quantity import is_finite
 
 from eel_dynamics.model.arguments import checked_number
 from eel_dynamics.simulation.observations import size_of

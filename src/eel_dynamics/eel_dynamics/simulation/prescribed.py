@@ -4,8 +4,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from eel_gaits.input_output.quantity import is_finite
-from eel_gaits.input_output.wording import shown
+from eel_base.quantity import is_finite
+from eel_base.wording import shown
 from eel_gaits.laws.law import Law
 
 import eel_core

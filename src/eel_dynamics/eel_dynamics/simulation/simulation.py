@@ -7,10 +7,10 @@ from collections.abc import Callable
 from functools import cache
 
 import numpy as np
+from eel_base.quantity import is_finite
+from eel_base.wording import shown
 from eel_gaits.gaits.diving import falling
 from eel_gaits.gaits.swimming import straight
-from eel_gaits.input_output.quantity import is_finite
-from eel_gaits.input_output.wording import shown
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
 

@@ -3,7 +3,7 @@
 
 from functools import lru_cache
 
-from eel_gaits.input_output.wording import shown
+from eel_base.wording import shown
 from eel_gaits.laws.law import Law
 
 import eel_core

@@ -2,7 +2,7 @@
 """The reasons why a march could not continue, and what to change."""
 
 import numpy as np
-from eel_gaits.input_output.wording import shown
+from eel_base.wording import shown
 from eel_gaits.laws.law import Law
 
 import eel_core

@@ -11,10 +11,11 @@ burst_and_coast: the forward wave comes and goes; between two bursts the straigh
 
 from dataclasses import dataclass, replace
 
+from eel_base.quantity import quantity
+
 from eel_gaits.gaits.numbers import bend_quantity, constant_bend
 from eel_gaits.gaits.registry import register
 from eel_gaits.gaits.swimming import Wave
-from eel_gaits.input_output.quantity import quantity
 from eel_gaits.laws.ramp import Ramp
 
 

@@ -18,11 +18,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from eel_base.quantity import quantity
 
 from eel_gaits.gaits.numbers import bend_quantity, constant_bend, length_quantity
 from eel_gaits.gaits.registry import register
 from eel_gaits.gaits.swimming import Wave
-from eel_gaits.input_output.quantity import quantity
 
 OSCILLATORS = 21
 COUPLING = 40.0  # 1/s, w

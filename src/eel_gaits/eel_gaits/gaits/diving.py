@@ -8,10 +8,11 @@ doi:10.1007/s00332-009-9050-5.
 import math
 from dataclasses import dataclass
 
+from eel_base.quantity import quantity
+
 from eel_gaits.gaits.numbers import bend_quantity, check_order, constant_bend, instant_quantity
 from eel_gaits.gaits.registry import register
 from eel_gaits.gaits.swimming import Wave
-from eel_gaits.input_output.quantity import quantity
 from eel_gaits.laws.ramp import Ramp
 from eel_gaits.laws.term import Term
 

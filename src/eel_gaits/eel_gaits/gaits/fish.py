@@ -13,10 +13,10 @@ anguilliform: a / L = a_tail exp(growth (X / L - 1)), of a lamprey; Borazjani an
 from dataclasses import dataclass
 
 import numpy as np
+from eel_base.quantity import Quantities, quantity
 
 from eel_gaits.gaits.numbers import length_quantity, period_quantity, start_periods_quantity, start_ramp, waves_quantity
 from eel_gaits.gaits.registry import register
-from eel_gaits.input_output.quantity import Quantities, quantity
 from eel_gaits.laws.midline import lateral_wave
 
 

@@ -7,9 +7,10 @@ Source: Kern and Koumoutsakos, J. Exp. Biol. 209 (2006), 4841-4857, doi:10.1242/
 import math
 from dataclasses import dataclass
 
+from eel_base.quantity import Quantities, quantity
+
 from eel_gaits.gaits.numbers import period_quantity, start_periods_quantity, start_ramp
 from eel_gaits.gaits.registry import register
-from eel_gaits.input_output.quantity import Quantities, quantity
 from eel_gaits.laws.term import Term
 
 

@@ -3,7 +3,8 @@
 
 import math
 
-from eel_gaits.input_output.quantity import quantity
+from eel_base.quantity import quantity
+
 from eel_gaits.laws.ramp import Ramp
 from eel_gaits.laws.term import Term
 

@@ -8,8 +8,9 @@ wiggle = "my_package.gaits:wiggle"          # a function with the decorator `eel
 import warnings
 from importlib.metadata import entry_points
 
+from eel_base.wording import one_line
+
 from eel_gaits.gaits.registry import GAITS
-from eel_gaits.input_output.wording import one_line
 
 GROUP = "eel_gaits.gaits"
 

@@ -9,8 +9,9 @@ import functools
 import inspect
 from dataclasses import dataclass
 
-from eel_gaits.input_output.quantity import Quantities, described_fields, quantity
-from eel_gaits.input_output.wording import did_you_mean, shown
+from eel_base.quantity import Quantities, described_fields, quantity
+from eel_base.wording import did_you_mean, shown
+
 from eel_gaits.laws.law import Law
 
 

@@ -4,6 +4,8 @@
 import math
 from dataclasses import dataclass
 
+from eel_base.quantity import Quantities, quantity
+
 from eel_gaits.gaits.numbers import (
     bend_quantity,
     period_quantity,
@@ -12,7 +14,6 @@ from eel_gaits.gaits.numbers import (
     wavelength_quantity,
 )
 from eel_gaits.gaits.registry import register
-from eel_gaits.input_output.quantity import Quantities, quantity
 from eel_gaits.laws.ramp import Ramp
 from eel_gaits.laws.term import Term
 

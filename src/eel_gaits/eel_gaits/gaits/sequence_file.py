@@ -4,11 +4,11 @@
 from pathlib import Path
 
 import yaml
+from eel_base.quantity import number
+from eel_base.wording import one_line, shown
 
 from eel_gaits.gaits.numbers import TURNS
 from eel_gaits.gaits.registry import find
-from eel_gaits.input_output.quantity import number
-from eel_gaits.input_output.wording import one_line, shown
 from eel_gaits.laws.law import MAXIMUM_NAME, Law
 from eel_gaits.laws.sequence import BLEND, positive, sequence
 

@@ -12,12 +12,13 @@ from dataclasses import Field, dataclass, field, fields, make_dataclass
 from functools import cache
 from types import MappingProxyType
 
+from eel_base.quantity import Quantities, quantity
+from eel_base.wording import shown
+
 from eel_gaits.gaits.cpg import Oscillation
 from eel_gaits.gaits.numbers import TURNS
 from eel_gaits.gaits.registry import GAITS, Transition, find
 from eel_gaits.gaits.sequence_file import sequence_from_file
-from eel_gaits.input_output.quantity import Quantities, quantity
-from eel_gaits.input_output.wording import shown
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.motion_file import read_motion
 from eel_gaits.sources.sampled_law import SampledLaw

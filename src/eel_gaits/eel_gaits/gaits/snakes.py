@@ -19,6 +19,8 @@ angle of each joint is the integral of the curvature over its segment, exactly.
 import math
 from dataclasses import dataclass
 
+from eel_base.quantity import Quantities, quantity
+
 from eel_gaits.gaits.numbers import (
     bend_quantity,
     constant_bend,
@@ -29,7 +31,6 @@ from eel_gaits.gaits.numbers import (
     waves_quantity,
 )
 from eel_gaits.gaits.registry import register
-from eel_gaits.input_output.quantity import Quantities, quantity
 from eel_gaits.laws.term import Term
 
 

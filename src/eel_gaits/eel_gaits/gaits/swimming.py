@@ -8,6 +8,8 @@ doi:10.1007/s00332-009-9050-5.
 import math
 from dataclasses import dataclass
 
+from eel_base.quantity import Quantities, quantity
+
 from eel_gaits.gaits.numbers import (
     bend_quantity,
     check_order,
@@ -18,7 +20,6 @@ from eel_gaits.gaits.numbers import (
     wavelength_quantity,
 )
 from eel_gaits.gaits.registry import register
-from eel_gaits.input_output.quantity import Quantities, quantity
 from eel_gaits.laws.ramp import Ramp
 from eel_gaits.laws.term import Term
 

@@ -17,9 +17,9 @@ K3 > 0 bends it towards +2. X runs from 0 at the nose to the body's length at th
 from dataclasses import dataclass
 
 import numpy as np
+from eel_base.quantity import number, numbers
+from eel_base.wording import shown
 
-from eel_gaits.input_output.quantity import number, numbers
-from eel_gaits.input_output.wording import shown
 from eel_gaits.laws.term import AXES, Term
 
 MAXIMUM_TERMS = 1000

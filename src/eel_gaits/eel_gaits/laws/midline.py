@@ -15,8 +15,8 @@ t / period). Its Fourier series in u has odd multiples only, and each of them is
 import math
 
 import numpy as np
+from eel_base.quantity import numbers
 
-from eel_gaits.input_output.quantity import numbers
 from eel_gaits.laws.term import Term
 
 STEEPEST = 0.95  # slope |dh/dX| of a midline, of 1 at most

@@ -10,8 +10,7 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-
-from eel_gaits.input_output.quantity import number
+from eel_base.quantity import number
 
 MOST_FACTORS = 256
 ALWAYS = -1e6  # s, the time from which a term without ramps counts as begun, once it is to end

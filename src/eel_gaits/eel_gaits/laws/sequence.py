@@ -29,8 +29,9 @@
 The curvature is twice differentiable in time.
 """
 
-from eel_gaits.input_output.quantity import number
-from eel_gaits.input_output.wording import shown
+from eel_base.quantity import number
+from eel_base.wording import shown
+
 from eel_gaits.laws.law import MAXIMUM_TERMS, Law
 
 BLEND = 0.5  # s

@@ -11,9 +11,8 @@ both end knots. Its second derivatives M_i at the knots ("moments") solve the tr
 """
 
 import numpy as np
-
-from eel_gaits.input_output.quantity import numbers
-from eel_gaits.input_output.wording import shown
+from eel_base.quantity import numbers
+from eel_base.wording import shown
 
 
 def natural_spline(knots, values, x):

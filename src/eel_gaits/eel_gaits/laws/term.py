@@ -5,9 +5,9 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
+from eel_base.quantity import number
+from eel_base.wording import shown
 
-from eel_gaits.input_output.quantity import number
-from eel_gaits.input_output.wording import shown
 from eel_gaits.laws.ramp import Ramp, begun, ended, envelope_at
 from eel_gaits.laws.spline import natural_spline
 

@@ -13,8 +13,8 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from eel_base.attitude import world_from_body
 
-from eel_gaits.pilot.attitude import world_from_body
 from eel_gaits.pilot.head_motion import HeadMotion, wrapped
 from eel_gaits.pilot.period_means import PeriodMeans
 

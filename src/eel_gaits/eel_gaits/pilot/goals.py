@@ -8,8 +8,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-
-from eel_gaits.input_output.wording import shown
+from eel_base.wording import shown
 
 FARTHEST = 1e5  # m from the origin
 

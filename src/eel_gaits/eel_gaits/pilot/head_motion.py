@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eel_gaits.pilot import attitude
+from eel_base import attitude
 
 
 class HeadMotion(NamedTuple):

@@ -3,7 +3,8 @@
 
 from dataclasses import dataclass
 
-from eel_gaits.input_output.quantity import Quantities, documented, quantity
+from eel_base.quantity import Quantities, documented, quantity
+
 from eel_gaits.pilot.goals import Limits
 
 CIRCLE = 0.95  # radius of a turn times the bend of the body that gives it

@@ -12,6 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from builtin_interfaces.msg import Time
+from eel_base.attitude import heading
+from eel_base.command_line import complain
+from eel_base.quantity import Quantities, limits, quantity
 from eel_ros.command_line import answer_words
 from eel_ros.parameter_node import ParameterNode
 from eel_ros.parameters import declare, help_rows, take_overrides, warn_of_unknown
@@ -21,9 +24,6 @@ from nav_msgs.msg import Odometry
 from std_msgs.msg import Header
 
 from eel_gaits.gaits.swimming import straight
-from eel_gaits.input_output.command_line import complain
-from eel_gaits.input_output.quantity import Quantities, limits, quantity
-from eel_gaits.pilot.attitude import heading
 from eel_msgs.msg import CurvatureSamples
 
 NAME = "heading_controller"

@@ -10,6 +10,9 @@ import sys
 from dataclasses import fields
 
 from builtin_interfaces.msg import Time
+from eel_base.command_line import complain
+from eel_base.quantity import limits
+from eel_base.wording import shown
 from eel_ros.command_line import USE_SIM_TIME, answer_words
 from eel_ros.frames import frame_in
 from eel_ros.parameter_node import ParameterNode
@@ -25,9 +28,6 @@ from rclpy.parameter import Parameter
 from eel_gaits.gaits.registry import GAITS, Transition
 from eel_gaits.gaits.settings import FILE_GAITS, Settings, numbers_of
 from eel_gaits.gaits.swimming import still
-from eel_gaits.input_output.command_line import complain
-from eel_gaits.input_output.quantity import limits
-from eel_gaits.input_output.wording import shown
 from eel_gaits.ros.messages import FRAME, law_to_message
 from eel_gaits.ros.row_stream import RowStream
 from eel_gaits.ros.sample_stream import SampleStream

@@ -11,6 +11,9 @@ import sys
 from dataclasses import fields
 
 import numpy as np
+from eel_base.command_line import complain
+from eel_base.quantity import limits
+from eel_base.wording import shown
 from eel_ros.command_line import USE_SIM_TIME, answer_words
 from eel_ros.frames import frame_in
 from eel_ros.parameter_node import ParameterNode
@@ -21,9 +24,6 @@ from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import Odometry, Path
 from rcl_interfaces.msg import SetParametersResult
 
-from eel_gaits.input_output.command_line import complain
-from eel_gaits.input_output.quantity import limits
-from eel_gaits.input_output.wording import shown
 from eel_gaits.pilot import goals
 from eel_gaits.pilot.pilot import Pilot
 from eel_gaits.pilot.settings import PilotSettings

@@ -3,11 +3,11 @@
 
 import numpy as np
 from builtin_interfaces.msg import Time
+from eel_base.wording import shown
 from geometry_msgs.msg import Point, Pose, PoseStamped
 from nav_msgs.msg import Odometry, Path
 from std_msgs.msg import Header
 
-from eel_gaits.input_output.wording import shown
 from eel_gaits.pilot.head_motion import HeadMotion
 
 

@@ -4,7 +4,8 @@
 import math
 from dataclasses import dataclass
 
-from eel_gaits.input_output.quantity import Quantities, quantity
+from eel_base.quantity import Quantities, quantity
+
 from eel_gaits.pilot.settings import PilotSettings
 
 

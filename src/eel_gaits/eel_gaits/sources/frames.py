@@ -10,8 +10,8 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
+from eel_base.wording import shown
 
-from eel_gaits.input_output.wording import shown
 from eel_gaits.sources.body_points import points_for
 from eel_gaits.sources.period import fastest_period
 from eel_gaits.sources.sampled_law import SampledLaw

@@ -9,9 +9,9 @@ rows.
 from collections.abc import Callable
 
 import numpy as np
+from eel_base.quantity import is_finite, numbers
+from eel_base.wording import shown
 
-from eel_gaits.input_output.quantity import is_finite, numbers
-from eel_gaits.input_output.wording import shown
 from eel_gaits.sources.body_points import points_for
 from eel_gaits.sources.sampled_law import SampledLaw, quintic
 

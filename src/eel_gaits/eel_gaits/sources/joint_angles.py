@@ -9,8 +9,8 @@ import re
 from functools import partial
 
 import numpy as np
+from eel_base.wording import shown
 
-from eel_gaits.input_output.wording import shown
 from eel_gaits.sources.frames import Frames, check_rising, law_of_frames
 from eel_gaits.sources.sampled_law import SampledLaw
 from eel_gaits.sources.tables import Table

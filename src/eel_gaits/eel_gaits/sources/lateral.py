@@ -8,9 +8,9 @@ X is the arc length from the nose, and h the displacement across the line on whi
 from collections.abc import Callable
 
 import numpy as np
+from eel_base.quantity import numbers
+from eel_base.wording import shown
 
-from eel_gaits.input_output.quantity import numbers
-from eel_gaits.input_output.wording import shown
 from eel_gaits.laws.midline import curvature_of_lateral
 
 POINTS = 129  # along the body, at which h is evaluated

@@ -16,10 +16,10 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
+from eel_base.output_file import replacing
+from eel_base.quantity import is_finite
+from eel_base.wording import shown
 
-from eel_gaits.input_output.output_file import replacing
-from eel_gaits.input_output.quantity import is_finite
-from eel_gaits.input_output.wording import shown
 from eel_gaits.sources.frames import SmoothedFrames, frames_of, law_of_frames
 from eel_gaits.sources.joint_angles import joint_columns, law_of_joints
 from eel_gaits.sources.midlines import Midlines

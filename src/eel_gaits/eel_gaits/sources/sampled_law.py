@@ -10,9 +10,9 @@ from collections.abc import Callable
 from functools import cached_property
 
 import numpy as np
+from eel_base.quantity import number, numbers
+from eel_base.wording import shown
 
-from eel_gaits.input_output.quantity import number, numbers
-from eel_gaits.input_output.wording import shown
 from eel_gaits.laws.law import checked_name
 from eel_gaits.laws.spline import natural_spline
 from eel_gaits.laws.term import Term

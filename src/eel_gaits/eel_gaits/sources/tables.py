@@ -9,8 +9,7 @@ from typing import NamedTuple
 from zipfile import BadZipFile
 
 import numpy as np
-
-from eel_gaits.input_output.wording import one_line, shown
+from eel_base.wording import one_line, shown
 
 LARGEST = 500_000_000  # bytes of a file
 

@@ -11,7 +11,7 @@ import pathlib
 import re
 
 from ament_index_python.packages import PackageNotFoundError, get_package_share_directory
-from eel_gaits.input_output.wording import shown
+from eel_base.wording import shown
 
 _SEPARATOR = "=" * 80
 _FIELD = re.compile(r"^\s*([A-Za-z][\w/]*)(?:<=\d+)?(?:\[[^\]]*\])?\s+[A-Za-z]\w*")

@@ -8,8 +8,8 @@ import time
 
 import numpy as np
 import yaml
-from eel_gaits.input_output.command_line import Parser, check_seconds, complain
-from eel_gaits.input_output.wording import shown
+from eel_base.command_line import Parser, check_seconds, complain
+from eel_base.wording import shown
 from eel_ros.qos import fitting
 from eel_ros.run_node import run_node
 from rclpy.node import Node

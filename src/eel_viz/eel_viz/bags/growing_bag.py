@@ -12,7 +12,7 @@ import pathlib
 from io import BytesIO
 from typing import ClassVar
 
-from eel_gaits.input_output.wording import shown
+from eel_base.wording import shown
 from rosbags.rosbag2 import StoragePlugin, Writer, WriterError
 from rosbags.rosbag2.enums import CompressionMode
 from rosbags.rosbag2.storage_mcap import McapWriter

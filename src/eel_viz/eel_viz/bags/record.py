@@ -12,7 +12,7 @@ import sys
 import time
 from collections import Counter
 
-from eel_gaits.input_output.command_line import Parser, check_seconds, complain
+from eel_base.command_line import Parser, check_seconds, complain
 from eel_ros.qos import fitting, keep_all, matches
 from eel_ros.run_node import run_node
 from rclpy.node import Node

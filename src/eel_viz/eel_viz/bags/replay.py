@@ -15,10 +15,10 @@ from collections.abc import Callable, Iterator
 from dataclasses import fields
 from types import SimpleNamespace
 
-from eel_gaits.input_output.command_line import Parser, complain
-from eel_gaits.input_output.output_file import NotWritten
-from eel_gaits.input_output.quantity import limits
-from eel_gaits.input_output.wording import shown
+from eel_base.command_line import Parser, complain
+from eel_base.output_file import NotWritten
+from eel_base.quantity import limits
+from eel_base.wording import shown
 
 from eel_viz.bags.bag import Bag, DamagedBag
 from eel_viz.recording.destination import LogFunction

@@ -16,7 +16,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
 
-from eel_gaits.input_output.wording import shown
+from eel_base.wording import shown
 from PIL import Image
 
 from eel_viz.entities import TIMELINE

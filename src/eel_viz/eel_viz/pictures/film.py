@@ -7,8 +7,8 @@ import pathlib
 import shutil
 import subprocess
 
-from eel_gaits.input_output.output_file import replacing
-from eel_gaits.input_output.wording import shown
+from eel_base.output_file import replacing
+from eel_base.wording import shown
 
 ANIMATIONS = (".gif", ".webp")
 FRAME = "frame_%05d.png"

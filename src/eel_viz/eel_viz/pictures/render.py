@@ -17,9 +17,9 @@ import sys
 import tempfile
 from collections.abc import Callable, Sequence
 
-from eel_gaits.input_output.command_line import Parser, complain
-from eel_gaits.input_output.output_file import NotWritten, check_output, replacing
-from eel_gaits.input_output.wording import shown
+from eel_base.command_line import Parser, complain
+from eel_base.output_file import NotWritten, check_output, replacing
+from eel_base.wording import shown
 
 from eel_viz.pictures.drawing import SIZE, Drawing
 from eel_viz.pictures.film import ANIMATIONS, FILMS, FRAME, QUALITY, check_quality, ffmpeg, film

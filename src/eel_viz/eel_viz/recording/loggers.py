@@ -8,7 +8,7 @@ order. Rows are sent in batches (see `batched_stream`): call `send_due` regularl
 
 import numpy as np
 import rerun as rr
-from eel_gaits.pilot.attitude import attitude
+from eel_base.attitude import attitude
 
 from eel_viz import entities
 from eel_viz.batched_stream import BatchedStream

@@ -13,7 +13,7 @@ import warnings
 from dataclasses import dataclass
 
 import numpy as np
-from eel_gaits.input_output.wording import shown
+from eel_base.wording import shown
 
 from eel_viz.entities import TIMELINE
 from eel_viz.recording.rrd_frames import HEAD, complete_file

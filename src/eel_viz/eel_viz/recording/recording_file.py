@@ -7,8 +7,8 @@ import pathlib
 import time
 
 import rerun as rr
-from eel_gaits.input_output.output_file import Draft, NotWritten
-from eel_gaits.input_output.wording import shown
+from eel_base.output_file import Draft, NotWritten
+from eel_base.wording import shown
 
 from eel_viz.recording.delivery import space_error, write_error
 from eel_viz.recording.destination import Destination, LogFunction

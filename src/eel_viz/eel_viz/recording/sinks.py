@@ -12,7 +12,7 @@ import threading
 from urllib.parse import urlsplit
 
 import rerun as rr
-from eel_gaits.input_output.wording import shown
+from eel_base.wording import shown
 
 from eel_viz.recording.delivery import detach_blocked
 from eel_viz.recording.destination import APPLICATION, Destination, LogFunction, close_stream

@@ -4,7 +4,7 @@
 from dataclasses import fields
 from typing import TypeVar
 
-from eel_gaits.input_output.quantity import limits
+from eel_base.quantity import limits
 from eel_ros.parameters import declare, default_of, take_overrides, warn_of_unknown
 from rclpy.node import Node
 

@@ -9,7 +9,7 @@ import sys
 import time
 from collections import OrderedDict
 
-from eel_gaits.input_output.command_line import complain
+from eel_base.command_line import complain
 from eel_ros.command_line import USE_SIM_TIME, answer_words
 from eel_ros.parameter_node import ParameterNode
 from eel_ros.parameters import help_rows

@@ -10,8 +10,8 @@ import sys
 import time
 
 from diagnostic_msgs.msg import DiagnosticArray
-from eel_gaits.input_output.command_line import complain
-from eel_gaits.input_output.wording import shown
+from eel_base.command_line import complain
+from eel_base.wording import shown
 from eel_ros.command_line import USE_SIM_TIME, answer_words
 from eel_ros.parameter_node import ParameterNode
 from eel_ros.parameters import help_rows

@@ -5,7 +5,7 @@ So the skin has its own abscissae, finer at the nose, and keeps its mesh when th
 """
 
 import numpy as np
-from eel_gaits.pilot.attitude import world_from_body
+from eel_base.attitude import world_from_body
 
 from eel_viz.stations import same
 

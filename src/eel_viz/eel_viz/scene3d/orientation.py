@@ -5,7 +5,7 @@ The section axes of the messages differ from them by half a turn about z: 1 = -x
 """
 
 import numpy as np
-from eel_gaits.pilot.attitude import world_from_body
+from eel_base.attitude import world_from_body
 
 
 def world_from_section(orientation: np.ndarray, vectors: np.ndarray) -> np.ndarray:

@@ -6,7 +6,7 @@ swimmer alone, `compare` another run laid over this one. A recording carries all
 """
 
 import rerun.blueprint as rrb
-from eel_gaits.input_output.wording import shown
+from eel_base.wording import shown
 
 from eel_viz import entities
 from eel_viz.settings import BLUEPRINTS

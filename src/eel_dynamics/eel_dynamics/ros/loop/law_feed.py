@@ -12,7 +12,7 @@ import reprlib
 import time
 
 import numpy as np
-from eel_gaits.input_output.wording import shown
+from eel_base.wording import shown
 from eel_ros.deliveries import Deliveries
 
 from eel_dynamics.ros.diagnostics import ERROR

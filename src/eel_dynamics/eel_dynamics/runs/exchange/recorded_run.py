@@ -11,8 +11,8 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
-from eel_gaits.input_output.quantity import is_finite
-from eel_gaits.input_output.wording import one_line, shown
+from eel_base.quantity import is_finite
+from eel_base.wording import one_line, shown
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.ramp import Ramp
 from eel_gaits.laws.term import AXES, Term

@@ -11,8 +11,8 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 import numpy as np
-from eel_gaits.input_output.output_file import check_output, replacing
-from eel_gaits.input_output.wording import one_line, shown
+from eel_base.output_file import check_output, replacing
+from eel_base.wording import one_line, shown
 
 from eel_dynamics.runs.storage.variables import LABELS, Contents
 

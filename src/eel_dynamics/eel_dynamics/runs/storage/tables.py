@@ -9,7 +9,7 @@ from importlib import import_module
 from pathlib import Path
 
 import numpy as np
-from eel_gaits.input_output.output_file import replacing
+from eel_base.output_file import replacing
 
 from eel_dynamics.runs.storage.netcdf import attributes_of
 from eel_dynamics.runs.storage.variables import LABELS, LEDGER, Contents

@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Numbers with a unit, bounds and a one-line description. They are declared once and checked on entry.
+
+A parameter set is a frozen, keyword-only dataclass. It derives from `Quantities`, and `quantity` makes its fields. A
+ROS node declares its parameters from the same fields.
+"""
+
+import math
+from dataclasses import dataclass, field, fields
+
+import numpy as np
+
+from eel_base.wording import shown
+
+
+def quantity(default, *, unit, description, minimum, maximum):
+    """A dataclass field that carries its own unit, description and inclusive bounds as metadata."""
+    metadata = {"unit": unit, "description": description, "minimum": minimum, "maximum": maximum}
+    return field(default=default, metadata=metadata)
+
+
+def limits(metadata) -> str:
+    """The bounds in a field's metadata as text, such as "> 0 Hz and <= 1000 Hz". Empty without bounds.
+
+    Metadata: minimum, maximum (each may be absent or None), exclusive (the minimum itself is refused), unit.
+    """
+    unit = f" {metadata['unit']}" if metadata.get("unit") else ""
+    bounds = ((">" if metadata.get("exclusive") else ">=", metadata.get("minimum")), ("<=", metadata.get("maximum")))
+    return " and ".join(f"{sign} {bound:g}{unit}" for sign, bound in bounds if bound is not None)
+
+
+def described_fields(kind) -> str:
+    """One line for each field of the dataclass `kind`: name, default, description, unit, and bounds or choices."""
+    lines = []
+    for item in fields(kind):
+        about = item.metadata
+        allowed = "one of " + ", ".join(about["choices"]) if "choices" in about else limits(about)
+        unit = f" [{about['unit']}]" if about["unit"] else ""
+        lines.append(
+            f"    {item.name} = {item.default!r}: {about['description']}{unit}{f'; {allowed}' if allowed else ''}"
+        )
+    return "\n".join(lines)
+
+
+def documented(kind):
+    """Decorator: append the `described_fields` to the docstring of the dataclass `kind`."""
+    kind.__doc__ = f"{kind.__doc__.rstrip()}\n\n{described_fields(kind)}\n"
+    return kind
+
+
+def is_finite(value) -> bool:
+    """Whether `value` is one finite number. A text is not a number."""
+    try:
+        return math.isfinite(value) and not getattr(value, "ndim", 0)
+    except (TypeError, ValueError, OverflowError):
+        return False
+
+
+def number(name, value):
+    """`value` as a finite float. `ValueError` names anything else. A bool or a text is not a number."""
+    try:
+        if isinstance(value, (bool, str, bytes)):
+            raise TypeError
+        result = float(value)
+    except (TypeError, ValueError, OverflowError):
+        raise ValueError(f"{name} must be a number, got {shown(value)}") from None
+    if not math.isfinite(result):
+        raise ValueError(f"{name} must be finite, got {result}")
+    return result
+
+
+def numbers(name, values):
+    """`values` as a new array of floats, of any shape. `ValueError` names anything else, complex numbers too."""
+    try:
+        if np.iscomplexobj(values):
+            raise TypeError
+        return np.array(values, dtype=float)
+    except (TypeError, ValueError, OverflowError):
+        raise ValueError(f"{name} must be real numbers, got {shown(values)}") from None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Quantities:
+    """Base of parameter sets. Every field becomes a float within its bounds, or a `ValueError` names it."""
+
+    def __post_init__(self):
+        for entry in fields(self):
+            value = number(entry.name, getattr(self, entry.name))
+            unit = entry.metadata["unit"]
+            minimum, maximum = entry.metadata["minimum"], entry.metadata["maximum"]
+            if value < minimum:
+                raise ValueError(f"{entry.name} must be >= {minimum:g} {unit}, got {value}")
+            if value > maximum:
+                raise ValueError(f"{entry.name} must be <= {maximum:g} {unit}, got {value}")
+            object.__setattr__(self, entry.name, value)

@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The task Eel/Depth-v0: swim to a depth and hold it."""
+
+import math
+from dataclasses import dataclass
+
+from eel_base.quantity import quantity
+from eel_gaits.pilot.head_motion import wrapped
+
+from eel_gym.swimmer_env import (
+    FARTHEST,
+    FASTEST,
+    GREATEST_START_SPEED,
+    SPIN,
+    Episode,
+    Observed,
+    Start,
+    SwimmerEnv,
+)
+
+LEAST_CHANGE = 0.05  # body lengths: the reward of a task that holds its depth needs a scale too
+
+
+@dataclass(frozen=True, kw_only=True)
+class DepthNumbers(Episode):
+    """The numbers of the task."""
+
+    greatest_change: float = quantity(
+        0.5, unit="m", description="greatest change of depth that is asked for", minimum=0.0, maximum=10.0
+    )
+    greatest_roll_rate: float = quantity(
+        0.01, unit="rad/s", description="greatest rate of roll at the start", minimum=0.0, maximum=10.0
+    )
+    roll_limit: float = quantity(
+        1.0, unit="rad", description="roll of the head at which an episode ends", minimum=0.01, maximum=math.pi
+    )
+
+
+class DepthEnv(SwimmerEnv):
+    """Swim to a depth and hold it: Eel/Depth-v0.
+
+    An episode begins level, at a random speed, phase of the gait and small rate of roll; the wanted depth is up to
+    `greatest_change` above or below. The action is the bend of the whole body to the left and upwards, added to the
+    gait straight(). The swimmer moves in space, where it dives and rolls over by itself: the policy must prevent that.
+
+    The reward of a control step is control_period (1 - error / (2 greatest_change)) [s], at least 0, with the size of
+    the error of the head's depth; a `greatest_change` below a twentieth of the body's length counts as that. An episode
+    ends, besides by `duration`, where the head rolls beyond `roll_limit`.
+    """
+
+    name = "Depth"
+    Numbers = DepthNumbers
+    observed = (
+        Observed("error of the depth; positive: the target is above", "m", FARTHEST),
+        Observed("velocity of the head, upwards in the world", "m/s", FASTEST),
+        Observed("angle of the head above the horizontal", "rad", math.pi),
+        Observed("roll of the head; positive: right side down", "rad", math.pi),
+        Observed("heading since the start, averaged over the gait's period; positive: left", "rad", math.pi),
+        Observed("angular velocity of the head, about forward", "rad/s", SPIN),
+        Observed("angular velocity of the head, about left", "rad/s", SPIN),
+        Observed("angular velocity of the head, about up", "rad/s", SPIN),
+        Observed("velocity of the head, forward", "m/s", FASTEST),
+        Observed("velocity of the head, to the left", "m/s", FASTEST),
+        Observed("velocity of the head, up in its axes", "m/s", FASTEST),
+    )
+
+    def __init__(self, **settings):
+        super().__init__(**settings)
+        self.target = 0.0  # m, height of the wanted depth
+
+    def begin(self, options: dict) -> Start:
+        """A random start, and a random depth."""
+        draw = self.np_random.uniform
+        self.target = draw(-1.0, 1.0) * self.numbers.greatest_change
+        return Start(
+            speed=draw(0.0, GREATEST_START_SPEED),
+            roll_rate=draw(-1.0, 1.0) * self.numbers.greatest_roll_rate,
+            own_time=draw(0.0, self.action.period),
+        )
+
+    def observe(self) -> list[float]:
+        """Error of the depth, vertical speed, attitude, twist."""
+        head = self.head
+        climb, roll = head.climb, head.roll
+        forward, left, up = head.velocity.tolist()
+        rise = forward * math.sin(climb) + math.cos(climb) * (left * math.sin(roll) + up * math.cos(roll))
+        angles = [climb, roll, wrapped(self.heading)]
+        return [self.error, rise, *angles, *head.angular_velocity.tolist(), forward, left, up]
+
+    @property
+    def error(self) -> float:
+        """Error [m] of the head's depth; positive: the target is above."""
+        return self.target - float(self.head.position[2])
+
+    def reward(self) -> float:
+        """See the class."""
+        scale = 2.0 * max(self.numbers.greatest_change, LEAST_CHANGE * self.body.length)
+        return self.numbers.control_period * max(0.0, 1.0 - abs(self.error) / scale)
+
+    def ended(self) -> bool:
+        """Whether the swimmer has rolled too far."""
+        return abs(self.head.roll) > self.numbers.roll_limit
+
+    def marks(self) -> list[tuple[float, float, float]]:
+        """A point one metre ahead, at the wanted depth."""
+        x, y, _ = self.head.position.tolist()
+        return [(x + 1.0, y, self.target)]

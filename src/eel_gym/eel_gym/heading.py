@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The task Eel/Heading-v0: hold a heading."""
+
+import math
+from dataclasses import dataclass
+
+from eel_base.quantity import quantity
+from eel_dynamics.model.scene import Scene
+from eel_gaits.pilot.head_motion import wrapped
+
+from eel_gym.swimmer_env import FASTEST, GREATEST_START_SPEED, SPIN, Episode, Observed, Start, SwimmerEnv
+
+
+@dataclass(frozen=True, kw_only=True)
+class HeadingNumbers(Episode):
+    """The numbers of the task."""
+
+    target: float = quantity(
+        0.0, unit="rad", description="heading to hold; positive: left", minimum=-math.pi, maximum=math.pi
+    )
+    greatest_error: float = quantity(
+        1.0, unit="rad", description="greatest error of the heading at the start", minimum=0.0, maximum=math.pi
+    )
+    greatest_trim: float = quantity(
+        0.1, unit="rad/m", description="greatest bend that the body has by itself, unseen", minimum=0.0, maximum=1.0
+    )
+
+
+class HeadingEnv(SwimmerEnv):
+    """Hold a heading: Eel/Heading-v0.
+
+    An episode begins at a random heading, speed and phase of the gait, with a body that is bent a little by itself: the
+    policy does not see this bend. The action is the bend of the whole body, added to the gait straight(). The swimmer
+    moves in the plane: in space a straight swimmer is unstable, it dives and rolls over (docs/howto/learning.md).
+
+    The reward of a control step is control_period (1 - error / pi) [s], with the size of the error of the heading
+    averaged over the last period of the gait, as the head swings with the gait. An episode ends by `duration` alone.
+    """
+
+    name = "Heading"
+    Numbers = HeadingNumbers
+    observed = (
+        Observed(
+            "error of the heading, averaged over the gait's period; positive: the target is to the left", "rad", math.pi
+        ),
+        Observed("error of the head's heading now", "rad", math.pi),
+        Observed("yaw rate of the head, positive: left", "rad/s", SPIN),
+        Observed("velocity of the head, forward", "m/s", FASTEST),
+        Observed("velocity of the head, to the left", "m/s", FASTEST),
+    )
+
+    def __init__(self, **settings):
+        super().__init__(**settings)
+        self.target = self.numbers.target
+
+    def default_scene(self) -> Scene:
+        """Motion in the plane."""
+        return Scene(planar=True, internal_wrench=False, ledger=False)
+
+    def begin(self, options: dict) -> Start:
+        """A random start."""
+        draw = self.np_random.uniform
+        return Start(
+            heading=self.target + draw(-1.0, 1.0) * self.numbers.greatest_error,
+            speed=draw(0.0, GREATEST_START_SPEED),
+            own_time=draw(0.0, self.action.period),
+            left_trim=draw(-1.0, 1.0) * self.numbers.greatest_trim,
+        )
+
+    def observe(self) -> list[float]:
+        """Errors of the heading, yaw rate, velocity in the plane."""
+        forward, left, _ = self.head.velocity.tolist()
+        return [
+            self.error,
+            wrapped(self.target - self.head.heading),
+            float(self.head.angular_velocity[2]),
+            forward,
+            left,
+        ]
+
+    @property
+    def error(self) -> float:
+        """Error [rad] of the heading, averaged over the gait's period."""
+        return wrapped(self.target - self.heading)
+
+    def reward(self) -> float:
+        """See the class."""
+        return self.numbers.control_period * (1.0 - abs(self.error) / math.pi)
+
+    def marks(self) -> list[tuple[float, float, float]]:
+        """A point one metre ahead, on the wanted heading."""
+        x, y, z = self.head.position.tolist()
+        return [(x + math.cos(self.target), y + math.sin(self.target), z)]

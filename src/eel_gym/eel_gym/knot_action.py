@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Actions that are rates of the curvature at knots along the body: the policy shapes the body itself.
+
+Over a control step the rate goes from the last action's to this one's as s^2 (3 - 2 s), so the curvature, its rate and
+its acceleration never jump.
+"""
+
+import numpy as np
+from eel_base.wording import shown
+from eel_dynamics.model.arguments import checked_number, checked_row
+
+
+class KnotAction:
+    """Turns actions into the curvature of the body at the ends of control steps.
+
+    An action holds the rate at each knot, first in pitch, then in yaw, from -1 to 1 times `greatest_rate`. Where a
+    curvature comes near `greatest_bend`, its rate is reduced so that it never exceeds that.
+
+    Args:
+        knots: how many, from nose to tail, or their X [m]. Natural cubic splines interpolate between them.
+        axes: ("yaw",), ("pitch",) or both.
+        greatest_rate: [rad/m/s].
+        greatest_bend: [rad/m].
+        length: [m], of the body.
+    """
+
+    period = 1.0  # s, over which a task averages: there is no wave
+    waves = None  # on the body: as many as the knots can carry
+
+    def __init__(self, knots=5, axes=("yaw",), *, greatest_rate=10.0, greatest_bend=5.0, length: float = 1.0):
+        count = isinstance(knots, int) and not isinstance(knots, bool)
+        self.x = np.linspace(0.0, length, max(knots, 0)) if count else checked_row("knots", knots, None)
+        if len(self.x) < 2:
+            raise ValueError(f"knots must be 2 or more, or their X in m, got {shown(knots)}")
+        if not axes or set(axes) - {"pitch", "yaw"}:
+            raise ValueError(f"axes must be pitch, yaw or both, got {shown(axes)}")
+        self.axes = tuple(name for name in ("pitch", "yaw") if name in axes)
+        self.greatest_rate = checked_number("greatest_rate", greatest_rate, "rad/m/s")
+        self.greatest_bend = checked_number("greatest_bend", greatest_bend, "rad/m")
+        self._value = self._rate = np.zeros(self.size)
+
+    @property
+    def size(self) -> int:
+        """How many values an action has."""
+        return len(self.axes) * len(self.x)
+
+    def described(self) -> list[str]:
+        """One line for the values of an action: what they are, unit, bounds."""
+        where = ", ".join(f"{x:g}" for x in self.x)
+        bound = f"{self.greatest_rate:g}"
+        return [
+            f"rate of the curvature in {name} at X = {where} m [rad/m/s], -{bound} to {bound}" for name in self.axes
+        ]
+
+    def begin(self, own_time: float = 0.0) -> np.ndarray:
+        """Start anew with a straight body; the curvature as of `advance`."""
+        self._value = self._rate = np.zeros(self.size)
+        return self._curvature()
+
+    def advance(self, action: np.ndarray, step: float) -> np.ndarray:
+        """The curvature at the end of a control step of `step` [s] with this `action` (size,).
+
+        Returns (6, knots): pitch, its rate and its acceleration, then yaw: rad/m, rad/m/s, rad/m/s^2.
+        """
+        up, down = (  # greatest rates that leave as much of the way to the bound as one step at that rate takes
+            (2.0 * (self.greatest_bend - sign * self._value) / step - sign * self._rate) / 3.0 for sign in (1.0, -1.0)
+        )
+        rate = np.clip(self.greatest_rate * action, -np.maximum(down, 0.0), np.maximum(up, 0.0))
+        self._value = self._value + 0.5 * step * (self._rate + rate)
+        self._rate = rate
+        return self._curvature()
+
+    @property
+    def names_of_state(self) -> list[tuple[str, str, float]]:
+        """Name, unit and greatest size of what `state` holds."""
+        at = [f"{name} at X = {x:g} m" for name in self.axes for x in self.x]
+        return [(f"curvature in {name}", "rad/m", self.greatest_bend) for name in at] + [
+            (f"rate of the curvature in {name}", "rad/m/s", self.greatest_rate) for name in at
+        ]
+
+    @property
+    def state(self) -> list[float]:
+        """Curvature, then its rate, at the knots of each axis."""
+        return [*self._value.tolist(), *self._rate.tolist()]
+
+    def _curvature(self) -> np.ndarray:
+        rows = np.zeros((2, 3, len(self.x)))
+        for k, name in enumerate(self.axes):
+            part = slice(k * len(self.x), (k + 1) * len(self.x))
+            rows[("pitch", "yaw").index(name), :2] = self._value[part], self._rate[part]
+        return rows.reshape(6, -1)

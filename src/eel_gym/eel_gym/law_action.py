@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Actions that are numbers of a law: the size of its wave, its speed in time, and bends of the whole body.
+
+They move a `SteeredLaw`, so the curvature, its rate and its acceleration never jump.
+"""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+from eel_base.wording import shown
+from eel_dynamics.curvature.law_waves import check_law
+from eel_dynamics.model.arguments import checked_instance, checked_number, checked_row
+from eel_gaits.laws.law import Law
+from eel_gaits.laws.steered_law import BENDS, NUMBERS, SteeredLaw
+from eel_gaits.laws.term import Term
+
+# Bounds of the observation by those of a critically damped number, which are 1 and 2/e of its greatest target.
+ROOM_OF_VALUE, ROOM_OF_RATE = 1.5, 2.0
+
+
+class LawAction:
+    """Turns actions into the curvature of the body at the ends of control steps.
+
+    An action holds one value for each of the `numbers`, from -1 (its low bound) to 1 (its high bound).
+
+    Args:
+        law: its waves; the ramps of their envelopes count as complete. Terms without a period are constant bends.
+        numbers: name of each number: (low, high). See `NUMBERS` for names and units.
+        response: [s], time constant with which a number follows its action.
+        length: [m], of the body.
+        points: along the body.
+
+    Attributes:
+        x: (points,) [m], points along the body.
+        waves: on the body, at the greatest size of all numbers.
+    """
+
+    def __init__(self, law: Law, numbers: dict, *, response: float = 0.2, length: float = 1.0, points: int = 21):
+        checked_instance("law", law, Law)
+        for name, bounds in checked_instance("numbers", numbers, dict).items():
+            if name not in NUMBERS:
+                raise ValueError(f"a law has no number {shown(name)}, it has: {', '.join(NUMBERS)}")
+            low, high = checked_row(f"bounds of {name}", bounds, 2)
+            if not low < high:
+                raise ValueError(f"bounds of {name} must rise, got {shown(bounds)}")
+        if not numbers:
+            raise ValueError("numbers must hold one or more, got none")
+        checked_number("response", response, "s")
+        self.law, self.names, self._rate = law, tuple(numbers), 1.0 / response
+        low, high = np.array(list(numbers.values()), dtype=float).T
+        self._middle, self._half = 0.5 * (low + high), 0.5 * (high - low)
+        self._steered = SteeredLaw(law, response=response, length=length, points=points)
+        self.x = self._steered.x
+        self.waves = max(1.0, check_law(_largest(law, numbers), length))
+
+    @property
+    def size(self) -> int:
+        """How many values an action has."""
+        return len(self.names)
+
+    @property
+    def period(self) -> float:
+        """Period [s] of the law's fastest wave."""
+        return self._steered.period
+
+    def described(self) -> list[str]:
+        """One line for each value of an action: name, unit, bounds, meaning."""
+        bounds = zip(self._middle - self._half, self._middle + self._half, strict=True)
+        return [
+            f"{name} [{NUMBERS[name].unit or '1'}], {low:g} to {high:g}: {NUMBERS[name].description}"
+            for name, (low, high) in zip(self.names, bounds, strict=True)
+        ]
+
+    def begin(self, own_time: float = 0.0) -> np.ndarray:
+        """Start anew with all numbers at rest and the law at its `own_time` [s]; the curvature as of `advance`."""
+        return self._steered.begin(own_time)
+
+    def advance(self, action: np.ndarray, step: float) -> np.ndarray:
+        """The curvature at the end of a control step of `step` [s] with this `action` (size,).
+
+        Returns (6, points): pitch, its rate and its acceleration, then yaw: rad/m, rad/m/s, rad/m/s^2.
+        """
+        targets = (self._middle + self._half * action).tolist()
+        return self._steered.advance(dict(zip(self.names, targets, strict=True)), step)
+
+    @property
+    def names_of_state(self) -> list[tuple[str, str, float]]:
+        """Name, unit and greatest size of what `state` holds."""
+        named = []
+        for name, middle, half in zip(self.names, self._middle.tolist(), self._half.tolist(), strict=True):
+            unit = NUMBERS[name].unit
+            size = max(abs(middle) + half, abs(NUMBERS[name].rest))
+            named += [
+                (name, unit, ROOM_OF_VALUE * size),
+                (f"{name} rate", f"{unit}/s" if unit else "1/s", ROOM_OF_RATE * size * self._rate),
+            ]
+        return [*named, ("sine of the wave's phase", "", 1.0), ("cosine of the wave's phase", "", 1.0)]
+
+    @property
+    def state(self) -> list[float]:
+        """Each number and its rate, then sine and cosine of the wave's phase."""
+        found = [value for name in self.names for value in self._steered.values[name][:2]]
+        phase = 2.0 * math.pi * math.fmod(self._steered.own_time / self.period, 1.0)
+        return [*found, math.sin(phase), math.cos(phase)]
+
+
+def _largest(law: Law, numbers: dict) -> Law:
+    """The law that bends the body most: all `numbers` at their greatest size."""
+    size = {name: max(map(abs, bounds)) for name, bounds in numbers.items()}
+    rolling = math.hypot(size.get("tilt", 0.0), size.get("swirl", 0.0))
+    terms = [term.scaled(size.get("amplitude", 1.0)) for term in law.terms]
+    terms += [replace(term, axis="pitch").scaled(rolling) for term in law.terms if term.axis == "yaw" and term.period]
+    bends = [Term(axis=axis, amplitude=(size.get(name, 0.0),), phase=0.5 * math.pi) for name, axis in BENDS.items()]
+    return Law([*terms, *bends], name=law.name)

@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Studies: many swims for one question."""
+
+from eel_studies.gradients.gradient import Gradient, gradient
+from eel_studies.identification.identify import Identified, identify
+from eel_studies.identification.measurements import MeasuredPath, MeasuredSpeed
+from eel_studies.optimisation.front import Front
+from eel_studies.optimisation.optimise import optimise
+from eel_studies.steering.linearisation import PeriodicLinearisation, periodic_linearisation
+from eel_studies.sweeps.sweep import sweep
+
+__all__ = [
+    "Front",
+    "Gradient",
+    "Identified",
+    "MeasuredPath",
+    "MeasuredSpeed",
+    "PeriodicLinearisation",
+    "gradient",
+    "identify",
+    "optimise",
+    "periodic_linearisation",
+    "sweep",
+]

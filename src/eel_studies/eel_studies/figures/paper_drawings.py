@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Figures 5 to 9 of the paper. Each function draws runs of the falling gait into an empty matplotlib figure."""
+
+import numpy as np
+from eel_dynamics.model.body import Body
+
+from eel_studies.pictures.style import (
+    AS_PRINTED,
+    BLACK,
+    BLUE,
+    COLOUR_BAR,
+    OWN,
+    PALE_BLUE,
+    legend_above,
+    mark_pitch,
+    plain,
+)
+
+FRAME_PERIOD = 0.5  # s, of Fig. 6: 2 frames a second
+INSTANT = 7.0  # s, of Fig. 7
+PLACE = 0.5  # m, of Fig. 8
+SECTIONS = (0.05, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95)  # of the length, drawn in Fig. 5
+
+
+def draw_body(figure, body: Body):
+    """Draw Fig. 5: outlines from the side and from above, and cross-sections at their true size."""
+    # points are denser at the nose, where the outline is round
+    x = body.length * np.concatenate((np.linspace(0.0, 0.05**0.5, 60) ** 2, np.linspace(0.05, 1.0, 200)[1:]))
+    side, above, ellipses = figure.subplots(3, 1, sharex=True)
+    for axes, half, name in (
+        (side, body.half_height(x), "from the side\n$X_3$ [m]"),
+        (above, body.half_width(x), "from above\n$X_2$ [m]"),
+    ):
+        axes.fill_between(x, -half, half, facecolor=PALE_BLUE, edgecolor=BLUE, linewidth=1.4)
+        axes.set_ylabel(name)
+    angle = np.linspace(0.0, 2.0 * np.pi, 73)
+    for place in body.length * np.array(SECTIONS):
+        width, height = float(body.half_width(place)), float(body.half_height(place))
+        ellipses.fill(place + width * np.cos(angle), height * np.sin(angle), facecolor=PALE_BLUE, edgecolor=BLUE)
+    ellipses.set_ylabel("sections\n$X_3$ [m]")
+    ellipses.set_xlabel("$X_1$ [m], nose to tail")
+    for axes in (side, above, ellipses):
+        axes.set_aspect("equal")
+        axes.set_ylim(-0.07, 0.07)
+        axes.set_xlim(-0.03 * body.length, 1.03 * body.length)
+        axes.set_yticks([-0.05, 0.0, 0.05])
+        axes.grid(alpha=0.3)
+
+
+def draw_configurations(figure, run):
+    """Draw Fig. 6: the backbone twice a second, in space, from above and from the side (world axes [m])."""
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import Normalize
+
+    figure.set_layout_engine("none")  # the layout engine does not suit 3D axes
+    space = figure.add_axes((-0.03, 0.14, 0.58, 0.88), projection="3d")
+    above, side = figure.add_axes((0.65, 0.68, 0.34, 0.26)), figure.add_axes((0.65, 0.12, 0.34, 0.44))
+    bar = figure.add_axes((0.09, 0.13, 0.4, 0.025), label=COLOUR_BAR)
+    colours = ScalarMappable(Normalize(run.time[0], run.time[-1]), "cividis")
+    for time in np.arange(run.time[0], run.time[-1] + 1e-9, FRAME_PERIOD):
+        x, y, z = run.backbone[np.argmin(np.abs(run.time - time)), ::2].T
+        line = {"color": colours.to_rgba(time), "linewidth": 1.8, "solid_capstyle": "round"}
+        space.plot(x, y, z, **line)
+        for axes, across in ((above, y), (side, z)):
+            axes.plot(x, across, **line)
+            axes.plot(x[0], across[0], "o", color=line["color"], markersize=3.5)
+    space.set_xlabel("x [m]", labelpad=12)
+    space.set_ylabel("y [m]", labelpad=2)
+    space.set_zlabel("z, up [m]", labelpad=-2)
+    space.set_aspect("equal", adjustable="box")
+    space.view_init(elev=24, azim=-64)
+    space.set_xticks(range(-4, 2))
+    space.set_yticks([0.0, 1.0])
+    space.set_zticks([-2.0, -1.0, 0.0])
+    for axes, name in ((above, "y [m], from above"), (side, "z, up [m], from the side")):
+        axes.set(ylabel=name, xlim=(-4.3, 1.2))
+        axes.set_aspect("equal", adjustable="datalim")
+        axes.grid(alpha=0.3)
+    side.set_xlabel("x [m]; a dot marks the head")
+    figure.colorbar(colours, cax=bar, orientation="horizontal", label="time [s]")
+
+
+def draw_wrench_along_the_body(figure, run, printed):
+    """Draw Fig. 7: N1 [N], C2 and C3 [N m] against X at t = 7 s, of our run and of the `printed` reading."""
+    samples = [int(np.argmin(np.abs(each.time - INSTANT))) for each in (run, printed)]
+    profiles = [
+        {"force": each.force[k], "torque": each.torque[k]} for each, k in zip((run, printed), samples, strict=True)
+    ]
+    _draw_wrench(figure, run.x, profiles, f"$X_1$ [m], nose to tail, at t = {INSTANT:g} s")
+
+
+def draw_wrench_in_time(figure, run, printed):
+    """Draw Fig. 8: N1 [N], C2 and C3 [N m] against t at X = 0.5 m, of our run and of the `printed` reading."""
+    station = int(np.argmin(np.abs(run.x - PLACE)))
+    profiles = [{"force": each.force[:, station], "torque": each.torque[:, station]} for each in (run, printed)]
+    _draw_wrench(figure, run.time, profiles, f"time t [s], at $X_1$ = {PLACE:g} m; grey: pitch bends")
+    mark_pitch(figure.axes)
+
+
+def _draw_wrench(figure, abscissa, profiles, name):
+    """Draw N1, C2 and C3 in a column. profiles: force and torque (n, 3) against `abscissa`, ours and as printed."""
+    rows = (
+        ("force", 0, "$N_1$ [N]\n(> 0: tension)"),
+        ("torque", 1, "$C_2$ [N m]\n(pitch)"),
+        ("torque", 2, "$C_3$ [N m]\n(yaw)"),
+    )
+    for axes, (field, column, label) in zip(figure.subplots(3, 1, sharex=True), rows, strict=True):
+        for profile, style in zip(profiles, (OWN, AS_PRINTED), strict=True):
+            axes.plot(abscissa, profile[field][:, column], **style)
+        axes.set_ylabel(label)
+        axes.axhline(0.0, color=BLACK, linewidth=0.5)
+        plain(axes)
+    axes.set_xlabel(name)
+    legend_above(figure)
+    figure.align_ylabels()
+
+
+def draw_head_velocity(figure, run, printed):
+    """Draw Fig. 9: V1(0) [m/s] and Omega1(0) [rad/s] against t, of our run and of the `printed` reading."""
+    rows = ((3, "$V_1(0)$ [m/s]\n(< 0: ahead)"), (0, "$\\Omega_1(0)$ [rad/s]\n(roll)"))
+    for axes, (column, label) in zip(figure.subplots(2, 1, sharex=True), rows, strict=True):
+        for each, style in ((run, OWN), (printed, AS_PRINTED)):
+            axes.plot(each.time, each.twist[:, column], **style)
+        axes.set_ylabel(label)
+        axes.axhline(0.0, color=BLACK, linewidth=0.5)
+        plain(axes)
+    axes.set_xlabel("time t [s]; grey: pitch bends")
+    legend_above(figure)
+    figure.align_ylabels()
+    mark_pitch(figure.axes)

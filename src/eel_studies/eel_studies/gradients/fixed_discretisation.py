@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: Apache-2.0
+"""One grid and one sequence of steps for neighbouring swims, so that their difference is that of the swims alone.
+
+Steps of fixed length end on the breakpoints of the law's ramps. The step is chosen such that each span between two of
+them has the same number of steps in all swims. A parameter that moves a ramp then stretches its steps.
+"""
+
+import math
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+from eel_dynamics.accuracy.accuracy import FIXED, SPARED, WAVES_POWER, Accuracy
+from eel_dynamics.accuracy.budget import Budget
+from eel_dynamics.curvature.law_waves import check_law
+from eel_dynamics.model.initial_state import time_scale
+
+from eel_studies.points import Point
+
+SHORTER = 0.002  # part of a step by which the next one that is tried is shorter
+TRIALS = 500
+
+
+def fixed_steps(accuracy: "str | float | Accuracy") -> Accuracy:
+    """The settings for the target of `accuracy`, with fixed steps. `ValueError` for settings that have none."""
+    settings = Accuracy.of(accuracy)
+    if not isinstance(settings, Budget) and (settings.step is not None or settings.fixed is not None):
+        return settings
+    if getattr(settings, "target", None) is None:
+        raise ValueError(
+            f"accuracy of a gradient must be a target, or settings with fixed steps, got {settings.name!r}"
+        )
+    return Accuracy.of(f"{settings.name}, {FIXED}")
+
+
+def step_of(point: Point) -> float:
+    """The length [s] of the fixed steps of the `point`, whose accuracy is that of its scene."""
+    settings = point.accuracy
+    if settings.step is not None:
+        return settings.step
+    period = min((term.period for term in point.law.waves), default=np.inf)
+    flow = time_scale(point.start.in_water(np.array(point.scene.current)), point.body.length)
+    return min(period, flow, 1.0) / settings.fixed
+
+
+def on_one_grid(points: list[Point], step: float) -> list[Point]:
+    """The `points` with settings that give them one grid and one number of steps, no longer than `step` [s].
+
+    The first point decides for the grid.
+    """
+    waves = [max(1.0, check_law(point.law, point.body.length)) ** WAVES_POWER for point in points]
+    needed = (points[0].accuracy.resolution + SPARED) * waves[0]
+    step = common_step([breakpoints_of(point) for point in points], step)
+    return [
+        point._replace(
+            accuracy=replace(point.accuracy, resolution=needed / wave - SPARED, step=step, fixed=None, target=None)
+        )
+        for point, wave in zip(points, waves, strict=True)
+    ]
+
+
+def breakpoints_of(point: Point) -> list[float]:
+    """Times [s] from the start at which a derivative of the law's curvature jumps, ascending."""
+    ends = {time for term in point.law.terms for ramp in term.envelope for time in (ramp.start, ramp.end) if time > 0.0}
+    return [0.0, *sorted(ends)]
+
+
+def common_step(breakpoints: list[list[float]], step: float) -> float:
+    """The longest step [s], up to `step`, with which all swims take as many steps in each span; else `step`."""
+    for trial in range(TRIALS):
+        length = step * (1.0 - SHORTER * trial)
+        if len({tuple(_counts(times, length)) for times in breakpoints}) == 1:
+            return length
+    return step
+
+
+def _counts(times: list[float], step: float) -> list[int]:
+    return [math.ceil((end - start) / step - 1e-9) for start, end in pairwise(times)]

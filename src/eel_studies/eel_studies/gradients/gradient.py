@@ -1,0 +1,222 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Derivatives of the measures of a run with respect to its parameters: `gradient`.
+
+    found = gradient(["mean_speed", "cost_of_transport"], {"period": 1.0, "body.lateral_drag": 1.98}, gait="straight")
+    found["mean_speed"]["period"]             # -0.6 m/s per s
+    found.derivative, found.error             # (N, P) arrays: the Jacobian, and its estimated error
+
+    def slowness(x):                          # for scipy.optimize.minimize(slowness, x0, jac=True)
+        found = gradient("mean_speed", {"amplitude_0": x[0]}, gait="straight")
+        return -found.value[0], -found.derivative[0]
+
+The derivatives are central differences of two swims per parameter, all in one batch, on one grid and with one sequence
+of fixed steps: no step control adds noise. Their error is measured as that of a run is: by companions with coarser
+settings and twice the difference.
+"""
+
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from eel_base.quantity import number
+from eel_base.wording import shown
+from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.analysis.analysis import Analysis
+from eel_dynamics.analysis.measures import checked_measures
+from eel_dynamics.model.arguments import checked_instance, checked_number
+from eel_dynamics.model.body import Body, checked_body
+from eel_dynamics.model.equality import same_fields
+from eel_dynamics.model.scene import Scene
+from eel_dynamics.model.section_data import TRANSITION
+from eel_dynamics.runs.companion import relative_errors
+from eel_dynamics.runs.run import Run
+from eel_dynamics.runs.sampling import default_sample_period
+from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
+
+from eel_studies.gradients.fixed_discretisation import fixed_steps, on_one_grid, step_of
+from eel_studies.gradients.friction_jump import share_across_jump
+from eel_studies.points import Point, SwimSettings, batch_of_points, law_of_terms, point_at
+from eel_studies.progress_bar import progress_of
+
+RELATIVE_STEP = 1e-5  # of a parameter; of one unit where its value is 0
+COMPANION_STEP = 2.0  # times the steps, of the companions
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Gradient:
+    """Derivatives of N measures by P parameters."""
+
+    of: tuple[str, ...]  #: names of the measures
+    by: tuple[str, ...]  #: names of the parameters
+    at: np.ndarray  #: (P,) values of the parameters
+    value: np.ndarray  #: (N,) measures there
+    derivative: np.ndarray  #: (N, P) measure's unit by parameter's unit: the Jacobian
+    error: np.ndarray  #: (N, P) estimated errors of the derivatives; NaN without an estimate
+    steps: np.ndarray  #: (P,) differences of the parameters to either side
+    warnings: tuple[str, ...]
+    run: Run  #: the swim at these values
+
+    def __getitem__(self, measure: str) -> dict[str, float]:
+        """The derivatives of a `measure` by the name of the parameter."""
+        if measure not in self.of:
+            raise KeyError(measure)
+        return dict(zip(self.by, self.derivative[self.of.index(measure)].tolist(), strict=True))
+
+    def __eq__(self, other) -> bool:
+        return same_fields(self, other)
+
+    __hash__ = None  # it holds arrays
+
+    def __repr__(self) -> str:
+        return f"Gradient(of {', '.join(self.of)}; by {', '.join(self.by)})"
+
+
+def gradient(
+    of: "str | tuple[str, ...] | Callable[[Run], dict]",
+    parameters: dict[str, float],
+    *,
+    gait: "str | Callable" = "straight",
+    numbers: dict | None = None,
+    duration: float = 10.0,
+    body: Body | None = None,
+    scene: Scene | None = None,
+    accuracy: "str | float | Accuracy" = "standard",
+    sample_period: float | None = None,
+    stations=51,
+    steps: dict[str, float] | None = None,
+    estimate: bool = True,
+    threads: int | None = None,
+    progress: "Callable[[int, int], None] | bool | None" = False,
+    most_evaluations: float = MOST_EVALUATIONS,
+) -> Gradient:
+    """Derivatives of measures of a run with respect to its parameters, at the values given.
+
+    of: names of `analysis.measures.MEASURES` ("head_x", "mean_speed", "actuator_work", "cost_of_transport",
+    "greatest_torque", ...), or a smooth function run -> {name: number}. parameters: value by name, with the names of
+    `studies.points`: numbers of the gait, "scene.density", "body.lateral_drag", "initial.v_1" and the like. gait: its
+    name, or a function of `numbers` and the parameters that returns a law. duration [s], body, scene, sample_period
+    [s], stations, threads, most_evaluations: as in `simulate_batch`. accuracy: a target, or settings with fixed steps.
+    steps: differences by name, in place of 1e-5 of the value (of 1 where it is 0). estimate: state the derivatives'
+    own errors; False: two swims per parameter, and no more. progress: as in `sweep`, by swims.
+
+    Measures over whole periods take as many periods of each swim, so that they do not jump with the period. What may
+    spoil a derivative is warned of, and is in `Gradient.warnings`. `ValueError` names what does not fit;
+    `SimulationStopped`: a swim stopped.
+    """
+    measure = of if callable(of) else checked_measures("of", of, estimate=False)
+    if not isinstance(parameters, dict) or not parameters:
+        raise ValueError(f"parameters must be a dict of names and values, got {shown(parameters)}")
+    at = {name: number(f"parameter {name}", value) for name, value in parameters.items()}
+    apart = _steps_of(at, steps)
+    base = Point(
+        0,
+        None,
+        checked_body(body),
+        Scene() if scene is None else checked_instance("scene", scene, Scene),
+        fixed_steps(accuracy),
+    )
+    point = _point(at, gait, numbers, base)
+    settings = point.accuracy.in_scene(point.scene)
+    if sample_period is None:
+        sample_period = default_sample_period([point.law], duration)
+    how = SwimSettings(duration, sample_period, stations, measure, False, most_evaluations)
+    told, swims = progress_of(progress, "swims"), 1 + 2 * len(at)
+
+    def taken(settings: Accuracy, apart: np.ndarray, before: int) -> _Differences:
+        moved = [at] + [at | {name: float(at[name] + h)} for name, h in zip([*at] * 2, [*apart, *-apart], strict=True)]
+        points = [_point(values, gait, numbers, base._replace(accuracy=settings)) for values in moved]
+        points = on_one_grid(points, step_of(points[0]))
+        batch = batch_of_points(points, how, threads, lambda done, _: told(before + done, swims * (1 + bool(estimate))))
+        return _Differences.of([_run(batch, index) for index in range(swims)], how, apart)
+
+    fine = taken(settings, apart, 0)
+    error = np.full(fine.derivative.shape, np.nan)
+    if estimate:
+        error = fine.distance(taken(settings.coarser(), COMPANION_STEP * apart, swims))
+    lines = _jumps(fine.runs, tuple(at))
+    for line in lines:
+        warnings.warn(line, stacklevel=2)
+    values = np.array(list(at.values()))
+    return Gradient(fine.names, tuple(at), values, fine.value, fine.derivative, error, apart, lines, fine.runs[0])
+
+
+class _Differences(NamedTuple):
+    """Measures of a swim, and their central differences: of the runs at the values, above them, and below them."""
+
+    runs: list[Run]
+    names: tuple[str, ...]
+    value: np.ndarray  # (N,)
+    derivative: np.ndarray  # (N, P)
+
+    @staticmethod
+    def of(runs: list[Run], how: SwimSettings, apart: np.ndarray) -> "_Differences":
+        """The differences of `runs`, whose parameters lie `apart` (P,) to either side."""
+        periods = _periods(runs[0])
+        found = [how.measured(run, periods) for run in runs]
+        names = tuple(found[0])
+        table = np.array([[each[name] for name in names] for each in found], dtype=float)
+        if not np.isfinite(table).all():
+            name = names[np.argmax(~np.isfinite(table).all(axis=0))]
+            raise ValueError(f"measure {name} is undefined at these values, or beside them: it has no derivative")
+        above, below = np.split(table[1:], 2)
+        return _Differences(runs, names, table[0], ((above - below) / (2.0 * apart[:, None])).T)
+
+    def distance(self, coarser: "_Differences") -> np.ndarray:
+        """The estimated errors (N, P) of the derivatives, from those with `coarser` settings.
+
+        The distance of the derivatives, and as much of them as the swims and the measure itself are apart: these are
+        so where two derivatives agree by chance.
+        """
+        least = np.finfo(float).tiny
+        apart = np.abs(self.value - coarser.value) / np.maximum(np.abs(self.value), least)
+        apart = np.minimum(apart, 1.0) + relative_errors(self.runs[0], coarser.runs[0]).worst
+        return np.abs(self.derivative - coarser.derivative) + apart[:, None] * np.abs(self.derivative)
+
+
+def _periods(run: Run) -> int | None:
+    """Whole periods of the gait in the later half of `run`; None without."""
+    try:
+        return Analysis(run).window.periods
+    except ValueError:
+        return None
+
+
+def _point(values: dict, gait, numbers: dict | None, base: Point) -> Point:
+    try:
+        point = point_at(0, values, gait, numbers or {}, base)
+        law_of_terms(point.law)
+    except ValueError as error:
+        raise ValueError(f"gradient {error}") from None
+    return point
+
+
+def _run(batch, index: int) -> Run:
+    if batch.error[index] is not None:
+        raise batch.error[index]
+    return batch[index]
+
+
+def _steps_of(at: dict, steps: dict | None) -> np.ndarray:
+    """Differences (P,) of the parameters to either side."""
+    steps = {} if steps is None else checked_instance("steps", steps, dict)
+    for name in steps:
+        if name not in at:
+            raise ValueError(f"steps must be of the parameters {', '.join(at)}, got {shown(name)}")
+    own = {name: RELATIVE_STEP * (abs(value) or 1.0) for name, value in at.items()}
+    return np.array([checked_number(f"steps {name}", steps.get(name, own[name]), "") for name in at])
+
+
+def _jumps(runs: list[Run], names: tuple[str, ...]) -> tuple[str, ...]:
+    """One line where the printed friction jumps between two swims, else none."""
+    pairs = zip(names, runs[1 : 1 + len(names)], runs[1 + len(names) :], strict=True)
+    shares = {name: share_across_jump(above, below) for name, above, below in pairs}
+    crossed = [name for name, share in shares.items() if share]
+    if not crossed:
+        return ()
+    return (
+        f"the printed friction jumps at Re = {TRANSITION:g} between the two swims for {', '.join(crossed)} (at up to "
+        f"{max(shares.values()):.2g} of all sections and samples): a derivative may miss what the jump does; friction "
+        "blended or laminar is smooth",
+    )

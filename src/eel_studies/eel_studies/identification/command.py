@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`identify`: coefficients of the model from measured swims, with their intervals, as a table and a picture.
+
+identify path.csv --gait turning --set period=0.8 --first body.lateral_drag=1.5 --first body.nose_drag=0.1 --out fit.png
+identify speeds.csv --gait straight --first body.lateral_drag=1.5 --noise 0.005
+identify run.nc --first body.lateral_drag=1.5 --out fit.png --out fit.csv
+"""
+
+import sys
+import time
+from dataclasses import replace
+
+from eel_base.command_line import Parser
+from eel_base.wording import shown
+from eel_dynamics.accuracy.accuracy import PRESETS
+from eel_dynamics.model.body import NAMED
+from eel_dynamics.model.scene import Scene
+from eel_dynamics.runs.command_options import add_repeated, body_of, scene_of, set_numbers
+from eel_dynamics.runs.run_command import checked_out, run_command
+from eel_dynamics.runs.storage.tables import write_columns
+from eel_gaits.gaits.registry import GAITS
+
+from eel_studies.identification.drawing import FORMATS, draw_identified
+from eel_studies.identification.identify import identify
+from eel_studies.identification.measured_file import MeasuredFile, read_measured
+
+SUFFIXES = (*FORMATS, ".csv")
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Exit status as of `run_command`."""
+    return run_command(_parser(), _identify, arguments)
+
+
+def _identify(options) -> int:
+    start = time.perf_counter()
+    outs = [checked_out("identify", out, SUFFIXES) for out in options.out]
+    first, numbers = set_numbers(options.first, "--first"), set_numbers(options.set)
+    files = [read_measured(path, station=options.station, namespace=options.namespace) for path in options.file]
+    measured = [each for file in files for each in file.measured]
+    found = identify(
+        first,
+        measured,
+        gait=_gait(options, files),
+        numbers=numbers,
+        body=_common("body", files) if options.body is None else body_of(options.body),
+        scene=_scene(options, files),
+        accuracy=options.accuracy,
+        noise=options.noise,
+        level=options.level,
+    )
+    print(found.table())
+    print(f"wall time  {time.perf_counter() - start:.1f} s, {sum(each.count for each in measured)} measured numbers")
+    for out in outs:
+        if out.suffix == ".csv":
+            columns = {"name": found.names, "value": found.value, "standard_error": found.error}
+            write_columns(columns | {"low": found.low, "high": found.high}, out)
+        else:
+            draw_identified(found, measured, out)
+        print(f"written to {out}")
+    return 0
+
+
+def _gait(options, files: list[MeasuredFile]):
+    """The gait that was asked for, or the law that is in the file."""
+    if options.gait is not None:
+        return options.gait
+    law = files[0].law
+    if law is None:
+        raise ValueError(f"--gait must be given: {shown(options.file[0])} does not tell how the body was moved")
+    if any(each.law != law for each in files):
+        raise ValueError("--gait must be given: the files do not have one law")
+    if options.set:
+        raise ValueError("--set belongs to --gait, which is not given: the law is that of the file")
+
+    def law_of_the_file():
+        return law
+
+    return law_of_the_file
+
+
+def _common(name: str, files: list[MeasuredFile]):
+    """The body or the scene, by its `name`, of all files that hold one. `ValueError` where they are not the same."""
+    known = [getattr(file, name) for file in files if getattr(file, name) is not None]
+    if any(each != known[0] for each in known[1:]):
+        raise ValueError(f"--{name} must be given: the files do not have one {name}")
+    return known[0] if known else None
+
+
+def _scene(options, files: list[MeasuredFile]) -> Scene:
+    """The scene that was asked for, or that of the files. The friction is blended unless --scene says otherwise."""
+    scene = None if options.scene else _common("scene", files)
+    if scene is None:
+        return scene_of(options.scene, friction="blended")
+    return replace(scene, friction="blended") if scene.friction == "printed" else scene
+
+
+def _parser() -> Parser:
+    parser = Parser(
+        prog="identify",
+        description="Find coefficients of the model, with their intervals, from measured paths or steady speeds.",
+    )
+    parser.add_argument(
+        "file",
+        nargs="+",
+        help=".csv or .npz with the columns time, x, y (perhaps z), or speed and numbers of the gait; a run (.nc); a "
+        "bag. Paths or speeds, not both",
+    )
+    about = "a parameter and its first guess: body.FIELD, scene.FIELD, initial.v_1, a number of the gait"
+    add_repeated(parser, "--first", "NAME=VALUE", about, required=True)
+    parser.add_argument("--gait", help=f"one of {', '.join(sorted(GAITS))}; by default the law of the run or bag")
+    add_repeated(parser, "--set", "NAME=VALUE", "a number of the gait")
+    about = "physics, as for simulate; by default that of the run. The friction is blended unless it is given here"
+    add_repeated(parser, "--scene", "NAME=VALUE", about)
+    parser.add_argument(
+        "--body", help=f"{', '.join(NAMED)}, or a file as for simulate; by default that of the run, or boyer2010"
+    )
+    parser.add_argument("--station", type=float, default=0.0, metavar="X", help="m, of the point that was tracked (0)")
+    parser.add_argument("--namespace", help="of the swimmer in a bag; by default that of the only one")
+    parser.add_argument("--noise", type=float, metavar="SIZE", help="standard deviation of the errors, m or m/s")
+    parser.add_argument("--level", type=float, default=0.95, help="of the intervals (0.95)")
+    parser.add_argument("--accuracy", default=1e-4, help=f"{', '.join(PRESETS)}, or a target (1e-4)")
+    add_repeated(parser, "--out", "FILE", ".png, .svg: a picture; .csv: a table")
+    return parser
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,182 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Coefficients of the model from measured motions, with their intervals: `identify`.
+
+    path = MeasuredPath(time, position, numbers={"period": 0.8})
+    found = identify({"body.lateral_drag": 1.0, "body.nose_drag": 0.1}, path, gait="straight")
+    found["body.lateral_drag"]        # (1.93, 1.88, 1.98): value, and its 95 % interval
+    print(found.table())
+
+Nonlinear least squares with the derivatives of `gradient`. The intervals are those of the linearised problem
+(Gauss-Newton), with the size of the errors and their correlation in time from the residuals. They hold where the model
+is right and the errors are small: an error of the model is in no interval.
+"""
+
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from eel_base.quantity import number
+from eel_base.wording import shown
+from eel_dynamics.model.arguments import checked_instance, checked_number
+from eel_dynamics.model.body import Body, checked_body
+from eel_dynamics.model.equality import same_fields
+from eel_dynamics.model.scene import Scene
+from eel_dynamics.runs.run import Run
+
+from eel_studies.gradients.fixed_discretisation import fixed_steps
+from eel_studies.identification.fit import Fit
+from eel_studies.identification.measurements import MeasuredPath, MeasuredSpeed
+from eel_studies.identification.prediction import Swims
+from eel_studies.identification.statistics import gauss_newton_covariance
+from eel_studies.points import Point, point_at
+from eel_studies.progress_bar import progress_of
+
+UNLIKELY = 1e-3  # probability of such residuals, for the noise given, below which a warning names the misfit
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Identified:
+    """P parameters that were fitted to measurements."""
+
+    names: tuple[str, ...]
+    value: np.ndarray  #: (P,)
+    error: np.ndarray  #: (P,) standard errors
+    low: np.ndarray  #: (P,) interval
+    high: np.ndarray  #: (P,)
+    level: float  #: probability with which an interval covers the true value
+    covariance: np.ndarray  #: (P, P)
+    noise: float  #: standard deviation of the measurements' errors [m] or [m/s]
+    correlation: float  #: of one error of a path with the next, at the median time between samples
+    residuals: tuple[np.ndarray, ...]  #: measured less predicted: (T, D) [m] of each path, (1,) [m/s] of each speed
+    runs: tuple[Run, ...]  #: the swims with the values found, one per measurement
+    warnings: tuple[str, ...]
+
+    def __getitem__(self, name: str) -> tuple[float, float, float]:
+        """Value, low and high end of the interval of the parameter `name`."""
+        if name not in self.names:
+            raise KeyError(name)
+        index = self.names.index(name)
+        return float(self.value[index]), float(self.low[index]), float(self.high[index])
+
+    def __eq__(self, other) -> bool:
+        return same_fields(self, other)
+
+    __hash__ = None  # it holds arrays
+
+    def __repr__(self) -> str:
+        return f"Identified({', '.join(f'{name}={value:.4g}' for name, value in self.numbers.items())})"
+
+    @property
+    def numbers(self) -> dict[str, float]:
+        """The values by name, as `numbers` of `gradient`, `sweep` and `optimise` take them."""
+        return dict(zip(self.names, self.value.tolist(), strict=True))
+
+    def table(self) -> str:
+        """The parameters as lines of text."""
+        width = max(len(name) for name in self.names)
+        lines = [
+            f"{name:<{width}s}  {value:.5g}, {100.0 * self.level:.4g} % interval {low:.5g} to {high:.5g}"
+            for name, value, low, high in zip(self.names, self.value, self.low, self.high, strict=True)
+        ]
+        lines.append(f"{'errors':<{width}s}  {self.noise:.3g}, each correlated with the next by {self.correlation:.2f}")
+        return "\n".join(lines)
+
+
+def identify(
+    parameters: dict[str, float],
+    measured: "MeasuredPath | MeasuredSpeed | list",
+    *,
+    gait: "str | Callable" = "straight",
+    numbers: dict | None = None,
+    body: Body | None = None,
+    scene: Scene | None = None,
+    accuracy=1e-4,
+    noise: float | None = None,
+    level: float = 0.95,
+    threads: int | None = None,
+    progress: "Callable[[int, int], None] | bool | None" = False,
+) -> Identified:
+    """The `parameters` with which the model comes nearest to what was `measured`, and their intervals.
+
+    parameters: first guesses by name, with the names of `studies.points`: "body.lateral_drag", "scene.density",
+    "initial.v_1" and the like. Those of body and scene stay above 0. measured: one or several paths, or steady speeds;
+    each may have `numbers` of its own. Of each path a displacement and a turn about the vertical are fitted too, as the
+    axes of a laboratory are its own. gait, numbers, body, accuracy, threads: as in `optimise`. scene: by default that
+    of the library with blended friction. noise: standard deviation of the errors [m] or [m/s], where it is known; None:
+    from the residuals. level: of the intervals. progress: as in `sweep`, by evaluations.
+
+    `ValueError` names what does not fit, and parameters that the measurements do not determine; `SimulationStopped`: a
+    swim stopped.
+    """
+    if not isinstance(parameters, dict) or not parameters:
+        raise ValueError(f"parameters must be a dict of names and first guesses, got {shown(parameters)}")
+    first = {name: number(f"parameter {name}", value) for name, value in parameters.items()}
+    measured = _checked_measurements(measured)
+    noise = None if noise is None else checked_number("noise", noise, "m or m/s")
+    level = checked_number("level", level, "")
+    if level >= 1.0:
+        raise ValueError(f"level must be below 1, got {level:g}")
+    base = Point(
+        0,
+        None,
+        checked_body(body),
+        Scene(friction="blended") if scene is None else checked_instance("scene", scene, Scene),
+        fixed_steps(accuracy),
+    )
+    swims = Swims(gait, dict(numbers or {}), base, threads)
+    for each in measured:
+        try:
+            point_at(0, first, gait, {**swims.numbers, **each.numbers}, base)
+        except ValueError as error:
+            raise ValueError(f"parameters {error}") from None
+        if isinstance(each, MeasuredPath) and each.station > base.body.length:
+            raise ValueError(f"path station must be at most the body's {base.body.length:g} m, got {each.station:g}")
+    fit = Fit(swims, measured, first, progress_of(progress, "evaluations"))
+    fit.check_count(noise)
+    fit.solve()
+    found = _identified(fit, noise, level)
+    for line in found.warnings:
+        warnings.warn(line, stacklevel=2)
+    return found
+
+
+def _checked_measurements(measured) -> list:
+    measured = [measured] if isinstance(measured, (MeasuredPath, MeasuredSpeed)) else list(measured)
+    kinds = {type(each) for each in measured}
+    if len(kinds) != 1 or not kinds <= {MeasuredPath, MeasuredSpeed}:
+        given = ", ".join(sorted(kind.__name__ for kind in kinds)) or "none"
+        raise ValueError(f"measured must be MeasuredPath or MeasuredSpeed, one kind of them, got {given}")
+    return measured
+
+
+def _identified(fit: Fit, noise: float | None, level: float) -> Identified:
+    from scipy.stats import chi2, norm, t
+
+    covariance, squares = gauss_newton_covariance(fit.blocks, fit.correlation)
+    free = fit.count - fit.unknowns
+    size = noise if noise is not None else float(np.sqrt(squares / free))
+    quantile = norm.ppf(0.5 + 0.5 * level) if noise is not None else t.ppf(0.5 + 0.5 * level, free)
+    covariance = (size**2 * covariance)[: len(fit.names), : len(fit.names)]
+    error = np.sqrt(np.diag(covariance))
+    lines = [f"{name} is at its lower bound, 0: its interval does not hold" for name in fit.at_bound]
+    if noise is not None and free > 0 and chi2.sf(squares / noise**2, free) < UNLIKELY:
+        lines.append(
+            f"the residuals are {np.sqrt(squares / free) / noise:.2g} times the noise: the model does not fit these "
+            "measurements, and the intervals are too narrow"
+        )
+    value = fit.values
+    return Identified(
+        names=fit.names,
+        value=value,
+        error=error,
+        low=value - quantile * error,
+        high=value + quantile * error,
+        level=level,
+        covariance=covariance,
+        noise=size,
+        correlation=fit.correlation,
+        residuals=fit.residuals,
+        runs=fit.runs,
+        warnings=tuple(lines),
+    )

@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What was measured, from a file: a path or steady speeds in a table, a saved run, or a bag.
+
+    time, x, y, perhaps z      a path: a row for each instant, [s, m]
+    speed, other columns       steady speeds: a row for each swim, [m/s]; the others are numbers of the swim, as period
+
+Tables are .csv files with a header, or .npz archives of columns. A run (.nc) and a bag give the path of a point of the
+backbone, the law and the body; a run the scene too.
+"""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from eel_base.attitude import heading
+from eel_base.wording import shown
+from eel_dynamics.model.body import Body
+from eel_dynamics.model.scene import Scene
+from eel_dynamics.runs.run import Run
+from eel_gaits.laws.law import Law
+from eel_gaits.sources.tables import Table, read_table
+
+from eel_studies.identification.measurements import MeasuredPath, MeasuredSpeed
+from eel_studies.points import VELOCITIES
+
+TABLES = ".csv", ".npz"
+LEVEL = 1e-6  # rad, about: the x and y of the quaternion of a head that counts as level
+NEAR = 1e-6  # part of the body's length by which a run's station may lie elsewhere than the one asked for
+
+
+class MeasuredFile(NamedTuple):
+    """The measurements of a file, and what it tells of the swim."""
+
+    measured: list  # of MeasuredPath, or of MeasuredSpeed
+    law: Law | None = None
+    body: Body | None = None
+    scene: Scene | None = None  # of the motion alone
+
+
+def read_measured(path: str, *, station: float = 0.0, namespace: str | None = None) -> MeasuredFile:
+    """What the file or bag at `path` holds. station [m]: X of the point of a path. namespace: of a bag's swimmer.
+
+    `ValueError` in one line names the file, and the line or column of a table, that does not fit.
+    """
+    if Path(path).suffix in TABLES:
+        return MeasuredFile(_of_table(read_table(path), station))
+    run = Run.load(path) if Path(path).suffix == ".nc" else Run.from_bag(path, namespace)
+    if not isinstance(run.law, Law) or not run.law.terms:
+        raise ValueError(f"{shown(path)}: it holds no law of terms, whose swim could be simulated")
+    if run.time[0] == 0.0 and np.abs(run.orientation[0, :2]).max() > LEVEL:
+        raise ValueError(f"{shown(path)}: its head must be level at the start, got a lean that no parameter gives")
+    turned = abs(heading(run.orientation[0])) > LEVEL
+    if run.time[0] == 0.0 and turned and np.any(run.scene.current[:2]):
+        raise ValueError(
+            f"{shown(path)}: in a current its head must point along x at the start, "
+            f"got a heading of {np.degrees(heading(run.orientation[0])):g} deg that no parameter gives"
+        )
+    twist = dict(zip(VELOCITIES, run.twist[0].tolist(), strict=True)) if run.time[0] == 0.0 else {}
+    numbers = {f"initial.{name}": value for name, value in twist.items() if value}
+    scene = replace(run.scene, internal_wrench=False, ledger=False) if Path(path).suffix == ".nc" else None
+    measured = _named(path, MeasuredPath, run.time, _tracked(path, run, station), station, numbers)
+    return MeasuredFile([measured], run.law, run.body, scene)
+
+
+def _of_table(table: Table, station: float) -> list:
+    columns = table.columns
+    if {"time", "x", "y"} <= set(columns):
+        names = [name for name in ("x", "y", "z") if name in columns]
+        table.check_finite(("time", *names))
+        back = np.flatnonzero(np.diff(columns["time"]) <= 0.0)
+        if len(back):
+            raise table.error("time must rise: a path has one row for each instant", back[0] + 1)
+        position = np.stack([columns[name] for name in names], axis=1)
+        return [_named(str(table.path), MeasuredPath, columns["time"], position, station)]
+    if "speed" not in columns:
+        raise table.error(f"its columns must be time, x, y (a path), or speed, got {shown(sorted(columns))}")
+    table.check_finite(tuple(columns))
+    low = np.flatnonzero(columns["speed"] <= 0.0)
+    if len(low):
+        raise table.error(f"speed must be > 0 m/s, got {columns['speed'][low[0]]:g}", low[0])
+    others = [name for name in columns if name != "speed"]
+    return [
+        MeasuredSpeed(speed, {name: float(columns[name][row]) for name in others})
+        for row, speed in enumerate(columns["speed"].tolist())
+    ]
+
+
+def _tracked(path: str, run: Run, station: float) -> np.ndarray:
+    """The path (T, 3) [m] of the run's point at the `station` [m]."""
+    if run.backbone is None:
+        if station != 0.0:
+            raise ValueError(f"{shown(path)}: it holds no backbone, --station must be 0, got {station:g}")
+        return run.position
+    place = int(np.argmin(np.abs(run.x - station)))
+    if abs(run.x[place] - station) > NEAR * run.body.length:
+        nearest = f"the nearest are {', '.join(f'{x:g}' for x in run.x[max(place - 1, 0) : place + 2])} m"
+        raise ValueError(
+            f"{shown(path)}: --station must be one of its {len(run.x)} stations, {nearest}, got {station:g}"
+        )
+    return run.backbone[:, place]
+
+
+def _named(path: str, kind: type, *arguments):
+    """`kind(*arguments)`; its `ValueError` names the file."""
+    try:
+        return kind(*arguments)
+    except ValueError as error:
+        raise ValueError(f"{shown(path)}: {error}") from None

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What was measured of a swim: the path of a point of the body, or a steady speed."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from eel_base.quantity import numbers as real_numbers
+from eel_base.wording import shown
+from eel_dynamics.model.arguments import checked_instance, checked_number, checked_row
+
+FEWEST_SAMPLES = 8  # of a path
+
+
+@dataclass(frozen=True, eq=False)
+class MeasuredPath:
+    """The path of one point of the backbone.
+
+    Attributes:
+        time: [s], (T,), rising from 0 or later, in the law's own time.
+        position: [m], (T, 2) or (T, 3), in axes of the laboratory: z up, and x, y wherever they point.
+        station: X [m] of the point that was tracked; 0 is the nose.
+        numbers: of this swim, by the names of `studies.points`, such as {"period": 0.8, "initial.v_1": -0.2}.
+
+    `ValueError` names what does not fit.
+    """
+
+    time: np.ndarray
+    position: np.ndarray
+    station: float = 0.0
+    numbers: dict = field(default_factory=dict)
+
+    def __post_init__(self):
+        time = checked_row("path time", self.time, None)
+        position = real_numbers("path position", self.position)
+        if position.ndim != 2 or position.shape[1] not in (2, 3) or len(position) != len(time):
+            raise ValueError(
+                f"path position must have 2 or 3 coordinates at each of {len(time)} times, got {position.shape}"
+            )
+        if not np.isfinite(position).all():
+            index = int(np.argmax(~np.isfinite(position).all(axis=1)))
+            raise ValueError(
+                f"path position must be finite, got {shown(position[index].tolist())} at index {index}; leave such "
+                "samples out, with their times"
+            )
+        if len(time) < FEWEST_SAMPLES:
+            raise ValueError(f"path must have {FEWEST_SAMPLES} samples or more, got {len(time)}")
+        if time[0] < 0.0 or np.any(np.diff(time) <= 0.0):
+            raise ValueError(f"path time must rise from 0 s or later, got {shown(time[:8].tolist())}")
+        object.__setattr__(self, "time", time)
+        object.__setattr__(self, "position", position)
+        object.__setattr__(self, "station", checked_number("path station", self.station, "m", zero=True))
+        checked_instance("path numbers", self.numbers, dict)
+
+    @property
+    def count(self) -> int:
+        """Measured numbers."""
+        return self.position.size
+
+
+@dataclass(frozen=True, eq=False)
+class MeasuredSpeed:
+    """The speed [m/s] over the water of one steady swim, with the `numbers` of this swim as in `MeasuredPath`."""
+
+    speed: float
+    numbers: dict = field(default_factory=dict)
+
+    def __post_init__(self):
+        object.__setattr__(self, "speed", checked_number("measured speed", self.speed, "m/s"))
+        checked_instance("measured speed numbers", self.numbers, dict)
+
+    @property
+    def count(self) -> int:
+        """Measured numbers."""
+        return 1

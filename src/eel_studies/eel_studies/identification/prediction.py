@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the model says of each measurement, and its derivatives by the unknowns.
+
+The unknowns are the parameters, then for each path where and how the laboratory's axes lie: a displacement (D,) and a
+turn about the vertical, r_measured = R(turn) r + displacement. These need no further swims.
+"""
+
+import warnings
+from collections.abc import Callable
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from eel_dynamics.runs.run import Run
+
+from eel_studies.gradients.gradient import gradient
+from eel_studies.identification.measurements import MeasuredPath, MeasuredSpeed
+from eel_studies.points import Point, law_of_terms, point_at
+from eel_studies.steady_swim import at_speed, swim_times
+
+PERIODS = 12  # of a swim at a measured speed
+SAMPLES = 40  # in a period, of a path: a cubic spline through them is exact to a millionth of the amplitude
+LONGEST_SAMPLE = 0.05  # s
+SPEED = "mean_speed"
+
+
+class Predicted(NamedTuple):
+    """Of one measurement: what the model says (N,), its derivatives (N, P) by the parameters, and the run."""
+
+    value: np.ndarray
+    derivative: np.ndarray
+    run: Run
+
+
+class Swims(NamedTuple):
+    """How the measured swims are simulated: arguments of `gradient`."""
+
+    gait: "str | Callable"
+    numbers: dict
+    base: Point
+    threads: int | None
+
+    def predicted(self, measured: "MeasuredPath | MeasuredSpeed", at: dict[str, float]) -> Predicted:
+        """What the model says of `measured` where the parameters are `at`: positions in its own axes, or a speed."""
+        path = isinstance(measured, MeasuredPath)
+        numbers = {**self.numbers, **measured.numbers}
+        numbers = numbers if path else at_speed(numbers, measured.speed)
+        law = point_at(0, at, self.gait, numbers, self.base).law
+        times = path_times(measured, law) if path else swim_times(law, self.base.body.length, PERIODS)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # the jump of the printed friction: it is in the derivatives' error
+            found = gradient(
+                positions_at(measured) if path else SPEED,
+                at,
+                gait=self.gait,
+                numbers=numbers,
+                body=self.base.body,
+                scene=replace(self.base.scene, internal_wrench=False, ledger=False),
+                accuracy=self.base.accuracy,
+                stations=[measured.station] if path else 2,
+                estimate=False,
+                threads=self.threads,
+                **times,
+            )
+        return Predicted(found.value, found.derivative, found.run)
+
+
+def path_times(path: MeasuredPath, law) -> dict[str, float]:
+    """Duration and sample period [s] of the swim of a `path`. `ValueError` for a law without terms."""
+    shortest = min((term.period for term in law_of_terms(law).terms if term.period), default=np.inf)
+    duration = float(path.time[-1])
+    count = np.ceil(duration / min(LONGEST_SAMPLE, shortest / SAMPLES))
+    return {"duration": duration, "sample_period": duration / max(4.0, count)}
+
+
+def positions_at(path: MeasuredPath) -> Callable[[Run], dict[str, float]]:
+    """A measure: the coordinates (T, D) of the tracked point at the times of `path`, flattened."""
+    from scipy.interpolate import CubicSpline
+
+    def positions(run: Run) -> dict[str, float]:
+        found = CubicSpline(run.time, run.backbone[:, 0])(path.time)[:, : path.position.shape[1]]
+        return {str(index): value for index, value in enumerate(found.ravel().tolist())}
+
+    return positions
+
+
+def placement_of(path: MeasuredPath, positions: np.ndarray) -> np.ndarray:
+    """The displacement (D,) and the turn that lay `positions` (T, D) best on the measured ones, (D + 1,)."""
+    ours, theirs = positions - positions.mean(axis=0), path.position - path.position.mean(axis=0)
+    cosine = np.sum(ours[:, :2] * theirs[:, :2])
+    sine = np.sum(ours[:, 0] * theirs[:, 1] - ours[:, 1] * theirs[:, 0])
+    turn = float(np.arctan2(sine, cosine))
+    return np.append(path.position.mean(axis=0) - turned_about_vertical(positions.mean(axis=0)[None], turn)[0], turn)
+
+
+def turned_about_vertical(vectors: np.ndarray, turn: float) -> np.ndarray:
+    """`vectors` (..., D) turned about the vertical by `turn` [rad]."""
+    found = vectors.copy()
+    found[..., 0] = np.cos(turn) * vectors[..., 0] - np.sin(turn) * vectors[..., 1]
+    found[..., 1] = np.sin(turn) * vectors[..., 0] + np.cos(turn) * vectors[..., 1]
+    return found
+
+
+def placed(path: MeasuredPath, found: Predicted, placement: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The prediction in the axes of the measurement: (T, D), and its derivatives (T, D, P), (T, D, D + 1)."""
+    count, axes = path.position.shape
+    own = found.value.reshape(count, axes)
+    derivative = np.moveaxis(found.derivative.reshape(count, axes, -1), 1, -1)
+    value = turned_about_vertical(own, placement[-1])
+    across = np.zeros_like(value)
+    across[:, 0], across[:, 1] = -value[:, 1], value[:, 0]
+    by_placement = np.concatenate((np.broadcast_to(np.eye(axes), (count, axes, axes)), across[:, :, None]), axis=2)
+    return value + placement[:-1], np.moveaxis(turned_about_vertical(derivative, placement[-1]), -1, 1), by_placement

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`midlines`: swims a file of midlines, and shows the midlines that come out against those that went in.
+
+midlines fish.csv                       # the distance, as a number
+midlines fish.csv --out midlines.png    # and a picture
+"""
+
+from pathlib import Path
+
+import numpy as np
+from eel_base.command_line import Parser
+from eel_base.output_file import check_output
+from eel_base.wording import shown
+from eel_dynamics.model.body import NAMED
+from eel_dynamics.runs.command_options import body_of
+from eel_dynamics.runs.run import simulate
+from eel_dynamics.runs.run_command import run_command
+from eel_gaits.sources.motion_file import read_midlines
+
+from eel_studies.midlines.comparison import MidlineComparison, compared
+from eel_studies.pictures.picture_file import write_picture
+
+SUFFIXES = (".png", ".svg", ".pdf")
+SHOWN = 8  # instants in the picture
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Exit status as of `run_command`."""
+    return run_command(_parser(), _compare, arguments)
+
+
+def _compare(options) -> int:
+    out = None if options.out is None else Path(options.out)
+    if out is not None:
+        if out.suffix not in SUFFIXES:
+            raise ValueError(f"--out must end in {', '.join(SUFFIXES)}, got {shown(options.out)}")
+        check_output("--out", out)
+    body = body_of(options.body)
+    midlines = read_midlines(options.file, length=body.length, scale=options.scale)
+    law = midlines.law(Path(options.file).stem)
+    stations = midlines.arc / midlines.arc[-1] * body.length
+    period = law.duration / max(1, round(law.duration / 0.05))
+    found = compared(
+        simulate(law, law.duration, body=body, accuracy=1e-2, sample_period=period, stations=stations, estimate=False),
+        midlines,
+    )
+    print(f"motion              {law.about}")
+    print(f"midlines            {found}")
+    if out is not None:
+        instants = np.unique(np.linspace(len(found.time) // 2, len(found.time) - 1, SHOWN).astype(int))
+        write_picture(lambda figure: _draw(figure, found, instants), (6.4, 1.1 * len(instants) + 0.8), out)
+        print(f"written to          {out}")
+    return 0
+
+
+def _draw(figure, found: MidlineComparison, instants: np.ndarray):
+    """Draw the `instants` (n,), without the rigid motion: what was measured as points, the run's as lines."""
+    axes = figure.add_subplot()
+    for row, instant in enumerate(instants):
+        measured, line = (_upright(each[instant], found.measured[instant]) for each in (found.measured, found.found))
+        shift = np.array([0.0, -0.25 * found.length * row])
+        (points,) = axes.plot(*(measured + shift).T, ".", color="0.3", markersize=4)
+        (curve,) = axes.plot(*(line + shift).T, color="C0", linewidth=1.2)
+        place = 1.02 * found.length, shift[1]
+        axes.annotate(f"{found.time[instant]:.2f} s", place, va="center", annotation_clip=False)
+    points.set_label("measured")
+    curve.set_label("of the run, rigid motion removed")
+    axes.set(title=f"Midlines: {found.rms:.2%} of the body's length apart (RMS)", xlabel="along the body [m]")
+    axes.set_aspect("equal")
+    axes.set_yticks([])
+    figure.legend(loc="outside lower center", ncols=2)
+
+
+def _upright(points: np.ndarray, reference: np.ndarray) -> np.ndarray:
+    """The `points` (n, d) seen along the axes of the `reference` (n, d): nose at 0, its long axis ahead; (n, 2)."""
+    centred = reference - reference.mean(axis=0)
+    axes = np.linalg.svd(centred, full_matrices=False)[2][:2]
+    axes[0] *= np.sign(axes[0] @ (reference[-1] - reference[0]))
+    return (points - reference[0]) @ axes.T
+
+
+def _parser() -> Parser:
+    parser = Parser(
+        prog="midlines", description="Simulate a file of midlines, and compare the computed ones with those measured."
+    )
+    parser.add_argument("file", help="a .csv or .npz file with the columns time, x, y: docs/howto/motions.md")
+    parser.add_argument(
+        "--body", default="boyer2010", help=f"{', '.join(NAMED)}, or a file as for simulate (boyer2010)"
+    )
+    parser.add_argument("--scale", type=float, default=1.0, metavar="M", help="metres in the file's unit of length (1)")
+    parser.add_argument("--out", metavar="FILE", help="a picture: .png, .svg or .pdf")
+    return parser

@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Speed and cost of a gait by its parameters, and their derivatives: what an optimiser asks for.
+
+An optimiser sees each parameter as a number from 0 to 1, its place between its bounds: by its logarithm where both are
+above 0. Speed and cost go nearly like powers of a period or a length.
+"""
+
+import warnings
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+
+import numpy as np
+from eel_dynamics.analysis.measures import measures_of
+from eel_dynamics.runs.batch import available_cores
+from eel_dynamics.runs.run import Run, simulate
+from eel_dynamics.simulation.stopping import SimulationStopped
+
+from eel_studies.gradients.gradient import gradient
+from eel_studies.points import Point, point_at
+from eel_studies.steady_swim import at_speed, swim_times
+
+STEP = 1e-5  # of the bounds' distance: differences of the derivatives to either side
+SPEED, CHANGE = "mean_speed", "speed_change"
+STEADY = 0.05  # greatest change of the speed within the swim of a gait that is counted as tried
+STRIDE = 0.5  # body lengths per period: of a gait whose speed is not known
+LONGER = 2  # times the periods, of the swim that is kept
+
+
+class NoSteadySwim(RuntimeError):
+    """A swim stopped, or has no speed or cost, so that no derivative can be taken there."""
+
+
+@dataclass
+class GaitProblem:
+    """The gaits between the bounds `low` and `high` (P,) of the parameters `names`, and what has been tried of them.
+
+    base: body, scene, accuracy. cost: the name of a measure. periods: of each swim; the later half is measured.
+    """
+
+    names: tuple[str, ...]
+    low: np.ndarray
+    high: np.ndarray
+    gait: "str | Callable"
+    numbers: dict
+    base: Point
+    cost: str
+    periods: int
+    threads: int | None
+    tried: list[tuple[float, float]] = field(default_factory=list)  # speed and cost of each gait that swam steadily
+    jumps: bool = False  # the printed friction jumped between two swims of a derivative
+
+    def values(self, place: np.ndarray) -> dict[str, float]:
+        """The parameters at a `place` (P,) between their bounds, by name."""
+        place = np.clip(place, 0.0, 1.0)
+        found = np.where(self._by_power, self.low * self._ratio**place, self.low + place * (self.high - self.low))
+        return dict(zip(self.names, found.tolist(), strict=True))
+
+    def law(self, place: np.ndarray):
+        """The law at a `place` (P,). `ValueError` where the parameters make none."""
+        return point_at(0, self.values(place), self.gait, self.numbers, self.base).law
+
+    def measured(self, places: np.ndarray, speed: float | None) -> np.ndarray:
+        """Speed [m/s] and cost (N, 2) at `places` (N, P), of swims that begin at `speed` [m/s]; NaN where one stops.
+
+        None: they begin at half a body length per period.
+        """
+        with ThreadPoolExecutor(self.threads or available_cores(), thread_name_prefix="swimmer") as pool:
+            return np.array(list(pool.map(lambda place: self._measured(place, speed), places)))
+
+    def derivatives(self, place: np.ndarray, speed: float) -> tuple[np.ndarray, np.ndarray]:
+        """Speed and cost (2,) at a `place` (P,), and their derivatives (2, P) by the place. `NoSteadySwim`: none."""
+        place = np.clip(place, STEP, 1.0 - STEP)  # so that no swim leaves the bounds
+        at = self.values(place)
+        size = np.where(self._by_power, np.log(self._ratio) * list(at.values()), self.high - self.low)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            try:
+                found = gradient(
+                    (SPEED, self.cost),
+                    at,
+                    gait=self.gait,
+                    numbers=at_speed(self.numbers, speed),
+                    body=self.base.body,
+                    scene=self.base.scene,
+                    accuracy=self.base.accuracy,
+                    stations=self._stations,
+                    steps=dict(zip(self.names, 0.5 * STEP * size, strict=True)),
+                    estimate=False,
+                    threads=self.threads,
+                    **swim_times(self.law(place), self.base.body.length, self.periods),
+                )
+            except (SimulationStopped, ValueError) as error:
+                raise NoSteadySwim(str(error)) from error
+        self.jumps = self.jumps or bool(found.warnings)
+        self._note(*found.value.tolist(), measures_of(found.run, (CHANGE,))[CHANGE])
+        return found.value, found.derivative * size
+
+    def run(self, place: np.ndarray, speed: float) -> Run:
+        """A longer swim at a `place` (P,), with profiles along the body and its own error estimated."""
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # the run keeps them
+            return self._swim(place, speed, LONGER * self.periods, 51, estimate=True)
+
+    @property
+    def _by_power(self) -> np.ndarray:
+        return self.low > 0.0
+
+    @property
+    def _ratio(self) -> np.ndarray:
+        return np.where(self._by_power, self.high / np.where(self._by_power, self.low, 1.0), 1.0)
+
+    @property
+    def _stations(self):
+        return 51 if self.cost in ("greatest_torque", "tail_excursion", "strouhal") else 2
+
+    def _measured(self, place: np.ndarray, speed: float | None) -> tuple[float, float]:
+        try:
+            if speed is None:
+                period = swim_times(self.law(place), self.base.body.length, 1)["duration"]
+                speed = STRIDE * self.base.body.length / period
+            run = self._swim(place, speed, self.periods, self._stations, estimate=False)
+        except (SimulationStopped, ValueError):
+            return np.nan, np.nan
+        found = measures_of(run, (SPEED, self.cost, CHANGE))
+        self._note(found[SPEED], found[self.cost], found[CHANGE])
+        return found[SPEED], found[self.cost]
+
+    def _note(self, speed: float, cost: float, change: float):
+        if np.isfinite(cost) and change <= STEADY:
+            self.tried.append((speed, cost))
+
+    def _swim(self, place: np.ndarray, speed: float, periods: int, stations: int, estimate: bool) -> Run:
+        point = point_at(0, self.values(place), self.gait, at_speed(self.numbers, speed), self.base)
+        return simulate(
+            point.law,
+            body=point.body,
+            scene=point.scene,
+            accuracy=point.accuracy,
+            stations=stations,
+            position=point.start.position,
+            orientation=point.start.orientation,
+            twist=point.start.twist,
+            estimate=estimate,
+            **swim_times(point.law, point.body.length, periods),
+        )

@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The gait of least cost at each speed: `optimise`.
+
+    front = optimise({"period": (0.4, 3.0), "amplitude_0": (0.0, 2.0), "amplitude_2": (0.0, 6.0)}, [0.2, 0.4, 0.6])
+    print(front.table())
+    front.draw("front.png")
+    front.runs[1].law                # the gait for 0.4 m/s
+
+Gaits spread over the bounds are tried first. For each speed the search begins from the best of them and from the gait
+found for the speed before. It minimises the cost with the speed as a constraint.
+"""
+
+import warnings
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from eel_base.quantity import number
+from eel_base.wording import shown
+from eel_dynamics.analysis.measures import checked_measures, measures_of
+from eel_dynamics.model.arguments import checked_instance, checked_row
+from eel_dynamics.model.body import Body, checked_body
+from eel_dynamics.model.scene import Scene
+
+from eel_studies.gradients.fixed_discretisation import fixed_steps
+from eel_studies.optimisation.front import Front
+from eel_studies.optimisation.gait_problem import GaitProblem
+from eel_studies.optimisation.searches import METHODS
+from eel_studies.points import Point
+from eel_studies.progress_bar import progress_of
+from eel_studies.steady_swim import swim_times
+
+SPREAD_OVER_BOUNDS = 16  # gaits per parameter that are tried first
+MORE_STARTS = 2  # from which a search begins where the first ones missed the speed
+MISSED = 0.01  # relative difference of the kept swim's speed from the wanted one, above which a warning names it
+NOT_KEPT = 0.05  # the same, of a speed that only the swims of the search had, since they began with it
+PENALTY = 20.0  # for a missed speed, in the order of the starts
+
+
+def optimise(
+    bounds: dict[str, tuple[float, float]],
+    speeds,
+    *,
+    gait: "str | Callable" = "straight",
+    numbers: dict | None = None,
+    body: Body | None = None,
+    scene: Scene | None = None,
+    cost: str = "cost_of_transport",
+    periods: int = 10,
+    accuracy=1e-3,
+    method: str = "gradient",
+    starts: int = 1,
+    seed: int = 0,
+    threads: int | None = None,
+    progress: "Callable[[int, int], None] | bool | None" = None,
+) -> Front:
+    """The gaits of least `cost` at `speeds` (S,) [m/s] over the water, by parameters within their `bounds`.
+
+    bounds: (low, high) by name, with the names of `studies.points`. gait: its name, or a function of numbers that
+    returns a law. numbers: what else is held fixed, by the same names. body, accuracy, threads: as in `gradient`.
+    scene: by default that of the library with blended friction, whose derivatives have no jump; a current is left out.
+    cost: the name of a measure (`analysis.measures.MEASURES`). periods: of each swim, which begins at the wanted speed;
+    its later half is measured. method: "gradient" (SLSQP), or "cma", which needs `pip install 'eel_dynamics[cma]'`.
+    starts: gaits from which each search by gradients begins, besides the one before. seed: of what is random.
+    progress: as in `sweep`, by speeds.
+
+    A speed that no gait reaches is left out, with a warning that names the speeds that are reached. `ValueError` names
+    what does not fit, or says that no speed is reached; `ImportError`: a package is missing.
+    """
+    low, high = _checked_bounds(bounds)
+    wanted = checked_row("speeds", speeds, None)
+    if not len(wanted) or np.any(wanted <= 0.0) or len(set(wanted.tolist())) < len(wanted):
+        raise ValueError(f"speeds must be one or more, > 0 m/s, none twice, got {shown(wanted.tolist())}")
+    if not isinstance(method, str) or method not in METHODS:
+        raise ValueError(f"method must be one of {', '.join(METHODS)}, got {shown(method)}")
+    counts = {"periods": (periods, 4), "starts": (starts, 1), "seed": (seed, 0)}
+    for name, (value, least) in counts.items():
+        if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < least:
+            raise ValueError(f"{name} must be a whole number >= {least}, got {shown(value)}")
+    (cost,) = checked_measures("cost", checked_instance("cost", cost, str), estimate=False)
+    scene = Scene(friction="blended") if scene is None else checked_instance("scene", scene, Scene)
+    base = Point(
+        0,
+        None,
+        checked_body(body),
+        replace(scene, current=(0.0, 0.0, 0.0), internal_wrench=scene.internal_wrench or cost == "greatest_torque"),
+        fixed_steps(accuracy),
+    )
+    problem = GaitProblem(tuple(bounds), low, high, gait, dict(numbers or {}), base, cost, int(periods), threads)
+    for place in np.vstack((np.zeros(len(low)), np.ones(len(low)), 0.5 * np.ones(len(low)))):
+        try:
+            swim_times(problem.law(place), base.body.length, problem.periods)
+        except ValueError as error:
+            raise ValueError(f"optimise {error}") from None
+    return _front(problem, np.sort(wanted), method, int(starts), int(seed), progress_of(progress, "speeds"))
+
+
+def _front(problem: GaitProblem, wanted: np.ndarray, method: str, starts: int, seed: int, progress) -> Front:
+    places = _spread(len(problem.names), seed)
+    measured = problem.measured(places, None)
+    found, runs, before = [], [], []
+    for done, speed in enumerate(wanted.tolist()):
+        progress(done, len(wanted))
+        order = np.argsort(_merit(measured, speed))
+        place = METHODS[method](problem, np.array([*before, *places[order[:starts]]]), speed, seed)
+        if place is None:
+            place = METHODS[method](problem, places[order[starts : starts + MORE_STARTS]], speed, seed)
+        if place is None:
+            continue
+        run = problem.run(place, speed)
+        if abs(run.mean_speed / speed - 1.0) <= NOT_KEPT:
+            before = [place]
+            found.append((speed, place))
+            runs.append(run)
+    progress(len(wanted), len(wanted))
+    tried = np.array(problem.tried).reshape(-1, 2)
+    lines = list(_missed(wanted, [speed for speed, _ in found], tried))
+    if not runs:
+        raise ValueError(lines[0])
+    analyses = [run.analysis() for run in runs]
+    speed = np.array([each.mean_speed for each in analyses])
+    reached = np.array([speed for speed, _ in found])
+    for index in np.flatnonzero(np.abs(speed / reached - 1.0) > MISSED):
+        lines.append(
+            f"the gait for {reached[index]:.4g} m/s swims at {speed[index]:.4g} m/s in a longer swim: more periods "
+            "settle it"
+        )
+    if problem.jumps:
+        lines.append("the printed friction jumps between swims of a derivative: friction blended or laminar is smooth")
+    for line in lines:
+        warnings.warn(line, stacklevel=3)
+    return Front(
+        cost_name=problem.cost,
+        names=problem.names,
+        low=problem.low,
+        high=problem.high,
+        wanted=reached,
+        values=np.array([list(problem.values(place).values()) for _, place in found]),
+        speed=speed,
+        cost=np.array([_cost(run, problem.cost) for run in runs]),
+        runs=tuple(runs),
+        tried=tried,
+        warnings=tuple(lines),
+    )
+
+
+def _checked_bounds(bounds) -> tuple[np.ndarray, np.ndarray]:
+    if not isinstance(bounds, dict) or not bounds:
+        raise ValueError(f"bounds must be a dict of parameters and (low, high), got {shown(bounds)}")
+    rows = []
+    for name, pair in bounds.items():
+        if isinstance(pair, str) or not np.iterable(pair) or len(pair) != 2:
+            raise ValueError(f"bounds {shown(name)} must be (low, high), got {shown(pair)}")
+        low, high = (number(f"bounds {shown(name)}", value) for value in pair)
+        if not low < high:
+            raise ValueError(f"bounds {shown(name)} must have low < high, got ({low:g}, {high:g})")
+        rows.append((low, high))
+    return tuple(np.array(rows).T)
+
+
+def _spread(parameters: int, seed: int) -> np.ndarray:
+    """Places (N, P) spread evenly over the bounds."""
+    from scipy.stats import qmc
+
+    return qmc.Sobol(parameters, seed=seed).random(2 ** int(np.ceil(np.log2(SPREAD_OVER_BOUNDS * parameters))))
+
+
+def _merit(measured: np.ndarray, speed: float) -> np.ndarray:
+    """What makes a gait a good start for `speed` [m/s]: little cost, and its speed near; (N,), the least is best."""
+    scale = np.nanmedian(np.abs(measured[:, 1])) if np.isfinite(measured[:, 1]).any() else 1.0
+    worth = measured[:, 1] / scale + PENALTY * np.abs(np.log(np.maximum(measured[:, 0], 1e-9) / speed))
+    return np.where(np.isfinite(worth), worth, np.inf)
+
+
+def _missed(wanted: np.ndarray, met: list[float], tried: np.ndarray):
+    """One line for the speeds that no gait was found for."""
+    left = [f"{speed:.4g}" for speed in wanted.tolist() if speed not in met]
+    if left:
+        told = "no gait that was tried swims steadily"
+        if len(tried):
+            told = f"the gaits that were tried swim at {tried[:, 0].min():.3g} to {tried[:, 0].max():.3g} m/s"
+        yield f"speeds: no gait within the bounds was found for {', '.join(left)} m/s; {told}"
+
+
+def _cost(run, cost: str) -> float:
+    return measures_of(run, (cost,))[cost]

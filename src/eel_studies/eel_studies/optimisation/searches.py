@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Searches for the place of least cost at a given speed: by derivatives (SLSQP of SciPy), or by CMA-ES (cma).
+
+Each is a function (problem, starts, speed, seed) -> place (P,), or None where none of its swims has that speed.
+"""
+
+import contextlib
+import warnings
+
+import numpy as np
+from eel_dynamics.runs.storage.tables import needed
+
+from eel_studies.optimisation.gait_problem import STEP, GaitProblem, NoSteadySwim
+
+MET = 1e-3  # relative difference of a speed that has been met
+EVALUATIONS, TOLERANCE = 25, 3e-4  # of SLSQP: at most, and the change of the cost that ends it, relative
+MISSED_SPEED = 30.0  # weight of the squared logarithm of a missed speed, beside the constraint
+# Penalty of CMA-ES for a missed speed: of the cost's logarithm by the speed's. It is exact where it is steeper
+# than the front, whose cost grows with the second or third power of the speed.
+PENALTY = 6.0
+SPREAD, GENERATIONS = 0.2, 150  # of CMA-ES: first standard deviation, of the bounds' distance; most generations
+WORST = 1e3  # of a gait that does not swim
+
+
+def by_gradients(problem: GaitProblem, starts: np.ndarray, speed: float, seed: int) -> np.ndarray | None:
+    """Sequential least-squares programming with `gradient`, from each of the `starts` (S, P); the best end."""
+    ends = [_slsqp(problem, start, speed) for start in starts]
+    ends = [end for end in ends if end is not None]
+    return min(ends, key=lambda end: end[0])[1] if ends else None
+
+
+def _slsqp(problem: GaitProblem, start: np.ndarray, speed: float) -> tuple[float, np.ndarray] | None:
+    """Cost and place of the end of one search; None where it does not meet the speed."""
+    import scipy.optimize
+
+    known: dict[bytes, tuple] = {}
+
+    def found(place: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        key = place.tobytes()
+        if key not in known:
+            if len(known) >= EVALUATIONS or _ended([measured for measured, _, _ in known.values()], speed):
+                raise StopIteration
+            known[key] = *problem.derivatives(place, speed), place.copy()
+        return known[key][:2]
+
+    start = np.clip(start, STEP, 1.0 - STEP)
+    with contextlib.suppress(NoSteadySwim, StopIteration):
+        scale = abs(found(start)[0][1])
+        scipy.optimize.minimize(
+            lambda place: _with_missed_speed(*found(place), scale, speed),
+            start,
+            jac=True,
+            method="SLSQP",
+            bounds=[(STEP, 1.0 - STEP)] * len(start),
+            constraints={
+                "type": "eq",
+                "fun": lambda place: np.log(found(place)[0][0] / speed),
+                "jac": lambda place: found(place)[1][0] / found(place)[0][0],
+            },
+            options={"ftol": TOLERANCE},
+        )
+    met = [(measured[1], place) for measured, _, place in known.values() if abs(measured[0] / speed - 1.0) <= MET]
+    return met[-1] if met else None
+
+
+def _with_missed_speed(measured, derivatives, scale: float, speed: float) -> tuple[float, np.ndarray]:
+    """Cost by `scale` and the squared miss of the speed, and the derivative (P,): none of it changes the solution.
+
+    Without the second, the line search of SLSQP may refuse a step that brings the speed and costs as much as it should.
+    """
+    missed = np.log(measured[0] / speed)
+    value = measured[1] / scale + MISSED_SPEED * missed**2
+    return value, derivatives[1] / scale + 2.0 * MISSED_SPEED * missed * derivatives[0] / measured[0]
+
+
+def _ended(measured: list[np.ndarray], speed: float) -> bool:
+    """Whether the last two gaits have the speed, and the same cost."""
+    if len(measured) < 2:
+        return False
+    (before, cost), (after, last) = measured[-2:]
+    return max(abs(before / speed - 1.0), abs(after / speed - 1.0)) <= MET and abs(last - cost) <= TOLERANCE * abs(last)
+
+
+def by_cma(problem: GaitProblem, starts: np.ndarray, speed: float, seed: int) -> np.ndarray | None:
+    """Covariance matrix adaptation from the first of the `starts` (S, P); it takes the speed and cost of swims alone.
+
+    `ImportError` without the package cma.
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of matplotlib's absence, on import
+        cma = needed("cma", "method 'cma' of optimise", "cma")
+    options = {
+        "bounds": [0.0, 1.0],
+        "maxiter": GENERATIONS,
+        "tolfun": 5e-4,
+        "tolx": 2e-3,
+        "seed": seed + 1,  # 0 is the clock
+        "verbose": -9,
+    }
+    strategy = cma.CMAEvolutionStrategy(starts[0], SPREAD, options)
+    best = np.inf, None
+    while not strategy.stop():
+        places = np.array(strategy.ask())
+        measured = np.maximum(problem.measured(places, speed), np.finfo(float).tiny)
+        missed = np.abs(np.log(measured[:, 0] / speed))
+        worth = np.log(measured[:, 1]) + PENALTY * missed
+        worth = np.where(np.isfinite(worth), worth, WORST)
+        strategy.tell(list(places), worth.tolist())
+        first = int(np.argmin(worth))
+        if missed[first] <= MET and worth[first] < best[0]:
+            best = worth[first], places[first]
+    return best[1]
+
+
+METHODS = {"gradient": by_gradients, "cma": by_cma}

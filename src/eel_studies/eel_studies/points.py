@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Points of a study: one run each, with numbers of the gait, the scene, the body or the initial state by name.
+
+| name | what it sets |
+|---|---|
+| `period`, ... | a number of the gait |
+| `scene.fluid_density`, ... | a field of `Scene` |
+| `body` | a `Body`, or the name of one |
+| `body.lateral_drag`, ... | a number of `Body` |
+| `accuracy` | as in `simulate` |
+| `initial.position_x`, `_y`, `_z` | head at the start [m], world |
+| `initial.omega_1`, ..., `initial.v_3` | twist of the head at the start [rad/s, m/s], its axes |
+"""
+
+from collections.abc import Callable
+from dataclasses import fields, replace
+from typing import NamedTuple
+
+import numpy as np
+from eel_base.quantity import number
+from eel_base.wording import did_you_mean, shown
+from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.analysis.measures import measures_of
+from eel_dynamics.model.body import NUMBERS, Body
+from eel_dynamics.model.initial_state import InitialState
+from eel_dynamics.model.scene import Scene
+from eel_dynamics.runs.batch import Batch, simulate_batch
+from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
+from eel_gaits.gaits.registry import find
+from eel_gaits.laws.law import Law
+
+POSITIONS = ("position_x", "position_y", "position_z")
+VELOCITIES = ("omega_1", "omega_2", "omega_3", "v_1", "v_2", "v_3")
+AT_REST = InitialState(np.zeros(3), np.array([0.0, 0.0, 0.0, 1.0]), np.zeros(6))
+
+
+class Point(NamedTuple):
+    """One run of a study."""
+
+    index: int
+    law: Law
+    body: Body
+    scene: Scene
+    accuracy: Accuracy
+    start: InitialState = AT_REST
+
+
+class SwimSettings(NamedTuple):
+    """How the points of a study swim: arguments of `simulate`, and what is measured of each run."""
+
+    duration: float  # s
+    sample_period: float | None  # s
+    stations: "int | np.ndarray"
+    measure: "Callable | tuple[str, ...]"  # run -> {name: number}, or names of MEASURES
+    estimate: bool = True
+    most_evaluations: float = MOST_EVALUATIONS
+
+    def measured(self, run, periods: int | None = None) -> dict:
+        """The measures of `run`, over its last `periods` whole periods (None: the later half)."""
+        return self.measure(run) if callable(self.measure) else measures_of(run, self.measure, periods)
+
+
+def batch_of_points(points: list[Point], how: SwimSettings, threads: int | None = None, progress=None) -> Batch:
+    """Simulate the `points`. threads, progress: as in `simulate_batch`."""
+    return simulate_batch(
+        [point.law for point in points],
+        how.duration,
+        bodies=[point.body for point in points],
+        scenes=[point.scene for point in points],
+        accuracy=[point.accuracy for point in points],
+        sample_period=how.sample_period,
+        stations=how.stations,
+        positions=np.array([point.start.position for point in points]),
+        orientations=np.array([point.start.orientation for point in points]),
+        twists=np.array([point.start.twist for point in points]),
+        estimate=how.estimate,
+        threads=threads,
+        progress=progress,
+        most_evaluations=how.most_evaluations,
+    )
+
+
+def point_at(index: int, values: dict, gait: "str | Callable[..., Law]", numbers: dict, base: Point) -> Point:
+    """The point of these `values` by name; all else is as in `numbers`, by the same names, and in `base`.
+
+    gait: its name, or a function of numbers that returns a law. `ValueError` tells the point and what does not fit.
+    """
+    if not (isinstance(gait, str) or callable(gait)):
+        raise ValueError(f"gait must be the name of a gait, or a function that returns a law, got {shown(gait)}")
+    try:
+        return _point(index, {**numbers, **values}, gait, base)
+    except (ValueError, TypeError) as error:
+        at = ", ".join(f"{name}={label_of(value) if _named(value) else shown(value)}" for name, value in values.items())
+        raise ValueError(f"at {at}: {error}") from None
+
+
+def law_of_terms(law) -> Law:
+    """The `law` that a gait returned. `ValueError` for anything but a `Law`: a `SampledLaw` has no terms."""
+    if not isinstance(law, Law):
+        raise ValueError(f"gait must return a Law, whose terms are known, got {shown(law)}")
+    return law
+
+
+def label_of(value):
+    """The label of a value on its axis."""
+    if _named(value):
+        return value.name
+    return value if isinstance(value, (bool, int, float, str)) else str(value)
+
+
+def _named(value) -> bool:
+    return isinstance(value, (Body, Accuracy))
+
+
+def _point(index: int, values: dict, gait, base: Point) -> Point:
+    body, accuracy, own = base.body, base.accuracy, {}
+    groups = {"scene": {}, "body": {}, "initial": {}}
+    for name, value in values.items():
+        group, _, field = name.partition(".")
+        if field and group in groups:
+            groups[group][field] = value
+        elif name == "body":
+            body = Body.named(value) if isinstance(value, str) else value
+        elif name == "accuracy":
+            accuracy = Accuracy.of(value)
+        else:
+            own[name] = value
+    _check_names("scene", groups["scene"], [item.name for item in fields(Scene)])
+    _check_names("body", groups["body"], NUMBERS)
+    law = (find(gait) if isinstance(gait, str) else gait)(**own)
+    body = body.changed(**groups["body"]) if groups["body"] else body
+    return Point(
+        index, law, body, replace(base.scene, **groups["scene"]), accuracy, _start(base.start, groups["initial"])
+    )
+
+
+def _start(start: InitialState, changes: dict) -> InitialState:
+    _check_names("initial", changes, (*POSITIONS, *VELOCITIES))
+    position, twist = start.position.copy(), start.twist.copy()
+    for name, value in changes.items():
+        row, names = (position, POSITIONS) if name in POSITIONS else (twist, VELOCITIES)
+        row[names.index(name)] = number(f"initial.{name}", value)
+    return start._replace(position=position, twist=twist)
+
+
+def _check_names(group: str, given: dict, known) -> None:
+    for name in given:
+        if name not in known:
+            hint = did_you_mean(name, known)
+            raise ValueError(f"{group} has no field {shown(name)}{hint}, it has: {', '.join(known)}")

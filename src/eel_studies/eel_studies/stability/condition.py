@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Condition number of the 6 x 6 inertia matrix: the factor by which a solution magnifies round-off.
+
+Rotations are scaled by the body's length. One map is of the straight body, over its density and slenderness. The other
+is of the paper's robot, over its density and the amplitude of its wave, with the worst of some instants of a period.
+Singular bodies are refused beforehand (`inertia.py`).
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from eel_dynamics.model.body import Body
+from eel_dynamics.model.inertia import MOST, condition_of, straight_inertia
+from eel_dynamics.model.scene import Scene
+from eel_dynamics.model.section_data import nose_of
+from eel_dynamics.runs.run import simulate
+from eel_dynamics.simulation.simulation import Simulation, SimulationStopped
+
+import eel_core
+from eel_gaits import falling, straight
+
+INSTANTS = 8  # per period, after the ramps of the gait
+NEEDLES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7)  # greatest half-axes [m] of a round needle of 1 m
+
+
+@dataclass(frozen=True)
+class Conditions:
+    """A map of condition numbers. x, y: density ratio, and slenderness or amplitude ratio; value: (len(y), len(x))."""
+
+    name: str
+    title: str
+    x_label: str
+    y_label: str
+    x: np.ndarray
+    y: np.ndarray
+    value: np.ndarray
+
+
+def maps_of(points: int = 13) -> tuple[Conditions, ...]:
+    """Two maps of `points` by `points` matrices each: of straight bodies, and of the swimming robot."""
+    ratios = np.geomspace(1e-3, 1e3, points)
+    slenderness, sizes = np.geomspace(5.0, 500.0, points), np.geomspace(1e-3, 4.0, points)
+    bodies = [Body.spindle(1.0, each) for each in slenderness]
+    return (
+        Conditions(
+            "condition",
+            "condition of the 6 x 6 matrix: straight bodies",
+            "density of the body, by water's",
+            "slenderness l / (2 max(a, b))",
+            ratios,
+            slenderness,
+            np.array([[of_straight(body, ratio) for ratio in ratios] for body in bodies]),
+        ),
+        Conditions(
+            "bent",
+            "condition of the 6 x 6 matrix: the robot as it swims",
+            "density of the body, by water's",
+            "amplitude, by the paper's",
+            ratios,
+            sizes,
+            np.array([[of_bent(size, ratio) for ratio in ratios] for size in sizes]),
+        ),
+    )
+
+
+def of_straight(body: Body, ratio: float) -> float:
+    """Condition number for the straight `body` of `ratio` times the density of the water."""
+    scene = _water(ratio)
+    here = Simulation(body, scene, "draft", [0.0]).discretisation
+    return condition_of(straight_inertia(here.grid, here.sections, nose_of(body, scene)[0], body.length))
+
+
+def of_bent(size: float, ratio: float) -> float:
+    """Greatest condition number for the robot over a period of its wave, of `size` times the paper's amplitude."""
+    law = straight(amplitude_0=size, amplitude_1=0.5 * size, amplitude_2=2.0 * size)
+    swimmer = Simulation(Body.boyer2010(), _water(ratio), "draft", [0.0], law=law)
+    return max(condition_of(inertia_at(swimmer, time)) for time in 2.0 + np.arange(INSTANTS) / INSTANTS)
+
+
+def inertia_at(swimmer: Simulation, time: float) -> np.ndarray:
+    """Inertia matrix (6, 6) about the head, in head axes, for the shape at `time` [s]. The body is 1 m long."""
+    return np.array(eel_core.Instant(swimmer.discretisation.swimmer).inertia(swimmer.tabulated_law, time))
+
+
+def needles() -> str:
+    """The outcome of runs of thinner and thinner needles, as a Markdown table."""
+    lines = ["| half-axes of a needle of 1 m (m) | what happens to it in the falling gait |", "|---|---|"]
+    for thickness in NEEDLES:
+        try:
+            run = simulate(falling(), 2.0, body=needle(thickness), accuracy=1e-3, stations=2, estimate=False)
+            told = f"swims {run.path_length:.3g} m, greatest residual of the ledger {_open(run):.1g} of what passed"
+        except (ValueError, SimulationStopped) as error:
+            told = f"refused: {error}" if isinstance(error, ValueError) else str(error)
+        lines.append(f"| {thickness:g} | {told} |")
+    return "\n".join(lines)
+
+
+def needle(thickness: float) -> Body:
+    """A round body of 1 m, pointed at both ends, with half-axes of `thickness` [m] in the middle."""
+
+    def half_axis(x):
+        return 2.0 * thickness * np.sqrt(x * (1.0 - x))
+
+    return Body(length=1.0, half_width=half_axis, half_height=half_axis)
+
+
+def table(maps: tuple[Conditions, ...]) -> str:
+    """The least and greatest values of the maps, then the needles, as Markdown tables."""
+    lines = ["| map | least | greatest |", "|---|---|---|"]
+    lines += [f"| {each.title} | {each.value.min():.3g} | {each.value.max():.3g} |" for each in maps]
+    lines += [
+        "",
+        f"Bodies of a condition above {MOST:g} are refused as singular:",
+    ]
+    return "\n".join([*lines, "", needles()])
+
+
+def _water(ratio: float) -> Scene:
+    return Scene(density=1000.0 * ratio, internal_wrench=False, ledger=False)
+
+
+def _open(run) -> float:
+    energy = run.energy
+    works = energy.actuator_work, energy.wake_work, energy.nose_work, energy.drag_work
+    passed = energy.kinetic_body + energy.kinetic_fluid + sum(np.abs(work) for work in works)
+    return float(np.abs(energy.residual).max() / passed.max())

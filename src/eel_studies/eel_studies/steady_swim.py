@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Swims that begin at the speed that they are to keep, so that a few periods show their steady state."""
+
+import numpy as np
+from eel_dynamics.analysis.averaging_window import common_period
+from eel_gaits.laws.law import Law
+
+from eel_studies.points import law_of_terms
+
+SAMPLES = 16  # in a period
+
+
+def swim_times(law: Law, length: float, periods: int) -> dict[str, float]:
+    """Duration and sample period [s] of so many `periods` of `law`, whose samples are whole parts of its period.
+
+    length: of the body [m]. `ValueError` for a law without terms or without a period.
+    """
+    longest = max((term.period for term in law_of_terms(law).terms), default=0.0)
+    ends = [ramp.end for term in law.terms for ramp in term.envelope]
+    period = common_period(law, np.linspace(0.0, length, 11), np.linspace(0.0, max([longest, *ends]), 65))
+    return {"duration": periods * period, "sample_period": period / SAMPLES}
+
+
+def at_speed(numbers: dict, speed: float) -> dict:
+    """The `numbers` with which the head begins to swim ahead at `speed` [m/s], unless they have a velocity already."""
+    return {"initial.v_1": -speed} | numbers

@@ -1,0 +1,249 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Linearisation of a swim over one period of its gait: `periodic_linearisation`.
+
+    found = periodic_linearisation(straight(), scene=Scene(metacentric_height=0.01))
+    found.multipliers            # (9,) eigenvalues: a disturbance of a mode is so many times as large a period later
+    found.growth                 # the greatest, but for those that are 1 as no heading is special
+    found.controllability()      # (9,) of each mode, by bends in yaw and pitch; 0: no bend moves it
+
+The matrices are central differences of swims over one period, from the settled motion.
+"""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from eel_base.quantity import number
+from eel_base.wording import shown
+from eel_dynamics.model.arguments import checked_instance, checked_number, checked_row
+from eel_dynamics.model.body import Body, checked_body
+from eel_dynamics.model.scene import Scene
+from eel_gaits.laws.law import Law
+from eel_gaits.laws.ramp import Ramp
+from eel_gaits.laws.term import Term
+
+from eel_studies.steering.period_map import Motion, PeriodMap, rotation, turned_by
+
+STATES = ("roll", "pitch", "heading", "roll_rate", "pitch_rate", "yaw_rate", "surge", "sway", "heave")
+OUT_OF_PLANE = ("roll", "pitch", "roll_rate", "pitch_rate", "heave")
+PHASES = {"": (0.0, np.pi / 2), "_cos": (1.0, np.pi / 2), "_sin": (1.0, np.pi)}  # whether it beats, and its phase
+INPUTS = tuple(axis + beat for axis in ("yaw", "pitch") for beat in PHASES)
+STEP = 1e-5  # rad; of a twist times its scale, of a bend by the body's length
+STEPS, RESOLUTION = 160, 40.0  # of the march in a period, points along the body
+COARSER = 0.7  # times the steps and points of the companion, that tells the error
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class PeriodicLinearisation:
+    """How small changes of the head's motion at the start of a period, and small bends during it, act at its end.
+
+    States: roll, pitch, heading [rad], a turn of the head about the axes of the course: 1 against the way of the
+    period, 3 up. roll_rate ... heave: the twist (Omega, V) [rad/s, m/s] in the head's axes. Position is left out:
+    nothing depends on it. Inputs [rad/m]: bends, uniform along the body, that are added to the gait. They come and go
+    within the period, by the ramp f_r of eq. (64). "yaw" is constant between; "yaw_cos" and "yaw_sin" beat with the
+    gait.
+    """
+
+    law: Law  #: t = 0 is the start of a period after all ramps
+    body: Body
+    scene: Scene
+    period: float  #: s
+    start: Motion  #: of the settled motion, at the start of a period; it swims towards -x
+    end: Motion
+    defect: float  #: rad, and relative to the twist: by how much it does not repeat
+    rise: float  #: part of the period, in which a bend comes, and goes again
+    monodromy: np.ndarray  #: (9, 9) states at the end by states at the start
+    input_matrix: np.ndarray  #: (9, 6) states at the end by inputs
+    error: float  #: greatest change of a multiplier with coarser settings; NaN without an estimate
+
+    def __repr__(self) -> str:
+        return f"PeriodicLinearisation({shown(self.law.name)}, {self.scene!r}, growth {self.growth:.4g} a period)"
+
+    @property
+    def states(self) -> tuple[str, ...]:
+        """Names of the states."""
+        return STATES
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """Names of the inputs."""
+        return INPUTS
+
+    @cached_property
+    def _eigen(self) -> tuple[np.ndarray, np.ndarray]:
+        values, vectors = np.linalg.eig(self.monodromy)
+        order = np.argsort(-np.abs(values), kind="stable")
+        return values[order], vectors[:, order]
+
+    @property
+    def multipliers(self) -> np.ndarray:
+        """(9,) complex: eigenvalues of the monodromy matrix, the greatest first."""
+        return self._eigen[0]
+
+    @property
+    def modes(self) -> np.ndarray:
+        """(9, 9) complex: the motion of each multiplier in a column."""
+        return self._eigen[1]
+
+    @cached_property
+    def participation(self) -> np.ndarray:
+        """(9, 9) share of each state (row) in each mode (column), of magnitudes that add up to 1.
+
+        Left times right eigenvector, entry by entry: it does not depend on units.
+        """
+        share = np.abs(np.linalg.inv(self.modes).T * self.modes)
+        return share / share.sum(axis=0)
+
+    def motion_of(self, mode: int) -> str:
+        """The states that take part in a `mode` by a tenth or more, the greatest share first."""
+        share = self.participation[:, mode]
+        return ", ".join(STATES[k] for k in np.argsort(-share) if share[k] >= 0.1)
+
+    @cached_property
+    def neutral(self) -> np.ndarray:
+        """(9,) bool: modes of magnitude 1, as no heading is special, and without a righting moment no attitude."""
+        free = [STATES.index("heading")] if self.scene.metacentric_height else [0, 1, 2]
+        return self.participation[free].sum(axis=0) > 0.5
+
+    @property
+    def growth(self) -> float:
+        """The greatest factor by which a disturbance grows in a period, the neutral modes apart."""
+        return float(np.abs(self.multipliers[~self.neutral]).max())
+
+    def controllability(self, inputs: tuple[str, ...] = INPUTS) -> np.ndarray:
+        """(9,) how firmly the `inputs` hold each mode; 0: no bend of these moves it, whatever the controller.
+
+        The least singular value of [A - multiplier, B] (Popov, Belevitch and Hautus), with time in periods and length
+        in body lengths, so that a bend is the angle [rad] between head and tail. `ValueError` for an unknown input.
+        """
+        columns = [_index(name) for name in inputs]
+        scale, length = self._scale, self.body.length
+        a = self.monodromy * scale[:, None] / scale
+        b = self.input_matrix[:, columns] * scale[:, None] / length
+        return np.array(
+            [np.linalg.svd(np.hstack([a - each * np.eye(9), b]), compute_uv=False)[-1] for each in self.multipliers]
+        )
+
+    def kick(self, mode: int, state: str = "roll") -> np.ndarray:
+        """(6,) complex: the amplitude to which an input of 1 rad/m in one period brings a `mode`, of its `state`."""
+        left, row = np.linalg.inv(self.modes)[mode], STATES.index(state)
+        pair = 1.0 if abs(self.multipliers[mode].imag) < 1e-9 else 2.0  # a mode and its conjugate
+        return pair * (left @ self.input_matrix) * self.modes[row, mode]
+
+    def feedback(self, bend: float = 1.0) -> np.ndarray:
+        """(6, 9) gain of the linear-quadratic regulator: inputs [rad/m] = - gain @ states, once a period.
+
+        States count with time in periods and length in body lengths; an input of `bend` [rad/m] counts as much as a
+        state of 1. `ValueError` where the inputs do not hold a mode that grows.
+        """
+        from scipy.linalg import solve_discrete_are
+
+        bend = checked_number("bend", bend, "rad/m")
+        a, b, cost = self.monodromy, self.input_matrix, np.eye(len(INPUTS)) / bend**2
+        try:
+            ahead = solve_discrete_are(a, b, np.diag(self._scale**2), cost)
+        except np.linalg.LinAlgError as error:
+            weakest = self.motion_of(int(np.argmin(self.controllability())))
+            raise ValueError(f"no feedback of these bends is stable, {weakest} is held least ({error})") from None
+        return np.linalg.solve(cost + b.T @ ahead @ b, b.T @ ahead @ a)
+
+    def bent(self, inputs) -> Law:
+        """The gait with `inputs` (6,) [rad/m] in its first period; t = 0 is the start of that period."""
+        sizes = checked_row("inputs", inputs, len(INPUTS))
+        pairs = zip(INPUTS, sizes, strict=True)
+        return _plus(self.law, *(_bend(name, size, self.period, self.rise) for name, size in pairs if size))
+
+    @property
+    def _scale(self) -> np.ndarray:
+        length = self.body.length
+        return np.repeat((1.0, self.period, self.period / length), 3)
+
+
+def periodic_linearisation(
+    law: Law,
+    *,
+    body: Body | None = None,
+    scene: Scene | None = None,
+    rise: float = 0.25,
+    steps: int = STEPS,
+    resolution: float = RESOLUTION,
+    estimate: bool = True,
+) -> PeriodicLinearisation:
+    """Linearise the settled swim of `law` over one period of the gait, after all of its ramps.
+
+    A law may have several settled motions. This is the one to which a swim from rest has come near after some periods;
+    a law of yaw alone swims in the plane.
+
+    body, scene: as in `simulate`; a current is left out, it carries all alike. rise: part of the period in which a bend
+    comes, and goes again, up to a half. steps: of the march in a period; resolution: points along the body. estimate:
+    do it again with coarser settings, for the error. The matrices are central differences. `ValueError` names what does
+    not fit, a law that does not repeat, or one whose motion does not settle.
+    """
+    checked_instance("law", law, Law)
+    body = checked_body(body)
+    scene = Scene() if scene is None else checked_instance("scene", scene, Scene)
+    if isinstance(steps, bool) or not isinstance(steps, (int, np.integer)) or steps < 20:
+        raise ValueError(f"steps must be a whole number of 20 or more, got {shown(steps)}")
+    rise = number("rise", rise)
+    if not 0.0 < rise <= 0.5:
+        raise ValueError(f"rise must be > 0 and at most 0.5 of the period, got {rise:g}")
+    found = _linearised(PeriodMap(law, body, scene, steps, resolution), scene, rise)
+    if not estimate:
+        return found
+    coarser = PeriodMap(law, body, scene, round(COARSER * steps), COARSER * resolution)
+    other = _linearised(coarser, scene, rise)
+    return replace(found, error=_apart(found.multipliers, other.multipliers))
+
+
+def _linearised(one: PeriodMap, scene: Scene, rise: float) -> PeriodicLinearisation:
+    start, end, defect = one.settled()
+    length, nothing = one.body.length, np.zeros((len(INPUTS), len(STATES)))
+    steps = STEP * np.repeat((1.0, 1.0 / one.period, length / one.period), 3)
+    bends = [_bend(name, STEP / length, one.period, rise) for name in INPUTS]
+
+    def differences(changes: np.ndarray, above: list[Law], below: list[Law]) -> np.ndarray:
+        both = np.concatenate([changes, -changes])
+        moved = one.swim(turned_by(start.orientation, both[:, :3]), start.twist + both[:, 3:], above + below)
+        first, second = np.split(states_after(start, end, moved), 2)
+        return (first - second).T / 2.0
+
+    straight_on = [one.law] * len(STATES)
+    monodromy = differences(np.diag(steps), straight_on, straight_on) / steps
+    more, less = ([_plus(one.law, term.scaled(sign)) for term in bends] for sign in (1.0, -1.0))
+    inputs = differences(nothing, more, less) / (STEP / length)
+    settled = one.period, start, end, defect, rise
+    return PeriodicLinearisation(one.law, one.body, scene, *settled, monodromy, inputs, np.nan)
+
+
+def states_after(start: Motion, end: Motion, moved: Motion) -> np.ndarray:
+    """(B, 9) states of the motions `moved` at the end of a period, relative to the settled one from `start` to `end`.
+
+    The course turns on with the settled motion.
+    """
+    settled = rotation(end.orientation)
+    course = settled * rotation(start.orientation).inv()
+    turn = course.inv().apply((rotation(moved.orientation) * settled.inv()).as_rotvec())
+    return np.hstack([turn, moved.twist - end.twist])
+
+
+def _bend(name: str, size: float, period: float, rise: float) -> Term:
+    """The input `name` of `size` [rad/m], in the first period."""
+    axis, _, beat = name.partition("_")
+    beats, phase = PHASES[f"_{beat}" if beat else ""]
+    ramps = Ramp(0.0, rise * period, 1.0), Ramp((1.0 - rise) * period, period, -1.0)
+    return Term(axis=axis, amplitude=(size,), period=beats * period, phase=phase, envelope=ramps)
+
+
+def _plus(law: Law, *terms: Term) -> Law:
+    return Law(*law.terms, *terms, name=law.name)
+
+
+def _index(name: str) -> int:
+    if name not in INPUTS:
+        raise ValueError(f"inputs must be of {', '.join(INPUTS)}, got {shown(name)}")
+    return INPUTS.index(name)
+
+
+def _apart(one: np.ndarray, other: np.ndarray) -> float:
+    """The greatest distance of a multiplier in `one` from the nearest in `other`."""
+    return float(np.abs(one[:, None] - other).min(axis=1).max())

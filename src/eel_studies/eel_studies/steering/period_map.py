@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The map over one period of a gait: the head's attitude and twist at its start, and at its end.
+
+A motion that has settled repeats after a period, but for its position and its heading. Without a righting moment no
+attitude is special, and its twist alone has to repeat. With one the attitude to the vertical has to repeat too.
+"""
+
+import math
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from eel_base.wording import shown
+from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.analysis.averaging_window import common_period
+from eel_dynamics.model.body import Body
+from eel_dynamics.model.scene import Scene
+from eel_dynamics.runs.batch import simulate_batch
+from eel_dynamics.runs.run import simulate
+from eel_gaits.laws.law import Law
+
+SETTLING = 12  # periods from rest, after which the settled motion is searched from
+CLOSE = 1e-9  # rad, and relative to the twist: a motion that repeats so closely has settled
+MOST_SEARCHES = 40
+SLOW = 0.2  # a step of Newton's method that leaves more of the defect needs a new derivative
+DIFFERENCE = 1e-5  # rad, and relative to the twist
+FARTHEST = 0.3  # likewise
+UP = np.array([0.0, 0.0, 1.0])
+
+
+class Motion(NamedTuple):
+    """The head at the start or the end of a period; (B, ...) for several swims."""
+
+    position: np.ndarray  # (3,) m, world; 0 at the start
+    orientation: np.ndarray  # (4,) x y z w, world from head
+    twist: np.ndarray  # (6,) rad/s, m/s, head's axes
+
+    @property
+    def up(self) -> np.ndarray:
+        """(3,) the vertical in the head's axes; (B, 3) for several swims."""
+        return rotation(self.orientation).inv().apply(UP)
+
+
+def rotation(quaternion):
+    """The `scipy` rotation of a quaternion (4,), or of several (B, 4)."""
+    from scipy.spatial.transform import Rotation
+
+    return Rotation.from_quat(quaternion)
+
+
+def turned_by(orientation: np.ndarray, by: np.ndarray) -> np.ndarray:
+    """The `orientation` (4,) turned in the world by the rotation vectors `by` (B, 3) [rad]: (B, 4)."""
+    from scipy.spatial.transform import Rotation
+
+    return (Rotation.from_rotvec(by) * rotation(orientation)).as_quat()
+
+
+class PeriodMap:
+    """One period of `law`, after all of its ramps, of a `body` in still water of the `scene`.
+
+    law, period [s]. steps: of the march in a period; resolution: points along the body. `ValueError` for a law that
+    does not repeat, and for a planar scene.
+    """
+
+    def __init__(self, law: Law, body: Body, scene: Scene, steps: int, resolution: float):
+        if scene.planar:
+            raise ValueError("scene must not be planar: there is no roll to be linearised in the plane")
+        ends = [ramp.end for term in law.terms for ramp in term.envelope]
+        settled, longest = max([0.0, *ends]), max((term.period for term in law.terms), default=0.0)
+        times = settled + np.linspace(0.0, longest, 65)
+        self.period = common_period(law, np.linspace(0.0, body.length, 11), times)
+        self._start = math.ceil(settled / self.period - 1e-9)  # periods
+        self._whole, self.law, self.body = law, law.delayed(-self._start * self.period), body
+        self.scene = replace(scene, current=(0.0, 0.0, 0.0), internal_wrench=False, ledger=False)
+        self._accuracy = Accuracy(name="period", resolution=resolution, step=self.period / steps)
+
+    def swim(self, orientations, twists, laws=None) -> Motion:
+        """The ends (B, ...) of a period that begins with `orientations` (B, 4) and `twists` (B, 6); `laws`: (B,), if
+        they are not the gait's. `SimulationStopped` where a swim cannot go on."""
+        batch = simulate_batch(
+            self.law if laws is None else laws,
+            self.period,
+            bodies=self.body,
+            scenes=self.scene,
+            accuracy=self._accuracy,
+            sample_period=self.period,
+            orientations=orientations,
+            twists=twists,
+            estimate=False,
+        )
+        for error in batch.error:
+            if error is not None:
+                raise error
+        return Motion(batch.position[:, -1], batch.orientation[:, -1], batch.twist[:, -1])
+
+    def settled(self) -> tuple[Motion, Motion, float]:
+        """Start and end of a period of the settled motion, and how far it is from repeating (as `CLOSE`).
+
+        It swims towards -x in the world, as the straight body does. `ValueError` where none is found.
+        """
+        start, slope, before = self._guess(), None, np.inf
+        for _ in range(MOST_SEARCHES):
+            end = self._one(start)
+            defect = self._defect(start, end)
+            size = float(np.abs(defect).max())
+            if size < CLOSE:
+                return *self._on_course(start, end), size
+            if slope is None or size > SLOW * before:
+                slope = self._slope(start)
+            before = size
+            start = self._improved(start, np.linalg.lstsq(slope, -defect)[0])
+        raise ValueError(
+            f"law {shown(self.law.name)} leads to no settled motion: after {MOST_SEARCHES} searches a period still "
+            f"ends {size:.1g} from where it began (rad, and relative to the twist)"
+        )
+
+    def _guess(self) -> Motion:
+        """The head after some periods from rest; in the plane if the law bends there alone."""
+        scene = replace(self.scene, planar=self._whole.in_plane)
+        periods = self._start + SETTLING
+        run = simulate(
+            self._whole, periods * self.period, scene=scene, body=self.body, accuracy=1e-3, stations=2, estimate=False
+        )
+        return Motion(np.zeros(3), run.orientation[-1], run.twist[-1])
+
+    def _one(self, start: Motion) -> Motion:
+        end = self.swim(start.orientation, start.twist)
+        return Motion(*(row[0] for row in end))
+
+    def _scale(self, start: Motion) -> np.ndarray:
+        """(6,) of the twist: its size, turning by the body's length."""
+        length = self.body.length
+        size = np.linalg.norm(start.twist * np.repeat((length, 1.0), 3)) + 1e-6 * length / self.period
+        return np.repeat((size / length, size), 3)
+
+    def _defect(self, start: Motion, end: Motion) -> np.ndarray:
+        """What does not repeat: the twist (6,) by its size, and with a righting moment the vertical (3,) too."""
+        twist = (end.twist - start.twist) / self._scale(start)
+        return np.concatenate([twist, end.up - start.up]) if self.scene.metacentric_height else twist
+
+    def _moved(self, start: Motion, change: np.ndarray) -> Motion:
+        """The start with a changed twist, relative to its size, and with a righting moment another lean [rad]."""
+        lean = np.append(change[6:], np.zeros(9 - len(change)))
+        twist = start.twist + self._scale(start) * change[:6]
+        return Motion(start.position, turned_by(start.orientation, lean[None])[0], twist)
+
+    def _slope(self, start: Motion) -> np.ndarray:
+        """The derivative of the defect by those changes, by differences to either side."""
+        changes = DIFFERENCE * np.eye(8 if self.scene.metacentric_height else 6)
+        both = [self._moved(start, sign * change) for sign in (1.0, -1.0) for change in changes]
+        ends = self.swim(np.array([each.orientation for each in both]), np.array([each.twist for each in both]))
+        pairs = zip(both, map(Motion, *ends), strict=True)
+        above, below = np.split(np.array([self._defect(first, last) for first, last in pairs]), 2)
+        return ((above - below) / (2.0 * DIFFERENCE)).T
+
+    def _improved(self, start: Motion, change: np.ndarray) -> Motion:
+        """A step of Newton's method, which goes no farther than `FARTHEST`."""
+        return self._moved(start, change / max(1.0, np.abs(change).max() / FARTHEST))
+
+    def _on_course(self, start: Motion, end: Motion) -> tuple[Motion, Motion]:
+        """Both turned about the vertical such that the way of the period leads to -x."""
+        way = end.position[:2]
+        if np.linalg.norm(way) < 1e-3 * self.body.length:  # where there is none, the head points there
+            way = -rotation(start.orientation).apply([1.0, 0.0, 0.0])[:2]
+        about = np.array([[0.0, 0.0, math.pi - math.atan2(way[1], way[0])]])
+        turn = rotation(turned_by(np.array([0.0, 0.0, 0.0, 1.0]), about)[0])
+        return tuple(
+            Motion(turn.apply(each.position), turned_by(each.orientation, about)[0], each.twist)
+            for each in (start, end)
+        )

@@ -1,0 +1,201 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Simulates a grid of parameters: `sweep`, with labelled results.
+
+    data = sweep({"period": np.linspace(0.5, 2.0, 16), "scene.friction": ["laminar", "printed"]}, gait="straight",
+                 duration=10.0, accuracy=1e-3, out="periods.nc")
+    data.mean_speed.sel({"scene.friction": "laminar"})       # an xarray of 16 speeds, with their periods
+
+It runs in threads, one per core, or on a Dask scheduler. Finished points are stored beside the output: an interrupted
+sweep resumes when it is called again. It needs `pip install 'eel_dynamics[data]'`, with a scheduler
+`'eel_dynamics[cluster]'`.
+"""
+
+import itertools
+import math
+from collections.abc import Callable
+
+import numpy as np
+from eel_base.wording import one_line, shown
+from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.analysis.measures import checked_measures, checked_point, described
+from eel_dynamics.model.arguments import checked_number
+from eel_dynamics.model.body import Body, checked_body
+from eel_dynamics.model.scene import Scene
+from eel_dynamics.runs.batch import available_cores
+from eel_dynamics.runs.sampling import checked_times, default_sample_period
+from eel_dynamics.runs.storage.tables import needed
+from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
+from eel_gaits.laws.law import Law
+
+from eel_studies.points import Point, SwimSettings, batch_of_points, label_of, point_at
+from eel_studies.progress_bar import progress_of
+from eel_studies.sweeps.cluster import workers_of
+from eel_studies.sweeps.sweep_key import key_of
+from eel_studies.sweeps.sweep_parts import Parts
+
+LONGEST_CHUNK = 64  # points
+MOST_POINTS = 1_000_000  # of a grid, which is built as a whole before the first run
+
+
+def sweep(
+    grid: dict,
+    *,
+    gait: "str | Callable[..., Law]" = "straight",
+    numbers: dict | None = None,
+    duration: float = 10.0,
+    body: Body | None = None,
+    scene: Scene | None = None,
+    accuracy="standard",
+    sample_period: float | None = None,
+    stations=51,
+    estimate: bool = True,
+    measure: "Callable | tuple[str, ...] | None" = None,
+    out=None,
+    scheduler=None,
+    workers: int | None = None,
+    chunk: int | None = None,
+    progress: "Callable[[int, int], None] | bool | None" = None,
+    overwrite: bool = False,
+    most_evaluations: float = MOST_EVALUATIONS,
+):
+    """Simulate every combination of the values in `grid` and return an `xarray.Dataset` over its parameters.
+
+    grid: name: values, with the names of `studies.points`: numbers of the gait ("period"), of scene, body or initial
+    state ("scene.friction", "body.lateral_drag", "initial.v_1"), "body" and "accuracy". gait: its name, or a function
+    of `numbers` and the grid's that returns a law. numbers: of the gait, the same for all points. duration [s], body,
+    scene, accuracy, sample_period [s], stations, estimate, most_evaluations: as in `simulate`. measure: names of
+    `analysis.measures.MEASURES` (None: all), or a function run -> {name: number}. out: .nc file for the result; its
+    parts are stored in `out`.parts until it is complete. scheduler: None for `workers` threads (None: one per core);
+    "processes" for as many processes of this machine; the address of a Dask scheduler, a client or a cluster. A script
+    that uses "processes" calls `sweep` below `if __name__ == "__main__":`. chunk: points per task. progress(done,
+    points): called after each chunk; True: a bar; None: a bar on a terminal. overwrite: replace another sweep in `out`
+    and its parts. A point that stops has NaN for its measures, `stopped` is true, and `error` is its message.
+
+    `ValueError` names the point or the measure that is invalid. `ImportError`: a package is missing. `OSError`: the
+    output cannot be written to its end. `RuntimeError`: points could not be computed; the others are kept.
+    """
+    xarray = needed("xarray", "a sweep")
+    names, axes = _checked_grid(grid)
+    checked_times(duration, default_sample_period([], duration) if sample_period is None else sample_period)
+    measure = measure if callable(measure) else checked_measures("measure", measure, bool(estimate))
+    limit = checked_number("most_evaluations", most_evaluations, "per simulated second")
+    _check_count("workers", workers)
+    _check_count("chunk", chunk)
+    base = Point(
+        -1,
+        None,
+        checked_body(body),
+        Scene() if scene is None else scene,
+        Accuracy.of(accuracy),
+    )
+    try:
+        points = [
+            point_at(index, dict(zip(names, values, strict=True)), gait, numbers or {}, base)
+            for index, values in enumerate(itertools.product(*axes))
+        ]
+    except ValueError as error:
+        raise ValueError(f"sweep {error}") from None
+    how = SwimSettings(duration, sample_period, stations, measure, bool(estimate), limit)
+    key = "" if out is None else key_of(points, how)
+    parts = Parts(out, key, len(points), overwrite)
+    complete = parts.complete()
+    if complete is not None:
+        return complete
+    done = parts.load()
+    left = [point for point in points if point.index not in done]
+    progress = progress_of(progress)
+    progress(len(done), len(points))
+    failures = []
+    if left:
+        with workers_of(scheduler, workers or available_cores()) as crew:
+            size = chunk or min(LONGEST_CHUNK, max(1, math.ceil(len(left) / (8 * max(1, crew.count)))))
+            chunks = [left[start : start + size] for start in range(0, len(left), size)]
+            for swum, result, error in crew.spread(swim_points, chunks, how):
+                if error is not None:
+                    failures.append((swum[0].index, error))
+                    continue
+                result = {index: checked_point(point) for index, point in result.items()}
+                parts.keep(result)
+                done |= result
+                progress(len(done), len(points))
+    if failures:
+        raise RuntimeError(
+            f"{len(points) - len(done)} of {len(points)} points could not be computed, the first at {failures[0][0]}: "
+            f"{one_line(repr(failures[0][1]))}; "
+            + (f"the others are kept in {parts.folder}" if out else "nothing was kept")
+        )
+    data = _dataset(xarray, names, axes, points, done, how, gait)
+    if key:
+        data.attrs["sweep"] = key
+    parts.finish(data)
+    return data
+
+
+def swim_points(points: list[Point], how: SwimSettings) -> dict[int, dict]:
+    """The task of a worker: simulate the points and measure each.
+
+    Returns the measures of each point by its index, with "error": the message of a point that stopped, else empty.
+    """
+    result = {}
+    for point in points:
+        batch = batch_of_points([point], how, threads=1)
+        (error,) = batch.error
+        result[point.index] = {"error": ""} | how.measured(batch[0]) if error is None else {"error": str(error)}
+    return result
+
+
+def _checked_grid(grid) -> tuple[list[str], list[list]]:
+    if not isinstance(grid, dict) or not grid:
+        raise ValueError(f"grid must be a dict of parameters and their values, got {shown(grid)}")
+    axes = []
+    for name, values in grid.items():
+        if isinstance(values, (str, bytes)) or not np.iterable(values):
+            raise ValueError(f"grid {shown(name)} must have a sequence of values, got {shown(values)}")
+        if hasattr(values, "__len__"):
+            check_points(f"grid {shown(name)}", len(values))
+        values = [value.item() if isinstance(value, np.generic) else value for value in values]
+        labels = [label_of(value) for value in values]
+        if not values or len(set(labels)) < len(labels):
+            raise ValueError(f"grid {shown(name)} must have one value or more, none twice, got {shown(labels)}")
+        axes.append(values)
+    check_points("grid", math.prod(len(values) for values in axes))
+    return list(grid), axes
+
+
+def _check_count(name: str, value):
+    """`ValueError` unless `value` is a whole number >= 1, or None."""
+    if value is None:
+        return
+    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < 1:
+        raise ValueError(f"{name} must be a whole number >= 1, got {shown(value)}")
+
+
+def check_points(name: str, count: int):
+    """`ValueError` for more points than a grid can have."""
+    if count > MOST_POINTS:
+        raise ValueError(f"{name} must have at most {MOST_POINTS} points, got {count}")
+
+
+def _dataset(xarray, names, axes, points, done, how, gait):
+    shape = [len(values) for values in axes]
+    measured = list(dict.fromkeys(name for index in sorted(done) for name in done[index] if name != "error"))
+    variables = {
+        name: (names, np.reshape([done[point.index].get(name, np.nan) for point in points], shape), described(name))
+        for name in measured
+    }
+    errors = [done[point.index]["error"] for point in points]
+    variables["stopped"] = names, np.reshape([bool(error) for error in errors], shape), {"long_name": "did not end"}
+    variables["error"] = names, np.reshape(np.array(errors, dtype=object), shape), {"long_name": "what stopped it"}
+    coordinates = {name: [label_of(value) for value in values] for name, values in zip(names, axes, strict=True)}
+    attributes = {
+        "gait": gait if isinstance(gait, str) else getattr(gait, "__name__", "law"),
+        "duration": float(how.duration),
+        "estimate": int(how.estimate),
+    }
+    if how.sample_period is not None:
+        attributes["sample_period"] = float(how.sample_period)
+    for name in ("body", "scene", "accuracy"):
+        values = {repr(getattr(point, name)) for point in points}
+        if len(values) == 1:
+            attributes[name] = values.pop()
+    return xarray.Dataset(variables, coordinates, attributes)

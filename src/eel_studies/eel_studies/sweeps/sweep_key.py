@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The key of a sweep: a hash of everything that the results depend on."""
+
+import hashlib
+import inspect
+import sys
+from pathlib import Path
+
+import numpy as np
+from eel_base.wording import shown
+from eel_dynamics.model.body import Body
+from eel_dynamics.model.shapes import NamedHalfAxis
+from eel_dynamics.runs.storage.plain import plain_law
+from eel_dynamics.runs.storage.tables import needed
+
+import eel_core
+import eel_dynamics
+import eel_gaits
+import eel_studies
+
+PACKAGES = (Path(eel_gaits.__file__).parent, Path(eel_dynamics.__file__).parent, Path(eel_studies.__file__).parent)
+
+
+def key_of(points, how) -> str:
+    """The key, 32 hexadecimal digits.
+
+    It is a hash of the points, their `SwimSettings`, the measure's code and closure, and this software, including its
+    compiled core. `ValueError` for a function that cannot be hashed.
+    """
+    content = hashlib.sha256(repr((how.duration, how.sample_period, how.estimate, how.most_evaluations)).encode())
+    content.update(np.asarray(how.stations, dtype=float).tobytes())
+    content.update(_sources())
+    measure = how.measure
+    content.update(_content_of_function("measure", measure) if callable(measure) else repr(measure).encode())
+    bodies = {}
+    for point in points:
+        if id(point.body) not in bodies:
+            bodies[id(point.body)] = _content_of_body(point.body)
+        content.update(bodies[id(point.body)])
+        content.update(repr((plain_law(point.law), point.scene, point.accuracy)).encode())
+        content.update(np.concatenate(point.start).tobytes())
+    return content.hexdigest()[:32]
+
+
+def _sources() -> bytes:
+    content = hashlib.sha256()
+    for package in PACKAGES:
+        for path in sorted(package.rglob("*.py")):
+            content.update(path.name.encode() + path.read_bytes())
+    content.update(Path(eel_core._core.__file__).read_bytes())
+    return content.digest()
+
+
+def _content_of_function(argument: str, function) -> bytes:
+    """The code and closure of `function`, with the whole file of its module where that can be imported.
+
+    `ValueError` names the argument whose function cannot be hashed.
+    """
+    if isinstance(function, NamedHalfAxis):
+        return repr(function).encode()
+    needed("dask", f"the key of a sweep with a {argument} of your own", "cluster")
+    from dask.tokenize import TokenizationError, tokenize
+
+    try:
+        content = tokenize(function, ensure_deterministic=True)
+    except TokenizationError:
+        raise ValueError(
+            f"{argument} must be a function that worker processes can be given, got {shown(function)}"
+        ) from None
+    home = sys.modules.get(getattr(function, "__module__", None) or "")
+    if home is not None and home.__name__ != "__main__" and getattr(home, "__file__", None):
+        content += inspect.getsource(home)
+    return content.encode()
+
+
+def _content_of_body(body: Body) -> bytes:
+    """The body's numbers, its half-axes as given, and their values at 201 points: a function may read other data."""
+    x = np.linspace(0.0, body.length, 201)
+    numbers = body.length, body.density, *body.nose, body.nose_added_mass, body.nose_drag
+    drags = body.roll_drag, body.lateral_drag, body.vertical_drag
+    content = np.concatenate((body.half_width(x), body.half_height(x), body.kinks, numbers, drags)).tobytes()
+    for name, given in body.half_axes.items():
+        content += given.tobytes() if isinstance(given, np.ndarray) else _content_of_function(f"body {name}", given)
+    return content

@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Stores the partial results of a sweep on disk beside its output, so that an interrupted sweep can be resumed."""
+
+import contextlib
+import itertools
+import json
+import math
+import os
+import warnings
+from pathlib import Path
+
+from eel_base.output_file import check_output, replacing
+from eel_base.wording import shown
+from eel_dynamics.analysis.measures import checked_point
+
+ABOUT, OURS = "sweep.json", ("sweep*.json", "part-*.json")
+
+
+class Parts:
+    """Results by index of the sweep `key` of `count` points, in the folder `out`.parts; not stored if `out` is None.
+
+    `ValueError` where `out` is invalid, or where the file or the folder is of another sweep, unless `overwrite`.
+    """
+
+    def __init__(self, out, key: str, count: int, overwrite: bool):
+        self.out, self._key, self._count = None if out is None else Path(out), key, count
+        self._overwrite = overwrite
+        self.folder = None if out is None else self.out.with_name(self.out.name + ".parts")
+        self._number = itertools.count()
+        if out is None:
+            return
+        if self.out.suffix != ".nc":
+            raise ValueError(f"out must end in .nc, got {shown(str(out))}")
+        check_output("out", self.out)
+        if self.folder.exists() and self._key_of_folder() not in (None, key):
+            if not overwrite:
+                raise ValueError(
+                    f"{self.folder} holds parts of another sweep: remove it, choose another out, or overwrite"
+                )
+            self._remove()
+
+    def complete(self):
+        """The finished sweep, or None. `ValueError` for a file that is not of this sweep, unless `overwrite`."""
+        if self.out is None or not self.out.exists():
+            return None
+        import xarray
+
+        try:
+            data = xarray.load_dataset(self.out, engine="scipy")
+        except (OSError, ValueError, TypeError):
+            data = None
+        if data is not None and data.attrs.get("sweep") == self._key:
+            return data
+        if self._overwrite:
+            return None
+        raise ValueError(f"{self.out} exists and is not of this sweep: choose another out, or overwrite")
+
+    def load(self) -> dict[int, dict]:
+        """Load the stored results, by index, and create the folder. A damaged part is removed, with a warning."""
+        done = {}
+        if self.folder is not None:
+            self.folder.mkdir(exist_ok=True)
+            with replacing(self.folder / ABOUT) as draft:
+                draft.write_text(json.dumps({"sweep": self._key, "points": self._count}))
+            for path in sorted(self.folder.glob("part-*.json")):
+                try:
+                    done |= self._part(path)
+                except ValueError as error:
+                    warnings.warn(f"{path} is damaged ({error}): its points are done again", stacklevel=3)
+                    path.unlink()
+        return done
+
+    def keep(self, result: dict[int, dict]):
+        """Write one task's results to a part, atomically."""
+        if self.folder is None:
+            return
+        told = {
+            index: {name: None if _undefined(value) else value for name, value in point.items()}
+            for index, point in result.items()
+        }
+        with replacing(self.folder / f"part-{min(result)}-{os.getpid()}-{next(self._number)}.json") as draft:
+            draft.write_text(json.dumps(told))
+
+    def finish(self, data):
+        """Write the complete sweep, and remove the parts."""
+        if self.out is None:
+            return
+        with replacing(self.out) as draft:
+            data.to_netcdf(draft, engine="scipy")
+        self._remove()
+
+    def _part(self, path: Path) -> dict[int, dict]:
+        """The points of one part. `ValueError` if `keep` cannot have written it: text, NaN, a truncated file."""
+        found = json.loads(path.read_text(encoding="utf-8"), parse_constant=_infinity)
+        if not isinstance(found, dict):
+            raise ValueError("it holds no points")
+        points = {}
+        for index, point in found.items():
+            if not index.isdecimal() or not int(index) < self._count or not isinstance(point, dict):
+                raise ValueError(f"it holds no point of this sweep at {shown(index)}")
+            points[int(index)] = checked_point(
+                {name: math.nan if value is None else value for name, value in point.items()}
+            )
+        return points
+
+    def _key_of_folder(self) -> str | None:
+        """The key of the sweep in the folder; None if there are no parts, "unknown" if the key cannot be read."""
+        if not any(self.folder.glob("part-*.json")):
+            return None
+        try:
+            return str(json.loads((self.folder / ABOUT).read_text(encoding="utf-8"))["sweep"])
+        except (FileNotFoundError, ValueError, KeyError, TypeError):
+            return "unknown"
+
+    def _remove(self):
+        """Remove the parts; other files in the folder stay."""
+        for pattern in OURS:
+            for path in self.folder.glob(pattern):
+                path.unlink()
+        with contextlib.suppress(OSError):  # it is not empty
+            self.folder.rmdir()
+
+
+def _undefined(value) -> bool:
+    return isinstance(value, float) and math.isnan(value)
+
+
+def _infinity(text: str) -> float:
+    """Parse an infinity, which JSON does not have. `ValueError` for NaN, which `keep` does not write."""
+    if text == "NaN":
+        raise ValueError("it holds NaN in place of a number")
+    return float(text)

@@ -1,0 +1,190 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Measures what the targets deliver, and how well runs judge their own error, over random swims.
+
+Swims are drawn from bends in space and in the plane, periods of 0.2 to 3 s, densities of 200 to 8,000 kg/m^3, every
+friction law, three bodies, heads at rest and moving, and durations of 1 to 16 s. The true error is the distance from a
+reference: two methods on two grids that agree to a tenth of the target, and of the estimate where any do. It is known
+as well as they agree.
+"""
+
+import os
+import warnings
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+import numpy as np
+from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.accuracy.error_estimate import ErrorEstimate
+from eel_dynamics.model.body import Body
+from eel_dynamics.model.scene import FRICTION, Scene
+from eel_dynamics.runs.companion import relative_errors
+from eel_dynamics.runs.run import simulate
+from eel_dynamics.simulation.stopping import SimulationStopped
+from eel_gaits.laws.law import Law
+from eel_gaits.laws.ramp import Ramp
+from eel_gaits.laws.term import Term
+
+from eel_studies.tradeoff.table import laid_out
+
+TARGETS = 1e-2, 1e-3, 1e-4, 1e-5, 1e-6
+# Two methods on two grids, which are trusted where they agree; finer ones where the first do not. Two grids may have
+# nearly the same error, so the pair must agree better than what it is to judge.
+REFERENCES = tuple(
+    (
+        Accuracy(name="pair", resolution=points, tolerance=tolerance),
+        Accuracy(name="adams", resolution=points + 20.0, tolerance=0.3 * tolerance, method="adams", order=6),
+    )
+    for points, tolerance in ((70.0, 1e-11), (160.0, 1e-12), (320.0, 1e-13))
+)
+AGREED = 0.1  # of the target and of the estimate, to which the references are to agree
+LEAST = 1e-11  # least error that a reference resolves
+COUNT, SEED = 500, 1
+PERIODS, DURATIONS, DENSITIES = (0.2, 3.0), (1.0, 16.0), (200.0, 8000.0)  # s, s, kg/m^3
+SPEED = 0.3  # m/s and rad/s, of heads that move at the start
+
+
+@dataclass(frozen=True)
+class Trial:
+    """One swim at a target.
+
+    error: its true error; None where the references do not agree. uncertainty: their distance. told: whether the run
+    says that it misses its target. cost: nodes times evaluations of all its runs, relative to those of the delivered
+    run alone.
+    """
+
+    swim: dict
+    error: ErrorEstimate | None
+    uncertainty: float
+    estimate: ErrorEstimate
+    told: bool
+    cost: float
+
+    @property
+    def target(self) -> float:
+        """The relative error that was asked for."""
+        return self.swim["accuracy"]
+
+    @property
+    def missed(self) -> bool:
+        """Whether the error is above the target, or not known, and the run does not say so."""
+        return not self.told and self.error is not None and self.error.worst > self.target
+
+    @property
+    def underestimated(self) -> float:
+        """The true error, less what the reference leaves uncertain, divided by its estimate."""
+        return max(self.error.worst - self.uncertainty, LEAST) / max(self.estimate.worst, LEAST)
+
+
+def drawn(rng: np.random.Generator) -> dict:
+    """Arguments of `simulate` for one swim."""
+
+    def between(low: float, high: float) -> float:
+        return float(np.exp(rng.uniform(np.log(low), np.log(high))))
+
+    body = (Body.boyer2010(), Body.kern2006(), Body.kern2006(0.3))[rng.integers(3)]
+    length, period = body.length, between(*PERIODS)
+    envelope = (Ramp(0.0, period * rng.uniform(0.5, 2.0), 1.0),)
+    amplitude = rng.uniform(0.2, 1.5, 3) / length ** np.arange(1, 4)
+    wave = {"wavelength": float(length * rng.uniform(0.7, 2.0)), "period": period, "envelope": envelope}
+    terms = [Term(axis="yaw", amplitude=tuple(amplitude.tolist()), **wave)]
+    kind, bend = rng.integers(3), (float(rng.uniform(-1.0, 1.0)) / length,)
+    if kind == 1:
+        terms.append(Term(axis="pitch", amplitude=bend, phase=0.5 * np.pi, envelope=envelope))
+    elif kind == 2:
+        terms.append(Term(axis="pitch", amplitude=bend, **wave))
+    wrench = bool(rng.integers(2))
+    water = {"density": between(*DENSITIES), "friction": str(rng.choice(FRICTION))}
+    return {
+        "law": Law(*terms, name="drawn"),
+        "duration": between(*DURATIONS),
+        "body": body,
+        "scene": Scene(**water, internal_wrench=wrench, ledger=False),
+        "accuracy": float(rng.choice(TARGETS)),
+        "twist": rng.normal(size=6) * SPEED * (rng.random() < 0.3),
+        "stations": 11,
+    }
+
+
+def trial_of(swim: dict) -> Trial | None:
+    """The trial of one swim; None for a swim that stops before its end, with its reason."""
+    try:
+        run = simulate(**swim)
+        reference, uncertainty = _reference(swim, run.error_estimate.worst)
+    except SimulationStopped:
+        return None
+    estimate = run.error_estimate
+    return Trial(
+        swim=swim,
+        error=None if reference is None else relative_errors(run, reference),
+        uncertainty=uncertainty,
+        estimate=estimate,
+        told=bool(estimate.missed(swim["accuracy"], float(run.time[-1]))),
+        cost=1.0 + estimate.cost / (run.nodes * run.evaluations),
+    )
+
+
+def _reference(swim: dict, estimate: float):
+    """A run that is trusted, and its distance from another method on another grid; None and infinity if there is none.
+
+    The first of the `REFERENCES` that agree to a tenth of the `estimate` of the error and of the target. If none do,
+    those that agree best, if to a tenth of the target.
+    """
+    reference, uncertainty = None, np.inf
+    wanted = AGREED * min(swim["accuracy"], max(estimate, 10.0 * LEAST))
+    for pair in REFERENCES:
+        first, second = (simulate(**{**swim, "accuracy": each}, estimate=False) for each in pair)
+        distance = relative_errors(first, second).worst
+        if distance < min(uncertainty, AGREED * swim["accuracy"]):
+            reference, uncertainty = first, distance
+        if uncertainty <= wanted:
+            break
+    return reference, uncertainty
+
+
+def deliver(count: int = COUNT, seed: int = SEED, say: Callable = lambda text: None) -> list[Trial]:
+    """The trials of `count` swims that `seed` draws. say(text): called with progress."""
+    say(f"what the targets deliver: {count} swims of seed {seed}")
+    swims = [drawn(np.random.default_rng([seed, index])) for index in range(count)]
+    with warnings.catch_warnings(), ThreadPoolExecutor(os.cpu_count()) as pool:
+        warnings.simplefilter("ignore")  # a trial keeps whether its run was told to miss its target
+        return [each for each in pool.map(trial_of, swims) if each is not None]
+
+
+def delivered_table(trials: list[Trial], *, markdown: bool = False) -> str:
+    """The counts of the trials as a table: a row for the motion alone, for runs with torque, and for all."""
+    groups = {
+        "position, motion alone": [each for each in trials if each.estimate.torque is None],
+        "position and torque": [each for each in trials if each.estimate.torque is not None],
+        "all": trials,
+    }
+    head = (
+        *(
+            "error of",
+            "swims",
+            "with a reference",
+            "above the target",
+            "of these not reported",
+            "reported without a reference",
+        ),
+        *("estimate below the error", "by more than 2", "error by estimate, median", "greatest"),
+        *("target by error, median", "cost, median"),
+    )
+    return laid_out(head, [_row(name, part) for name, part in groups.items()], markdown)
+
+
+def _row(name: str, trials: list[Trial]) -> list[str]:
+    known = [each for each in trials if each.error is not None]
+    above = [each for each in known if each.error.worst > each.target]
+    ratios = np.array([each.underestimated for each in known] or [np.nan])
+    below = np.array([each.target / max(each.error.worst, LEAST) for each in known] or [np.nan])
+    counts = (
+        *(len(trials), len(known), len(above), sum(each.missed for each in known)),
+        *(
+            sum(each.told for each in trials if each.error is None),
+            int(np.sum(ratios > 1.0)),
+            int(np.sum(ratios > 2.0)),
+        ),
+    )
+    figures = f"{np.median(ratios):.3f}", f"{np.max(ratios):.2f}", f"{np.median(below):.0f}"
+    return [name, *map(str, counts), *figures, f"{np.median([each.cost for each in trials] or [np.nan]):.2f}"]

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The pilot in the loop with the mechanics, in space, without a righting moment: courses, a held course, a station."""
+
+import math
+
+import numpy as np
+import pytest
+from eel_gaits.pilot.goals import Path, course, station
+from eel_gaits.pilot.pilot import News, Pilot
+from eel_gaits.pilot.settings import PilotSettings
+from eel_studies.pilot.closed_loop import swim_with
+from eel_studies.pilot.courses import figures_of, motion_alone, random_path, swim_path
+
+LIMITS = PilotSettings().limits
+
+
+def test_way_points_of_a_random_course_are_reached():
+    whole = random_path(np.random.default_rng(7), PilotSettings())
+    pilot, voyage = swim_path(Path(whole.points[:3], whole.speed))
+    assert len(voyage.misses) == 3 and max(voyage.misses) < 0.25, voyage.misses
+    assert pilot.news == [
+        News(f"way point {k + 1} of 3 reached: {miss:.3g} m from it", good=True) for k, miss in enumerate(pilot.misses)
+    ]
+    assert np.abs(voyage.roll).max() < 1.0
+
+
+def test_a_held_course_settles_in_heading_depth_and_roll():
+    """A disturbance of the roll that nobody controls grows by exp(1.45) a period."""
+    pilot = Pilot()
+    pilot.follow(course(-0.6, 0.3, 0.6, LIMITS))
+    voyage = swim_with(pilot, 32.0, twist=(0.2, 0.1, 0.0, -0.3, 0.0, 0.0))
+    last = voyage.time > 30.0
+    assert voyage.heading[last] == pytest.approx(-0.6, abs=math.radians(3.0))
+    assert voyage.position[last, 2] == pytest.approx(-0.3, abs=0.05)
+    assert voyage.roll[last] == pytest.approx(0.0, abs=0.02)
+
+
+def test_a_station_in_a_current_of_half_the_swimmers_speed_is_kept():
+    pilot = Pilot()
+    pilot.follow(station((2.0, 0.5, 0.0), 0.6, LIMITS))
+    voyage = swim_with(pilot, 60.0, scene=motion_alone(current=(0.3, 0.12, 0.0)))
+    last = voyage.time > 57.0
+    assert np.linalg.norm(voyage.position[last] - (2.0, 0.5, 0.0), axis=1).max() < 0.5
+
+
+@pytest.mark.soak
+@pytest.mark.timeout(3 * 3600)
+def test_a_hundred_random_courses():
+    found = [figures_of(seed) for seed in range(100)]
+    misses = np.concatenate([each.misses for each in found])
+    assert np.mean(misses < 0.25) > 0.97
+    assert np.mean([each.depth < 0.02 for each in found]) > 0.9
+    assert np.mean([each.heading < math.radians(3.0) for each in found]) > 0.95
+    assert np.mean([each.station < 0.5 for each in found]) > 0.95

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The command `stability`: studies hold what was simulated, the page what was measured, bad input is one line."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from eel_dynamics.model.inertia import condition_of, straight_inertia
+from eel_dynamics.model.section_data import nose_of
+from eel_studies.stability import command, condition, drift, plane
+from eel_studies.stability.explicit import inertias, treat
+from eel_studies.stability.maps import ACCURATE, INACCURATE, STOPPED, maps_of, measure
+from eel_studies.stability.report import report
+from eel_studies.stability.studies import STUDIES, Study
+
+from eel_dynamics import Body, Scene, Simulation
+from eel_gaits import falling
+
+
+def test_maps_keep_the_target_and_tell_what_stops():
+    items = {item.name: item for item in maps_of(2)}
+    coarse = replace(items.pop("method"), x=np.array([1e-2, 1.0]))
+    items.pop("preset")  # seconds for what test_accuracy shows
+    measured = {name: measure(item) for name, item in items.items()}
+    for name in ("gait", "wave", "water", "viscosity", "velocity", "body"):
+        assert measured[name].worst < 1.0 and not (measured[name].outcome == STOPPED).any(), name
+    step = measured["step"]
+    assert (step.outcome[:, 0] == ACCURATE).all()  # a hundredth of a period
+    assert set(step.outcome[:, 1]) <= {STOPPED, INACCURATE} and STOPPED in step.outcome[:, 1]  # a whole period
+    method = measured["method"] = measure(coarse)
+    poor = method.outcome == INACCURATE
+    assert poor.any() and ((method.estimate[poor] > 1.0) | method.warned[poor]).all()  # none of them silently
+    assert measured["water"].limits[1].all()  # Reynolds numbers below 1000
+    text = report(list(measured.values()))
+    assert "energy from nowhere" in text
+
+
+def test_a_page_keeps_what_is_not_the_studys():
+    study = Study("| new |", {"gait": ("a map", None)})
+    page = f"a\n{command.BEGIN.format('maps')}\nold\n{command.END.format('maps')}\nb"
+    page = command.with_study(page, "maps", study, "../images")
+    assert "| new |" in page and "![a map](../images/stability_gait.svg)" in page and "old" not in page
+    assert page.endswith("\nb") and page.startswith("a\n")
+    with pytest.raises(ValueError, match="the page must have the lines"):
+        command.with_study(page, "drift", study, "images")
+
+
+def test_a_long_run_gathers_nothing():
+    for name, (law, scene) in drift.swimmers().items():
+        found = drift.drift_of(name, law, scene, decades=2, compared=1)
+        assert (found.ledger < 1e-2).all() and (found.norm < 1e-14).all() and (found.phase < 1e-11).all(), name
+        assert (found.path[:2] < 1e-2).all() and np.isnan(found.path[2])
+        assert found.way[2] > 5.0 * found.way[1] and f"| {name} | 100 |" in drift.table([found])
+
+
+def test_a_push_out_of_the_plane_grows_by_the_model_not_by_its_numbers():
+    assert not plane.out_of_plane(np.arange(60)).any()  # exact zeros stay
+    rates = [plane.growth(accuracy=accuracy).rate for accuracy in (1e-2, 1e-4)]
+    rates.append(plane.growth(push=0.0, orientation=plane.TURNED).rate)
+    assert rates == pytest.approx([1.455] * 3, abs=0.03)  # as at 1e-6
+    assert np.argmax(np.abs(plane.growth().mode)) == 0  # roll
+    assert abs(plane.growth(reactive=False).rate) < 0.01
+    assert plane.growth(**plane.variants()["sections wider than high"]).rate < -0.1
+
+
+def test_the_condition_of_the_matrix_is_that_of_the_inertia_that_is_solved():
+    swimmer = Simulation(Body.boyer2010(), Scene(), 1e-4, law=falling())
+    at_rest = condition.inertia_at(swimmer, 0.0)  # the gait starts from the straight shape
+    table, nose_mass = swimmer.discretisation, nose_of(swimmer.body, swimmer.scene)[0]
+    straight = straight_inertia(table.grid, table.sections, nose_mass, 1.0)
+    assert at_rest == pytest.approx(straight, rel=1e-9, abs=1e-12)
+    bent = condition.inertia_at(swimmer, 5.0)
+    assert np.linalg.eigvalsh(bent).min() > 0.0 and not np.allclose(bent, at_rest, rtol=1e-2)
+    assert condition_of(bent) == pytest.approx(np.linalg.cond(bent), rel=1e-6)
+    thin, thick = (condition.of_straight(condition.needle(size), 1.0) for size in (1e-4, 1e-2))
+    assert thin == pytest.approx(1e4 * thick, rel=0.1)  # inertia in roll goes like the mass by the square of the radius
+    maps = condition.maps_of(2)
+    assert all(np.isfinite(each.value).all() and each.value.min() >= 1.0 for each in maps)
+    assert "refused: body has no inertia in roll" in condition.table(maps)
+
+
+def test_an_explicit_added_mass_blows_up_where_water_outweighs_the_body():
+    own, water = inertias(Body.boyer2010(), 1000.0, 1000.0)
+    assert own[4, 4] == pytest.approx(1.944, rel=1e-3)  # kg
+    assert water[4, 4] == pytest.approx(4.998, rel=1e-3)
+    assert np.allclose(own, own.T) and np.linalg.eigvalsh(own + water).min() > 0.0
+    assert treat(1.0).growth > 1.0 and treat(1.0).explicit > 1e6
+    heavy = treat(10.0)
+    assert heavy.growth < 1.0 and heavy.explicit == pytest.approx(1.0, abs=1e-3)
+    assert all(treat(ratio).condition < 1e4 for ratio in (1e-3, 1.0, 1e3))
+
+
+def test_bad_input_is_one_line(tmp_path, capsys):
+    assert command.main(["--points", "1", "--out", str(tmp_path)]) == 2
+    assert capsys.readouterr().err == "stability: points must be >= 2, got 1\n"
+
+
+def test_a_page_that_cannot_be_is_refused_before_the_studies(tmp_path, monkeypatch, capsys):
+    monkeypatch.setitem(STUDIES, "condition", lambda points: pytest.fail("it has begun"))
+    bare, folder = tmp_path / "bare.md", tmp_path / "pictures"
+    bare.write_text(f"{command.BEGIN.format('drift')}\n{command.END.format('drift')}\n")
+    for page, word in ((tmp_path / "nosuch.md", "nosuch.md"), (tmp_path, "it is a folder"), (bare, "condition")):
+        assert command.main(["--study", "condition", "--page", str(page), "--out", str(folder)]) == 2
+        said = capsys.readouterr().err
+        assert word in said and said.startswith("stability: ") and said.count("\n") == 1 and not folder.exists()
