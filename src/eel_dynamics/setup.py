@@ -14,7 +14,6 @@ setup(
     extras_require={
         "test": ["pytest"],
         "data": ["xarray"],
-        "pictures": ["matplotlib"],
     },
     zip_safe=False,
     maintainer="Eel simulator maintainers",
