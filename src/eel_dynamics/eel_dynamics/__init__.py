@@ -2,6 +2,7 @@
 """Dynamics of an elongated swimmer in three dimensions, after Boyer, Porez and Leroyer (2010)."""
 
 from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.analysis.settling import Unsettled
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.batch import Batch, simulate_batch
@@ -38,6 +39,7 @@ __all__ = [
     "Simulation",
     "SimulationStopped",
     "Snapshot",
+    "Unsettled",
     "gradient",
     "hydrodynamic_wrench",
     "identify",

@@ -16,9 +16,9 @@ from eel_dynamics.analysis.averaged_path import AveragedPath
 from eel_dynamics.analysis.averaging_window import AveragingWindow
 from eel_dynamics.analysis.friction_power import drag_powers
 from eel_dynamics.analysis.power_density import area, positive_power, power_density, torque_of
+from eel_dynamics.analysis.settling import FEWEST, SETTLED, change_of
 from eel_dynamics.model.section_data import GRAVITY
 
-SETTLED = 0.01  # change of the speed within the window, relative
 AT_REST = 1e-9  # of the body's length in a period: slower is round-off, and no motion
 
 
@@ -50,10 +50,21 @@ class Analysis:
         change = self._path.speed_change()
         return change / self.mean_speed if change is not None and self.moves else None
 
-    @property
+    @cached_property
     def settled(self) -> bool:
-        """Whether the gait has settled: a `speed_change` of at most 1 %."""
-        return self.speed_change is not None and self.speed_change <= SETTLED
+        """Whether the gait has settled: the mean speed of a period changes by at most 1 % within the window, and by at
+        most 1 % more from there on (`settling.change_of`). The window counts for three periods at least. At rest: yes.
+        """
+        return not self.moves or change_of(self._path.speeds(self.window.edges(FEWEST))) <= SETTLED
+
+    @property
+    def change_per_period(self) -> float | None:
+        """Change of the mean speed from the last period but one of the run to the last, relative to the latter.
+
+        Undefined in a run of one period, and at rest.
+        """
+        speeds = self._path.speeds(self.window.edges(2))
+        return float(abs(speeds[-1] - speeds[-2]) / speeds[-1]) if len(speeds) > 1 and self.moves else None
 
     @property
     def moves(self) -> bool:
@@ -97,9 +108,13 @@ class Analysis:
 
     @property
     def swimming_number(self) -> float | None:
-        """Sw = 2 pi f (A/2) l / nu (Gazzola, Argentina and Mahadevan, Nature Phys. 10 (2014)); undefined in water
-        without viscosity."""
-        size = np.pi * self.frequency * self.tail_excursion * self.run.body.length
+        """Sw = 2 pi f A l / nu, with the tail's excursion A from side to side; undefined in water without viscosity.
+
+        Gazzola, Argentina and Mahadevan, Nature Phys. 10 (2014), call A the tail beat amplitude. Their fit of animals
+        in turbulent flow, Re = 0.4 Sw, is f A / U = 1 / (0.8 pi) = 0.40: a Strouhal number, which takes A from side to
+        side. Half of that would be twice the Strouhal number of animals.
+        """
+        size = 2.0 * np.pi * self.frequency * self.tail_excursion * self.run.body.length
         return size / self.run.scene.viscosity if self.run.scene.viscosity else None
 
     @property

@@ -17,6 +17,8 @@ by t1 (1 + K2 z - K3 y) per length, which must stay positive out to the skin.
 
 import numpy as np
 
+from eel_dynamics.analysis.analysis import Analysis
+
 LEAST_SLENDERNESS = 5.0
 LEAST_REYNOLDS = 1e3
 OPEN = 0.01  # share of the energy; runs with a wanted accuracy stay far below
@@ -170,7 +172,7 @@ def cross_axes(orientation) -> tuple[np.ndarray, np.ndarray]:
 def _later_half(run) -> tuple[np.ndarray, float]:
     """Mask of the later half's samples, (T,), and the mean speed [m/s] there; 0 if it is round-off or undefined."""
     try:
-        analysis = run.analysis()
+        analysis = Analysis(run)
     except ValueError:  # no period, or too few samples
         later = run.time >= 0.5 * (run.time[0] + run.time[-1])
         time, centre = run.time[later], run.center_of_mass[later] - np.outer(run.time[later], run.scene.current)
