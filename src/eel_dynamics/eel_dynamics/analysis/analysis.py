@@ -15,7 +15,8 @@ import numpy as np
 from eel_dynamics.analysis.averaged_path import AveragedPath
 from eel_dynamics.analysis.averaging_window import AveragingWindow
 from eel_dynamics.analysis.friction_power import drag_powers
-from eel_dynamics.analysis.power_density import area, positive_power, power_density, torque_of
+from eel_dynamics.analysis.peaks import peaks, torque_size
+from eel_dynamics.analysis.power_density import area, power_density, torque_of
 from eel_dynamics.analysis.settling import FEWEST, SETTLED, change_of
 from eel_dynamics.model.section_data import GRAVITY
 
@@ -132,8 +133,8 @@ class Analysis:
 
     @property
     def peak_actuator_power(self) -> float:
-        """Greatest power [W] of all actuators together at a sample."""
-        return float(np.max(self._ledger.actuator_power[self.window.inside]))
+        """Greatest power [W] of all actuators together, between samples too (`analysis.peaks`)."""
+        return float(self._peaks(self._ledger.actuator_power, np.positive))
 
     @property
     def positive_actuator_power(self) -> float:
@@ -147,8 +148,9 @@ class Analysis:
 
     @property
     def peak_positive_actuator_power(self) -> float:
-        """Greatest integral [W] of max(-C . dK/dt, 0) over the body at a sample."""
-        return float(np.max(positive_power(self.run)[self.window.inside]))
+        """Greatest integral [W] of max(-C . dK/dt, 0) over the body, between samples too (`analysis.peaks`)."""
+        x = self.run.x
+        return float(self._peaks(power_density(self.run), lambda density: area(np.maximum(density, 0.0), x)))
 
     @property
     def wake_power(self) -> float:
@@ -197,13 +199,18 @@ class Analysis:
 
     @property
     def peak_torque(self) -> np.ndarray:
-        """Greatest magnitude [N m] of the internal torque in the window at each station, (M,)."""
-        return np.max(np.linalg.norm(torque_of(self.run)[self.window.inside], axis=2), axis=0)
+        """Greatest magnitude [N m] of the internal torque in the window at each station, (M,), between samples too
+        (`analysis.peaks`)."""
+        return self._peaks(torque_of(self.run), torque_size)
 
     @property
     def rms_torque(self) -> np.ndarray:
         """Root of the mean square [N m] of the internal torque in the window at each station, (M,)."""
         return np.sqrt(np.maximum(0.0, self.window.mean(np.sum(torque_of(self.run) ** 2, axis=2))))
+
+    def _peaks(self, values: np.ndarray, size) -> np.ndarray:
+        """The greatest `size` in the window of `values` (T, ...)."""
+        return peaks(self.run.time, values, size, self.window.start, self.window.end)[0]
 
     @property
     def _ledger(self):

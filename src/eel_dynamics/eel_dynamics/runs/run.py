@@ -16,6 +16,7 @@ from eel_dynamics.accuracy.error_estimate import ErrorEstimate
 from eel_dynamics.analysis.actuators import Actuators, actuators_of
 from eel_dynamics.analysis.analysis import Analysis
 from eel_dynamics.analysis.model_limits import warnings_of
+from eel_dynamics.analysis.peaks import greatest_torque_of
 from eel_dynamics.analysis.run_summary import describe
 from eel_dynamics.analysis.settling import Unsettled
 from eel_dynamics.model.arguments import checked_stations
@@ -126,12 +127,18 @@ class Run:
         return self.analysis().mean_speed
 
     def greatest_torque(self) -> tuple[float, float, float]:
-        """Greatest magnitude [N m] of the internal torque over the run, with its X [m] and its time [s]."""
+        """Greatest magnitude [N m] of the internal torque over the run, with its X [m] and its time [s].
+
+        It is the peak between samples and stations, to the error of the run: the swim around it is simulated anew
+        (`analysis.peaks`). The peak of a run from a bag is that of splines through its samples.
+        """
         if self.torque is None:
             raise ValueError("greatest_torque needs a run with scene internal_wrench on")
-        size = np.linalg.norm(self.torque, axis=2)
-        sample, station = np.unravel_index(np.argmax(size), size.shape)
-        return float(size[sample, station]), float(self.x[station]), float(self.time[sample])
+        return self._greatest_torque
+
+    @cached_property
+    def _greatest_torque(self) -> tuple[float, float, float]:
+        return greatest_torque_of(self)
 
     def analysis(self, periods: int | None = None) -> Analysis:
         """Speed, Strouhal number, power, efficiency and more over the last `periods` whole periods of the gait.
