@@ -15,7 +15,7 @@ DEGREE = 5
 BETWEEN = 8  # instants in a sample period, among which the greatest is looked for; a parabola then gives the peak
 AT_ONCE = 64  # sample periods that are looked at together
 AROUND = 1  # sample periods, and distances of stations, to either side of the peak that are swum anew
-FINE = 8  # instants and stations in each of these
+FINE = 24  # instants and stations in each of these
 
 
 def torque_size(torque: np.ndarray) -> np.ndarray:

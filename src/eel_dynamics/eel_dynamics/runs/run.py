@@ -32,7 +32,7 @@ from eel_dynamics.runs.motions import Motion, SmoothingEffect, effect_of_smoothi
 from eel_dynamics.runs.observed_run import fields_of_observations
 from eel_dynamics.runs.progress_monitor import ProgressMonitor
 from eel_dynamics.runs.sampling import check_memory, checked_times, default_sample_period
-from eel_dynamics.runs.settled_duration import duration_of, period_of, until_settled
+from eel_dynamics.runs.settled_duration import period_of, settling_time, until_settled
 from eel_dynamics.runs.storage.netcdf import loaded, write
 from eel_dynamics.runs.storage.run_contents import contents_of_run, fields_of_run
 from eel_dynamics.runs.storage.tables import dataset_of, frame_of
@@ -278,14 +278,14 @@ def simulate(
     as `run`.
     """
     length = checked_body(body).length
+    given = body, scene, accuracy, position, orientation, twist, most_evaluations
     if until_settled(duration):
         period_of(law, length)
-    else:
-        law = law_from(law, duration, length)
-    swimmer = SwimmerArguments.of(law, body, scene, accuracy, position, orientation, twist, most_evaluations)
-    duration = duration_of(duration, [swimmer])
+        duration = settling_time(SwimmerArguments.of(law, *given))
+    law = law_from(law, duration, length)
     sample_period = default_sample_period([law], duration) if sample_period is None else sample_period
     times = checked_times(duration, sample_period)
+    swimmer = SwimmerArguments.of(law, *given)
     x, wrench = checked_stations(stations, swimmer.body.length), swimmer.scene.internal_wrench
     check_memory(1, len(times), len(x), wrench, bool(load), runs=2 if estimate else 1)
     request = SwimRequest(swimmer, x, times, wrench, bool(load))
