@@ -4,7 +4,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-
 from eel_dynamics.analysis.peaks import peak_along
 
 RESIDUAL_LIMIT = 1e-3  # of the actuators' work

@@ -9,7 +9,7 @@ import pytest
 from eel_dynamics.simulation.energy import EnergyLedger
 
 from eel_dynamics import Body, Scene, simulate
-from eel_gaits import Law, Ramp, Term
+from eel_gaits import Law, Ramp, Term, gait
 
 pytestmark = pytest.mark.identity("Read off a run")
 PERIOD, WAVELENGTH, SAMPLE = 0.8, 1.25, 0.02  # s, m, s
@@ -59,6 +59,16 @@ def test_on_a_straight_path(measured, swum):
         }
         for name, (value, formula) in wanted.items():
             measured(f"{name} of a made-up motion against its formula", abs(value / formula - 1), INSTANTS)
+
+
+def test_swimming_number_takes_the_excursion_from_side_to_side():
+    """Re = 0.4 Sw of animals in turbulent flow (Gazzola et al. 2014), within their scatter, over two decades of Re;
+    with half of the excursion 2 Sw would stand there."""
+    for name in ("straight", "kern_fast"):
+        for period in (0.1, 10.0):
+            got = simulate(gait(name, period=period), "settled", accuracy=1e-2).analysis()
+            assert 0.8 < got.reynolds / (0.4 * got.swimming_number) < 1.6
+            assert got.swimming_number / got.reynolds == pytest.approx(2.0 * np.pi * got.strouhal)
 
 
 def test_on_a_circle(measured, swum):

@@ -36,7 +36,7 @@ def test_a_coast_down_never_settles():
 @pytest.mark.parametrize(
     "means, wanted",
     [
-        ([1.0, 1.002, 1.0], 0.002),  # to and fro
+        ([1.0, 1.002, 1.0], 0.002),  # back again
         ([1.0, 1.002, 1.004], np.inf),  # on and on
         ([1.0, 1.00002, 1.00004], 0.00004),  # below its own error
         ([0.0, 0.0, 0.0], np.inf),
@@ -131,11 +131,11 @@ def test_a_sweep_swims_each_point_until_it_has_settled():
 
 
 def test_the_commands_swim_until_it_has_settled(tmp_path, capsys):
-    assert command.main("straight --accuracy 1e-2 --duration settled".split()) == 0
+    assert command.main(["straight", "--accuracy", "1e-2", "--duration", "settled"]) == 0
     assert "gait                settled" in capsys.readouterr().out
     words = f"straight --vary period=0.5,0.6 --accuracy 1e-2 --duration 1 --out {tmp_path / 'short.nc'}"
     assert sweep_command.main(words.split()) == 0
     assert capsys.readouterr().err.splitlines()[-1] == "sweep: warning: 2 of 2 points have not settled"
     with pytest.raises(SystemExit):
-        command.main("straight --duration soon".split())
+        command.main(["straight", "--duration", "soon"])
     assert "must be a number of seconds, or settled, got 'soon'" in capsys.readouterr().err

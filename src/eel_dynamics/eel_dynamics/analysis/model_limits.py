@@ -10,9 +10,9 @@
 | the tail leads, V1(l) > 0, for a good part of the time | the wake then feeds energy in (the last term of eq. 60) |
 | the energy ledger is open by more than its tolerance | no limit of the model: steps or points are too few |
 
-The tolerance of the ledger is ten times the target, within 1e-4 and 1e-2, of all energy that passed; 1e-3 where settings
-were given one by one. A swim that ends before its first stroke may miss it: its energy is small beside that of the
-gait, for which the steps are chosen. Only a motion of round-off is not checked.
+The tolerance of the ledger is ten times the target, within 1e-4 and 1e-2, of all energy that passed, or 1e-3 where
+settings were given one by one. A swim that ends before its first stroke may miss it: its energy is small beside that of
+the gait, for which the steps are chosen. Only a motion of round-off is not checked.
 
 b is the half-width along axis 2, a the half-height along axis 3. A point y E2 + z E3 of a section moves along the body
 by t1 (1 + K2 z - K3 y) per length, which must stay positive out to the skin.
@@ -139,8 +139,8 @@ class ModelLimits:
         if passed <= floor or residual <= most * passed:
             return ""
         return (
-            f"the energy ledger is open by {residual / passed:.2g} of what passed, more than {most:.2g}: the works are no "
-            "more exact, steps or points along the body are too few"
+            f"the energy ledger is open by {residual / passed:.2g} of what passed, more than {most:.2g}: the works are "
+            "no more exact, steps or points along the body are too few"
         )
 
 

@@ -96,10 +96,9 @@ def _greatest(x: np.ndarray, sizes: np.ndarray) -> tuple[np.ndarray, np.ndarray]
     before, size, after = (np.take_along_axis(sizes, inner + step, axis=0)[0] for step in (-1, 0, 1))
     left, right = (x[inner] - x[inner - 1])[0], (x[inner + 1] - x[inner])[0]
     up, down = (size - before) / left, (after - size) / right
-    bend = np.minimum((down - up) / (left + right), -np.finfo(float).tiny)
-    slope = (up * right + down * left) / (left + right)
-    step = np.clip(-0.5 * slope / bend, -left, right)
+    bend, slope = (down - up) / (left + right), (up * right + down * left) / (left + right)
     inside = (at == inner)[0] & (bend < 0.0)
+    step = np.clip(-0.5 * slope / np.where(inside, bend, -1.0), -left, right)
     return (
         np.where(inside, size + step * (slope + step * bend), np.take_along_axis(sizes, at, axis=0)[0]),
         np.where(inside, x[inner][0] + step, x[at][0]),

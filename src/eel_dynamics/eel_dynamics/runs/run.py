@@ -122,7 +122,7 @@ class Run:
     def mean_speed(self) -> float:
         """`analysis().mean_speed` [m/s]: of the period-averaged centre of mass over the water, in the later half.
 
-        `ValueError` where the gait has no period, or the run does not hold one. An `Unsettled` warning as of `analysis`.
+        `ValueError` where the gait has no period, or the run does not hold one. It warns as `analysis` does.
         """
         return self.analysis().mean_speed
 

@@ -95,7 +95,9 @@ class Summary:
             lines.append(f"until {self._last[0] / 1e9:.1f} s: mean speed **{mean:.3f} m/s**, path {self._path:.2f} m")
         torque, x, stamp = self._peak
         if torque:
-            lines.append(f"greatest C3 of the samples so far **{torque:+.3g} N m** at X = {x:.2f} m, {stamp / 1e9:.2f} s")
+            lines.append(
+                f"greatest C3 of the samples so far **{torque:+.3g} N m** at X = {x:.2f} m, {stamp / 1e9:.2f} s"
+            )
         if self.body is not None:
             lines.append(f"body {self.body.length:.3g} m, {self.body.mass:.4g} kg")
         return "  \n".join(line for line in lines if line)
