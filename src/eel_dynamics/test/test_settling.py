@@ -119,6 +119,12 @@ def test_a_batch_swims_until_the_slowest_has_settled():
     assert batch.time[-1] == pytest.approx(max(alone)) and batch[0].analysis().settled and batch[1].analysis().settled
 
 
+def test_a_table_of_a_batch_tells_what_has_not_settled():
+    batch = simulate_batch([straight(), gait("rolling")], 20.0, **COARSE)
+    with pytest.warns(Unsettled, match="1 of 2 swimmers have not settled"):
+        assert batch.analysis().settled.tolist() == [1.0, 0.0]
+
+
 def test_a_sweep_swims_each_point_until_it_has_settled():
     data = sweep({"period": [0.5, 1.0]}, **COARSE)
     assert data.attrs["duration"] == "settled" and (data.settled == 1.0).all()

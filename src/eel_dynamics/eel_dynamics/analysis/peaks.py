@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """The greatest values of a run between its samples.
 
-With n samples in its period a wave's greatest sample lies below its peak by up to (pi / n)^2 / 2: 1 % with 20. A spline
-of degree 5 misses it by some 1e-5 where the motion is smooth, and by up to 1e-3 in a ramp, whose third derivative
-jumps. So the greatest torque, for which an error is estimated, is that of a swim anew: from the state at a sample,
-through the three sample periods around the peak of the spline.
+With 20 samples in a period the greatest sample of the torque lies below its peak by 2 % (median of all gaits; at most
+3 %). A spline of degree 5 misses it by 3e-4 (at most 4e-3: ramps and drag have kinks), with 100 samples by some 1e-5.
+So the greatest torque of all, for which the run has an error estimate, is that of a swim anew: from the state at a
+sample, through the three sample periods around the peak of the spline. The peaks of a window, of single stations, of
+joints and of power are those of splines.
 """
 
 import numpy as np

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Whether the mean over a period of the gait has settled: what it has changed by lately, and is still to change by."""
 
+import warnings
+
 import numpy as np
 
 SETTLED = 0.01  # relative: the most that a settled mean changes within the window, and the most that it goes on to
@@ -10,6 +12,13 @@ FEWEST = 3  # periods, that tell how the changes fall
 
 class Unsettled(UserWarning):
     """A mean was read of a run whose gait has not settled."""
+
+
+def tell_unsettled(settled, what: str, stacklevel: int = 3):
+    """An `Unsettled` warning with how many of `settled` (n,) are 0, not 1 or NaN; `what` they are."""
+    settled = np.asarray(settled, dtype=float)
+    if many := int(np.sum(settled == 0.0)):
+        warnings.warn(f"{many} of {settled.size} {what} have not settled", Unsettled, stacklevel=stacklevel)
 
 
 def change_of(means: np.ndarray, scale: float | None = None) -> float:

@@ -24,6 +24,7 @@ from eel_gaits.sources.sampled_law import SampledLaw
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.error_estimate import ErrorEstimate
 from eel_dynamics.analysis.measures import MEASURES, measures_of
+from eel_dynamics.analysis.settling import tell_unsettled
 from eel_dynamics.model.arguments import checked_stations
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.equality import same_fields
@@ -167,11 +168,12 @@ class Batch:
         """A `pandas.DataFrame` with a row for each swimmer: its measures, and the `error` that stopped it, or "".
 
         The measures are those of a sweep (`eel_dynamics.analysis.measures`): NaN where one is undefined, and for a
-        swimmer that stopped.
+        swimmer that stopped. An `Unsettled` warning tells how many gaits had not settled.
         """
         pandas = needed("pandas", "analysis")
         rows = [{} if error else measures_of(self[index]) for index, error in enumerate(self.error)]
         frame = pandas.DataFrame(rows, columns=list(MEASURES), index=pandas.RangeIndex(len(self), name="swimmer"))
+        tell_unsettled(frame["settled"], "swimmers")
         return frame.assign(error=[str(error or "") for error in self.error])
 
 

@@ -12,7 +12,6 @@ sweep resumes when it is called again. It needs `pip install 'eel_dynamics[data]
 
 import itertools
 import math
-import warnings
 from collections.abc import Callable
 
 import numpy as np
@@ -21,7 +20,7 @@ from eel_gaits.laws.law import Law
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.analysis.measures import checked_measures, checked_point, described
-from eel_dynamics.analysis.settling import Unsettled
+from eel_dynamics.analysis.settling import tell_unsettled
 from eel_dynamics.model.arguments import checked_number
 from eel_dynamics.model.body import Body, checked_body
 from eel_dynamics.model.scene import Scene
@@ -142,8 +141,8 @@ def sweep(
 
 def _told(data):
     """The result `data`; an `Unsettled` warning tells how many of its points have not settled."""
-    if "settled" in data and (unsettled := int((data.settled == 0).sum())):
-        warnings.warn(f"{unsettled} of {data.settled.size} points have not settled", Unsettled, stacklevel=3)
+    if "settled" in data:
+        tell_unsettled(data.settled, "points", stacklevel=4)
     return data
 
 
