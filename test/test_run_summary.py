@@ -41,12 +41,13 @@ def test_numbers():
     summary = summarise(messages())
     assert (summary.law, summary.published, summary.received) == ("straight", 3, 3)
     assert summary.path_length == pytest.approx(1.0)
-    assert (summary.torque, summary.torque_x, summary.torque_time) == pytest.approx((0.2, 0.4, 2.0))
+    peak = 0.2 * 0.25 / (0.4 * 0.6)  # of the parabola through the three stations, 0 at both ends
+    assert (summary.torque, summary.torque_x, summary.torque_time) == pytest.approx((peak, 0.5, 2.0))
     assert (summary.work, summary.wake, summary.drag, summary.kinetic) == pytest.approx((2.0, -0.2, -1.0, 0.75))
     assert summary.residual == pytest.approx(1e-4)
     assert summary.closure_force == pytest.approx(5e-15)
     assert summary.failures == []
-    assert "0.2000 N m at X = 0.400 m, t = 2.00 s" in describe(summary)
+    assert "0.2083 N m at X = 0.500 m, t = 2.00 s" in describe(summary)
 
 
 @pytest.mark.parametrize(

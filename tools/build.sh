@@ -71,6 +71,7 @@ build_packages() {
     need_compiler
     say "colcon build of the packages"
     rm -f install/stamp
+    rm -rf install/eel_*/lib/eel_*/   # executables, which may have gone, or to another package
     # With MAKEFLAGS, or colcon lets make start nothing beside while the machine has other work.
     PATH="$root/.venv/bin:$PATH" AMENT_PREFIX_PATH="$root/.venv" CMAKE_PREFIX_PATH="$root/.venv" MAKEFLAGS="-j$(nproc)" \
         .venv/bin/python .venv/bin/colcon build --base-paths src tools/tf2_msgs --symlink-install --cmake-args -Wno-unused-cli \

@@ -202,7 +202,7 @@ def _c_start(swim, swims):
     fastest, plain = int(np.argmax(swim.speed)), swims["straight"].speed
     return (
         f"After 3 s the heading is {swim.change(swim.heading, 3.0):+.0f} degrees, and the torque has reached "
-        f"{np.max(np.abs(swim.run.torque)):.1f} N m. The greatest speed is {swim.speed[fastest]:.2f} m/s, after "
+        f"{swim.run.greatest_torque()[0]:.1f} N m. The greatest speed is {swim.speed[fastest]:.2f} m/s, after "
         f"{swim.run.time[fastest]:.2f} s; `straight` has {plain[fastest]:.2f} m/s then."
     )
 

@@ -4,6 +4,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from eel_dynamics.analysis.peaks import peak_along
 
 RESIDUAL_LIMIT = 1e-3  # of the actuators' work
 CLOSURE_LIMIT = 1e-10  # of the greatest internal force and torque
@@ -20,7 +21,7 @@ class RunSummary:
     position: np.ndarray  # m, (3,) head at the end
     orientation: np.ndarray  # [-], (4,) head at the end, x y z w
     path_length: float  # m, of the head
-    torque: float  # N m, greatest internal torque
+    torque: float  # N m, greatest internal torque, between samples too
     torque_x: float  # m, where along the body
     torque_time: float  # s, when
     work: float  # J, of the actuators
@@ -66,11 +67,11 @@ def summarise(messages: dict[str, list]) -> RunSummary:
     path = float(np.linalg.norm(np.diff(head, axis=0), axis=1).sum())
     duration = seconds(poses[-1]) - seconds(poses[0])
 
-    torque = np.sqrt(sum(_field(wrenches, f"torque_{axis}") ** 2 for axis in (1, 2, 3)))
+    torques = np.stack([_field(wrenches, f"torque_{axis}") for axis in (1, 2, 3)], axis=2)
     force = np.sqrt(sum(_field(wrenches, f"force_{axis}") ** 2 for axis in (1, 2, 3)))
-    if not torque.any():
+    if not torques.any():
         raise ValueError("every internal torque that came is zero")
-    when, where = np.unravel_index(torque.argmax(), torque.shape)
+    torque, where, when = peak_along(np.array([seconds(wrench) for wrench in wrenches]), wrenches[0].x, torques)
 
     time = np.array([seconds(ledger) for ledger in ledgers])
     energy = {
@@ -86,16 +87,16 @@ def summarise(messages: dict[str, list]) -> RunSummary:
         position=head[-1],
         orientation=np.array([turn.x, turn.y, turn.z, turn.w]),
         path_length=path,
-        torque=float(torque.max()),
-        torque_x=wrenches[when].x[where],
-        torque_time=seconds(wrenches[when]),
+        torque=torque,
+        torque_x=where,
+        torque_time=when,
         work=float(_numbers(messages["/diagnostics"], "actuator_work")[-1]),
         wake=float(np.trapezoid(energy["wake_power"], time)),
         drag=float(np.trapezoid(energy["drag_power"] + energy["nose_power"], time)),
         kinetic=last.kinetic_body + last.kinetic_fluid,
         residual=float(np.abs(energy["residual"]).max()),
         closure_force=_numbers(messages["/diagnostics"], "closure_force").max() / force.max(),
-        closure_torque=_numbers(messages["/diagnostics"], "closure_torque").max() / torque.max(),
+        closure_torque=_numbers(messages["/diagnostics"], "closure_torque").max() / torque,
     )
 
 

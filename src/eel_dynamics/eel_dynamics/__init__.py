@@ -7,6 +7,7 @@
 from importlib import import_module
 
 from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.analysis.settling import Unsettled
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.batch import Batch, simulate_batch
@@ -30,6 +31,7 @@ __all__ = [
     "Simulation",
     "SimulationStopped",
     "Snapshot",
+    "Unsettled",
     "hydrodynamic_wrench",
     "simulate",
     "simulate_batch",

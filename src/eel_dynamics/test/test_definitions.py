@@ -9,7 +9,7 @@ import pytest
 from eel_dynamics.simulation.energy import EnergyLedger
 
 from eel_dynamics import Body, Scene, simulate
-from eel_gaits import Law, Ramp, Term
+from eel_gaits import Law, Ramp, Term, gait
 
 pytestmark = pytest.mark.identity("Read off a run")
 PERIOD, WAVELENGTH, SAMPLE = 0.8, 1.25, 0.02  # s, m, s
@@ -54,11 +54,21 @@ def test_on_a_straight_path(measured, swum):
             "slip U T / lambda": (got.slip, speed * PERIOD / WAVELENGTH),
             "tail's excursion A": (got.tail_excursion, excursion),
             "Strouhal number f A / U": (got.strouhal, excursion / PERIOD / speed),
-            "swimming number": (got.swimming_number, 2 * np.pi / PERIOD * excursion / 2 * length / viscosity),
+            "swimming number": (got.swimming_number, 2 * np.pi / PERIOD * excursion * length / viscosity),
             "Reynolds number U l / nu": (got.reynolds, speed * length / viscosity),
         }
         for name, (value, formula) in wanted.items():
             measured(f"{name} of a made-up motion against its formula", abs(value / formula - 1), INSTANTS)
+
+
+def test_swimming_number_takes_the_excursion_from_side_to_side():
+    """Re = 0.4 Sw of animals in turbulent flow (Gazzola et al. 2014), within their scatter, over two decades of Re;
+    with half of the excursion 2 Sw would stand there."""
+    for name in ("straight", "kern_fast"):
+        for period in (0.1, 10.0):
+            got = simulate(gait(name, period=period), "settled", accuracy=1e-2).analysis()
+            assert 0.8 < got.reynolds / (0.4 * got.swimming_number) < 1.6
+            assert got.swimming_number / got.reynolds == pytest.approx(2.0 * np.pi * got.strouhal)
 
 
 def test_on_a_circle(measured, swum):
@@ -160,7 +170,7 @@ def test_net_power_is_what_torque_and_curvature_say(measured, swum):
     measured("actuators' power, stations against the ledger", apart / swum.energy.actuator_power.max(), 1e-3)
 
 
-def exact_motors(run, joints):
+def exact_motors(run, joints, sample=SAMPLE):
     """Angles and speeds by Gauss's rule over the law itself; torque from a run whose stations are the joints."""
     ends = np.linspace(0.0, run.body.length, joints + 1)
     nodes, weights = np.polynomial.legendre.leggauss(12)
@@ -170,7 +180,7 @@ def exact_motors(run, joints):
     angle, speed = np.moveaxis(
         fields.reshape(len(run.time), 2, joints, 12, 3).transpose(1, 0, 2, 4, 3) @ weights * half, 0, 0
     )
-    again = simulate(run.law, run.time[-1], sample_period=SAMPLE, stations=middle)
+    again = simulate(run.law, run.time[-1], sample_period=sample, stations=middle)
     return SimpleNamespace(x=middle, angle=angle, speed=speed, torque=-again.torque)
 
 
@@ -181,16 +191,19 @@ def test_demand_on_motors(measured):
     pitch = Term(axis="pitch", amplitude=(0.8,), wavelength=-1.5, period=1.1, envelope=(Ramp(0.1, 0.6, 1.0),))
     run = simulate(Law(WAVE, pitch), 2.0, sample_period=SAMPLE)
     got, wanted = run.actuators(joints), exact_motors(run, joints)
+    between = exact_motors(simulate(run.law, 2.0, sample_period=SAMPLE / 8, stations=2), joints, SAMPLE / 8)
     assert got.x == pytest.approx(wanted.x)
     for name, column in (("pitch", 1), ("yaw", 2)):
         motors = getattr(got, name)
         exact = {key: getattr(wanted, key)[..., column] for key in ("angle", "speed", "torque")}
         exact["power"] = exact["torque"] * exact["speed"]
+        finer = {key: getattr(between, key)[..., column] for key in ("angle", "speed", "torque")}
+        finer["power"] = finer["torque"] * finer["speed"]
         for key, values in exact.items():
             apart = np.abs(getattr(motors, key) - values) / np.abs(values).max()
             measured(f"{key} of each joint", apart, 1e-4)
             assert motors.peak[key] == pytest.approx(
-                np.abs(values).max(axis=0), rel=1e-3, abs=1e-4 * np.abs(values).max()
+                np.abs(finer[key]).max(axis=0), rel=1e-3, abs=1e-4 * np.abs(values).max()
             )
             assert motors.rms[key] == pytest.approx(
                 np.sqrt(np.mean(values**2, axis=0)), rel=1e-3, abs=1e-4 * np.abs(values).max()

@@ -1,17 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """The model's own limits: each is found where it lies, said once, and not found where it does not."""
 
+import re
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from eel_dynamics.analysis.model_limits import ModelLimits, cross_axes
+from eel_dynamics.analysis.model_limits import ModelLimits, cross_axes, ledger_tolerance
 from eel_dynamics.ros.loop.limits_monitor import LimitsMonitor
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.term import Term
 
 from eel_dynamics import Body, Scene, Simulation, simulate
-from eel_gaits import backward, falling, still, straight
+from eel_gaits import backward, falling, gait, still, straight
 
 ROBOT = Body.boyer2010()
 OBSERVED = "curvature", "backbone", "section_orientation", "center_of_mass"  # what the monitor checks besides the tail
@@ -199,3 +201,30 @@ def test_the_node_has_no_warning_of_a_swim_from_rest_and_has_one_of_a_swim_backw
             swimmer.advance(0.05 * sample)
             monitor.add(swimmer.observe(), check=sample % 30 in {0, 1})
         assert report.logged == found
+
+
+def test_the_ledger_of_a_swim_that_has_hardly_begun_is_checked():
+    """Its energy is small beside that of the gait, for which the steps are chosen: the works are exact to 1 to 8 %."""
+    for accuracy, least in ((1e-2, 1e-2), ("standard", 1e-3)):
+        (told,) = simulate(gait("joint_wave"), 0.1, accuracy=accuracy).warnings
+        share = float(re.search(r"ledger is open by ([\d.e-]+) of what passed, more than", told)[1])
+        assert least < share < 0.1
+        assert not any("ledger" in text for text in simulate(gait("joint_wave"), 1.0, accuracy=accuracy).warnings)
+
+
+def test_the_tolerance_of_the_ledger_follows_the_target():
+    assert [ledger_tolerance(target) for target in (1e-1, 1e-3, 5e-4, 1e-4, 1e-8)] == pytest.approx(
+        [1e-2, 1e-2, 5e-3, 1e-3, 1e-4]
+    )
+    run = simulate(straight(), 1.0, accuracy=1e-4)
+    energy = run.energy
+    passed = energy.kinetic_body[-1] + energy.kinetic_fluid[-1] + energy.actuator_work[-1]
+    for share, warned in ((0.8e-3, False), (4e-3, True)):
+        told = replace(run, energy=replace(energy, residual=energy.residual + share * passed)).warnings
+        assert any("ledger is open" in text for text in told) == warned
+
+
+def test_round_off_does_not_open_the_ledger():
+    for scene in (Scene(), Scene(current=(0.3, -0.2, 0.1))):
+        twist = (0.0, 0.0, 0.0, *scene.current)
+        assert simulate(still(), 1.0, scene=scene, twist=twist).warnings == ()

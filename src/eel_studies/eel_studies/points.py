@@ -48,7 +48,7 @@ class Point(NamedTuple):
 class SwimSettings(NamedTuple):
     """How the points of a study swim: arguments of `simulate`, and what is measured of each run."""
 
-    duration: float  # s
+    duration: float | str  # s, or "settled"
     sample_period: float | None  # s
     stations: "int | np.ndarray"
     measure: "Callable | tuple[str, ...]"  # run -> {name: number}, or names of MEASURES

@@ -409,7 +409,7 @@ def test_runs_without_an_error_estimate(tmp_path, capsys):
     assert "error_position" not in bare and "mean_speed" in bare
     assert float(bare.evaluations[0]) == simulate(straight(period=0.5), estimate=False, **SHORT).evaluations
     both = sweep({"period": [0.5]}, estimate=False, measure=("mean_speed", "greatest_torque"), **SHORT)
-    assert set(both) == {"mean_speed", "greatest_torque", "stopped", "error"}
+    assert set(both) == {"mean_speed", "greatest_torque", "settled", "stopped", "error"}
     for name in ("error_position", "error_torque", "error_growth_rate"):
         with pytest.raises(ValueError, match=f"measure {name} needs the error estimate, which is off"):
             sweep({"period": [0.5]}, estimate=False, measure=(name,), **SHORT)

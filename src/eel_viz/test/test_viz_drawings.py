@@ -226,6 +226,6 @@ def test_the_summary_counts_path_speed_and_greatest_torque():
     text = summary.text()
     assert "law **falling**, swimming" in text
     assert "mean speed **0.500 m/s**, path 2.00 m" in text
-    assert "greatest C3 so far **-0.7 N m** at X = 0.50 m, 2.00 s" in text
+    assert "greatest C3 of the samples so far **-0.7 N m** at X = 0.50 m, 2.00 s" in text
     assert "accuracy standard, real-time factor 0, closure 1.23e-14" in text
     assert "warnings" not in text

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from eel_base.wording import shown
 
+from eel_dynamics.analysis.peaks import peaks
 from eel_dynamics.analysis.power_density import area, power_density
 
 
@@ -18,6 +19,7 @@ from eel_dynamics.analysis.power_density import area, power_density
 class Motors:
     """One axis (pitch or yaw) of the n joints over T samples."""
 
+    time: np.ndarray  # (T,) s
     angle: np.ndarray  # (T, n) rad
     speed: np.ndarray  # (T, n) rad/s
     torque: np.ndarray  # (T, n) N m, of the motor
@@ -34,8 +36,8 @@ class Motors:
 
     @property
     def peak(self) -> dict[str, np.ndarray]:
-        """Greatest magnitudes (n,) of angle [rad], speed [rad/s], torque [N m], power [W]."""
-        return {name: np.max(np.abs(getattr(self, name)), axis=0) for name in QUANTITIES}
+        """Greatest magnitudes (n,) of angle [rad], speed [rad/s], torque [N m], power [W], between samples too."""
+        return {name: peaks(self.time, getattr(self, name))[0] for name in QUANTITIES}
 
     @property
     def rms(self) -> dict[str, np.ndarray]:
@@ -144,7 +146,7 @@ def actuators_of(run, joints: int) -> Actuators:
     return Actuators(
         time=run.time,
         x=robot.x,
-        pitch=Motors(angle[..., 1], speed[..., 1], torque[..., 1]),
-        yaw=Motors(angle[..., 2], speed[..., 2], torque[..., 2]),
+        pitch=Motors(run.time, angle[..., 1], speed[..., 1], torque[..., 1]),
+        yaw=Motors(run.time, angle[..., 2], speed[..., 2], torque[..., 2]),
         continuous_power=area(density, run.x),
     )

@@ -15,10 +15,11 @@ import numpy as np
 from eel_dynamics.analysis.averaged_path import AveragedPath
 from eel_dynamics.analysis.averaging_window import AveragingWindow
 from eel_dynamics.analysis.friction_power import drag_powers
-from eel_dynamics.analysis.power_density import area, positive_power, power_density, torque_of
+from eel_dynamics.analysis.peaks import peaks, torque_size
+from eel_dynamics.analysis.power_density import area, power_density, torque_of
+from eel_dynamics.analysis.settling import FEWEST, SETTLED, change_of
 from eel_dynamics.model.section_data import GRAVITY
 
-SETTLED = 0.01  # change of the speed within the window, relative
 AT_REST = 1e-9  # of the body's length in a period: slower is round-off, and no motion
 
 
@@ -50,10 +51,21 @@ class Analysis:
         change = self._path.speed_change()
         return change / self.mean_speed if change is not None and self.moves else None
 
-    @property
+    @cached_property
     def settled(self) -> bool:
-        """Whether the gait has settled: a `speed_change` of at most 1 %."""
-        return self.speed_change is not None and self.speed_change <= SETTLED
+        """Whether the gait has settled: the mean speed of a period changes by at most 1 % within the window, and by at
+        most 1 % more from there on (`settling.change_of`). The window counts for three periods at least. At rest: yes.
+        """
+        return not self.moves or change_of(self._path.speeds(self.window.edges(FEWEST))) <= SETTLED
+
+    @property
+    def change_per_period(self) -> float | None:
+        """Change of the mean speed from the last period but one of the run to the last, relative to the latter.
+
+        Undefined in a run of one period, and at rest.
+        """
+        speeds = self._path.speeds(self.window.edges(2))
+        return float(abs(speeds[-1] - speeds[-2]) / speeds[-1]) if len(speeds) > 1 and self.moves else None
 
     @property
     def moves(self) -> bool:
@@ -97,9 +109,13 @@ class Analysis:
 
     @property
     def swimming_number(self) -> float | None:
-        """Sw = 2 pi f (A/2) l / nu (Gazzola, Argentina and Mahadevan, Nature Phys. 10 (2014)); undefined in water
-        without viscosity."""
-        size = np.pi * self.frequency * self.tail_excursion * self.run.body.length
+        """Sw = 2 pi f A l / nu, with the tail's excursion A from side to side; undefined in water without viscosity.
+
+        Gazzola, Argentina and Mahadevan, Nature Phys. 10 (2014), call A the tail beat amplitude. Their fit of animals
+        in turbulent flow, Re = 0.4 Sw, is f A / U = 1 / (0.8 pi) = 0.40: a Strouhal number, which takes A from side to
+        side. Half of that would be twice the Strouhal number of animals.
+        """
+        size = 2.0 * np.pi * self.frequency * self.tail_excursion * self.run.body.length
         return size / self.run.scene.viscosity if self.run.scene.viscosity else None
 
     @property
@@ -117,8 +133,8 @@ class Analysis:
 
     @property
     def peak_actuator_power(self) -> float:
-        """Greatest power [W] of all actuators together at a sample."""
-        return float(np.max(self._ledger.actuator_power[self.window.inside]))
+        """Greatest power [W] of all actuators together, between samples too (`analysis.peaks`)."""
+        return float(self._peaks(self._ledger.actuator_power, np.positive))
 
     @property
     def positive_actuator_power(self) -> float:
@@ -132,8 +148,9 @@ class Analysis:
 
     @property
     def peak_positive_actuator_power(self) -> float:
-        """Greatest integral [W] of max(-C . dK/dt, 0) over the body at a sample."""
-        return float(np.max(positive_power(self.run)[self.window.inside]))
+        """Greatest integral [W] of max(-C . dK/dt, 0) over the body, between samples too (`analysis.peaks`)."""
+        x = self.run.x
+        return float(self._peaks(power_density(self.run), lambda density: area(np.maximum(density, 0.0), x)))
 
     @property
     def wake_power(self) -> float:
@@ -182,13 +199,18 @@ class Analysis:
 
     @property
     def peak_torque(self) -> np.ndarray:
-        """Greatest magnitude [N m] of the internal torque in the window at each station, (M,)."""
-        return np.max(np.linalg.norm(torque_of(self.run)[self.window.inside], axis=2), axis=0)
+        """Greatest magnitude [N m] of the internal torque in the window at each station, (M,), between samples too
+        (`analysis.peaks`)."""
+        return self._peaks(torque_of(self.run), torque_size)
 
     @property
     def rms_torque(self) -> np.ndarray:
         """Root of the mean square [N m] of the internal torque in the window at each station, (M,)."""
         return np.sqrt(np.maximum(0.0, self.window.mean(np.sum(torque_of(self.run) ** 2, axis=2))))
+
+    def _peaks(self, values: np.ndarray, size) -> np.ndarray:
+        """The greatest `size` in the window of `values` (T, ...)."""
+        return peaks(self.run.time, values, size, self.window.start, self.window.end)[0]
 
     @property
     def _ledger(self):

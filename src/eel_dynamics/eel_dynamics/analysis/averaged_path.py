@@ -36,6 +36,10 @@ class AveragedPath:
         before, after = np.linalg.norm(self._way(start, start + period), axis=1)
         return float(abs(after - before) / period)
 
+    def speeds(self, edges: np.ndarray) -> np.ndarray:
+        """(n,) [m/s], of the averaged centre over the periods between the `edges` (n + 1,) [s]."""
+        return np.linalg.norm(self._way(edges[:-1], edges[1:]), axis=1) / np.diff(edges)
+
     def tail_excursion(self, moves: bool) -> float:
         """[m], as `Analysis.tail_excursion`. moves: whether there is a path to measure across."""
         window, period = self._window, self._window.period

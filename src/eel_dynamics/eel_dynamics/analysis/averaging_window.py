@@ -104,6 +104,12 @@ class AveragingWindow:
         """Mean over the window of samples (T, ...), the spline through them integrated."""
         return self.spline(values).integrate(self.start, self.end) / self.duration
 
+    def edges(self, fewest: int) -> np.ndarray:
+        """(n + 1,) [s], of the window's periods, or of the run's last `fewest` ones where the window has fewer."""
+        whole = math.floor((self.end - float(self.run.time[0])) / self.period + WHOLE)
+        count = min(whole, max(self.periods, fewest))
+        return np.maximum(self.end - self.period * np.arange(count, -1, -1), self.run.time[0])
+
     def rate(self, work: np.ndarray, power: np.ndarray) -> float:
         """Mean power [W] over the window of `work` (T,) [J], whose derivative is `power` (T,) [W]."""
         from scipy.interpolate import CubicHermiteSpline

@@ -4,11 +4,6 @@
 import numpy as np
 
 
-def positive_power(run) -> np.ndarray:
-    """Integral of max(-C . dK/dt, 0) over the body (T,) [W] at each sample of `run`."""
-    return area(np.maximum(power_density(run), 0.0), run.x)
-
-
 def power_density(run) -> np.ndarray:
     """Power of the actuators per length, -C . dK/dt (T, M) [W/m], at the stations of `run`. `ValueError` where these do
     not reach from nose to tail."""

@@ -24,6 +24,7 @@ from eel_gaits.sources.sampled_law import SampledLaw
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.error_estimate import ErrorEstimate
 from eel_dynamics.analysis.measures import MEASURES, measures_of
+from eel_dynamics.analysis.settling import tell_unsettled
 from eel_dynamics.model.arguments import checked_stations
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.equality import same_fields
@@ -34,6 +35,7 @@ from eel_dynamics.runs.motions import check_duration
 from eel_dynamics.runs.observed_run import fields_of_observations
 from eel_dynamics.runs.run import Run, SwimRequest
 from eel_dynamics.runs.sampling import check_memory, checked_times, default_sample_period
+from eel_dynamics.runs.settled_duration import duration_of
 from eel_dynamics.runs.storage import plain
 from eel_dynamics.runs.storage.netcdf import loaded, write
 from eel_dynamics.runs.storage.run_contents import contents_of_batch, observed_of_batch, with_warnings
@@ -166,17 +168,18 @@ class Batch:
         """A `pandas.DataFrame` with a row for each swimmer: its measures, and the `error` that stopped it, or "".
 
         The measures are those of a sweep (`eel_dynamics.analysis.measures`): NaN where one is undefined, and for a
-        swimmer that stopped.
+        swimmer that stopped. An `Unsettled` warning tells how many gaits had not settled.
         """
         pandas = needed("pandas", "analysis")
         rows = [{} if error else measures_of(self[index]) for index, error in enumerate(self.error)]
         frame = pandas.DataFrame(rows, columns=list(MEASURES), index=pandas.RangeIndex(len(self), name="swimmer"))
+        tell_unsettled(frame["settled"], "swimmers")
         return frame.assign(error=[str(error or "") for error in self.error])
 
 
 def simulate_batch(
     laws,
-    duration: float = 10.0,
+    duration: float | str = 10.0,
     *,
     bodies=None,
     scenes=None,
@@ -194,6 +197,7 @@ def simulate_batch(
 ) -> Batch:
     """Simulate B swimmers for `duration` [s] each, with samples every `sample_period` [s] from t = 0 on.
 
+    duration: "settled" for the time until the slowest of them has settled.
     sample_period: None for the default of `simulate` for the fastest of the laws. laws, bodies, scenes, accuracy: one
     for all, or a sequence of B. positions (3,) [m], orientations (4,), twists (6,): one row for all, or (B, .). All
     sequences have the same length B; one of length 1 counts as one for all. stations: number per body, or their X [m],
@@ -207,6 +211,7 @@ def simulate_batch(
     """
     accuracy = accuracy.tolist() if isinstance(accuracy, np.ndarray) else accuracy
     swimmers = swimmers_of(laws, bodies, scenes, accuracy, positions, orientations, twists, most_evaluations)
+    duration = duration_of(duration, swimmers)
     if sample_period is None:
         sample_period = default_sample_period({each.law for each in swimmers}, duration)
     times = checked_times(duration, sample_period)

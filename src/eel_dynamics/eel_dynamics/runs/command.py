@@ -29,9 +29,10 @@ from eel_dynamics.accuracy.accuracy import PRESETS
 from eel_dynamics.analysis.actuators import MOST_JOINTS
 from eel_dynamics.model.body import NAMED, Body
 from eel_dynamics.model.scene import Scene
-from eel_dynamics.runs.command_options import add_repeated, body_of, scene_of, set_numbers
+from eel_dynamics.runs.command_options import add_repeated, body_of, duration_option, scene_of, set_numbers
 from eel_dynamics.runs.run import Run, simulate
 from eel_dynamics.runs.run_command import checked_out, run_command
+from eel_dynamics.runs.settled_duration import until_settled
 from eel_dynamics.runs.storage.run_contents import contents_of_run
 from eel_dynamics.runs.storage.tables import columns_of, write_columns
 from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
@@ -117,14 +118,14 @@ def _print_smoothing(run: Run):
 class Progress:
     """Prints the progress of a run of `duration` [s] to stderr: after 1, 2, 4 ... s, and every minute."""
 
-    def __init__(self, duration: float):
-        self._duration, self._count = duration, 0
+    def __init__(self, duration: float | str):
+        self._duration, self._count = duration if until_settled(duration) else f"{duration:g} s", 0
 
     def __call__(self, reached: float, left: float):
         """Print, if due; called once a second. reached: simulation time [s]. left: remaining wall time [s]."""
         self._count += 1
         if self._count & (self._count - 1) == 0 or self._count % 60 == 0:
-            print(f"simulate: at {reached:.3g} s of {self._duration:g} s, about {left:.3g} s to go", file=sys.stderr)
+            print(f"simulate: at {reached:.3g} s of {self._duration}, about {left:.3g} s to go", file=sys.stderr)
 
 
 def _parser() -> Parser:
@@ -149,7 +150,11 @@ def _parser() -> Parser:
     )
     parser.add_argument("--scale", type=float, default=1.0, metavar="M", help="metres in the file's unit of length (1)")
     parser.add_argument("--unsmoothed", action="store_true", help="do not smooth what was measured")
-    parser.add_argument("--duration", type=float, help=f"s ({DURATION:g}; of a file: all of it)")
+    parser.add_argument(
+        "--duration",
+        type=duration_option,
+        help=f"s, or settled: until the gait has settled ({DURATION:g}; of a file: all of it)",
+    )
     parser.add_argument(
         "--accuracy", default="standard", help=f"{', '.join(PRESETS)}, or a target relative error (standard)"
     )

@@ -4,7 +4,7 @@
 A value is a number, true or false (on or off), or a word.
 """
 
-from argparse import ArgumentParser
+from argparse import ArgumentParser, ArgumentTypeError
 from collections.abc import Callable
 from dataclasses import fields
 
@@ -13,6 +13,7 @@ from eel_base.wording import shown
 
 from eel_dynamics.model.body import NAMED, Body
 from eel_dynamics.model.scene import Scene
+from eel_dynamics.runs.settled_duration import UNTIL_SETTLED, until_settled
 
 TRUTH = {"true": True, "on": True, "false": False, "off": False}
 
@@ -49,6 +50,14 @@ def set_numbers(texts: list[str], option: str = "--set") -> dict[str, float]:
         except ValueError:
             raise ValueError(f"{option} must be NAME=NUMBER, got {shown(f'{name}={text}')}") from None
     return found
+
+
+def duration_option(text: str) -> float | str:
+    """The value of --duration: seconds, or the word settled."""
+    try:
+        return text if until_settled(text) else float(text)
+    except ValueError:
+        raise ArgumentTypeError(f"must be a number of seconds, or {UNTIL_SETTLED}, got {shown(text)}") from None
 
 
 def body_of(text: str) -> Body:

@@ -16,7 +16,9 @@ from eel_dynamics.accuracy.error_estimate import ErrorEstimate
 from eel_dynamics.analysis.actuators import Actuators, actuators_of
 from eel_dynamics.analysis.analysis import Analysis
 from eel_dynamics.analysis.model_limits import warnings_of
+from eel_dynamics.analysis.peaks import greatest_torque_of
 from eel_dynamics.analysis.run_summary import describe
+from eel_dynamics.analysis.settling import Unsettled
 from eel_dynamics.model.arguments import checked_stations
 from eel_dynamics.model.body import Body, checked_body
 from eel_dynamics.model.equality import same_fields
@@ -30,6 +32,7 @@ from eel_dynamics.runs.motions import Motion, SmoothingEffect, effect_of_smoothi
 from eel_dynamics.runs.observed_run import fields_of_observations
 from eel_dynamics.runs.progress_monitor import ProgressMonitor
 from eel_dynamics.runs.sampling import check_memory, checked_times, default_sample_period
+from eel_dynamics.runs.settled_duration import period_of, settling_time, until_settled
 from eel_dynamics.runs.storage.netcdf import loaded, write
 from eel_dynamics.runs.storage.run_contents import contents_of_run, fields_of_run
 from eel_dynamics.runs.storage.tables import dataset_of, frame_of
@@ -119,24 +122,43 @@ class Run:
     def mean_speed(self) -> float:
         """`analysis().mean_speed` [m/s]: of the period-averaged centre of mass over the water, in the later half.
 
-        `ValueError` where the gait has no period, or the run does not hold one.
+        `ValueError` where the gait has no period, or the run does not hold one. It warns as `analysis` does.
         """
         return self.analysis().mean_speed
 
     def greatest_torque(self) -> tuple[float, float, float]:
-        """Greatest magnitude [N m] of the internal torque over the run, with its X [m] and its time [s]."""
+        """Greatest magnitude [N m] of the internal torque over the run, with its X [m] and its time [s].
+
+        It is the peak between samples and stations, to the error of the run: the swim around it is simulated anew
+        (`analysis.peaks`). The peak of a run from a bag is that of splines through its samples.
+        """
         if self.torque is None:
             raise ValueError("greatest_torque needs a run with scene internal_wrench on")
-        size = np.linalg.norm(self.torque, axis=2)
-        sample, station = np.unravel_index(np.argmax(size), size.shape)
-        return float(size[sample, station]), float(self.x[station]), float(self.time[sample])
+        return self._greatest_torque
+
+    @cached_property
+    def _greatest_torque(self) -> tuple[float, float, float]:
+        return greatest_torque_of(self)
 
     def analysis(self, periods: int | None = None) -> Analysis:
         """Speed, Strouhal number, power, efficiency and more over the last `periods` whole periods of the gait.
 
-        None: those of the run's later half. `ValueError` if the run is shorter than one period.
+        None: those of the run's later half. `ValueError` if the run is shorter than one period. The first analysis of
+        a run over periods in which its gait had not settled gives an `Unsettled` warning.
         """
-        return Analysis(self, periods)
+        found = Analysis(self, periods)
+        if not found.settled:
+            _ = self._told_unsettled
+        return found
+
+    @cached_property
+    def _told_unsettled(self) -> bool:
+        """Whether the reader has been told that the means are of a gait that has not settled: from the first access."""
+        change = Analysis(self).change_per_period
+        by = "one period does not tell its change" if change is None else f"it changes by {change:.1%} a period"
+        told = f"{self.law.name}: the mean speed has not settled ({by}); swim longer, or with duration='settled'"
+        warnings.warn(told, Unsettled, stacklevel=4)
+        return True
 
     def actuators(self, joints: int) -> Actuators:
         """Angles, speeds, torques and powers of a robot with `joints` motors in pitch and as many in yaw."""
@@ -225,7 +247,7 @@ class Run:
 
 def simulate(
     law: Motion,
-    duration: float = 10.0,
+    duration: float | str = 10.0,
     *,
     body: Body | None = None,
     scene: Scene | None = None,
@@ -242,6 +264,7 @@ def simulate(
 ) -> Run:
     """Simulate `law` for `duration` [s], with samples every `sample_period` [s] from t = 0 on.
 
+    duration: "settled" for a whole number of periods until the gait has settled (`runs.settled_duration`), at most 100.
     law: a `Law`, a `SampledLaw`, a function K(t, X) (`eel_gaits.sampled`), or a file (`eel_gaits.read_motion`).
     sample_period: None for 0.05 s, or a 20th of the law's shortest period where that is less. The last
     sample is at the last whole multiple of it: at 0.9 s for a duration of 1 s and a sample period of 0.3 s. stations:
@@ -255,10 +278,14 @@ def simulate(
     as `run`.
     """
     length = checked_body(body).length
+    given = body, scene, accuracy, position, orientation, twist, most_evaluations
+    if until_settled(duration):
+        period_of(law, length)
+        duration = settling_time(SwimmerArguments.of(law, *given))
     law = law_from(law, duration, length)
     sample_period = default_sample_period([law], duration) if sample_period is None else sample_period
     times = checked_times(duration, sample_period)
-    swimmer = SwimmerArguments.of(law, body, scene, accuracy, position, orientation, twist, most_evaluations)
+    swimmer = SwimmerArguments.of(law, *given)
     x, wrench = checked_stations(stations, swimmer.body.length), swimmer.scene.internal_wrench
     check_memory(1, len(times), len(x), wrench, bool(load), runs=2 if estimate else 1)
     request = SwimRequest(swimmer, x, times, wrench, bool(load))

@@ -18,11 +18,13 @@ from eel_dynamics.runs.command_options import (
     add_repeated,
     body_of,
     check_names,
+    duration_option,
     named_texts,
     set_numbers,
     varied_values,
 )
 from eel_dynamics.runs.one_line_warnings import one_line_warnings
+from eel_dynamics.runs.settled_duration import UNTIL_SETTLED
 from eel_gaits.gaits.registry import GAITS
 
 from eel_studies.sweeps.sweep import check_points, sweep
@@ -95,7 +97,9 @@ def _parser() -> Parser:
     about = "a number of the gait, scene.FIELD, body or accuracy; values a,b,c or start:end:count"
     add_repeated(parser, "--vary", "NAME=VALUES", about, required=True)
     add_repeated(parser, "--set", "NAME=VALUE", "a number of the gait")
-    parser.add_argument("--duration", type=float, default=10.0, help="s (10)")
+    parser.add_argument(
+        "--duration", type=duration_option, default=UNTIL_SETTLED, help="s, or settled: until each gait has (settled)"
+    )
     parser.add_argument("--accuracy", default="standard", help=f"{', '.join(PRESETS)}, or a target (standard)")
     parser.add_argument("--body", default="boyer2010", help=f"{', '.join(NAMED)}, or a file as for simulate")
     parser.add_argument(

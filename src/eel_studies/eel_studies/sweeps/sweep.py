@@ -18,11 +18,13 @@ import numpy as np
 from eel_base.wording import one_line, shown
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.analysis.measures import checked_measures, checked_point, described
+from eel_dynamics.analysis.settling import tell_unsettled
 from eel_dynamics.model.arguments import checked_number
 from eel_dynamics.model.body import Body, checked_body
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.batch import available_cores
 from eel_dynamics.runs.sampling import checked_times, default_sample_period
+from eel_dynamics.runs.settled_duration import UNTIL_SETTLED, period_of, until_settled
 from eel_dynamics.runs.storage.tables import needed
 from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
 from eel_gaits.laws.law import Law
@@ -42,7 +44,7 @@ def sweep(
     *,
     gait: "str | Callable[..., Law]" = "straight",
     numbers: dict | None = None,
-    duration: float = 10.0,
+    duration: float | str = UNTIL_SETTLED,
     body: Body | None = None,
     scene: Scene | None = None,
     accuracy="standard",
@@ -62,9 +64,11 @@ def sweep(
 
     grid: name: values, with the names of `studies.points`: numbers of the gait ("period"), of scene, body or initial
     state ("scene.friction", "body.lateral_drag", "initial.v_1"), "body" and "accuracy". gait: its name, or a function
-    of `numbers` and the grid's that returns a law. numbers: of the gait, the same for all points. duration [s], body,
-    scene, accuracy, sample_period [s], stations, estimate, most_evaluations: as in `simulate`. measure: names of
-    `analysis.measures.MEASURES` (None: all), or a function run -> {name: number}. out: .nc file for the result; its
+    of `numbers` and the grid's that returns a law. numbers: of the gait, the same for all points. duration: [s], or
+    "settled": each point swims until its gait has settled, as in `simulate`. body, scene, accuracy, sample_period [s],
+    stations, estimate, most_evaluations: as in `simulate`. measure: names of `analysis.measures.MEASURES` (None: all),
+    to which "settled" is added, or a function run -> {name: number}. An `Unsettled` warning tells how many points had
+    not settled. out: .nc file for the result; its
     parts are stored in `out`.parts until it is complete. scheduler: None for `workers` threads (None: one per core);
     "processes" for as many processes of this machine; the address of a Dask scheduler, a client or a cluster. A script
     that uses "processes" calls `sweep` below `if __name__ == "__main__":`. chunk: points per task. progress(done,
@@ -76,8 +80,10 @@ def sweep(
     """
     xarray = needed("xarray", "a sweep")
     names, axes = _checked_grid(grid)
-    checked_times(duration, default_sample_period([], duration) if sample_period is None else sample_period)
-    measure = measure if callable(measure) else checked_measures("measure", measure, bool(estimate))
+    if not until_settled(duration):
+        checked_times(duration, default_sample_period([], duration) if sample_period is None else sample_period)
+    if not callable(measure):
+        measure = tuple(dict.fromkeys([*checked_measures("measure", measure, bool(estimate)), "settled"]))
     limit = checked_number("most_evaluations", most_evaluations, "per simulated second")
     _check_count("workers", workers)
     _check_count("chunk", chunk)
@@ -93,6 +99,8 @@ def sweep(
             point_at(index, dict(zip(names, values, strict=True)), gait, numbers or {}, base)
             for index, values in enumerate(itertools.product(*axes))
         ]
+        for point in points if until_settled(duration) else ():
+            period_of(point.law, point.body.length)
     except ValueError as error:
         raise ValueError(f"sweep {error}") from None
     how = SwimSettings(duration, sample_period, stations, measure, bool(estimate), limit)
@@ -100,7 +108,7 @@ def sweep(
     parts = Parts(out, key, len(points), overwrite)
     complete = parts.complete()
     if complete is not None:
-        return complete
+        return _told(complete)
     done = parts.load()
     left = [point for point in points if point.index not in done]
     progress = progress_of(progress)
@@ -128,6 +136,13 @@ def sweep(
     if key:
         data.attrs["sweep"] = key
     parts.finish(data)
+    return _told(data)
+
+
+def _told(data):
+    """The result `data`; an `Unsettled` warning tells how many of its points have not settled."""
+    if "settled" in data:
+        tell_unsettled(data.settled, "points", stacklevel=4)
     return data
 
 
@@ -189,7 +204,7 @@ def _dataset(xarray, names, axes, points, done, how, gait):
     coordinates = {name: [label_of(value) for value in values] for name, values in zip(names, axes, strict=True)}
     attributes = {
         "gait": gait if isinstance(gait, str) else getattr(gait, "__name__", "law"),
-        "duration": float(how.duration),
+        "duration": how.duration if until_settled(how.duration) else float(how.duration),
         "estimate": int(how.estimate),
     }
     if how.sample_period is not None:

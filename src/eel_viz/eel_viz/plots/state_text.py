@@ -95,7 +95,9 @@ class Summary:
             lines.append(f"until {self._last[0] / 1e9:.1f} s: mean speed **{mean:.3f} m/s**, path {self._path:.2f} m")
         torque, x, stamp = self._peak
         if torque:
-            lines.append(f"greatest C3 so far **{torque:+.3g} N m** at X = {x:.2f} m, {stamp / 1e9:.2f} s")
+            lines.append(
+                f"greatest C3 of the samples so far **{torque:+.3g} N m** at X = {x:.2f} m, {stamp / 1e9:.2f} s"
+            )
         if self.body is not None:
             lines.append(f"body {self.body.length:.3g} m, {self.body.mass:.4g} kg")
         return "  \n".join(line for line in lines if line)
@@ -108,7 +110,7 @@ class Summary:
             seconds = (self._last[0] - self._first[0]) / 1e9
             shown["mean speed [m/s]"] = f"{self._path / seconds:.4f}" if seconds > 0 else "0"
             shown["path [m]"] = f"{self._path:.3f}"
-        shown["greatest C3 [N m]"] = f"{self._peak[0]:+.4f}"
+        shown["greatest C3 of the samples [N m]"] = f"{self._peak[0]:+.4f}"
         shown["warnings"] = str(len(self.values["warnings"].split("; "))) if self.values.get("warnings") else "none"
         return shown
 

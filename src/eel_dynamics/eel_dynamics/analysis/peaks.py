@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The greatest values of a run between its samples.
+
+With 20 samples in a period the greatest sample of the torque lies below its peak by 2 % (median of all gaits; at most
+3 %). A spline of degree 5 misses it by 3e-4 (at most 4e-3: ramps and drag have kinks), with 100 samples by some 1e-5.
+So the greatest torque of all, for which the run has an error estimate, is that of a swim anew: from the state at a
+sample, through the three sample periods around the peak of the spline. The peaks of a window, of single stations, of
+joints and of power are those of splines.
+"""
+
+import numpy as np
+
+from eel_dynamics.simulation.simulation import Simulation
+
+DEGREE = 5
+BETWEEN = 8  # instants in a sample period, among which the greatest is looked for; a parabola then gives the peak
+AT_ONCE = 64  # sample periods that are looked at together
+AROUND = 1  # sample periods, and distances of stations, to either side of the peak that are swum anew
+FINE = 24  # instants and stations in each of these
+
+
+def torque_size(torque: np.ndarray) -> np.ndarray:
+    """Magnitudes (...) [N m] of internal torques (..., 3)."""
+    return np.linalg.norm(torque, axis=-1)
+
+
+def peaks(x: np.ndarray, values: np.ndarray, size=np.abs, start=-np.inf, end=np.inf) -> tuple[np.ndarray, np.ndarray]:
+    """The greatest `size` of a spline through `values` (T, ...) at `x` (T,), and where: from `start` to `end`.
+
+    size: of values (n, ...); it may take away the last axis. Each other axis has a peak of its own.
+    """
+    from scipy.interpolate import make_interp_spline
+
+    if len(x) < 2:
+        return size(values)[0], np.broadcast_to(x[0], size(values)[0].shape)
+    curve = make_interp_spline(x, values, k=min(DEGREE, len(x) - 1), axis=0)
+    x = np.unique(np.clip(x, start, end))
+    found = []
+    for begin in range(0, max(1, len(x) - 1), AT_ONCE):
+        part = x[max(0, begin - 1) : begin + AT_ONCE + 2]
+        fine = np.interp(np.arange((len(part) - 1) * BETWEEN + 1) / BETWEEN, np.arange(len(part)), part)
+        found.append(_greatest(fine, size(curve(fine))))
+    sizes, places = map(np.array, zip(*found, strict=True))
+    first = np.argmax(sizes, axis=0)[None]
+    return np.take_along_axis(sizes, first, axis=0)[0], np.take_along_axis(places, first, axis=0)[0]
+
+
+def greatest_torque_of(run) -> tuple[float, float, float]:
+    """Greatest magnitude [N m] of the internal torque of `run`, with its X [m] and its time [s].
+
+    A run that was recorded elsewhere, or with a single sample, is not swum anew.
+    """
+    sizes, times = peaks(run.time, run.torque, torque_size)
+    station = int(np.argmax(sizes))
+    found = (run.time, run.x, run.torque)
+    if run.steps and len(run.time) > 1:
+        found = _swum_anew(run, times[station], station)
+    return peak_along(*found)
+
+
+def peak_along(time: np.ndarray, x: np.ndarray, torque: np.ndarray) -> tuple[float, float, float]:
+    """The greatest magnitude [N m] of splines through `torque` (T, M, 3) [N m], with its X [m] and its time [s]."""
+    sizes, times = peaks(time, torque, torque_size)
+    size, place = peaks(x, sizes)
+    return float(size), float(place), float(times[np.argmax(sizes)])
+
+
+def _swum_anew(run, time: float, station: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Times (T,) [s], stations (M,) [m] and torque (T, M, 3) [N m] around `time` [s] and a `station` of `run`."""
+    sample = int(np.searchsorted(run.time, time, side="right")) - 1
+    first, last = max(0, sample - AROUND), min(len(run.time) - 1, sample + 1 + AROUND)
+    start, end = run.time[first], run.time[last]
+    near = run.x[max(0, station - AROUND) : station + AROUND + 1]
+    x = np.linspace(near[0], near[-1], (len(near) - 1) * FINE + 1)
+    times = np.linspace(0.0, end - start, (last - first) * FINE + 1)
+    swimmer = Simulation(
+        body=run.body,
+        scene=run.scene,
+        accuracy=run.accuracy.as_it_is(),
+        stations=x,
+        position=run.position[first],
+        orientation=run.orientation[first] / np.linalg.norm(run.orientation[first]),
+        twist=run.twist[first],
+        most_evaluations=np.finfo(float).max,
+    )
+    swimmer.adopt(run.law, origin=-start)
+    out, _, _, stopped = swimmer.record(times, True, False)
+    if stopped is not None:
+        raise stopped
+    return start + times, x, out.torque
+
+
+def _greatest(x: np.ndarray, sizes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The greatest of the `sizes` (n, ...) at `x` (n,) and its place, by a parabola through it and its neighbours."""
+    at = np.argmax(sizes, axis=0)[None]
+    inner = np.clip(at, 1, max(1, len(x) - 2))
+    before, size, after = (np.take_along_axis(sizes, inner + step, axis=0)[0] for step in (-1, 0, 1))
+    left, right = (x[inner] - x[inner - 1])[0], (x[inner + 1] - x[inner])[0]
+    up, down = (size - before) / left, (after - size) / right
+    bend, slope = (down - up) / (left + right), (up * right + down * left) / (left + right)
+    inside = (at == inner)[0] & (bend < 0.0)
+    step = np.clip(-0.5 * slope / np.where(inside, bend, -1.0), -left, right)
+    return (
+        np.where(inside, size + step * (slope + step * bend), np.take_along_axis(sizes, at, axis=0)[0]),
+        np.where(inside, x[inner][0] + step, x[at][0]),
+    )

@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Whether the mean over a period of the gait has settled: what it has changed by lately, and is still to change by."""
+
+import warnings
+
+import numpy as np
+
+SETTLED = 0.01  # relative: the most that a settled mean changes within the window, and the most that it goes on to
+STEADY = 1e-4  # relative: a mean that changes by less within the window is as steady as its own error
+FEWEST = 3  # periods, that tell how the changes fall
+
+
+class Unsettled(UserWarning):
+    """A mean was read of a run whose gait has not settled."""
+
+
+def tell_unsettled(settled, what: str, stacklevel: int = 3):
+    """An `Unsettled` warning with how many of `settled` (n,) are 0, not 1 or NaN; `what` they are."""
+    settled = np.asarray(settled, dtype=float)
+    if many := int(np.sum(settled == 0.0)):
+        warnings.warn(f"{many} of {settled.size} {what} have not settled", Unsettled, stacklevel=stacklevel)
+
+
+def change_of(means: np.ndarray, scale: float | None = None) -> float:
+    """The change of the `means` (n,) over successive periods, relative to `scale` (None: the last of them).
+
+    The greater of two: from the first mean to the last, and what is left to come. The latter follows from the last two
+    changes d1, d2. Where they fall geometrically it is d2^2 / (d1 - d2); where they alternate it is d2; where they
+    have one sign and do not fall it has no bound. So a slow change is not taken for none. Infinite for fewer than three
+    means, and for a scale of 0.
+    """
+    scale = abs(means[-1]) if scale is None else scale
+    if len(means) < FEWEST or not scale > 0.0:
+        return np.inf
+    spread = float(np.ptp(means)) / scale
+    before, last = np.diff(means[-3:]) / scale
+    if spread <= STEADY:
+        return spread
+    if before * last <= 0.0:
+        left = abs(last)
+    else:
+        left = last**2 / (abs(before) - abs(last)) if abs(last) < abs(before) else np.inf
+    return max(spread, left)

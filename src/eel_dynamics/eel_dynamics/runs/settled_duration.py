@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How long a swimmer swims until its gait has settled: what the duration "settled" stands for."""
+
+import numpy as np
+from eel_base.wording import shown
+from eel_gaits.laws.law import Law
+
+from eel_dynamics.accuracy.accuracy import PRESETS, Accuracy
+from eel_dynamics.analysis.averaging_window import PLACES, common_period
+from eel_dynamics.analysis.settling import FEWEST, SETTLED, change_of
+from eel_dynamics.simulation.simulation import Simulation
+from eel_dynamics.simulation.stopping import SimulationStopped
+
+UNTIL_SETTLED = "settled"  # as a duration
+MOST_PERIODS = 100  # of a swim that does not settle
+MARGIN = 0.8  # of the change that counts as settled, for the difference between this swim and a more exact one
+NO_WORK = 1e-6  # of the kinetic energy: the net work of a period that counts as none
+
+
+def until_settled(duration) -> bool:
+    """Whether the `duration` is "settled"."""
+    return isinstance(duration, str) and duration == UNTIL_SETTLED
+
+
+def duration_of(duration, swimmers):
+    """The `duration`, or where that is "settled" the time [s] until the slowest of the `swimmers` has settled."""
+    return max(map(settling_time, swimmers)) if until_settled(duration) else duration
+
+
+def settling_time(swimmer) -> float:
+    """Time [s], in whole periods, after which the gait of `swimmer` (`SwimmerArguments`) has settled.
+
+    The later half of that time lies after the law's last ramp. Over its periods the mean speed and the mean power of
+    the actuators change by `SETTLED` at most, and as much at most is left to come (`analysis.settling.change_of`).
+    Both are exact means of a swim whose error is that of the preset draft, or the swimmer's own if that is greater.
+    `MOST_PERIODS` where the gait does not settle within them, or the swim stops. `ValueError` for a law without a
+    period.
+    """
+    law = swimmer.law
+    period, last_ramp = period_of(law, swimmer.body.length), _last_ramp(law)
+    simulation = Simulation(stations=2, **swimmer._replace(accuracy=_coarse(swimmer.accuracy))._asdict())
+    current, centre, energy, work = np.array(simulation.scene.current), [], 0.0, []
+    for count in range(MOST_PERIODS + 1):
+        try:
+            simulation.advance(count * period)
+        except SimulationStopped:
+            break
+        seen = simulation.observe(wrench=False, load=False)
+        centre.append(seen.center_of_mass - current * simulation.time)
+        if simulation.scene.ledger:
+            work.append(simulation.works[0])
+            energy = seen.energy.kinetic_body + seen.energy.kinetic_fluid
+        window = (count + 1) // 2
+        if window < FEWEST or (count - window) * period < last_ramp * (1.0 - 1e-9):
+            continue
+        speeds = np.linalg.norm(np.diff(centre[-window - 1 :], axis=0), axis=1)
+        if change_of(speeds) > MARGIN * SETTLED:
+            continue
+        works = np.diff(work[-window - 1 :])
+        if not len(works) or np.max(np.abs(works)) <= NO_WORK * energy or change_of(works) <= MARGIN * SETTLED:
+            return count * period
+    return MOST_PERIODS * period
+
+
+def period_of(law, length: float) -> float:
+    """The period [s] of `law` after its last ramp, on a body of `length` [m]. `ValueError` where there is none."""
+    if not isinstance(law, Law):
+        raise ValueError(f"duration {UNTIL_SETTLED!r} needs a Law, whose terms tell its period, got {shown(law)}")
+    later = _last_ramp(law) + np.linspace(0.0, max((term.period for term in law.waves), default=0.0), 65)
+    try:
+        return common_period(law, np.linspace(0.0, length, PLACES), later)
+    except ValueError as error:
+        raise ValueError(f"duration {UNTIL_SETTLED!r} needs a gait that repeats: {error}") from None
+
+
+def _last_ramp(law: Law) -> float:
+    return max((ramp.end for term in law.terms for ramp in term.envelope), default=0.0)
+
+
+def _coarse(accuracy):
+    """The preset draft in place of a finer target; other settings as they are."""
+    target = getattr(accuracy, "target", None)
+    return Accuracy.of("draft") if target is not None and target < PRESETS["draft"] else accuracy

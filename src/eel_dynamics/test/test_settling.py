@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Swims until the gait has settled, and what is told of means of a gait that has not."""
+
+import pickle
+import warnings
+
+import numpy as np
+import pytest
+from eel_dynamics.analysis.settling import SETTLED, change_of
+from eel_dynamics.runs import command
+from eel_dynamics.runs.settled_duration import MOST_PERIODS
+from eel_studies.sweeps import command as sweep_command
+
+from eel_dynamics import Scene, Unsettled, simulate, simulate_batch
+from eel_gaits import Law, Ramp, Term, gait, straight
+from eel_studies import sweep
+
+COARSE = {"accuracy": 1e-2, "stations": 5}
+
+
+def test_what_is_left_of_a_geometric_change_is_its_sum():
+    """The window alone has changed by less: a slow relaxation is not taken for a settled mean."""
+    count = np.arange(3)
+    for ratio in (0.5, 0.9, 0.99):
+        means = 1.0 - 0.5 * ratio ** (count + 30)
+        assert change_of(means) == pytest.approx(max(np.ptp(means), 1.0 - means[-1]) / means[-1], rel=1e-6)
+    slow = 1.0 - 0.1 * 0.99**count
+    assert np.ptp(slow) < SETTLED < change_of(slow)
+
+
+def test_a_coast_down_never_settles():
+    """A speed U / (1 + k t) falls by ever less a period, and to nothing."""
+    for begin in (10, 100, 1000):
+        assert change_of(1.0 / (begin + np.arange(6.0))) > 0.4
+
+
+@pytest.mark.parametrize(
+    "means, wanted",
+    [
+        ([1.0, 1.002, 1.0], 0.002),  # back again
+        ([1.0, 1.002, 1.004], np.inf),  # on and on
+        ([1.0, 1.00002, 1.00004], 0.00004),  # below its own error
+        ([0.0, 0.0, 0.0], np.inf),
+        ([1.0, 1.0], np.inf),  # two do not tell how the changes fall
+    ],
+)
+def test_changes_that_do_not_fall(means, wanted):
+    assert change_of(np.array(means)) == pytest.approx(wanted, rel=1e-2)
+
+
+@pytest.mark.parametrize("name, numbers", [("straight", {"period": 0.7}), ("turning", {}), ("c_start", {})])
+def test_a_settled_swim_has_the_means_of_a_long_one(name, numbers):
+    run = simulate(gait(name, **numbers), "settled", **COARSE)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", Unsettled)
+        found = run.analysis()
+    later = simulate(gait(name, **numbers), 3.0 * run.time[-1], **COARSE).analysis(2)
+    assert found.settled and found.mean_speed == pytest.approx(later.mean_speed, rel=2.0 * SETTLED)
+    assert found.actuator_power == pytest.approx(later.actuator_power, rel=2.0 * SETTLED)
+
+
+def test_it_begins_to_count_after_the_last_ramp():
+    turn = Term(axis="yaw", amplitude=(0.5,), envelope=(Ramp(25.0, 26.0, 1.0),))
+    run = simulate(Law(*straight().terms, turn), "settled", **COARSE)
+    assert run.analysis().window.start >= 26.0 - 0.05 and run.analysis().settled
+
+
+def test_a_current_does_not_count():
+    still_water = simulate(straight(), "settled", **COARSE)
+    drifting = {"scene": Scene(current=(0.3, 0.1, 0.0)), "twist": (0.0, 0.0, 0.0, 0.3, 0.1, 0.0)}  # with the water
+    assert simulate(straight(), "settled", **drifting, **COARSE).time[-1] == still_water.time[-1]
+
+
+def test_what_does_not_settle_ends_at_the_limit():
+    """A wave that ends leaves a body that coasts, ever more slowly."""
+    ends = Term(
+        axis="yaw",
+        amplitude=(2.0,),
+        wavelength=0.9,
+        period=1.0,
+        envelope=(Ramp(0.0, 1.0, 1.0), Ramp(5.0, 6.0, -1.0)),
+    )
+    run = simulate(Law(ends, name="coasting"), "settled", scene=Scene(ledger=False), **COARSE)
+    assert run.time[-1] == pytest.approx(MOST_PERIODS)
+    with pytest.warns(Unsettled, match=r"coasting: the mean speed has not settled \(it changes by [\d.]+% a period\)"):
+        run.analysis()
+
+
+@pytest.mark.parametrize(
+    "law, said",
+    [
+        (gait("still"), "duration 'settled' needs a gait that repeats: law 'still' has no periodic term"),
+        (lambda time, x: 0.0 * x, "duration 'settled' needs a Law, whose terms tell its period, got"),
+        (
+            Law(*straight().terms, Term(axis="pitch", amplitude=(0.5,), period=np.pi), name="x"),
+            "duration 'settled' needs a gait that repeats: law 'x' does not repeat within 12 periods",
+        ),
+    ],
+)
+def test_a_law_without_a_period_is_refused(law, said):
+    with pytest.raises(ValueError, match=said):
+        simulate(law, "settled")
+
+
+def test_a_reader_of_a_mean_is_told_once():
+    run = simulate(straight(), 3.0, **COARSE)
+    with pytest.warns(Unsettled, match="straight: the mean speed has not settled") as told:
+        assert run.mean_speed == run.analysis().mean_speed == run.mean_speed
+    assert len(told) == 1
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert "NOT settled" in run.summary() and run.warnings == ()
+        assert "_told_unsettled" not in pickle.loads(pickle.dumps(run)).__dict__
+
+
+def test_a_batch_swims_until_the_slowest_has_settled():
+    laws = [straight(), gait("rolling")]
+    alone = [simulate(law, "settled", **COARSE).time[-1] for law in laws]
+    batch = simulate_batch(laws, "settled", **COARSE)
+    assert batch.time[-1] == pytest.approx(max(alone)) and batch[0].analysis().settled and batch[1].analysis().settled
+
+
+def test_a_table_of_a_batch_tells_what_has_not_settled():
+    batch = simulate_batch([straight(), gait("rolling")], 20.0, **COARSE)
+    with pytest.warns(Unsettled, match="1 of 2 swimmers have not settled"):
+        assert batch.analysis().settled.tolist() == [1.0, 0.0]
+
+
+def test_a_sweep_swims_each_point_until_it_has_settled():
+    data = sweep({"period": [0.5, 1.0]}, **COARSE)
+    assert data.attrs["duration"] == "settled" and (data.settled == 1.0).all()
+    assert float(data.duration[0]) < float(data.duration[1])
+    with pytest.warns(Unsettled, match="2 of 2 points have not settled"):
+        short = sweep({"period": [0.5, 1.0]}, duration=2.0, measure="mean_speed", **COARSE)
+    assert (short.settled == 0.0).all()
+    with pytest.raises(ValueError, match="duration 'settled' needs a gait that repeats"):
+        sweep({"scene.viscosity": [1e-6]}, gait="still", **COARSE)
+
+
+def test_the_commands_swim_until_it_has_settled(tmp_path, capsys):
+    assert command.main(["straight", "--accuracy", "1e-2", "--duration", "settled"]) == 0
+    assert "gait                settled" in capsys.readouterr().out
+    words = f"straight --vary period=0.5,0.6 --accuracy 1e-2 --duration 1 --out {tmp_path / 'short.nc'}"
+    assert sweep_command.main(words.split()) == 0
+    assert capsys.readouterr().err.splitlines()[-1] == "sweep: warning: 2 of 2 points have not settled"
+    with pytest.raises(SystemExit):
+        command.main(["straight", "--duration", "soon"])
+    assert "must be a number of seconds, or settled, got 'soon'" in capsys.readouterr().err
