@@ -82,7 +82,7 @@ class DynamicsNode(ParameterNode):
         values, scene = self.parameters.values, self.parameters.scene
         simulation = simulation_from_parameters(values, scene)
         self.sample_publishers = Publishers(
-            Sample(simulation.x, scene, values, lambda: self.run_loop.output.errors.get("error_position", math.nan)),
+            Sample(simulation.x, scene, values, lambda: self.run_loop.output.head_errors),
             create=lambda kind, topic, depth: self.create_publisher(kind, topic, depth or LOSSLESS),
             destroy=self.destroy_publisher,
             known=self._count_known,
@@ -182,7 +182,7 @@ class DynamicsNode(ParameterNode):
         """The run with the parameters that have been set for the next reset. `ValueError` names what does not fit."""
         values, scene = self.parameters.next_values, self.parameters.next_scene
         simulation = simulation_from_parameters(values, scene)
-        sample = Sample(simulation.x, scene, values)
+        sample = Sample(simulation.x, scene, values, lambda: self.run_loop.output.head_errors)
         body = body_message(simulation.body, scene, simulation.x, values.section_frame)
 
         def begin():

@@ -77,6 +77,8 @@ class RunLoop:
             elif self._wait_for_turn():
                 self._next_sample()
         self.output.end()
+        if self.samples_published > self._parameters.last_sample:
+            self._report.info(f"finished at t = {self.time:g} s")
         self.obstacles.end_steps(self.time, "the run has ended")
 
     def _perform(self, action) -> tuple[float, str]:
@@ -137,10 +139,11 @@ class RunLoop:
             return
         self.time, now = self._next_time, time.monotonic()
         self.wall_time.lap(now)
-        self.laws.report_resting(self.time)
+        self.laws.report_samples(self.time)
         delay = self.pace.give_up_delay(self.samples_published, now)
         if delay > 0.0:
-            self._report.event("late", f"late by {delay:.3g} s at t = {self.time:g} s: accuracy is kept, not the pace")
+            lost = self.pace.lost(self.samples_published)
+            self._report.event("late", f"late by {lost:.3g} s at t = {self.time:g} s: accuracy is kept, not the pace")
         if self.samples_published > 0:
             self.obstacles.count_step(self.time)
         self.samples_published += 1
@@ -181,7 +184,8 @@ class RunLoop:
         """Apply `parameters`; only the changeable ones may differ."""
         self._parameters = parameters
         self.output.torque_limit = parameters.torque_limit
-        self.pace.restart(self.samples_published, time.monotonic(), parameters.real_time_factor)
+        if parameters.real_time_factor != self.pace.factor:
+            self.pace.restart(self.samples_published, time.monotonic(), parameters.real_time_factor)
 
     def set_state(self, position, orientation, twist):
         """Put the head elsewhere, as `Simulation.set_state` does."""
