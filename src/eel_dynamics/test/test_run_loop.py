@@ -12,19 +12,10 @@ from eel_dynamics.ros.loop.limits_monitor import LimitsMonitor
 from eel_dynamics.ros.loop.run_loop import RunLoop
 from eel_dynamics.ros.parameters import DynamicsParameters
 from fake_log import Log
+from fake_publishers import fake_publishers
 
 from eel_dynamics import Simulation
 from eel_gaits import falling, straight
-
-
-def fake_publishers(publish):
-    return SimpleNamespace(
-        wanted_parts=lambda: {"wrench": False, "load": False},
-        publish=publish,
-        tick=lambda nanoseconds: None,
-        audience=tuple,
-        lossless=False,
-    )
 
 
 @pytest.mark.parametrize(

@@ -11,10 +11,10 @@ from rclpy.parameter import Parameter
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.model.scene import Scene
-from eel_dynamics.ros.parameters import FRAMES, DynamicsParameters, checked, from_values
+from eel_dynamics.ros.parameters import FRAMES, ROOT, DynamicsParameters, checked, from_values
 from eel_dynamics.ros.simulation_from_parameters import body_of
 
-SCENE = "scene."
+SCENE, USE_SIM_TIME = "scene.", "use_sim_time"
 
 
 class Declaration:
@@ -27,6 +27,7 @@ class Declaration:
         values: the present DynamicsParameters.
         scene: the present Scene.
         next_values, next_scene: those of the next reset.
+        follows_clock: whether the node follows the /clock of another node.
     """
 
     def __init__(self, node, changed):
@@ -34,6 +35,8 @@ class Declaration:
         overrides = take_overrides(node)
         space = node.get_namespace()
         frames = {name: frame_in(space, getattr(DynamicsParameters, name)) for name in FRAMES}
+        if space.strip("/") and overrides.get("world_frame") != ROOT:
+            frames["root_frame"] = ROOT
         self.values: DynamicsParameters = _declared(node, DynamicsParameters, frames | overrides, "")
         self.scene: Scene = _declared(node, Scene, overrides, SCENE, AT_RESET)
         self.next_values, self.next_scene = self.values, self.scene
@@ -41,6 +44,8 @@ class Declaration:
         self._fields |= {SCENE + item.name: item for item in fields(Scene)}
         warn_of_unknown(node, overrides, self._fields)
         self._paced = self.values.real_time_factor > 0.0
+        self.follows_clock = node.get_parameter(USE_SIM_TIME).value is True
+        self._check_clock(self.values)
         node.add_pre_set_parameters_callback(self._convert)
         node.add_on_set_parameters_callback(self._check)
         node.add_post_set_parameters_callback(self._apply)
@@ -86,6 +91,9 @@ class Declaration:
             if (factor > 0.0) != self._paced:
                 now = "> 0" if self._paced else "0 (as fast as possible)"
                 raise ValueError(f"real_time_factor was {now} at the start and has to stay so, got {factor:g}")
+            self._check_clock(values)
+            if any(each.name == USE_SIM_TIME and each.value != self.follows_clock for each in parameters):
+                raise ValueError(f"use_sim_time was {str(self.follows_clock).lower()} at the start and has to stay so")
             if "body" in given:
                 body_of(values.body)
             if "accuracy" in given:
@@ -93,6 +101,14 @@ class Declaration:
         except (ValueError, OSError) as error:
             return SetParametersResult(successful=False, reason=str(error))
         return SetParametersResult(successful=True)
+
+    def _check_clock(self, values: DynamicsParameters):
+        """`ValueError` where the node is to follow /clock and to publish it."""
+        if self.follows_clock and values.clock:
+            raise ValueError(
+                "use_sim_time must be false in the node that makes /clock, got true; with clock:=false beside it, the "
+                "node follows the /clock of another node"
+            )
 
     def _checked(self, parameters) -> dict:
         """The values of this node's `parameters`, checked one by one."""

@@ -236,6 +236,13 @@ TORQUES, FORCES, RESISTANCES = (
 ENERGY_FIELDS = tuple(name for name, kind in EnergyLedger.get_fields_and_field_types().items() if kind == "double")
 
 
+def root_message(parameters: DynamicsParameters) -> TFMessage:
+    """The transform from `root_frame` to `world_frame`, which are the same place."""
+    transform = TransformStamped(child_frame_id=parameters.world_frame)
+    transform.header.frame_id = parameters.root_frame
+    return TFMessage(transforms=[transform])
+
+
 def body_message(body, scene: Scene, x: np.ndarray, section_frame: str) -> BodyGeometry:
     """The body's outline at the stations `x` (M,) [m] and at points in between, which are denser at the nose."""
     message = BodyGeometry(length=float(body.length), mass=float((scene.density or body.density) * body.volume))

@@ -29,18 +29,23 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.qos import QoSProfile
 from std_srvs.srv import SetBool, Trigger
+from tf2_msgs.msg import TFMessage
 
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.ros.clock_arbiter import ClockMonitor
+from eel_dynamics.ros.clock_subscription import ClockSubscription
 from eel_dynamics.ros.declaration import Declaration
 from eel_dynamics.ros.diagnostics import Report, Status
+from eel_dynamics.ros.loop.followed_clock import FollowedClock
 from eel_dynamics.ros.loop.law_feed import LawFeed
+from eel_dynamics.ros.loop.pacing import Pace
 from eel_dynamics.ros.loop.run_loop import NewRun, RunLoop
 from eel_dynamics.ros.messages import (
     Sample,
     body_message,
     diagnostic_array,
     parse_law,
+    root_message,
     samples_from_message,
     state_from_message,
     time_message,
@@ -93,7 +98,16 @@ class DynamicsNode(ParameterNode):
             report=report,
         )
         inbox = SampleInbox(self, lambda message, info: feed.receive_samples(message, info))
-        self.run_loop = RunLoop(simulation, values, self.sample_publishers, report, self._wait_for_body_received, inbox)
+        follows = self.parameters.follows_clock
+        self.run_loop = RunLoop(
+            simulation,
+            values,
+            self.sample_publishers,
+            report,
+            self._wait_for_body_received,
+            inbox,
+            FollowedClock if follows else Pace,
+        )
         self.status = Status(self.run_loop, report, values.accuracy)
         self._diagnostics = self.create_publisher(DiagnosticArray, "/diagnostics", 10)
         self._body = self.create_publisher(BodyGeometry, "body", latched(1))
@@ -124,6 +138,10 @@ class DynamicsNode(ParameterNode):
             report,
         )
         clock.look(values.clock)
+        follow = self.run_loop.requests.show_clock
+        followed = ClockSubscription(self, lambda shown: follow(shown, time.monotonic())) if follows else None
+        self._root = None  # publisher of /tf_static
+        self._publish_root()
         topic = self.resolve_topic_name("head_pose")
         self._arbiter = SwimmerArbiter(Identity.own(), topic, report, self.run_loop.requests.hold)
         self.create_subscription(DiagnosticArray, "/diagnostics", self._receive_diagnostics, 10)
@@ -135,6 +153,9 @@ class DynamicsNode(ParameterNode):
             if self.status.due():
                 self.publish_diagnostics()
             clock.look(self.parameters.values.clock and not self._arbiter.waits)
+            self._publish_root()
+            if followed is not None:
+                followed.look()
 
         self.create_timer(TIMER_PERIOD, on_timer, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
@@ -142,6 +163,13 @@ class DynamicsNode(ParameterNode):
         """The number of subscribers on the network that `publisher` can match."""
         wanted = self.get_subscriptions_info_by_topic(publisher.topic_name)
         return sum(matches(each.qos_profile, publisher.qos_profile) for each in wanted)
+
+    def _publish_root(self):
+        """Publish once where the swimmer's world lies in the frame that swimmers share; later subscribers get it too."""
+        values = self.parameters.values
+        if self._root is None and values.root_frame and values.publish_tf:
+            self._root = self.create_publisher(TFMessage, "/tf_static", latched(1))
+            self._root.publish(root_message(values))
 
     def publish_diagnostics(self, final: bool = False):
         """Publish /diagnostics; `final`: at the end of the run."""

@@ -53,6 +53,10 @@ class Pace:
         self._lost = lost
         return delay
 
+    def obstacle(self, sample: int) -> str:
+        """Why `sample` is not due, as text, where that is not only a matter of time: never."""
+        return ""
+
     def _steps(self, sample: int) -> float:
         return (sample - self._first) * self.period / self.factor if self.factor > 0.0 else 0.0
 
