@@ -91,7 +91,8 @@ class LawFeed:
 
 
 def refused(error: Exception, driven: bool = False) -> str:
-    """The log line for curvature samples that are refused with `error`. driven: whether samples drive the swimmer."""
+    """The log line for curvature samples that are refused with `error`. driven: whether others drive the swimmer, or
+    have run out."""
     reason = str(error).removeprefix("curvature samples ")
     if reason.startswith("time "):
         reason = f"header.stamp{reason.removeprefix('time')}"
@@ -164,7 +165,8 @@ class LawAdopter:
             self.simulation.add_samples(**samples)
         except REFUSALS as error:
             level = WARN if isinstance(error, LateSample) else ERROR
-            self._report.event("samples", refused(error, self.simulation.sampled), level)
+            driven = self.simulation.sampled or self.simulation.resting
+            self._report.event("samples", refused(error, driven), level)
         else:
             self._farthest = max(self._farthest, ahead)
             if self.simulation.time == 0.0:
