@@ -202,8 +202,8 @@ def test_a_controller_that_answers_less_than_a_sample_ahead_is_told_so():
         "controller's samples must lie at least 1/rate = 0.02 s ahead of the simulation"
     )
     assert refused == (
-        "curvature samples refused: header.stamp must lie ahead of the simulation (0.1 s), got 0.03 s: a controller that "
-        "joins a running simulation begins 1/rate or more after the stamp of the last odom"
+        "curvature samples refused: header.stamp must lie ahead of the simulation (0.1 s), got 0.03 s: send them further "
+        "ahead"
     )
 
 
@@ -241,6 +241,44 @@ def test_one_late_sample_is_a_warning_and_lost_control_is_an_error_until_it_is_b
         "curvature samples are back at t = 0.63 s",
         "finished at t = 1 s",
     ]
+
+
+class MadeUpTime:
+    """A steady clock that goes on while the run loop waits on it; it is the loop's inbox, too, without samples."""
+
+    def __init__(self, monkeypatch):
+        self.now = 100.0
+        for module in ("run_loop", "clock_ticks", "request_queue"):
+            monkeypatch.setattr(f"eel_dynamics.ros.loop.{module}.time", SimpleNamespace(monotonic=lambda: self.now))
+
+    def wait(self, seconds):
+        self.now += seconds
+        return False
+
+    def poll(self):
+        pass
+
+    set = clear = poll
+
+
+def test_a_run_that_stood_still_for_half_a_second_regains_it_within_five_and_a_half(monkeypatch):
+    time, log, shown = MadeUpTime(monkeypatch), Log(), []
+
+    def publish(snapshot, nanoseconds):
+        if nanoseconds == 500_000_000:
+            time.now += 0.5
+        shown.append(time.now - 100.0)
+
+    report, values = Report(log), DynamicsParameters(duration=8.0)
+    run = RunLoop(Simulation(accuracy=1e-2, law=falling()), values, fake_publishers(publish), report, inbox=time)
+    run.run()
+    punctual = 0.01 * np.arange(801)
+    late = np.array(shown) - punctual
+    assert np.allclose(late[:50], 0.0) and late[50] == pytest.approx(0.5) and np.allclose(late[601:], 0.0, atol=1e-9)
+    assert np.allclose(np.diff(shown)[50:599], 0.01 / 1.1)
+    warnings = [text for level, text in log.lines if level == "warning"]
+    assert warnings == ["late by 0.5 s at t = 0.5 s: accuracy is kept, not the pace"]
+    assert run.pace.lost(801) == 0.0
 
 
 def test_repeated_answers_to_sample_0_change_nothing_though_they_come_late():
