@@ -60,7 +60,12 @@ def test_the_heading_controller_turns_left_and_right_and_repeats_itself(start, s
 def swim_with_everything_on(start, swim, seconds, pace, controller=()):
     """The dynamics node with estimate, joints and all frames on, a subscriber of each, and the heading controller at
     100 Hz; what the two have said."""
-    for topic, kind in (("odom", Odometry), ("joint_states", JointState), ("swim_state", SwimState), ("/tf", TFMessage)):
+    for topic, kind in (
+        ("odom", Odometry),
+        ("joint_states", JointState),
+        ("swim_state", SwimState),
+        ("/tf", TFMessage),
+    ):
         swim.listen(topic, kind)
     settings = ("yaw_joints:=10", "pitch_joints:=10", "publish_tf_stations:=true", f"duration:={seconds}", *pace)
     node = start("dynamics", "--ros-args", *(word for each in settings for word in ("-p", each)))

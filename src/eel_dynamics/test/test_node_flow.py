@@ -275,7 +275,9 @@ def test_dying_controller_brings_the_shape_to_rest_and_may_come_back(start, clie
     steps = steps[np.diff([seconds(m) for m in after]) < 0.011].max()  # a listener that is late may miss a sample
     assert steps < 0.05 * max(np.abs(m.yaw_rate).max() for m in moved) + 2.0  # comes to rest without a jump
     assert node.output().count("have run out") == 1
-    swim.until(lambda: swim.diagnosis()[0] == 2 and "have run out" in swim.diagnosis()[1], "lost control in diagnostics")
+    swim.until(
+        lambda: swim.diagnosis()[0] == 2 and "have run out" in swim.diagnosis()[1], "lost control in diagnostics"
+    )
     end = drive()
     swim.pause(False)
     swim.until_time(end, "curvature")

@@ -86,7 +86,9 @@ def test_no_error_is_measured_where_none_is_wanted(start, client):
     heard.until(lambda: heard.diagnosis()[1] == "finished", "the last diagnostics")
     values = heard.diagnosis()[2]
     assert {name: values[name] for name in values if name.startswith("error_")} == {"error_position": "off"}
-    assert heard.received["swim_state"] and all(math.isnan(each.estimated_error) for each in heard.received["swim_state"])
+    assert heard.received["swim_state"] and all(
+        math.isnan(each.estimated_error) for each in heard.received["swim_state"]
+    )
     assert {each.pose.covariance[0] for each in heard.received["odom"]} == {-1.0}
     assert "finished at t = 1 s" in node.output(), node.output()
 

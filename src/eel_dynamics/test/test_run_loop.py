@@ -202,8 +202,8 @@ def test_a_controller_that_answers_less_than_a_sample_ahead_is_told_so():
         "controller's samples must lie at least 1/rate = 0.02 s ahead of the simulation"
     )
     assert refused == (
-        "curvature samples refused: header.stamp must lie ahead of the simulation (0.1 s), got 0.03 s: send them further "
-        "ahead"
+        "curvature samples refused: header.stamp must lie ahead of the simulation (0.1 s), got 0.03 s: send them "
+        "further ahead"
     )
 
 

@@ -165,7 +165,7 @@ class DynamicsNode(ParameterNode):
         return sum(matches(each.qos_profile, publisher.qos_profile) for each in wanted)
 
     def _publish_root(self):
-        """Publish once where the swimmer's world lies in the frame that swimmers share; later subscribers get it too."""
+        """Publish once where the world lies in the frame that swimmers share; later subscribers get it too."""
         values = self.parameters.values
         if self._root is None and values.root_frame and values.publish_tf:
             self._root = self.create_publisher(TFMessage, "/tf_static", latched(1))

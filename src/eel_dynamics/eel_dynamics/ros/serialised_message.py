@@ -23,8 +23,8 @@ class SerialisedMessage:
     """A `message` in its serialised form. Texts and lengths of sequences cannot be changed.
 
     Attributes:
-        numbers: views of its float64 numbers, by the path of a sequence or an array ("torque_1"), or of a message with float
-            fields ("pose.position", "transforms[0].transform.rotation", "" for the message itself).
+        numbers: views of its float64 numbers, by the path of a sequence or array ("torque_1"), or of a message with
+            float fields ("pose.position", "transforms[0].transform.rotation", "" for the message itself).
         stamps: views (2,) of the seconds and nanoseconds of its times.
     """
 

@@ -59,7 +59,9 @@ class FollowedClock(Pace):
         if self.due(sample) < 0.0:
             return ""
         if self._went_back_to is not None:
-            return f"waiting for /clock, which went back to t = {self._went_back_to:g} s: reset starts this run again too"
+            return (
+                f"waiting for /clock, which went back to t = {self._went_back_to:g} s: reset starts this run again too"
+            )
         if self._shown == -math.inf:
             return "waiting for /clock"
         still = time.monotonic() - self._moved > STILL

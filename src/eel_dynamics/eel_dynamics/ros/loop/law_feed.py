@@ -151,8 +151,8 @@ class LawAdopter:
         """Add one instant of a law: the arguments of `Simulation.add_samples`.
 
         An instant that is the same as one from before the start is an answer to a repeated sample 0, and changes
-        nothing. Shortly after a reset, a sample that lies more than twice as far ahead as any before was sent before the controller saw
-        the reset, and is left out.
+        nothing. Shortly after a reset, a sample that lies more than twice as far ahead as any before was sent before
+        the controller saw the reset, and is left out.
         """
         ahead = samples["time"] - self.simulation.time
         if ahead > 2.0 * self._farthest and time.monotonic() < self._echo_until:
