@@ -69,7 +69,7 @@ rclpy.shutdown()
 def test_two_eels(start, fresh_domain, tmp_path):
     listener = start(sys.executable, "-c", LISTEN)
     listener.wait_for_output("ready")
-    follow, nodes = ("-p", "clock:=false", "-p", "use_sim_time:=true"), []
+    follow, nodes = ("-p", "follow_clock:=true"), []
     for space, gait, clock in (("/right", "straight", follow), ("/left", "falling", ())):
         remap = ("--ros-args", "-r", f"__ns:={space}")
         start("gait_generator", *remap, "-p", f"gait:={gait}")

@@ -19,7 +19,7 @@ from swim_client import LIMIT, nanoseconds
 from eel_dynamics import Simulation
 from eel_gaits import falling
 
-FOLLOW = ("--ros-args", "-p", "clock:=false", "-p", "use_sim_time:=true")
+FOLLOW = ("--ros-args", "-p", "follow_clock:=true")
 
 
 class FollowingRun:
@@ -133,9 +133,8 @@ def test_a_node_follows_the_clock_of_another_node(start, client, reliability):
 
         swim.until(come, f"the sample of {newest} ns")
         assert swim.get("rate") == [100.0] and stamp() == newest, "it has had time for one more"
-    refused = swim.set(use_sim_time=False)[0], swim.set(clock=True)[0]
-    assert not any(each.successful for each in refused)
-    assert "use_sim_time was true at the start" in refused[0].reason and "makes /clock" in refused[1].reason
+    assert swim.set(clock=True)[0].successful and swim.set(use_sim_time=True)[0].successful, "it makes none anyway"
+    assert not swim.set(follow_clock=False)[0].successful
     assert swim.node.count_publishers("/clock") == 1 and "WARN" not in node.output(), node.output()
     message.clock.sec = 1
     swim.until(lambda: clock.publish(message) or stamp() == 400_000_000, "the last sample")
@@ -148,9 +147,11 @@ def test_a_node_follows_the_clock_of_another_node(start, client, reliability):
 def test_use_sim_time_is_refused_where_the_node_makes_the_clock(start_in_turn, start, client):
     (status, said), *_ = start_in_turn("eel_dynamics.ros.node", [["--ros-args", "-p", "use_sim_time:=true"]])
     assert status == 2 and said.count("\n") == 1, said
-    assert said.startswith("dynamics: use_sim_time must be false in the node that makes /clock, got true; with clock:=")
+    assert said.startswith("dynamics: use_sim_time must be false in the node that makes /clock, got true; with follow_")
     swim = client(topics=())
     start("dynamics")
     (refused,) = swim.set(use_sim_time=True)
-    assert not refused.successful and "use_sim_time was false at the start" in refused.reason
-    assert swim.set(use_sim_time=False)[0].successful
+    assert not refused.successful and "use_sim_time must be false" in refused.reason
+    assert all(swim.set(**each)[0].successful for each in ({"clock": False}, {"use_sim_time": True}))
+    (refused,) = swim.set(clock=True)
+    assert not refused.successful and "use_sim_time must be false" in refused.reason

@@ -12,7 +12,7 @@ import time
 YOUNG = 4.0  # s: discovery of an older publisher takes less
 GRACE_YOUNG = (0.0, 3.0)  # s: greater identifier, smaller identifier
 GRACE_OLD = (8.0, 12.0)
-HINT = ", and keeps a time of its own (it follows /clock with clock:=false use_sim_time:=true)"
+HINT = ", and keeps a time of its own (with follow_clock:=true it would follow /clock)"
 
 
 class ClockArbiter:

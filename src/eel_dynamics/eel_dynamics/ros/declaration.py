@@ -27,7 +27,6 @@ class Declaration:
         values: the present DynamicsParameters.
         scene: the present Scene.
         next_values, next_scene: those of the next reset.
-        follows_clock: whether the node follows the /clock of another node.
     """
 
     def __init__(self, node, changed):
@@ -44,8 +43,8 @@ class Declaration:
         self._fields |= {SCENE + item.name: item for item in fields(Scene)}
         warn_of_unknown(node, overrides, self._fields)
         self._paced = self.values.real_time_factor > 0.0
-        self.follows_clock = node.get_parameter(USE_SIM_TIME).value is True
-        self._check_clock(self.values)
+        self._node = node
+        self._check_clock(self.values, node.get_parameter(USE_SIM_TIME).value)
         node.add_pre_set_parameters_callback(self._convert)
         node.add_on_set_parameters_callback(self._check)
         node.add_post_set_parameters_callback(self._apply)
@@ -91,9 +90,8 @@ class Declaration:
             if (factor > 0.0) != self._paced:
                 now = "> 0" if self._paced else "0 (as fast as possible)"
                 raise ValueError(f"real_time_factor was {now} at the start and has to stay so, got {factor:g}")
-            self._check_clock(values)
-            if any(each.name == USE_SIM_TIME and each.value != self.follows_clock for each in parameters):
-                raise ValueError(f"use_sim_time was {str(self.follows_clock).lower()} at the start and has to stay so")
+            simulated = [each.value for each in parameters if each.name == USE_SIM_TIME]
+            self._check_clock(values, (*simulated, self._node.get_parameter(USE_SIM_TIME).value)[0])
             if "body" in given:
                 body_of(values.body)
             if "accuracy" in given:
@@ -102,12 +100,12 @@ class Declaration:
             return SetParametersResult(successful=False, reason=str(error))
         return SetParametersResult(successful=True)
 
-    def _check_clock(self, values: DynamicsParameters):
-        """`ValueError` where the node is to follow /clock and to publish it."""
-        if self.follows_clock and values.clock:
+    def _check_clock(self, values: DynamicsParameters, use_sim_time: bool):
+        """`ValueError` where the node is to make /clock and to take its time from there."""
+        if use_sim_time is True and values.makes_clock:
             raise ValueError(
-                "use_sim_time must be false in the node that makes /clock, got true; with clock:=false beside it, the "
-                "node follows the /clock of another node"
+                "use_sim_time must be false in the node that makes /clock, got true; with follow_clock:=true the node "
+                "follows the /clock of another node"
             )
 
     def _checked(self, parameters) -> dict:

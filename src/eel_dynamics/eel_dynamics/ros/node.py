@@ -98,7 +98,6 @@ class DynamicsNode(ParameterNode):
             report=report,
         )
         inbox = SampleInbox(self, lambda message, info: feed.receive_samples(message, info))
-        follows = self.parameters.follows_clock
         self.run_loop = RunLoop(
             simulation,
             values,
@@ -106,7 +105,7 @@ class DynamicsNode(ParameterNode):
             report,
             self._wait_for_body_received,
             inbox,
-            FollowedClock if follows else Pace,
+            FollowedClock if values.follow_clock else Pace,
         )
         self.status = Status(self.run_loop, report, values.accuracy)
         self._diagnostics = self.create_publisher(DiagnosticArray, "/diagnostics", 10)
@@ -137,9 +136,9 @@ class DynamicsNode(ParameterNode):
             lambda offered: self.run_loop.requests.put(lambda: self.sample_publishers.enable_clock(offered)),
             report,
         )
-        clock.look(values.clock)
+        clock.look(values.makes_clock)
         follow = self.run_loop.requests.show_clock
-        followed = ClockSubscription(self, lambda shown: follow(shown, time.monotonic())) if follows else None
+        followed = ClockSubscription(self, lambda shown: follow(shown, time.monotonic())) if values.follow_clock else None
         self._root = None  # publisher of /tf_static
         self._publish_root()
         topic = self.resolve_topic_name("head_pose")
@@ -152,7 +151,7 @@ class DynamicsNode(ParameterNode):
             inbox.look()
             if self.status.due():
                 self.publish_diagnostics()
-            clock.look(self.parameters.values.clock and not self._arbiter.waits)
+            clock.look(self.parameters.values.makes_clock and not self._arbiter.waits)
             self._publish_root()
             if followed is not None:
                 followed.look()

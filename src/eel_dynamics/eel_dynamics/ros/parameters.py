@@ -99,9 +99,10 @@ class DynamicsParameters:
         "frame id above world_frame, on /tf_static with publish_tf; empty: none; by default world below a namespace",
     )
     clock: bool = _parameter(
-        True,
-        "publish /clock, unless another publisher of it is on the network; false with use_sim_time: follow it",
-        changeable=True,
+        True, "publish /clock, unless another publisher of it is on the network, or follow_clock", changeable=True
+    )
+    follow_clock: bool = _parameter(
+        False, "take the pace from the /clock of another node: each sample is due once /clock has come to its time"
     )
     clock_rate: float = _parameter(
         0.0,
@@ -151,6 +152,11 @@ class DynamicsParameters:
             raise ValueError(f"stations must be 4 or more where there are joints, got {self.stations}")
         orientation = unit_quaternion("initial_orientation", self.initial_orientation)
         object.__setattr__(self, "initial_orientation", orientation)
+
+    @property
+    def makes_clock(self) -> bool:
+        """Whether the node is to publish /clock."""
+        return self.clock and not self.follow_clock
 
     @property
     def last_sample(self) -> float:
