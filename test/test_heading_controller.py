@@ -30,17 +30,20 @@ def heading(odometry) -> float:
 
 
 def test_the_heading_controller_turns_left_and_right_and_repeats_itself(start, swim):
-    """Three eels in namespaces of their own, as fast as possible, in lockstep; two of them have the same target. The
-    gait makes the head swing, so the heading is the mean over the last two periods."""
-    targets = {"left": 0.6, "again": 0.6, "right": -0.6}
+    """Three eels in namespaces of their own, as fast as possible, in lockstep; two of them have the same target, and one
+    of these follows the clock of the other. The gait makes the head swing, so the heading is the mean over the last two
+    periods."""
+    targets = {"again": 0.6, "left": 0.6, "right": -0.6}
+    clocks = {"again": "follow_clock:=true", "left": "clock:=true", "right": "clock:=false"}
     for name in targets:
         swim.listen(f"/{name}/odom", Odometry)
     nodes = []
     for name, target in targets.items():
         space = ("--ros-args", "-r", f"__ns:=/{name}", "-p")
-        pace = ("real_time_factor:=0", "-p", "duration:=12", "-p", "rate:=50", "-p", "clock:=false")
+        pace = ("real_time_factor:=0", "-p", "duration:=12", "-p", "rate:=50", "-p", clocks[name])
         nodes.append(start("dynamics", *space, *pace, "-p", "wait_for_subscribers:=2", "-p", "subscriber_timeout:=60"))
         start("heading_controller", *space, f"heading:={target}", "-p", "period:=0.02")
+        nodes[-1].wait_for_output("waiting for", LIMIT)
     runs = [swim.received[f"/{name}/odom"] for name in targets]
 
     def ended():
@@ -49,7 +52,7 @@ def test_the_heading_controller_turns_left_and_right_and_repeats_itself(start, s
     swim.until(ended, "the ends of the runs", 2 * LIMIT)
     for node in nodes:
         assert node.wait(LIMIT) == 0 and "ERROR" not in node.output() and "run out" not in node.output(), node.output()
-    left, again, right = ({nanoseconds(each.header.stamp): each for each in run} for run in runs)
+    again, left, right = ({nanoseconds(each.header.stamp): each for each in run} for run in runs)
     assert len(left) == 601
     assert {stamp: left[stamp].pose.pose for stamp in left} == {stamp: again[stamp].pose.pose for stamp in again}
     for run, target in ((left, 0.6), (right, -0.6)):
