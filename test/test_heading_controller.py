@@ -30,9 +30,9 @@ def heading(odometry) -> float:
 
 
 def test_the_heading_controller_turns_left_and_right_and_repeats_itself(start, swim):
-    """Three eels in namespaces of their own, as fast as possible, in lockstep; two of them have the same target, and one
-    of these follows the clock of the other. The gait makes the head swing, so the heading is the mean over the last two
-    periods."""
+    """Three eels in namespaces of their own, as fast as possible, in lockstep; two of them have the same target, and
+    one of these follows the clock of the other. The gait makes the head swing, so the heading is the mean over the last
+    two periods."""
     targets = {"again": 0.6, "left": 0.6, "right": -0.6}
     clocks = {"again": "follow_clock:=true", "left": "clock:=true", "right": "clock:=false"}
     for name in targets:

@@ -138,7 +138,9 @@ class DynamicsNode(ParameterNode):
         )
         clock.look(values.makes_clock)
         follow = self.run_loop.requests.show_clock
-        followed = ClockSubscription(self, lambda shown: follow(shown, time.monotonic())) if values.follow_clock else None
+        followed = (
+            ClockSubscription(self, lambda shown: follow(shown, time.monotonic())) if values.follow_clock else None
+        )
         self._root = None  # publisher of /tf_static
         self._publish_root()
         topic = self.resolve_topic_name("head_pose")
