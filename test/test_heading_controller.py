@@ -2,11 +2,16 @@
 """The heading controller and the dynamics node together: it starts the run by itself, and steers it to its target."""
 
 import math
+import sys
 from pathlib import Path
 
 import pytest
 from nav_msgs.msg import Odometry
+from sensor_msgs.msg import JointState
 from swim_client import LIMIT, SwimClient, nanoseconds
+from tf2_msgs.msg import TFMessage
+
+from eel_msgs.msg import SwimState
 
 ROOT = Path(__file__).resolve().parent.parent
 
@@ -25,17 +30,20 @@ def heading(odometry) -> float:
 
 
 def test_the_heading_controller_turns_left_and_right_and_repeats_itself(start, swim):
-    """Three eels in namespaces of their own, as fast as possible, in lockstep; two of them have the same target. The
-    gait makes the head swing, so the heading is the mean over the last two periods."""
-    targets = {"left": 0.6, "again": 0.6, "right": -0.6}
+    """Three eels in namespaces of their own, as fast as possible, in lockstep; two of them have the same target, and
+    one of these follows the clock of the other. The gait makes the head swing, so the heading is the mean over the last
+    two periods."""
+    targets = {"again": 0.6, "left": 0.6, "right": -0.6}
+    clocks = {"again": "follow_clock:=true", "left": "clock:=true", "right": "clock:=false"}
     for name in targets:
         swim.listen(f"/{name}/odom", Odometry)
     nodes = []
     for name, target in targets.items():
         space = ("--ros-args", "-r", f"__ns:=/{name}", "-p")
-        pace = ("real_time_factor:=0", "-p", "duration:=12", "-p", "rate:=50", "-p", "clock:=false")
+        pace = ("real_time_factor:=0", "-p", "duration:=12", "-p", "rate:=50", "-p", clocks[name])
         nodes.append(start("dynamics", *space, *pace, "-p", "wait_for_subscribers:=2", "-p", "subscriber_timeout:=60"))
         start("heading_controller", *space, f"heading:={target}", "-p", "period:=0.02")
+        nodes[-1].wait_for_output("waiting for", LIMIT)
     runs = [swim.received[f"/{name}/odom"] for name in targets]
 
     def ended():
@@ -44,12 +52,59 @@ def test_the_heading_controller_turns_left_and_right_and_repeats_itself(start, s
     swim.until(ended, "the ends of the runs", 2 * LIMIT)
     for node in nodes:
         assert node.wait(LIMIT) == 0 and "ERROR" not in node.output() and "run out" not in node.output(), node.output()
-    left, again, right = ({nanoseconds(each.header.stamp): each for each in run} for run in runs)
+    again, left, right = ({nanoseconds(each.header.stamp): each for each in run} for run in runs)
     assert len(left) == 601
     assert {stamp: left[stamp].pose.pose for stamp in left} == {stamp: again[stamp].pose.pose for stamp in again}
     for run, target in ((left, 0.6), (right, -0.6)):
         last = [heading(each) for stamp, each in run.items() if stamp > 10 * 10**9]
         assert sum(last) / len(last) == pytest.approx(target, abs=0.2)
+
+
+def swim_with_everything_on(start, swim, seconds, pace, controller=()):
+    """The dynamics node with estimate, joints and all frames on, a subscriber of each, and the heading controller at
+    100 Hz; what the two have said."""
+    for topic, kind in (
+        ("odom", Odometry),
+        ("joint_states", JointState),
+        ("swim_state", SwimState),
+        ("/tf", TFMessage),
+    ):
+        swim.listen(topic, kind)
+    settings = ("yaw_joints:=10", "pitch_joints:=10", "publish_tf_stations:=true", f"duration:={seconds}", *pace)
+    node = start("dynamics", "--ros-args", *(word for each in settings for word in ("-p", each)))
+    steering = start("heading_controller", "--ros-args", *controller)
+    swim.until(lambda: node.status is not None, "the end of the run", 2 * LIMIT + 2 * seconds)
+    assert node.status == 0, node.output()
+    return node.output(), steering.output()
+
+
+@pytest.mark.fault(
+    "samples", "estimate, joints and frames on, at 100 Hz in lockstep", "no sample is late, none is lacking"
+)
+def test_a_run_with_everything_on_has_every_sample_it_needs(start, swim):
+    """With a period that is no multiple of 1/rate."""
+    pace = ("real_time_factor:=0", "wait_for_subscribers:=1", "subscriber_timeout:=60")
+    said, _ = swim_with_everything_on(start, swim, 3, pace, ("-p", "period:=0.016"))
+    assert "curvature samples adopted at t = 0.01 s" in said and "finished at t = 3 s" in said, said
+    assert "WARN" not in said and "ERROR" not in said, said
+
+
+BUSY = "import time\nprint('busy', flush=True)\nwhile True: pass"
+
+
+@pytest.mark.soak
+@pytest.mark.fault(
+    "load",
+    "estimate, joints and frames on, at 100 Hz in real time for a minute, two busy processes beside it (`make soak`)",
+    "the samples of the heading controller never run out",
+)
+@pytest.mark.timeout(400)
+def test_a_minute_in_real_time_beside_two_busy_processes_has_no_run_out(start, swim):
+    for _ in range(2):
+        start(sys.executable, "-c", BUSY).wait_for_output("busy")
+    said, _ = swim_with_everything_on(start, swim, 60, ())
+    print(said)
+    assert "finished at t = 60 s" in said and "run out" not in said and "refused" not in said, said
 
 
 def test_the_page_shows_the_controller():

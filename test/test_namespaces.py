@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Two eels on one network: each node has the topics and frames of its namespace; /clock, /diagnostics and /tf are
-shared."""
+"""Two eels on one network: each node has the topics and frames of its namespace; /clock, /diagnostics, /tf and the
+frame world are shared."""
 
 import json
 import subprocess
@@ -8,7 +8,8 @@ import sys
 
 import pytest
 from eel_gaits.ros.messages import law_to_message
-from swim_client import SwimClient, nanoseconds
+from geometry_msgs.msg import Transform
+from swim_client import LIMIT, SwimClient, nanoseconds
 
 from eel_gaits import falling
 
@@ -17,12 +18,13 @@ import json, sys, time
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseStamped
-from rclpy.qos import QoSProfile, HistoryPolicy
+from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
 from tf2_msgs.msg import TFMessage
 rclpy.init()
 node = rclpy.create_node("listener")
 every = QoSProfile(history=HistoryPolicy.KEEP_ALL, depth=1)
-poses, statuses, transforms = {"/left": {}, "/right": {}}, [], {}
+latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+poses, statuses, transforms, roots = {"/left": {}, "/right": {}}, [], {}, {}
 def keep(kept, name, message):  # by stamp: sample 0 is repeated
     kept[name, message.header.stamp.sec, message.header.stamp.nanosec] = message
 for space in poses:
@@ -31,16 +33,19 @@ def receive(message):
     for each in message.transforms:
         keep(transforms, each.child_frame_id, each)
 node.create_subscription(TFMessage, "/tf", receive, every)
+def receive_root(message):
+    for each in message.transforms:
+        roots[each.child_frame_id] = each
+node.create_subscription(TFMessage, "/tf_static", receive_root, latched)
 node.create_subscription(DiagnosticArray, "/diagnostics", statuses.append, every)
 print("ready", flush=True)
 deadline = time.monotonic() + 90
 while time.monotonic() < deadline:
     rclpy.spin_once(node, timeout_sec=0.1)
     names = {s.name for a in statuses for s in a.status}
-    complete = len(transforms) == 602 and all(len(p) == 301 for p in poses.values())
+    complete = len(transforms) == 602 and len(roots) == 2 and all(len(p) == 301 for p in poses.values())
     if complete and all(any(space in name for name in names) for space in poses):
         break
-clocks = node.get_publishers_info_by_topic("/clock")
 print(json.dumps({
     "count": {k: len(v) for k, v in poses.items()},
     "end": {k: [v[max(v)].pose.position.x, v[max(v)].pose.position.y] for k, v in poses.items() if v},
@@ -49,6 +54,7 @@ print(json.dumps({
     "transforms": {
         t.child_frame_id: [t.header.frame_id, t.transform.translation.x] for _, t in sorted(transforms.items())
     },
+    "roots": {child: [t.header.frame_id, str(t.transform)] for child, t in roots.items()},
     "topics": sorted(n for n, _ in node.get_topic_names_and_types()),
 }))
 rclpy.shutdown()
@@ -58,15 +64,18 @@ rclpy.shutdown()
 @pytest.mark.fault(
     "neighbours",
     "two eels in two namespaces",
-    "each receives and publishes its own, in frames of its own; only /clock, /diagnostics and /tf are shared",
+    "each receives and publishes its own, in frames of its own below one frame world; one follows the other's /clock",
 )
 def test_two_eels(start, fresh_domain, tmp_path):
     listener = start(sys.executable, "-c", LISTEN)
     listener.wait_for_output("ready")
-    for space, gait in (("/left", "falling"), ("/right", "straight")):
+    follow, nodes = ("-p", "follow_clock:=true"), []
+    for space, gait, clock in (("/right", "straight", follow), ("/left", "falling", ())):
         remap = ("--ros-args", "-r", f"__ns:={space}")
         start("gait_generator", *remap, "-p", f"gait:={gait}")
-        start("dynamics", *remap, "-p", "duration:=3.0", "-p", "real_time_factor:=0", "-p", "wait_for_subscribers:=1")
+        pace = ("-p", "duration:=3.0", "-p", "real_time_factor:=0", "-p", "wait_for_subscribers:=1")
+        nodes.append(start("dynamics", *remap, *pace, *clock))
+        nodes[-1].wait_for_output("waiting for")
     assert listener.wait(120.0) == 0, listener.output()
     received = json.loads([line for line in listener.output().splitlines() if line.startswith("{")][-1])
     assert received["count"] == {"/left": 301, "/right": 301}
@@ -75,6 +84,11 @@ def test_two_eels(start, fresh_domain, tmp_path):
     assert received["transforms"] == {
         f"{space}/base_link": [f"{space}/odom", received["end"][f"/{space}"][0]] for space in ("left", "right")
     }
+    still = str(Transform())
+    assert received["roots"] == {f"{space}/odom": ["world", still] for space in ("left", "right")}
+    for node in nodes:
+        assert node.wait(LIMIT) == 0 and "/clock is published" not in node.output(), node.output()
+        assert "finished at t = 3 s" in node.output()
     assert {"/left/head_pose", "/right/head_pose", "/clock", "/diagnostics"} <= set(received["topics"])
     assert "/head_pose" not in received["topics"] and "/left/clock" not in received["topics"]
 

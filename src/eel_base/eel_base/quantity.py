@@ -13,10 +13,10 @@ import numpy as np
 from eel_base.wording import shown
 
 
-def quantity(default, *, unit, description, minimum, maximum):
-    """A dataclass field that carries its own unit, description and inclusive bounds as metadata."""
+def quantity(default, *, unit, description, minimum, maximum, **more):
+    """A dataclass field that carries its own unit, description and inclusive bounds as metadata, and what is `more`."""
     metadata = {"unit": unit, "description": description, "minimum": minimum, "maximum": maximum}
-    return field(default=default, metadata=metadata)
+    return field(default=default, metadata=metadata | more)
 
 
 def limits(metadata) -> str:

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.term import Term
+from scipy.spatial.transform import Rotation
 
 from eel_dynamics import Accuracy, MeasuredSimulation, Scene, Simulation, SimulationStopped
 from eel_gaits import falling, helix, straight, turning
@@ -55,6 +56,32 @@ def test_it_moves_to_the_same_bits_as_any_other(motion, accuracy):
         assert measured.observe().whole.tobytes() == bare.observe().whole.tobytes()
         assert 0.0 < measured.error_estimate.position < 1.0
     assert bare.error_estimate is None
+
+
+def test_the_head_is_nearer_to_the_true_motion_than_its_errors_say():
+    scene = Scene(friction="laminar")
+    simulation = MeasuredSimulation(law=helix(), accuracy="standard", scene=scene)
+    reference = Simulation(law=helix(), accuracy=FINE, scene=scene)
+    greatest = np.zeros(4)
+    assert np.isinf(simulation.head_errors.position) and simulation.head_errors.relative == 0.0
+    for number in range(1, 61):
+        this, true = (each.observe() for each in (simulation, reference) if each.advance(number / 10.0))
+        angle = (Rotation.from_quat(this.orientation).inv() * Rotation.from_quat(true.orientation)).magnitude()
+        far, twist = np.linalg.norm(this.position - true.position), this.twist - true.twist
+        greatest = np.maximum(greatest, (far, angle, np.linalg.norm(twist[3:]), np.linalg.norm(twist[:3])))
+    errors = simulation.head_errors
+    assert errors.relative == simulation.error_estimate.position
+    assert np.all(greatest < errors[1:]) and np.all(np.array(errors[1:]) < 1e-3), (greatest, errors)
+
+
+def test_a_head_whose_position_was_lost_has_no_absolute_errors():
+    simulation = MeasuredSimulation(law=falling(period=0.4), **SENSITIVE)
+    while simulation.lost_at is None:
+        simulation.advance(simulation.time + 0.1)
+    assert np.isinf(simulation.head_errors[1:]).all() and np.isfinite(simulation.head_errors.relative)
+    simulation.reset()
+    simulation.advance(0.1)
+    assert np.isfinite(simulation.head_errors).all()
 
 
 @pytest.mark.parametrize("law", [falling(), straight(), helix()])

@@ -3,6 +3,7 @@
 
 import numpy as np
 import pytest
+from eel_dynamics.accuracy.error_estimate import HeadErrors
 from eel_dynamics.ros.messages import Sample, body_message, diagnostic_array, samples_from_message
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.ros.serialised_message import MARKED_TIME, SerialisedMessage
@@ -16,6 +17,7 @@ from eel_dynamics import Body, Scene, Simulation, simulate
 from eel_gaits import Law, falling
 from eel_msgs.msg import CurvatureSamples
 
+ERRORS = HeadErrors(relative=1e-5, position=2e-5, orientation=3e-5, velocity=4e-5, angular_velocity=5e-5)
 TURN = np.diag([-1.0, -1.0, 1.0])
 
 
@@ -52,7 +54,7 @@ def swum():
     snapshot = simulation.observe()
     sample = Sample(simulation.x, simulation.scene, DynamicsParameters())
     assert np.isnan(filled(sample, "swim_state", snapshot).estimated_error)
-    sample = Sample(simulation.x, simulation.scene, DynamicsParameters(), lambda: 1e-5)
+    sample = Sample(simulation.x, simulation.scene, DynamicsParameters(), lambda: ERRORS)
     sample.set_time(2_300_000_000)
     return snapshot, {name: filled(sample, name, snapshot) for name in sample.kinds}
 
@@ -127,7 +129,29 @@ def test_swim_state_repeats_the_other_topics_as_scalars(swum):
     ahead = matrix(xyzw(pose.orientation)) @ [1.0, 0.0, 0.0]
     assert np.allclose((np.cos(state.heading), np.sin(state.heading)), ahead[:2] / np.linalg.norm(ahead[:2]))
     assert state.greatest_torque == max(np.abs(getattr(wrench, f"torque_{axis}")).max() for axis in (1, 2, 3)) > 0.0
-    assert state.actuator_work == snapshot.actuator_work and state.estimated_error == 1e-5
+    assert state.actuator_work == snapshot.actuator_work and state.estimated_error == ERRORS.relative
+
+
+def test_the_covariance_of_odom_is_the_square_of_the_estimated_errors_on_its_diagonal(swum):
+    """In the order of geometry_msgs: x, y, z, and the rotations about them."""
+    _, messages = swum
+    for covariance, errors in (
+        (messages["odom"].pose.covariance, (ERRORS.position, ERRORS.orientation)),
+        (messages["odom"].twist.covariance, (ERRORS.velocity, ERRORS.angular_velocity)),
+    ):
+        assert np.array_equal(covariance.reshape(6, 6), np.diag(np.repeat(np.square(errors), 3)))
+
+
+@pytest.mark.parametrize("unknown", [None, ERRORS._replace(position=np.inf)], ids=["off", "not known"])
+def test_the_covariance_of_odom_begins_with_minus_1_where_the_errors_are_not_known(unknown):
+    simulation, found = Simulation(law=falling()), [ERRORS, unknown, ERRORS]
+    sample = Sample(simulation.x, simulation.scene, DynamicsParameters(), lambda: found.pop(0))
+    firsts = []
+    while found:
+        odom = filled(sample, "odom", simulation.observe())
+        firsts.append((odom.pose.covariance[0], odom.twist.covariance[0]))
+        assert not np.any(np.tril(odom.pose.covariance.reshape(6, 6), -1))
+    assert firsts == [(ERRORS.position**2, ERRORS.velocity**2), (-1.0, -1.0), (ERRORS.position**2, ERRORS.velocity**2)]
 
 
 def test_joint_states_are_the_actuators_of_the_library():
@@ -167,7 +191,7 @@ def test_refilling_replaces_all_that_was_there(swum):
     snapshot, messages = swum
     simulation = Simulation(stations=17)
     simulation.adopt(falling())
-    sample = Sample(simulation.x, simulation.scene, DynamicsParameters(), lambda: 1e-5)
+    sample = Sample(simulation.x, simulation.scene, DynamicsParameters(), lambda: ERRORS)
     for name in sample.kinds:
         sample.fill(name, simulation.observe())
     sample.set_time(2_300_000_000)

@@ -191,7 +191,7 @@ def test_law_that_cannot_be_begun_is_refused(start, client):
 @pytest.mark.fault(
     "load",
     "a pace that the machine cannot keep",
-    "WARN with the delay, once a second at most; accuracy is kept, not the pace",
+    "WARN with the lost time, once a second at most; accuracy is kept, not the pace; a tenth above it regains the time",
 )
 def test_late_run_says_so_seldom(start, client):
     swim = client(topics=("head_pose",))

@@ -231,7 +231,7 @@ def test_controller_without_a_law_drives_flat_out(start, client):
 @pytest.mark.fault(
     "samples",
     "a controller that dies in mid-stroke",
-    "the shape comes to rest smoothly, one warning; it goes on when samples return",
+    "the shape comes to rest smoothly, one error; it goes on when samples return",
 )
 @pytest.mark.parametrize("factor", ["1", "0"])
 def test_dying_controller_brings_the_shape_to_rest_and_may_come_back(start, client, factor):
@@ -275,6 +275,9 @@ def test_dying_controller_brings_the_shape_to_rest_and_may_come_back(start, clie
     steps = steps[np.diff([seconds(m) for m in after]) < 0.011].max()  # a listener that is late may miss a sample
     assert steps < 0.05 * max(np.abs(m.yaw_rate).max() for m in moved) + 2.0  # comes to rest without a jump
     assert node.output().count("have run out") == 1
+    swim.until(
+        lambda: swim.diagnosis()[0] == 2 and "have run out" in swim.diagnosis()[1], "lost control in diagnostics"
+    )
     end = drive()
     swim.pause(False)
     swim.until_time(end, "curvature")
@@ -342,7 +345,11 @@ def test_irregular_samples_make_one_smooth_motion(start, client):
     assert np.abs(K[away]).max() < 4.5  # bridged without overshoot: 1.5 is the motion's own amplitude there, plus 1
 
 
-@pytest.mark.fault("samples", "a sample that comes too late", "refused with one error; the shape stays as it is")
+@pytest.mark.fault(
+    "samples",
+    "a sample that comes too late",
+    "refused with one warning that says how to join a run; the shape stays as it is",
+)
 @pytest.mark.fault(
     "samples", "a sample with NaN, or with arrays that do not fit", "refused with one error that names the array"
 )
@@ -354,20 +361,19 @@ def test_bad_samples_are_refused(start, client):
     short, late, odd = instant(1e3), instant(0.0), instant(1e3)
     short.yaw = [1.0]
     odd.pitch = [math.nan] * 11
-    for message, words in (
-        (short, ("yaw", "11", "1")),
-        (late, ("header.stamp", "ahead", "got 0 s")),
-        (odd, ("pitch", "nan")),
+    for message, level, words in (
+        (short, "ERROR", ("yaw", "11", "1")),
+        (late, "WARN", ("header.stamp", "ahead", "got 0 s", "joins a running simulation begins 1/rate or more after")),
+        (odd, "ERROR", ("pitch", "nan")),
     ):
 
-        def said(message=message, words=words):
-            """Whether the error is logged; the sample is sent again and again, as errors of one kind are logged once a
-            second."""
+        def said(message=message, level=level, words=words):
+            """Whether it is logged; the sample is sent again and again, as refusals are logged once a second."""
             swim.samples.publish(message)
-            errors = [line for line in node.output().splitlines() if "[ERROR]" in line]
-            return any("samples" in line and all(word in line for word in words) for line in errors)
+            lines = [line for line in node.output().splitlines() if f"[{level}]" in line]
+            return any("samples" in line and all(word in line for word in words) for line in lines)
 
-        swim.until(said, f"error {words}")
+        swim.until(said, f"{level} {words}")
     assert not np.any(swim.latest("curvature").yaw) and node.status is None
 
 

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """A run as fast as possible, over DDS: every sample once, equal to what the library computes, and a good end."""
 
+import math
+
 import numpy as np
 import pytest
 from eel_gaits.ros.messages import law_to_message
@@ -77,12 +79,18 @@ def test_a_sensitive_swim_that_misses_its_target_is_told(start, client):
 
 
 def test_no_error_is_measured_where_none_is_wanted(start, client):
-    heard = client(topics=("head_pose",))
+    heard = client(topics=("head_pose", "odom", "swim_state"))
     heard.laws.publish(law_to_message(falling()))
     node = start("dynamics", "--ros-args", *FLAT_OUT, "-p", "duration:=1", "-p", "estimate_error:=false")
     assert node.wait(LIMIT) == 0, node.output()
     heard.until(lambda: heard.diagnosis()[1] == "finished", "the last diagnostics")
-    assert not [name for name in heard.diagnosis()[2] if name.startswith("error_")]
+    values = heard.diagnosis()[2]
+    assert {name: values[name] for name in values if name.startswith("error_")} == {"error_position": "off"}
+    assert heard.received["swim_state"] and all(
+        math.isnan(each.estimated_error) for each in heard.received["swim_state"]
+    )
+    assert {each.pose.covariance[0] for each in heard.received["odom"]} == {-1.0}
+    assert "finished at t = 1 s" in node.output(), node.output()
 
 
 def test_rate_that_does_not_divide_a_second(start, client):

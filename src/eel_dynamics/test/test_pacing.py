@@ -3,6 +3,7 @@
 
 import math
 
+import numpy as np
 import pytest
 from eel_dynamics.ros.loop.pacing import Pace
 
@@ -15,12 +16,38 @@ def test_pace_gives_due_times():
     assert pace.due(10) == pytest.approx(200.02)
 
 
-def test_pace_keeps_small_delays_and_gives_up_great_ones():
+def test_pace_keeps_small_delays():
     pace = Pace(0.01, 1.0)
     pace.restart(0, 0.0)
-    assert pace.give_up_delay(1, 0.03) == 0.0 and pace.due(2) == pytest.approx(0.02)  # will be caught up with
-    assert pace.give_up_delay(2, 1.02) == pytest.approx(1.0)
-    assert pace.lost == pytest.approx(1.0) and pace.due(3) == pytest.approx(1.03)
+    assert pace.give_up_delay(1, 0.039) == 0.0 and pace.due(2) == pytest.approx(0.02)  # later samples make up for it
+    assert pace.lost(2) == 0.0
+
+
+@pytest.mark.parametrize("factor", [0.5, 1.0, 20.0])
+def test_lost_time_is_regained_at_a_tenth_above_the_pace_and_no_faster(factor):
+    pace = Pace(0.01, factor)
+    pace.restart(0, 100.0)
+    assert pace.give_up_delay(10, pace.due(10) + 1.0) == pytest.approx(1.0)
+    due = np.array([pace.due(k) for k in range(10, 4000)])
+    punctual = 100.0 + 0.01 / factor * np.arange(10, 4000)
+    late = due - punctual
+    assert late[0] == pytest.approx(1.0) and pace.lost(10) == pytest.approx(1.0)
+    steps = np.diff(due) * factor / 0.01
+    regained = late < 1e-9
+    assert np.allclose(steps[~regained[1:]], 1.0 / 1.1) and np.allclose(steps[regained[:-1]], 1.0)
+    after = round(11.0 * factor / 0.01)  # samples: 11 s of the pace take 10 s
+    assert regained.argmax() == pytest.approx(after, abs=1) if after < len(late) else not regained.any()
+
+
+def test_a_second_delay_adds_to_what_is_not_yet_regained_and_a_restart_forgets_both():
+    pace = Pace(0.01, 1.0)
+    pace.restart(0, 0.0)
+    pace.give_up_delay(0, 1.0)
+    assert pace.lost(110) == pytest.approx(0.9)
+    pace.give_up_delay(110, pace.due(110) + 0.5)
+    assert pace.lost(110) == pytest.approx(1.4) and pace.due(110) == pytest.approx(1.1 + 1.4)
+    pace.restart(110, 50.0)
+    assert pace.lost(110) == 0.0 and pace.due(111) == pytest.approx(50.01)
 
 
 def test_no_pace_is_never_late():

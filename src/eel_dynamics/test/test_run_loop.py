@@ -6,25 +6,16 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from eel_dynamics.ros.diagnostics import Report
+from eel_dynamics.ros.diagnostics import ERROR, OK, WARN, Report
 from eel_dynamics.ros.loop.clock_ticks import ClockTicks
 from eel_dynamics.ros.loop.limits_monitor import LimitsMonitor
 from eel_dynamics.ros.loop.run_loop import RunLoop
 from eel_dynamics.ros.parameters import DynamicsParameters
 from fake_log import Log
+from fake_publishers import fake_publishers
 
 from eel_dynamics import Simulation
 from eel_gaits import falling, straight
-
-
-def fake_publishers(publish):
-    return SimpleNamespace(
-        wanted_parts=lambda: {"wrench": False, "load": False},
-        publish=publish,
-        tick=lambda nanoseconds: None,
-        audience=tuple,
-        lossless=False,
-    )
 
 
 @pytest.mark.parametrize(
@@ -210,4 +201,102 @@ def test_a_controller_that_answers_less_than_a_sample_ahead_is_told_so():
         "no curvature sample for t >= 0.02 s within 0.2 s, the newest is for t = 0.01 s: at real_time_factor 0 a "
         "controller's samples must lie at least 1/rate = 0.02 s ahead of the simulation"
     )
-    assert refused == ("curvature samples refused: header.stamp must lie ahead of the simulation (0.1 s), got 0.03 s")
+    assert refused == (
+        "curvature samples refused: header.stamp must lie ahead of the simulation (0.1 s), got 0.03 s: send them "
+        "further ahead"
+    )
+
+
+def samples_at(time, bend=0.0):
+    rows = {f"{axis}{of}": np.zeros(2) for axis in ("pitch", "yaw") for of in ("", "_rate", "_accel")}
+    return {"time": time, "x": np.array([0.0, 1.0]), **rows, "yaw": np.full(2, bend)}
+
+
+@pytest.mark.fault("samples", "one sample of several that is late", "a warning; ERROR is for control that is lost")
+def test_one_late_sample_is_a_warning_and_lost_control_is_an_error_until_it_is_back():
+    log, states = Log(), {}
+
+    def publish(snapshot, nanoseconds):
+        k = nanoseconds // 10_000_000
+        if not 30 <= k < 60:
+            run.requests.take_samples(samples_at(0.01 * (k + 2)))
+        if k == 10:
+            run.requests.take_samples(samples_at(0.05, bend=1.0))
+        states[k] = report.state()
+
+    report = Report(log)
+    values = DynamicsParameters(real_time_factor=0.0, duration=1.0, subscriber_timeout=0.1)
+    run = RunLoop(Simulation(accuracy=1e-2), values, fake_publishers(publish), report)
+    run.requests.take_samples(samples_at(0.0))
+    run.requests.take_samples(samples_at(0.01))
+    run.run()
+    assert states[9] == (OK, [])
+    level, (text,) = states[12]
+    assert level == WARN and text.endswith("(0.1 s), got 0.05 s: send them further ahead"), text
+    assert states[40][0] == ERROR and states[40][1][0] == "curvature samples have run out at t = 0.32 s: coming to rest"
+    assert states[99][0] == WARN, "what is over and less than 2 s ago"
+    said = [text for level, text in log.lines if level == "info"]
+    assert said == [
+        "curvature samples adopted at t = 0.01 s",
+        "curvature samples are back at t = 0.63 s",
+        "finished at t = 1 s",
+    ]
+
+
+class MadeUpTime:
+    """A steady clock that goes on while the run loop waits on it; it is the loop's inbox, too, without samples."""
+
+    def __init__(self, monkeypatch):
+        self.now = 100.0
+        for module in ("run_loop", "clock_ticks", "request_queue"):
+            monkeypatch.setattr(f"eel_dynamics.ros.loop.{module}.time", SimpleNamespace(monotonic=lambda: self.now))
+
+    def wait(self, seconds):
+        self.now += seconds
+        return False
+
+    def poll(self):
+        pass
+
+    set = clear = poll
+
+
+def test_a_run_that_stood_still_for_half_a_second_regains_it_within_five_and_a_half(monkeypatch):
+    time, log, shown = MadeUpTime(monkeypatch), Log(), []
+
+    def publish(snapshot, nanoseconds):
+        if nanoseconds == 500_000_000:
+            time.now += 0.5
+        shown.append(time.now - 100.0)
+
+    report, values = Report(log), DynamicsParameters(duration=8.0)
+    run = RunLoop(Simulation(accuracy=1e-2, law=falling()), values, fake_publishers(publish), report, inbox=time)
+    run.run()
+    punctual = 0.01 * np.arange(801)
+    late = np.array(shown) - punctual
+    assert np.allclose(late[:50], 0.0) and late[50] == pytest.approx(0.5) and np.allclose(late[601:], 0.0, atol=1e-9)
+    assert np.allclose(np.diff(shown)[50:599], 0.01 / 1.1)
+    warnings = [text for level, text in log.lines if level == "warning"]
+    assert warnings == ["late by 0.5 s at t = 0.5 s: accuracy is kept, not the pace"]
+    assert run.pace.lost(801) == 0.0
+
+
+def test_repeated_answers_to_sample_0_change_nothing_though_they_come_late():
+    """A controller answers sample 0 with several samples, and a repeated one likewise."""
+    log = Log()
+
+    def publish(snapshot, nanoseconds):
+        k = nanoseconds // 10_000_000
+        run.requests.take_samples(samples_at(0.01 * (k + 6)))
+        if k == 3:
+            for each in range(6):
+                run.requests.take_samples(samples_at(0.01 * each))
+            run.requests.take_samples(samples_at(0.01, bend=1.0))
+
+    values = DynamicsParameters(real_time_factor=0.0, duration=0.2)
+    run = RunLoop(Simulation(accuracy=1e-2), values, fake_publishers(publish), Report(log))
+    for each in range(6):
+        run.requests.take_samples(samples_at(0.01 * each))
+    run.run()
+    refused = [text for level, text in log.lines if level != "info"]
+    assert len(refused) == 1 and "got 0.01 s" in refused[0], "only the one with other values"

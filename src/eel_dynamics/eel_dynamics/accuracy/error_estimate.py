@@ -7,6 +7,7 @@ convergence: observed orders are 2.3 to 4.9. It sees the growth of errors, which
 """
 
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -74,6 +75,16 @@ class ErrorEstimate:
         if self.hopeless(target, duration):
             line += ", so that round-off alone may spoil it"
         return line
+
+
+class HeadErrors(NamedTuple):
+    """Errors of the head's motion: the greatest differences from the companion's. Infinite where they are not known."""
+
+    relative: float  # -, of the position, as in `ErrorEstimate`
+    position: float  # m
+    orientation: float  # rad
+    velocity: float  # m/s
+    angular_velocity: float  # rad/s
 
 
 def least_torque(law, mass: float, length: float, duration: float) -> float:

@@ -36,6 +36,10 @@ def check_points(count: int):
         raise ValueError(f"curvature samples x must have at most {MOST_POINTS} points, got {count}")
 
 
+class LateSample(ValueError):
+    """A sample that comes when the motion that it belongs to has begun already."""
+
+
 class CurvatureSample(NamedTuple):
     """The curvature at `time` [s] at the points x (n,) [m].
 
@@ -50,7 +54,7 @@ class CurvatureSample(NamedTuple):
 
     @staticmethod
     def checked(time, x, rows, *, waves, length: float, planar: bool, now: float, begun: bool) -> "CurvatureSample":
-        """A sample from its arguments. `ValueError` names the one that does not fit.
+        """A sample from its arguments. `ValueError` names the one that does not fit; `LateSample` if it is the time.
 
         time [s]; x (n,) [m]; rows (6, n): as in `QUANTITIES`. waves: on the body; None: what the points can carry.
         length [m]: of the body. planar: of the scene. now [s]: the present time. begun: whether the march has begun;
@@ -62,9 +66,10 @@ class CurvatureSample(NamedTuple):
         values = _checked_values(rows, len(x))
         if planar and values[0].any():
             raise ValueError("curvature samples pitch must be 0 in a planar scene")
-        if not is_finite(time) or time < now or (time == now and begun):
-            got = f"{time:.9g}" if is_finite(time) else shown(time)
-            raise ValueError(f"curvature samples time must lie ahead of the simulation ({now:.9g} s), got {got} s")
+        if not is_finite(time):
+            raise ValueError(f"curvature samples time must be finite, got {shown(time)} s")
+        if time < now or (time == now and begun):
+            raise LateSample(f"curvature samples time must lie ahead of the simulation ({now:.9g} s), got {time:.9g} s")
         if waves is None:
             waves = waves_of_points(len(x))
         elif not (is_finite(waves) and 0.0 < waves <= MOST_WAVES):
@@ -137,7 +142,8 @@ class SampleQueue:
     def add(self, sample: CurvatureSample, driving: bool):
         """Add a sample. The same one once more changes nothing.
 
-        `ValueError` for one that comes too late while the samples are `driving`, or for another one of the same time.
+        `LateSample` for one that comes too late while the samples are `driving`, `ValueError` for another one of the
+        same time.
         """
         if self._law_name is not None:
             raise ValueError(f"curvature samples cannot join the rows of law {shown(self._law_name)}")
@@ -146,7 +152,7 @@ class SampleQueue:
             return
         if driving and place < 2:
             ahead = f"the instant being approached ({self._samples[1].time:.6f} s)"
-            raise ValueError(f"curvature samples time must come after {ahead}, got {time:.6f} s")
+            raise LateSample(f"curvature samples time must come after {ahead}, got {time:.6f} s")
         if place < len(self._samples) and self._samples[place].time == time:
             raise ValueError(f"curvature samples time must be new, got {time:.6f} s twice")
         self._samples.insert(place, sample)

@@ -12,6 +12,7 @@ import time
 YOUNG = 4.0  # s: discovery of an older publisher takes less
 GRACE_YOUNG = (0.0, 3.0)  # s: greater identifier, smaller identifier
 GRACE_OLD = (8.0, 12.0)
+HINT = ", and keeps a time of its own (with follow_clock:=true it would follow /clock)"
 
 
 class ClockArbiter:
@@ -69,7 +70,7 @@ class ClockMonitor:
             self._arbiter = ClockArbiter()
         names = ", ".join(sorted(self._called(*each) for each in others.values()))
         if wanted and others:
-            state = "this node does not" if not allowed else "one of the two has to go"
+            state = f"this node does not{HINT}" if not allowed else "one of the two has to go"
             self._report.begin("clock", f"/clock is published by {names} already: {state}")
         else:
             self._report.end("clock", "" if others else "no other publisher of /clock any more")

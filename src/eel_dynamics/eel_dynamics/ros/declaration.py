@@ -11,10 +11,10 @@ from rclpy.parameter import Parameter
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.model.scene import Scene
-from eel_dynamics.ros.parameters import FRAMES, DynamicsParameters, checked, from_values
+from eel_dynamics.ros.parameters import FRAMES, ROOT, DynamicsParameters, checked, from_values
 from eel_dynamics.ros.simulation_from_parameters import body_of
 
-SCENE = "scene."
+SCENE, USE_SIM_TIME = "scene.", "use_sim_time"
 
 
 class Declaration:
@@ -34,6 +34,8 @@ class Declaration:
         overrides = take_overrides(node)
         space = node.get_namespace()
         frames = {name: frame_in(space, getattr(DynamicsParameters, name)) for name in FRAMES}
+        if space.strip("/") and overrides.get("world_frame") != ROOT:
+            frames["root_frame"] = ROOT
         self.values: DynamicsParameters = _declared(node, DynamicsParameters, frames | overrides, "")
         self.scene: Scene = _declared(node, Scene, overrides, SCENE, AT_RESET)
         self.next_values, self.next_scene = self.values, self.scene
@@ -41,6 +43,8 @@ class Declaration:
         self._fields |= {SCENE + item.name: item for item in fields(Scene)}
         warn_of_unknown(node, overrides, self._fields)
         self._paced = self.values.real_time_factor > 0.0
+        self._node = node
+        self._check_clock(self.values, node.get_parameter(USE_SIM_TIME).value)
         node.add_pre_set_parameters_callback(self._convert)
         node.add_on_set_parameters_callback(self._check)
         node.add_post_set_parameters_callback(self._apply)
@@ -86,6 +90,8 @@ class Declaration:
             if (factor > 0.0) != self._paced:
                 now = "> 0" if self._paced else "0 (as fast as possible)"
                 raise ValueError(f"real_time_factor was {now} at the start and has to stay so, got {factor:g}")
+            simulated = [each.value for each in parameters if each.name == USE_SIM_TIME]
+            self._check_clock(values, (*simulated, self._node.get_parameter(USE_SIM_TIME).value)[0])
             if "body" in given:
                 body_of(values.body)
             if "accuracy" in given:
@@ -93,6 +99,14 @@ class Declaration:
         except (ValueError, OSError) as error:
             return SetParametersResult(successful=False, reason=str(error))
         return SetParametersResult(successful=True)
+
+    def _check_clock(self, values: DynamicsParameters, use_sim_time: bool):
+        """`ValueError` where the node is to make /clock and to take its time from there."""
+        if use_sim_time is True and values.makes_clock:
+            raise ValueError(
+                "use_sim_time must be false in the node that makes /clock, got true; with follow_clock:=true the node "
+                "follows the /clock of another node"
+            )
 
     def _checked(self, parameters) -> dict:
         """The values of this node's `parameters`, checked one by one."""

@@ -146,7 +146,7 @@ class Status:
             "accuracy": self.accuracy,
             "time": run.time,
             "real_time_factor": max(0.0, simulated) / wall if wall > 0.0 else 0.0,
-            "late": run.pace.lost,
+            "late": max(0.0, run.pace.lost(run.samples_published)),
             **run.output.totals.values(),
             **run.output.errors,
             "samples_published": run.samples_published,

@@ -22,6 +22,7 @@ from rclpy.serialization import deserialize_message
 from rosgraph_msgs.msg import Clock
 from tf2_msgs.msg import TFMessage
 
+from eel_dynamics.accuracy.error_estimate import HeadErrors
 from eel_dynamics.analysis.actuators import Joints
 from eel_dynamics.curvature.curvature_samples import check_points
 from eel_dynamics.model.axes import QUATERNION, VECTOR, turn_quaternion, turn_vector, turn_world
@@ -53,7 +54,7 @@ def seconds_of(time: Time) -> float:
 class Sample:
     """The serialised messages of one sample: `fill` returns that of a topic, `tick` that of /clock.
 
-    estimated_error: returns what swim_state gives as such [-].
+    head_errors: returns the present errors of the head's motion, or None where they are not estimated.
 
     Attributes:
         kinds: message type by topic.
@@ -67,9 +68,10 @@ class Sample:
         x: np.ndarray,
         scene: Scene,
         parameters: DynamicsParameters,
-        estimated_error: Callable[[], float] = lambda: math.nan,
+        head_errors: Callable[[], HeadErrors | None] = lambda: None,
     ):
-        self._nanoseconds, self._estimated_error = (0, 0), estimated_error
+        self._nanoseconds, self._head_errors = (0, 0), head_errors
+        self._errors = None  # those in the covariances of odom
         messages = {
             "head_pose": PoseStamped(),
             "head_twist": TwistStamped(),
@@ -155,6 +157,12 @@ class Sample:
             self._head[ORIENTATION],
         )
         numbers["twist.twist.angular"][:], numbers["twist.twist.linear"][:] = self._head[ANGULAR], self._head[LINEAR]
+        errors = self._head_errors() or NO_ERRORS
+        if errors != self._errors:  # they change ten times a second
+            self._errors, known = errors, math.isfinite(errors.position)
+            pose, twist = np.square((errors[1:3], errors[3:5]))
+            for name, variances in (("pose.covariance", pose), ("twist.covariance", twist)):
+                numbers[name][:] = np.diag(np.repeat(variances, 3)).ravel() if known else UNKNOWN
 
     def _fill_transform(self, numbers, snapshot):
         numbers["transforms[0].transform.translation"][:] = self._head[POSITION]
@@ -190,13 +198,14 @@ class Sample:
         numbers[""][:] = [getattr(snapshot.energy, name) for name in ENERGY_FIELDS]
 
     def _fill_state(self, numbers, snapshot):
+        errors = self._head_errors()
         numbers[""][:] = (  # in the order of the fields
             np.linalg.norm(self._head[LINEAR]),
             -self._head[POSITION][2],
             heading(self._head[ORIENTATION]),
             math.nan if snapshot.torque is None else np.max(np.abs(snapshot.torque)),
             math.nan if snapshot.actuator_work is None else snapshot.actuator_work,
-            self._estimated_error(),
+            math.nan if errors is None else errors.relative,
         )
 
     def _fill_joints(self, numbers, snapshot):
@@ -218,11 +227,20 @@ def _lengthen(message, x: np.ndarray):
 
 
 HEAD = np.concatenate((VECTOR, QUATERNION, VECTOR, VECTOR))  # to REP-103 axes
+NO_ERRORS = HeadErrors(*[math.inf] * 5)
+UNKNOWN = np.array([-1.0, *[0.0] * 35])  # a covariance
 POSITION, ORIENTATION, ANGULAR, LINEAR = slice(0, 3), slice(3, 7), slice(7, 10), slice(10, 13)
 TORQUES, FORCES, RESISTANCES = (
     tuple(f"{name}_{axis}" for axis in (1, 2, 3)) for name in ("torque", "force", "resistive")
 )
 ENERGY_FIELDS = tuple(name for name, kind in EnergyLedger.get_fields_and_field_types().items() if kind == "double")
+
+
+def root_message(parameters: DynamicsParameters) -> TFMessage:
+    """The transform from `root_frame` to `world_frame`, which are the same place."""
+    transform = TransformStamped(child_frame_id=parameters.world_frame)
+    transform.header.frame_id = parameters.root_frame
+    return TFMessage(transforms=[transform])
 
 
 def body_message(body, scene: Scene, x: np.ndarray, section_frame: str) -> BodyGeometry:

@@ -29,18 +29,23 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.qos import QoSProfile
 from std_srvs.srv import SetBool, Trigger
+from tf2_msgs.msg import TFMessage
 
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.ros.clock_arbiter import ClockMonitor
+from eel_dynamics.ros.clock_subscription import ClockSubscription
 from eel_dynamics.ros.declaration import Declaration
 from eel_dynamics.ros.diagnostics import Report, Status
+from eel_dynamics.ros.loop.followed_clock import FollowedClock
 from eel_dynamics.ros.loop.law_feed import LawFeed
+from eel_dynamics.ros.loop.pacing import Pace
 from eel_dynamics.ros.loop.run_loop import NewRun, RunLoop
 from eel_dynamics.ros.messages import (
     Sample,
     body_message,
     diagnostic_array,
     parse_law,
+    root_message,
     samples_from_message,
     state_from_message,
     time_message,
@@ -82,7 +87,7 @@ class DynamicsNode(ParameterNode):
         values, scene = self.parameters.values, self.parameters.scene
         simulation = simulation_from_parameters(values, scene)
         self.sample_publishers = Publishers(
-            Sample(simulation.x, scene, values, lambda: self.run_loop.output.errors.get("error_position", math.nan)),
+            Sample(simulation.x, scene, values, lambda: self.run_loop.output.head_errors),
             create=lambda kind, topic, depth: self.create_publisher(kind, topic, depth or LOSSLESS),
             destroy=self.destroy_publisher,
             known=self._count_known,
@@ -93,7 +98,15 @@ class DynamicsNode(ParameterNode):
             report=report,
         )
         inbox = SampleInbox(self, lambda message, info: feed.receive_samples(message, info))
-        self.run_loop = RunLoop(simulation, values, self.sample_publishers, report, self._wait_for_body_received, inbox)
+        self.run_loop = RunLoop(
+            simulation,
+            values,
+            self.sample_publishers,
+            report,
+            self._wait_for_body_received,
+            inbox,
+            FollowedClock if values.follow_clock else Pace,
+        )
         self.status = Status(self.run_loop, report, values.accuracy)
         self._diagnostics = self.create_publisher(DiagnosticArray, "/diagnostics", 10)
         self._body = self.create_publisher(BodyGeometry, "body", latched(1))
@@ -123,7 +136,13 @@ class DynamicsNode(ParameterNode):
             lambda offered: self.run_loop.requests.put(lambda: self.sample_publishers.enable_clock(offered)),
             report,
         )
-        clock.look(values.clock)
+        clock.look(values.makes_clock)
+        follow = self.run_loop.requests.show_clock
+        followed = (
+            ClockSubscription(self, lambda shown: follow(shown, time.monotonic())) if values.follow_clock else None
+        )
+        self._root = None  # publisher of /tf_static
+        self._publish_root()
         topic = self.resolve_topic_name("head_pose")
         self._arbiter = SwimmerArbiter(Identity.own(), topic, report, self.run_loop.requests.hold)
         self.create_subscription(DiagnosticArray, "/diagnostics", self._receive_diagnostics, 10)
@@ -134,7 +153,10 @@ class DynamicsNode(ParameterNode):
             inbox.look()
             if self.status.due():
                 self.publish_diagnostics()
-            clock.look(self.parameters.values.clock and not self._arbiter.waits)
+            clock.look(self.parameters.values.makes_clock and not self._arbiter.waits)
+            self._publish_root()
+            if followed is not None:
+                followed.look()
 
         self.create_timer(TIMER_PERIOD, on_timer, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
@@ -142,6 +164,13 @@ class DynamicsNode(ParameterNode):
         """The number of subscribers on the network that `publisher` can match."""
         wanted = self.get_subscriptions_info_by_topic(publisher.topic_name)
         return sum(matches(each.qos_profile, publisher.qos_profile) for each in wanted)
+
+    def _publish_root(self):
+        """Publish once where the world lies in the frame that swimmers share; later subscribers get it too."""
+        values = self.parameters.values
+        if self._root is None and values.root_frame and values.publish_tf:
+            self._root = self.create_publisher(TFMessage, "/tf_static", latched(1))
+            self._root.publish(root_message(values))
 
     def publish_diagnostics(self, final: bool = False):
         """Publish /diagnostics; `final`: at the end of the run."""
@@ -182,7 +211,7 @@ class DynamicsNode(ParameterNode):
         """The run with the parameters that have been set for the next reset. `ValueError` names what does not fit."""
         values, scene = self.parameters.next_values, self.parameters.next_scene
         simulation = simulation_from_parameters(values, scene)
-        sample = Sample(simulation.x, scene, values)
+        sample = Sample(simulation.x, scene, values, lambda: self.run_loop.output.head_errors)
         body = body_message(simulation.body, scene, simulation.x, values.section_frame)
 
         def begin():

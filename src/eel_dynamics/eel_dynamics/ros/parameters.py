@@ -17,6 +17,7 @@ from eel_dynamics.analysis.actuators import MOST_JOINTS
 from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
 
 FRAMES = ("world_frame", "head_frame", "section_frame")
+ROOT = "world"  # the frame that swimmers in namespaces share
 
 
 def _parameter(default, description, unit="", **bounds):
@@ -93,7 +94,16 @@ class DynamicsParameters:
     section_frame: str = _parameter(
         "section", "frame id of values in the axes of their own section; by default below the namespace"
     )
-    clock: bool = _parameter(True, "publish /clock, unless another publisher of it is on the network", changeable=True)
+    root_frame: str = _parameter(
+        "",
+        "frame id above world_frame, on /tf_static with publish_tf; empty: none; by default world below a namespace",
+    )
+    clock: bool = _parameter(
+        True, "publish /clock, unless another publisher of it is on the network, or follow_clock", changeable=True
+    )
+    follow_clock: bool = _parameter(
+        False, "take the pace from the /clock of another node: each sample is due once /clock has come to its time"
+    )
     clock_rate: float = _parameter(
         0.0,
         "messages on /clock per simulated second; 0: one with each sample",
@@ -136,10 +146,17 @@ class DynamicsParameters:
         for name in FRAMES:
             if not getattr(self, name):
                 raise ValueError(f"{name} must not be empty")
+            if getattr(self, name) == self.root_frame:
+                raise ValueError(f"root_frame must be another frame than {name}, got {shown(self.root_frame)}")
         if max(self.yaw_joints, self.pitch_joints) > 0 and self.stations < 4:
             raise ValueError(f"stations must be 4 or more where there are joints, got {self.stations}")
         orientation = unit_quaternion("initial_orientation", self.initial_orientation)
         object.__setattr__(self, "initial_orientation", orientation)
+
+    @property
+    def makes_clock(self) -> bool:
+        """Whether the node is to publish /clock."""
+        return self.clock and not self.follow_clock
 
     @property
     def last_sample(self) -> float:

@@ -131,6 +131,8 @@ class Publishers:
         """
         left_out = NOT_AWAITED if wanted else ()
         own = [channel.publisher for name, channel in self._channels.items() if name not in left_out]
+        if not wanted and self._clock is not None:
+            own.append(self._clock.publisher)  # who follows it needs it from the start
         counts = [publisher.get_subscription_count() for publisher in own]
         known = [] if wanted else [self._known(publisher) for publisher in own]
         if [counts, known] != self._subscriber_counts:

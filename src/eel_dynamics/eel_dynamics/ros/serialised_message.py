@@ -23,8 +23,8 @@ class SerialisedMessage:
     """A `message` in its serialised form. Texts and lengths of sequences cannot be changed.
 
     Attributes:
-        numbers: views of its float64 numbers, by the path of a sequence ("torque_1"), or of a message with float
-            fields ("pose.position", "transforms[0].transform.rotation", "" for the message itself).
+        numbers: views of its float64 numbers, by the path of a sequence or array ("torque_1"), or of a message with
+            float fields ("pose.position", "transforms[0].transform.rotation", "" for the message itself).
         stamps: views (2,) of the seconds and nanoseconds of its times.
     """
 
@@ -66,9 +66,9 @@ def _marked(message, marks: Iterator[float], times: Iterator[int], path: str = "
         yield path, values
     for name, kind in fields.items():
         value, below = getattr(message, name), f"{path}.{name}" if path else name
-        if kind == "sequence<double>" and len(value):
+        if kind.startswith(("sequence<double>", "double[")) and len(value):
             values = list(islice(marks, len(value)))
-            setattr(message, name, array.array("d", values))
+            setattr(message, name, np.array(values) if kind.startswith("double[") else array.array("d", values))
             yield below, values
         several = isinstance(value, list)
         for k, each in enumerate(value if several else [value]):

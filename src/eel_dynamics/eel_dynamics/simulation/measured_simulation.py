@@ -12,7 +12,14 @@ import numpy as np
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
 
-from eel_dynamics.accuracy.error_estimate import LEAST_SAMPLES, SMALL, ErrorEstimate, growth_rate_of, least_torque
+from eel_dynamics.accuracy.error_estimate import (
+    LEAST_SAMPLES,
+    SMALL,
+    ErrorEstimate,
+    HeadErrors,
+    growth_rate_of,
+    least_torque,
+)
 from eel_dynamics.simulation.simulation import Simulation
 from eel_dynamics.simulation.stopping import SimulationStopped
 
@@ -47,7 +54,7 @@ class MeasuredSimulation(Simulation):
         """
         if self._companion is None:
             return ErrorEstimate(np.inf, None)
-        scale, torque = max(self._path, self.body.length), None
+        torque = None
         if self._torque is not None:
             duration = self._compared_at - self.measured_since
             least = least_torque(self.law, self.discretisation.mass, self.body.length, duration)
@@ -55,8 +62,20 @@ class MeasuredSimulation(Simulation):
         rate = self._rate_before
         if len(self._distances) >= LEAST_SAMPLES:
             time, distances = np.array(self._distances).T
-            rate = growth_rate_of(time - self.measured_since, distances, SMALL * scale)
-        return ErrorEstimate(self._farthest / scale, torque, rate)
+            rate = growth_rate_of(time - self.measured_since, distances, SMALL * self._scale)
+        return ErrorEstimate(self.head_errors.relative, torque, rate)
+
+    @property
+    def head_errors(self) -> HeadErrors:
+        """The errors of the head's motion since `measured_since`, at the last comparison.
+
+        All are infinite where the companion stopped. The absolute ones are also infinite before the first comparison,
+        and once the position was lost.
+        """
+        if self._companion is None:
+            return HeadErrors(*[np.inf] * 5)
+        unknown = self.lost_at is not None or self._last_position is None
+        return HeadErrors(self._apart[0] / self._scale, *([np.inf] * 4 if unknown else self._apart.tolist()))
 
     def adopt(self, law: Law | SampledLaw, origin: float = 0.0, transition: float | None = None):
         """As `Simulation.adopt`."""
@@ -104,7 +123,8 @@ class MeasuredSimulation(Simulation):
         """Let the companion begin from the present state. `growth_rate` [1/s]: until a new one is measured."""
         self.measured_since = self._compared_at = self.time
         self._last_position, self._rate_before = None, growth_rate
-        self._path = self._farthest = self._torque_distance = 0.0  # m, m, N m: since then
+        self._path = self._torque_distance = 0.0  # m, N m: since then
+        self._apart = np.zeros(4)  # as in `HeadErrors`: m, rad, m/s, rad/s
         self._torque: float | None = None  # N m, the greatest since then
         self._distances.clear()
         try:
@@ -143,17 +163,30 @@ class MeasuredSimulation(Simulation):
             self._companion = None
             return
         self._include(this, other)
-        if not self._farthest <= SMALL * max(self._path, self.body.length):
+        if not self._apart[0] <= SMALL * self._scale:
             self.lost_at = self.time if self.lost_at is None else self.lost_at
             self._seat(self.error_estimate.growth_rate)
 
     def _include(self, this, other):
         """Add a comparison of two snapshots of one time."""
-        distance = float(np.linalg.norm(this.position - other.position))
+        apart = _apart(this, other)
         if self._last_position is not None:
             self._path += float(np.linalg.norm(this.position - self._last_position))
-        self._last_position, self._farthest = this.position, max(self._farthest, distance)
-        self._distances.append((self.time, distance))
+        self._last_position, self._apart = this.position, np.maximum(self._apart, apart)
+        self._distances.append((self.time, float(apart[0])))
         if this.torque is not None:
-            size, apart = np.linalg.norm((this.torque, this.torque - other.torque), axis=2).max(axis=1)
-            self._torque, self._torque_distance = max(self._torque or 0.0, size), max(self._torque_distance, apart)
+            size, differs = np.linalg.norm((this.torque, this.torque - other.torque), axis=2).max(axis=1)
+            self._torque, self._torque_distance = max(self._torque or 0.0, size), max(self._torque_distance, differs)
+
+    @property
+    def _scale(self) -> float:
+        """Length [m] by which the position's error is relative."""
+        return max(self._path, self.body.length)
+
+
+def _apart(this, other) -> np.ndarray:
+    """(4,) m, rad, m/s, rad/s: how far the heads are apart in two snapshots of one time."""
+    position, twist = this.position - other.position, this.twist - other.twist
+    same, opposite = (np.linalg.norm(this.orientation + sign * other.orientation) for sign in (-1.0, 1.0))
+    angle = 4.0 * np.arcsin(min(same, opposite) / 2.0)  # q and -q are one orientation
+    return np.array((np.linalg.norm(position), angle, np.linalg.norm(twist[3:]), np.linalg.norm(twist[:3])))

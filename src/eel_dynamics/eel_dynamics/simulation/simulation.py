@@ -16,7 +16,7 @@ from eel_gaits.sources.sampled_law import SampledLaw
 
 import eel_core
 from eel_dynamics.accuracy.accuracy import Accuracy
-from eel_dynamics.accuracy.error_estimate import ErrorEstimate
+from eel_dynamics.accuracy.error_estimate import ErrorEstimate, HeadErrors
 from eel_dynamics.curvature.curvature_samples import CurvatureSample, check_points
 from eel_dynamics.curvature.law_follower import DEFAULT_TRANSITION
 from eel_dynamics.model.body import Body
@@ -264,6 +264,11 @@ class Simulation:
     @property
     def error_estimate(self) -> ErrorEstimate | None:
         """None: a `MeasuredSimulation` has one."""
+        return None
+
+    @property
+    def head_errors(self) -> HeadErrors | None:
+        """None: a `MeasuredSimulation` has them."""
         return None
 
     @property

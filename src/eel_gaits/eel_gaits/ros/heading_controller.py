@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A heading controller: it reads the heading from /odom, and answers each sample with the curvature one period on.
+"""A heading controller: it reads the heading from /odom, and answers each sample with the curvature some time ahead.
 
 It swims straight, and bends the whole body towards the target heading. Its answers are `curvature_samples`, so that a
 simulation as fast as possible (`real_time_factor:=0`) keeps in step with it. docs/howto/controllers.md tells how.
@@ -24,6 +24,7 @@ from nav_msgs.msg import Odometry
 from std_msgs.msg import Header
 
 from eel_gaits.gaits.swimming import straight
+from eel_gaits.ros.lead import Lead
 from eel_msgs.msg import CurvatureSamples
 
 NAME = "heading_controller"
@@ -36,17 +37,36 @@ class HeadingParameters(Quantities):
     """The parameters of the controller."""
 
     heading: float = quantity(
-        0.5, unit="rad", description="target heading in the world frame; positive: left", minimum=-1e3, maximum=1e3
+        0.5,
+        unit="rad",
+        description="target heading in the world frame; positive: left",
+        minimum=-1e3,
+        maximum=1e3,
+        changeable=True,
     )
     gain: float = quantity(
-        1.0, unit="1/m", description="bend of the body by error of the heading", minimum=0.0, maximum=1e3
+        1.0,
+        unit="1/m",
+        description="bend of the body by error of the heading",
+        minimum=0.0,
+        maximum=1e3,
+        changeable=True,
     )
-    greatest_bend: float = quantity(0.5, unit="rad/m", description="limit of that bend", minimum=0.0, maximum=1e3)
+    greatest_bend: float = quantity(
+        0.5, unit="rad/m", description="limit of that bend", minimum=0.0, maximum=1e3, changeable=True
+    )
     period: float = quantity(
         0.01,
         unit="s",
-        description="time from a sample to its answer; the dynamics node's 1/rate",
-        minimum=1e-4,
+        description="time from one sample of the curvature to the next, whatever the rate of odom",
+        minimum=1e-3,
+        maximum=1.0,
+    )
+    lead: float = quantity(
+        0.1,
+        unit="s",
+        description="time by which samples are sent ahead of odom; at least a period, and the dynamics node's 1/rate",
+        minimum=1e-3,
         maximum=1.0,
     )
     length: float = quantity(1.0, unit="m", description="body length", minimum=1e-4, maximum=1e3)
@@ -60,31 +80,37 @@ class HeadingController(ParameterNode):
         super().__init__(NAME, automatically_declare_parameters_from_overrides=True)
         overrides, names = take_overrides(self), HeadingParameters.__dataclass_fields__
         given = HeadingParameters(**{name: overrides[name] for name in overrides if name in names})
-        declare(self, given, limits, changeable=True)
+        declare(self, given, limits)
         warn_of_unknown(self, overrides, names)
         self.gait, self.x = straight(), np.linspace(0.0, given.length, 21)
-        self.bend, self.last, self.answer = np.zeros(3), math.inf, None
+        self.period, self.lead = given.period, Lead(given.period, given.lead)
+        self.bend, self.last, self.answers = np.zeros(3), math.inf, []
         self.publisher = self.create_publisher(CurvatureSamples, "curvature_samples", keep_all())
         self.create_subscription(Odometry, "odom", self.receive, keep_all())
 
     def receive(self, odometry):
-        """Answer one sample. A stamp that goes back is a start; one that is repeated gets the same answer."""
+        """Answer one sample: the curvature up to `lead` later. A stamp that is repeated gets the same answers."""
         now = odometry.header.stamp.sec + 1e-9 * odometry.header.stamp.nanosec
         if now != self.last:
-            self.bend = self.next_bend(odometry.pose.pose.orientation) if now > self.last else np.zeros(3)
-            self.answer, self.last = self.sample(now + self.get_parameter("period").value), now
-        self.publisher.publish(self.answer)
+            self.last, self.answers = now, []
+            if self.lead.begins(now):
+                self.bend = np.zeros(3)
+                self.answers.append(self.sample(self.lead.begin(now)))
+            for time in self.lead.after(now):
+                self.bend = self.next_bend(odometry.pose.pose.orientation)
+                if time > now:
+                    self.answers.append(self.sample(time))
+        for answer in self.answers:
+            self.publisher.publish(answer)
 
     def next_bend(self, q):
         """The bend of the body one period on: K3 [rad/m], its rate and its acceleration. K3 > 0 turns to the right."""
-        target, gain, limit, step = (
-            self.get_parameter(name).value for name in ("heading", "gain", "greatest_bend", "period")
-        )
+        target, gain, limit = (self.get_parameter(name).value for name in ("heading", "gain", "greatest_bend"))
         wanted = -gain * math.remainder(target - heading((q.x, q.y, q.z, q.w)), 2.0 * math.pi)
         value, rate, _ = self.bend
         acceleration = FOLLOWING**2 * (max(-limit, min(limit, wanted)) - value) - 2.0 * FOLLOWING * rate
-        rate += step * acceleration
-        return np.array((value + step * rate, rate, acceleration))
+        rate += self.period * acceleration
+        return np.array((value + self.period * rate, rate, acceleration))
 
     def sample(self, time):
         """The curvature at `time` [s]: the gait and the bend."""

@@ -27,6 +27,7 @@ from rcl_interfaces.msg import SetParametersResult
 from eel_gaits.pilot import goals
 from eel_gaits.pilot.pilot import Pilot
 from eel_gaits.pilot.settings import PilotSettings
+from eel_gaits.ros.lead import Lead
 from eel_gaits.ros.messages import FRAME, samples_to_message
 from eel_gaits.ros.pilot_messages import head_motion, path_message, point_of, seconds_of
 from eel_gaits.ros.pilot_parameters import GROUPS, GoalParameters, TimingParameters
@@ -56,7 +57,8 @@ class PilotNode(ParameterNode):
         self._follow(self._course(self._numbers), "parameters")
         self._frames = {frame_in(self.get_namespace(), "odom"), ""}
         self._section_frame = frame_in(self.get_namespace(), FRAME)
-        self._last, self._next, self._answers = math.inf, 0.0, []  # s, s: last odom, next sample; what it was answered
+        self._lead = Lead(self._timing.sample_period, self._timing.lead)
+        self._last, self._answers = math.inf, []  # s: last odom; what it was answered
         self._waiting: list[Odometry] = []
         self._torques: dict[float, float] = {}  # time [s]: torque [N m]
         self._torque_comes = False  # whether swim_state has come, and none has been missed since
@@ -182,14 +184,12 @@ class PilotNode(ParameterNode):
                 self.get_logger().warning(f"odom left out: {error}", throttle_duration_sec=1.0)
                 return
             self._frames = {odometry.header.frame_id.lstrip("/"), ""}
-            if not now > self._last:
-                self._start(now)
+            if self._lead.begins(now):
+                self._add(self._lead.begin(now), self._pilot.begin(), -math.inf)
             self._last = now
             self._pilot.see(now, head)
-            period = self._timing.sample_period
-            while self._next <= now + self._timing.lead + 1e-9:
-                self._add(self._next, self._pilot.steer(period), now)
-                self._next += period
+            for time in self._lead.after(now):
+                self._add(time, self._pilot.steer(self._timing.sample_period), now)
         for answer in self._answers:
             self._publisher.publish(answer)
         for news in self._pilot.news:
@@ -199,12 +199,6 @@ class PilotNode(ParameterNode):
             else:
                 self.get_logger().warning(text)
         self._pilot.news.clear()
-
-    def _start(self, now: float):
-        """Begin a run at `now` [s], or join one that is under way."""
-        begin = now if now == 0.0 else now + self._timing.lead
-        self._answers, self._next = [], begin + self._timing.sample_period
-        self._add(begin, self._pilot.begin(), -math.inf)
 
     def _add(self, time: float, rows: np.ndarray, now: float):
         if time > now:

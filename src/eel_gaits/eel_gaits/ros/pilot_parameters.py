@@ -33,7 +33,11 @@ class TimingParameters(Quantities):
         0.02, unit="s", description="time from one sample of the curvature to the next", minimum=1e-3, maximum=0.2
     )
     lead: float = quantity(
-        0.05, unit="s", description="time by which samples are sent ahead of odom", minimum=1e-3, maximum=1.0
+        0.05,
+        unit="s",
+        description="time by which samples are sent ahead of odom; at least a sample_period",
+        minimum=1e-3,
+        maximum=1.0,
     )
 
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tells when the error of a run exceeds its target: each time once in the log, and in /diagnostics until a reset."""
 
+OFF = "off"  # where no error is estimated
 TARGET, LOST = "accuracy target", "lost accuracy"  # kinds of conditions
 
 
@@ -8,16 +9,17 @@ class ErrorMonitor:
     """Watches the error estimate of a `simulation`, if it has one.
 
     Attributes:
-        values: the figures for /diagnostics, by name, at the last check.
+        values: the figures for /diagnostics, by name, at the last check; "off" where no error is estimated.
     """
 
     def __init__(self, simulation, report):
         self._simulation, self._report = simulation, report
-        self.values: dict[str, float] = {}
+        self.values: dict[str, float | str] = {}
+        self.restart()
 
     def restart(self):
         """Forget what has been told."""
-        self.values = {}
+        self.values = {"error_position": OFF} if self._simulation.error_estimate is None else {}
         for kind in (TARGET, LOST):
             self._report.end(kind)
 

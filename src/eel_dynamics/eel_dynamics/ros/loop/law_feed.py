@@ -15,10 +15,12 @@ import numpy as np
 from eel_base.wording import shown
 from eel_ros.deliveries import Deliveries
 
-from eel_dynamics.ros.diagnostics import ERROR
+from eel_dynamics.curvature.curvature_samples import LateSample
+from eel_dynamics.ros.diagnostics import ERROR, WARN
 
 FAR_AHEAD = 3600.0  # s: a stamp further ahead of the simulation is wall time by mistake
 DROPPED = 1_000_000_000  # ns: a publisher's law that arrives after a later one is at most this much older
+JOIN = "a controller that joins a running simulation begins 1/rate or more after the stamp of the last odom"
 ECHO = 2.0  # s after a reset, within which samples that were sent before it may come
 SHOWN = reprlib.Repr()
 SHOWN.maxstring = 60  # characters of a refused law's name
@@ -88,11 +90,14 @@ class LawFeed:
         return stamped
 
 
-def refused(error: Exception) -> str:
-    """The log line for curvature samples that are refused with `error`."""
+def refused(error: Exception, driven: bool = False) -> str:
+    """The log line for curvature samples that are refused with `error`. driven: whether others drive the swimmer, or
+    have run out."""
     reason = str(error).removeprefix("curvature samples ")
     if reason.startswith("time "):
         reason = f"header.stamp{reason.removeprefix('time')}"
+    if isinstance(error, LateSample):
+        reason += f": {'send them further ahead' if driven else JOIN}"
     return f"curvature samples refused: {reason}"
 
 
@@ -108,7 +113,8 @@ class LawAdopter:
     def __init__(self, simulation, report):
         self.simulation, self._report = simulation, report
         self._origin = 0.0  # s: simulation time of the law's t = 0
-        self._last = None  # the last instant that was added
+        self._first = {}  # time [s] of the instants that were added at the start, and a hash of the values
+        self._driven = False  # whether a controller's samples drove the swimmer when it was last looked at
         self._farthest = 0.0  # s: the greatest time by which a sample lay ahead of the simulation
         self._echo_until = 0.0  # s, steady clock: until when samples from before the last reset may come
 
@@ -132,7 +138,7 @@ class LawAdopter:
         except REFUSALS as error:
             self._report.event("law", f"law {shown(law.name)} refused: {error}", ERROR, differing=True)
             return
-        self._origin = origin
+        self._origin, self._driven = origin, False
         self._report.end("resting")
         self._report.note("law adopted", f"law {shown(law.name)} adopted at t = {simulation.time:g} s")
         if until is not None and until > simulation.time:
@@ -144,22 +150,27 @@ class LawAdopter:
     def add_samples(self, samples: dict):
         """Add one instant of a law: the arguments of `Simulation.add_samples`.
 
-        An instant that is the same as the last one is the answer to a repeated sample 0, and changes nothing. Shortly
-        after a reset, a sample that lies more than twice as far ahead as any before was sent before the controller saw
-        the reset, and is left out.
+        An instant that is the same as one from before the start is an answer to a repeated sample 0, and changes
+        nothing. Shortly after a reset, a sample that lies more than twice as far ahead as any before was sent before
+        the controller saw the reset, and is left out.
         """
         ahead = samples["time"] - self.simulation.time
         if ahead > 2.0 * self._farthest and time.monotonic() < self._echo_until:
             self._report.note("echo", f"curvature samples of {samples['time']:g} s left out: sent before the reset")
             return
-        if self._last is not None and all(np.array_equal(samples[name], self._last[name]) for name in samples):
+        values = hash(tuple(np.asarray(row).tobytes() for name, row in samples.items() if name != "time"))
+        if self._first.get(samples["time"]) == values:
             return
         try:
             self.simulation.add_samples(**samples)
         except REFUSALS as error:
-            self._report.event("samples", refused(error), ERROR)
+            level = WARN if isinstance(error, LateSample) else ERROR
+            driven = self.simulation.sampled or self.simulation.resting
+            self._report.event("samples", refused(error, driven), level)
         else:
-            self._last, self._farthest = samples, max(self._farthest, ahead)
+            self._farthest = max(self._farthest, ahead)
+            if self.simulation.time == 0.0:
+                self._first[samples["time"]] = values
 
     def lacks_samples(self, instant: float) -> bool:
         """Whether a controller's samples drive the swimmer and do not reach simulation time `instant` [s] yet."""
@@ -177,15 +188,19 @@ class LawAdopter:
 
     def reset(self):
         """Set the law's own t = 0 back to simulation time 0."""
-        self._origin = 0.0
-        self._last = None
+        self._origin, self._driven = 0.0, False
+        self._first.clear()
         if self._farthest > 0.0:
             self._echo_until = time.monotonic() + ECHO
         self._report.end("resting")
 
-    def report_resting(self, instant: float):
-        """Log when samples have run out, or are back, at simulation time `instant` [s]."""
-        if self.simulation.resting:
-            self._report.begin("resting", f"curvature samples have run out at t = {instant:g} s: coming to rest")
-        elif self._report.lasts("resting"):
+    def report_samples(self, instant: float):
+        """Log when samples are adopted, have run out, or are back, at simulation time `instant` [s]."""
+        lost, told = self.simulation.resting, self._report.lasts("resting")
+        if lost and not told:
+            self._report.begin("resting", f"curvature samples have run out at t = {instant:g} s: coming to rest", ERROR)
+        elif told and not lost:
             self._report.end("resting", f"curvature samples are back at t = {instant:g} s")
+        elif self.simulation.sampled and not self._driven:
+            self._report.note("law adopted", f"curvature samples adopted at t = {instant:g} s")
+        self._driven = self.simulation.sampled or self.simulation.resting

@@ -1,16 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """Pacing on the steady clock: due times of samples, the wait for a controller, and the wall time spent.
 
-Sample k is due at start + (k - first) * period / factor. A run that falls behind by more than a few periods does not
-catch up: later samples are due later. It keeps its accuracy, not its pace.
+Sample k is due at start + (k - first) * period / factor. A run that is late by more than a period and `SHORTEST_DELAY`
+does not hurry: it regains the lost time at `CATCH_UP` above its pace, so that a controller can follow. Until then later
+samples are due later. The run keeps its accuracy, not its pace.
 """
 
 import math
 import time
 from collections.abc import Callable
 
-FEW_PERIODS = 5
 SHORTEST_DELAY = 0.02  # s: shorter delays come from the operating system's scheduling
+CATCH_UP = 0.1  # of the pace, by which a late run is faster until it has regained the lost time
 
 
 class Pace:
@@ -19,34 +20,45 @@ class Pace:
     def __init__(self, period: float, factor: float):
         self.period = period
         self.factor = factor
-        self.lost = 0.0  # s: sum of the delays that were not caught up
-        self._first, self._start = 0, -math.inf
+        self._first, self._start, self._lost = 0, -math.inf, 0.0  # _lost: s, by which the first one was late
 
     def restart(self, sample: int, now: float, factor: float | None = None):
-        """Make `sample` due `now` [s, steady clock], and later samples relative to it."""
+        """Make `sample` due `now` [s, steady clock], and later samples relative to it. Nothing is late any more."""
         if factor is not None:
             self.factor = factor
-        self._first, self._start = sample, now
+        self._first, self._start, self._lost = sample, now, 0.0
 
     def due(self, sample: int) -> float:
         """Time [s, steady clock] at which `sample` is due."""
         if self.factor == 0.0:
             return -math.inf
-        return self._start + (sample - self._first) * self.period / self.factor
+        return self._start + self._steps(sample) - (self._lost - self.lost(sample))
+
+    def lost(self, sample: int) -> float:
+        """Time [s] that the schedule has lost and not regained by `sample`."""
+        return max(0.0, self._lost - self._steps(sample) * CATCH_UP / (1.0 + CATCH_UP))
 
     def give_up_delay(self, sample: int, now: float) -> float:
-        """If `sample` is late by more than a few periods at `now` [s, steady clock], make later samples due later.
+        """If `sample` is late at `now` [s, steady clock], make later samples due later.
 
         Returns the delay [s], or 0.
         """
         if self.factor == 0.0:
             return 0.0
         delay = now - self.due(sample)
-        if delay <= max(FEW_PERIODS * self.period / self.factor, SHORTEST_DELAY):
+        if delay <= self.period / self.factor + SHORTEST_DELAY:
             return 0.0
-        self.lost += delay
+        lost = self.lost(sample) + delay
         self.restart(sample, now)
+        self._lost = lost
         return delay
+
+    def obstacle(self, sample: int) -> str:
+        """Why `sample` is not due, as text, where that is not only a matter of time: never."""
+        return ""
+
+    def _steps(self, sample: int) -> float:
+        return (sample - self._first) * self.period / self.factor if self.factor > 0.0 else 0.0
 
 
 class ControllerWait:

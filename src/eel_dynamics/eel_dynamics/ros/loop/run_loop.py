@@ -6,6 +6,7 @@ samples. An urgent request interrupts the computation of a sample, and so does a
 No ROS is imported: `publishers` and `report` come from the node.
 """
 
+import math
 import time
 
 from eel_dynamics.ros.diagnostics import ERROR
@@ -28,7 +29,7 @@ class RunLoop:
     `run` is the thread's function: it returns after the last sample, or after `requests.stop`. A simulation that has
     stopped waits for a reset; an unattended one (with a duration, as fast as possible) returns and has `given_up`.
     on_subscribers_complete: called when the subscribers that the run waits for are there. inbox: has `poll()`, which
-    passes samples that have come to `requests.take_samples`, and the methods of `WakeUp`.
+    passes samples that have come to `requests.take_samples`, and the methods of `WakeUp`. pace: the kind of `Pace`.
 
     Attributes:
         time: simulation time of the last sample [s].
@@ -38,13 +39,22 @@ class RunLoop:
         obstacles: Obstacles. laws: LawAdopter. output: SampleOutput. pace: Pace. wall_time: Stopwatch.
     """
 
-    def __init__(self, simulation, parameters, publishers, report, on_subscribers_complete=lambda: None, inbox=None):
+    def __init__(
+        self,
+        simulation,
+        parameters,
+        publishers,
+        report,
+        on_subscribers_complete=lambda: None,
+        inbox=None,
+        pace: type[Pace] = Pace,
+    ):
         self._simulation, self._parameters, self._report = simulation, parameters, report
         self.obstacles = Obstacles(simulation, publishers, parameters.wait_for_subscribers, on_subscribers_complete)
         self._queue = RequestQueue(inbox or WakeUp())
         self.requests = RunRequests(self, self._queue, report)
         self._poll = inbox.poll if inbox is not None else lambda: None
-        self.pace = Pace(1.0 / parameters.rate, parameters.real_time_factor)
+        self.pace = pace(1.0 / parameters.rate, parameters.real_time_factor)
         self.laws, self.wall_time = LawAdopter(simulation, report), Stopwatch()
         self._controller = ControllerWait(lambda s: self.laws.report_missing(self._next_time, self.pace.period, s))
         self.output = SampleOutput(simulation, parameters.rate, parameters.clock_rate, publishers, report)
@@ -71,12 +81,14 @@ class RunLoop:
         while not self._queue.stopped and self.samples_published <= self._parameters.last_sample and not self.given_up:
             self._poll()
             self._queue.carry_out(self._perform)
-            obstacle = self.obstacles.find(self.time)
+            obstacle = self.obstacles.find(self.time) or self.pace.obstacle(self.samples_published)
             if obstacle:
                 self._idle(obstacle)
             elif self._wait_for_turn():
                 self._next_sample()
         self.output.end()
+        if self.samples_published > self._parameters.last_sample:
+            self._report.info(f"finished at t = {self.time:g} s")
         self.obstacles.end_steps(self.time, "the run has ended")
 
     def _perform(self, action) -> tuple[float, str]:
@@ -117,6 +129,9 @@ class RunLoop:
             self._queue.wait(TICK)
             return False
         delay = self.pace.due(self.samples_published) - now
+        if delay == math.inf:
+            self._queue.wait(TICK)
+            return False
         if delay > 0.0:
             clock, present = self.output.clock, self._next_time - delay * self.pace.factor
             clock.go_on(round(present * 1e9), self._stamp, now)
@@ -137,10 +152,11 @@ class RunLoop:
             return
         self.time, now = self._next_time, time.monotonic()
         self.wall_time.lap(now)
-        self.laws.report_resting(self.time)
+        self.laws.report_samples(self.time)
         delay = self.pace.give_up_delay(self.samples_published, now)
         if delay > 0.0:
-            self._report.event("late", f"late by {delay:.3g} s at t = {self.time:g} s: accuracy is kept, not the pace")
+            lost = self.pace.lost(self.samples_published)
+            self._report.event("late", f"late by {lost:.3g} s at t = {self.time:g} s: accuracy is kept, not the pace")
         if self.samples_published > 0:
             self.obstacles.count_step(self.time)
         self.samples_published += 1
@@ -181,7 +197,8 @@ class RunLoop:
         """Apply `parameters`; only the changeable ones may differ."""
         self._parameters = parameters
         self.output.torque_limit = parameters.torque_limit
-        self.pace.restart(self.samples_published, time.monotonic(), parameters.real_time_factor)
+        if parameters.real_time_factor != self.pace.factor:
+            self.pace.restart(self.samples_published, time.monotonic(), parameters.real_time_factor)
 
     def set_state(self, position, orientation, twist):
         """Put the head elsewhere, as `Simulation.set_state` does."""

@@ -69,6 +69,10 @@ class RunRequests:
         """Put the head elsewhere, as `Simulation.set_state` does."""
         return self.put(lambda: self._loop.set_state(position, orientation, twist), urgent=True)
 
+    def show_clock(self, shown: float, now: float):
+        """Take the time `shown` [s] on the /clock that the run follows, received at `now` [s, steady clock]."""
+        self.put(lambda: self._loop.pace.show(shown, now), "clock")
+
     def hold(self, reason: str):
         """Hold the run for a `reason`, before its next sample; continue it with an empty one."""
         self.put(lambda: self._loop.obstacles.hold(reason), urgent=True)

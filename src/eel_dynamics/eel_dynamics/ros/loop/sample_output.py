@@ -6,6 +6,7 @@ While a run stands at its start, sample 0 is repeated. It is not published once 
 
 import math
 
+from eel_dynamics.accuracy.error_estimate import HeadErrors
 from eel_dynamics.ros.loop.clock_ticks import ClockTicks
 from eel_dynamics.ros.loop.error_monitor import ErrorMonitor
 from eel_dynamics.ros.loop.limits_monitor import LimitsMonitor
@@ -34,9 +35,14 @@ class SampleOutput:
         self.totals = RunTotals()
 
     @property
-    def errors(self) -> dict[str, float]:
-        """Figures of the error estimate, by name; empty where none is wanted."""
+    def errors(self) -> dict[str, float | str]:
+        """Figures of the error estimate, by name; "off" where none is wanted."""
         return self._errors.values
+
+    @property
+    def head_errors(self) -> HeadErrors | None:
+        """The errors of the head's motion; None where none are estimated."""
+        return self._simulation.head_errors
 
     def request_whole_snapshot(self):
         """Let the next snapshot hold everything that the totals use, even without subscribers."""

@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The pace of a run that follows the /clock of another node: each sample is due once /clock has come to its time.
+
+A run that begins late, or that is slower than the other node, is behind /clock, and goes as fast as it can until it has
+caught up. If /clock goes back, the run stands until /clock has come to its time again, or until it is reset too.
+"""
+
+import math
+import time
+
+from eel_dynamics.ros.loop.pacing import Pace
+
+LITTLE = 1.0  # s of simulated time, by which a run may be behind
+STILL = 1.0  # s of wall time in which /clock does not move, after which this is said
+
+
+class FollowedClock(Pace):
+    """The pace of a followed /clock, with the methods of `Pace`.
+
+    factor: 0: the run also waits for controllers and subscribers. The value is of no further use.
+    """
+
+    def __init__(self, period: float, factor: float):
+        super().__init__(period, factor)
+        self._shown, self._went_back_to = -math.inf, None  # s: the newest time on /clock, and an earlier one
+        self._moved = -math.inf  # s, steady clock: when /clock moved last
+
+    def show(self, shown: float, now: float):
+        """Take the time `shown` [s] on /clock, received at `now` [s, steady clock]."""
+        if shown < self._shown:
+            self._went_back_to = shown
+        if shown != self._shown:
+            self._shown, self._moved = shown, now
+
+    def restart(self, sample: int, now: float, factor: float | None = None):
+        """Begin with `sample`."""
+        super().restart(sample, now, factor)
+        if sample == 0:
+            self._went_back_to = None
+
+    def due(self, sample: int) -> float:
+        """-inf where `sample` is due, inf where /clock has not come to its time."""
+        if self.lost(sample) < 0.0:
+            return math.inf
+        self._went_back_to = None
+        return -math.inf
+
+    def lost(self, sample: int) -> float:
+        """Time [s] by which `sample` is behind /clock; below 0 where it lies ahead."""
+        return self._shown - sample * self.period + 1e-9
+
+    def give_up_delay(self, sample: int, now: float) -> float:
+        """The time [s] by which `sample` is behind /clock, or 0 if that is little: /clock goes by steps."""
+        behind = self.lost(sample)
+        return behind if behind > LITTLE else 0.0
+
+    def obstacle(self, sample: int) -> str:
+        """Why `sample` is not due, as text, where that is not only a matter of moments."""
+        if self.due(sample) < 0.0:
+            return ""
+        if self._went_back_to is not None:
+            return (
+                f"waiting for /clock, which went back to t = {self._went_back_to:g} s: reset starts this run again too"
+            )
+        if self._shown == -math.inf:
+            return "waiting for /clock"
+        still = time.monotonic() - self._moved > STILL
+        return f"waiting for /clock, which stands at t = {self._shown:g} s" if still else ""
