@@ -8,10 +8,9 @@ logging them. The callback group here is never executed, so messages stay in the
 from collections.abc import Callable
 
 from eel_ros.deliveries import Deliveries
-from eel_ros.serving import PolledGroup, log_dropped
+from eel_ros.serving import PolledGroup, log_dropped, read_message
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
-from rclpy.serialization import deserialize_message
 
 from eel_viz.ros.publisher_change import PublisherChange
 
@@ -68,7 +67,7 @@ class PolledSubscriptions:
                         self.note_publishers()
                     if not deliveries.repeats(about):
                         try:
-                            show(deserialize_message(data, subscription.msg_type), new_publisher)
+                            show(read_message(data, subscription.msg_type), new_publisher)
                         except Exception as error:
                             log_dropped(self._node, error, f"a message of {subscription.topic_name}")
         return count
