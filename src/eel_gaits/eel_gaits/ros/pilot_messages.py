@@ -12,8 +12,9 @@ from std_msgs.msg import Header
 from eel_gaits.input_output.wording import shown
 from eel_gaits.pilot.goals import FARTHEST, check_count
 from eel_gaits.pilot.head_motion import HeadMotion
+from eel_gaits.ros.messages import END_OF_TIME
 
-LATEST = 2**31 - 60  # s: a stamp holds 2^31 - 1, and answers lie ahead
+LATEST = END_OF_TIME - 60  # s: answers lie ahead
 GREATEST = 10.0 * FARTHEST  # m, m/s, rad/s: farther than any goal, and nothing overflows
 
 
