@@ -13,7 +13,7 @@ from rclpy.serialization import serialize_message
 FLOATS = 0.0, -0.0, 1.0, -1.0, math.nan, math.inf, -math.inf, sys.float_info.max, -sys.float_info.max, 5e-324
 TEXTS = "", "x" * 50_000, "two\nlines\r\x1b[31m", "%s%n{0}", "\U0001f41f"
 LENGTHS = 1, 3, 1000
-HUGE = 20_000, 300_000  # elements: one that is read where they are numbers, and one that is not
+HUGE = 20_000, 40_000  # elements: one that is read where they are numbers, and one that is not
 STAMPS = (  # s, ns; each goes back or ahead from the one before
     *((5, 0), (6, 0), (3605, 0), (2, 0), (1_800_000_000, 0), (3, 0), (2**31 - 1, 0), (4, 0), (2**31 - 1, 10**9 - 1)),
     *((0, 2**32 - 1), (2**31 - 1, 2**32 - 1), (-1, 0), (-(2**31), 2**32 - 1), (7, 0)),
@@ -26,6 +26,12 @@ def get_message(name: str) -> type:
     """The type of a name such as std_msgs/msg/Header, or std_msgs/Header."""
     package, *_, kind = name.split("/")
     return getattr(importlib.import_module(f"{package}.msg"), kind)
+
+
+def get_service(name: str) -> type:
+    """The type of a service from a name such as std_srvs/srv/Trigger."""
+    package, *_, kind = name.split("/")
+    return getattr(importlib.import_module(f"{package}.srv"), kind)
 
 
 def values_of(kind: str) -> list:

@@ -21,7 +21,7 @@ from eel_ros.process_end import ProcessEnd, leave_at_once
 from eel_ros.qos import keep_all, latched, matches
 from eel_ros.serving import serve_once
 from eel_ros.start import start
-from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from rclpy.clock import Clock, ClockType
 from rclpy.duration import Duration
 from rclpy.event_handler import SubscriptionEventCallbacks
@@ -112,15 +112,15 @@ class DynamicsNode(ParameterNode):
                 raw=True,
                 event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),  # one of the two matches
             )
-        calls = ReentrantCallbackGroup()  # others go on while a call waits for the run loop
-        self.run_loop.requests.on_finished = self.create_guard_condition(lambda: None, calls).trigger
-        for kind, name, callback in (
-            (Trigger, "reset", self._reset),
-            (SetBool, "pause", self._pause),
-            (Step, "step", self._step),
-            (SetState, "set_state", self._set_state),
+        steps, calls = ReentrantCallbackGroup(), MutuallyExclusiveCallbackGroup()  # the calls are answered in order
+        self.run_loop.requests.on_finished = self.create_guard_condition(lambda: None, steps).trigger
+        for kind, name, callback, group in (
+            (Trigger, "reset", self._reset, calls),
+            (SetBool, "pause", self._pause, calls),
+            (SetState, "set_state", self._set_state, calls),
+            (Step, "step", self._step, steps),  # others go on while it waits for its samples
         ):
-            self.create_service(kind, f"~/{name}", callback, qos_profile=SERVICE_QOS, callback_group=calls)
+            self.create_service(kind, f"~/{name}", callback, qos_profile=SERVICE_QOS, callback_group=group)
         clock = ClockMonitor(
             self,
             lambda offered: self.run_loop.requests.put(lambda: self.sample_publishers.enable_clock(offered)),

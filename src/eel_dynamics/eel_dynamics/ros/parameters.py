@@ -17,6 +17,7 @@ from eel_dynamics.analysis.actuators import MOST_JOINTS
 from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
 
 FRAMES = ("world_frame", "head_frame", "section_frame")
+MOST_FRAMES = 1000  # of sections on /tf
 
 
 def _parameter(default, description, unit="", **bounds):
@@ -138,6 +139,9 @@ class DynamicsParameters:
                 raise ValueError(f"{name} must not be empty")
         if max(self.yaw_joints, self.pitch_joints) > 0 and self.stations < 4:
             raise ValueError(f"stations must be 4 or more where there are joints, got {self.stations}")
+        if self.publish_tf_stations and self.stations > MOST_FRAMES:
+            most = f"at most {MOST_FRAMES} with publish_tf_stations"
+            raise ValueError(f"stations must be {most}, got {self.stations}")
         orientation = unit_quaternion("initial_orientation", self.initial_orientation)
         object.__setattr__(self, "initial_orientation", orientation)
 
