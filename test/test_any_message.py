@@ -10,14 +10,14 @@ import pytest
 import rclpy
 from builtin_interfaces.msg import Time
 from eel_gaits.ros.messages import law_to_message
-from eel_viz.recording.reading import read
 from eel_ros.testing.node_process import PROMPT
 from eel_ros.testing.service_call import answer_of
+from eel_viz.recording.reading import read
 from extreme_messages import broken, extremes, get_message, get_service, huge, stamped
 from fake_swimmer import TOPICS, body_message, messages
 from gait_client import GaitClient
 from made_up import Swimmer
-from nav_msgs.msg import Odometry, Path
+from nav_msgs.msg import Odometry
 from rclpy.duration import Duration
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.qos import DurabilityPolicy, QoSProfile
@@ -31,6 +31,17 @@ from eel_viz import entities
 
 # every subscription goes with it; more deep than there are messages
 ANYBODY = QoSProfile(depth=5000, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+NODES = {  # name: topics that it subscribes to, at least
+    "gait_generator": {"/clock"},
+    "heading_controller": {"/odom"},
+    "pilot": {"/odom", "/goal_path", "/goal_pose", "/clock"},
+    "dynamics": {"/curvature_law", "/curvature_samples", "/clock"},
+    "visualiser": {f"/{topic}" for topic in TOPICS} | {"/body", "/curvature_law", "/goal", "/diagnostics", "/clock"},
+    "markers": {"/body", "/backbone", "/internal_wrench", "/hydrodynamic_load"},
+}
+CALLED = "dynamics", "gait_generator"  # whose calls are tried one by one; they share the code with all others
 
 
 class Network:
@@ -95,20 +106,20 @@ def network(fresh_domain):
     rclpy.try_shutdown(context=network.context)
 
 
-def send_extremes(network, node, name, least) -> None:
-    """To each topic that the node `name`, the process `node`, subscribes to; to those in `least` at least.
+def send_extremes(network, node, name, further=()) -> None:
+    """To each topic that the node `name`, the process `node`, subscribes to; also to `further` ones.
 
     Then to what sets its parameters, and to its own services; each call is answered.
     """
     good = {f"/{topic}": message for topic, message in messages(Swimmer(11), 10**9).items()}
-    for topic, kind in network.topics(name, least).items():
+    for topic, kind in network.topics(name, NODES[name] | {*further}).items():
         network.send(topic, kind, [*extremes(kind), *broken(kind), *huge(kind)], node)
         if hasattr(kind(), "header") or hasattr(kind(), "clock"):
             network.send(topic, kind, [*stamped(good.get(topic, kind())), *stamped(kind())], node)
     for service, (kind, *_) in network.node.get_service_names_and_types_by_node(name, "/"):
         if not service.rpartition("/")[2].startswith(("get_", "list_", "describe_")):
             requests = extremes(get_service(kind).Request)
-            network.call(get_service(kind), service, islice(requests, 5) if name == "visualiser" else requests)
+            network.call(get_service(kind), service, requests if name in CALLED else islice(requests, 5))
     assert node.status is None and "Traceback" not in node.output(), node.output()[-3000:]
 
 
@@ -122,7 +133,7 @@ def test_the_dynamics_node_stands_any_message(start, network, fresh_domain):
     swim.laws.publish(law_to_message(falling()))
     node = start("dynamics", "--ros-args", "-p", "use_sim_time:=true", "-p", "clock:=false")
     swim.until_time(0.2)
-    send_extremes(network, node, "dynamics", {"/curvature_law", "/curvature_samples", "/clock"})
+    send_extremes(network, node, "dynamics")
     assert swim.pause(False).success and swim.reset().success
     swim.laws.publish(law_to_message(falling(period=0.9)))
     swim.until(lambda: node.output().count("law 'falling' adopted") > 1, "the next law")
@@ -145,7 +156,7 @@ def test_the_dynamics_node_stands_any_message(start, network, fresh_domain):
 )
 def test_the_gait_generator_stands_any_message(start, network, fresh_domain):
     node = start("gait_generator")
-    send_extremes(network, node, "gait_generator", {"/clock"})
+    send_extremes(network, node, "gait_generator")
     clock, before = network.publisher(Clock, "/clock", 10), Clock(clock=Time(sec=-1))
     deadline = time.monotonic() + LIMIT
     while "a message on /clock cannot be taken" not in node.output():  # it looks at the newest one now and then
@@ -178,8 +189,7 @@ def positions(path) -> list:
 def test_the_visualiser_stands_any_message(start, network, tmp_path):
     node = start("visualiser", "--ros-args", "-p", "sink:=[save]", "-p", f"recording:={tmp_path}/run.rrd")
     node.wait_for_output("saving to", LIMIT)
-    others = {"/body", "/curvature_law", "/goal", "/diagnostics", "/clock"}
-    send_extremes(network, node, "visualiser", {f"/{topic}" for topic in TOPICS} | others)
+    send_extremes(network, node, "visualiser")
     publisher = network.publisher(TOPICS["head_pose"], "head_pose")
     good = messages(Swimmer(11), 2**31 * 10**9 - 10**9)["head_pose"]  # later than any
     publisher.publish(good)
@@ -212,7 +222,7 @@ def followed(network, name, node) -> None:
 )
 def test_the_pilot_stands_any_message(start, network):
     node = start("pilot", "--ros-args", "-p", "torque_limit:=1.0")
-    send_extremes(network, node, "pilot", {"/odom", "/goal_path", "/goal_pose", "/swim_state", "/clock"})
+    send_extremes(network, node, "pilot", {"/swim_state"})
     followed(network, "pilot", node)
     assert "a new start" in node.output() and "path must have at most 10000 points, got 40000" in node.output()
 
@@ -222,16 +232,18 @@ def test_the_pilot_stands_any_message(start, network):
 )
 def test_the_heading_controller_stands_any_message(start, network):
     node = start("heading_controller")
-    send_extremes(network, node, "heading_controller", {"/odom"})
+    send_extremes(network, node, "heading_controller")
     followed(network, "heading_controller", node)
 
 
 @pytest.mark.fault(
-    "neighbours", "the same messages to the node `markers`", "it leaves out what it cannot show, and shows what comes next"
+    "neighbours",
+    "the same messages to the node `markers`",
+    "it leaves out what it cannot show, and shows what comes next",
 )
 def test_the_markers_stand_any_message(start, network):
     node = start("markers")
-    send_extremes(network, node, "markers", {"/body", "/backbone", "/internal_wrench", "/hydrodynamic_load"})
+    send_extremes(network, node, "markers")
     heard, sample = [], messages(Swimmer(11), 3 * 10**9)
     network.node.create_subscription(MarkerArray, "markers", heard.append, 1000)
     topics = ("backbone", "internal_wrench", "hydrodynamic_load")
@@ -252,12 +264,12 @@ def test_the_markers_stand_any_message(start, network):
     "SIGINT or SIGTERM in the middle of a flood of huge messages and jumping stamps, to any node",
     "prompt exit, status 0, no traceback",
 )
-@pytest.mark.parametrize("name", ["gait_generator", "heading_controller", "pilot", "dynamics", "visualiser", "markers"])
+@pytest.mark.parametrize("name", NODES)
 def test_a_signal_ends_any_node_in_a_flood(start, network, tmp_path, name):
     number = signal.SIGINT if len(name) % 2 else signal.SIGTERM
     files = ("-p", "sink:=[save]", "-p", f"recording:={tmp_path}/run.rrd") if name == "visualiser" else ()
     node = start(name, "--ros-args", "-p", "use_sim_time:=true", *files)
-    topics = network.topics(name, {"/odom"} if name == "heading_controller" else {"/clock"})
+    topics = network.topics(name, NODES[name])
     if name == "dynamics":
         network.publisher(topics["/curvature_law"], "curvature_law").publish(law_to_message(falling()))
         node.wait_for_output("adopted")

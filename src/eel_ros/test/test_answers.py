@@ -15,7 +15,13 @@ from std_msgs.msg import String
 from std_srvs.srv import SetBool, Trigger
 
 LIMIT = 90.0  # s
-UNFORESEEN = RecursionError("too deep"), MemoryError(), OSError(5, "Input/output error"), KeyError("a\nb"), SystemError()
+UNFORESEEN = (
+    RecursionError("too deep"),
+    MemoryError(),
+    OSError(5, "Input/output error"),
+    KeyError("a\nb"),
+    SystemError(),
+)
 
 
 class Tank(ParameterNode):

@@ -72,9 +72,11 @@ class RowStream:
             first = now - self._origin + (LEAD if now > 0.0 else 0.0)
             self._next = int(np.searchsorted(self._law.time, first - 1e-9))
         self._listeners = listeners
+        if not listeners:
+            return
         passed, last = np.searchsorted(self._law.time, (now - self._origin, now - self._origin + AHEAD)).tolist()
         self._next = max(self._next, passed - 1)  # time has gone beyond those before
-        last = min(last, self._next + MOST_ROWS) if listeners else 0
+        last = min(last, self._next + MOST_ROWS)
         for row in range(self._next, last):
             rows = self._law.values[row].reshape(6, -1)
             self._publisher.publish(samples_to_message(self._time_of(row), self._law.x, rows, self._frame))
