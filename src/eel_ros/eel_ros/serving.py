@@ -49,13 +49,13 @@ def reason_of(error: Exception) -> str:
     return " ".join(f"{type(error).__name__}: {error}".split())[:LONGEST_REASON]
 
 
-def read_message(data: bytes, kind: type):
-    """The message of the type `kind` that is serialised in `data`. `ValueError` if it is too large.
+def read_message(data: bytes, kind: type, largest: int = LARGEST_MESSAGE):
+    """The message of the type `kind` that is serialised in `data`. `ValueError` for more than the `largest` [bytes].
 
     A sequence of messages takes microseconds for each of its bytes, and no signal is heard meanwhile.
     """
-    if len(data) > LARGEST_MESSAGE:
-        raise ValueError(f"it must have at most {LARGEST_MESSAGE} bytes, got {len(data)}")
+    if len(data) > largest:
+        raise ValueError(f"it must have at most {largest} bytes, got {len(data)}")
     return deserialize_message(data, kind)
 
 
