@@ -2,6 +2,7 @@
 """Messages with extremes in their fields: of any type, one field at a time, and in all fields together."""
 
 import array
+import copy
 import importlib
 import math
 import re
@@ -12,6 +13,11 @@ from rclpy.serialization import serialize_message
 FLOATS = 0.0, -0.0, 1.0, -1.0, math.nan, math.inf, -math.inf, sys.float_info.max, -sys.float_info.max, 5e-324
 TEXTS = "", "x" * 50_000, "two\nlines\r\x1b[31m", "%s%n{0}", "\U0001f41f"
 LENGTHS = 1, 3, 1000
+HUGE = 20_000, 40_000  # elements: one that is read where they are numbers, and one that is not
+STAMPS = (  # s, ns; each goes back or ahead from the one before
+    *((5, 0), (6, 0), (3605, 0), (2, 0), (1_800_000_000, 0), (3, 0), (2**31 - 1, 0), (4, 0), (2**31 - 1, 10**9 - 1)),
+    *((0, 2**32 - 1), (2**31 - 1, 2**32 - 1), (-1, 0), (-(2**31), 2**32 - 1), (7, 0)),
+)
 MANY = 12  # elements of all sequences, where all fields are extreme together: three, or four, numbers to a point
 INTEGER = re.compile(r"(u?)int(\d+)")
 
@@ -20,6 +26,12 @@ def get_message(name: str) -> type:
     """The type of a name such as std_msgs/msg/Header, or std_msgs/Header."""
     package, *_, kind = name.split("/")
     return getattr(importlib.import_module(f"{package}.msg"), kind)
+
+
+def get_service(name: str) -> type:
+    """The type of a service from a name such as std_srvs/srv/Trigger."""
+    package, *_, kind = name.split("/")
+    return getattr(importlib.import_module(f"{package}.srv"), kind)
 
 
 def values_of(kind: str) -> list:
@@ -102,6 +114,30 @@ def extremes(kind: type):
             if "/" not in element_of(field)[0]:
                 choices = choices_of(field, (MANY,))
                 put(message, path, choices[pick % len(choices)])
+        yield message
+
+
+def stamped(message):
+    """The `message` with stamps ahead, back, of wall time and at both ends of what a stamp holds."""
+    for seconds, nanoseconds in STAMPS:
+        other = copy.deepcopy(message)
+        stamp = other.clock if hasattr(other, "clock") else other.header.stamp
+        stamp.sec, stamp.nanosec = seconds, nanoseconds
+        yield other
+
+
+def huge(kind: type):
+    """Messages of the type with very many elements in all of their sequences."""
+    sequences = [
+        (name, element_of(field)[0])
+        for name, field in kind.get_fields_and_field_types().items()
+        if element_of(field)[1] == 0
+    ]
+    for length in HUGE if sequences else ():
+        message = kind()
+        for name, element in sequences:
+            one = get_message(element)() if "/" in element else values_of(element)[1]
+            setattr(message, name, array.array("d", [one]) * length if element == "double" else [one] * length)
         yield message
 
 

@@ -1,65 +1,126 @@
 # SPDX-License-Identifier: Apache-2.0
-"""No message ends a node, whatever it holds: every subscription receives the extremes of each field, over DDS."""
+"""No message and no call ends a node, or keeps it from ending, whatever it holds: every subscription and every service
+receives the extremes of each field, over DDS."""
 
+import signal
 import time
+from itertools import islice
 
 import pytest
 import rclpy
 from builtin_interfaces.msg import Time
 from eel_gaits.ros.messages import law_to_message
+from eel_ros.testing.node_process import PROMPT
+from eel_ros.testing.service_call import answer_of
 from eel_viz.recording.reading import read
-from extreme_messages import broken, extremes, get_message
-from fake_swimmer import TOPICS, messages
+from extreme_messages import broken, extremes, get_message, get_service, huge, stamped
+from fake_swimmer import TOPICS, body_message, messages
 from gait_client import GaitClient
 from made_up import Swimmer
+from nav_msgs.msg import Odometry
 from rclpy.duration import Duration
+from rclpy.executors import SingleThreadedExecutor
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rosgraph_msgs.msg import Clock
-from swim_client import LIMIT, SwimClient, is_finite
+from swim_client import LIMIT, SwimClient, is_finite, nanoseconds
+from visualization_msgs.msg import MarkerArray
 
 from eel_gaits import falling
+from eel_msgs.msg import BodyGeometry, CurvatureSamples
 from eel_viz import entities
 
 # every subscription goes with it; more deep than there are messages
 ANYBODY = QoSProfile(depth=5000, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
-@pytest.fixture
-def network(fresh_domain):
-    context = rclpy.Context()
-    rclpy.init(context=context, domain_id=fresh_domain)
-    node = rclpy.create_node("stranger", context=context, start_parameter_services=False)
-    yield node
-    node.destroy_node()
-    rclpy.try_shutdown(context=context)
+NODES = {  # name: topics that it subscribes to, at least
+    "gait_generator": {"/clock"},
+    "heading_controller": {"/odom"},
+    "pilot": {"/odom", "/goal_path", "/goal_pose", "/clock"},
+    "dynamics": {"/curvature_law", "/curvature_samples", "/clock"},
+    "visualiser": {f"/{topic}" for topic in TOPICS} | {"/body", "/curvature_law", "/goal", "/diagnostics", "/clock"},
+    "markers": {"/body", "/backbone", "/internal_wrench", "/hydrodynamic_load"},
+}
+CALLED = "dynamics", "gait_generator"  # whose calls are tried one by one; they share the code with all others
 
 
-def wait_for_subscriber(publisher) -> None:
-    """Until there is one."""
-    deadline = time.monotonic() + LIMIT
-    while not publisher.get_subscription_count():
-        assert time.monotonic() < deadline, f"nobody subscribes to {publisher.topic_name}"
-        time.sleep(0.02)
+class Network:
+    """Somebody who sends to any node whatever messages and calls can hold. node: of rclpy."""
 
+    def __init__(self, domain):
+        self.context = rclpy.Context()
+        rclpy.init(context=self.context, domain_id=domain)
+        self.node = rclpy.create_node("stranger", context=self.context, start_parameter_services=False)
+        self.executor = SingleThreadedExecutor(context=self.context)
+        self.executor.add_node(self.node)
 
-def send_extremes(network, node, name, least) -> None:
-    """To each topic that the node `name`, the process `node`, subscribes to; to those in `least` at least."""
-    deadline = time.monotonic() + LIMIT
-    received = {}
-    while not set(least) <= received.keys():
-        assert time.monotonic() < deadline, f"{name} does not subscribe to {least}: {received}"
-        if name in network.get_node_names():
-            received = dict(network.get_subscriber_names_and_types_by_node(name, "/"))
-        time.sleep(0.1)
-    for topic, (kind, *_) in received.items():
-        publisher = network.create_publisher(get_message(kind), topic, ANYBODY)
-        wait_for_subscriber(publisher)
-        for message in [*extremes(get_message(kind)), *broken(get_message(kind))]:
+    def until(self, condition, what):
+        """Wait for `condition()`; returns its value."""
+        deadline = time.monotonic() + LIMIT
+        while not (value := condition()):
+            assert time.monotonic() < deadline, f"no {what} within {LIMIT} s"
+            self.executor.spin_once(timeout_sec=0.02)
+        return value
+
+    def publisher(self, kind, topic, quality=10):
+        """A publisher that has a subscriber."""
+        publisher = self.node.create_publisher(kind, topic, quality)
+        self.until(publisher.get_subscription_count, f"subscriber of {topic}")
+        return publisher
+
+    def topics(self, name, least):
+        """Type by name of all topics that the node `name` subscribes to, at least those in `least`."""
+
+        def received():
+            found = {}
+            if name in self.node.get_node_names():
+                found = dict(self.node.get_subscriber_names_and_types_by_node(name, "/"))
+            return set(least) <= found.keys() and {topic: get_message(kind) for topic, (kind, *_) in found.items()}
+
+        return self.until(received, f"{name} that subscribes to {least}")
+
+    def send(self, topic, kind, messages, node):
+        """Send `messages` to the process `node`, and wait until it has them."""
+        publisher = self.publisher(kind, topic, ANYBODY)
+        for message in messages:
             publisher.publish(message)
         publisher.wait_for_all_acked(Duration(seconds=LIMIT))
-        assert node.status is None, f"{topic} ended {name}:\n{node.output()[-3000:]}"
-        network.destroy_publisher(publisher)
-    assert "Traceback" not in node.output()
+        assert node.status is None, f"{topic} ended {node.name}:\n{node.output()[-3000:]}"
+        self.node.destroy_publisher(publisher)
+
+    def call(self, kind, name, requests):
+        """Call a service with one of the `requests` after the other, each of which it answers."""
+        service = self.node.create_client(kind, name)
+        self.until(service.service_is_ready, f"service {name}")
+        for request in requests:
+            self.until(answer_of(service, request), f"answer from {name} to {str(request)[:300]}")
+        self.node.destroy_client(service)
+
+
+@pytest.fixture
+def network(fresh_domain):
+    network = Network(fresh_domain)
+    yield network
+    network.executor.shutdown()
+    network.node.destroy_node()
+    rclpy.try_shutdown(context=network.context)
+
+
+def send_extremes(network, node, name, further=()) -> None:
+    """To each topic that the node `name`, the process `node`, subscribes to; also to `further` ones.
+
+    Then to what sets its parameters, and to its own services; each call is answered.
+    """
+    good = {f"/{topic}": message for topic, message in messages(Swimmer(11), 10**9).items()}
+    for topic, kind in network.topics(name, NODES[name] | {*further}).items():
+        network.send(topic, kind, [*extremes(kind), *broken(kind), *huge(kind)], node)
+        if hasattr(kind(), "header") or hasattr(kind(), "clock"):
+            network.send(topic, kind, [*stamped(good.get(topic, kind())), *stamped(kind())], node)
+    for service, (kind, *_) in network.node.get_service_names_and_types_by_node(name, "/"):
+        if not service.rpartition("/")[2].startswith(("get_", "list_", "describe_")):
+            requests = extremes(get_service(kind).Request)
+            network.call(get_service(kind), service, requests if name in CALLED else islice(requests, 5))
+    assert node.status is None and "Traceback" not in node.output(), node.output()[-3000:]
 
 
 @pytest.mark.fault(
@@ -72,8 +133,8 @@ def test_the_dynamics_node_stands_any_message(start, network, fresh_domain):
     swim.laws.publish(law_to_message(falling()))
     node = start("dynamics", "--ros-args", "-p", "use_sim_time:=true", "-p", "clock:=false")
     swim.until_time(0.2)
-    send_extremes(network, node, "dynamics", {"/curvature_law", "/curvature_samples", "/clock"})
-    assert swim.reset().success
+    send_extremes(network, node, "dynamics")
+    assert swim.pause(False).success and swim.reset().success
     swim.laws.publish(law_to_message(falling(period=0.9)))
     swim.until(lambda: node.output().count("law 'falling' adopted") > 1, "the next law")
     assert swim.reset().success  # warnings of what the laws before it did last until then
@@ -95,8 +156,8 @@ def test_the_dynamics_node_stands_any_message(start, network, fresh_domain):
 )
 def test_the_gait_generator_stands_any_message(start, network, fresh_domain):
     node = start("gait_generator")
-    send_extremes(network, node, "gait_generator", {"/clock"})
-    clock, before = network.create_publisher(Clock, "/clock", 10), Clock(clock=Time(sec=-1))
+    send_extremes(network, node, "gait_generator")
+    clock, before = network.publisher(Clock, "/clock", 10), Clock(clock=Time(sec=-1))
     deadline = time.monotonic() + LIMIT
     while "a message on /clock cannot be taken" not in node.output():  # it looks at the newest one now and then
         assert time.monotonic() < deadline, node.output()
@@ -128,13 +189,97 @@ def positions(path) -> list:
 def test_the_visualiser_stands_any_message(start, network, tmp_path):
     node = start("visualiser", "--ros-args", "-p", "sink:=[save]", "-p", f"recording:={tmp_path}/run.rrd")
     node.wait_for_output("saving to", LIMIT)
-    others = {"/body", "/curvature_law", "/diagnostics", "/clock"}
-    send_extremes(network, node, "visualiser", {f"/{topic}" for topic in TOPICS} | others)
-    publisher = network.create_publisher(TOPICS["head_pose"], "head_pose", 10)
-    wait_for_subscriber(publisher)
+    send_extremes(network, node, "visualiser")
+    publisher = network.publisher(TOPICS["head_pose"], "head_pose")
     good = messages(Swimmer(11), 2**31 * 10**9 - 10**9)["head_pose"]  # later than any
     publisher.publish(good)
     assert publisher.wait_for_all_acked(Duration(seconds=LIMIT))
     assert node.interrupt() == 0 and "Traceback" not in node.output(), node.output()[-3000:]
     here = good.pose.position
     assert [here.x, here.y, here.z] in [row for path in tmp_path.glob("run*.rrd") for row in positions(path)]
+
+
+def followed(network, name, node) -> None:
+    """Whether the controller `name`, after all of that, answers an odom with finite samples ahead of it."""
+    heard, odom = [], network.publisher(Odometry, "odom")
+    network.node.create_subscription(CurvatureSamples, "curvature_samples", heard.append, 1000)
+    good = messages(Swimmer(11), 10**9 + 10**7)["odom"]
+
+    def answered():
+        odom.publish(good)
+        return any(0 < nanoseconds(each.header.stamp) - nanoseconds(good.header.stamp) < 10**8 for each in heard)
+
+    network.until(answered, f"answer of {name}")
+    near = [each for each in heard if nanoseconds(each.header.stamp) < 2 * 10**9]
+    assert all(is_finite(each) for each in near)
+    assert node.time_to_end() < PROMPT and node.status == 0 and "Traceback" not in node.output()
+
+
+@pytest.mark.fault(
+    "neighbours",
+    "odom, goals and swim_state with any extreme, any stamp (one that lies years ahead too), cut short, or huge",
+    "said and left out, or begun with anew; the pilot answers the next odom, each call, and a signal at once",
+)
+def test_the_pilot_stands_any_message(start, network):
+    node = start("pilot", "--ros-args", "-p", "torque_limit:=1.0")
+    send_extremes(network, node, "pilot", {"/swim_state"})
+    followed(network, "pilot", node)
+    assert "a new start" in node.output() and "path must have at most 10000 points, got 40000" in node.output()
+
+
+@pytest.mark.fault(
+    "neighbours", "odom with any extreme, any stamp, or cut short", "the heading controller answers the next odom"
+)
+def test_the_heading_controller_stands_any_message(start, network):
+    node = start("heading_controller")
+    send_extremes(network, node, "heading_controller")
+    followed(network, "heading_controller", node)
+
+
+@pytest.mark.fault(
+    "neighbours",
+    "the same messages to the node `markers`",
+    "it leaves out what it cannot show, and shows what comes next",
+)
+def test_the_markers_stand_any_message(start, network):
+    node = start("markers")
+    send_extremes(network, node, "markers")
+    heard, sample = [], messages(Swimmer(11), 3 * 10**9)
+    network.node.create_subscription(MarkerArray, "markers", heard.append, 1000)
+    topics = ("backbone", "internal_wrench", "hydrodynamic_load")
+    publishers = {topic: network.publisher(TOPICS[topic], topic) for topic in topics}
+    network.publisher(BodyGeometry, "body", ANYBODY).publish(body_message(11))
+
+    def shown():
+        for topic, publisher in publishers.items():
+            publisher.publish(sample[topic])
+        return any(marker.ns == "skin" and len(marker.points) > 100 for each in heard for marker in each.markers)
+
+    network.until(shown, "skin")
+    assert node.time_to_end() < PROMPT and node.status == 0 and "Traceback" not in node.output()
+
+
+@pytest.mark.fault(
+    "ending",
+    "SIGINT or SIGTERM in the middle of a flood of huge messages and jumping stamps, to any node",
+    "prompt exit, status 0, no traceback",
+)
+@pytest.mark.parametrize("name", NODES)
+def test_a_signal_ends_any_node_in_a_flood(start, network, tmp_path, name):
+    number = signal.SIGINT if len(name) % 2 else signal.SIGTERM
+    files = ("-p", "sink:=[save]", "-p", f"recording:={tmp_path}/run.rrd") if name == "visualiser" else ()
+    node = start(name, "--ros-args", "-p", "use_sim_time:=true", *files)
+    topics = network.topics(name, NODES[name])
+    if name == "dynamics":
+        network.publisher(topics["/curvature_law"], "curvature_law").publish(law_to_message(falling()))
+        node.wait_for_output("adopted")
+    good = {f"/{topic}": message for topic, message in messages(Swimmer(11), 10**9).items()}
+    for topic, kind in topics.items():
+        publisher = network.publisher(kind, topic, ANYBODY)
+        flood = [*huge(kind)][:1]
+        if hasattr(kind(), "header") or hasattr(kind(), "clock"):
+            flood += [*stamped(good.get(topic, kind()))] * 10
+        for message in flood:
+            publisher.publish(message)
+    assert node.time_to_end(number) < PROMPT and node.status == 0, node.output()[-3000:]
+    assert "Traceback" not in node.output()

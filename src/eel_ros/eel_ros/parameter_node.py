@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A node whose parameters take any number for a float, and whose read-only parameters accept the value that they have.
+"""A node that answers each call and stands each message, and whose parameters take any number for a float.
 
+Its read-only parameters accept the value that they have.
 `ros2 param load` sets every parameter of a dump, also those that are read-only; rclpy refuses them even where nothing
 changes. `ros2 param set` and `load` hand over 1e-06, nan and [1.0, 2] as texts: YAML 1.1 reads no number in the first
 two, and rclpy no array in the third.
@@ -13,6 +14,7 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from eel_ros.parameters import did_you_mean
+from eel_ros.serving import answering, read_message
 
 WRONG_TYPE = "Wrong parameter type"  # rclpy's words, which name neither parameter nor value
 WORDS = {  # of the types that the nodes declare
@@ -42,7 +44,21 @@ CONVERTED = {  # declared type: the types that are converted, and how
 
 
 class ParameterNode(Node):
-    """A node with these rules for its parameters."""
+    """A node with these rules for its services, messages and parameters."""
+
+    def create_service(self, srv_type, srv_name, callback, **options):
+        """As of `Node`, but each call is answered, whatever `callback` raises; also those of the parameter services."""
+        return super().create_service(srv_type, srv_name, answering(self, srv_name, callback), **options)
+
+    def create_subscription(self, msg_type, topic, callback, qos_profile, *, raw=False, **options):
+        """As of `Node`, but a message that is too large is not read; `callback(message)`."""
+
+        def receive(data):
+            callback(read_message(data, msg_type))
+
+        return super().create_subscription(
+            msg_type, topic, callback if raw else receive, qos_profile, raw=True, **options
+        )
 
     def set_parameters_atomically(self, parameters: list[Parameter]) -> SetParametersResult:
         """Set `parameters` at once. The reason that comes with a success is `answer_to` them."""

@@ -39,6 +39,23 @@ class ProcessEnd:
         for number in SIGNALS:
             signal.signal(number, signal.SIG_IGN)
 
+    def leave_when_stuck(self, seconds: float) -> None:
+        """From now on leave, with status 0, where the main thread is not `over` so many `seconds` after a signal.
+
+        Python's handlers wait until the main thread is back from a long computation; the byte does not.
+        """
+        reader, writer = os.pipe()
+        os.set_blocking(writer, False)
+        signal.set_wakeup_fd(writer, warn_on_full_buffer=False)
+
+        def watch() -> None:
+            os.read(reader, 1)
+            time.sleep(seconds)
+            if not self.over:
+                leave_at_once(0)
+
+        threading.Thread(target=watch, daemon=True).start()
+
     def start(self, work: Callable[[], None]) -> None:
         """Run `work()` in a thread. When it returns or raises, `wait` returns."""
 

@@ -9,12 +9,13 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 
 from eel_ros.process_end import ProcessEnd
-from eel_ros.serving import serve_once
+from eel_ros.serving import LOG_PERIOD, reason_of, serve_once
 from eel_ros.start import start
 
 POLL_PERIOD = 0.1  # s between two calls of `poll`
 PAUSE = 0.1  # s after a call of `take_messages` that found none: messages in bursts cost less
 DRAIN_LIMIT = 1.0  # s at most, at the end, to take messages that have arrived: a busy machine needs it
+STUCK = 0.5  # s after a signal, after which a node that keeps no files leaves in the middle of a callback
 EMPTY_TIMEOUT = 0.005  # s that the executor waits for a message there; after three time-outs there is none
 
 
@@ -43,8 +44,11 @@ def run_node(
         return 2
     executor = SingleThreadedExecutor()
     executor.add_node(node)
+    if not complete:
+        end.leave_when_stuck(STUCK)
     try:
         _serve(executor, node, poll, take_messages, period, end)
+        end.over = True
         if complete and not getattr(node, "failure", ""):
             _drain(executor, node, take_messages)
     finally:
@@ -66,7 +70,7 @@ def _serve(executor, node, poll, take_messages, period: float, end: ProcessEnd) 
         now = time.monotonic()
         if now - last_poll > period:
             last_poll = now
-            if not poll(node):
+            if not _goes_on(poll, node):
                 return
             if take_messages is not None:
                 serve_once(executor, node, 0.0)
@@ -74,6 +78,15 @@ def _serve(executor, node, poll, take_messages, period: float, end: ProcessEnd) 
             serve_once(executor, node, period)
         elif not take_messages(node):
             time.sleep(PAUSE)
+
+
+def _goes_on(poll, node) -> bool:
+    """Whether `poll(node)` lets the node go on; it does so where it raises, which is logged."""
+    try:
+        return poll(node)
+    except Exception as error:
+        node.get_logger().error(f"what was due is left out: {reason_of(error)}", throttle_duration_sec=LOG_PERIOD)
+        return True
 
 
 def _drain(executor, node, take_messages) -> None:

@@ -24,7 +24,12 @@ class Tank(Node):
             print("attended", flush=True)
         if self.what == "fail":
             self.failure = "it leaks"
-        return self.what == "wait"
+        if self.what == "raise":
+            self.what = "wait"
+            raise KeyError("no such pump")
+        while self.what == "compute":
+            pass
+        return self.what in ("wait", "raise")
     def close(self):
         print("closed", flush=True)
 
@@ -33,7 +38,8 @@ def complain(name, error):
 
 what = sys.argv[1]
 work = (lambda node: False) if "work" in sys.argv else None
-sys.exit(run_node("tank", ["tank"], lambda: Tank(what), Tank.poll, work, complain=complain, complete=True))
+sys.exit(run_node("tank", ["tank"], lambda: Tank(what), Tank.poll, work, complain=complain,
+    complete=what != "compute"))
 """
 
 
@@ -58,3 +64,18 @@ def test_a_signal_ends_it_well(start, number, words):
     node.wait_for_output("attended")
     assert node.interrupt(number, LIMIT) == 0
     assert node.output() == "attended\nclosed\n"
+
+
+def test_a_poll_that_raises_is_logged_and_the_node_goes_on(start):
+    node = start(sys.executable, "-c", PROCESS, "raise")
+    node.wait_for_output("what was due is left out: KeyError: 'no such pump'")
+    assert node.interrupt(signal.SIGINT, LIMIT) == 0
+    assert node.output().endswith("closed\n") and "Traceback" not in node.output()
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_ends_a_node_in_the_middle_of_a_computation_without_end(start, number):
+    node = start(sys.executable, "-c", PROCESS, "compute")
+    node.wait_for_output("attended")
+    assert node.interrupt(number, LIMIT) == 0
+    assert node.output() == "attended\n"

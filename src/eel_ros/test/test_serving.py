@@ -12,7 +12,7 @@ class Log:
     def __init__(self):
         self.lines = []
 
-    def error(self, text, throttle_duration_sec):
+    def error(self, text, throttle_duration_sec=None):
         self.lines.append(text)
 
 

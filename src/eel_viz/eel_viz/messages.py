@@ -13,6 +13,7 @@ import numpy as np
 from eel_base.wording import shown
 
 UNIT_TOLERANCE = 1e-6  # of a quaternion's norm
+MOST_STATIONS = 20_000  # of a message; the dynamics node has at most half as many
 
 
 class BadMessage(ValueError):
@@ -219,6 +220,8 @@ def _profiles(message, names: tuple[str, ...]) -> Profiles:
 
 
 def _stations(values) -> np.ndarray:
+    if len(values) > MOST_STATIONS:
+        raise BadMessage("x", f"must have at most {MOST_STATIONS} stations, got {len(values)}")
     return _checked_stations(np.asarray(values, dtype=float).tobytes())
 
 

@@ -7,7 +7,6 @@ Fields in section axes (1 = -x, 2 = -y, 3 = +z of base_link when straight) stay 
 
 import array
 import math
-import struct
 from collections.abc import Callable
 
 import numpy as np
@@ -16,9 +15,10 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from eel_base.attitude import heading
 from eel_base.wording import shown
 from eel_gaits.laws.law import MAXIMUM_TERMS
+from eel_ros.serialised import Beginning
+from eel_ros.serving import read_message
 from geometry_msgs.msg import PoseStamped, TransformStamped, TwistStamped
 from nav_msgs.msg import Odometry
-from rclpy.serialization import deserialize_message
 from rosgraph_msgs.msg import Clock
 from tf2_msgs.msg import TFMessage
 
@@ -44,6 +44,7 @@ from eel_msgs.msg import (
 from eel_msgs.srv import SetState
 
 SECOND = 1_000_000_000  # ns
+LARGEST_LAW = 2**23  # bytes: mostly numbers, which are read at once
 
 
 def seconds_of(time: Time) -> float:
@@ -256,27 +257,17 @@ def parse_law(data: bytes) -> tuple[str, Callable[[], CurvatureLaw]]:
     """Parse a serialised CurvatureLaw: its name, and a function that deserialises it.
 
     Deserialising 10^5 terms would block the process for a second, so the terms are counted first: the function raises
-    `ValueError` if there are too many. The layout is CDR (RTPS 2.5, 10.5): 4 bytes for the encoding, then header, name
-    and number of terms, each number aligned to its size. `ValueError` if the message ends before.
+    `ValueError` if there are too many. `ValueError` if the message ends before its terms.
     """
-    order = "<" if data[1:2] == b"\x01" else ">"
-
-    def number(place: int) -> tuple[int, int]:
-        place += -place % 4
-        try:
-            return struct.unpack_from(order + "I", data, 4 + place)[0], place + 4
-        except struct.error:
-            raise ValueError("it ends before its terms") from None
+    beginning = Beginning(data)
+    beginning.text()  # frame_id
+    name, terms = beginning.text(), beginning.number()
 
     def make() -> CurvatureLaw:
         if terms > MAXIMUM_TERMS:
             raise ValueError(f"terms must be at most {MAXIMUM_TERMS}, got {terms}")
-        return deserialize_message(data, CurvatureLaw)
+        return read_message(data, CurvatureLaw, LARGEST_LAW)
 
-    size, place = number(8)  # after the stamp: frame_id
-    size, place = number(place + size)  # name
-    name = data[4 + place : 4 + place + size].rstrip(b"\0").decode(errors="replace")
-    terms, _ = number(place + size)
     return name, make
 
 

@@ -21,7 +21,7 @@ from eel_ros.process_end import ProcessEnd, leave_at_once
 from eel_ros.qos import keep_all, latched, matches
 from eel_ros.serving import serve_once
 from eel_ros.start import start
-from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from rclpy.clock import Clock, ClockType
 from rclpy.duration import Duration
 from rclpy.event_handler import SubscriptionEventCallbacks
@@ -125,12 +125,15 @@ class DynamicsNode(ParameterNode):
                 raw=True,
                 event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),  # one of the two matches
             )
-        self.create_service(Trigger, "~/reset", self._reset, qos_profile=SERVICE_QOS)
-        self.create_service(SetBool, "~/pause", self._pause, qos_profile=SERVICE_QOS)
-        steps = ReentrantCallbackGroup()  # others go on while a call waits for its samples
-        self.create_service(Step, "~/step", self._step, qos_profile=SERVICE_QOS, callback_group=steps)
-        self._steps_done = self.create_guard_condition(lambda: None, steps)
-        self.create_service(SetState, "~/set_state", self._set_state, qos_profile=SERVICE_QOS)
+        steps, calls = ReentrantCallbackGroup(), MutuallyExclusiveCallbackGroup()  # the calls are answered in order
+        self.run_loop.requests.on_finished = self.create_guard_condition(lambda: None, steps).trigger
+        for kind, name, callback, group in (
+            (Trigger, "reset", self._reset, calls),
+            (SetBool, "pause", self._pause, calls),
+            (SetState, "set_state", self._set_state, calls),
+            (Step, "step", self._step, steps),  # others go on while it waits for its samples
+        ):
+            self.create_service(kind, f"~/{name}", callback, qos_profile=SERVICE_QOS, callback_group=group)
         clock = ClockMonitor(
             self,
             lambda offered: self.run_loop.requests.put(lambda: self.sample_publishers.enable_clock(offered)),
@@ -226,7 +229,7 @@ class DynamicsNode(ParameterNode):
         if not 1 <= request.samples <= MOST_STEPS:
             response.message = f"samples must be 1 to {MOST_STEPS}, got {request.samples}"
             return response
-        steps = self.run_loop.requests.step(request.samples, self._steps_done.trigger)
+        steps = self.run_loop.requests.step(request.samples)
         while not steps.done.is_set():
             await NextTurn()
         response.success, response.stamp = not steps.failure, time_message(steps.time)
@@ -247,8 +250,11 @@ class DynamicsNode(ParameterNode):
             response, self.run_loop.requests.pause(request.data), "paused" if request.data else "going on"
         )
 
-    def _answer(self, response, request, state):
-        done = request.done.wait(SERVICE_TIMEOUT)
+    async def _answer(self, response, request, state):
+        end = time.monotonic() + SERVICE_TIMEOUT
+        while not request.done.is_set() and time.monotonic() < end:
+            await NextTurn()
+        done = request.done.is_set()
         response.success = done and not request.failure
         if request.failure:
             response.message = f"refused: {request.failure}"

@@ -18,6 +18,7 @@ from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
 
 FRAMES = ("world_frame", "head_frame", "section_frame")
 ROOT = "world"  # the frame that swimmers in namespaces share
+MOST_FRAMES = 1000  # of sections on /tf
 
 
 def _parameter(default, description, unit="", **bounds):
@@ -150,6 +151,9 @@ class DynamicsParameters:
                 raise ValueError(f"root_frame must be another frame than {name}, got {shown(self.root_frame)}")
         if max(self.yaw_joints, self.pitch_joints) > 0 and self.stations < 4:
             raise ValueError(f"stations must be 4 or more where there are joints, got {self.stations}")
+        if self.publish_tf_stations and self.stations > MOST_FRAMES:
+            most = f"at most {MOST_FRAMES} with publish_tf_stations"
+            raise ValueError(f"stations must be {most}, got {self.stations}")
         orientation = unit_quaternion("initial_orientation", self.initial_orientation)
         object.__setattr__(self, "initial_orientation", orientation)
 

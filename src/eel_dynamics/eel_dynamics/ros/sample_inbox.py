@@ -7,10 +7,9 @@ The loop waits for samples and requests together, in a wait set of its own, as `
 from collections.abc import Callable
 
 from eel_ros.qos import keep_all
-from eel_ros.serving import PolledGroup, log_dropped
+from eel_ros.serving import PolledGroup, log_dropped, read_message
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.qos import ReliabilityPolicy
-from rclpy.serialization import deserialize_message
 
 from eel_msgs.msg import CurvatureSamples
 
@@ -55,7 +54,7 @@ class SampleInbox:
                 if taken is None:
                     break
                 try:
-                    self._receive(deserialize_message(taken[0], CurvatureSamples), taken[1])
+                    self._receive(read_message(taken[0], CurvatureSamples), taken[1])
                 except Exception as error:
                     log_dropped(self._node, error, f"a message of {subscription.topic_name}")
 

@@ -11,6 +11,7 @@ import numpy as np
 from eel_base.wording import shown
 
 FARTHEST = 1e5  # m from the origin
+MOST_POINTS = 10_000  # of a path
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,12 +61,19 @@ def course(heading: float, depth: float, speed: float, limits: Limits) -> Course
 
 def path(points, speed: float, limits: Limits) -> Path:
     """A path whose legs the swimmer can follow from the second point on; how it gets to the first is its affair."""
+    check_count(len(points))
     points = _points("path", points)
     if len(points) < 1:
         raise ValueError("path must have one point or more, got none")
     for k in range(1, len(points)):
         _check_leg(k, points, limits)
     return Path(points, checked_speed(speed, limits))
+
+
+def check_count(points: int):
+    """`ValueError` for more `points` than a path may have."""
+    if points > MOST_POINTS:
+        raise ValueError(f"path must have at most {MOST_POINTS} points, got {points}")
 
 
 def station(point, speed: float, limits: Limits) -> Station:

@@ -17,6 +17,7 @@ from eel_gaits.laws.ramp import Ramp
 from eel_gaits.laws.term import Term
 from eel_msgs import msg
 
+END_OF_TIME = 2**31 - 1  # s, of stamps
 FRAME = "section"  # axes of the section itself
 ROWS = "pitch", "pitch_rate", "pitch_accel", "yaw", "yaw_rate", "yaw_accel"
 AXIS_NUMBERS = {"pitch": msg.CurvatureTerm.PITCH, "yaw": msg.CurvatureTerm.YAW}
@@ -39,8 +40,11 @@ def law_to_message(law, *, stamp=None, frame=FRAME):
 def samples_to_message(time, x, rows, frame=FRAME):
     """One instant of a law without a closed form as a message, at `time` [s] and the points x (n,) [m].
 
-    rows (6, n): pitch, its rate and its acceleration, then those of yaw [rad/m, rad/m/s, rad/m/s^2].
+    rows (6, n): pitch, its rate and its acceleration, then those of yaw [rad/m, rad/m/s, rad/m/s^2]. `ValueError` for a
+    time that no stamp holds.
     """
+    if not 0.0 <= time < END_OF_TIME:
+        raise ValueError(f"time of a sample must be >= 0 s and < {END_OF_TIME} s, got {time:.9g} s")
     seconds, nanoseconds = divmod(math.floor(time * 1e9 + 0.5), 1_000_000_000)
     header = Header(stamp=Time(sec=seconds, nanosec=nanoseconds), frame_id=frame)
     fields = {name: array("d", np.ascontiguousarray(row).tobytes()) for name, row in zip(ROWS, rows, strict=True)}

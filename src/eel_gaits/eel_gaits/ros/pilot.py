@@ -29,13 +29,14 @@ from eel_gaits.pilot.pilot import Pilot
 from eel_gaits.pilot.settings import PilotSettings
 from eel_gaits.ros.lead import Lead
 from eel_gaits.ros.messages import FRAME, samples_to_message
-from eel_gaits.ros.pilot_messages import head_motion, path_message, point_of, seconds_of
+from eel_gaits.ros.pilot_messages import head_motion, path_message, point_of, read_path, seconds_of
 from eel_gaits.ros.pilot_parameters import GROUPS, GoalParameters, TimingParameters
 from eel_msgs.msg import CurvatureSamples, SwimState
 
 NAME = "pilot"
 ABOUT = "Swims to goals: subscribes to odom, goal_path and goal_pose, and answers on curvature_samples."
-MOST_WAITING = 50  # samples of odom that wait for the torque of the same time
+MOST_WAITING = 50  # samples of odom that wait for the torque of the same time, and torques that wait for an odom
+LONGEST_GAP = 2.0  # s between two samples of odom: after a longer one the body is at rest, for no answer reaches so far
 
 
 class PilotNode(ParameterNode):
@@ -59,12 +60,12 @@ class PilotNode(ParameterNode):
         self._section_frame = frame_in(self.get_namespace(), FRAME)
         self._lead = Lead(self._timing.sample_period, self._timing.lead)
         self._last, self._answers = math.inf, []  # s: last odom; what it was answered
-        self._waiting: list[Odometry] = []
+        self._waiting: list[tuple[float, Odometry]] = []  # by time [s]
         self._torques: dict[float, float] = {}  # time [s]: torque [N m]
         self._torque_comes = False  # whether swim_state has come, and none has been missed since
         self._publisher = self.create_publisher(CurvatureSamples, "curvature_samples", keep_all())
         self.create_subscription(Odometry, "odom", self._receive, keep_all())
-        self.create_subscription(Path, "goal_path", self._receive_path, 10)
+        self.create_subscription(Path, "goal_path", self._receive_path, 10, raw=True)
         self.create_subscription(PoseStamped, "goal_pose", self._receive_pose, 10)
         self._swim_state = None
         self._subscribe_to_torque()
@@ -94,8 +95,9 @@ class PilotNode(ParameterNode):
         self._subscribe_to_torque()
         return SetParametersResult(successful=True)
 
-    def _receive_path(self, message: Path):
+    def _receive_path(self, data: bytes):
         def goal():
+            message = read_path(data)
             self._check_frame(message.header.frame_id)
             points = [point_of(each.pose.position) for each in message.poses]
             return self._pilot.checked_path(goals.path(points, self._numbers.speed, self._pilot.settings.limits))
@@ -141,9 +143,14 @@ class PilotNode(ParameterNode):
             self._answer_waiting()
 
     def _receive_state(self, message: SwimState):
-        now = seconds_of(message.header.stamp)
-        self._torques = {time: torque for time, torque in self._torques.items() if time < now}  # none of an earlier run
-        self._torques[now], self._torque_comes = message.greatest_torque, True
+        try:
+            now = seconds_of(message.header.stamp)
+        except ValueError as error:
+            self._warn_of_torque(f"swim_state is left out: {error}")
+            return
+        known = [time for time in self._torques if time < now][-MOST_WAITING:]  # none of an earlier run
+        self._torques = {time: self._torques[time] for time in known} | {now: message.greatest_torque}
+        self._torque_comes = True
         if math.isnan(message.greatest_torque):
             self._warn_of_torque("swim_state holds no torque; the dynamics node needs internal_wrench")
         self._answer_waiting()
@@ -152,8 +159,14 @@ class PilotNode(ParameterNode):
         self.get_logger().warning(f"torque_limit is not kept: {reason}", throttle_duration_sec=10.0)
 
     def _receive(self, odometry: Odometry):
-        self._waiting.append(odometry)
+        try:
+            self._waiting.append((seconds_of(odometry.header.stamp), odometry))
+        except ValueError as error:
+            self._leave_out(error)
         self._answer_waiting()
+
+    def _leave_out(self, error: ValueError):
+        self.get_logger().warning(f"odom left out: {error}", throttle_duration_sec=1.0)
 
     def _answer_waiting(self):
         """Answer each odom once the torque of its time is known, so that a run repeats itself.
@@ -161,7 +174,7 @@ class PilotNode(ParameterNode):
         Nothing waits before swim_state has come, nor once it stays away.
         """
         while self._waiting:
-            now = seconds_of(self._waiting[0].header.stamp)
+            now, odometry = self._waiting[0]
             if self._swim_state is not None:
                 if now not in self._torques and self._torque_comes:
                     if len(self._waiting) <= MOST_WAITING:
@@ -171,20 +184,25 @@ class PilotNode(ParameterNode):
                 torque = self._torques.get(now, math.nan)
                 self._torques = {time: each for time, each in self._torques.items() if time >= now}
                 self._pilot.limit_torque(torque, self._numbers.torque_limit, now)
-            self._answer(now, self._waiting.pop(0))
+            self._waiting.pop(0)
+            self._answer(now, odometry)
 
     def _answer(self, now: float, odometry: Odometry):
-        """Send the samples up to `lead` after `now` [s]. A stamp that goes back is a start; one that is repeated gets
-        the same answers."""
+        """Send the samples up to `lead` after `now` [s]. A stamp that goes back is a start, and so is one after a gap;
+        one that is repeated gets the same answers."""
         if now != self._last:
             self._answers = []
             try:
                 head = head_motion(odometry)
             except ValueError as error:
-                self.get_logger().warning(f"odom left out: {error}", throttle_duration_sec=1.0)
+                self._leave_out(error)
                 return
             self._frames = {odometry.header.frame_id.lstrip("/"), ""}
-            if self._lead.begins(now):
+            gap = now - self._last
+            if gap > LONGEST_GAP:
+                text = f"odom goes on at t = {now:.9g} s, {gap:.9g} s after the last: a new start"
+                self.get_logger().warning(text, throttle_duration_sec=1.0)
+            if not 0.0 < gap <= LONGEST_GAP:
                 self._add(self._lead.begin(now), self._pilot.begin(), -math.inf)
             self._last = now
             self._pilot.see(now, head)

@@ -4,21 +4,39 @@
 import numpy as np
 from builtin_interfaces.msg import Time
 from eel_base.wording import shown
+from eel_ros.serialised import Beginning
+from eel_ros.serving import read_message
 from geometry_msgs.msg import Point, Pose, PoseStamped
 from nav_msgs.msg import Odometry, Path
 from std_msgs.msg import Header
 
+from eel_gaits.pilot.goals import FARTHEST, check_count
 from eel_gaits.pilot.head_motion import HeadMotion
+from eel_gaits.ros.messages import END_OF_TIME
+
+LATEST = END_OF_TIME - 60  # s: answers lie ahead
+GREATEST = 10.0 * FARTHEST  # m, m/s, rad/s: farther than any goal, and nothing overflows
 
 
 def seconds_of(stamp: Time) -> float:
-    """The time [s] of a stamp."""
+    """The time [s] of a stamp. `ValueError` for one that is not valid, or so late that no answer can follow it."""
+    if not 0 <= stamp.sec < LATEST or stamp.nanosec >= 1_000_000_000:
+        rule = f">= 0 s and < {LATEST} s, with nanosec < 1e9"
+        raise ValueError(f"header.stamp must be {rule}, got sec {stamp.sec}, nanosec {stamp.nanosec}")
     return stamp.sec + 1e-9 * stamp.nanosec
 
 
 def point_of(point: Point) -> tuple[float, float, float]:
     """(x, y, z) [m]."""
     return point.x, point.y, point.z
+
+
+def read_path(data: bytes) -> Path:
+    """The path that is serialised in `data`. `ValueError` for too many points, which are counted first."""
+    beginning = Beginning(data)
+    beginning.text()  # frame_id
+    check_count(beginning.number())
+    return read_message(data, Path)
 
 
 def path_message(points: np.ndarray, frame: str) -> Path:
@@ -29,7 +47,7 @@ def path_message(points: np.ndarray, frame: str) -> Path:
 
 
 def head_motion(odometry: Odometry) -> HeadMotion:
-    """The head's motion. `ValueError` where it is not finite, or has no orientation."""
+    """The head's motion. `ValueError` where it is not finite, farther or faster than any, or has no orientation."""
     pose, twist = odometry.pose.pose, odometry.twist.twist
     q = pose.orientation
     orientation = np.array((q.x, q.y, q.z, q.w))
@@ -43,6 +61,8 @@ def head_motion(odometry: Odometry) -> HeadMotion:
     ):
         if not np.isfinite(values).all():
             raise ValueError(f"{name} must be finite, got {shown(values.tolist())}")
+        if np.abs(values).max() > GREATEST:
+            raise ValueError(f"{name} must be at most {GREATEST:g} in size, got {shown(values.tolist())}")
     norm = float(np.linalg.norm(orientation))
     if not 0.99 < norm < 1.01:
         raise ValueError(f"orientation must be a unit quaternion, got {shown(orientation.tolist())}")

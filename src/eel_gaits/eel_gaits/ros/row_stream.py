@@ -11,6 +11,7 @@ from eel_msgs.msg import CurvatureSamples
 
 AHEAD = 2.0  # s of simulation time by which rows are sent ahead
 BRIDGE = 1.0  # s of simulation time from the last row of a motion to the first of the next
+MOST_ROWS = 500  # sent at once, so that the node hears calls and signals; the others follow with the next look
 LEAD = 0.1  # s of simulation time, from the present to the first row of a simulation that already runs
 
 
@@ -71,7 +72,11 @@ class RowStream:
             first = now - self._origin + (LEAD if now > 0.0 else 0.0)
             self._next = int(np.searchsorted(self._law.time, first - 1e-9))
         self._listeners = listeners
-        last = int(np.searchsorted(self._law.time, now - self._origin + AHEAD)) if listeners else 0
+        if not listeners:
+            return
+        passed, last = np.searchsorted(self._law.time, (now - self._origin, now - self._origin + AHEAD)).tolist()
+        self._next = max(self._next, passed - 1)  # time has gone beyond those before
+        last = min(last, self._next + MOST_ROWS)
         for row in range(self._next, last):
             rows = self._law.values[row].reshape(6, -1)
             self._publisher.publish(samples_to_message(self._time_of(row), self._law.x, rows, self._frame))

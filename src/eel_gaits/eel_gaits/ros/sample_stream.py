@@ -11,6 +11,8 @@ from eel_msgs.msg import CurvatureSamples
 
 AHEAD = 0.5  # s of simulation time, from the present to the last sample
 LEAD = 0.1  # s, from the present to the first one of a simulation that already runs
+LONGEST_GAP = 2.0  # s by which the simulation may be ahead; beyond, the oscillators begin anew
+MOST_SAMPLES = 500  # sent at once, so that the node hears calls and signals; the others follow with the next look
 
 
 class SampleStream:
@@ -58,11 +60,17 @@ class SampleStream:
             self.restart(self._chain.numbers, now)
         self._listeners = listeners
         period = self._chain.numbers.sample_period
-        if self._chain.time < now:  # the simulation was faster
+        if now - self._chain.time > LONGEST_GAP:
+            text = f"time goes on at {now:.9g} s, after samples up to {self._chain.time:.9g} s: a new start"
+            self._node.get_logger().warning(text, throttle_duration_sec=1.0)
+            self.restart(self._chain.numbers, now)
+        elif self._chain.time < now:  # the simulation was faster
             self._start, self._count = now + LEAD, 0
             self._chain.advance(self._start)
             self._publish()
-        while self._chain.time < now + AHEAD:
+        for _ in range(MOST_SAMPLES):
+            if self._chain.time >= now + AHEAD:
+                return
             self._count += 1
             self._chain.advance(self._start + self._count * period)
             self._publish()

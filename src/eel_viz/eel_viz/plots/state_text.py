@@ -28,6 +28,7 @@ COMPARED = (
     "energy_residual_worst",
 )  # keys shown in the comparison of two runs
 LONGEST_NAME, LONGEST_TEXT = 60, 400  # characters
+MOST_WAITING = 100  # statuses, the earliest ones
 VOLATILE = ("warnings", "real_time_factor")  # keys that are shown only while they are fresh
 
 
@@ -66,6 +67,7 @@ class Summary:
         """
         self._statuses.append((stamp, state, values))
         self._statuses.sort(key=lambda status: status[0])
+        del self._statuses[MOST_WAITING:]
         return self._take_statuses()
 
     def _take_statuses(self) -> bool:

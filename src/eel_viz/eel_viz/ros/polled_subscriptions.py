@@ -5,17 +5,18 @@ An executor collects and waits on all entities of a node before each message. Wi
 logging them. The callback group here is never executed, so messages stay in the KEEP_ALL histories until `take`.
 """
 
+import time
 from collections.abc import Callable
 
 from eel_ros.deliveries import Deliveries
-from eel_ros.serving import PolledGroup, log_dropped
+from eel_ros.serving import PolledGroup, log_dropped, read_message
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
-from rclpy.serialization import deserialize_message
 
 from eel_viz.ros.publisher_change import PublisherChange
 
 BATCH = 64  # messages taken from one subscription before the next one
+TURN = 0.2  # s after which `take` returns, so that the node hears calls and signals
 PROCESS = 12  # bytes of an endpoint's identifier that all endpoints of a process share (RTPS: the GUID's prefix)
 
 
@@ -49,26 +50,36 @@ class PolledSubscriptions:
     def take(self) -> int:
         """Take the waiting messages, at most `BATCH` per subscription, and pass them on; returns their number.
 
-        A message that raises an error is logged and left out. Messages are taken as bytes: otherwise rclpy would build
-        a message object even if none has come.
+        After a `TURN` it returns, and the next call begins with the next subscription. A message that raises an error
+        is logged and left out. Messages are taken as bytes: otherwise rclpy would build a message object even if none
+        has come.
         """
+        count, end = 0, time.monotonic() + TURN
+        for place, each in enumerate(self._subscriptions, start=1):
+            count += self._take_from(*each, end)
+            if time.monotonic() > end:
+                self._subscriptions = [*self._subscriptions[place:], *self._subscriptions[:place]]
+                break
+        return count
+
+    def _take_from(self, subscription, show, publisher_change: PublisherChange, deliveries, end: float) -> int:
+        """Take messages of one subscription until `end` [s, steady clock]; returns their number."""
         count = 0
-        for subscription, show, publisher_change, deliveries in self._subscriptions:
-            with subscription.handle:  # keeps it from being destroyed meanwhile
-                for _ in range(BATCH):
-                    taken = subscription.handle.take_message(subscription.msg_type, True)
-                    if taken is None:
-                        break
-                    count += 1
-                    data, about = taken
-                    new_publisher = publisher_change.changes(
-                        about["publication_sequence_number"], about["source_timestamp"]
-                    )
-                    if new_publisher:
-                        self.note_publishers()
-                    if not deliveries.repeats(about):
-                        try:
-                            show(deserialize_message(data, subscription.msg_type), new_publisher)
-                        except Exception as error:
-                            log_dropped(self._node, error, f"a message of {subscription.topic_name}")
+        with subscription.handle:  # keeps it from being destroyed meanwhile
+            while count < BATCH and time.monotonic() <= end:
+                taken = subscription.handle.take_message(subscription.msg_type, True)
+                if taken is None:
+                    break
+                count += 1
+                data, about = taken
+                new_publisher = publisher_change.changes(
+                    about["publication_sequence_number"], about["source_timestamp"]
+                )
+                if new_publisher:
+                    self.note_publishers()
+                if not deliveries.repeats(about):
+                    try:
+                        show(read_message(data, subscription.msg_type), new_publisher)
+                    except Exception as error:
+                        log_dropped(self._node, error, f"a message of {subscription.topic_name}")
         return count

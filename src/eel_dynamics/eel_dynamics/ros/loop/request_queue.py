@@ -11,14 +11,14 @@ INTERRUPT_AFTER = 1.0  # s of wall time for one sample, after which any request 
 
 
 class Request:
-    """An `action` for the run loop; `done` is set, and `wake()` called, after its execution.
+    """An `action` for the run loop; `done` is set, and `wake()` called if it is given, after its execution.
 
     Attributes:
         time: simulation time [s] after its execution.
         failure: why it was refused, as text; empty if it was not.
     """
 
-    def __init__(self, action: Callable[[], None], replaces: str = "", wake: Callable[[], None] = lambda: None):
+    def __init__(self, action: Callable[[], None], replaces: str = "", wake: Callable[[], None] | None = None):
         self.action, self.replaces, self._wake = action, replaces, wake
         self.done = threading.Event()
         self.time, self.failure = math.nan, ""
@@ -27,7 +27,8 @@ class Request:
         """Set the attributes: it was executed, or ended with `failure`, at `simulation_time` [s]."""
         self.time, self.failure = simulation_time, failure
         self.done.set()
-        self._wake()
+        if self._wake is not None:
+            self._wake()
 
 
 class RequestQueue:
@@ -47,9 +48,9 @@ class RequestQueue:
     def __len__(self) -> int:
         return len(self._waiting)
 
-    def put(self, action: Callable[[], None], replaces: str = "", urgent: bool = False) -> Request:
+    def put(self, action: Callable[[], None], replaces: str = "", urgent: bool = False, wake=None) -> Request:
         """Add a request. It replaces the newest one if both have the same non-empty text `replaces`."""
-        request = Request(action, replaces)
+        request = Request(action, replaces, wake)
         with self._guard:
             if replaces and self._waiting and self._waiting[-1].replaces == replaces:
                 self._waiting.pop()

@@ -9,6 +9,8 @@ No ROS is imported: `publishers` and `report` come from the node.
 import math
 import time
 
+from eel_base.wording import one_line
+
 from eel_dynamics.ros.diagnostics import ERROR
 from eel_dynamics.ros.loop.clock_ticks import TICK
 from eel_dynamics.ros.loop.law_feed import LawAdopter
@@ -99,6 +101,10 @@ class RunLoop:
             self._fail(error)
         except ValueError as error:
             return self.time, str(error)
+        except Exception as error:  # unforeseen: whoever asked is told, and the run goes on
+            failure = f"{type(error).__name__}: {one_line(error)}"
+            self._report.event("request", f"a request is refused: {failure}", ERROR)
+            return self.time, failure
         return self.time, ""
 
     def _idle(self, obstacle: str):

@@ -20,10 +20,15 @@ class NewRun(NamedTuple):
 
 
 class RunRequests:
-    """Puts requests to the run `loop` into its `queue`."""
+    """Puts requests to the run `loop` into its `queue`.
+
+    Attributes:
+        on_finished: called when an urgent request, or a step, is done; may be replaced.
+    """
 
     def __init__(self, loop, queue: RequestQueue, report):
         self._loop, self._queue, self._report = loop, queue, report
+        self.on_finished: Callable[[], None] = lambda: None
 
     @property
     def time(self) -> float:
@@ -35,7 +40,7 @@ class RunRequests:
 
         It replaces the newest request if both have the same non-empty text `replaces`.
         """
-        return self._queue.put(action, replaces, urgent)
+        return self._queue.put(action, replaces, urgent, self.on_finished if urgent else None)
 
     def take_law(self, law, origin: float):
         """Adopt a law whose own t = 0 lies at simulation time `origin` [s]; of several before a sample the last."""
@@ -56,12 +61,12 @@ class RunRequests:
         """Pause the run, or continue it."""
         return self.put(lambda: self._loop.obstacles.pause(paused, self._loop.time), urgent=True)
 
-    def step(self, samples: int, wake: Callable[[], None] = lambda: None) -> Request:
-        """Publish so many `samples` of a paused run; the request is done with the last of them, and calls `wake()`.
+    def step(self, samples: int) -> Request:
+        """Publish so many `samples` of a paused run; the request is done with the last of them.
 
         Sample 0 is none of them.
         """
-        steps = Request(lambda: None, wake=wake)
+        steps = Request(lambda: None, wake=self.on_finished)
         self.put(lambda: self._loop.obstacles.begin_steps(samples, steps, self._loop.time), urgent=True)
         return steps
 
