@@ -11,6 +11,7 @@ from functools import cache, cached_property, lru_cache
 from pathlib import Path
 
 import numpy as np
+from eel_gaits.input_output.input_file import reading
 from eel_gaits.input_output.wording import shown
 
 from eel_dynamics.model.arguments import checked_instance, checked_number, checked_row
@@ -195,7 +196,8 @@ class Body:
         if not isinstance(path, (str, os.PathLike)):
             raise ValueError(f"body file must be a path, got {shown(path)}")
         path = Path(path)
-        body = Body(**columns_of(path), name=path.stem)
+        with reading(shown(str(path))):
+            body = Body(**columns_of(path), name=path.stem)
         if body.length > LONGEST:
             warnings.warn(f"body file {path} is {body.length:g} m long: are its columns in m?", stacklevel=2)
         return body

@@ -9,6 +9,7 @@ import os
 import warnings
 from pathlib import Path
 
+from eel_gaits.input_output.input_file import InputFile, from_json, reading
 from eel_gaits.input_output.output_file import check_output, replacing
 from eel_gaits.input_output.wording import shown
 
@@ -46,10 +47,9 @@ class Parts:
             return None
         import xarray
 
-        try:
-            data = xarray.load_dataset(self.out, engine="scipy")
-        except (OSError, ValueError, TypeError):
-            data = None
+        data = None
+        with contextlib.suppress(ValueError), reading(str(self.out)), InputFile(self.out) as file:
+            data = xarray.load_dataset(file, engine="scipy")
         if data is not None and data.attrs.get("sweep") == self._key:
             return data
         if self._overwrite:
@@ -92,7 +92,8 @@ class Parts:
 
     def _part(self, path: Path) -> dict[int, dict]:
         """The points of one part. `ValueError` if `keep` cannot have written it: text, NaN, a truncated file."""
-        found = json.loads(path.read_text(encoding="utf-8"), parse_constant=_infinity)
+        with reading(shown(str(path))), InputFile(path) as file:
+            found = from_json(file.read(), parse_constant=_infinity)
         if not isinstance(found, dict):
             raise ValueError("it holds no points")
         points = {}
@@ -108,10 +109,9 @@ class Parts:
         """The key of the sweep in the folder; None if there are no parts, "unknown" if the key cannot be read."""
         if not any(self.folder.glob("part-*.json")):
             return None
-        try:
-            return str(json.loads((self.folder / ABOUT).read_text(encoding="utf-8"))["sweep"])
-        except (FileNotFoundError, ValueError, KeyError, TypeError):
-            return "unknown"
+        with contextlib.suppress(ValueError), reading(ABOUT), InputFile(self.folder / ABOUT) as file:
+            return str(from_json(file.read())["sweep"])
+        return "unknown"
 
     def _remove(self):
         """Remove the parts; other files in the folder stay."""
