@@ -15,7 +15,7 @@ from eel_gaits.input_output.input_file import reading
 from eel_gaits.input_output.wording import shown
 
 from eel_dynamics.model.arguments import checked_instance, checked_number, checked_row
-from eel_dynamics.model.body_file import columns_of
+from eel_dynamics.model.body_file import WHAT, columns_of
 from eel_dynamics.model.equality import same
 from eel_dynamics.model.grid import Grid
 from eel_dynamics.model.half_axis import ArrayHalfAxis, FunctionHalfAxis
@@ -196,7 +196,7 @@ class Body:
         if not isinstance(path, (str, os.PathLike)):
             raise ValueError(f"body file must be a path, got {shown(path)}")
         path = Path(path)
-        with reading(shown(str(path))):
+        with reading(f"{WHAT}{shown(str(path))}"):
             body = Body(**columns_of(path), name=path.stem)
         if body.length > LONGEST:
             warnings.warn(f"body file {path} is {body.length:g} m long: are its columns in m?", stacklevel=2)

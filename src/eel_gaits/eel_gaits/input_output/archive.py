@@ -19,17 +19,21 @@ from eel_gaits.input_output.wording import shown
 MOST_ARRAYS = 1000
 MOST_NUMBERS = 5_000_000  # of a file: 40 MB
 SUFFIX = ".npy"
+END, PLACE = 22, slice(10, 12)  # bytes of a directory's end, and the place of the number of members in it
 LONGEST_HEAD = 1000  # bytes
 HEAD = re.compile(r"\{'descr': '([^']*)', 'fortran_order': (True|False), 'shape': \(([0-9, ]*)\), \} *\n")
 NUMBERS = re.compile(r"[<>|=]([biuf])([1248])")
 
 
 def read_archive(path: str | os.PathLike[str]) -> dict[str, np.ndarray]:
-    """The arrays of an .npz archive as floats, of any shape. `ValueError`, or what `zipfile` raises, for another file."""
+    """The arrays of an .npz archive as floats, of any shape. Call it within `reading`: `zipfile` raises much."""
     with InputFile(path) as file, ZipFile(file) as archive:
         members = archive.infolist()
         if not members or len(members) > MOST_ARRAYS:
             raise ValueError(f"it must hold 1 to {MOST_ARRAYS} arrays, got {len(members)}")
+        file.seek(file.size - END - len(archive.comment))
+        if int.from_bytes(file.read(END)[PLACE], "little") != len(members):  # a damaged length hides those behind it
+            raise ValueError("its directory is damaged")
         names = [each.filename.removesuffix(SUFFIX) for each in members]
         if len(set(names)) < len(names):
             raise ValueError(f"each array must have a name of its own, got {shown(names)}")

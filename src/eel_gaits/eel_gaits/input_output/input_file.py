@@ -28,7 +28,7 @@ class Misplaced(ValueError):
 
 @contextlib.contextmanager
 def reading(what: str) -> Iterator[None]:
-    """Turn every error within into a `ValueError` of one line that begins with `what`, the file in words."""
+    """Turn every error within into a `ValueError` of one line that begins with `what`: the file in words, or ""."""
     try:
         yield
     except Exception as error:  # parsers raise nearly anything for a damaged file
@@ -85,4 +85,4 @@ def _reason(error: Exception) -> str:
         return f"it is no text in {error.encoding}: {error.reason} at byte {error.start}"
     if isinstance(error, (OSError, ValueError)):
         return one_line(error) or type(error).__name__
-    return f"it is damaged: {type(error).__name__}: {one_line(error)}"
+    return f"it is damaged or foreign ({type(error).__name__}: {one_line(error)})"

@@ -8,7 +8,7 @@ from difflib import get_close_matches
 
 LONGEST = 80  # characters shown of a value
 LONGEST_LINE = 300  # of a whole message
-_LONG_WORD = re.compile(rf"\S{{{LONGEST + 1},}}")
+_LONG_WORD = re.compile(rf"\S{{{LONGEST + 3},}}")  # a value as `shown`, with its comma or colon, is none
 _brief = reprlib.Repr()
 _brief.maxstring = _brief.maxother = LONGEST
 _brief.maxlevel = 3

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reads columns of numbers from a .csv file with a header line, or an .npz archive. Errors name file and line."""
 
+import array
 import csv
 import io
 import os
-from array import array
 from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
@@ -17,6 +17,8 @@ from eel_gaits.input_output.wording import shown
 
 MOST_BYTES, MOST_LINES, LONGEST_LINE, MOST_COLUMNS = 200_000_000, 5_000_000, 1_000_000, 10_000  # of a .csv file
 
+LARGEST = 1e100  # of a number: squares and products of a few are finite
+
 
 class Table(NamedTuple):
     """Columns of equal length, and for each row its line in the file (or its number from 1, in an archive)."""
@@ -25,6 +27,7 @@ class Table(NamedTuple):
     columns: dict[str, np.ndarray]
     lines: np.ndarray  # (rows,)
     word: str  # "line" or "row"
+    what: str = ""  # begins an error, before the file's name
 
     def error(self, text: str, first: int | None = None, last: int | None = None) -> ValueError:
         """An error about rows `first` to `last` (indices): with the file, their lines and a `text`."""
@@ -33,24 +36,29 @@ class Table(NamedTuple):
             place = f", {self.word} {self.lines[first]}"
         if last is not None and last != first:
             place = f", {self.word}s {self.lines[first]} to {self.lines[last]}"
-        return ValueError(f"{shown(str(self.path))}{place}: {text}")
+        return ValueError(f"{self.what}{shown(str(self.path))}{place}: {text}")
 
-    def check_finite(self, names: tuple[str, ...]):
-        """`ValueError` for the first number of these columns that is not finite."""
+    def check_finite(self, names: tuple[str, ...], largest: float = LARGEST):
+        """`ValueError` for the first number of these columns that is not finite, or beyond the `largest`."""
         for name in names:
-            bad = np.flatnonzero(~np.isfinite(self.columns[name]))
+            bad = np.flatnonzero(~(np.abs(self.columns[name]) <= largest))
             if len(bad):
-                raise self.error(f"{name} must be finite, got {self.columns[name][bad[0]]}", bad[0])
+                value = self.columns[name][bad[0]]
+                rule = f"at most {largest:g}" if np.isfinite(value) else "finite"
+                raise self.error(f"{name} must be {rule}, got {value:g}", bad[0])
 
 
-def read_table(path: str | os.PathLike) -> Table:
-    """The columns of a .csv or .npz file. `ValueError` in one line, with line and column, for what cannot be read."""
+def read_table(path: str | os.PathLike, what: str = "") -> Table:
+    """The columns of a .csv or .npz file. `ValueError` in one line, with line and column, for what cannot be read.
+
+    what: begins an error, before the file's name, such as "body file ".
+    """
     path = Path(path)
-    with reading(shown(str(path))):
+    with reading(f"{what}{shown(str(path))}"):
         if path.suffix == ".npz":
             columns = _flat(read_archive(path))
-            return Table(path, columns, np.arange(1, len(next(iter(columns.values()))) + 1), "row")
-        return Table(path, *_table(path), "line")
+            return Table(path, columns, np.arange(1, len(next(iter(columns.values()))) + 1), "row", what)
+        return Table(path, *_table(path), "line", what)
 
 
 def _flat(arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
@@ -59,13 +67,13 @@ def _flat(arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     if shape is not None and len(arrays) * shape[0] * shape[1] > MOST_NUMBERS:
         raise ValueError(f"a table must hold at most {MOST_NUMBERS} numbers, got {len(arrays)} columns of {shape}")
     found = {}
-    for name, array in arrays.items():
-        if shape is not None and array.shape == shape[:1] and (name == "time" or shape[0] != shape[1]):
-            array = np.repeat(array, shape[1])
-        elif shape is not None and array.shape == shape[1:]:
-            array = np.tile(array, shape[0])
-        found[name] = array.ravel()
-    sizes = {name: len(array) for name, array in found.items()}
+    for name, each in arrays.items():
+        if shape is not None and each.shape == shape[:1] and (name == "time" or shape[0] != shape[1]):
+            each = np.repeat(each, shape[1])
+        elif shape is not None and each.shape == shape[1:]:
+            each = np.tile(each, shape[0])
+        found[name] = each.ravel()
+    sizes = {name: len(each) for name, each in found.items()}
     if len(set(sizes.values())) > 1:
         told = ", ".join(f"{name} {arrays[name].shape}" for name in arrays)
         raise ValueError(f"its arrays must fit together, (N,) and (N, n), got {told}")
@@ -75,7 +83,7 @@ def _flat(arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
 def _table(path: Path) -> tuple[dict[str, np.ndarray], np.ndarray]:
     with InputFile(path, MOST_BYTES) as file, io.TextIOWrapper(file, encoding="utf-8-sig", newline="") as text:
         rows = csv.reader(_lines(text), strict=True)
-        numbers, lines = array("d"), array("q")
+        numbers, lines = array.array("d"), array.array("q")
         try:
             names = [name.strip() for name in next(rows, [])]
             if not any(names):
@@ -100,7 +108,9 @@ def _table(path: Path) -> tuple[dict[str, np.ndarray], np.ndarray]:
             raise Misplaced(f"line {rows.line_num}", str(error)) from None
     if not lines:
         raise ValueError("it has a header and no row")
-    return dict(zip(names, np.frombuffer(numbers).reshape(-1, len(names)).T, strict=True)), np.frombuffer(lines, dtype=np.int64)
+    return dict(zip(names, np.frombuffer(numbers).reshape(-1, len(names)).T, strict=True)), np.frombuffer(
+        lines, dtype=np.int64
+    )
 
 
 def _lines(text: io.TextIOBase) -> Iterator[str]:

@@ -82,22 +82,23 @@ def read(path, kind: str) -> Contents:
     if not isinstance(path, (str, os.PathLike)):
         raise ValueError(f"path must be that of a {SUFFIX} file, got {shown(path)}")
     named = f"{kind} file {shown(os.fspath(path))}"
-    with reading(f"{named} cannot be read"):
-        with InputFile(path) as content, netcdf_file(content, "r", mmap=False) as file:
-            about = {name: getattr(file, name, None) for name in ("software", "kind", "format", "eel")}
-            of_sweep = about["kind"] is None and hasattr(file, "sweep")
-            ours = {} if of_sweep else {name: file.variables[name] for name in KNOWN if name in file.variables}
-            arrays = {name: _native(np.asarray(each.data)) for name, each in ours.items()}
+    told = f"{named} cannot be read"
+    with reading(told), InputFile(path) as content, netcdf_file(content, "r", mmap=False) as file:
+        about = {name: getattr(file, name, None) for name in ("software", "kind", "format", "eel")}
+        of_sweep = about["kind"] is None and hasattr(file, "sweep")
+        ours = {} if of_sweep else {name: file.variables[name] for name in KNOWN if name in file.variables}
+        arrays = {name: _native(np.asarray(each.data)) for name, each in ours.items()}
     if of_sweep:
         raise ValueError(f"{named} holds a sweep, not a {kind}: xarray.open_dataset opens it")
     if None in about.values():
         raise ValueError(f"{named} is no {kind} of eel_dynamics")
-    if about["format"] != FORMAT:
-        told = about["software"].decode(errors="replace")
-        raise ValueError(f"{named} has format {about['format']}, of {told}; {software()} reads format {FORMAT}")
-    if about["kind"].decode() != kind:
-        raise ValueError(f"{named} holds a {about['kind'].decode()}, not a {kind}")
-    with reading(f"{named} cannot be read"):
+    with reading(named):
+        if about["format"] != FORMAT:
+            writer = about["software"].decode(errors="replace")
+            raise ValueError(f"{named} has format {about['format']}, of {writer}; {software()} reads format {FORMAT}")
+        if about["kind"].decode() != kind:
+            raise ValueError(f"{named} holds a {about['kind'].decode()}, not a {kind}")
+    with reading(told):
         contents = Contents(kind, from_json(about["eel"]), arrays)
         sizes_of(contents)
     return contents

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from eel_gaits.input_output.input_file import InputFile, from_json, reading
 from eel_gaits.input_output.output_file import check_output, replacing
-from eel_gaits.input_output.wording import shown
+from eel_gaits.input_output.wording import one_line, shown
 
 from eel_dynamics.analysis.measures import checked_point
 
@@ -48,7 +48,7 @@ class Parts:
         import xarray
 
         data = None
-        with contextlib.suppress(ValueError), reading(str(self.out)), InputFile(self.out) as file:
+        with contextlib.suppress(ValueError), reading(""), InputFile(self.out) as file:
             data = xarray.load_dataset(file, engine="scipy")
         if data is not None and data.attrs.get("sweep") == self._key:
             return data
@@ -67,7 +67,8 @@ class Parts:
                 try:
                     done |= self._part(path)
                 except ValueError as error:
-                    warnings.warn(f"{path} is damaged ({error}): its points are done again", stacklevel=3)
+                    told = one_line(f"{path} is damaged ({error}): its points are done again")
+                    warnings.warn(told, stacklevel=3)
                     path.unlink()
         return done
 
@@ -92,7 +93,7 @@ class Parts:
 
     def _part(self, path: Path) -> dict[int, dict]:
         """The points of one part. `ValueError` if `keep` cannot have written it: text, NaN, a truncated file."""
-        with reading(shown(str(path))), InputFile(path) as file:
+        with reading(""), InputFile(path) as file:
             found = from_json(file.read(), parse_constant=_infinity)
         if not isinstance(found, dict):
             raise ValueError("it holds no points")
@@ -109,7 +110,7 @@ class Parts:
         """The key of the sweep in the folder; None if there are no parts, "unknown" if the key cannot be read."""
         if not any(self.folder.glob("part-*.json")):
             return None
-        with contextlib.suppress(ValueError), reading(ABOUT), InputFile(self.folder / ABOUT) as file:
+        with contextlib.suppress(ValueError), reading(""), InputFile(self.folder / ABOUT) as file:
             return str(from_json(file.read())["sweep"])
         return "unknown"
 
