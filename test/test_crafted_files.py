@@ -17,7 +17,7 @@ from eel_dynamics.studies.sweep.sweep_parts import Parts
 from eel_dynamics import Body, simulate, simulate_batch
 from eel_gaits import sampled, save_law, straight
 
-QUICK = ("body.csv", "midlines.npz", "rows.npz", "sequence.yaml", "parameters.yaml", "run.nc", "batch.nc", "part.json")
+QUICK = ("body.csv", "rows.npz", "sequence.yaml", "run.nc", "batch.nc", "part.json")
 CHECKED = ("body.npz", "midlines.npz", "rows.npz", "speeds.npz")  # with checksums
 MEMORY = 200  # MB that a reader may take
 SECONDS = 1.0  # of CPU time

@@ -16,6 +16,7 @@ from eel_dynamics.studies.points import Point, SwimSettings
 from eel_dynamics.studies.sweep import command as sweep_command
 from eel_dynamics.studies.sweep.command import main
 from eel_dynamics.studies.sweep.sweep_key import key_of
+from eel_gaits.input_output.wording import shown
 
 from eel_dynamics import Accuracy, Body, Scene, simulate, sweep
 from eel_gaits import Law, Term, sampled, straight
@@ -163,7 +164,7 @@ def test_damaged_parts_are_done_again(client, tmp_path, capsys):
     assert told[0] == (1, 5) and again.equals(whole)
     said = [str(each.message) for each in warned]
     for part, reason in zip(parts, ("measure 'head_x' must be a real number, got 'far'", "NaN", "", ""), strict=False):
-        assert sum(str(part) in line and reason in line for line in said) == 1
+        assert sum(shown(str(part)) in line and reason in line for line in said) == 1
 
 
 def test_what_a_sweep_is_of_is_known_or_it_is_refused(client, tmp_path):

@@ -16,7 +16,6 @@ from eel_gaits.input_output.input_file import InputFile, Misplaced, reading
 from eel_gaits.input_output.wording import shown
 
 MOST_BYTES, MOST_LINES, LONGEST_LINE, MOST_COLUMNS = 200_000_000, 5_000_000, 1_000_000, 10_000  # of a .csv file
-
 LARGEST = 1e100  # of a number: squares and products of a few are finite
 
 

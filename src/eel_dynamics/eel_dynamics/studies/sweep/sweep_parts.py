@@ -67,8 +67,8 @@ class Parts:
                 try:
                     done |= self._part(path)
                 except ValueError as error:
-                    told = one_line(f"{path} is damaged ({error}): its points are done again")
-                    warnings.warn(told, stacklevel=3)
+                    told = f"{shown(str(path))} is damaged ({error}): its points are done again"
+                    warnings.warn(one_line(told), stacklevel=3)
                     path.unlink()
         return done
 
