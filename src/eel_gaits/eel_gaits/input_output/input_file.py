@@ -31,7 +31,9 @@ def reading(what: str) -> Iterator[None]:
     """Turn every error within into a `ValueError` of one line that begins with `what`: the file in words, or ""."""
     try:
         yield
-    except Exception as error:  # parsers raise nearly anything for a damaged file
+    except BaseException as error:  # parsers raise nearly anything for a damaged file; those in Rust panic
+        if not isinstance(error, Exception) and type(error).__module__ != "pyo3_runtime":
+            raise
         told = _reason(error)
         if not told.startswith(what):
             told = f"{what}{', ' if isinstance(error, Misplaced) else ': '}{told}"
@@ -61,9 +63,9 @@ class InputFile(io.BufferedReader):
         """The next `size` bytes, or all that are left."""
         rest = self.size - self.tell()
         size = rest if size is None or size < 0 else size
-        self._left, self._reads = self._left - size, self._reads + 1
         if size > rest:
             raise ValueError(f"it is truncated or damaged: {size} bytes at {self.tell()} of {self.size}")
+        self._left, self._reads = self._left - size, self._reads + 1
         if self._left < 0 or self._reads > MOST_READS:
             raise ValueError("it is damaged: its parts are more than the whole")
         return super().read(size)
@@ -77,7 +79,7 @@ def from_json(text: str | bytes, **options):
     return json.loads(text, **options)
 
 
-def _reason(error: Exception) -> str:
+def _reason(error: BaseException) -> str:
     hint = next((words for kind, words in HINTS.items() if isinstance(error, kind)), None)
     if hint is not None:
         return hint

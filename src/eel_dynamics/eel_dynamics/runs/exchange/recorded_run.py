@@ -11,8 +11,8 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
-from eel_gaits.input_output.quantity import is_finite
 from eel_gaits.input_output.input_file import reading
+from eel_gaits.input_output.quantity import is_finite
 from eel_gaits.input_output.wording import one_line, shown
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.ramp import Ramp
