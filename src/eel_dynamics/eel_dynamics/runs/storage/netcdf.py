@@ -51,7 +51,8 @@ def write(contents: Contents, path) -> None:
     """
     from scipy.io import netcdf_file
 
-    path, sizes = checked_path("path", path), sizes_of(contents)
+    path, sizes, attributes = checked_path("path", path), sizes_of(contents), attributes_of(contents)
+    from_json(attributes["eel"])  # what is saved can be loaded
     for name, values in contents.arrays.items():
         if values.nbytes > MOST_BYTES:
             raise ValueError(
@@ -59,7 +60,7 @@ def write(contents: Contents, path) -> None:
                 "take fewer samples or stations"
             )
     with replacing(path) as draft, netcdf_file(draft, "w", version=2, mmap=False) as file:
-        for name, value in attributes_of(contents).items():
+        for name, value in attributes.items():
             setattr(file, name, value.encode() if isinstance(value, str) else value)
         for name, size in sizes.items():
             file.createDimension(name, size)
