@@ -83,6 +83,15 @@ def archives(good: dict[str, np.ndarray]) -> dict[str, bytes]:
         "complex numbers": head("(4,)", "<c16"),
         "1,000 dimensions": head("(" + "1," * 1000 + ")"),
         "a dimension of none": head("(0, 1000000000000)"),
+        "8-byte switches": head("(4,)", "|b8"),
+        "16-byte floats": head("(4,)", "<f16"),
+        "no kind": head("(4,)", ""),
+        "voids": head("(4,)", "|V8"),
+        "dates": head("(4,)", "<M8[s]"),
+        "an open shape": head("(4")[:-5],
+        "a shape in words": head("('four',)"),
+        "a shape of 4,000 digits and a name": head("(" + "9" * 4000 + "x,)"),
+        "another order": head("(4,)").replace(b"False", b"maybe"),
         "nothing": b"",
         "a head of zeros": b"\0" * 100,
     }
@@ -180,6 +189,9 @@ def sequences(good: str) -> dict[str, bytes]:
         + "repeat: 1000\n".join("  " * n + ("  steps:\n" + "  " * n + "  - " if n else "") for n in range(7))
         + "gait: still\n",
         "a tag of no library": good.replace("still", "!!python/name:os.system x"),
+        "no key": "null: 1\n",
+        "a number as key": "1.5: 1\n",
+        "a switch as key": "true: 1\n",
         "surrogates": '"\\ud800": 1',
         "escapes": '"\\UFFFFFFFF": 1',
     }
