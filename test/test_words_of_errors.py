@@ -151,7 +151,8 @@ def test_what_is_short_is_shown_as_it_is():
 
 
 def test_an_error_is_told_in_one_line():
-    assert one_line(ValueError("one\n  two")) == "one two"
+    assert one_line(ValueError("one\n  two")) == "one two" and LONGEST_LINE == 300
+    assert one_line("red \x1b[31m, a bell \a, \u202e and \udc80") == r"red \x1b[31m, a bell \x07, \u202e and \udc80"
     assert one_line(ValueError("a " * 10**6)).startswith("a a") and len(one_line("a " * 10**6)) <= LONGEST_LINE
     with pytest.raises(OSError) as missing:
         Path("x" * 200).read_bytes()

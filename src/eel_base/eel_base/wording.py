@@ -7,8 +7,8 @@ from collections.abc import Collection
 from difflib import get_close_matches
 
 LONGEST = 80  # characters shown of a value
-LONGEST_LINE = 1000  # of a whole message
-_LONG_WORD = re.compile(rf"\S{{{LONGEST + 1},}}")
+LONGEST_LINE = 300  # of a whole message
+_LONG_WORD = re.compile(rf"\S{{{LONGEST + 3},}}")  # a value as `shown`, with its comma or colon, is none
 _brief = reprlib.Repr()
 _brief.maxstring = _brief.maxother = LONGEST
 _brief.maxlevel = 3
@@ -30,10 +30,15 @@ def shown(value) -> str:
 
 
 def one_line(error) -> str:
-    """The text of `error` in one line. The middle of long words, and of a long line, is left out."""
+    """The text of `error` in one line of at most `LONGEST_LINE` characters; those that do not print are escaped.
+
+    The middle of long words, and of a long line, is left out.
+    """
     if isinstance(error, OSError) and error.filename is not None:
         error = f"{error.strerror}: {shown(error.filename)}"
     line = _LONG_WORD.sub(lambda word: _shortened(word[0]), " ".join(str(error).split()))
+    if not line.isprintable():
+        line = "".join(each if each.isprintable() else ascii(each)[1:-1] for each in line)
     return _shortened(line, LONGEST_LINE)
 
 

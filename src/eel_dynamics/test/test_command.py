@@ -35,7 +35,8 @@ def test_bad_input_is_refused_before_the_swim(words, named, monkeypatch, capsys)
 def test_a_plain_array_is_no_body(tmp_path, capsys):
     with open(tmp_path / "arr.npz", "wb") as file:
         np.save(file, [1, 2])
-    assert "it is not an .npz archive of section data" in said_of(f"--body {tmp_path}/arr.npz", capsys)
+    told = "arr.npz': it is damaged or foreign (BadZipFile: File is not a zip file)"
+    assert told in said_of(f"--body {tmp_path}/arr.npz", capsys)
 
 
 def test_out_of_memory_is_one_line(monkeypatch, capsys):

@@ -216,7 +216,7 @@ def test_files_that_are_no_runs_are_refused_in_one_line(run, batch, tmp_path, mo
     path.write_bytes(whole.replace(b'"friction": "laminar"', b'"friction": "syrupy!"'))
     refused("friction must be one of")
     path.write_bytes(whole.replace(b'"nodes"', b'"modes"'))
-    refused("cannot be read: 'nodes'")
+    refused("cannot be read: it is damaged or foreign .KeyError: 'nodes'")
     path.unlink()
     batch.save(path)
     refused("holds a batch, not a run")

@@ -196,7 +196,7 @@ def test_a_sequence_from_a_file_and_one_that_does_not_fit(generator, client, tmp
     file.write_text("steps:\n  - {gait: straight, duration: long}\n")
     refused = client.set_together(file=str(file))
     assert not refused.successful
-    assert refused.reason == f"{file}, line 2, key 'duration': duration must be a number, got 'long'"
+    assert refused.reason.endswith("patrol.yaml', line 2, key 'duration': duration must be a number, got 'long'")
     file.write_text("blend: 2\nsteps:\n  - {gait: straight, duration: 3}\n")
     assert client.set_together(file=str(file)).successful
     assert client.law(1)[0].terms == sequence([(straight(), 3.0)], blend=2.0).terms
@@ -227,7 +227,7 @@ def test_the_rows_of_a_measured_motion_are_streamed_ahead_of_the_simulation(gene
     client.tick_until(3.0, reaches(5.0), "rows ahead of the time")
     (tmp_path / "bad.csv").write_text("time,x,y\n0,0,zero\n")
     refused = client.set_together(file=str(tmp_path / "bad.csv"))
-    assert not refused.successful and "bad.csv': line 2: y must be a number, got 'zero'" in refused.reason
+    assert not refused.successful and "bad.csv', line 2: y must be a number, got 'zero'" in refused.reason
     client.tick_until(4.0, reaches(6.0), "rows of the old motion")
     before = len(samples)
     client.tick_until(0.5, lambda: len(samples) > before and stamp(samples[-1]) <= 2.5, "rows after a reset")

@@ -248,7 +248,7 @@ def test_a_bad_file_is_refused_in_one_line(tmp_path, text, words):
 def test_other_files_are_refused(tmp_path):
     (tmp_path / "motion.npz").write_text("no archive")
     for name, words in (
-        ("motion.npz", "no .npz archive"),
+        ("motion.npz", "not a zip file"),
         ("motion.txt", "a .csv or .npz"),
         ("none.csv", "no such file"),
     ):

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reads which names the parameter files of a command line set for all nodes: under `/**`, or another `*`."""
+"""Reads which names the parameter files of a command line set for all nodes: under `/**`, or another `*`.
+
+ROS has read the files before. As there, an alias is an error, and so are many levels.
+"""
 
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
@@ -8,6 +11,7 @@ from pathlib import Path
 import yaml
 
 OPTION, VALUES = "--params-file", "ros__parameters"
+MOST_CHARACTERS = 200_000  # of a file: what follows is not read
 
 
 def shared_names(words: Sequence[str]) -> set[str]:
@@ -15,10 +19,20 @@ def shared_names(words: Sequence[str]) -> set[str]:
     return {name for option, path in pairwise(words) if option == OPTION for name in _of_file(path)}
 
 
+class _Texts(yaml.BaseLoader):
+    """Leaves all values texts, and refuses aliases."""
+
+    def compose_node(self, parent, index):
+        if self.check_event(yaml.AliasEvent):
+            raise yaml.YAMLError("a parameter file must have no alias")
+        return super().compose_node(parent, index)
+
+
 def _of_file(path: str) -> set[str]:
     try:
-        content = yaml.safe_load(Path(path).read_text())
-    except (OSError, UnicodeDecodeError, yaml.YAMLError):
+        with Path(path).open(encoding="utf-8") as file:
+            content = yaml.load(file.read(MOST_CHARACTERS), Loader=_Texts)
+    except Exception:  # PyYAML raises others than its own
         return set()
     return {name for node, names in _nodes(content, "") if "*" in node for name in names}
 

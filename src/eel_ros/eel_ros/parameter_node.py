@@ -7,7 +7,6 @@ changes. `ros2 param set` and `load` hand over 1e-06, nan and [1.0, 2] as texts:
 two, and rclpy no array in the third.
 """
 
-import yaml
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.exceptions import ParameterNotDeclaredException
 from rclpy.node import Node
@@ -34,7 +33,9 @@ def _number(value) -> float:
 
 
 def _numbers(value) -> list[float]:
-    return [_number(each) for each in (yaml.safe_load(value) if isinstance(value, str) else value)]
+    if isinstance(value, str):  # such as [1.0, 2]
+        value = value.strip().removeprefix("[").removesuffix("]").split(",")
+    return [_number(each) for each in value]
 
 
 CONVERTED = {  # declared type: the types that are converted, and how
@@ -90,7 +91,7 @@ class ParameterNode(Node):
             return parameter
         try:
             return Parameter(parameter.name, declared, convert(parameter.value))
-        except (TypeError, ValueError, yaml.YAMLError):
+        except (TypeError, ValueError):
             return parameter
 
     def _misfit(self, parameter: Parameter) -> str:

@@ -11,10 +11,11 @@ from functools import cache, cached_property, lru_cache
 from pathlib import Path
 
 import numpy as np
+from eel_base.input_file import reading
 from eel_base.wording import shown
 
 from eel_dynamics.model.arguments import checked_instance, checked_number, checked_row
-from eel_dynamics.model.body_file import columns_of
+from eel_dynamics.model.body_file import WHAT, columns_of
 from eel_dynamics.model.equality import same
 from eel_dynamics.model.grid import Grid
 from eel_dynamics.model.half_axis import ArrayHalfAxis, FunctionHalfAxis
@@ -212,7 +213,8 @@ class Body:
         if not isinstance(path, (str, os.PathLike)):
             raise ValueError(f"body file must be a path, got {shown(path)}")
         path = Path(path)
-        body = Body(**columns_of(path), name=path.stem)
+        with reading(f"{WHAT}{shown(str(path))}"):
+            body = Body(**columns_of(path), name=path.stem)
         if body.length > LONGEST:
             warnings.warn(f"body file {path} is {body.length:g} m long: are its columns in m?", stacklevel=2)
         return body

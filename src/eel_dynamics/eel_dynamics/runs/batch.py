@@ -297,6 +297,9 @@ def _batch_from(contents: Contents, laws=None, bodies=None, scenes=None) -> Batc
     errors = [plain.stop_of(each) for each in values["errors"]]
     estimates = [plain.error_estimate_of(each) for each in values["error_estimates"]]
     counts = [arrays[name].astype(int) for name in ("samples", "steps", "evaluations", "nodes")]
+    count = len(arrays["samples"])
+    if any(len(each) != count for each in (laws, bodies, scenes, settings, errors, estimates)):
+        raise ValueError(f"there must be a law, a body, a scene and settings for each of {count} swimmers")
     out, works = observed_of_batch(contents)
     stations = values["stations"] or None
     wrench = [scene.internal_wrench and stations is not None for scene in scenes]

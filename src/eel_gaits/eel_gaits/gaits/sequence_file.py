@@ -3,65 +3,41 @@
 
 from pathlib import Path
 
-import yaml
+from eel_base.input_file import Misplaced, reading
 from eel_base.quantity import number
-from eel_base.wording import one_line, shown
+from eel_base.wording import shown
+from eel_base.yaml_tree import Entries, read_yaml
 
 from eel_gaits.gaits.numbers import TURNS
 from eel_gaits.gaits.registry import find
 from eel_gaits.laws.law import MAXIMUM_NAME, Law
 from eel_gaits.laws.sequence import BLEND, positive, sequence
 
-MOST_BYTES, DEEPEST, MOST_STEPS = 1_000_000, 8, 1000
+DEEPEST, MOST_STEPS = 8, 1000
 FILE = ("name", "blend", "steps")
 PART = ("gait", "set", "together", "scale", "mirror", "delay")
 STEP = (*PART, "steps", "repeat", "duration", "blend")
 
 
-class SequenceError(ValueError):
-    """What is wrong in a sequence, with file, line and key."""
-
-
-class Entries(dict):
-    """A mapping of the file: keys to values. `line` is its own line, `lines` those of its keys."""
-
-    def __init__(self, line):
-        super().__init__()
-        self.line, self.lines = line, {}
-
-
 def sequence_from_file(path):
-    """The `Law` of the sequence in a YAML file.
-
-    `SequenceError`, a `ValueError`, names file, line and key. `OSError` where the file cannot be read.
-    """
+    """The `Law` of the sequence in a YAML file. `ValueError` in one line names file, line and key."""
     path = Path(path)
-    with path.open("rb") as file:
-        data = file.read(MOST_BYTES + 1)
-    if len(data) > MOST_BYTES:
-        raise SequenceError(f"{path}: a sequence must have at most {MOST_BYTES} bytes")
-    try:
-        node = yaml.compose(data.decode("utf-8"), Loader=yaml.SafeLoader)
-    except (yaml.YAMLError, ValueError) as error:
-        mark = getattr(error, "problem_mark", None)
-        place = f"{path}, line {mark.line + 1}" if mark is not None else f"{path}"
-        raise SequenceError(f"{place}: {one_line(getattr(error, 'problem', None) or error)}") from None
-    return SequenceReader(path).law(node)
+    with reading(shown(str(path))):
+        return SequenceReader(path.stem[:MAXIMUM_NAME]).law(read_yaml(path))
 
 
 class SequenceReader:
-    """Makes a law of the nodes of a YAML document. path: of the file, for errors and for the name of the law."""
+    """Makes a law of a YAML document. name: of the law, where the document gives none."""
 
-    def __init__(self, path):
-        self._path, self._steps = path, 0
+    def __init__(self, name):
+        self._name, self._steps = name, 0
 
-    def law(self, node):
-        """The law of the document's root."""
-        root = self._value(node, 1) if node is not None else None
+    def law(self, root):
+        """The law of the document."""
         if not isinstance(root, Entries):
-            raise SequenceError(f"{self._path}, line 1: a sequence must have the key steps, got {shown(root)}")
+            raise Misplaced("line 1", f"a sequence must have the key steps, got {shown(root)}")
         self._check_keys(root, FILE)
-        name = root.get("name", self._path.stem[:MAXIMUM_NAME])
+        name = root.get("name", self._name)
         blend = self._tried(root, "blend", positive, "blend", root.get("blend", BLEND))
         rows = [
             self._step(each, root, blend, 1, last=index == len(root["steps"]) - 1)
@@ -139,30 +115,6 @@ class SequenceReader:
 
     # -- places and errors
 
-    def _value(self, node, depth):
-        """What a node stands for: `Entries`, a list, or a scalar."""
-        if depth > 4 * DEEPEST:
-            raise SequenceError(f"{self._path}, line {node.start_mark.line + 1}: too many levels")
-        if isinstance(node, yaml.MappingNode):
-            entries = Entries(node.start_mark.line + 1)
-            for key_node, value_node in node.value:
-                key = self._value(key_node, depth + 1)
-                if not isinstance(key, str) or key in entries:
-                    wrong = "comes twice" if isinstance(key, str) else "is no text"
-                    raise SequenceError(f"{self._path}, line {key_node.start_mark.line + 1}, key {shown(key)}: {wrong}")
-                entries[key], entries.lines[key] = self._value(value_node, depth + 1), key_node.start_mark.line + 1
-            return entries
-        if isinstance(node, yaml.SequenceNode):
-            return [self._value(each, depth + 1) for each in node.value]
-        try:
-            value = yaml.SafeLoader("").construct_object(node)
-        except (yaml.YAMLError, ValueError) as error:
-            line = node.start_mark.line + 1
-            raise SequenceError(f"{self._path}, line {line}: {getattr(error, 'problem', None) or error}") from None
-        if isinstance(value, str) and node.style is None and _is_number(value):
-            return float(value)  # such as 1e-3, which YAML 1.1 calls a text
-        return value
-
     def _list(self, entries, key):
         if not isinstance(entries.get(key), list) or not entries[key]:
             self._fail(entries, key, f"must be a list, got {shown(entries.get(key))}")
@@ -181,18 +133,10 @@ class SequenceReader:
         try:
             return make(*arguments, **options)
         except (ValueError, TypeError) as error:
-            if isinstance(error, SequenceError):
+            if isinstance(error, Misplaced):
                 raise
             return self._fail(entries, key, error)
 
     def _fail(self, entries, key, reason):
         line = entries.lines.get(key, entries.line)
-        raise SequenceError(f"{self._path}, line {line}, key {shown(key)}: {one_line(reason)}") from None
-
-
-def _is_number(text):
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True
+        raise Misplaced(f"line {line}, key {shown(key)}", str(reason)) from None

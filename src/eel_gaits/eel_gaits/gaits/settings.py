@@ -117,11 +117,8 @@ class Settings:
         transition, numbers = self.groups()
         if not isinstance(self.file, str) or not self.file:
             raise ValueError(f"gait {shown(self.gait)} needs the parameter file, got {shown(self.file)}")
-        try:
-            _, read = FILE_GAITS[self.gait]
-            law = read(self.file, numbers)
-        except OSError as error:
-            raise ValueError(f"file {shown(self.file)} cannot be read: {error.strerror or error}") from None
+        _, read = FILE_GAITS[self.gait]
+        law = read(self.file, numbers)
         if isinstance(law, SampledLaw):
             return law
         return Law(*law.terms, name=law.name, transition=transition.transition)

@@ -16,6 +16,8 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
+from eel_base.archive import read_archive
+from eel_base.input_file import reading
 from eel_base.output_file import replacing
 from eel_base.quantity import is_finite
 from eel_base.wording import shown
@@ -24,7 +26,7 @@ from eel_gaits.sources.frames import SmoothedFrames, frames_of, law_of_frames
 from eel_gaits.sources.joint_angles import joint_columns, law_of_joints
 from eel_gaits.sources.midlines import Midlines
 from eel_gaits.sources.sampled_law import SampledLaw
-from eel_gaits.sources.tables import Table, read_arrays, read_table
+from eel_gaits.sources.tables import Table, read_table
 
 LAW = {"time", "x", "values"}  # arrays of a law's rows
 SUFFIXES = ".csv", ".npz"
@@ -45,9 +47,14 @@ def read_motion(
         if not is_finite(value) or not value > 0.0:
             raise ValueError(f"{argument} must be > 0, got {shown(value)}")
     name = path.stem if name is None else name
+    with reading(shown(str(path))):
+        return _motion(path, length, scale, smooth, name)
+
+
+def _motion(path: Path, length: float, scale: float, smooth: bool, name: str) -> SampledLaw:
     if path.suffix not in SUFFIXES:
-        raise ValueError(f"{shown(str(path))}: a motion must be in a .csv or .npz file")
-    if path.suffix == ".npz" and path.is_file() and (law := _rows(path, length, name)) is not None:
+        raise ValueError("a motion must be in a .csv or .npz file")
+    if path.suffix == ".npz" and (law := _rows(path, length, name)) is not None:
         return law
     table = read_table(path)
     kind = kind_of(table)
@@ -60,10 +67,11 @@ def read_motion(
 
 def read_midlines(path: str | os.PathLike, *, length: float = 1.0, scale: float = 1.0) -> Midlines:
     """The midlines in a .csv or .npz file, as measured. `ValueError` as in `read_motion`, and for another motion."""
-    table = read_table(path)
-    if kind_of(table) != "midlines":
-        raise table.error("it holds no midlines: columns time, x, y")
-    return Midlines(table, length, scale)
+    with reading(shown(str(path))):
+        table = read_table(path)
+        if kind_of(table) != "midlines":
+            raise table.error("it holds no midlines: columns time, x, y")
+        return Midlines(table, length, scale)
 
 
 def save_law(law: SampledLaw, path: str | os.PathLike) -> None:
@@ -112,13 +120,10 @@ def _law_of_curvature(table: Table, length: float, scale: float, name: str, smoo
 
 def _rows(path: Path, length: float, name: str) -> SampledLaw | None:
     """The law whose rows an .npz file holds; None where it holds something else."""
-    try:
-        arrays = read_arrays(path)
-        if not set(arrays) >= LAW:
-            return None
-        law = SampledLaw(*(arrays[each] for each in ("time", "x", "values")), name=name, about=f"rows of {path.name}")
-    except ValueError as error:
-        raise ValueError(f"{shown(str(path))}: {error}") from None
+    arrays = read_archive(path)
+    if not set(arrays) >= LAW:
+        return None
+    law = SampledLaw(*(arrays[each] for each in ("time", "x", "values")), name=name, about=f"rows of {path.name}")
     if abs(law.length - length) > FITTING * length:
-        raise ValueError(f"{shown(str(path))}: x must reach to the body's length, {length:g} m, got {law.length:g} m")
+        raise ValueError(f"x must reach to the body's length, {length:g} m, got {law.length:g} m")
     return law

@@ -1,17 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reads columns of numbers from a .csv file with a header line, or an .npz archive. Errors name file and line."""
 
+import array
 import csv
+import io
 import os
-import zlib
+from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
-from zipfile import BadZipFile
 
 import numpy as np
-from eel_base.wording import one_line, shown
+from eel_base.archive import MOST_NUMBERS, read_archive
+from eel_base.input_file import InputFile, Misplaced, reading
+from eel_base.wording import shown
 
-LARGEST = 500_000_000  # bytes of a file
+MOST_BYTES, MOST_LINES, LONGEST_LINE, MOST_COLUMNS = 200_000_000, 5_000_000, 1_000_000, 10_000  # of a .csv file
+LARGEST = 1e100  # of a number: squares and products of a few are finite
 
 
 class Table(NamedTuple):
@@ -21,6 +25,7 @@ class Table(NamedTuple):
     columns: dict[str, np.ndarray]
     lines: np.ndarray  # (rows,)
     word: str  # "line" or "row"
+    what: str = ""  # begins an error, before the file's name
 
     def error(self, text: str, first: int | None = None, last: int | None = None) -> ValueError:
         """An error about rows `first` to `last` (indices): with the file, their lines and a `text`."""
@@ -29,56 +34,44 @@ class Table(NamedTuple):
             place = f", {self.word} {self.lines[first]}"
         if last is not None and last != first:
             place = f", {self.word}s {self.lines[first]} to {self.lines[last]}"
-        return ValueError(f"{shown(str(self.path))}{place}: {text}")
+        return ValueError(f"{self.what}{shown(str(self.path))}{place}: {text}")
 
-    def check_finite(self, names: tuple[str, ...]):
-        """`ValueError` for the first number of these columns that is not finite."""
+    def check_finite(self, names: tuple[str, ...], largest: float = LARGEST):
+        """`ValueError` for the first number of these columns that is not finite, or beyond the `largest`."""
         for name in names:
-            bad = np.flatnonzero(~np.isfinite(self.columns[name]))
+            bad = np.flatnonzero(~(np.abs(self.columns[name]) <= largest))
             if len(bad):
-                raise self.error(f"{name} must be finite, got {self.columns[name][bad[0]]}", bad[0])
+                value = self.columns[name][bad[0]]
+                rule = f"at most {largest:g}" if np.isfinite(value) else "finite"
+                raise self.error(f"{name} must be {rule}, got {value:g}", bad[0])
 
 
-def read_table(path: str | os.PathLike) -> Table:
-    """The columns of a .csv or .npz file. `ValueError` in one line, with line and column, for what cannot be read."""
+def read_table(path: str | os.PathLike, what: str = "") -> Table:
+    """The columns of a .csv or .npz file. `ValueError` in one line, with line and column, for what cannot be read.
+
+    what: begins an error, before the file's name, such as "body file ".
+    """
     path = Path(path)
-    try:
-        if not path.is_file():
-            raise ValueError("there is no such file" if not path.exists() else "it is no regular file")
-        if path.stat().st_size > LARGEST:
-            raise ValueError(f"it must have at most {LARGEST:.0e} bytes, got {path.stat().st_size}")
+    with reading(f"{what}{shown(str(path))}"):
         if path.suffix == ".npz":
-            columns = _flat(read_arrays(path))
-            lines, word = np.arange(1, len(next(iter(columns.values()))) + 1), "row"
-        else:
-            (columns, lines), word = _table(path), "line"
-    except (OSError, ValueError, csv.Error) as error:
-        raise ValueError(f"{shown(str(path))}: {one_line(error)}") from None
-    return Table(path, columns, lines, word)
-
-
-def read_arrays(path: Path) -> dict[str, np.ndarray]:
-    """The arrays of an .npz archive, of any shape. `ValueError` for another file."""
-    try:
-        with np.load(path) as data:
-            return {name: np.asarray(data[name], dtype=float) for name in data.files}
-    except (TypeError, ValueError, EOFError, BadZipFile, zlib.error, RuntimeError, KeyError, OSError):
-        raise ValueError("it is no .npz archive of arrays of numbers") from None
+            columns = _flat(read_archive(path))
+            return Table(path, columns, np.arange(1, len(next(iter(columns.values()))) + 1), "row", what)
+        return Table(path, *_table(path), "line", what)
 
 
 def _flat(arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """Arrays as columns. Where some are (N, n), `time` (N,) counts for n rows each, and an (n,) for each instant."""
-    if not arrays:
-        raise ValueError("it is empty")
     shape = next((each.shape for each in arrays.values() if each.ndim == 2), None)
+    if shape is not None and len(arrays) * shape[0] * shape[1] > MOST_NUMBERS:
+        raise ValueError(f"a table must hold at most {MOST_NUMBERS} numbers, got {len(arrays)} columns of {shape}")
     found = {}
-    for name, array in arrays.items():
-        if shape is not None and array.shape == shape[:1] and (name == "time" or shape[0] != shape[1]):
-            array = np.repeat(array, shape[1])
-        elif shape is not None and array.shape == shape[1:]:
-            array = np.tile(array, shape[0])
-        found[name] = array.ravel()
-    sizes = {name: len(array) for name, array in found.items()}
+    for name, each in arrays.items():
+        if shape is not None and each.shape == shape[:1] and (name == "time" or shape[0] != shape[1]):
+            each = np.repeat(each, shape[1])
+        elif shape is not None and each.shape == shape[1:]:
+            each = np.tile(each, shape[0])
+        found[name] = each.ravel()
+    sizes = {name: len(each) for name, each in found.items()}
     if len(set(sizes.values())) > 1:
         told = ", ".join(f"{name} {arrays[name].shape}" for name in arrays)
         raise ValueError(f"its arrays must fit together, (N,) and (N, n), got {told}")
@@ -86,29 +79,52 @@ def _flat(arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
 
 
 def _table(path: Path) -> tuple[dict[str, np.ndarray], np.ndarray]:
-    with path.open(newline="", encoding="utf-8-sig") as file:
-        rows = csv.reader(file, strict=True)
-        names = [name.strip() for name in next(rows, [])]
-        if not names or not any(names):
-            raise ValueError("it is empty")
-        if len(set(names)) < len(names):
-            raise ValueError(f"line 1: each column must have a name of its own, got {shown(names)}")
-        table, lines = [], []
+    with InputFile(path, MOST_BYTES) as file, io.TextIOWrapper(file, encoding="utf-8-sig", newline="") as text:
+        rows = csv.reader(_lines(text), strict=True)
+        numbers, lines = array.array("d"), array.array("q")
         try:
+            names = [name.strip() for name in next(rows, [])]
+            if not any(names):
+                raise ValueError("it is empty")
+            if len(set(names)) < len(names) or len(names) > MOST_COLUMNS:
+                told = f"at most {MOST_COLUMNS} columns, each with a name of its own"
+                raise ValueError(f"there must be {told}, got {len(names)}: {shown(names)}")
             for row in filter(None, rows):
                 if len(row) != len(names):
                     raise ValueError(f"a row must have {len(names)} fields, as the header has, got {len(row)}")
-                table.append([_number(name, cell) for name, cell in zip(names, row, strict=True)])
+                if len(numbers) + len(names) > MOST_NUMBERS:
+                    raise ValueError(f"a table must hold at most {MOST_NUMBERS} numbers")
+                try:
+                    numbers.extend(map(float, row))
+                except ValueError:
+                    name, cell = next(each for each in zip(names, row, strict=True) if not _is_number(each[1]))
+                    raise ValueError(f"{name} must be a number, got {shown(cell)}") from None
                 lines.append(rows.line_num)
         except (ValueError, csv.Error) as error:
-            raise ValueError(f"line {rows.line_num}: {error}") from None
-    if not table:
+            if rows.line_num == 0 or isinstance(error, UnicodeDecodeError):
+                raise
+            raise Misplaced(f"line {rows.line_num}", str(error)) from None
+    if not lines:
         raise ValueError("it has a header and no row")
-    return dict(zip(names, np.array(table).T, strict=True)), np.array(lines)
+    return dict(zip(names, np.frombuffer(numbers).reshape(-1, len(names)).T, strict=True)), np.frombuffer(
+        lines, dtype=np.int64
+    )
 
 
-def _number(name: str, cell: str) -> float:
+def _lines(text: io.TextIOBase) -> Iterator[str]:
+    for _ in range(MOST_LINES):
+        line = text.readline(LONGEST_LINE)
+        if not line:
+            return
+        if len(line) == LONGEST_LINE:
+            raise ValueError(f"a line must be shorter than {LONGEST_LINE} characters")
+        yield line
+    raise ValueError(f"a table must have fewer than {MOST_LINES} lines")
+
+
+def _is_number(cell: str) -> bool:
     try:
-        return float(cell)
+        float(cell)
     except ValueError:
-        raise ValueError(f"{name} must be a number, got {shown(cell)}") from None
+        return False
+    return True

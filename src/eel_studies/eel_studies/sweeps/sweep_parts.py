@@ -9,8 +9,9 @@ import os
 import warnings
 from pathlib import Path
 
+from eel_base.input_file import InputFile, from_json, reading
 from eel_base.output_file import check_output, replacing
-from eel_base.wording import shown
+from eel_base.wording import one_line, shown
 from eel_dynamics.analysis.measures import checked_point
 
 ABOUT, OURS = "sweep.json", ("sweep*.json", "part-*.json")
@@ -45,10 +46,9 @@ class Parts:
             return None
         import xarray
 
-        try:
-            data = xarray.load_dataset(self.out, engine="scipy")
-        except (OSError, ValueError, TypeError):
-            data = None
+        data = None
+        with contextlib.suppress(ValueError), reading(""), InputFile(self.out) as file:
+            data = xarray.load_dataset(file, engine="scipy")
         if data is not None and data.attrs.get("sweep") == self._key:
             return data
         if self._overwrite:
@@ -66,7 +66,8 @@ class Parts:
                 try:
                     done |= self._part(path)
                 except ValueError as error:
-                    warnings.warn(f"{path} is damaged ({error}): its points are done again", stacklevel=3)
+                    told = f"{shown(str(path))} is damaged ({error}): its points are done again"
+                    warnings.warn(one_line(told), stacklevel=3)
                     path.unlink()
         return done
 
@@ -91,7 +92,8 @@ class Parts:
 
     def _part(self, path: Path) -> dict[int, dict]:
         """The points of one part. `ValueError` if `keep` cannot have written it: text, NaN, a truncated file."""
-        found = json.loads(path.read_text(encoding="utf-8"), parse_constant=_infinity)
+        with reading(""), InputFile(path) as file:
+            found = from_json(file.read(), parse_constant=_infinity)
         if not isinstance(found, dict):
             raise ValueError("it holds no points")
         points = {}
@@ -107,10 +109,9 @@ class Parts:
         """The key of the sweep in the folder; None if there are no parts, "unknown" if the key cannot be read."""
         if not any(self.folder.glob("part-*.json")):
             return None
-        try:
-            return str(json.loads((self.folder / ABOUT).read_text(encoding="utf-8"))["sweep"])
-        except (FileNotFoundError, ValueError, KeyError, TypeError):
-            return "unknown"
+        with contextlib.suppress(ValueError), reading(""), InputFile(self.folder / ABOUT) as file:
+            return str(from_json(file.read())["sweep"])
+        return "unknown"
 
     def _remove(self):
         """Remove the parts; other files in the folder stay."""

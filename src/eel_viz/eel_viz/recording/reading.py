@@ -13,6 +13,7 @@ import warnings
 from dataclasses import dataclass
 
 import numpy as np
+from eel_base.input_file import reading
 from eel_base.wording import shown
 
 from eel_viz.entities import TIMELINE
@@ -41,17 +42,16 @@ class Columns:
 def read(path: str | os.PathLike[str], entity: str, *, static: bool = False) -> Columns:
     """All rows of `entity`, ordered by time; with `static` the row that is valid at all times.
 
-    `ValueError` if there is none.
+    `ValueError` if there is none, or if the file is no recording.
     """
     from rerun.chunk import RrdReader
 
     found: dict[str, list[tuple[int, object]]] = {}
     stamps: set[int] = set()
-    with complete_file(path) as readable:
+    with reading(f"recording {shown(str(path))}"), complete_file(path) as readable, warnings.catch_warnings():
         empty = readable.stat().st_size <= HEAD
-        with warnings.catch_warnings():
-            warnings.filterwarnings("ignore", message="RRD file has no footer")  # a file that is still being written
-            chunks = [] if empty else list(RrdReader(str(readable)).stream().filter(content=entity))
+        warnings.filterwarnings("ignore", message="RRD file has no footer")  # a file that is still being written
+        chunks = [] if empty else list(RrdReader(str(readable)).stream().filter(content=entity))
     for chunk in chunks:
         if chunk.is_static != static or str(chunk.entity_path).strip("/") != entity.strip("/"):
             continue

@@ -11,6 +11,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
+from eel_base.input_file import reading
 from eel_base.quantity import is_finite
 from eel_base.wording import one_line, shown
 from eel_gaits.laws.law import Law
@@ -45,10 +46,11 @@ def fields_of_bag(path, namespace: str | None, body: Body | None, scene: Scene |
         checked_instance("scene", scene, Scene)
     messages = messages_of_bag()
     try:
-        return fields_of_messages(messages(path, namespace), body, scene)
+        with reading(""):
+            return fields_of_messages(messages(path, namespace), body, scene)
     except ValueError as error:
         told = "" if shown(os.fspath(path)) in str(error) else f"bag {shown(os.fspath(path))} holds no run: "
-        raise ValueError(f"{told}{one_line(error)}") from None
+        raise ValueError(one_line(f"{told}{error}")) from None
 
 
 def fields_of_messages(messages: Iterable[tuple[str, object]], body: Body | None, scene: Scene | None) -> dict:

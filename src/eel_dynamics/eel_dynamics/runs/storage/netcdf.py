@@ -11,14 +11,16 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 import numpy as np
+from eel_base.input_file import InputFile, from_json, reading
 from eel_base.output_file import check_output, replacing
-from eel_base.wording import one_line, shown
+from eel_base.wording import shown
 
-from eel_dynamics.runs.storage.variables import LABELS, Contents
+from eel_dynamics.runs.storage.variables import LABELS, OF_SWIMMERS, VARIABLES, Contents
 
 FORMAT = 1  # of the files; another number cannot be read
 MOST_BYTES = 2**31 - 4  # of an array in a file
 SUFFIX = ".nc"
+KNOWN = (*VARIABLES, *OF_SWIMMERS)
 
 
 def software() -> str:
@@ -49,7 +51,8 @@ def write(contents: Contents, path) -> None:
     """
     from scipy.io import netcdf_file
 
-    path, sizes = checked_path("path", path), sizes_of(contents)
+    path, sizes, attributes = checked_path("path", path), sizes_of(contents), attributes_of(contents)
+    from_json(attributes["eel"])  # what is saved can be loaded
     for name, values in contents.arrays.items():
         if values.nbytes > MOST_BYTES:
             raise ValueError(
@@ -57,7 +60,7 @@ def write(contents: Contents, path) -> None:
                 "take fewer samples or stations"
             )
     with replacing(path) as draft, netcdf_file(draft, "w", version=2, mmap=False) as file:
-        for name, value in attributes_of(contents).items():
+        for name, value in attributes.items():
             setattr(file, name, value.encode() if isinstance(value, str) else value)
         for name, size in sizes.items():
             file.createDimension(name, size)
@@ -80,46 +83,46 @@ def read(path, kind: str) -> Contents:
     if not isinstance(path, (str, os.PathLike)):
         raise ValueError(f"path must be that of a {SUFFIX} file, got {shown(path)}")
     named = f"{kind} file {shown(os.fspath(path))}"
-    try:
-        if not Path(path).is_file():
-            raise ValueError("it is a folder" if Path(path).is_dir() else "there is no such file")
-        with netcdf_file(os.fspath(path), "r", mmap=False) as file:
-            about = {name: getattr(file, name, None) for name in ("software", "kind", "format", "eel")}
-            of_sweep = about["kind"] is None and hasattr(file, "sweep")
-            variables = {} if of_sweep else file.variables
-            arrays = {name: _native(np.asarray(each.data)) for name, each in variables.items()}
-    except Exception as error:  # SciPy raises nearly anything for a damaged file
-        raise ValueError(f"{named} cannot be read: {_reason(error)}") from None
+    told = f"{named} cannot be read"
+    with reading(told), InputFile(path) as content, netcdf_file(content, "r", mmap=False) as file:
+        about = {name: getattr(file, name, None) for name in ("software", "kind", "format", "eel")}
+        of_sweep = about["kind"] is None and hasattr(file, "sweep")
+        ours = {} if of_sweep else {name: file.variables[name] for name in KNOWN if name in file.variables}
+        arrays = {name: _native(np.asarray(each.data)) for name, each in ours.items()}
     if of_sweep:
         raise ValueError(f"{named} holds a sweep, not a {kind}: xarray.open_dataset opens it")
     if None in about.values():
         raise ValueError(f"{named} is no {kind} of eel_dynamics")
-    if about["format"] != FORMAT:
-        told = about["software"].decode(errors="replace")
-        raise ValueError(f"{named} has format {about['format']}, of {told}; {software()} reads format {FORMAT}")
-    if about["kind"].decode() != kind:
-        raise ValueError(f"{named} holds a {about['kind'].decode()}, not a {kind}")
-    try:
-        return Contents(kind, json.loads(about["eel"]), arrays)
-    except ValueError as error:
-        raise ValueError(f"{named} cannot be read: {_reason(error)}") from None
+    with reading(named):
+        if about["format"] != FORMAT:
+            writer = about["software"].decode(errors="replace")
+            raise ValueError(f"{named} has format {about['format']}, of {writer}; {software()} reads format {FORMAT}")
+        if about["kind"].decode() != kind:
+            raise ValueError(f"{named} holds a {about['kind'].decode()}, not a {kind}")
+    with reading(told):
+        contents = Contents(kind, from_json(about["eel"]), arrays)
+        sizes_of(contents)
+    return contents
 
 
 def loaded(path, kind: str, made):
     """`made(contents)` of the file `path`. `ValueError` in one line, as in `read`, where they do not fit together."""
     contents = read(path, kind)
-    try:
+    with reading(f"{kind} file {shown(os.fspath(path))} cannot be read"):
         return made(contents)
-    except (KeyError, TypeError, ValueError, IndexError, AttributeError) as error:
-        raise ValueError(f"{kind} file {shown(os.fspath(path))} cannot be read: {_reason(error)}") from None
 
 
 def sizes_of(contents: Contents) -> dict[str, int]:
-    """Length of each dimension."""
+    """Length of each dimension. `ValueError` where arrays do not agree, or are empty."""
     sizes = {}
     for name, values in contents.arrays.items():
-        sizes |= dict(zip(contents.variable(name).dimensions, values.shape, strict=True))
-    return {name: len(LABELS.get(name, ())) or size for name, size in sizes.items()}
+        dimensions, shape = contents.variable(name).dimensions, values.shape
+        fit = len(dimensions) == len(shape) and values.size
+        for dimension, size in zip(dimensions, shape, strict=False):
+            fit = fit and size == sizes.setdefault(dimension, len(LABELS.get(dimension, ())) or size)
+        if not fit:
+            raise ValueError(f"{name} must have the shape ({', '.join(dimensions)}), got {values.shape}")
+    return sizes
 
 
 def _integer(values: np.ndarray) -> str:
@@ -128,7 +131,3 @@ def _integer(values: np.ndarray) -> str:
 
 def _native(values: np.ndarray) -> np.ndarray:
     return values.astype(float) if values.dtype.kind == "f" else values.astype(int)
-
-
-def _reason(error: Exception) -> str:
-    return one_line(error) or type(error).__name__

@@ -2,6 +2,7 @@
 """Takes a run, or a batch, apart into `Contents`, and puts their fields together again."""
 
 import numpy as np
+from eel_base.wording import shown
 
 from eel_dynamics.runs.storage import plain
 from eel_dynamics.runs.storage.variables import ENERGY, LEDGER, VARIABLES, Contents
@@ -44,7 +45,7 @@ def fields_of_run(contents: Contents) -> dict:
         "error_estimate": plain.error_estimate_of(values["error_estimate"]),
         "energy": energy,
         **{name: arrays.get(name) for name in OWN},
-        **{name: values[name] for name in COUNTS},
+        **{name: _count(name, values[name]) for name in COUNTS},
     }
 
 
@@ -89,6 +90,12 @@ def observed_of_batch(contents: Contents) -> tuple[Observations, np.ndarray]:
     parts = ("actuator", "wake", "nose", "drag")
     out.powers[...] = np.stack([ledger[f"{part}_power"] for part in parts], axis=-1)
     return out, np.stack([ledger[f"{part}_work"] for part in parts], axis=-1)
+
+
+def _count(name: str, value) -> int:
+    if not isinstance(value, int) or value < 0:
+        raise ValueError(f"{name} must be a whole number >= 0, got {shown(value)}")
+    return value
 
 
 def _of_ledger(energy: EnergyLedger | None) -> dict[str, np.ndarray]:

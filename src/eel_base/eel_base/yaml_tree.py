@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Reads a YAML file into mappings, lists and scalars that know their lines. Size, levels and aliases are bounded."""
+
+import os
+
+import yaml
+
+from eel_base.input_file import InputFile, Misplaced
+from eel_base.wording import shown
+
+MOST_BYTES, MOST_NODES, DEEPEST = 500_000, 20_000, 32
+LONGEST_SCALAR = 1000  # characters of what is no text: a number, a date
+
+
+class Entries(dict):
+    """A mapping of the file: keys to values. `line` is its own line, `lines` those of its keys."""
+
+    def __init__(self, line: int) -> None:
+        super().__init__()
+        self.line, self.lines = line, {}
+
+
+def read_yaml(path: str | os.PathLike[str]):
+    """The document in a YAML file: `Entries`, a list, a scalar, or None.
+
+    `Misplaced` for what YAML, or the bounds, do not allow; else `ValueError`, `OSError`.
+    """
+    with InputFile(path, MOST_BYTES) as file:
+        text = file.read().decode("utf-8")
+    loader = _Loader(text)
+    try:
+        node = loader.get_single_node()
+        return None if node is None else loader.value(node, 1)
+    except yaml.YAMLError as error:
+        mark = getattr(error, "problem_mark", None)
+        told = getattr(error, "problem", None) or str(error)
+        raise (ValueError(told) if mark is None else Misplaced(f"line {mark.line + 1}", told)) from None
+
+
+class _Loader(yaml.SafeLoader):
+    """PyYAML's safe loader, with bounds on the levels and on the nodes, each as often as it is named."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__(text)
+        self._depth = self._nodes = self._values = 0
+
+    def compose_node(self, parent, index):
+        self._depth, self._nodes = self._depth + 1, self._nodes + 1
+        self._check(self._depth, self._nodes, self.peek_event().start_mark)
+        node = super().compose_node(parent, index)
+        self._depth -= 1
+        return node
+
+    def value(self, node, depth: int):
+        """What a node stands for. An alias counts as all that it names."""
+        self._values += 1
+        self._check(depth, self._values, node.start_mark)
+        if isinstance(node, yaml.SequenceNode):
+            return [self.value(each, depth + 1) for each in node.value]
+        if isinstance(node, yaml.ScalarNode):
+            return self._scalar(node)
+        entries = Entries(node.start_mark.line + 1)
+        for key_node, value_node in node.value:
+            key, line = self.value(key_node, depth + 1), key_node.start_mark.line + 1
+            if not isinstance(key, str) or key in entries:
+                wrong = "comes twice" if isinstance(key, str) else "is no text"
+                raise Misplaced(f"line {line}, key {shown(key)}", wrong)
+            entries[key], entries.lines[key] = self.value(value_node, depth + 1), line
+        return entries
+
+    def _scalar(self, node):
+        line = node.start_mark.line + 1
+        if node.tag != "tag:yaml.org,2002:str" and len(node.value) > LONGEST_SCALAR:
+            told = f"a value must have at most {LONGEST_SCALAR} characters, got {len(node.value)}"
+            raise Misplaced(f"line {line}", told)
+        try:
+            value = self.construct_object(node)
+        except yaml.YAMLError:
+            raise
+        except Exception as error:  # of a tag that does not go with the value
+            told = f"{shown(node.value)} is no {node.tag.rpartition(':')[2]}: {error}"
+            raise Misplaced(f"line {line}", told) from None
+        if isinstance(value, str) and node.style is None and _is_number(value):
+            return float(value)  # such as 1e-3, which YAML 1.1 calls a text
+        return value
+
+    def _check(self, depth: int, nodes: int, mark) -> None:
+        if depth > DEEPEST or nodes > MOST_NODES:
+            told = "too many levels" if depth > DEEPEST else f"more than {MOST_NODES} values, with all aliases"
+            raise Misplaced(f"line {mark.line + 1}", told)
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
