@@ -3,6 +3,7 @@
 
 import json
 import pickle
+import warnings
 from dataclasses import fields, replace
 
 import numpy as np
@@ -224,9 +225,14 @@ def test_files_that_are_no_runs_are_refused_in_one_line(run, batch, tmp_path, mo
     path.write_text("time,position\n")
     refused("cannot be read")
     path.write_bytes(whole.replace(b'"friction": "laminar"', b'"friction": "syrupy!"'))
-    refused("friction must be one of")
-    path.write_bytes(whole.replace(b'"nodes"', b'"modes"'))
-    refused("cannot be read: 'nodes'")
+    refused("cannot be read: it is damaged, or was changed since it was saved: its content does not fit its digest")
+    older = whole.replace(b"digest", b"Digest")
+    path.write_bytes(older.replace(b'"friction": "laminar"', b'"friction": "syrupy!"'))
+    with pytest.warns(UserWarning, match="has no digest"):
+        refused("friction must be one of")
+    path.write_bytes(older.replace(b'"nodes"', b'"modes"'))
+    with pytest.warns(UserWarning, match="has no digest"):
+        refused("cannot be read: 'nodes'")
     path.unlink()
     batch.save(path)
     refused("holds a batch, not a run")
@@ -236,6 +242,59 @@ def test_files_that_are_no_runs_are_refused_in_one_line(run, batch, tmp_path, mo
     refused("has format 7, of eel_dynamics .* reads format 1")
     with pytest.raises(ValueError, match=r"path must be that of a \.nc file, got 3"):
         Run.load(3)
+
+
+def test_an_older_file_without_a_digest_is_loaded_with_a_line_that_says_so(run, tmp_path):
+    run.save(tmp_path / "run.nc")
+    (tmp_path / "run.nc").write_bytes((tmp_path / "run.nc").read_bytes().replace(b"digest", b"Digest"))
+    with pytest.warns(UserWarning, match=r"^run file '.*run\.nc' has no digest, as older ones: damage .*not be seen$") as told:
+        assert Run.load(tmp_path / "run.nc") == run
+    assert len(told) == 1
+
+
+def flipped(path, count: int, seed: int):
+    """`count` times the file at `path` with another one of its bits turned; the whole file again at the end."""
+    whole, chance = path.read_bytes(), np.random.default_rng(seed)
+    for bit in chance.integers(8 * len(whole), size=count).tolist():
+        data = bytearray(whole)
+        data[bit // 8] ^= 1 << bit % 8
+        path.write_bytes(data)
+        yield bit
+    path.write_bytes(whole)
+
+
+@pytest.mark.fault(
+    "names", "one flipped bit in a file of a run, a batch or a sweep", "refused in one line, or the content is the same"
+)
+@pytest.mark.parametrize("count", [40, pytest.param(300, marks=pytest.mark.soak)])
+@pytest.mark.parametrize("kind", ["run", "batch", "sweep"])
+def test_no_flipped_bit_is_silent(kind, count, run, batch, tmp_path):
+    path = tmp_path / f"{kind}.nc"
+    if kind == "sweep":
+        pytest.importorskip("xarray")
+
+        def load(path):
+            return sweep({"period": [0.5, 0.6]}, duration=1.0, accuracy=1e-2, stations=5, out=path)
+
+        load(path)
+        whole = load(path)  # as read from the file
+    else:
+        whole, load = {"run": (run, Run.load), "batch": (batch, Batch.load)}[kind]
+        whole.save(path)
+    counts = {"told": 0, "same": 0}
+    for bit in flipped(path, count, seed=11):
+        with warnings.catch_warnings(record=True) as warned:
+            warnings.simplefilter("always")
+            try:
+                again = load(path)
+            except ValueError as error:
+                assert "\n" not in str(error) and path.name in str(error)
+                counts["told"] += 1
+                continue
+        assert again.identical(whole) if kind == "sweep" else again == whole, f"bit {bit}: another {kind}, silently"
+        counts["told" if warned else "same"] += 1
+    print(kind, counts)
+    assert counts["told"] > 0.9 * count
 
 
 def test_paths_that_do_not_fit_are_refused(run, tmp_path):

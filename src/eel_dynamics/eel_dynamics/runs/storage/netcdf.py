@@ -14,6 +14,7 @@ import numpy as np
 from eel_gaits.input_output.output_file import check_output, replacing
 from eel_gaits.input_output.wording import one_line, shown
 
+from eel_dynamics.runs.storage.digest import add_digest, check_digest
 from eel_dynamics.runs.storage.variables import LABELS, Contents
 
 FORMAT = 1  # of the files; another number cannot be read
@@ -68,12 +69,13 @@ def write(contents: Contents, path) -> None:
             )
             variable[...] = values
             variable.units, variable.long_name = about.unit.encode(), about.description.encode()
+        add_digest(file)
 
 
 def read(path, kind: str) -> Contents:
     """The contents of a file that `write` made of a `kind` ("run" or "batch").
 
-    `ValueError` in one line for a file that is truncated, foreign, a sweep, of another version or of another kind.
+    `ValueError` in one line for a file that is truncated, damaged, foreign, a sweep, of another version or kind.
     """
     from scipy.io import netcdf_file
 
@@ -88,6 +90,8 @@ def read(path, kind: str) -> Contents:
             of_sweep = about["kind"] is None and hasattr(file, "sweep")
             variables = {} if of_sweep else file.variables
             arrays = {name: _native(np.asarray(each.data)) for name, each in variables.items()}
+            if not of_sweep and None not in about.values():
+                check_digest(file, named)
     except Exception as error:  # SciPy raises nearly anything for a damaged file
         raise ValueError(f"{named} cannot be read: {_reason(error)}") from None
     if of_sweep:
