@@ -28,9 +28,9 @@ class DamagedMcapReader:
         found: dict[int, Connection] = {}
         for record in self._records():
             if isinstance(record, Schema):
-                schemas[record.id] = record
+                schemas.setdefault(record.id, record)  # the index has them again, and its checksum is not known here
             elif isinstance(record, Channel) and record.schema_id in schemas:
-                found[record.id] = self._connection(record, schemas[record.schema_id])
+                found.setdefault(record.id, self._connection(record, schemas[record.schema_id]))
         self.connections = list(found.values())
         return self
 

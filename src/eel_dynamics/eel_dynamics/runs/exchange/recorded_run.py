@@ -46,7 +46,7 @@ def fields_of_bag(path, namespace: str | None, body: Body | None, scene: Scene |
     messages = messages_of_bag()
     try:
         return fields_of_messages(messages(path, namespace), body, scene)
-    except ValueError as error:
+    except (ValueError, AttributeError, KeyError, TypeError, IndexError) as error:  # also where fields are not as named
         told = "" if shown(os.fspath(path)) in str(error) else f"bag {shown(os.fspath(path))} holds no run: "
         raise ValueError(f"{told}{one_line(error)}") from None
 
