@@ -247,7 +247,9 @@ def test_files_that_are_no_runs_are_refused_in_one_line(run, batch, tmp_path, mo
 def test_an_older_file_without_a_digest_is_loaded_with_a_line_that_says_so(run, tmp_path):
     run.save(tmp_path / "run.nc")
     (tmp_path / "run.nc").write_bytes((tmp_path / "run.nc").read_bytes().replace(b"digest", b"Digest"))
-    with pytest.warns(UserWarning, match=r"^run file '.*run\.nc' has no digest, as older ones: damage .*not be seen$") as told:
+    with pytest.warns(
+        UserWarning, match=r"^run file '.*run\.nc' has no digest, as older ones: damage .*not be seen$"
+    ) as told:
         assert Run.load(tmp_path / "run.nc") == run
     assert len(told) == 1
 

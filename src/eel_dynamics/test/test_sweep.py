@@ -154,7 +154,10 @@ def test_damaged_parts_are_done_again(client, tmp_path, capsys):
     (point,) = json.loads(texts[0])["points"].values()
     damaged = [texts[0].replace(f'"head_x": {point["head_x"]}', text) for text in ('"head_x": "far"', '"head_x": NaN')]
     digit = texts[2].index(".") + 5
-    damaged += [texts[2][:digit] + chr(ord(texts[2][digit]) ^ 1) + texts[2][digit + 1 :], texts[3][: len(texts[3]) // 2]]
+    damaged += [
+        texts[2][:digit] + chr(ord(texts[2][digit]) ^ 1) + texts[2][digit + 1 :],
+        texts[3][: len(texts[3]) // 2],
+    ]
     assert len(parts) == 5 and texts[0] not in damaged
     for part, text in zip(parts, damaged, strict=False):
         part.write_text(text)
@@ -163,7 +166,9 @@ def test_damaged_parts_are_done_again(client, tmp_path, capsys):
         again = sweep(grid, scheduler=client, out=out, progress=lambda *pair: told.append(pair), **SHORT)
     assert told[0] == (1, 5) and again.equals(whole)
     said = [str(each.message) for each in warned]
-    for part, reason in zip(parts, ("measure 'head_x' must be a real number, got 'far'", "NaN", "fit its digest", ""), strict=False):
+    for part, reason in zip(
+        parts, ("measure 'head_x' must be a real number, got 'far'", "NaN", "fit its digest", ""), strict=False
+    ):
         assert sum(str(part) in line and reason in line for line in said) == 1
 
 

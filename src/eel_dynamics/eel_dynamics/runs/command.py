@@ -18,7 +18,7 @@ import numpy as np
 from eel_gaits.gaits.registry import GAITS, gait
 from eel_gaits.gaits.sequence_file import sequence_from_file
 from eel_gaits.input_output.command_line import Parser, complain
-from eel_gaits.input_output.output_file import replacing
+from eel_gaits.input_output.output_file import replacing, written_as
 from eel_gaits.input_output.quantity import described_fields
 from eel_gaits.input_output.wording import one_line, shown
 from eel_gaits.laws.law import Law
@@ -85,7 +85,7 @@ def _swim(options) -> int:
         print(run.actuators(options.actuators).table())
     if out is not None:
         _write(run, out)
-        print(f"written to          {out}")
+        print(f"written to          {written_as(out)}")
     return 0
 
 

@@ -93,7 +93,9 @@ class Bag:
                 except StopIteration:
                     break
                 except Exception as error:
-                    raise DamagedBag(f"bag {shown(str(self._path))} is damaged: {self.damage or _line(error)}") from error
+                    raise DamagedBag(
+                        f"bag {shown(str(self._path))} is damaged: {self.damage or _line(error)}"
+                    ) from error
                 try:
                     message = self._store.deserialize_cdr(raw, connection.msgtype)
                 except Exception as error:  # rosbags' own, struct.error, ValueError of numpy or of text

@@ -3,8 +3,9 @@
 
 Messages are written undecoded. The bag is completed twice a second (see `growing_bag`), so that it opens however the
 recorder ends. The swimmer's topics are subscribed to from the start, so that no message of a run as fast as possible is
-lost; other topics as soon as they are discovered. At the end all is taken that was sent before. Stamps in the bag are times of reception. Sample 0, which the
-dynamics node repeats while its run stands at the start, is written once for each run.
+lost; other topics as soon as they are discovered. At the end all is taken that was sent before. Stamps in the bag are
+times of reception. Sample 0, which the dynamics node repeats while its run stands at the start, is written once for
+each run.
 """
 
 import argparse

@@ -12,6 +12,7 @@ from dataclasses import replace
 
 from eel_gaits.gaits.registry import GAITS
 from eel_gaits.input_output.command_line import Parser
+from eel_gaits.input_output.output_file import written_as
 from eel_gaits.input_output.wording import shown
 
 from eel_dynamics.accuracy.accuracy import PRESETS
@@ -57,7 +58,7 @@ def _identify(options) -> int:
             write_columns(columns | {"low": found.low, "high": found.high}, out)
         else:
             draw_identified(found, measured, out)
-        print(f"written to {out}")
+        print(f"written to {written_as(out)}")
     return 0
 
 

@@ -10,6 +10,7 @@ import time
 
 from eel_gaits.gaits.registry import GAITS
 from eel_gaits.input_output.command_line import Parser
+from eel_gaits.input_output.output_file import written_as
 from eel_gaits.input_output.wording import shown
 
 from eel_dynamics.accuracy.accuracy import PRESETS
@@ -58,7 +59,7 @@ def _optimise(options) -> int:
             write_columns(front.columns, out)
         else:
             front.draw(out)
-        print(f"written to {out}")
+        print(f"written to {written_as(out)}")
     return 0
 
 

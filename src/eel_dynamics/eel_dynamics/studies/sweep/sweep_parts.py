@@ -6,6 +6,7 @@ import itertools
 import json
 import math
 import os
+import time
 import warnings
 from pathlib import Path
 
@@ -26,7 +27,7 @@ class Parts:
 
     def __init__(self, out, key: str, count: int, overwrite: bool):
         self.out, self._key, self._count = None if out is None else Path(out), key, count
-        self._overwrite = overwrite
+        self._overwrite, self._began = overwrite, time.time_ns()
         self.folder = None if out is None else self.out.with_name(self.out.name + ".parts")
         self._number = itertools.count()
         if out is None:
@@ -89,7 +90,7 @@ class Parts:
         """Write the complete sweep, and remove the parts."""
         if self.out is None:
             return
-        with replacing(self.out) as draft:
+        with replacing(self.out, self._began) as draft:
             data.to_netcdf(draft, engine="scipy")
             add_digest_to(draft)
         self._remove()
