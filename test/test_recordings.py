@@ -77,7 +77,7 @@ def test_a_disk_that_is_full(start, fresh_domain, tmp_path):
 @pytest.mark.fault(
     "ending",
     "SIGKILL while the visualiser and `record` record",
-    "what was recorded up to the last second opens, the recording as `run.part.rrd`; the run goes on",
+    "what was recorded up to about a second before opens, the recording as `run.part.rrd`; the run goes on",
 )
 def test_what_is_killed_leaves_what_it_had(start_to_kill, fresh_domain, tmp_path):
     start = start_to_kill
