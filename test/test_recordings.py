@@ -10,12 +10,34 @@ import time
 import numpy as np
 import pytest
 from eel_viz.recording.reading import read
+from eel_viz.topics import SAMPLED
 from eel_viz.viewer import free_port
 from rosbags.highlevel import AnyReader
 from soak import Clock
 from swim_client import LIMIT
 
 from eel_viz import entities
+
+
+@pytest.mark.fault(
+    "ending", "SIGINT of `record` as soon as a run as fast as possible has ended", "the bag has every sample; status 0"
+)
+@pytest.mark.parametrize("times", [1, pytest.param(10, marks=pytest.mark.soak)])
+def test_a_recorder_that_is_ended_with_the_run_has_every_sample(start, fresh_domain, tmp_path, times):
+    duration, count = 15, 1501
+    start("gait_generator")
+    for turn in range(times):
+        recorder = start("record", "-o", str(tmp_path / f"bag{turn}"))
+        recorder.wait_for_output("recording to")
+        settings = ("real_time_factor:=0", f"duration:={duration}", "wait_for_subscribers:=1", "stations:=201")
+        dynamics = start("dynamics", "--ros-args", *[word for setting in settings for word in ("-p", setting)])
+        assert dynamics.wait(LIMIT) == 0 and "stuck" not in dynamics.output(), dynamics.output()
+        assert recorder.interrupt() == 0, recorder.output()
+        assert "unequal" not in recorder.output(), recorder.output()
+        with AnyReader([tmp_path / f"bag{turn}"]) as bag:
+            counts = {topic: about.msgcount for topic, about in bag.topics.items()}
+        for topic in set(SAMPLED) - {"joint_states"}:
+            assert counts[f"/{topic}"] == count, (turn, counts, recorder.output())
 
 
 def visualise(start, *settings, limit_of_files=None):
@@ -55,7 +77,7 @@ def test_a_disk_that_is_full(start, fresh_domain, tmp_path):
 @pytest.mark.fault(
     "ending",
     "SIGKILL while the visualiser and `record` record",
-    "what was recorded up to the last second opens, the recording as `run.part.rrd`; the run goes on",
+    "what was recorded up to about a second before opens, the recording as `run.part.rrd`; the run goes on",
 )
 def test_what_is_killed_leaves_what_it_had(start_to_kill, fresh_domain, tmp_path):
     start = start_to_kill

@@ -1,14 +1,24 @@
 # SPDX-License-Identifier: Apache-2.0
 """Output files are complete under their name, or not there; nothing else is replaced."""
 
+import errno
 import os
 import socket
 import subprocess
 import sys
 import threading
+import time
 
 import pytest
-from eel_base.output_file import Draft, NotWritten, check_output, obstacle, replacing
+from eel_base.output_file import (
+    Draft,
+    NotWritten,
+    check_output,
+    command_begins,
+    obstacle,
+    replacing,
+    written_as,
+)
 from eel_base.wording import shown
 
 OLD = b"PK\x03\x04 of yesterday"
@@ -85,14 +95,72 @@ def test_what_can_be_written_is_not_touched_by_asking(tmp_path):
     assert sorted(os.listdir(tmp_path)) == ["empty.npz", "old.npz"]
 
 
+@pytest.mark.fault(
+    "names",
+    "a file that appears under the name of an output after the start",
+    "it stays; the output gets a number, and one line says so",
+)
+def test_a_file_that_has_appeared_since_the_start_stays(tmp_path):
+    name = tmp_path / "run.npz"
+    words = r"run\.npz' has appeared since the start, and stays: the output is '.*run-2\.npz'$"
+    with command_begins():
+        time.sleep(0.02)  # the file system's clock has coarse ticks
+        name.write_bytes(b"PK of another")
+        with pytest.warns(UserWarning, match=words) as told, replacing(name) as path:
+            path.write_bytes(b"PK mine")
+        assert len(told) == 1 and written_as(name) == tmp_path / "run-2.npz"
+        assert name.read_bytes() == b"PK of another" and (tmp_path / "run-2.npz").read_bytes() == b"PK mine"
+        for text in (b"PK once", b"PK twice"):  # what this process wrote is replaced
+            with replacing(tmp_path / "page.npz") as path:
+                path.write_bytes(text)
+        assert (tmp_path / "page.npz").read_bytes() == b"PK twice"
+        (tmp_path / "page.npz").unlink()
+    with command_begins(), replacing(name) as path:  # now it is there at the start
+        path.write_bytes(b"PK again")
+    assert name.read_bytes() == b"PK again" and written_as(name) == name
+    assert sorted(os.listdir(tmp_path)) == ["run-2.npz", "run.npz"]
+
+
+def test_an_older_file_that_has_changed_since_the_start_stays(tmp_path):
+    name = tmp_path / "run.npz"
+    name.write_bytes(OLD)
+    with pytest.warns(UserWarning, match="has appeared since the start"), replacing(name) as path:
+        path.write_bytes(b"PK mine")
+        with replacing(tmp_path / "other.npz") as other:
+            other.write_bytes(b"PK of another")
+        (tmp_path / "other.npz").replace(name)
+    assert name.read_bytes() == b"PK of another" and (tmp_path / "run-2.npz").read_bytes() == b"PK mine"
+
+
+def test_a_file_newer_than_a_given_start_stays(tmp_path):
+    name, start = tmp_path / "run.rrd", time.time_ns()
+    name.write_bytes(b"RRF of another")
+    os.utime(name, ns=(0, 0))  # a copy may bring an old date
+    draft = Draft(name, start - 10**9)
+    assert not draft.replaces and draft.complete() == tmp_path / "run-2.rrd"
+    assert name.read_bytes() == b"RRF of another" and Draft(name, time.time_ns()).replaces
+
+
+def test_without_hard_links_a_file_that_has_appeared_stays_too(tmp_path, monkeypatch):
+    def refuse(*names):
+        raise PermissionError(errno.EPERM, os.strerror(errno.EPERM))
+
+    monkeypatch.setattr(os, "link", refuse)
+    first, second = Draft(tmp_path / "run.rrd"), Draft(tmp_path / "run.rrd")
+    assert first.complete() == tmp_path / "run.rrd" and second.complete() == tmp_path / "run-2.rrd"
+    assert sorted(os.listdir(tmp_path)) == ["run-2.rrd", "run.rrd"]
+
+
 def test_two_drafts_of_one_name_are_two_files(tmp_path):
     first, second = Draft(tmp_path / "run.rrd"), Draft(tmp_path / "run.rrd")
     assert [draft.path.name for draft in (first, second)] == ["run.part.rrd", "run.part-2.rrd"]
     first.path.write_bytes(b"RRF first")
     second.path.write_bytes(b"RRF second")
-    second.complete()
-    first.complete()
-    assert (tmp_path / "run.rrd").read_bytes() == b"RRF first" and os.listdir(tmp_path) == ["run.rrd"]
+    assert second.complete() == tmp_path / "run.rrd" and first.complete() == tmp_path / "run-2.rrd"
+    assert (tmp_path / "run.rrd").read_bytes() == b"RRF second" and (
+        tmp_path / "run-2.rrd"
+    ).read_bytes() == b"RRF first"
+    assert len(os.listdir(tmp_path)) == 2
 
 
 def test_a_killed_process_leaves_the_older_file(tmp_path):

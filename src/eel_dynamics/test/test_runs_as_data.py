@@ -214,9 +214,14 @@ def test_files_that_are_no_runs_are_refused_in_one_line(run, batch, tmp_path, mo
     path.write_text("time,position\n")
     refused("cannot be read")
     path.write_bytes(whole.replace(b'"friction": "laminar"', b'"friction": "syrupy!"'))
-    refused("friction must be one of")
-    path.write_bytes(whole.replace(b'"nodes"', b'"modes"'))
-    refused("cannot be read: it is damaged or foreign .KeyError: 'nodes'")
+    refused("cannot be read: it is damaged, or was changed since it was saved: its content does not fit its digest")
+    older = whole.replace(b"digest", b"Digest")
+    path.write_bytes(older.replace(b'"friction": "laminar"', b'"friction": "syrupy!"'))
+    with pytest.warns(UserWarning, match="has no digest"):
+        refused("friction must be one of")
+    path.write_bytes(older.replace(b'"nodes"', b'"modes"'))
+    with pytest.warns(UserWarning, match="has no digest"):
+        refused("cannot be read: it is damaged or foreign .KeyError: 'nodes'")
     path.unlink()
     batch.save(path)
     refused("holds a batch, not a run")
@@ -226,6 +231,16 @@ def test_files_that_are_no_runs_are_refused_in_one_line(run, batch, tmp_path, mo
     refused("has format 7, of eel_dynamics .* reads format 1")
     with pytest.raises(ValueError, match=r"path must be that of a \.nc file, got 3"):
         Run.load(3)
+
+
+def test_an_older_file_without_a_digest_is_loaded_with_a_line_that_says_so(run, tmp_path):
+    run.save(tmp_path / "run.nc")
+    (tmp_path / "run.nc").write_bytes((tmp_path / "run.nc").read_bytes().replace(b"digest", b"Digest"))
+    with pytest.warns(
+        UserWarning, match=r"^run file '.*run\.nc' has no digest, as older ones: damage .*not be seen$"
+    ) as told:
+        assert Run.load(tmp_path / "run.nc") == run
+    assert len(told) == 1
 
 
 def test_paths_that_do_not_fit_are_refused(run, tmp_path):

@@ -153,9 +153,13 @@ def test_damaged_parts_are_done_again(client, tmp_path, capsys):
         sweep(grid, scheduler=client, out=out, chunk=1, progress=interrupt, **SHORT)
     parts = sorted((tmp_path / "sweep.nc.parts").glob("part-*.json"))
     texts = [part.read_text() for part in parts]
-    (point,) = json.loads(texts[0]).values()
+    (point,) = json.loads(texts[0])["points"].values()
     damaged = [texts[0].replace(f'"head_x": {point["head_x"]}', text) for text in ('"head_x": "far"', '"head_x": NaN')]
-    damaged += [texts[2][: len(texts[2]) // 2], ""]
+    digit = texts[2].index(".") + 5
+    damaged += [
+        texts[2][:digit] + chr(ord(texts[2][digit]) ^ 1) + texts[2][digit + 1 :],
+        texts[3][: len(texts[3]) // 2],
+    ]
     assert len(parts) == 5 and texts[0] not in damaged
     for part, text in zip(parts, damaged, strict=False):
         part.write_text(text)
@@ -164,7 +168,8 @@ def test_damaged_parts_are_done_again(client, tmp_path, capsys):
         again = sweep(grid, scheduler=client, out=out, progress=lambda *pair: told.append(pair), **SHORT)
     assert told[0] == (1, 5) and again.equals(whole)
     said = [str(each.message) for each in warned]
-    for part, reason in zip(parts, ("measure 'head_x' must be a real number, got 'far'", "NaN", "", ""), strict=False):
+    reasons = "measure 'head_x' must be a real number, got 'far'", "NaN", "fit its digest", ""
+    for part, reason in zip(parts, reasons, strict=False):
         assert sum(shown(str(part)) in line and reason in line for line in said) == 1
 
 

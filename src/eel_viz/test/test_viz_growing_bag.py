@@ -3,9 +3,13 @@
 
 import errno
 import os
+import random
+import re
+import struct
 
 import pytest
 import yaml
+from eel_viz.bags.bag import Bag, DamagedBag
 from eel_viz.bags.definitions import definition, type_hash
 from eel_viz.bags.growing_bag import GrowingBag
 from mcap.reader import make_reader
@@ -84,3 +88,72 @@ def test_where_it_cannot_be_is_said(tmp_path):
         GrowingBag(tmp_path / "there")
     with pytest.raises(ValueError, match="bag '/proc/none/bag' cannot be made: No such file or directory"):
         GrowingBag("/proc/none/bag")
+
+
+def contents(folder):
+    """Of the whole bag as our reader has it: its messages, and the lines that tell of damage."""
+    told = []
+    with Bag(folder) as bag:
+        if bag.damage:
+            told.append(bag.damage)
+        try:
+            messages = [repr(each) for each in bag.messages(*bag.topics, unreadable=lambda _, why: told.append(why))]
+        except DamagedBag as error:
+            told, messages = [*told, str(error)], []
+    return messages, told
+
+
+@pytest.mark.fault(
+    "names", "one flipped bit in a bag of `record`", "said in one line, with the place; or the content is the same"
+)
+@pytest.mark.parametrize("count", [60, pytest.param(600, marks=pytest.mark.soak)])
+def test_no_flipped_bit_of_a_bag_is_silent(tmp_path, count):
+    folder, chance = tmp_path / "bag", random.Random(5)
+    bag = GrowingBag(folder)
+    connections = [connect(bag, topic) for topic in ("/one", "/two")]
+    for k in range(90):
+        bag.write(connections[k % 2], 10**18 + k, bytes(4) + struct.pack("<3d", *(chance.random() for _ in range(3))))
+        if k % 20 == 0:
+            bag.save()
+    bag.close()
+    whole = contents(folder)
+    assert len(whole[0]) == 90 and whole[1] == []
+    counts = dict.fromkeys(("told", "same"), 0)
+    for k in range(count):
+        path = folder / ("metadata.yaml" if k % 4 == 0 else "bag.mcap")
+        data = path.read_bytes()
+        bit = chance.randrange(8 * len(data))
+        path.write_bytes(data[: bit // 8] + bytes([data[bit // 8] ^ 1 << bit % 8]) + data[bit // 8 + 1 :])
+        try:
+            messages, told = contents(folder)
+        except ValueError as error:
+            messages, told = [], [str(error)]
+        assert told or messages == whole[0], f"{path.name}, bit {bit}: other messages, silently"
+        assert not any("\n" in line for line in told)
+        counts["told" if told else "same"] += 1
+        path.write_bytes(data)
+    print(counts)
+    assert counts["told"] > 0.75 * count  # a file of MCAP has no bit without a checksum
+
+
+def test_the_place_of_damage_is_said(tmp_path):
+    bag = GrowingBag(tmp_path / "bag")
+    connection = connect(bag)
+    for k in range(3):
+        bag.write(connection, k, bytes(3000))
+        bag.save()
+    bag.close()
+    path = tmp_path / "bag" / "bag.mcap"
+    whole = path.read_bytes()
+    second = whole.index(bytes(2000), whole.index(bytes(2000)) + 3000)
+    places = {
+        whole.index(bytes(2000)): "the data, from byte",
+        second: "the data, from byte",
+        len(whole) - 60: "the index",
+    }
+    for place, words in places.items():
+        path.write_bytes(whole[:place] + b"\1" + whole[place + 1 :])
+        with Bag(tmp_path / "bag") as read:
+            assert words in read.damage and "fit" in read.damage
+            if "from byte" in words:
+                assert 0 < place - int(re.search(r"from byte (\d+)", read.damage)[1]) < 1000

@@ -155,8 +155,12 @@ def test_a_signal_closes_the_bag_well(start, network, tmp_path, sent):
     assert len(contents(tmp_path / "bag")["/head_pose"]) == 20
 
 
-@pytest.mark.fault("ending", "SIGKILL of `record`", "the bag opens everywhere, with all but the last second")
-def test_a_recorder_that_is_killed_leaves_a_bag_with_all_that_it_had_a_second_before(start_to_kill, network, tmp_path):
+@pytest.mark.fault(
+    "ending",
+    "SIGKILL of `record`",
+    "the bag opens everywhere, with all but the last 0.7 s (measured; 2.5 s with twenty busy processes on two cores)",
+)
+def test_a_recorder_that_is_killed_leaves_a_bag_with_all_that_it_had_saved(start_to_kill, network, tmp_path):
     recorder = start_to_kill("record", "-o", str(tmp_path / "bag"))
     recorder.wait_for_output("recording to")
     assert contents(tmp_path / "bag") == {}  # a bag from the beginning

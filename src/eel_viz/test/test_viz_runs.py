@@ -180,8 +180,10 @@ def test_a_late_start_shows_the_present(file, console, tmp_path):
 @pytest.mark.fault(
     "names", "a `recording` that is there already", "said at the start; replaced once the new one is complete"
 )
-def test_a_file_that_is_there_is_replaced_when_the_new_one_is_complete(file, console, tmp_path):
+def test_a_file_that_is_there_is_replaced_when_the_new_one_is_complete(console, tmp_path):
     (tmp_path / "run.rrd").write_bytes(b"RRF2 of yesterday")
+    settings = Settings(recording=str(tmp_path / "run.rrd"))
+    file = FileDestination(settings, console.said.append, console.warned.append)
     made = Recordings([file], "eel", console.warned.append)
     assert console.warned == [
         f"{tmp_path / 'run.rrd'} is there already and is replaced by the new recording when that is complete"
@@ -192,6 +194,26 @@ def test_a_file_that_is_there_is_replaced_when_the_new_one_is_complete(file, con
     made.close()
     assert read(tmp_path / "run.rrd", entities.SPEED).stamps.tolist() == [SECOND]
     assert os.listdir(tmp_path) == ["run.rrd"] and not made.incomplete
+
+
+@pytest.mark.fault(
+    "names",
+    "two visualisers with one `recording`",
+    "both keep what they recorded, resets too: the second gets a number, and one warning says so",
+)
+def test_two_recordings_of_one_name_are_both_kept(console, tmp_path):
+    settings = Settings(recording=str(tmp_path / "same.rrd"))
+    files = [FileDestination(settings, console.said.append, console.warned.append) for _ in range(2)]
+    made = [Recordings([file], "eel", console.warned.append) for file in files]
+    for k, each in enumerate(made):
+        send(each, (10 + k) * SECOND)
+        if k == 0:
+            send(each, 5 * SECOND)  # a reset: another file
+        each.close()
+    starts = {name: read(tmp_path / name, entities.SPEED).stamps.tolist() for name in os.listdir(tmp_path)}
+    assert starts == {"same.rrd": [10 * SECOND], "same-2.rrd": [5 * SECOND], "same-3.rrd": [11 * SECOND]}
+    (line,) = [line for line in console.warned if "has appeared since the start, and stays" in line]
+    assert line.endswith("same-3.rrd'")
 
 
 @pytest.mark.fault(

@@ -12,6 +12,7 @@ import traceback
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from eel_base.command_line import complain
+from eel_base.one_line_warnings import one_line_warnings
 from eel_base.wording import one_line
 from eel_gaits.ros.messages import law_from_message
 from eel_ros.command_line import answer_words
@@ -56,7 +57,6 @@ from eel_dynamics.ros.publishers import Publishers
 from eel_dynamics.ros.sample_inbox import SampleInbox
 from eel_dynamics.ros.simulation_from_parameters import simulation_from_parameters
 from eel_dynamics.ros.swimmer_arbiter import Identity, SwimmerArbiter
-from eel_dynamics.runs.one_line_warnings import one_line_warnings
 from eel_msgs.msg import BodyGeometry, CurvatureLaw
 from eel_msgs.srv import SetState, Step
 

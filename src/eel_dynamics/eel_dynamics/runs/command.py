@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 from eel_base.command_line import Parser, complain
-from eel_base.output_file import replacing
+from eel_base.output_file import replacing, written_as
 from eel_base.quantity import described_fields
 from eel_base.wording import one_line, shown
 from eel_gaits.gaits.registry import GAITS, gait
@@ -86,7 +86,7 @@ def _swim(options) -> int:
         print(run.actuators(options.actuators).table())
     if out is not None:
         _write(run, out)
-        print(f"written to          {out}")
+        print(f"written to          {written_as(out)}")
     return 0
 
 

@@ -7,10 +7,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 from eel_base.command_line import Parser, complain
-from eel_base.output_file import NotWritten, check_output
+from eel_base.one_line_warnings import one_line_warnings
+from eel_base.output_file import NotWritten, check_output, command_begins
 from eel_base.wording import shown
 
-from eel_dynamics.runs.one_line_warnings import one_line_warnings
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 
@@ -24,7 +24,7 @@ def run_command(parser: Parser, work: Callable[[argparse.Namespace], int], argum
         end_on_interrupt()
     options, name = parser.parse_args(arguments), parser.prog
     try:
-        with one_line_warnings(name):
+        with one_line_warnings(name), command_begins():
             return work(options)
     except NotWritten as error:
         complain(name, error)

@@ -11,6 +11,7 @@ import time
 from dataclasses import replace
 
 from eel_base.command_line import Parser
+from eel_base.output_file import written_as
 from eel_base.wording import shown
 from eel_dynamics.accuracy.accuracy import PRESETS
 from eel_dynamics.model.body import NAMED
@@ -57,7 +58,7 @@ def _identify(options) -> int:
             write_columns(columns | {"low": found.low, "high": found.high}, out)
         else:
             draw_identified(found, measured, out)
-        print(f"written to {out}")
+        print(f"written to {written_as(out)}")
     return 0
 
 

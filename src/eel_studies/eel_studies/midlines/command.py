@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 from eel_base.command_line import Parser
-from eel_base.output_file import check_output
+from eel_base.output_file import check_output, written_as
 from eel_base.wording import shown
 from eel_dynamics.model.body import NAMED
 from eel_dynamics.runs.command_options import body_of
@@ -49,7 +49,7 @@ def _compare(options) -> int:
     if out is not None:
         instants = np.unique(np.linspace(len(found.time) // 2, len(found.time) - 1, SHOWN).astype(int))
         write_picture(lambda figure: _draw(figure, found, instants), (6.4, 1.1 * len(instants) + 0.8), out)
-        print(f"written to          {out}")
+        print(f"written to          {written_as(out)}")
     return 0
 
 

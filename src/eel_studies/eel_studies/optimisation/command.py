@@ -9,6 +9,7 @@ import sys
 import time
 
 from eel_base.command_line import Parser
+from eel_base.output_file import written_as
 from eel_base.wording import shown
 from eel_dynamics.accuracy.accuracy import PRESETS
 from eel_dynamics.analysis.measures import MEASURES
@@ -58,7 +59,7 @@ def _optimise(options) -> int:
             write_columns(front.columns, out)
         else:
             front.draw(out)
-        print(f"written to {out}")
+        print(f"written to {written_as(out)}")
     return 0
 
 

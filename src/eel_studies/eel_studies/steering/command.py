@@ -9,7 +9,7 @@ import os
 from pathlib import Path
 
 from eel_base.command_line import Parser
-from eel_base.output_file import check_output
+from eel_base.output_file import check_output, written_as
 from eel_dynamics.runs.run_command import run_command
 from eel_dynamics.runs.storage.tables import needed
 
@@ -40,11 +40,11 @@ def _scan(options) -> int:
     paths = folder / "steering.png", folder / "steering.svg"
     write_picture(lambda figure: draw_multipliers(figure, scans), SIZE, *paths)
     for path in paths:
-        print(f"written to {path}")
+        print(f"written to {written_as(path)}")
     if options.page:
         picture = os.path.relpath(paths[1], Path(options.page).parent)
         write_page(Path(options.page), scans, picture)
-        print(f"written to {options.page}")
+        print(f"written to {written_as(options.page)}")
     return 0
 
 

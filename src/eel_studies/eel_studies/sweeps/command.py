@@ -10,7 +10,8 @@ import time
 
 import numpy as np
 from eel_base.command_line import Parser, complain
-from eel_base.output_file import NotWritten
+from eel_base.one_line_warnings import one_line_warnings
+from eel_base.output_file import NotWritten, command_begins, written_as
 from eel_dynamics.accuracy.accuracy import PRESETS
 from eel_dynamics.analysis.measures import MEASURES
 from eel_dynamics.model.body import NAMED
@@ -23,7 +24,6 @@ from eel_dynamics.runs.command_options import (
     set_numbers,
     varied_values,
 )
-from eel_dynamics.runs.one_line_warnings import one_line_warnings
 from eel_dynamics.runs.settled_duration import UNTIL_SETTLED
 from eel_gaits.gaits.registry import GAITS
 
@@ -35,7 +35,7 @@ def main(arguments: list[str] | None = None) -> int:
     points could not be computed; 130 when interrupted. An error prints one line with its reason.
     """
     options = _parser().parse_args(arguments)
-    with one_line_warnings("sweep"):
+    with one_line_warnings("sweep"), command_begins():
         return _sweep(options)
 
 
@@ -83,7 +83,7 @@ def _sweep(options) -> int:
             unit = "" if unit == "1" else f" {unit}"
             print(f"{name:<28s}{float(array.min()):.4g} to {float(array.max()):.4g}{unit}")
     print(f"wall time                   {time.perf_counter() - start:.1f} s")
-    print(f"written to                  {options.out}")
+    print(f"written to                  {written_as(options.out)}")
     return 0
 
 

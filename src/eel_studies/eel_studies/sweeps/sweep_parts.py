@@ -6,6 +6,7 @@ import itertools
 import json
 import math
 import os
+import time
 import warnings
 from pathlib import Path
 
@@ -13,6 +14,7 @@ from eel_base.input_file import InputFile, from_json, reading
 from eel_base.output_file import check_output, replacing
 from eel_base.wording import one_line, shown
 from eel_dynamics.analysis.measures import checked_point
+from eel_dynamics.runs.storage.digest import ATTRIBUTE, add_digest_to, check_digest_of, digest_of_text
 
 ABOUT, OURS = "sweep.json", ("sweep*.json", "part-*.json")
 
@@ -25,7 +27,7 @@ class Parts:
 
     def __init__(self, out, key: str, count: int, overwrite: bool):
         self.out, self._key, self._count = None if out is None else Path(out), key, count
-        self._overwrite = overwrite
+        self._overwrite, self._began = overwrite, time.time_ns()
         self.folder = None if out is None else self.out.with_name(self.out.name + ".parts")
         self._number = itertools.count()
         if out is None:
@@ -48,12 +50,14 @@ class Parts:
 
         data = None
         with contextlib.suppress(ValueError), reading(""), InputFile(self.out) as file:
+            check_digest_of(self.out)
             data = xarray.load_dataset(file, engine="scipy")
         if data is not None and data.attrs.get("sweep") == self._key:
+            data.attrs.pop(ATTRIBUTE, None)  # the file's
             return data
         if self._overwrite:
             return None
-        raise ValueError(f"{self.out} exists and is not of this sweep: choose another out, or overwrite")
+        raise ValueError(f"{self.out} exists and is not of this sweep, or is damaged: choose another out, or overwrite")
 
     def load(self) -> dict[int, dict]:
         """Load the stored results, by index, and create the folder. A damaged part is removed, with a warning."""
@@ -80,29 +84,33 @@ class Parts:
             for index, point in result.items()
         }
         with replacing(self.folder / f"part-{min(result)}-{os.getpid()}-{next(self._number)}.json") as draft:
-            draft.write_text(json.dumps(told))
+            draft.write_text(json.dumps({ATTRIBUTE: digest_of_text(json.dumps(told)), "points": told}))
 
     def finish(self, data):
         """Write the complete sweep, and remove the parts."""
         if self.out is None:
             return
-        with replacing(self.out) as draft:
+        with replacing(self.out, self._began) as draft:
             data.to_netcdf(draft, engine="scipy")
+            add_digest_to(draft)
         self._remove()
 
     def _part(self, path: Path) -> dict[int, dict]:
         """The points of one part. `ValueError` if `keep` cannot have written it: text, NaN, a truncated file."""
         with reading(""), InputFile(path) as file:
             found = from_json(file.read(), parse_constant=_infinity)
-        if not isinstance(found, dict):
+        held = found.get("points") if isinstance(found, dict) else None
+        if not isinstance(held, dict):
             raise ValueError("it holds no points")
         points = {}
-        for index, point in found.items():
+        for index, point in held.items():
             if not index.isdecimal() or not int(index) < self._count or not isinstance(point, dict):
                 raise ValueError(f"it holds no point of this sweep at {shown(index)}")
             points[int(index)] = checked_point(
                 {name: math.nan if value is None else value for name, value in point.items()}
             )
+        if found.get(ATTRIBUTE) != digest_of_text(json.dumps(held)):
+            raise ValueError("its content does not fit its digest")
         return points
 
     def _key_of_folder(self) -> str | None:

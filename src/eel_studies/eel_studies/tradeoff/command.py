@@ -12,7 +12,7 @@ import sys
 from pathlib import Path
 
 from eel_base.command_line import Parser
-from eel_base.output_file import check_output
+from eel_base.output_file import check_output, written_as
 from eel_dynamics.model.body import NAMED
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.command_options import add_repeated, body_of, set_numbers
@@ -63,7 +63,7 @@ def _trade(options) -> int:
         print()
         print(model_table(poorer, trade))
     for path in _write_all(options, found):
-        print(f"written to {path}")
+        print(f"written to {written_as(path)}")
     return 0
 
 
@@ -102,12 +102,12 @@ def _deliver(options) -> int:
     if options.pictures or options.page:
         folder = Path(options.pictures or Path(options.page).parent)
         for path in _save(lambda figure: draw_delivered(figure, trials), DELIVERED_SIZE, folder / "delivered"):
-            print(f"written to {path}")
+            print(f"written to {written_as(path)}")
     if options.page:
         page = Path(options.page)
         picture = os.path.relpath(folder / "delivered.png", page.parent)
         write_delivered_page(page, trials, options.count, options.seed, picture)
-        print(f"written to {page}")
+        print(f"written to {written_as(page)}")
     return 0
 
 

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reads a rosbag2 folder, or one of its files, without ROS: MCAP or sqlite3, split or not, compressed or not.
 
-After a crash (no metadata, no index, a truncated file) the readable part is read. Types are those that the bag defines;
+After a crash (no metadata, no index, a truncated file) the readable part is read, and so it is where checksums tell of
+damage. Types are those that the bag defines;
 a bag without definitions (sqlite3 before Iron) needs the message packages installed.
 """
 
@@ -20,6 +21,7 @@ from rosbags.rosbag2 import Reader
 from rosbags.typesys import Stores, TypesysError, get_types_from_idl, get_types_from_msg, get_typestore
 
 from eel_viz.bags.damaged_mcap import DamagedMcapReader
+from eel_viz.bags.mcap_checksums import check_index, damage_of_data
 
 SUFFIXES = (".mcap", ".db3")
 
@@ -91,7 +93,9 @@ class Bag:
                 except StopIteration:
                     break
                 except Exception as error:
-                    raise DamagedBag(f"bag {shown(str(self._path))} is damaged: {_line(error)}") from error
+                    raise DamagedBag(
+                        f"bag {shown(str(self._path))} is damaged: {self.damage or _line(error)}"
+                    ) from error
                 try:
                     message = self._store.deserialize_cdr(raw, connection.msgtype)
                 except Exception as error:  # rosbags' own, struct.error, ValueError of numpy or of text
@@ -102,7 +106,8 @@ class Bag:
     def _open(self) -> None:
         if self._path.is_file() or (self._path / "metadata.yaml").is_file():
             try:
-                self._readers = [self._stack.enter_context(Reader(self._path))]
+                self._readers = [self._stack.enter_context(_checked_reader(self._path))]
+                self.damage = next(filter(None, map(damage_of_data, _mcap_files(self._path))), "")
                 return
             except Exception as error:  # on damaged files rosbags raises struct.error, KeyError, sqlite's and others
                 self.damage = _line(error)
@@ -164,10 +169,34 @@ class Bag:
             ) from error
 
 
+@contextlib.contextmanager
+def _checked_reader(path: pathlib.Path) -> Iterator[Reader]:
+    """A reader of a bag or one of its files. `ValueError` where its index or its metadata do not fit."""
+    with Reader(path) as reader:
+        for each in _mcap_files(path):
+            check_index(each)
+        if path.is_dir():
+            files, known = reader.storage.storages, {_identity(each) for each in reader.connections}
+            strange = {_identity(each) for file in files for each in file.connections} - known
+            if strange or sum(file.metadata.message_count for file in files) != reader.message_count:
+                raise ValueError("metadata.yaml does not fit the files")
+        yield reader
+
+
+def _identity(connection) -> tuple:
+    """What a topic in metadata.yaml must have in common with one in a file."""
+    return connection.topic, connection.msgtype, str(connection.ext)
+
+
+def _mcap_files(path: pathlib.Path) -> list[pathlib.Path]:
+    found = sorted(path.glob("*.mcap")) if path.is_dir() else [path]
+    return [each for each in found if each.suffix == ".mcap"]
+
+
 def _reader(path: pathlib.Path, stack: contextlib.ExitStack):
     """A reader of one file, which may be incomplete."""
     if path.suffix == ".mcap":
-        with contextlib.suppress(Exception), Reader(path):
+        with contextlib.suppress(Exception), _checked_reader(path):
             return Reader(path)
         return DamagedMcapReader(path)
     journal = [path.with_name(path.name + suffix) for suffix in ("-wal", "-journal")]

@@ -5,24 +5,15 @@ The interface is that of rosbags' `Reader`; messages come in the order in which 
 """
 
 import pathlib
-import struct
 from collections.abc import Iterator
 
-import zstandard
-from mcap.exceptions import McapError
 from mcap.records import Channel, McapRecord, Message, Schema
 from mcap.stream_reader import StreamReader
 from rosbags.interfaces import Connection, ConnectionExtRosbag2, MessageDefinition, MessageDefinitionFormat
 
+from eel_viz.bags.mcap_checksums import DAMAGE_ERRORS
+
 FORMATS = {"ros2msg": MessageDefinitionFormat.MSG, "ros2idl": MessageDefinitionFormat.IDL}
-DAMAGE_ERRORS = (
-    McapError,
-    struct.error,
-    zstandard.ZstdError,
-    ValueError,
-    RuntimeError,
-    OSError,
-)  # lz4 raises RuntimeError
 
 
 class DamagedMcapReader:
@@ -37,9 +28,9 @@ class DamagedMcapReader:
         found: dict[int, Connection] = {}
         for record in self._records():
             if isinstance(record, Schema):
-                schemas[record.id] = record
+                schemas.setdefault(record.id, record)  # the index has them again, and its checksum is not known here
             elif isinstance(record, Channel) and record.schema_id in schemas:
-                found[record.id] = self._connection(record, schemas[record.schema_id])
+                found.setdefault(record.id, self._connection(record, schemas[record.schema_id]))
         self.connections = list(found.values())
         return self
 
@@ -61,7 +52,8 @@ class DamagedMcapReader:
 
     def _records(self) -> Iterator[McapRecord]:
         with self._path.open("rb") as file:
-            records = iter(StreamReader(file, record_size_limit=self._path.stat().st_size).records)
+            size = self._path.stat().st_size
+            records = iter(StreamReader(file, validate_crcs=True, record_size_limit=size).records)
             while True:
                 try:
                     yield next(records)

@@ -8,16 +8,14 @@ are those of the types on the network.
 import importlib
 import json
 import pathlib
-import re
+from collections.abc import Iterator
 
 from ament_index_python.packages import PackageNotFoundError, get_package_share_directory
 from eel_base.wording import shown
+from rosbags.interfaces import Nodetype
+from rosbags.typesys import get_types_from_msg
 
 _SEPARATOR = "=" * 80
-_FIELD = re.compile(r"^\s*([A-Za-z][\w/]*)(?:<=\d+)?(?:\[[^\]]*\])?\s+[A-Za-z]\w*")
-_PRIMITIVES = {"bool", "byte", "char", "string", "wstring", "float32", "float64"} | {
-    f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)
-}
 
 
 def message_class(name: str) -> type:
@@ -52,20 +50,13 @@ def type_hash(name: str) -> str:
     return next(entry["hash_string"] for entry in described["type_hashes"] if entry["type_name"] == name)
 
 
-def _inner_types(name: str, text: str) -> list[str]:
-    package = name.partition("/")[0]
-    found = []
-    for line in text.splitlines():
-        match = _FIELD.match(line)
-        if match is None or match[1] in _PRIMITIVES:
-            continue
-        kind = match[1]
-        if "/" not in kind:
-            kind = f"{'std_msgs' if kind == 'Header' else package}/msg/{kind}"
-        elif "/msg/" not in kind:
-            kind = kind.replace("/", "/msg/")
-        found.append(kind)
-    return found
+def _inner_types(name: str, text: str) -> Iterator[str]:
+    """The types of the fields that are messages themselves, or arrays of messages."""
+    for _, (node, value) in get_types_from_msg(text, name)[name][1]:
+        if node in (Nodetype.ARRAY, Nodetype.SEQUENCE):
+            node, value = value[0]
+        if node == Nodetype.NAME:
+            yield value
 
 
 def _text(name: str) -> str:

@@ -4,18 +4,23 @@
 rosbags' writer writes the index, the end of the file and metadata.yaml when it is closed; before, there is no bag. Here
 `save` writes them whenever it is called: the new messages and a new end overwrite the old end in one write. So a
 recorder that is killed leaves a complete bag of all saved messages. If the disk is full, the old end is restored. (A
-process killed within that write leaves a file without its end; `damaged_mcap` reads it.)
+process killed within that write leaves a file without its end; `damaged_mcap` reads it.) Chunks, data and index have
+their checksums.
 """
 
 import os
 import pathlib
+import struct
 from io import BytesIO
 from typing import ClassVar
+from zlib import crc32
 
 from eel_base.wording import shown
 from rosbags.rosbag2 import StoragePlugin, Writer, WriterError
 from rosbags.rosbag2.enums import CompressionMode
 from rosbags.rosbag2.storage_mcap import McapWriter
+
+from eel_viz.bags.mcap_checksums import CHUNK_CHECKSUM, with_checksums
 
 VERSION = 9  # of metadata.yaml, as ROS 2 Jazzy writes it
 
@@ -29,7 +34,14 @@ class GrowingFile(McapWriter):
         self._kept = self._file.tell()  # bytes of the file that no `close` touches again
         self._end = b""  # the file's end, behind them
         self._file.flush()
+        self._checksum = crc32(self.path.read_bytes())  # of the bytes that are kept
         self.bio = _PendingData(self._kept)
+
+    def close_chunk(self) -> None:
+        """Complete the chunk, with its checksum."""
+        place, checksum = self.bio.tell() + CHUNK_CHECKSUM, crc32(self.chunk.bio.getbuffer())
+        super().close_chunk()
+        self.bio.replace(place, struct.pack("<I", checksum))
 
     def close(self, version: int, metadata: str) -> None:
         """Complete the file. `OSError` if there is no room: the file then is as after the last call."""
@@ -37,14 +49,15 @@ class GrowingFile(McapWriter):
             self.close_chunk()
         kept = self.bio.tell()
         super().close(version, metadata)
-        data = self.bio.getvalue()
+        data = with_checksums(self.bio.getvalue(), self._kept, self._checksum)
         try:
             self._write(data)
         except OSError:
             self._write(self._end)
             os.ftruncate(self._file.fileno(), self._kept + len(self._end))
             raise
-        self._end = data[kept - self._kept :]
+        done = kept - self._kept
+        self._checksum, self._end = crc32(data[:done], self._checksum), data[done:]
         self._kept = kept
         self.bio = _PendingData(kept)
 
@@ -103,6 +116,11 @@ class _PendingData:
 
     def write(self, data: bytes) -> int:
         return self._data.write(data)
+
+    def replace(self, place: int, data: bytes) -> None:
+        """Put `data` to the byte `place` of the file."""
+        start = place - self._place
+        self._data.getbuffer()[start : start + len(data)] = data
 
     def getvalue(self) -> bytes:
         return self._data.getvalue()

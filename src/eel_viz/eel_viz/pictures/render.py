@@ -18,7 +18,8 @@ import tempfile
 from collections.abc import Callable, Sequence
 
 from eel_base.command_line import Parser, complain
-from eel_base.output_file import NotWritten, check_output, replacing
+from eel_base.one_line_warnings import one_line_warnings
+from eel_base.output_file import NotWritten, check_output, command_begins, replacing, written_as
 from eel_base.wording import shown
 
 from eel_viz.pictures.drawing import SIZE, Drawing
@@ -78,13 +79,18 @@ def frames(
     at: Sequence[float],
     progress: Callable[[str], None] = lambda text: None,
 ) -> list[pathlib.Path]:
-    """Write pictures at the times `at` [s] to frame_00000.png and so on in `folder`; returns their paths."""
+    """Write pictures at the times `at` [s] to frame_00000.png and so on in `folder`; returns their paths.
+
+    `NotWritten` where one of another process appears there.
+    """
     written = []
     for k, moment in enumerate(at):
         png = drawing.png(min(moment, drawing.end))
         written.append(folder / (FRAME % k))
         with replacing(written[-1]) as draft:
             draft.write_bytes(png)
+        if written_as(written[-1]) != written[-1]:  # a film would have the other's picture
+            raise NotWritten(f"another process writes pictures to {shown(str(folder))} too")
         progress(f"\r{k + 1} of {len(at)}")
     return written
 
@@ -153,7 +159,8 @@ def main(arguments: list[str] | None = None) -> int:
     except ValueError:
         made.error(f"--size must look like 1920x1080, got {shown(chosen.size)}")
     try:
-        _draw(chosen, pathlib.Path(output), (width, height))
+        with one_line_warnings(NAME), command_begins():
+            _draw(chosen, pathlib.Path(output), (width, height))
     except (CannotRender, ConnectionError) as reason:
         complain(NAME, f"no picture: {reason}")
         return 3
@@ -199,7 +206,7 @@ def _draw(chosen: argparse.Namespace, output: pathlib.Path, size: tuple[int, int
         print(f"{len(written)} pictures" + ("" if alone else f" in {folder}"))
         if alone or ffmpeg() is not None:
             film(folder, len(written), name, fps=chosen.fps, quality=chosen.quality)
-            print(f"film {name}, {len(written) / chosen.fps:.3g} s")
+            print(f"film {written_as(name)}, {len(written) / chosen.fps:.3g} s")
         else:
             print(f"no film, for ffmpeg is not installed: ffmpeg -framerate {chosen.fps:g} -i "
                   f"{folder}/frame_%05d.png -pix_fmt yuv420p {name}")  # fmt: skip

@@ -7,8 +7,10 @@ A run is a sequence of messages here: pairs of a topic and a plain object with t
 import os
 import warnings
 from collections.abc import Sequence
+from pathlib import Path
 
 import rerun as rr
+from eel_base.output_file import appeared, written_as
 
 from eel_viz.recording.destination import Destination, LogFunction
 from eel_viz.recording.merged_messages import Messages, record_messages
@@ -72,3 +74,5 @@ def to_rerun(
             chosen, lambda text: None, lambda text: None
         )  # no warning that the file is replaced
     record_messages(runs, [destination], names=names, namespaces=[NAMESPACE] * len(runs), log_warning=log_warning)
+    if not isinstance(target, rr.RecordingStream) and written_as(target) != Path(target):
+        log_warning(appeared(Path(target), written_as(target)))

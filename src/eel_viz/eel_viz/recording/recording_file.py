@@ -7,7 +7,7 @@ import pathlib
 import time
 
 import rerun as rr
-from eel_base.output_file import Draft, NotWritten
+from eel_base.output_file import Draft, NotWritten, appeared, numbered
 from eel_base.wording import shown
 
 from eel_viz.recording.delivery import space_error, write_error
@@ -25,7 +25,7 @@ class FileDestination(Destination):
     """A .rrd file; the second recording and later ones get a number before the suffix.
 
     A recording is written to `run.part.rrd` and renamed to `run.rrd` when it is complete; an older file stays until
-    then.
+    then, and one that has appeared since the start stays for good.
 
     retry_from: from this recording on, a file that cannot be written gives a warning and is retried; before, it is a
     ValueError. None: the data can be recorded again, so it is always a ValueError, and a file that cannot be completed
@@ -38,6 +38,7 @@ class FileDestination(Destination):
         super().__init__(
             settings, Rates(numbers=0.0, drawings=settings.skin_rate, tick=FILE_TICK), log_info, log_warning, live=False
         )
+        self._began = time.time_ns()
         self._first = pathlib.Path(settings.recording) if settings.recording else new_file()
         self._retry_from = retry_from
         self._keeps_partial = retry_from is not None
@@ -53,8 +54,7 @@ class FileDestination(Destination):
 
     def path(self, number: int) -> pathlib.Path:
         """The final path of recording `number`."""
-        first = self._first
-        return first if number == 1 else first.with_name(f"{first.stem}-{number}{first.suffix}")
+        return self._first if number == 1 else numbered(self._first, number)
 
     def file(self, number: int) -> pathlib.Path | None:
         """The file that recording `number` is written to now."""
@@ -82,9 +82,12 @@ class FileDestination(Destination):
             self._keep_partial(draft, write_error(draft.path))
             return
         try:
-            draft.complete()
+            path = draft.complete()
         except OSError as error:
             self._keep_partial(draft, error.strerror or str(error))
+            return
+        if path != draft.name:
+            self.log_warning(appeared(draft.name, path))
 
     def abort(self, stream: rr.RecordingStream) -> None:
         """Handle a file that can no longer be written: keep its readable part, or remove it."""
@@ -124,7 +127,7 @@ class FileDestination(Destination):
     def _sink(self, number: int) -> rr.FileSink | None:
         path = self.path(number)
         try:
-            draft = Draft(path)
+            draft = Draft(path, self._began)
         except OSError as error:
             self._refuse(number, path, error.strerror or str(error))
             return None
@@ -133,7 +136,7 @@ class FileDestination(Destination):
         if problem:
             self._give_up(number, problem)
             return None
-        if path.exists():
+        if draft.replaces:
             self.log_warning(f"{path} is there already and is replaced by the new recording when that is complete")
         self.log_info(f"saving to {path}; until it is complete, to {draft.path.name}")
         return rr.FileSink(str(draft.path), write_footer=self.settings.index)

@@ -15,6 +15,7 @@ from eel_base.input_file import InputFile, from_json, reading
 from eel_base.output_file import check_output, replacing
 from eel_base.wording import shown
 
+from eel_dynamics.runs.storage.digest import add_digest, check_digest
 from eel_dynamics.runs.storage.variables import LABELS, OF_SWIMMERS, VARIABLES, Contents
 
 FORMAT = 1  # of the files; another number cannot be read
@@ -71,12 +72,13 @@ def write(contents: Contents, path) -> None:
             )
             variable[...] = values
             variable.units, variable.long_name = about.unit.encode(), about.description.encode()
+        add_digest(file)
 
 
 def read(path, kind: str) -> Contents:
     """The contents of a file that `write` made of a `kind` ("run" or "batch").
 
-    `ValueError` in one line for a file that is truncated, foreign, a sweep, of another version or of another kind.
+    `ValueError` in one line for a file that is truncated, damaged, foreign, a sweep, of another version or kind.
     """
     from scipy.io import netcdf_file
 
@@ -89,6 +91,8 @@ def read(path, kind: str) -> Contents:
         of_sweep = about["kind"] is None and hasattr(file, "sweep")
         ours = {} if of_sweep else {name: file.variables[name] for name in KNOWN if name in file.variables}
         arrays = {name: _native(np.asarray(each.data)) for name, each in ours.items()}
+        if not of_sweep and None not in about.values():
+            check_digest(file, named)
     if of_sweep:
         raise ValueError(f"{named} holds a sweep, not a {kind}: xarray.open_dataset opens it")
     if None in about.values():

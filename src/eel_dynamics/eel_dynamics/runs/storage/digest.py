@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The digest of a netCDF file: SHA-256 of all that it holds, as a text in its attribute `digest`.
+
+A file whose content has changed since it was saved does not fit its digest. What xarray or another program writes anew
+does not fit either; without the attribute `digest` it can be read, with a warning.
+"""
+
+import hashlib
+import os
+import warnings
+
+import numpy as np
+from eel_base.input_file import InputFile
+
+ATTRIBUTE = "digest"
+
+
+def add_digest(file) -> None:
+    """Give an open `scipy.io.netcdf_file`, to which all else is written, its digest."""
+    setattr(file, ATTRIBUTE, digest_of(file).encode())
+
+
+def check_digest(file, named: str) -> None:
+    """`ValueError` where the open file does not fit its digest; a warning, which has it `named`, where it has none."""
+    told = getattr(file, ATTRIBUTE, None)
+    if told is None:
+        warnings.warn(f"{named} has no digest, as older ones: damage to it would not be seen", stacklevel=5)
+    elif told != digest_of(file).encode():
+        raise ValueError("it is damaged, or was changed since it was saved: its content does not fit its digest")
+
+
+def digest_of(file) -> str:
+    """The digest, 64 hexadecimal digits, of the dimensions, attributes and variables of an open file."""
+    content = hashlib.sha256(repr((list(file.dimensions.items()), _attributes(file))).encode())
+    for name, variable in sorted(file.variables.items()):
+        data = np.ascontiguousarray(variable.data)
+        content.update(repr((name, variable.dimensions, data.dtype.str, data.shape, _attributes(variable))).encode())
+        content.update(data)
+    return content.hexdigest()
+
+
+def add_digest_to(path: str | os.PathLike[str]) -> None:
+    """Give the complete netCDF file at `path` its digest."""
+    from scipy.io import netcdf_file
+
+    with netcdf_file(os.fspath(path), "a", mmap=False) as file:
+        add_digest(file)
+
+
+def check_digest_of(path: str | os.PathLike[str]) -> None:
+    """As `check_digest`, of the netCDF file at `path`; SciPy raises nearly anything for one that is damaged."""
+    from scipy.io import netcdf_file
+
+    with InputFile(path) as content, netcdf_file(content, "r", mmap=False) as file:
+        check_digest(file, os.fspath(path))
+
+
+def digest_of_text(text: str) -> str:
+    """The digest of a text."""
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def _attributes(held) -> list:
+    """Attributes of a file or a variable but for the digest, as plain values: what is read of them is what was set."""
+    return sorted((name, _plain(value)) for name, value in held._attributes.items() if name != ATTRIBUTE)
+
+
+def _plain(value):
+    if isinstance(value, str):
+        value = value.encode()
+    return value if isinstance(value, bytes) else np.asarray(value).tolist()
