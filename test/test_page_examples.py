@@ -59,8 +59,7 @@ def lines_of(block: str) -> list[list[str]]:
 @cache
 def main_of(name: str):
     """The function that a command of the suite calls."""
-    script = {"eel_echo": "echo"}.get(name, name)
-    (entry,) = {each.value: each for each in entry_points(group="console_scripts", name=script)}.values()
+    (entry,) = {each.value: each for each in entry_points(group="console_scripts", name=name)}.values()
     return entry.load()
 
 

@@ -26,16 +26,16 @@ setup(
     license="Apache-2.0",
     entry_points={
         "console_scripts": [
-            "dynamics = eel_dynamics.ros.node:main",
-            "simulate = eel_dynamics.runs.command:main",
-            "midlines = eel_dynamics.studies.midlines.command:main",
-            "figures = eel_dynamics.studies.figures.command:main",
-            "identify = eel_dynamics.studies.identify.command:main",
-            "optimise = eel_dynamics.studies.optimise.command:main",
-            "sweep = eel_dynamics.studies.sweep.command:main",
-            "stability = eel_dynamics.studies.stability.command:main",
-            "steering = eel_dynamics.studies.steering.command:main",
-            "tradeoff = eel_dynamics.studies.tradeoff.command:main",
+            "dynamics = eel_command:main_of.eel_dynamics.ros.node",
+            "simulate = eel_command:main_of.eel_dynamics.runs.command",
+            "midlines = eel_command:main_of.eel_dynamics.studies.midlines.command",
+            "figures = eel_command:main_of.eel_dynamics.studies.figures.command",
+            "identify = eel_command:main_of.eel_dynamics.studies.identify.command",
+            "optimise = eel_command:main_of.eel_dynamics.studies.optimise.command",
+            "sweep = eel_command:main_of.eel_dynamics.studies.sweep.command",
+            "stability = eel_command:main_of.eel_dynamics.studies.stability.command",
+            "steering = eel_command:main_of.eel_dynamics.studies.steering.command",
+            "tradeoff = eel_command:main_of.eel_dynamics.studies.tradeoff.command",
         ]
     },
 )

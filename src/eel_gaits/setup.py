@@ -5,6 +5,7 @@ setup(
     name="eel_gaits",
     version="0.1.0",
     packages=find_packages(),
+    py_modules=["eel_command"],
     package_data={"eel_gaits": ["py.typed"]},
     data_files=[
         ("share/ament_index/resource_index/packages", ["resource/eel_gaits"]),
@@ -19,9 +20,9 @@ setup(
     license="Apache-2.0",
     entry_points={
         "console_scripts": [
-            "gait_generator = eel_gaits.ros.node:main",
-            "heading_controller = eel_gaits.ros.heading_controller:main",
-            "pilot = eel_gaits.ros.pilot:main",
+            "gait_generator = eel_command:main_of.eel_gaits.ros.node",
+            "heading_controller = eel_command:main_of.eel_gaits.ros.heading_controller",
+            "pilot = eel_command:main_of.eel_gaits.ros.pilot",
         ]
     },
 )

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Dynamics of an elongated swimmer in three dimensions, after Boyer, Porez and Leroyer (2010)."""
 
+import eel_command  # noqa: F401  first: Ctrl-C ends a command during the other imports
+
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene

@@ -9,10 +9,10 @@ two, and rclpy no array in the third.
 import yaml
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.exceptions import ParameterNotDeclaredException
-from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from eel_ros.parameters import did_you_mean
+from eel_ros.serving import ServedNode
 
 WRONG_TYPE = "Wrong parameter type"  # rclpy's words, which name neither parameter nor value
 WORDS = {  # of the types that the nodes declare
@@ -41,7 +41,7 @@ CONVERTED = {  # declared type: the types that are converted, and how
 }
 
 
-class ParameterNode(Node):
+class ParameterNode(ServedNode):
     """A node with these rules for its parameters."""
 
     def set_parameters_atomically(self, parameters: list[Parameter]) -> SetParametersResult:

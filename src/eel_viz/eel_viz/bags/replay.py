@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import fields
 from types import SimpleNamespace
 
-from eel_gaits.input_output.command_line import Parser, complain
+from eel_gaits.input_output.command_line import Parser, complain, interruptible
 from eel_gaits.input_output.output_file import NotWritten
 from eel_gaits.input_output.quantity import limits
 from eel_gaits.input_output.wording import shown
@@ -216,9 +216,10 @@ def main(arguments: list[str] | None = None) -> int:
         values["compare"] = name_of(other, chosen.bag) if other else chosen.compare
         sink = ("save", "connect") if chosen.connect else ("save",)
         settings = Settings.from_values({**values, "sink": sink, "recording": output})
-        told = replay(
-            chosen.bag, settings, other=other, namespace=chosen.namespace, log_info=print, log_warning=log_warning
-        )
+        with interruptible():
+            told = replay(
+                chosen.bag, settings, other=other, namespace=chosen.namespace, log_info=print, log_warning=log_warning
+            )
     except NotWritten as error:
         log_warning(str(error))
         return 1

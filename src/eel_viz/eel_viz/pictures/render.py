@@ -17,7 +17,7 @@ import sys
 import tempfile
 from collections.abc import Callable, Sequence
 
-from eel_gaits.input_output.command_line import Parser, complain
+from eel_gaits.input_output.command_line import Parser, complain, interruptible
 from eel_gaits.input_output.output_file import NotWritten, check_output, replacing
 from eel_gaits.input_output.wording import shown
 
@@ -153,7 +153,8 @@ def main(arguments: list[str] | None = None) -> int:
     except ValueError:
         made.error(f"--size must look like 1920x1080, got {shown(chosen.size)}")
     try:
-        _draw(chosen, pathlib.Path(output), (width, height))
+        with interruptible():
+            _draw(chosen, pathlib.Path(output), (width, height))
     except (CannotRender, ConnectionError) as reason:
         complain(NAME, f"no picture: {reason}")
         return 3
