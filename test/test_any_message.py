@@ -8,6 +8,7 @@ import rclpy
 from builtin_interfaces.msg import Time
 from eel_gaits.ros.messages import law_to_message
 from eel_viz.recording.reading import read
+from eel_viz.topics import OWN
 from extreme_messages import broken, extremes, get_message
 from fake_swimmer import TOPICS, messages
 from gait_client import GaitClient
@@ -60,6 +61,44 @@ def send_extremes(network, node, name, least) -> None:
         assert node.status is None, f"{topic} ended {name}:\n{node.output()[-3000:]}"
         network.destroy_publisher(publisher)
     assert "Traceback" not in node.output()
+
+
+@pytest.mark.fault(
+    "laws",
+    "bytes that are no message, on any topic of a node",
+    "left out; at most one line a second and topic, with the count; the node stays up",
+)
+@pytest.mark.parametrize(
+    ("executable", "topics"),
+    [
+        ("pilot", ("odom", "goal_path", "goal_pose", "/clock")),
+        pytest.param("dynamics", ("curvature_samples", "/diagnostics"), marks=pytest.mark.soak),
+        pytest.param("visualiser", ("head_pose", "odom", "backbone"), marks=pytest.mark.soak),
+        pytest.param("markers", ("backbone", "internal_wrench", "/clock"), marks=pytest.mark.soak),
+        pytest.param("heading_controller", ("odom",), marks=pytest.mark.soak),
+        pytest.param("gait_generator", ("/clock",), marks=pytest.mark.soak),
+    ],
+)
+def test_bytes_that_are_no_message_are_a_line_a_second(executable, topics, start, network, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)  # of the visualiser's file
+    began, many = time.monotonic(), 200
+    node = start(executable)
+    for topic in topics:
+        kind = {"/clock": "rosgraph_msgs/msg/Clock", "/diagnostics": "diagnostic_msgs/msg/DiagnosticArray"}
+        kind |= {"goal_path": "nav_msgs/msg/Path", "goal_pose": "geometry_msgs/msg/PoseStamped", **OWN}
+        publisher = network.create_publisher(get_message(kind[topic]), topic, ANYBODY)
+        wait_for_subscriber(publisher)
+        for _ in range(many):
+            publisher.publish(b"\x00\x01\x00\x00" + b"\xff" * 5)
+            time.sleep(0.002)  # some histories keep one message
+    for topic in topics:
+        node.wait_for_output(f"/{topic.lstrip('/')} cannot be taken and is left out (")
+    assert node.interrupt() == 0
+    said, seconds = node.output().splitlines(), time.monotonic() - began
+    assert all(line.startswith(("[INFO]", "[ERROR]", "[WARN]")) for line in said), said[:20]
+    for topic in topics:
+        lines = [line for line in said if f"message of /{topic.lstrip('/')} cannot be taken" in line]
+        assert len(lines) <= seconds + 1 and "so far)" in lines[-1], lines
 
 
 @pytest.mark.fault(

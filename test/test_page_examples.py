@@ -26,7 +26,7 @@ from eel_gaits import straight
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 BLOCK = re.compile(r"(?:<!-- (listing)[^\n]*-->\n)?^```([^\n`]*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 RUN = ("simulate", "identify")
-FOREIGN = ("colcon", "dask", "pip", "python", "python3", "rerun", "rosdep", "source", "sudo", "touch")
+FOREIGN = ("colcon", "dask", "export", "pip", "python", "python3", "rerun", "rosdep", "source", "sudo", "touch")
 GOALS = ("goal_path", "goal_pose")  # of the pilot
 SERVICES = ("reset", "pause", "step", "set_state")
 

@@ -277,7 +277,7 @@ def test_without_gymnasium_the_library_works_and_the_package_says_what_to_instal
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
     assert done.returncode == 0, done.stderr
     (line,) = done.stdout.splitlines()
-    assert line.startswith("eel_dynamics.gym needs gymnasium") and "pip install 'eel_dynamics[gym]'" in line
+    assert line.startswith("eel_dynamics.gym needs gymnasium") and "pip install './src/eel_dynamics[gym]'" in line
 
 
 def test_a_task_of_ones_own_needs_a_reward_alone():

@@ -234,6 +234,7 @@ def test_what_cannot_be_is_said_in_one_line(recording, tmp_path, capsys, monkeyp
             capsys, recording, "-o", "a", "--fps", "1", "--speed", value
         )
     assert "recording must be a file" in refusal(capsys, "none.rrd", "-o", "a", "--fps", "1")
+    assert "recording must be a file" in refusal(capsys, "none.rrd")  # before the missing -o
     for wrong in ([], ["-o", "a.png", "--size", "big"], ["-o", "a", "--fps", "1", "--at", "2"]):
         with pytest.raises(SystemExit, match="2"):
             main([str(recording), *wrong])

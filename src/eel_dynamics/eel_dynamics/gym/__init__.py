@@ -14,7 +14,7 @@ try:
     import gymnasium
 except ImportError as error:
     raise ImportError(
-        f"eel_dynamics.gym needs gymnasium ({error}); install it with: pip install 'eel_dynamics[gym]'"
+        f"eel_dynamics.gym needs gymnasium ({error}); install it with: pip install './src/eel_dynamics[gym]'"
     ) from None
 
 from eel_gaits.pilot.head_motion import HeadMotion

@@ -33,7 +33,7 @@ from eel_viz.without_pandas import keep_pandas_out
 NAME = "replay"
 DIAGNOSTICS = "/diagnostics"
 OPTIONS = ("blueprint", "rate", "skin_rate", "colour_limit", "torque_limit", "force_limit", "curvature_limit")
-OPTIONS += ("load_scale", "end_force_scale", "viewer")
+OPTIONS += ("load_scale", "end_force_scale", "reach", "viewer")
 
 
 def _named_law(message, place: int) -> SimpleNamespace:

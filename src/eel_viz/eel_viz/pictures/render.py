@@ -21,7 +21,7 @@ from eel_gaits.input_output.command_line import Parser, complain, interruptible
 from eel_gaits.input_output.output_file import NotWritten, check_output, replacing
 from eel_gaits.input_output.wording import shown
 
-from eel_viz.pictures.drawing import SIZE, Drawing
+from eel_viz.pictures.drawing import SIZE, Drawing, check_recording
 from eel_viz.pictures.film import ANIMATIONS, FILMS, FRAME, QUALITY, check_quality, ffmpeg, film
 from eel_viz.pictures.side_by_side import SideBySide, drawn_beside
 from eel_viz.viewer import CannotRender
@@ -146,6 +146,11 @@ def main(arguments: list[str] | None = None) -> int:
     made = parser()
     chosen = made.parse_args(arguments)
     output = chosen.output or chosen.picture
+    try:
+        check_recording(pathlib.Path(chosen.recording))
+    except ValueError as reason:
+        complain(NAME, reason)
+        return 2
     if output is None:
         made.error("where to write is missing: -o PICTURE.png, or -o FOLDER with --fps")
     try:
