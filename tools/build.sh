@@ -70,7 +70,9 @@ build_packages() {
     stamped install/stamp "$key" && return
     need_compiler
     say "colcon build of the six packages"
-    rm -rf install/stamp install/eel_{gaits,dynamics,viz}/lib/eel_*   # executables too: one may have another name now
+    rm -f install/stamp
+    mkdir -p install
+    touch install/begun
     # With MAKEFLAGS, or colcon lets make start nothing beside while the machine has other work.
     PATH="$root/.venv/bin:$PATH" AMENT_PREFIX_PATH="$root/.venv" CMAKE_PREFIX_PATH="$root/.venv" MAKEFLAGS="-j$(nproc)" \
         .venv/bin/python .venv/bin/colcon build --base-paths src tools/tf2_msgs --symlink-install --cmake-args -Wno-unused-cli \
@@ -80,12 +82,13 @@ build_packages() {
     printf '%s' "$key" > install/stamp
 }
 
-# One folder for setup.bash to put on the PATH.
+# One folder for setup.bash to put on the PATH. What this build has not made bears the name of an earlier one.
 link_executables() {
     local executable
     rm -rf install/bin
     mkdir install/bin
     for executable in install/eel_*/lib/eel_*/*; do
+        [ "$executable" -nt install/begun ] || { rm "$executable"; continue; }
         begin_with_sh "$executable"
         ln -s "../../$executable" "install/bin/${executable##*/}"
     done

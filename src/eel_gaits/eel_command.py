@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Starts the commands and nodes of all packages: before anything else is imported, Ctrl-C ends them silently, and limits
-of the shell that leave too little room are refused in one line.
+"""Starts all commands and nodes: before anything else is imported, it lets Ctrl-C end them silently, and refuses limits
+of the shell that leave too little room.
 
 Python's own handler of SIGINT raises KeyboardInterrupt in the midst of an import: a traceback, or a library that blames
 its own installation. Libraries that find too little room abort, or blame theirs. So an entry point names `main` of a
@@ -56,7 +56,7 @@ def begin(module: str, name: str) -> None:
     if 0 <= files < LEAST_FILES:
         reason = f"at least {LEAST_FILES} open files are needed, and the limit is {files} (ulimit -n)"
     elif 0 <= memory < least * 1e9:
-        reason = f"at least {least:g} GB of address space are needed, and the limit is {1e-9 * memory:.2g} GB (ulimit -v)"
+        reason = f"at least {least:g} GB of addresses are needed, and the limit is {1e-9 * memory:.2g} GB (ulimit -v)"
     if reason:
         sys.stderr.write(f"{name}: {reason}\n")
         sys.exit(CANNOT_START)

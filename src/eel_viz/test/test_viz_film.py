@@ -205,6 +205,8 @@ def test_without_a_time_the_picture_is_of_seven_tenths_of_the_recording(tmp_path
             return b"\x89PNG at %g s" % at
 
     monkeypatch.setattr("eel_viz.pictures.render.drawn_beside", lambda *_, **__: contextlib.nullcontext(Drawing()))
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "run.rrd").touch()
     assert main(["run.rrd", "-o", str(tmp_path / "picture.png")]) == 0
     assert (tmp_path / "picture.png").read_bytes() == b"\x89PNG at 9 s"
     assert main(["run.rrd", "-o", str(tmp_path / "picture.png"), "--at", "2"]) == 0

@@ -13,7 +13,8 @@ from eel_viz.scene3d.orientation import turns_of_up_into
 class Course:
     """Draws the last course, valid at all times: its legs, a sphere about each point, a tube as wide about each leg.
 
-    reach: their radius [body lengths], within which a way point counts as reached. Before the body's length is known they are as wide as for a body of 1 m.
+    reach: their radius [body lengths], within which a way point counts as reached. Before the body's length is known
+    they are as wide as for a body of 1 m.
     """
 
     def __init__(self, stream: BatchedStream, reach: float) -> None:
