@@ -74,8 +74,8 @@ def serve_once(executor: Executor, node: Node, timeout: float | None = None) -> 
 
 
 def log_dropped(node: Node, error: Exception, what: str = "a message") -> None:
-    """Log that `what` is dropped, with the `error`: at once, or after a second together with those that come in it, when
-    `serve_once` finds that it has passed."""
+    """Log that `what` is dropped, with the `error`: at once, or with those of the same second when `serve_once` finds
+    that it has passed."""
     dropped = _dropped.setdefault(node, {}).setdefault(what, Dropped())
     dropped.count += 1
     dropped.reason = " ".join(f"{type(error).__name__}: {error}".split())[:300]
