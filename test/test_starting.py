@@ -122,6 +122,19 @@ def test_an_interrupt_at_25_moments_of_the_start_is_silent(executable, start, fr
         assert ends_silently(start, executable, moment), moment
 
 
+@pytest.mark.fault("ending", "Ctrl-C in `sweep` while it works", "status 130, one line: the same command goes on")
+def test_an_interrupt_in_mid_sweep_says_how_it_goes_on(start, tmp_path):
+    words = ("straight", "--vary", "period=0.5:2:2000", "--duration", "20", "--bare", "--out", str(tmp_path / "s.nc"))
+    sweep = start("sweep", *words)
+    deadline = time.monotonic() + 90.0
+    while not list(tmp_path.glob("s.nc.parts/*")):
+        assert sweep.status is None and time.monotonic() < deadline, sweep.output()
+        time.sleep(0.02)
+    assert sweep.interrupt() == 130
+    assert sweep.output().splitlines()[-1] == "sweep: interrupted; the same command goes on from here"
+    assert "Traceback" not in sweep.output()
+
+
 @pytest.mark.fault(
     "parameters",
     "a shell that leaves too little room (`ulimit -n 16`, `ulimit -v 400000`), for any node or command",

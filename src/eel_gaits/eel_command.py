@@ -65,7 +65,7 @@ def begin(module: str, name: str) -> None:
 main_of = MainOf("")
 
 # `python -m PACKAGE.MODULE` imports the package before the module; sys.argv begins with -m until then.
-if sys.argv[:1] == ["-m"]:
+if sys.argv[:1] == ["-m"] and "-m" in sys.orig_argv:
     asked = sys.orig_argv[sys.orig_argv.index("-m") + 1]
     if asked.startswith("eel_"):
         begin(asked, asked)
