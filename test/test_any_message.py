@@ -137,7 +137,7 @@ def test_the_gait_generator_stands_any_message(start, network, fresh_domain):
     send_extremes(network, node, "gait_generator", {"/clock"})
     clock, before = network.create_publisher(Clock, "/clock", 10), Clock(clock=Time(sec=-1))
     deadline = time.monotonic() + LIMIT
-    while "a message on /clock cannot be taken" not in node.output():  # it looks at the newest one now and then
+    while "a message of /clock cannot be taken" not in node.output():  # it looks at the newest one now and then
         assert time.monotonic() < deadline, node.output()
         clock.publish(before)
         time.sleep(0.05)
