@@ -148,7 +148,7 @@ def main(arguments: list[str] | None = None) -> int:
     output = chosen.output or chosen.picture
     try:
         check_recording(pathlib.Path(chosen.recording))
-    except ValueError as reason:
+    except (ValueError, OSError) as reason:
         complain(NAME, reason)
         return 2
     if output is None:
