@@ -15,6 +15,7 @@ WORDS = {
     "visualiser": ("--ros-args", "-p", "sink:=[save]"),
     "record": ("-o", "bag"),
     "eel_echo": ("odom",),
+    "simulate": ("--duration", "2000", "--accuracy", "reference"),  # longer than the test
 }
 # Stands still where the module that the variable names is imported, or at the interpreter's start; LIMIT is far above
 # what a signal takes to end a process.
@@ -93,13 +94,14 @@ def test_as_a_library_a_package_leaves_the_handler_of_signals_alone(start):
 
 
 def ends_silently(start, executable, moment) -> bool:
-    """Whether a signal at the `moment` [s] after the start ends it well; a node may have logged by then."""
+    """Whether a signal at the `moment` [s] after the start ends it well. By then a node may have logged, and a command
+    have said in one line how far it is or what it lacks (status 2)."""
     node = start(executable, *WORDS.get(executable, ()))
     time.sleep(moment)  # the moment of the signal is what is tried here
     status = node.interrupt(timeout=LIMIT)
-    said = [line for line in node.output().splitlines() if not line.startswith("[INFO]")]
-    usage = executable not in NODES and any("required" in line for line in said)  # it had no arguments
-    return usage or (status in (0, -signal.SIGINT) and not said)
+    own = "[INFO]" if executable in NODES else (f"{executable}: ", "[INFO]")
+    good = (0, -signal.SIGINT) if executable in NODES else (0, 2, -signal.SIGINT)
+    return status in good and all(line.startswith(own) for line in node.output().splitlines())
 
 
 @pytest.mark.parametrize("executable", NODES)
