@@ -24,5 +24,8 @@ RUN source /opt/ros/jazzy/setup.bash && source /opt/eel/bin/activate \
 
 RUN printf '%s\n' '#!/bin/bash' 'source /opt/ros/jazzy/setup.bash' 'source /opt/eel/bin/activate' \
         'source /workspace/install/setup.bash' 'exec "$@"' > /eel_entrypoint.sh && chmod +x /eel_entrypoint.sh
+# Whoever is in the ROS domain may steer the nodes: by default, this machine alone. For others too:
+#     docker run -e ROS_AUTOMATIC_DISCOVERY_RANGE=SUBNET ...
+ENV ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST
 ENTRYPOINT ["/eel_entrypoint.sh"]
 CMD ["bash"]

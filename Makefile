@@ -32,7 +32,7 @@ bench: build   ## speed and accuracy figures (ARGS=NAME for one of them)
 docs: build   ## the site of docs/ in out/docs, links checked
 	@$(RUN) tools/docs.sh
 
-notebook: build   ## run docs/tutorials/swim.ipynb anew, its outputs written into it
+notebook: build   ## run docs/tutorials/swim.ipynb anew, with its outputs in out/notebook
 	@$(RUN) tools/docs.sh notebook
 
 pictures: build   ## draw the pictures of the visualiser in docs/images

@@ -53,6 +53,8 @@ _eel_setup() {
     _eel_path LD_LIBRARY_PATH "${libraries[@]}"
     unset PYTHONHOME
     export ROS_DISTRO=jazzy ROS_VERSION=2 ROS_PYTHON_VERSION=3
+    # Whoever is in the ROS domain may steer the nodes: by default, this machine alone. SUBNET is ROS's own default.
+    export ROS_AUTOMATIC_DISCOVERY_RANGE="${ROS_AUTOMATIC_DISCOVERY_RANGE-LOCALHOST}"
     # The ROS wheels restart every Python once to set LD_LIBRARY_PATH, unless this says that it is set.
     export _ROS_WHEELS_BOOTSTRAP_COMPLETE=1
 }

@@ -25,7 +25,8 @@ def environment(name: str) -> Path | None:
     try:
         subprocess.run([sys.executable, "-m", "venv", folder], check=True, capture_output=True)
         (folder.parent / "COLCON_IGNORE").touch()
-        subprocess.run([python, "-m", "pip", "install", "--quiet", "-r", pins], check=True, capture_output=True)
+        install = [python, "-m", "pip", "install", "--quiet", "--require-hashes", "--only-binary", ":all:", "-r", pins]
+        subprocess.run(install, check=True, capture_output=True)
     except (OSError, subprocess.CalledProcessError):
         return None
     stamp.write_text(pins.read_text())

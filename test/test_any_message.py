@@ -13,6 +13,7 @@ from eel_gaits.ros.messages import law_to_message
 from eel_ros.testing.node_process import PROMPT
 from eel_ros.testing.service_call import answer_of
 from eel_viz.recording.reading import read
+from eel_viz.topics import OWN
 from extreme_messages import broken, extremes, get_message, get_service, huge, stamped
 from fake_swimmer import TOPICS, body_message, messages
 from gait_client import GaitClient
@@ -47,7 +48,15 @@ CALLED = "dynamics", "gait_generator"  # whose calls are tried one by one; they 
 class Network:
     """Somebody who sends to any node whatever messages and calls can hold. node: of rclpy."""
 
-    def __init__(self, domain):
+    def wait_for_subscriber(publisher) -> None:
+    """Until there is one."""
+    deadline = time.monotonic() + LIMIT
+    while not publisher.get_subscription_count():
+        assert time.monotonic() < deadline, f"nobody subscribes to {publisher.topic_name}"
+        time.sleep(0.02)
+
+
+def __init__(self, domain):
         self.context = rclpy.Context()
         rclpy.init(context=self.context, domain_id=domain)
         self.node = rclpy.create_node("stranger", context=self.context, start_parameter_services=False)
@@ -125,6 +134,44 @@ def send_extremes(network, node, name, further=()) -> None:
 
 @pytest.mark.fault(
     "laws",
+    "bytes that are no message, on any topic of a node",
+    "left out; at most one line a second and topic, with the count; the node stays up",
+)
+@pytest.mark.parametrize(
+    ("executable", "topics"),
+    [
+        ("pilot", ("odom", "goal_path", "goal_pose", "/clock")),
+        pytest.param("dynamics", ("curvature_samples", "/diagnostics"), marks=pytest.mark.soak),
+        pytest.param("visualiser", ("head_pose", "odom", "backbone"), marks=pytest.mark.soak),
+        pytest.param("markers", ("backbone", "internal_wrench", "/clock"), marks=pytest.mark.soak),
+        pytest.param("heading_controller", ("odom",), marks=pytest.mark.soak),
+        pytest.param("gait_generator", ("/clock",), marks=pytest.mark.soak),
+    ],
+)
+def test_bytes_that_are_no_message_are_a_line_a_second(executable, topics, start, network, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)  # of the visualiser's file
+    began, many = time.monotonic(), 200
+    node = start(executable)
+    for topic in topics:
+        kind = {"/clock": "rosgraph_msgs/msg/Clock", "/diagnostics": "diagnostic_msgs/msg/DiagnosticArray"}
+        kind |= {"goal_path": "nav_msgs/msg/Path", "goal_pose": "geometry_msgs/msg/PoseStamped", **OWN}
+        publisher = network.create_publisher(get_message(kind[topic]), topic, ANYBODY)
+        wait_for_subscriber(publisher)
+        for _ in range(many):
+            publisher.publish(b"\x00\x01\x00\x00" + b"\xff" * 5)
+            time.sleep(0.002)  # some histories keep one message
+    for topic in topics:
+        node.wait_for_output(f"/{topic.lstrip('/')} cannot be taken and is left out (")
+    assert node.interrupt() == 0
+    said, seconds = node.output().splitlines(), time.monotonic() - began
+    assert all(line.startswith(("[INFO]", "[ERROR]", "[WARN]")) for line in said), said[:20]
+    for topic in topics:
+        lines = [line for line in said if f"message of /{topic.lstrip('/')} cannot be taken" in line]
+        assert len(lines) <= seconds + 1 and "so far)" in lines[-1], lines
+
+
+@pytest.mark.fault(
+    "laws",
     "laws, samples and /clock with any extreme in any field, cut short, or with text that is no UTF-8",
     "the dynamics node refuses what it cannot take, publishes finite numbers and takes the next law",
 )
@@ -159,7 +206,7 @@ def test_the_gait_generator_stands_any_message(start, network, fresh_domain):
     send_extremes(network, node, "gait_generator")
     clock, before = network.publisher(Clock, "/clock", 10), Clock(clock=Time(sec=-1))
     deadline = time.monotonic() + LIMIT
-    while "a message on /clock cannot be taken" not in node.output():  # it looks at the newest one now and then
+    while "a message of /clock cannot be taken" not in node.output():  # it looks at the newest one now and then
         assert time.monotonic() < deadline, node.output()
         clock.publish(before)
         time.sleep(0.05)

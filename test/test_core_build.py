@@ -93,3 +93,9 @@ print(eel_core.build_info()["level"], run.position[-1, 0])
     level, forward = done.stdout.split()
     assert level == "x86-64-v2"
     assert float(forward) == pytest.approx(simulate(falling(), 0.5).position[-1, 0], rel=1e-9)
+    command = tmp_path / "installed/bin/simulate"
+    environment["PYTHONPATH"] = str(tmp_path / "installed")
+    done = subprocess.run(
+        [command, "falling", "--duration", "0.5"], env=environment, capture_output=True, text=True, timeout=90
+    )
+    assert done.returncode == 0 and "wall time" in done.stdout, done.stderr

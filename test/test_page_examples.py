@@ -26,7 +26,7 @@ from eel_gaits import straight
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 BLOCK = re.compile(r"(?:<!-- (listing)[^\n]*-->\n)?^```([^\n`]*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 RUN = ("simulate", "identify")
-FOREIGN = ("colcon", "dask", "pip", "python", "python3", "rerun", "rosdep", "source", "sudo", "touch")
+FOREIGN = ("colcon", "dask", "export", "pip", "python", "python3", "rerun", "rosdep", "source", "sudo", "touch")
 GOALS = ("goal_path", "goal_pose")  # of the pilot
 SERVICES = ("reset", "pause", "step", "set_state")
 
@@ -59,8 +59,7 @@ def lines_of(block: str) -> list[list[str]]:
 @cache
 def main_of(name: str):
     """The function that a command of the suite calls."""
-    script = {"eel_echo": "echo"}.get(name, name)
-    (entry,) = {each.value: each for each in entry_points(group="console_scripts", name=script)}.values()
+    (entry,) = {each.value: each for each in entry_points(group="console_scripts", name=name)}.values()
     return entry.load()
 
 

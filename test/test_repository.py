@@ -9,6 +9,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 REQUIREMENTS = ("requirements.txt", "requirements-ros.txt", "requirements-dev.txt", "requirements-uv.txt")
+PEERS = tuple(f"benchmarks/peers/{name}.txt" for name in ("mujoco", "numba", "pyelastica"))
 
 
 @pytest.fixture(scope="module")
@@ -61,7 +62,7 @@ def test_no_large_file(tracked):
     assert [str(path) for path in tracked if path.stat().st_size > (2_000_000 if path == film else 1_000_000)] == []
 
 
-@pytest.mark.parametrize("name", (*REQUIREMENTS, "docs/requirements.txt", "test/numpy1.txt"))
+@pytest.mark.parametrize("name", (*REQUIREMENTS, "docs/requirements.txt", "test/numpy1.txt", *PEERS))
 def test_every_requirement_is_pinned_with_hashes(name):
     entries = (ROOT / name).read_text().replace("\\\n", " ").splitlines()
     packages = [line for line in entries if line.strip() and not line.lstrip().startswith("#")]
@@ -88,8 +89,33 @@ def test_colcon_looks_only_at_the_packages():
 
 def test_every_peer_of_the_benchmarks_is_pinned():
     files = sorted((ROOT / "benchmarks" / "peers").glob("*.txt"))
-    assert [path.stem for path in files] == ["mujoco", "numba", "pyelastica"]
+    assert files == [ROOT / name for name in PEERS]
     for path in files:
-        lines = path.read_text().splitlines()
-        assert any(line.startswith(f"{path.stem}==") for line in lines)
-        assert all(re.fullmatch(r"[A-Za-z0-9_.-]+==[0-9][^;\s]*", line) for line in lines)
+        assert f"\n{path.stem}==" in path.read_text()
+
+
+def test_every_list_of_pins_is_written_by_the_same_script(tracked):
+    """And so has hashes."""
+    lists = {path for path in tracked if path.suffix == ".txt" and "==" in path.read_text()}
+    script = (ROOT / "tools/lock.sh").read_text()
+    assert {ROOT / name for name in (*REQUIREMENTS, "docs/requirements.txt", "test/numpy1.txt", *PEERS)} == lists
+    assert all(path.stem in script for path in lists)
+
+
+def test_the_workflow_may_only_read_and_names_its_actions_by_commit():
+    text = (ROOT / ".github/workflows/ci.yml").read_text()
+    assert "\npermissions:\n  contents: read\n" in text
+    actions = re.findall(r"uses: (\S+)", text)
+    assert actions and all(re.fullmatch(r"[\w./-]+@[0-9a-f]{40}", action) for action in actions), actions
+
+
+def test_pip_is_never_told_to_fetch_our_packages_by_name(tracked):
+    """On PyPI the names are free, or others'."""
+    texts = [path for path in tracked if path.suffix in (".py", ".md", ".sh", ".yml") or path.name == "Dockerfile"]
+    found = [
+        f"{path.name}: {match[0]}"
+        for path in texts
+        if path.name not in ("CHANGELOG.md", "SECURITY.md")
+        for match in re.finditer(r"pip install [^\n`|]*?(?<![./\w])eel_\w+", path.read_text())
+    ]
+    assert found == []

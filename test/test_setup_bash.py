@@ -68,6 +68,12 @@ def test_keeps_what_was_there_and_leaves_a_sourced_ros_out():
     assert "/opt/ros" in done.stderr
 
 
+def test_keeps_the_nodes_on_this_machine_unless_the_user_says_otherwise():
+    script = f"source '{ROOT}/setup.bash'; echo $ROS_AUTOMATIC_DISCOVERY_RANGE"
+    assert shell(script).stdout == "LOCALHOST\n"
+    assert shell(script, ROS_AUTOMATIC_DISCOVERY_RANGE="SUBNET").stdout == "SUBNET\n"
+
+
 def test_before_the_build_it_says_what_to_do(tmp_path):
     (tmp_path / "setup.bash").write_text((ROOT / "setup.bash").read_text())
     done = shell(f"source '{tmp_path}/setup.bash'; echo status $?")

@@ -71,7 +71,8 @@ build_packages() {
     need_compiler
     say "colcon build of the packages"
     rm -f install/stamp
-    rm -rf install/eel_*/lib/eel_*/   # executables, which may have gone, or to another package
+    mkdir -p install
+    touch install/begun
     # With MAKEFLAGS, or colcon lets make start nothing beside while the machine has other work.
     PATH="$root/.venv/bin:$PATH" AMENT_PREFIX_PATH="$root/.venv" CMAKE_PREFIX_PATH="$root/.venv" MAKEFLAGS="-j$(nproc)" \
         .venv/bin/python .venv/bin/colcon build --base-paths src tools/tf2_msgs --symlink-install --cmake-args -Wno-unused-cli \
@@ -81,23 +82,27 @@ build_packages() {
     printf '%s' "$key" > install/stamp
 }
 
-# One folder for setup.bash to put on the PATH. `echo` is there as eel_echo: the system's own must not be shadowed.
+# One folder for setup.bash to put on the PATH. What this build has not made bears the name of an earlier one.
 link_executables() {
-    local executable name
+    local executable
     rm -rf install/bin
     mkdir install/bin
     for executable in install/eel_*/lib/eel_*/*; do
-        name="${executable##*/}"
-        [ "$name" != echo ] || name=eel_echo
+        [ "$executable" -nt install/begun ] || { rm "$executable"; continue; }
         begin_with_sh "$executable"
-        ln -s "../../$executable" "install/bin/$name"
+        ln -s "../../$executable" "install/bin/${executable##*/}"
     done
 }
 
-# Where the path has a space, setuptools begins an executable with `#!"/a path/python" -x`, which no system can run. These
-# lines run Python under sh, and are a text to Python.
+# These lines run Python under sh, and are a text to Python. Python begins with SIGINT blocked, where `env` can do that,
+# or Ctrl-C would be a traceback until `eel_command` lets it through. And where the path has a space, setuptools begins
+# an executable with `#!"/a path/python" -x`, which no system can run.
 begin_with_sh() {
-    ! head -n 1 "$1" | grep -q '^#!"' || sed -i "1c #!/bin/sh\n'''exec' '$root/.venv/bin/python' \"\$0\" \"\$@\"\n' '''" "$1"
+    local block="" body
+    [[ "$(head -n 1 "$1")" == '#!'*python* ]] || return 0
+    ! env --block-signal=INT true 2> /dev/null || block="env --block-signal=INT "
+    body="$(tail -n +2 "$1")"
+    printf '%s\n' '#!/bin/sh' "'''exec' $block'$root/.venv/bin/python' \"\$0\" \"\$@\"" "' '''" "$body" > "$1"
 }
 
 make_environment

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# The site of docs/ in out/docs, or (docs.sh notebook) the notebook run anew, its outputs written into it.
+# The site of docs/ in out/docs, or (docs.sh notebook) the notebook run anew in out/notebook.
 # Sphinx and Jupyter lie in an environment of their own, .venv-docs, pinned by docs/requirements.txt; it sees this
 # folder's packages. A warning is an error: a link that leads nowhere, a name that autodoc does not find.
 set -euo pipefail
@@ -20,7 +20,7 @@ if [ "${1-}" = notebook ]; then
     mkdir -p out/notebook   # where its recordings stay
     cp docs/tutorials/swim.ipynb out/notebook/
     MPLBACKEND=module://matplotlib_inline.backend_inline "$env/bin/jupyter-execute" --inplace out/notebook/swim.ipynb
-    cp out/notebook/swim.ipynb docs/tutorials/
+    echo "[docs] out/notebook/swim.ipynb; a copy of it in docs/tutorials renews the page"
     exit
 fi
 .venv/bin/python tools/reference_pages.py

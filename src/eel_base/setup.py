@@ -5,6 +5,7 @@ setup(
     name="eel_base",
     version="0.1.0",
     packages=find_packages(),
+    py_modules=["eel_command"],
     package_data={"eel_base": ["py.typed"]},
     data_files=[
         ("share/ament_index/resource_index/packages", ["resource/eel_base"]),

@@ -22,8 +22,8 @@ setup(
     license="Apache-2.0",
     entry_points={
         "console_scripts": [
-            "dynamics = eel_dynamics.ros.node:main",
-            "simulate = eel_dynamics.runs.command:main",
+            "dynamics = eel_command:main_of.eel_dynamics.ros.node",
+            "simulate = eel_command:main_of.eel_dynamics.runs.command",
         ]
     },
 )

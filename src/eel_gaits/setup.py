@@ -19,9 +19,9 @@ setup(
     license="Apache-2.0",
     entry_points={
         "console_scripts": [
-            "gait_generator = eel_gaits.ros.node:main",
-            "heading_controller = eel_gaits.ros.heading_controller:main",
-            "pilot = eel_gaits.ros.pilot:main",
+            "gait_generator = eel_command:main_of.eel_gaits.ros.node",
+            "heading_controller = eel_command:main_of.eel_gaits.ros.heading_controller",
+            "pilot = eel_command:main_of.eel_gaits.ros.pilot",
         ]
     },
 )

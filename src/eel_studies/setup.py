@@ -23,14 +23,14 @@ setup(
     license="Apache-2.0",
     entry_points={
         "console_scripts": [
-            "midlines = eel_studies.midlines.command:main",
-            "figures = eel_studies.figures.command:main",
-            "identify = eel_studies.identification.command:main",
-            "optimise = eel_studies.optimisation.command:main",
-            "sweep = eel_studies.sweeps.command:main",
-            "stability = eel_studies.stability.command:main",
-            "steering = eel_studies.steering.command:main",
-            "tradeoff = eel_studies.tradeoff.command:main",
+            "midlines = eel_command:main_of.eel_studies.midlines.command",
+            "figures = eel_command:main_of.eel_studies.figures.command",
+            "identify = eel_command:main_of.eel_studies.identification.command",
+            "optimise = eel_command:main_of.eel_studies.optimisation.command",
+            "sweep = eel_command:main_of.eel_studies.sweeps.command",
+            "stability = eel_command:main_of.eel_studies.stability.command",
+            "steering = eel_command:main_of.eel_studies.steering.command",
+            "tradeoff = eel_command:main_of.eel_studies.tradeoff.command",
         ]
     },
 )

@@ -18,12 +18,12 @@ setup(
     license="Apache-2.0",
     entry_points={
         "console_scripts": [
-            "visualiser = eel_viz.ros.node:main",
-            "markers = eel_viz.ros.markers:main",
-            "record = eel_viz.bags.record:main",
-            "echo = eel_viz.bags.echo:main",
-            "replay = eel_viz.bags.replay:main",
-            "render = eel_viz.pictures.render:main",
+            "visualiser = eel_command:main_of.eel_viz.ros.node",
+            "markers = eel_command:main_of.eel_viz.ros.markers",
+            "record = eel_command:main_of.eel_viz.bags.record",
+            "eel_echo = eel_command:main_of.eel_viz.bags.echo",
+            "replay = eel_command:main_of.eel_viz.bags.replay",
+            "render = eel_command:main_of.eel_viz.pictures.render",
         ],
         "eel_dynamics.drawing": ["rerun = eel_viz.recording.library:to_rerun"],
         "eel_dynamics.bags": ["messages = eel_viz.bags.run_messages:run_messages"],

@@ -2,7 +2,10 @@
 """The command line of every command and node: one line per error, and output that any terminal can show."""
 
 import argparse
+import contextlib
+import signal
 import sys
+from collections.abc import Iterator
 
 from eel_base.wording import one_line
 
@@ -22,6 +25,17 @@ class Parser(argparse.ArgumentParser):
 def complain(program: str, error):
     """Write one line to stderr: the program's name and the text of `error`."""
     sys.stderr.write(f"{program}: {one_line(error)}\n")
+
+
+@contextlib.contextmanager
+def interruptible() -> Iterator[None]:
+    """Let Ctrl-C raise KeyboardInterrupt in here, for work that leaves something whole; before and after, `eel_command`
+    lets it end a command at once."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def check_seconds(argument: str, value: float | None):

@@ -80,15 +80,29 @@ TEST(Righting, UprightBodyHasNeitherTorqueNorEnergy)
     for (const double torque : components_of(work.righting)) EXPECT_EQ(torque, 0.0);
 }
 
-TEST(Righting, BalanceTakesOutTheSumOfItsDensity)
+TEST(Righting, BalanceLosesTheTorqueAndItsDensityAsMuch)
 {
     const Swimmer body = swimmer();
     Workspace<Space> work = bent(body);
     energy(body, turn(0.3, 0.5, -0.2).frame(), work);
+    work.balance = {{1.0, -2.0, 3.0}, {-4.0, 5.0, -6.0}};
+    for (std::size_t k = 0; k < body.grid.blocks; ++k) {
+        const Lanes some(0.7 + static_cast<double>(k));
+        work.density.store(k, Wrench<Space, Lanes>{{some, some, some}, {some, some, some}});
+    }
+    const auto integral = [&] {
+        Wrench<Space, Lanes> sum{};
+        for (std::size_t k = 0; k < body.grid.blocks; ++k) sum += body.grid.weight[k] * work.density[k];
+        return components_of(total_of(sum));
+    };
+    const auto integral_before = integral(), balance_before = components_of(work.balance);
     take_righting_torque(body, work);
-    Wrench<Space, Lanes> sum{};
-    for (std::size_t k = 0; k < body.grid.blocks; ++k) sum += body.grid.weight[k] * work.density[k];
-    const auto taken = components_of(total_of(sum)), balance = components_of(work.balance);
-    for (std::size_t c = 0; c < 6; ++c) EXPECT_NEAR(taken[c], balance[c], 1e-14) << c;
-    EXPECT_GT(std::abs(balance[0]), 0.1);
+    const auto integral_after = integral(), balance_after = components_of(work.balance);
+    const auto torque = components_of(work.righting);
+    for (std::size_t c = 0; c < 6; ++c) {
+        const double taken = c < 3 ? torque[c] : 0.0;
+        EXPECT_NEAR(balance_before[c] - balance_after[c], taken, 1e-14) << c;
+        EXPECT_NEAR(integral_before[c] - integral_after[c], taken, 1e-14) << c;
+    }
+    EXPECT_GT(std::abs(torque[0]), 0.1);
 }

@@ -6,6 +6,8 @@
 
 from importlib import import_module
 
+import eel_command  # noqa: F401  first: Ctrl-C ends a command during the other imports
+
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.analysis.settling import Unsettled
 from eel_dynamics.model.body import Body

@@ -179,7 +179,7 @@ def test_xarray_opens_what_was_saved(run, tmp_path):
 @pytest.mark.parametrize("name, method", [("xarray", "to_xarray"), ("pandas", "to_dataframe")])
 def test_a_missing_package_is_one_line(run, name, method, monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, name, None)
-    with pytest.raises(ImportError, match=rf"{method} needs {name} .* pip install 'eel_dynamics\[data\]'"):
+    with pytest.raises(ImportError, match=rf"{method} needs {name} .* pip install './src/eel_dynamics\[data\]'"):
         getattr(run, method)()
 
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Curvature laws of elongated swimmers, and a ROS 2 node that publishes them. Nothing imported here needs ROS."""
 
+import eel_command  # noqa: F401  first: Ctrl-C ends a command during the other imports
 from eel_base.quantity import Quantities, quantity
 
 from eel_gaits.gaits.bursts import burst_and_coast, c_start

@@ -9,11 +9,10 @@ two, and rclpy no array in the third.
 
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.exceptions import ParameterNotDeclaredException
-from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from eel_ros.parameters import did_you_mean
-from eel_ros.serving import answering, read_message
+from eel_ros.serving import ServedNode
 
 WRONG_TYPE = "Wrong parameter type"  # rclpy's words, which name neither parameter nor value
 WORDS = {  # of the types that the nodes declare
@@ -44,22 +43,8 @@ CONVERTED = {  # declared type: the types that are converted, and how
 }
 
 
-class ParameterNode(Node):
-    """A node with these rules for its services, messages and parameters."""
-
-    def create_service(self, srv_type, srv_name, callback, **options):
-        """As of `Node`, but each call is answered, whatever `callback` raises; also those of the parameter services."""
-        return super().create_service(srv_type, srv_name, answering(self, srv_name, callback), **options)
-
-    def create_subscription(self, msg_type, topic, callback, qos_profile, *, raw=False, **options):
-        """As of `Node`, but a message that is too large is not read; `callback(message)`."""
-
-        def receive(data):
-            callback(read_message(data, msg_type))
-
-        return super().create_subscription(
-            msg_type, topic, callback if raw else receive, qos_profile, raw=True, **options
-        )
+class ParameterNode(ServedNode):
+    """A node with these rules for its parameters."""
 
     def set_parameters_atomically(self, parameters: list[Parameter]) -> SetParametersResult:
         """Set `parameters` at once. The reason that comes with a success is `answer_to` them."""

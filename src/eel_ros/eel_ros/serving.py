@@ -2,17 +2,62 @@
 """Runs callbacks so that an exception does not end the node: it is logged, and the message is dropped or refused."""
 
 import inspect
+import time
 from collections.abc import Callable
+from dataclasses import dataclass
+from weakref import WeakKeyDictionary
 
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.callback_groups import CallbackGroup
 from rclpy.executors import Executor
 from rclpy.node import Node
 from rclpy.serialization import deserialize_message
+from rclpy.subscription import Subscription
 
-LOG_PERIOD = 1.0  # s between two log lines about dropped messages
+LOG_PERIOD = 1.0  # s between two log lines about dropped messages of one topic
 LARGEST_MESSAGE = 2**21  # bytes that are read: three times the largest sample of 10,000 stations
 LONGEST_REASON = 300  # characters
+
+
+@dataclass
+class Dropped:
+    """What has been dropped of one topic. told: how many of them the log has told of, and when [s, steady clock]."""
+
+    count: int = 0
+    told: int = 0
+    when: float = 0.0
+    reason: str = ""
+
+
+_dropped: WeakKeyDictionary[Node, dict[str, Dropped]] = WeakKeyDictionary()
+
+
+class ServedNode(Node):
+    """A node that goes on whatever comes. A message that cannot be taken is left out; each service call is answered.
+
+    Its subscriptions take bytes. With bytes that are no message, rclpy's own way leaves twelve lines of the C libraries
+    on stderr for each.
+    """
+
+    def create_service(self, srv_type, srv_name, callback, **options):
+        """As of `Node`, but each call is answered, whatever `callback` raises; also those of the parameter services."""
+        return super().create_service(srv_type, srv_name, answering(self, srv_name, callback), **options)
+
+    def create_subscription(self, msg_type, topic: str, callback: Callable, qos_profile, **options) -> Subscription:
+        """As of `Node`; what the `callback(message)` raises is logged, and the message dropped, as one that is too
+        large."""
+        if options.pop("raw", False):
+            return super().create_subscription(msg_type, topic, callback, qos_profile, raw=True, **options)
+
+        name = self.resolve_topic_name(topic)
+
+        def take(data: bytes) -> None:
+            try:
+                callback(read_message(data, msg_type))
+            except Exception as error:
+                log_dropped(self, error, f"a message of {name}")
+
+        return super().create_subscription(msg_type, topic, take, qos_profile, raw=True, **options)
 
 
 class PolledGroup(CallbackGroup):
@@ -34,14 +79,28 @@ def serve_once(executor: Executor, node: Node, timeout: float | None = None) -> 
     """Run one callback of the `executor`, waiting at most `timeout` [s] for it."""
     try:
         executor.spin_once(timeout_sec=timeout)
-    except Exception as error:  # rclpy's own callback for /clock may raise too
+    except Exception as error:
         log_dropped(node, error)
+    for what, dropped in list(_dropped.get(node, {}).items()):
+        _tell(node, what, dropped)
 
 
 def log_dropped(node: Node, error: Exception, what: str = "a message") -> None:
-    """Log that `what` is dropped, with the `error`."""
-    text = f"{what} cannot be taken and is left out: {reason_of(error)}"
-    node.get_logger().error(text, throttle_duration_sec=LOG_PERIOD)
+    """Log that `what` is dropped, with the `error`: at once, or with those of the same second when `serve_once` finds
+    that it has passed."""
+    dropped = _dropped.setdefault(node, {}).setdefault(what, Dropped())
+    dropped.count += 1
+    dropped.reason = reason_of(error)
+    _tell(node, what, dropped)
+
+
+def _tell(node: Node, what: str, dropped: Dropped) -> None:
+    now = time.monotonic()
+    if dropped.count == dropped.told or (dropped.told and now - dropped.when < LOG_PERIOD):
+        return
+    dropped.told, dropped.when = dropped.count, now
+    so_far = f" ({dropped.count} so far)" if dropped.count > 1 else ""
+    node.get_logger().error(f"{what} cannot be taken and is left out{so_far}: {dropped.reason}")
 
 
 def reason_of(error: Exception) -> str:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Starts a node, or reports in one line why it cannot start."""
 
+import os
 from collections.abc import Callable
 
 import rclpy
@@ -27,8 +28,8 @@ def start(
 ) -> Node | None:
     """Initialise rclpy with the command line `words` (the program first) and return the node that `make()` returns.
 
-    If that fails, `complain(name, error)` gets the reason, with the command that repairs a damaged build, and the
-    result is None.
+    If that fails, `complain(name, error)` gets the reason: that no more files can be opened, whatever came of that; or
+    the error, with the command that repairs a damaged build. The result is then None.
     """
     use_profile()
     try:
@@ -36,6 +37,15 @@ def start(
         return make()
     except CANNOT_START as error:
         damaged = isinstance(error, UnsupportedTypeSupport) or "type support" in str(error).lower()
-        complain(name, f"{REPAIR}: {error}" if damaged else error)
+        complain(name, _no_more_files() or (f"{REPAIR}: {error}" if damaged else error))
         rclpy.try_shutdown()
         return None
+
+
+def _no_more_files() -> str:
+    """That no more files can be opened; empty where they can."""
+    try:
+        os.close(os.open(os.devnull, os.O_RDONLY))
+    except OSError as error:
+        return f"{error.strerror} (ulimit -n raises the limit)"
+    return ""

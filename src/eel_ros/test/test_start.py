@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The start: the node, or the reason why there is none, and rclpy as it was before."""
 
+import contextlib
+import os
+import resource
 import subprocess
 import sys
 
@@ -42,6 +45,25 @@ def test_a_damaged_build_is_told_with_its_repair(error):
 
     node, ((_, text),) = tried(make)
     assert node is None and text == f"{REPAIR}: {error}"
+
+
+def test_where_no_more_files_can_be_opened_that_is_the_reason():
+    before, held = resource.getrlimit(resource.RLIMIT_NOFILE), []
+
+    def make():
+        resource.setrlimit(resource.RLIMIT_NOFILE, (200, before[1]))
+        with contextlib.suppress(OSError):
+            while True:
+                held.append(os.dup(0))
+        raise UnsupportedTypeSupport("eel_msgs")
+
+    try:
+        node, lines = tried(make)
+    finally:
+        resource.setrlimit(resource.RLIMIT_NOFILE, before)
+        for number in held:
+            os.close(number)
+    assert node is None and lines == [("tank", "Too many open files (ulimit -n raises the limit)")]
 
 
 def test_bad_ros_arguments_are_a_reason():

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Studies: many swims for one question."""
 
+import eel_command  # noqa: F401  first: Ctrl-C ends a command during the other imports
+
 from eel_studies.gradients.gradient import Gradient, gradient
 from eel_studies.identification.identify import Identified, identify
 from eel_studies.identification.measurements import MeasuredPath, MeasuredSpeed

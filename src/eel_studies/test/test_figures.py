@@ -8,6 +8,7 @@ import sys
 from itertools import pairwise
 from pathlib import Path
 
+import matplotlib
 import numpy as np
 import pytest
 from eel_studies.figures import (
@@ -19,7 +20,7 @@ from eel_studies.figures import (
     orders,
     paper_drawings,
 )
-from eel_studies.pictures.style import letter_panels
+from eel_studies.pictures.style import SETTINGS, letter_panels
 from matplotlib.figure import Figure
 
 from eel_dynamics import Body, simulate
@@ -245,6 +246,27 @@ def test_panels_have_letters_and_colour_bars_none():
     alone = Figure()
     letter_panels(alone.subplots().figure)
     assert alone.axes[0].get_title(loc="left") == ""
+
+
+@pytest.mark.parametrize("columns", [None, 1])
+def test_every_letter_of_a_panel_lies_within_its_figure(columns, readings, errors, monkeypatch):
+    def check(draw, size, *paths, settings):
+        figure = Figure(figsize=size, layout="constrained")
+        with matplotlib.rc_context(SETTINGS | (settings or {})):
+            draw(figure)
+            figure.draw_without_rendering()
+        letters = [text for axes in figure.axes for text in [axes._left_title] if text.get_text()]
+        assert [text.get_text() for text in letters] == [f"({letter})" for letter in "abcdef"[: len(letters)]]
+        page = figure.bbox
+        for text in letters:
+            box = text.get_window_extent()
+            assert page.x0 <= box.x0 and page.y0 <= box.y0 and box.x1 <= page.x1 and box.y1 <= page.y1, (paths, text)
+        seen.append(len(letters))
+
+    seen = []
+    monkeypatch.setattr(command, "write_picture", check)
+    list(command.draw(command.drawings_of(readings, errors), Path("nowhere"), ["png"], columns))
+    assert len(seen) == len(command.SIZES) and max(seen) >= 3
 
 
 def test_bad_input(tmp_path, capsys):

@@ -366,7 +366,7 @@ def test_out_of_memory_is_one_line(tmp_path, monkeypatch, capsys):
 )
 def test_missing_extra_is_one_clear_error(name, extra, given, monkeypatch):
     monkeypatch.setitem(sys.modules, name, None)
-    with pytest.raises(ImportError, match=rf"needs {name} .* pip install 'eel_dynamics\[{extra}\]'"):
+    with pytest.raises(ImportError, match=rf"needs {name} .* pip install './src/eel_dynamics\[{extra}\]'"):
         sweep({"period": [1.0]}, **given)
 
 

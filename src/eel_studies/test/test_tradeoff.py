@@ -141,7 +141,7 @@ def test_command_leaves_picture_page_table_and_recording(tmp_path, capsys):
         ("--duration 0 --quick", "--duration must be finite and >= 0.05 s, got 0.0"),
         ("--duration nan --quick", "--duration"),
         ("--duration -1 --quick", "--duration"),
-        ("--pictures /nowhere", "nowhere"),
+        ("--pictures /nowhere/at/all", "/nowhere/at must be a folder that exists"),
     ],
 )
 def test_bad_input_is_named(words, named, capsys):
@@ -181,9 +181,10 @@ def test_options_that_do_not_go_together_are_named(words, told, capsys):
 
 
 def test_pictures_of_what_is_delivered_need_no_page(tmp_path, capsys):
-    assert main(["--delivered", "--count", "2", "--seed", "3", "--pictures", str(tmp_path)]) == 0
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["delivered.png", "delivered.svg"]
-    assert main(["--delivered", "--pictures", str(tmp_path / "none")]) == 2
+    folder = tmp_path / "new"  # made, as `figures --out` makes it
+    assert main(["--delivered", "--count", "2", "--seed", "3", "--pictures", str(folder)]) == 0
+    assert sorted(path.name for path in folder.iterdir()) == ["delivered.png", "delivered.svg"]
+    assert main(["--delivered", "--pictures", str(folder / "none" / "at all")]) == 2
     assert "must be a folder that exists" in capsys.readouterr().err
 
 

@@ -6,5 +6,7 @@ blueprint, and the reader of recordings. `scene3d` draws in three dimensions, `p
 `bags` records, prints and replays bags. `pictures` renders recordings. Only `ros`, and `record`, `echo` and
 `definitions` in `bags`, import ROS.
 
-Nothing is imported here, so that `import eel_viz` costs nothing.
+Nothing else is imported here, so that `import eel_viz` costs nothing.
 """
+
+import eel_command  # noqa: F401  first: Ctrl-C ends a command during the other imports

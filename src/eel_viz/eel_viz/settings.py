@@ -7,6 +7,7 @@ from typing import Self
 
 from eel_base.quantity import is_finite, limits
 from eel_base.wording import shown
+from eel_gaits.pilot.settings import PilotSettings
 
 
 def setting(default, description: str, *, unit: str = "", minimum: float | None = None, maximum: float | None = None):
@@ -83,6 +84,13 @@ class Settings(Drawing):
     )
     wake_scale: float = setting(
         0.4, "length that shows 1 N, which is 1 N s of momentum left in the wake per second", unit="m/N", minimum=0.0
+    )
+    reach: float = setting(
+        PilotSettings.reach,
+        "distance to draw about way points: give it here too where the pilot's parameter reach has another value",
+        unit="lengths",
+        minimum=0.0,
+        maximum=10.0,
     )
     rate: float = setting(
         30.0, "samples per second that a live viewer gets; a file gets all", unit="Hz", minimum=0.1, maximum=1000.0

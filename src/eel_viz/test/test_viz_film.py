@@ -205,6 +205,8 @@ def test_without_a_time_the_picture_is_of_seven_tenths_of_the_recording(tmp_path
             return b"\x89PNG at %g s" % at
 
     monkeypatch.setattr("eel_viz.pictures.render.drawn_beside", lambda *_, **__: contextlib.nullcontext(Drawing()))
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "run.rrd").touch()
     assert main(["run.rrd", "-o", str(tmp_path / "picture.png")]) == 0
     assert (tmp_path / "picture.png").read_bytes() == b"\x89PNG at 9 s"
     assert main(["run.rrd", "-o", str(tmp_path / "picture.png"), "--at", "2"]) == 0
@@ -234,6 +236,7 @@ def test_what_cannot_be_is_said_in_one_line(recording, tmp_path, capsys, monkeyp
             capsys, recording, "-o", "a", "--fps", "1", "--speed", value
         )
     assert "recording must be a file" in refusal(capsys, "none.rrd", "-o", "a", "--fps", "1")
+    assert "recording must be a file" in refusal(capsys, "none.rrd")  # before the missing -o
     for wrong in ([], ["-o", "a.png", "--size", "big"], ["-o", "a", "--fps", "1", "--at", "2"]):
         with pytest.raises(SystemExit, match="2"):
             main([str(recording), *wrong])

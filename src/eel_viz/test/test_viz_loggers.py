@@ -95,9 +95,10 @@ def test_way_points_of_the_newest_goal_are_drawn_and_a_bad_goal_is_left_out(tmp_
     assert [text for text in said if "goal: poses" in text], said
 
 
-def test_way_points_that_come_before_the_body_get_its_size(tmp_path):
+@pytest.mark.parametrize(("given", "reach"), [({}, 0.25), ({"reach": 0.6}, 0.6)])
+def test_way_points_that_come_before_the_body_get_its_size(given, reach, tmp_path):
     path, said = tmp_path / "goal.rrd", []
-    settings = Settings(recording=str(path))
+    settings = Settings(recording=str(path), **given)
     destination = FileDestination(settings, said.append, said.append)
     stream = destination.open(1, "goal")
     loggers = Loggers(stream, settings, Rates())
@@ -106,7 +107,7 @@ def test_way_points_that_come_before_the_body_get_its_size(tmp_path):
     loggers.flush()
     destination.close_recording(stream)
     spheres = read(path, entities.WAY_POINTS, static=True)
-    np.testing.assert_allclose(spheres["half_sizes"][-1], np.full((2, 3), 0.1), rtol=1e-6)
+    np.testing.assert_allclose(spheres["half_sizes"][-1], np.full((2, 3), 0.4 * reach), rtol=1e-6)
 
 
 def test_scalars_are_exact_and_complete(made):

@@ -20,7 +20,7 @@ from rosbags.rosbag2 import Reader
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 SWIMMER = str(Path(__file__).with_name("fake_swimmer.py"))
-ECHO = ("python", "-m", "eel_viz.bags.echo")  # the name belongs to the shell
+ECHO = ("eel_echo",)
 TYPES = sorted({*OWN.values(), *GLOBAL.values()})
 
 

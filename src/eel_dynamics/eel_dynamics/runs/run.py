@@ -69,6 +69,7 @@ class Run:
     curvature_rate: np.ndarray  #: (T, M, 3) rad/m/s
     torque: np.ndarray | None  #: (T, M, 3) N m, section axes: of the part behind a section on the part ahead
     force: np.ndarray | None  #: (T, M, 3) N, section axes; force[..., 0] > 0 is tension
+    # The next five are None without `load=True`.
     fluid_force: np.ndarray | None  #: (T, M, 3) N/m, of the water on the body, section axes
     resistive_force: np.ndarray | None  #: (T, M, 3) N/m, its resistive part
     tail_force: np.ndarray | None  #: (T, 3) N, section axes at the tail

@@ -2,7 +2,6 @@
 """What all commands have in common: errors of one line, the exit status, Ctrl-C, and the check of outputs."""
 
 import argparse
-import signal
 from collections.abc import Callable
 from pathlib import Path
 
@@ -15,13 +14,11 @@ from eel_dynamics.simulation.stopping import SimulationStopped
 
 
 def run_command(parser: Parser, work: Callable[[argparse.Namespace], int], arguments: list[str] | None) -> int:
-    """Do the `work` of a command with its `arguments`; None: those of this process, which Ctrl-C then ends at once.
+    """Do the `work` of a command with its `arguments`; None: those of this process.
 
     Returns the exit status: that of the work; 1 where an output cannot be written to its end; 2 for bad input, a
     missing package or too little memory; 3 for a swim that stops. An error prints one line with its reason.
     """
-    if arguments is None:
-        end_on_interrupt()
     options, name = parser.parse_args(arguments), parser.prog
     try:
         with one_line_warnings(name), command_begins():
@@ -49,11 +46,6 @@ def checked_out(command: str, out: str, suffixes: tuple[str, ...]) -> Path:
     if path.exists():
         complain(command, f"{path} exists and will be overwritten")
     return path
-
-
-def end_on_interrupt():
-    """Let Ctrl-C end the process at once, even in compiled code, for which Python's own handler would wait."""
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
 __all__ = ["checked_out", "run_command"]

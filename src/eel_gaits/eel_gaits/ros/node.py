@@ -19,7 +19,7 @@ from eel_ros.parameter_node import ParameterNode
 from eel_ros.parameters import declare, described, take_overrides, warn_of_unknown
 from eel_ros.qos import latched
 from eel_ros.run_node import run_node
-from eel_ros.serving import PolledGroup, log_dropped
+from eel_ros.serving import PolledGroup
 from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
 from rclpy.clock import JumpThreshold
 from rclpy.duration import Duration
@@ -82,10 +82,7 @@ class GaitGenerator(ParameterNode):
             with ticks.handle:
                 taken = ticks.handle.take_message(ticks.msg_type, ticks.raw)
             if taken is not None:
-                try:
-                    ticks.callback(taken[0])
-                except ValueError as error:  # a negative time
-                    log_dropped(self, error, "a message on /clock")
+                ticks.callback(taken[0])
         return True
 
     def look(self) -> bool:

@@ -53,7 +53,7 @@ def draw_configurations(figure, run):
     from matplotlib.colors import Normalize
 
     figure.set_layout_engine("none")  # the layout engine does not suit 3D axes
-    space = figure.add_axes((-0.03, 0.14, 0.58, 0.88), projection="3d")
+    space = figure.add_axes((0.01, 0.1, 0.54, 0.84), projection="3d")
     above, side = figure.add_axes((0.65, 0.68, 0.34, 0.26)), figure.add_axes((0.65, 0.12, 0.34, 0.44))
     bar = figure.add_axes((0.09, 0.13, 0.4, 0.025), label=COLOUR_BAR)
     colours = ScalarMappable(Normalize(run.time[0], run.time[-1]), "cividis")

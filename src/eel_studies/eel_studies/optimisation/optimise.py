@@ -60,7 +60,7 @@ def optimise(
     returns a law. numbers: what else is held fixed, by the same names. body, accuracy, threads: as in `gradient`.
     scene: by default that of the library with blended friction, whose derivatives have no jump; a current is left out.
     cost: the name of a measure (`analysis.measures.MEASURES`). periods: of each swim, which begins at the wanted speed;
-    its later half is measured. method: "gradient" (SLSQP), or "cma", which needs `pip install 'eel_dynamics[cma]'`.
+    its later half is measured. method: "gradient" (SLSQP), or "cma", which needs the package cma, of the extra `[cma]`.
     starts: gaits from which each search by gradients begins, besides the one before. seed: of what is random.
     progress: as in `sweep`, by speeds.
 

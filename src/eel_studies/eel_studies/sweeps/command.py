@@ -9,7 +9,7 @@ import sys
 import time
 
 import numpy as np
-from eel_base.command_line import Parser, complain
+from eel_base.command_line import Parser, complain, interruptible
 from eel_base.one_line_warnings import one_line_warnings
 from eel_base.output_file import NotWritten, command_begins, written_as
 from eel_dynamics.accuracy.accuracy import PRESETS
@@ -45,21 +45,22 @@ def _sweep(options) -> int:
         numbers, vary = set_numbers(options.set), named_texts("--vary", options.vary)
         check_names([*numbers, *(name for name, _ in vary)])
         grid = {name: varied_values(text, lambda count, name=name: check_points(name, count)) for name, text in vary}
-        data = sweep(
-            grid,
-            gait=options.gait,
-            numbers=numbers,
-            duration=options.duration,
-            body=body_of(options.body),
-            accuracy=options.accuracy,
-            sample_period=options.sample_period,
-            out=options.out,
-            scheduler=options.scheduler,
-            workers=options.workers,
-            estimate=not options.bare,
-            measure=options.measures and options.measures.split(","),
-            overwrite=options.overwrite,
-        )
+        with interruptible():
+            data = sweep(
+                grid,
+                gait=options.gait,
+                numbers=numbers,
+                duration=options.duration,
+                body=body_of(options.body),
+                accuracy=options.accuracy,
+                sample_period=options.sample_period,
+                out=options.out,
+                scheduler=options.scheduler,
+                workers=options.workers,
+                estimate=not options.bare,
+                measure=options.measures and options.measures.split(","),
+                overwrite=options.overwrite,
+            )
     except NotWritten as error:
         complain("sweep", error)
         return 1

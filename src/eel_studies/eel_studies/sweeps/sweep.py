@@ -6,8 +6,8 @@
     data.mean_speed.sel({"scene.friction": "laminar"})       # an xarray of 16 speeds, with their periods
 
 It runs in threads, one per core, or on a Dask scheduler. Finished points are stored beside the output: an interrupted
-sweep resumes when it is called again. It needs `pip install 'eel_dynamics[data]'`, with a scheduler
-`'eel_dynamics[cluster]'`.
+sweep resumes when it is called again. It needs `pip install './src/eel_dynamics[data]'`, with a scheduler
+`'./src/eel_dynamics[cluster]'`.
 """
 
 import itertools

@@ -83,16 +83,15 @@ def _fill_in_defaults(options):
 
 
 def _check_outputs(options):
-    for folder in (
-        options.pictures,
-        options.page and Path(options.page).parent,
-        options.rerun and Path(options.rerun).parent,
-    ):
-        if folder and not Path(folder).is_dir():
-            raise ValueError(f"{folder} must be a folder that exists")
+    """Before all the work; makes the folder of the pictures."""
+    for name in filter(None, (options.pictures, options.page, options.rerun)):
+        if not Path(name).parent.is_dir():
+            raise ValueError(f"{Path(name).parent} must be a folder that exists")
     for option, name in (("--page", options.page), ("--rerun", options.rerun)):
         if name:
             check_output(option, name)
+    if options.pictures:
+        Path(options.pictures).mkdir(exist_ok=True)
 
 
 def _deliver(options) -> int:

@@ -12,16 +12,16 @@ from eel_base.command_line import Parser, check_seconds, complain
 from eel_base.wording import shown
 from eel_ros.qos import fitting
 from eel_ros.run_node import run_node
-from rclpy.node import Node
+from eel_ros.serving import ServedNode
 from rclpy.utilities import remove_ros_args
 
 from eel_viz.bags.definitions import message_class
 
-NAME = "eel_echo"  # echo is the shell's
+NAME = "eel_echo"
 SHORT = 128  # elements of an array that are printed without --full-length
 
 
-class Echo(Node):
+class Echo(ServedNode):
     """Waits for a publisher of the topic, adopts its type and quality of service, and prints its messages."""
 
     def __init__(self, options: argparse.Namespace) -> None:

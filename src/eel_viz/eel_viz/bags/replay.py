@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import fields
 from types import SimpleNamespace
 
-from eel_base.command_line import Parser, complain
+from eel_base.command_line import Parser, complain, interruptible
 from eel_base.output_file import NotWritten
 from eel_base.quantity import limits
 from eel_base.wording import shown
@@ -33,7 +33,7 @@ from eel_viz.without_pandas import keep_pandas_out
 NAME = "replay"
 DIAGNOSTICS = "/diagnostics"
 OPTIONS = ("blueprint", "rate", "skin_rate", "colour_limit", "torque_limit", "force_limit", "curvature_limit")
-OPTIONS += ("load_scale", "end_force_scale", "viewer")
+OPTIONS += ("load_scale", "end_force_scale", "reach", "viewer")
 
 
 def _named_law(message, place: int) -> SimpleNamespace:
@@ -216,9 +216,10 @@ def main(arguments: list[str] | None = None) -> int:
         values["compare"] = name_of(other, chosen.bag) if other else chosen.compare
         sink = ("save", "connect") if chosen.connect else ("save",)
         settings = Settings.from_values({**values, "sink": sink, "recording": output})
-        told = replay(
-            chosen.bag, settings, other=other, namespace=chosen.namespace, log_info=print, log_warning=log_warning
-        )
+        with interruptible():
+            told = replay(
+                chosen.bag, settings, other=other, namespace=chosen.namespace, log_info=print, log_warning=log_warning
+            )
     except NotWritten as error:
         log_warning(str(error))
         return 1

@@ -185,10 +185,15 @@ def drawn(
         yield drawing
 
 
-def _readable(path: pathlib.Path, stack: contextlib.ExitStack) -> pathlib.Path:
-    """`path`, or a repaired copy if the recording is incomplete. `ValueError` if it cannot be read."""
+def check_recording(path: pathlib.Path) -> None:
+    """`ValueError` where `path` is no file."""
     if not path.is_file():
         raise ValueError(f"recording must be a file, got {shown(str(path))}")
+
+
+def _readable(path: pathlib.Path, stack: contextlib.ExitStack) -> pathlib.Path:
+    """`path`, or a repaired copy if the recording is incomplete. `ValueError` if it cannot be read."""
+    check_recording(path)
     with path.open("rb") as file:
         if file.read(len(MAGIC)) != MAGIC:
             raise ValueError(f"{shown(str(path))} is no Rerun recording")

@@ -17,12 +17,12 @@ import sys
 import tempfile
 from collections.abc import Callable, Sequence
 
-from eel_base.command_line import Parser, complain
+from eel_base.command_line import Parser, complain, interruptible
 from eel_base.one_line_warnings import one_line_warnings
 from eel_base.output_file import NotWritten, check_output, command_begins, replacing, written_as
 from eel_base.wording import shown
 
-from eel_viz.pictures.drawing import SIZE, Drawing
+from eel_viz.pictures.drawing import SIZE, Drawing, check_recording
 from eel_viz.pictures.film import ANIMATIONS, FILMS, FRAME, QUALITY, check_quality, ffmpeg, film
 from eel_viz.pictures.side_by_side import SideBySide, drawn_beside
 from eel_viz.viewer import CannotRender
@@ -152,6 +152,11 @@ def main(arguments: list[str] | None = None) -> int:
     made = parser()
     chosen = made.parse_args(arguments)
     output = chosen.output or chosen.picture
+    try:
+        check_recording(pathlib.Path(chosen.recording))
+    except (ValueError, OSError) as reason:
+        complain(NAME, reason)
+        return 2
     if output is None:
         made.error("where to write is missing: -o PICTURE.png, or -o FOLDER with --fps")
     try:
@@ -159,7 +164,7 @@ def main(arguments: list[str] | None = None) -> int:
     except ValueError:
         made.error(f"--size must look like 1920x1080, got {shown(chosen.size)}")
     try:
-        with one_line_warnings(NAME), command_begins():
+        with one_line_warnings(NAME), command_begins(), interruptible():
             _draw(chosen, pathlib.Path(output), (width, height))
     except (CannotRender, ConnectionError) as reason:
         complain(NAME, f"no picture: {reason}")

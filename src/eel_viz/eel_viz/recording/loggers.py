@@ -48,6 +48,7 @@ class Loggers:
         self._attitude = Attitude()
         self._scene = SwimmerScene(
             stream,
+            reach=settings.reach,
             load_scale=settings.load_scale,
             end_scale=settings.end_force_scale,
             wake_scale=settings.wake_scale,

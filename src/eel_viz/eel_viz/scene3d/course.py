@@ -3,24 +3,22 @@
 
 import numpy as np
 import rerun as rr
-from eel_gaits.pilot.settings import PilotSettings
 
 from eel_viz import entities
 from eel_viz.batched_stream import BatchedStream
 from eel_viz.scene3d import colours
 from eel_viz.scene3d.orientation import turns_of_up_into
 
-REACH = PilotSettings().reach  # body lengths, within which a way point counts as reached
-
 
 class Course:
     """Draws the last course, valid at all times: its legs, a sphere about each point, a tube as wide about each leg.
 
-    Before the body's length is known they are as wide as for a body of 1 m.
+    reach: their radius [body lengths], within which a way point counts as reached. Before the body's length is known
+    they are as wide as for a body of 1 m.
     """
 
-    def __init__(self, stream: BatchedStream) -> None:
-        self._stream, self._length = stream, 1.0  # m, of the body
+    def __init__(self, stream: BatchedStream, reach: float) -> None:
+        self._stream, self._reach, self._length = stream, reach, 1.0  # m, of the body
         self._points: np.ndarray | None = None  # (n, 3) m
 
     def resize(self, length: float) -> None:
@@ -31,7 +29,7 @@ class Course:
 
     def draw(self, points: np.ndarray) -> None:
         """Draw the way `points` (n, 3) [m] in the world."""
-        self._points, reach = points, REACH * self._length
+        self._points, reach = points, self._reach * self._length
         thin = rr.Radius.ui_points(0.8)
         legs = rr.LineStrips3D([points.astype(np.float32)], colors=[colours.LABEL], radii=[thin])
         self._stream.log_static(entities.COURSE, legs)

@@ -21,9 +21,9 @@ PATH_WATER_PERIOD = 400_000_000  # ns: its frame changes slowly
 
 
 class SwimmerScene:
-    """Draws into `stream`; scales: those of `Arrows`, by name."""
+    """Draws into `stream`; reach: that of `Course`; scales: those of `Arrows`, by name."""
 
-    def __init__(self, stream: BatchedStream, **scales: float) -> None:
+    def __init__(self, stream: BatchedStream, *, reach: float, **scales: float) -> None:
         self._stream, self._scales = stream, scales
         self._skin: Skin | None = None
         self._flanks: Flanks | None = None
@@ -33,7 +33,7 @@ class SwimmerScene:
         self._water, self._path_water = (WaterBox(stream, root) for root in (entities.WATER, entities.PATH_WATER))
         self._path_water_stamp: int | None = None  # ns
         self._track, self._strobes = Track(stream), Strobes(stream)
-        self._arrows, self._course = Arrows(stream, **scales), Course(stream)
+        self._arrows, self._course = Arrows(stream, **scales), Course(stream, reach)
         stream.log_static(entities.WORLD, rr.ViewCoordinates.RIGHT_HAND_Z_UP)
         stream.log_static(entities.BACKBONE, rr.LineStrips3D.from_fields(colors=[colours.LABEL], radii=[0.0004]))
         stream.log_static(entities.SHADOW, rr.LineStrips3D.from_fields(colors=[(4, 10, 17)], radii=[0.03]))

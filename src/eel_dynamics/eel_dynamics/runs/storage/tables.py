@@ -23,7 +23,7 @@ def needed(name: str, by: str, extra: str = "data"):
         return import_module(name)
     except ImportError as error:
         raise ImportError(
-            f"{by} needs {name} ({error}); install it with: pip install 'eel_dynamics[{extra}]'"
+            f"{by} needs {name} ({error}); install it with: pip install './src/eel_dynamics[{extra}]'"
         ) from None
 
 
