@@ -69,6 +69,7 @@ class _Stations(Protocol):
     added2_slope: Buffer  # (M,) [kg/m^2], derivative of added2 by X
     added3_slope: Buffer  # (M,) [kg/m^2]
     added_roll_slope: Buffer  # (M,) [kg]
+    missed: Sequence[_Sections]  # M, at the nodes, times m: what `points` miss of the sections' integral; or none
 
 class _Shared:
     """Never changes: copies are the object itself."""
@@ -93,12 +94,15 @@ class Swimmer(_Shared):
         nose_drag: float,
         distributed_pressure: bool,
         righting: float,
+        missed_drag: Sequence[Buffer] = (),
     ) -> None:
         """sections: at the nodes. friction: "printed", "laminar" or "blended". resistive: drag along the body.
         first_watched: first of the speeds (0 V1, 1 V2, 2 V3, 3 Omega1, 4 Re/8e4 - 1) whose changes of sign within a
         panel are integrated exactly; 5 for none. nose_mass: m_o [kg]; nose_drag: 1/2 rho_f k_o [kg/m].
         distributed_pressure: along the body in place of at the tail. righting [m^2/s^2]: g h of the righting moment of
-        weight and buoyancy; 0 for none. `ValueError` names what does not fit."""
+        weight and buoyancy; 0 for none. missed_drag: (K, n) [m] for V2, V3 and Omega1: of each node, what the drag's
+        integral from the start of its panel misses, by the drag at the node, at K fractions (1 - cos(pi k / (K - 1))) /
+        2 of the panel; none where the sections are smooth. `ValueError` names what does not fit."""
 
 class LawTables(_Shared):
     """The m rows of a curvature law, each a field of X for one axis, on the nodes and stations of a swimmer."""

@@ -140,7 +140,7 @@ inline std::shared_ptr<const Swimmer> swimmer_from(const py::object& grid, const
                                                    const py::object& stations, const std::string& friction,
                                                    bool resistive, std::size_t first_watched, bool wake,
                                                    double nose_mass, double nose_drag, bool distributed_pressure,
-                                                   double righting)
+                                                   double righting, const py::object& missed_drag)
 {
     auto swimmer = std::make_shared<Swimmer>();
     swimmer->grid = grid_from(grid);
@@ -158,6 +158,17 @@ inline std::shared_ptr<const Swimmer> swimmer_from(const py::object& grid, const
     swimmer->nose_mass = nose_mass, swimmer->nose_drag = nose_drag,
     swimmer->distributed_pressure = distributed_pressure, swimmer->righting = righting;
 
+    for (std::size_t speed = lateral; const py::handle each : missed_drag) {
+        const Numbers table(each, "missed_drag");
+        if (table.length(0) < 2) throw py::value_error("missed_drag must have two rows or more");
+        table.check_size(table.length(0) * n, "missed_drag");
+        for (std::size_t place = 0; place < table.length(0); ++place) {
+            swimmer->missed_drag.at(speed).emplace_back(blocks_of(n));
+            std::copy_n(table.data() + place * n, n, swimmer->missed_drag[speed].back().row(0));
+        }
+        ++speed;
+    }
+
     const auto before = array_of<std::uint64_t>(stations, "nodes_before");
     const std::size_t m = swimmer->stations = before.size();
     swimmer->nodes_before.assign(before.span().begin(), before.span().end());
@@ -166,6 +177,9 @@ inline std::shared_ptr<const Swimmer> swimmer_from(const py::object& grid, const
     swimmer->added3_slope = points(stations, "added3_slope", m);
     swimmer->added_roll_slope = points(stations, "added_roll_slope", m);
     swimmer->to_station = from_nose(stations.attr("points"), swimmer->grid.weight, n);
+    for (const py::handle each : stations.attr("missed")) swimmer->missed.push_back(sections_from(each, n));
+    if (!swimmer->missed.empty() && swimmer->missed.size() != m)
+        throw py::value_error("stations must have missed sections for each of them, or none");
     return swimmer;
 }
 

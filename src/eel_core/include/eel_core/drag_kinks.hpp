@@ -100,6 +100,20 @@ inline void set_weights_upto(const Grid& grid, std::size_t first, std::size_t co
     }
 }
 
+// Adds to these weights what they miss of the drag, where it is not smooth between the nodes. `missed`: of a `Swimmer`.
+inline void add_missed_weights(const std::vector<Row>& missed, std::size_t first, std::size_t count, double t,
+                               std::vector<double>& weights)
+{
+    const double last = static_cast<double>(missed.size() - 1);
+    const double place = last * std::acos(std::clamp(1.0 - 2.0 * t, -1.0, 1.0)) / std::numbers::pi;
+    const std::size_t before = static_cast<std::size_t>(std::min(place, last - 1.0));
+    const double part = place - static_cast<double>(before);
+    for (std::size_t k = 0; k < count; k += width) {
+        const Lanes here = missed[before].from(first + k), next = missed[before + 1].from(first + k);
+        (Lanes::load(weights.data() + k) + here + part * (next - here)).store(weights.data() + k);
+    }
+}
+
 // Notes the kink where `speed` changes its sign before node i, and has the load's weights integrate it. A change below
 // `noise` is round-off.
 template <class M>
@@ -117,6 +131,8 @@ void add_kink(const Swimmer& swimmer, Speed speed, std::size_t i, double at_nose
     kink.fraction = zero_between(grid, values, i, before, of_friction && swimmer.first_watched <= lateral);
     kink.jump = (of_friction ? 1.0 : 2.0) * (value >= 0.0 ? 1.0 : -1.0);
     set_weights_upto(grid, first, count, kink.fraction, kink.weights);
+    if (const auto& missed = swimmer.missed_drag[speed]; !missed.empty())
+        add_missed_weights(missed, first, count, kink.fraction, kink.weights);
     Row& weight = work.load_weight[of_friction ? std::size_t{0} : speed];
     for (std::size_t k = 0; k < count; k += width) {
         const std::size_t node = first + k;

@@ -48,25 +48,30 @@ inline void set_turning_acceleration(const Swimmer& swimmer, const Law& law, Wor
     }
 }
 
-// Writes to `density` the wrench per length that the motion of the sections takes, about the head. Returns the integral
-// of the density over the body. In section axes:
+// The wrench that the motion of a block's nodes takes of sections, about the head. In section axes:
 //
 //     f_N = M Vdot + Omega x M V      f_C = J Omegadot + Omega x J Omega + V x M V
+template <class M>
+Wrench<M, Lanes> inertial_wrench(const Section<Lanes>& section, const Workspace<M>& work, std::size_t k)
+{
+    const auto frame = work.frame[k];
+    const Turn<M, Lanes> omega = frame.local(work.omega[k]), omega_rate = frame.local(work.alpha[k]);
+    const Vector<M, Lanes> v = frame.local(work.velocity[k]);
+    const Vector<M, Lanes> v_rate = frame.local(work.acceleration[k]) - cross(omega, v);
+    const Vector<M, Lanes> momentum = section.linear_momentum(v);
+    const Wrench<M, Lanes> taken{
+        section.angular_momentum(omega_rate) + cross(omega, section.angular_momentum(omega)) + cross(v, momentum),
+        section.linear_momentum(v_rate) + cross(omega, momentum)};
+    return about_head<M>(frame, work.position[k], taken);
+}
+
+// Writes to `density` that wrench per length. Returns the integral of the density over the body.
 template <class M>
 Wrench<M, double> set_inertial_density(const Swimmer& swimmer, Workspace<M>& work)
 {
     Wrench<M, Lanes> sum{};
     for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
-        const Section<Lanes> section = swimmer.sections[k];
-        const auto frame = work.frame[k];
-        const Turn<M, Lanes> omega = frame.local(work.omega[k]), omega_rate = frame.local(work.alpha[k]);
-        const Vector<M, Lanes> v = frame.local(work.velocity[k]);
-        const Vector<M, Lanes> v_rate = frame.local(work.acceleration[k]) - cross(omega, v);
-        const Vector<M, Lanes> momentum = section.linear_momentum(v);
-        const Wrench<M, Lanes> taken{
-            section.angular_momentum(omega_rate) + cross(omega, section.angular_momentum(omega)) + cross(v, momentum),
-            section.linear_momentum(v_rate) + cross(omega, momentum)};
-        const auto density = about_head<M>(frame, work.position[k], taken);
+        const auto density = inertial_wrench<M>(swimmer.sections[k], work, k);
         work.density.store(k, density);
         sum += swimmer.grid.weight[k] * density;
     }

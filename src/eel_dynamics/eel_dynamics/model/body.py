@@ -19,6 +19,7 @@ from eel_dynamics.model.body_file import WHAT, columns_of
 from eel_dynamics.model.equality import same
 from eel_dynamics.model.grid import Grid
 from eel_dynamics.model.half_axis import ArrayHalfAxis, FunctionHalfAxis
+from eel_dynamics.model.moments import with_moments
 from eel_dynamics.model.panels import panels_of
 from eel_dynamics.model.shapes import KINKS, NamedHalfAxis
 
@@ -67,8 +68,10 @@ class Body:
     ):
         if x is not None:
             x = checked_row("body x", x, None)
-            if len(x) < 4 or np.any(np.diff(x) <= 0.0) or x[0] != 0.0:
+            falls = np.flatnonzero(np.diff(x) <= 0.0)
+            if len(x) < 4 or len(falls) or x[0] != 0.0:
                 ends = f" from {x[0]:g} to {x[-1]:g}" if len(x) else ""
+                ends += f", {x[falls[0] + 1]:g} after {x[falls[0]]:g}" if len(falls) else ""
                 raise ValueError(f"body x must rise from 0 over 4 points or more, got {len(x)} points{ends}")
             length = x[-1] if length is None else length
             if abs(x[-1] - checked_number("body length", length, "m")) > 1e-9 * x[-1]:
@@ -112,6 +115,11 @@ class Body:
         """The half-axes as they were given: functions of X, or arrays (2, M) of X and half-axis [m]."""
         return {"half_width": self._half_width.given, "half_height": self._half_height.given}
 
+    @cached_property
+    def breaks(self) -> np.ndarray:
+        """X [m] inside the body where a derivative of a half-axis from data may jump: its data points."""
+        return self._half_width.breaks
+
     def squares(self, x) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """a^2, b^2 [m^2] and their derivatives by X [m] at `x` (M,) [m]. A kink has the derivative ahead of it."""
         x = np.asarray(x, dtype=float)
@@ -132,7 +140,10 @@ class Body:
     def volume(self) -> float:
         """Integral of pi a b dX [m^3]."""
         grid = Grid.of(panels_of(self, resolution=40))
-        return float(np.sum(grid.weight * np.pi * self.half_width(grid.x) * self.half_height(grid.x)))
+        if not len(self.breaks):
+            return float(np.sum(grid.weight * np.pi * self.half_width(grid.x) * self.half_height(grid.x)))
+        areas = with_moments(lambda x: np.pi * self.half_width(x)[None] * self.half_height(x), grid, self.breaks)
+        return float(areas[0] @ grid.weight)
 
     @property
     def mass(self) -> float:

@@ -17,6 +17,8 @@ DEGREE = 48  # of the polynomial through the square on each panel, for its deriv
 class FunctionHalfAxis:
     """A half-axis given as a function of X [m]. It is smooth between the `bounds` (0, kinks, length) [m]."""
 
+    breaks = np.empty(0)
+
     def __init__(self, name: str, function, bounds):
         if not callable(function):
             raise ValueError(f"body {name} must be a function of X, or an array with x=, got {shown(function)}")
@@ -75,7 +77,7 @@ class ArrayHalfAxis:
         if values.shape != x.shape:
             raise ValueError(f"body {name} must have as many values as x, {len(x)}, got {len(values)}")
         _check_shape(name, x, values, x[-1])
-        self.given = np.stack((x, values))
+        self.given, self.breaks = np.stack((x, values)), x[1:-1]
         cuts = (
             [0]
             + [int(np.argmin(np.abs(x - kink))) for kink in bounds[1:-1] if np.min(np.abs(x - kink)) < 1e-9 * x[-1]]

@@ -18,11 +18,14 @@ import numpy as np
 import eel_core
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.grid import Grid, PanelPoints
+from eel_dynamics.model.moments import missed_before, missed_within, with_moments
 from eel_dynamics.model.scene import Scene
 
 WATCHED = {"all": 1, "jumps": 4, "none": 5}  # first of the speeds (V1, V2, V3, Omega1, Re/8e4 - 1) whose changes of
 # sign within a panel are integrated exactly
 GRAVITY = 9.80665  # m/s^2, standard
+LEAST = 1e-9  # of the greatest drag by length: no drag at a node is smaller
+PLACES = 8  # by node of the largest panel, at which integrals up to a kink are tabulated
 TRANSITION = 8.0e4  # Reynolds number at which the printed friction law jumps from laminar to turbulent
 
 
@@ -68,6 +71,7 @@ class StationData(NamedTuple):
     added2_slope: np.ndarray  # (M,) kg/m^2, derivative of `added2` by X
     added3_slope: np.ndarray  # (M,) kg/m^2
     added_roll_slope: np.ndarray  # (M,) kg
+    missed: list[SectionData]  # for each station, at the nodes, times m: what `points` miss of the sections' integral
 
 
 def nose_of(body: Body, scene: Scene) -> tuple[float, float]:
@@ -85,7 +89,7 @@ def core_swimmer(body: Body, scene: Scene, grid: Grid, sections: SectionData, x,
     return eel_core.Swimmer(
         grid,
         sections,
-        stations_of(body, scene, grid, x),
+        stations_of(body, scene, grid, sections, x),
         friction="laminar" if scene.friction == "none" or scene.viscosity == 0.0 else scene.friction,
         resistive=bool(scene.resistive),
         first_watched=WATCHED[kinks],
@@ -94,7 +98,18 @@ def core_swimmer(body: Body, scene: Scene, grid: Grid, sections: SectionData, x,
         nose_drag=nose_drag,
         distributed_pressure=scene.tail_pressure == "distributed",
         righting=GRAVITY * scene.metacentric_height,
+        missed_drag=missed_drag_of(body, scene, grid, sections) if kinks == "all" else (),
     )
+
+
+def missed_drag_of(body: Body, scene: Scene, grid: Grid, sections: SectionData):
+    """What the integrals of the drag up to a kink miss: (3, K, n), or nothing for a body that is smooth."""
+    if not (len(body.breaks) and scene.resistive):
+        return ()
+    of_drag = lambda table: np.array([table.drag2, table.drag3, table.drag_roll])  # noqa: E731
+    angle = np.linspace(0.0, np.pi, 1 + PLACES * grid.matrix.shape[1])
+    field = lambda x: of_drag(sections_of(body, scene, x))  # noqa: E731
+    return missed_within(field, of_drag(sections), grid, body.breaks, 0.5 - 0.5 * np.cos(angle))
 
 
 def righting_time(scene: Scene, sections: SectionData, weight: np.ndarray) -> float:
@@ -106,8 +121,12 @@ def righting_time(scene: Scene, sections: SectionData, weight: np.ndarray) -> fl
     return float(np.sqrt(weight @ sections.inertia1 / moment)) if moment > 0.0 and not scene.planar else np.inf
 
 
-def stations_of(body: Body, scene: Scene, grid: Grid, x: np.ndarray) -> StationData:
-    """Tabulate `body` in `scene` at the stations `x` (M,) [m]."""
+def stations_of(body: Body, scene: Scene, grid: Grid, nodes: SectionData, x: np.ndarray) -> StationData:
+    """Tabulate `body` in `scene` at the stations `x` (M,) [m]; `nodes`: the sections at the nodes of `grid`."""
+    missed = []
+    if len(body.breaks):
+        table = missed_before(lambda at: np.array(sections_of(body, scene, at)), np.array(nodes), grid, body.breaks, x)
+        missed = [SectionData(*each)._replace(reynolds=nodes.reynolds) for each in np.ascontiguousarray(table)]
     a_squared, b_squared, a_slope, b_slope = body.squares(x)
     slope2, slope3, _ = added_masses(body, scene, a_slope, b_slope)
     rho = scene.fluid_density if scene.reactive else 0.0
@@ -118,7 +137,24 @@ def stations_of(body: Body, scene: Scene, grid: Grid, x: np.ndarray) -> StationD
         added2_slope=slope2,
         added3_slope=slope3,
         added_roll_slope=rho * np.pi / 4.0 * (a_squared - b_squared) * (a_slope - b_slope),
+        missed=missed,
     )
+
+
+def sections_on(body: Body, scene: Scene, grid: Grid) -> SectionData:
+    """Section data of `body` in `scene` at the nodes of `grid`; those of a body from data with its moments."""
+    sections = sections_of(body, scene, grid.x)
+    if not len(body.breaks):
+        return sections
+    table = SectionData(*with_moments(lambda x: np.array(sections_of(body, scene, x)), grid, body.breaks))
+    drags = {name: _off_zero(getattr(table, name)) for name in ("drag2", "drag3", "drag_roll")}
+    return table._replace(reynolds=sections.reynolds, **drags)
+
+
+def _off_zero(values: np.ndarray) -> np.ndarray:
+    """The same with no zero, such as that at a pointed tail: a weight of it can then stand for any load there."""
+    least = LEAST * np.max(np.abs(values))
+    return np.where(np.abs(values) < least, least, values)
 
 
 def sections_of(body: Body, scene: Scene, x: np.ndarray) -> SectionData:

@@ -14,7 +14,7 @@ from eel_dynamics.model.grid import Grid
 from eel_dynamics.model.inertia import check_inertia
 from eel_dynamics.model.panels import panels_of
 from eel_dynamics.model.scene import Scene
-from eel_dynamics.model.section_data import SectionData, core_swimmer, nose_of, righting_time, sections_of
+from eel_dynamics.model.section_data import SectionData, core_swimmer, nose_of, righting_time, sections_on
 
 
 class GridSettings(NamedTuple):
@@ -58,7 +58,7 @@ def discretise(body: Body, scene: Scene, settings: GridSettings, stations: bytes
     """
     x = np.frombuffer(stations)
     grid = Grid.of(panels_of(body, settings.resolution, settings.knots, scene.internal_wrench or scene.ledger))
-    sections = sections_of(body, scene, grid.x)
+    sections = sections_on(body, scene, grid)
     check_inertia(grid, sections, nose_of(body, scene)[0], body.length, scene.planar)
     nodes_before = np.searchsorted(grid.x, x, side="right")
     base = np.where(nodes_before > 0, grid.x[nodes_before - 1], 0.0)

@@ -25,12 +25,20 @@ struct Swimmer {
     bool distributed_pressure = false;    // -d/dX(T_f t1) along the body in place of -T_f t1 at the tail
     double righting = 0.0;                // [m^2/s^2], g h of the righting moment; 0: none
 
+    // For some speeds: parts of the nodes that the integral of the drag from a panel's start misses, by the drag at the
+    // node [m]; at fractions (1 - cos(pi k / last)) / 2 of the panel, k = 0 ... last. None where the sections are
+    // smooth.
+    std::array<std::vector<Row>, speeds> missed_drag;
+
     // Where profiles are given:
     std::size_t stations = 0;
     Sections at_station;
     Row added2_slope, added3_slope, added_roll_slope;  // derivatives by X
     std::vector<std::size_t> nodes_before;             // how many nodes lie at or before the station
     FromNose to_station;
+    // For each station: of each node, the part of the sections' integral up to the station that `to_station` misses.
+    // Empty where the sections are as smooth as the motion.
+    std::vector<Sections> missed;
 };
 
 }  // namespace eel_core

@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Nodal values of a field that is smooth only between the data points of a body.
+
+The derivatives of a spline jump at its data points, which lie inside the panels. A panel's polynomial through values at
+its nodes then misses the integrals of the field. So the nodal values f_j of a panel with p nodes are chosen such that
+their polynomial has the field's moments, and its value at the panel's end:
+
+    sum_j w_j f_j P_k(u_j) = integral of f P_k dX,  k = 0 ... p - 2,    f_p = f(end)
+
+P_k: Legendre polynomials of the panel's variable u; w_j: weights of the panel's Radau points. The integral over the
+panel of the field times a smooth function, such as the motion of the body, is then as exact as that of a smooth field.
+Up to a place within the panel, each node's part in the integral lacks what `missed_before` and `missed_within` give.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from eel_dynamics.model.grid import (
+    Grid,
+    Panel,
+    collocation_matrix,
+    integration_matrix,
+    interpolation_matrix,
+    radau_points,
+)
+
+PARTS = np.linspace(0.0, 1.0, 9)[1:]  # of a panel, each short beside the waves of its polynomials
+GAUSS_POINTS = 8  # in each part, or between two breaks in it
+
+
+def with_moments(field: Callable[[np.ndarray], np.ndarray], grid: Grid, breaks: np.ndarray) -> np.ndarray:
+    """Values (m, n) at the nodes of `grid` with the moments of `field` over each panel.
+
+    field: of X (M,) [m] to values (m, M); it is smooth between the `breaks` [m], which rise.
+    """
+    values, begin = field(grid.x), 0
+    for panel in grid.panels:
+        span = slice(begin, begin + panel.points)
+        values[:, span] += _correction(field, panel, values[:, span], breaks)
+        begin += panel.points
+    return values
+
+
+def missed_before(field, values: np.ndarray, grid: Grid, breaks: np.ndarray, x: np.ndarray) -> np.ndarray:
+    """Of each node, what its part in the integral from the nose to X = `x` (M,) [m], ascending, misses: (M, m, n).
+
+    With a smooth function g, the integral of field g is the sum over the nodes of the missed times g, plus what the
+    `grid` gives for the `values` (m, n) times g.
+    """
+    home, begin = grid.panel_at(x), 0
+    result = np.zeros((len(x), len(values), len(grid.x)))
+    for index, panel in enumerate(grid.panels):
+        span, here = slice(begin, begin + panel.points), home == index
+        if here.any():
+            result[here, :, span] = _missed(field, panel, values[:, span], breaks, panel.fraction(x[here]))
+        begin += panel.points
+    return result
+
+
+def missed_within(field, values: np.ndarray, grid: Grid, breaks: np.ndarray, fractions: np.ndarray) -> np.ndarray:
+    """The same from the start of each node's panel to `fractions` (K,) of it, by the values at the nodes: (m, K, n)."""
+    result, begin = np.zeros((len(fractions), *values.shape)), 0
+    for panel in grid.panels:
+        span = slice(begin, begin + panel.points)
+        result[:, :, span] = _missed(field, panel, values[:, span], breaks, fractions)
+        begin += panel.points
+    result = np.divide(result, values, out=np.zeros_like(result), where=values != 0.0)
+    return np.ascontiguousarray(result.transpose(1, 0, 2))
+
+
+def _missed(field, panel: Panel, values: np.ndarray, breaks: np.ndarray, upto: np.ndarray) -> np.ndarray:
+    """Of the p nodes of `panel`, up to the fractions `upto` (M,) of it: (M, m, p)."""
+    ends = np.unique(np.concatenate((panel.fraction(_inside(panel, breaks)), PARTS, upto)))
+    at, weight = _gauss_points(ends)
+    x, scale = panel.locate(at)
+    shape = len(ends), GAUSS_POINTS
+    fields = (field(x) * (weight * scale)).reshape(-1, *shape).transpose(1, 0, 2)
+    exact = np.cumsum(fields @ interpolation_matrix(panel.points, at).reshape(*shape, -1), axis=0)
+    rows = integration_matrix(panel.points, upto) * panel.locate(radau_points(panel.points))[1]
+    return exact[np.searchsorted(ends, upto)] - rows[:, None, :] * values
+
+
+def _correction(field, panel: Panel, values: np.ndarray, breaks: np.ndarray) -> np.ndarray:
+    """What the `values` (m, p) at the nodes of `panel` lack of the moments; nothing at the panel's end."""
+    inside = panel.fraction(_inside(panel, breaks))
+    if not len(inside):
+        return np.zeros_like(values)
+    at, weight = _gauss_points(np.union1d(inside, PARTS))
+    x, scale = panel.locate(at)
+    moments = (field(x) * (weight * scale)) @ _legendre(panel, at)
+    nodes = radau_points(panel.points)
+    scale, basis = panel.locate(nodes)[1], _legendre(panel, nodes)
+    moments -= (values * (collocation_matrix(panel.points)[-1] * scale)) @ basis
+    series = moments * (2.0 * np.arange(panel.points) + 1.0)
+    series[:, -1] = -series[:, :-1].sum(axis=1)  # P_k = 1 at the panel's end
+    correction = series @ basis.T
+    return np.divide(correction, scale, out=np.zeros_like(correction), where=scale > 0.0)
+
+
+def _legendre(panel: Panel, at: np.ndarray) -> np.ndarray:
+    return legendre.legvander(2.0 * at - 1.0, panel.points - 1)
+
+
+def _inside(panel: Panel, breaks: np.ndarray) -> np.ndarray:
+    return breaks[(breaks > panel.start) & (breaks < panel.end)]
+
+
+def _gauss_points(ends: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Points and weights, as fractions of a panel, of Gauss' rule from its start to the first of the `ends`, and on."""
+    points, weights = legendre.leggauss(GAUSS_POINTS)
+    half = 0.5 * np.diff(ends, prepend=0.0)[:, None]
+    return (ends[:, None] - half * (1.0 - points)).ravel(), (half * weights).ravel()
