@@ -258,6 +258,7 @@ def simulate(
     law = law_from(law, duration, length)
     sample_period = default_sample_period([law], duration) if sample_period is None else sample_period
     times = checked_times(duration, sample_period)
+    accuracy = Accuracy.to_refine(accuracy) if estimate else accuracy
     swimmer = SwimmerArguments.of(law, body, scene, accuracy, position, orientation, twist, most_evaluations)
     x, wrench = checked_stations(stations, swimmer.body.length), swimmer.scene.internal_wrench
     check_memory(1, len(times), len(x), wrench, bool(load), runs=2 if estimate else 1)
