@@ -248,10 +248,10 @@ class Accuracy:
 _of_number = lru_cache(maxsize=64)(Accuracy._of)
 
 
-def within_budget(budget: Budget, scene, swim_time: Callable[[object, float], float]) -> Accuracy:
+def within_budget(budget: Budget, scene, swim_time: Callable[[float], float]) -> Accuracy:
     """The finest settings of the `BUDGET_TARGETS` that keep within the `budget` in `scene`. `ValueError` if none do.
 
-    swim_time(scene, target): wall time [s] per simulated second.
+    swim_time(target): wall time [s] per simulated second.
     """
-    best = budget.finest(BUDGET_TARGETS, lambda target: swim_time(scene, target))
+    best = budget.finest(BUDGET_TARGETS, swim_time)
     return replace(Accuracy.of(best).in_scene(scene), name=budget.name)
