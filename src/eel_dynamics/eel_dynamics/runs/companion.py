@@ -108,7 +108,7 @@ def _for_target(swim, target: float | None):
 
 
 def _on_another_grid(request, swim, accuracy: Accuracy) -> Accuracy:
-    """The settings `accuracy`, with more points where they would give the grid of `swim`: nodes fill blocks of eight."""
+    """The settings `accuracy`, with more points where they would give the grid of `swim` (nodes fill blocks)."""
     return accuracy.with_other_points() if _nodes(request, accuracy) == swim.run.nodes else accuracy
 
 

@@ -60,9 +60,7 @@ def discretise(body: Body, scene: Scene, settings: GridSettings, stations: bytes
 
 
 @lru_cache(maxsize=256)
-def _on_panels(
-    body: Body, scene: Scene, panels: tuple[Panel, ...], kinks: str, stations: bytes
-) -> Discretisation:
+def _on_panels(body: Body, scene: Scene, panels: tuple[Panel, ...], kinks: str, stations: bytes) -> Discretisation:
     """Many resolutions give the same `panels`: nodes fill blocks of eight."""
     x, grid = np.frombuffer(stations), Grid.of(panels)
     sections = sections_of(body, scene, grid.x)

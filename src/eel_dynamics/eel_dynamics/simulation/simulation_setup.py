@@ -64,7 +64,7 @@ class SimulationSetup:
     initial_state: InitialState
     default_transition: float  # s
     most_evaluations: float  # by simulated second
-    swim_time: Callable[[Body, Scene, bytes, float], float]  # s of wall time by simulated second: `simulation.swim_time`
+    swim_time: Callable[[Body, Scene, bytes, float], float]  # s by simulated second: `simulation.swim_time`
 
     @staticmethod
     def of(

@@ -83,10 +83,11 @@ at fine ones. What sets the margin between target and delivered error:
   the number of evaluations and the error as they are. Adams' method has cheaper steps there.
 - The grid is no limit but for its smallest sizes. Nodes come in blocks of eight; each block gains a factor of 100 or
   more: 16 nodes deliver 1e-1, 24 nodes 1e-3, 32 nodes 1e-5. Where drag has kinks, a plateau near 5e-5 remains.
-- The estimate. It is the companion's error, some 15 to 20 times that of the run, and must lie below the target too. The
-  median run is therefore 20 times better than its target. A closer companion, or a part of the estimate, has missed
-  errors: in 1 of 100 swims the run was as wrong as its companion.
-- The spread. Errors of swims at one setting differ by a factor of 30 either way.
+- The estimate. It is the companion's error, some 15 times that of the run, and must lie below two thirds of the target.
+  A closer companion, or a part of the estimate, has missed errors: in up to 1 of 100 swims the run was as wrong as its
+  companion.
+- The spread. Errors of swims at one setting differ by a factor of 30 either way, and a run that is made finer for its
+  estimate's sake gains a factor of 6 or more.
 
 The companion follows the whole swim. Over the first half of it alone, the distance was 40 times too small in the worst
 of 110 swims whose growth up to there was below e^3, and 145 times in the worst of 120 sensitive ones: the growth that is

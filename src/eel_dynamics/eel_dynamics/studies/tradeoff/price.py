@@ -65,7 +65,9 @@ def _price(known: list, accuracy, *, estimate: bool) -> Price:
 def draw_prices(figure, grey: list[Price], targets: list[Price]):
     """Cost over delivered error: every setting a grey point, and the targets, without and with their estimate."""
     axes = figure.subplots()
-    axes.loglog([max(each.error, LEAST) for each in grey], [each.cost for each in grey], ".", color=GREY, label="settings")
+    axes.loglog(
+        [max(each.error, LEAST) for each in grey], [each.cost for each in grey], ".", color=GREY, label="settings"
+    )
     error = [max(each.error, LEAST) for each in targets]
     axes.loglog(error, [each.cost for each in targets], "o-", color=BLUE, label="targets: the run")
     axes.loglog(error, [each.whole for each in targets], "s:", color=ORANGE, label="with its estimate")
