@@ -30,7 +30,7 @@ PRESETS = {"draft": 1e-2, "standard": 1e-4, "fine": 1e-6, "reference": 1e-8}
 COARSEST, FINEST = 0.1, 1e-10
 # Errors of steps that add up in a swim: of one that measures its error, and is made finer where that is too great; and
 # of motions that cannot be, such as a node's, with room for sensitive ones.
-STEPS_ERRORS, SAFE_STEPS_ERRORS = 300.0, 1000.0
+STEPS_ERRORS, SAFE_STEPS_ERRORS = 400.0, 1000.0
 POINTS_PER_DECADE = 8.0  # per body length: one block of nodes, which processors take at once
 COARSE_POINTS = 11.0, -12.0  # per decade, and at a target of one, where these are fewer: for runs that are made finer
 # The pair's output between steps is of order 4 and Adams' is a cubic: below this target its torque needs shorter steps.

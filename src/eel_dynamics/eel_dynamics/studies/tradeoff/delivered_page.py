@@ -21,7 +21,7 @@ Made by `tradeoff --delivered --count {count} --seed {seed} --page {page}`.
 The presets are targets: `draft` 1e-2, `standard` 1e-4, `fine` 1e-6, `reference` 1e-8.
 
 **From a target to settings.** One rule (`accuracy.py`) chooses them. `simulate` and `simulate_batch` begin with a
-tolerance per step of a 300th of the target, because a run takes hundreds of steps, and make the run finer where its
+tolerance per step of a 400th of the target, because a run takes hundreds of steps, and make the run finer where its
 measured error asks for it. A motion that cannot be made finer (a node's, `Simulation`, `estimate=False`) has a
 thousandth, and more points at coarse targets: sensitive ones need that. The body gets eight points per length for each
 decade of the target, because Gauss quadrature in panels without kinks converges exponentially. Runs with energy ledger
@@ -30,9 +30,9 @@ method of order 5.
 
 **Each run measures its own error** (`companion.py`). A second run, the *companion*, has 30 times the tolerance, half
 of the points (always on another grid) and longest steps of 1.5 times the length. It keeps no ledger, so it marches by
-Adams' method, with 10 times the tolerance where the run used the pair: Adams' error is some three times that. The difference between the two is
-`run.error_estimate`. It is mostly the companion's error, so the estimate is conservative. It is not scaled by an
-order. It includes the growth of errors in a sensitive motion, which the error of a single step does not.
+Adams' method, with 10 times the tolerance where the run used the pair: Adams' error is some three times that.
+The difference between the two is `run.error_estimate`. It is mostly the companion's error, so the estimate is
+conservative. It is not scaled by an order. It includes the growth of errors in a sensitive motion, which the error of a single step does not.
 
 **If the estimate is above two thirds of the target**, the run becomes the companion of a finer run, up to four
 times. The new estimate counts for no less than the last one times the ratio of the tolerances: where two runs are
@@ -90,8 +90,8 @@ at fine ones. What sets the margin between target and delivered error:
   estimate's sake gains a factor of 6 or more.
 
 The companion follows the whole swim. Over the first half of it alone, the distance was 40 times too small in the worst
-of 110 swims whose growth up to there was below e^3, and 145 times in the worst of 120 sensitive ones: the growth that is
-seen early does not tell the later one.
+of 110 swims whose growth up to there was below e^3, and 145 times in the worst of 120 sensitive ones: the growth that
+is seen early does not tell the later one.
 """
 
 
