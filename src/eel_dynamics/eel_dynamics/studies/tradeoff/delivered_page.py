@@ -32,7 +32,8 @@ method of order 5.
 of the points (always on another grid) and longest steps of 1.5 times the length. It keeps no ledger, so it marches by
 Adams' method, with 10 times the tolerance where the run used the pair: Adams' error is some three times that.
 The difference between the two is `run.error_estimate`. It is mostly the companion's error, so the estimate is
-conservative. It is not scaled by an order. It includes the growth of errors in a sensitive motion, which the error of a single step does not.
+conservative. It is not scaled by an order. It includes the growth of errors in a sensitive motion, which the error of a
+single step does not.
 
 **If the estimate is above two thirds of the target**, the run becomes the companion of a finer run, up to four
 times. The new estimate counts for no less than the last one times the ratio of the tolerances: where two runs are
