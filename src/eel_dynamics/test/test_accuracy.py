@@ -5,10 +5,11 @@ import numpy as np
 import pytest
 from eel_dynamics.accuracy.accuracy import BUDGET_TARGETS
 from eel_dynamics.runs.companion import relative_errors
+from eel_dynamics.simulation.simulation import swim_time
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.term import Term
 
-from eel_dynamics import Accuracy, Scene, Simulation, SimulationStopped, simulate, simulate_batch
+from eel_dynamics import Accuracy, Body, Scene, Simulation, SimulationStopped, simulate, simulate_batch
 from eel_gaits import falling, gait, straight
 
 REFERENCE = Accuracy(name="reference", resolution=150.0, tolerance=1e-12)
@@ -49,13 +50,34 @@ def test_an_order_that_does_not_exist():
 def test_a_budget_buys_the_finest_target_that_keeps_within_it(monkeypatch):
     """The timings are given here, so that no machine decides: 1 ms at 1e-2, ten times that for each hundredth."""
     monkeypatch.setattr(
-        "eel_dynamics.simulation.simulation.swim_time", lambda scene, target: 1e-3 * (1e-2 / target) ** 0.5
+        "eel_dynamics.simulation.simulation.swim_time",
+        lambda body, scene, stations, target: 1e-3 * (1e-2 / target) ** 0.5,
     )
     bought = Simulation(accuracy="fastest within 5 ms per second").accuracy
     affordable = [target for target in BUDGET_TARGETS if 1e-3 * (1e-2 / target) ** 0.5 <= 5e-3]
     assert bought.target == min(affordable)
     with pytest.raises(ValueError, match="cannot be met"):
         Simulation(accuracy="fastest within 1 us per second")
+
+
+def test_a_budget_is_measured_for_the_body_scene_and_stations_at_hand(monkeypatch):
+    """A body of many panels takes longer, so the same time affords less. The timings are given here."""
+    asked = []
+
+    def swim_time(body, scene, stations, target):
+        asked.append((body, scene, stations))
+        return 1e-3 * (len(body.panel_ends) / 3.0) ** 4 * (1e-2 / target) ** 0.5
+
+    monkeypatch.setattr("eel_dynamics.simulation.simulation.swim_time", swim_time)
+    body, scene, x = Body.kern2006(0.3), Scene(density=700.0), np.array([0.0, 0.1])
+    few = Simulation(body, scene, "fastest within 5 ms per second", x).accuracy
+    assert set(asked) == {(body, scene, x.tobytes())}
+    many = Simulation(accuracy="fastest within 5 ms per second").accuracy
+    assert few.target < many.target
+
+
+def test_the_time_of_a_swim_is_of_that_body():
+    assert swim_time(Body.kern2006(0.3), Scene(planar=True), np.zeros(1).tobytes(), 1e-1) > 0.0
 
 
 def test_a_budget_is_measured_on_this_machine():

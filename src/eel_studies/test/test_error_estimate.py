@@ -14,7 +14,7 @@ from eel_dynamics.runs.companion import relative_errors
 from eel_studies.tradeoff import delivered
 from eel_studies.tradeoff.delivered import deliver
 
-from eel_dynamics import Accuracy, Body, Scene, simulate, simulate_batch
+from eel_dynamics import Accuracy, Body, Scene, Simulation, simulate, simulate_batch
 from eel_gaits import falling, still, straight
 
 FINE = Accuracy(name="fine settings", resolution=70.0, tolerance=1e-11)
@@ -141,6 +141,18 @@ def estimate_with(monkeypatch, run, **changed):
     return again.error_estimate
 
 
+def test_settings_to_refine_are_cheaper_and_others_keep_their_room():
+    """A node's motion cannot be made finer, so only `simulate` and `simulate_batch` begin with the cheaper settings."""
+    swim = {"law": straight(), "duration": 1.0, "accuracy": 1e-2}
+    measured, bare = simulate(**swim), simulate(**swim, estimate=False)
+    node = Simulation(law=straight(), accuracy=1e-2)
+    assert bare.accuracy == node.accuracy and len(node.grid.x) == bare.nodes
+    assert measured.accuracy.tolerance > 2.0 * bare.accuracy.tolerance
+    assert measured.nodes * measured.evaluations < bare.nodes * bare.evaluations
+    assert simulate_batch([straight()], 1.0, accuracy=1e-2).accuracies[0] == measured.accuracy
+    assert simulate(**swim | {"accuracy": measured.accuracy}, estimate=False).accuracy == measured.accuracy
+
+
 def test_a_companion_on_nearly_the_same_grid_would_miss_the_error_of_the_grid(monkeypatch):
     few = Accuracy(name="few points", resolution=6.0, tolerance=1e-11)
     run = simulate(straight(), 3.0, scene=Scene(ledger=False), accuracy=few, stations=11)
@@ -155,6 +167,7 @@ def test_a_companion_with_the_same_steps_would_miss_the_error_of_the_steps(monke
     run = simulate(straight(), 3.0, scene=Scene(ledger=False), accuracy=loose, stations=11)
     true = relative_errors(run, simulate(straight(), 3.0, scene=run.scene, accuracy=FINE, stations=11, estimate=False))
     assert run.error_estimate.worst > true.worst
+    monkeypatch.setattr(Accuracy, "by_adams", lambda self: self)
     assert estimate_with(monkeypatch, run, LOOSER=1.0, LONGER_STEPS=1.0).worst < 0.1 * true.worst
 
 

@@ -183,7 +183,10 @@ def test_options_that_do_not_go_together_are_named(words, told, capsys):
 def test_pictures_of_what_is_delivered_need_no_page(tmp_path, capsys):
     folder = tmp_path / "new"  # made, as `figures --out` makes it
     assert main(["--delivered", "--count", "2", "--seed", "3", "--pictures", str(folder)]) == 0
-    assert sorted(path.name for path in folder.iterdir()) == ["delivered.png", "delivered.svg"]
+    assert sorted(path.name for path in folder.iterdir()) == [
+        *("delivered.png", "delivered.svg"),
+        *("price.png", "price.svg"),
+    ]
     assert main(["--delivered", "--pictures", str(folder / "none" / "at all")]) == 2
     assert "must be a folder that exists" in capsys.readouterr().err
 

@@ -9,8 +9,8 @@ One rule leads from a target to settings, and `simulate` measures the error that
 - The tolerance per step is the target divided by `STEPS_ERRORS`. A swim takes hundreds of steps, whose errors add up.
 - The points per body length grow by `POINTS_PER_DECADE` for each decade of the target. Gauss points in panels without
   kinks converge exponentially, so a further decade costs a fixed number of points.
-- Runs with the internal wrench or the ledger march by the embedded pair: each step costs a quadrature of the works, so
-  few long steps are cheaper. Runs of the motion alone march by Adams' method: one evaluation in a step.
+- Runs with the ledger march by the embedded pair: each step costs a quadrature of the works, so few long steps are
+  cheaper. So do runs with the internal wrench at fine targets. Others march by Adams' method: one evaluation in a step.
 - Fixed steps of the classical method, of order 4, grow in number with the fourth root of the target.
 """
 
@@ -28,8 +28,13 @@ from eel_dynamics.model.section_data import WATCHED
 
 PRESETS = {"draft": 1e-2, "standard": 1e-4, "fine": 1e-6, "reference": 1e-8}
 COARSEST, FINEST = 0.1, 1e-10
-STEPS_ERRORS = 1000.0  # errors of steps that add up in a swim
+# Errors of steps that add up in a swim: of one that measures its error, and is made finer where that is too great; and
+# of motions that cannot be, such as a node's, with room for sensitive ones.
+STEPS_ERRORS, SAFE_STEPS_ERRORS = 400.0, 1000.0
 POINTS_PER_DECADE = 8.0  # per body length: one block of nodes, which processors take at once
+COARSE_POINTS = 11.0, -12.0  # per decade, and at a target of one, where these are fewer: for runs that are made finer
+# The pair's output between steps is of order 4 and Adams' is a cubic: below this target its torque needs shorter steps.
+CUBIC_TARGET = 5e-4
 LEAST_POINTS = 4.0  # per body length
 FIXED_STEPS = 12.0  # per period, of the classical method at a target of 1e-2
 BUDGET_TARGETS = tuple(10.0 ** (-0.5 * k) for k in range(2, 19))  # 0.1 to 1e-9, among which a budget of time chooses
@@ -47,9 +52,11 @@ SPARED = 8.0  # points per length that grow with the waves too, of those that th
 # The longest step differs too, because it alone may limit the steps of both. With ten times the tolerance Adams' method
 # often takes the same steps: 9 of 277 random swims then had an error above its estimate, with 30 times 3.
 LOOSER, FEWER_POINTS, LONGER_STEPS = 30.0, 0.5, 1.5
+ADAMS_ERROR = 3.0  # some times that of the embedded pair at the same tolerance
 # What a tightened run changes with the ratio r < 1 of the wanted error to the measured one: the tolerance with r^1.2,
 # the points with r^-0.2, the longest steps with r^0.2. Orders 5 to 6 lose r or more in each of them.
 TIGHTER, DENSER, SHORTER = 1.2, 0.2, 0.2
+LEAST_TIGHTER, LEAST_DENSER = 1.0 / 8.0, 1.4  # the run before becomes the companion of the tightened one
 LEAST_TIGHTENED = 0.02  # least ratio in one go: a saturated error says little of the settings
 
 
@@ -70,6 +77,8 @@ class Accuracy:
         kinks: which kinks of the drag along the body are found and integrated exactly: "all", the "jumps" alone, or
             "none". V|V| has a kink where cross flow or roll change their sign; the printed friction law jumps.
         longest_step: of adaptive steps, relative to the shortest time over which the shape changes; up to 1.
+        refinable: whether the run is made finer where its measured error exceeds the target, as by `simulate`: then
+            the settings chosen for a target are cheaper.
     """
 
     name: str
@@ -82,6 +91,7 @@ class Accuracy:
     fixed: float | None = None
     kinks: str = "all"
     longest_step: float = LONGEST_STEP
+    refinable: bool = False
 
     def __post_init__(self):
         if self.step is not None or self.fixed is not None:
@@ -136,11 +146,17 @@ class Accuracy:
         """The settings for the target in `scene`. Settings that were given one by one stay the same."""
         if self.target is None:
             return self
-        resolution = max(LEAST_POINTS, POINTS_PER_DECADE * math.log10(1.0 / self.target))
+        decades = math.log10(1.0 / self.target)
+        points = POINTS_PER_DECADE * decades
+        if self.refinable:
+            points = min(points, COARSE_POINTS[0] * decades + COARSE_POINTS[1])
+        resolution = max(LEAST_POINTS, points)
         if self.fixed is not None:
             return replace(self, resolution=resolution, fixed=FIXED_STEPS * (1e-2 / self.target) ** 0.25)
-        method = "dormand_prince" if scene.internal_wrench or scene.ledger else "adams"
-        tolerance = max(FINEST_TOLERANCE, self.target / STEPS_ERRORS)
+        pair = scene.ledger or (scene.internal_wrench and not (self.refinable and self.target > CUBIC_TARGET))
+        method = "dormand_prince" if pair else "adams"
+        steps = STEPS_ERRORS if self.refinable else SAFE_STEPS_ERRORS
+        tolerance = max(FINEST_TOLERANCE, self.target / steps)
         return replace(self, resolution=resolution, tolerance=tolerance, method=method, order=5)
 
     def as_it_is(self) -> "Accuracy":
@@ -151,11 +167,17 @@ class Accuracy:
         """Settings with some ten times the error, for the companion with which a run measures its own error."""
         return self._changed(LOOSER, FEWER_POINTS, LONGER_STEPS)
 
+    def by_adams(self) -> "Accuracy":
+        """Settings with some such error by Adams' method, where these are those of the embedded pair."""
+        if self.method != "dormand_prince":
+            return self
+        return replace(self, method="adams", order=5, tolerance=max(FINEST_TOLERANCE, self.tolerance / ADAMS_ERROR))
+
     def tightened(self, ratio: float) -> "Accuracy":
         """Settings for an error of `ratio` (< 1) times the error with these. These settings suit their companion."""
         ratio = max(ratio, LEAST_TIGHTENED)
         looser, denser, longer = ratio**TIGHTER, ratio**-DENSER, ratio**SHORTER
-        changes = min(looser, 1.0 / LOOSER), max(denser, 1.0 / FEWER_POINTS), min(longer, 1.0 / LONGER_STEPS)
+        changes = min(looser, LEAST_TIGHTER), max(denser, LEAST_DENSER), min(longer, 1.0 / LONGER_STEPS)
         return replace(self._changed(*changes), kinks="all")
 
     def with_other_points(self) -> "Accuracy":
@@ -174,6 +196,12 @@ class Accuracy:
             fixed=self.fixed and self.fixed / longer,
             target=None,
         )
+
+    @staticmethod
+    def to_refine(value: "str | float | Accuracy") -> "Accuracy":
+        """As `of`, for a run that is made finer where it misses its target."""
+        accuracy = Accuracy.of(value)
+        return replace(accuracy, refinable=True) if getattr(accuracy, "target", None) else accuracy
 
     @staticmethod
     def of(value: "str | float | Accuracy") -> "Accuracy":
@@ -220,10 +248,10 @@ class Accuracy:
 _of_number = lru_cache(maxsize=64)(Accuracy._of)
 
 
-def within_budget(budget: Budget, scene, swim_time: Callable[[object, float], float]) -> Accuracy:
+def within_budget(budget: Budget, scene, swim_time: Callable[[float], float]) -> Accuracy:
     """The finest settings of the `BUDGET_TARGETS` that keep within the `budget` in `scene`. `ValueError` if none do.
 
-    swim_time(scene, target): wall time [s] per simulated second.
+    swim_time(target): wall time [s] per simulated second.
     """
-    best = budget.finest(BUDGET_TARGETS, lambda target: swim_time(scene, target))
+    best = budget.finest(BUDGET_TARGETS, swim_time)
     return replace(Accuracy.of(best).in_scene(scene), name=budget.name)

@@ -136,7 +136,7 @@ class Body:
         squares = np.array(self.squares(np.array([0.5 * self.length, self.length]))[:2])
         return bool(np.min(squares[:, 1]) <= SHARP**2 * np.max(squares))
 
-    @property
+    @cached_property
     def volume(self) -> float:
         """Integral of pi a b dX [m^3]."""
         grid = Grid.of(panels_of(self, resolution=40))

@@ -15,7 +15,7 @@ from eel_dynamics.accuracy.error_estimate import SMALL, ErrorEstimate, growth_ra
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 ACCEPTED = 1.5  # factor of the target by which an estimate must lie below it
-MOST_REFINEMENTS = 3  # of a run whose error is above its target
+MOST_REFINEMENTS = 4  # of a run whose error is above its target
 RESAMPLING = 1.0 / 3.0  # 1 / (2^p - 1) of the order p = 2 of an interpolation
 HALVINGS = 8  # of an unstable step, at most, in the search for a stable one
 
@@ -47,10 +47,8 @@ def with_error_estimate(swim, request):
     target = getattr(request.swimmer.accuracy, "target", None)  # a budget of time has none
     if swim.stopped is not None or len(request.times) < 2:
         return swim
-    coarser = swim.run.accuracy.coarser()
-    if _nodes(request, coarser) == swim.run.nodes:
-        coarser = coarser.with_other_points()
-    companion = _finished(request, coarser)
+    marching = _without_ledger(request)
+    companion = _finished(marching, _on_another_grid(marching, swim, swim.run.accuracy.coarser().by_adams()))
     for refinement in range(MOST_REFINEMENTS + 1):
         error = ErrorEstimate(np.inf, None) if companion is None else relative_errors(swim.run, companion.run)
         if refinement and companion is not None:  # it falls with the tolerance at most: else the two agree by chance
@@ -64,11 +62,12 @@ def with_error_estimate(swim, request):
             break
         if refinement and error.hopeless(target, float(swim.run.time[-1])):  # the first pair may be far apart
             break
-        finer = _finished(request, swim.run.accuracy.tightened(target / ACCEPTED / error.worst))
+        tightened = swim.run.accuracy.tightened(target / ACCEPTED / error.worst)
+        finer = _finished(request, _on_another_grid(request, swim, tightened))
         if finer is None:
             break
         companion, swim = swim, _for_target(finer, target)
-    return swim._replace(run=_with_resampling(swim.run, request, others))
+    return swim._replace(run=_with_resampling(swim.run, marching, others))
 
 
 def _with_resampling(run, request, others: list):
@@ -98,8 +97,19 @@ def _with_resampling(run, request, others: list):
     return replace(run, error_estimate=error)
 
 
+def _without_ledger(request):
+    """The `request` for a motion and its torque alone: Adams' method is the cheaper one without a ledger."""
+    swimmer = request.swimmer
+    return request._replace(swimmer=swimmer._replace(scene=replace(swimmer.scene, ledger=False)))
+
+
 def _for_target(swim, target: float | None):
     return swim._replace(run=replace(swim.run, accuracy=replace(swim.run.accuracy, target=target))) if target else swim
+
+
+def _on_another_grid(request, swim, accuracy: Accuracy) -> Accuracy:
+    """The settings `accuracy`, with more points where they would give the grid of `swim` (nodes fill blocks)."""
+    return accuracy.with_other_points() if _nodes(request, accuracy) == swim.run.nodes else accuracy
 
 
 def _nodes(request, accuracy: Accuracy) -> int | None:

@@ -286,6 +286,7 @@ def simulate(
     law = law_from(law, duration, length)
     sample_period = default_sample_period([law], duration) if sample_period is None else sample_period
     times = checked_times(duration, sample_period)
+    given = body, scene, Accuracy.to_refine(accuracy) if estimate else accuracy, *given[3:]
     swimmer = SwimmerArguments.of(law, *given)
     x, wrench = checked_stations(stations, swimmer.body.length), swimmer.scene.internal_wrench
     check_memory(1, len(times), len(x), wrench, bool(load), runs=2 if estimate else 1)

@@ -10,7 +10,7 @@ import eel_core
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.curvature.tabulated_law import Tabulation
 from eel_dynamics.model.body import Body
-from eel_dynamics.model.grid import Grid
+from eel_dynamics.model.grid import Grid, Panel
 from eel_dynamics.model.inertia import check_inertia
 from eel_dynamics.model.panels import panels_of
 from eel_dynamics.model.scene import Scene
@@ -50,19 +50,24 @@ class Discretisation(NamedTuple):
         return self
 
 
-@lru_cache(maxsize=256)
 def discretise(body: Body, scene: Scene, settings: GridSettings, stations: bytes) -> Discretisation:
     """Tabulate `body` in `scene` on a grid of these `settings`, and at the `stations`.
 
     stations: the bytes of the array of their X [m]. `ValueError` for a body without inertia in some direction.
     """
-    x = np.frombuffer(stations)
-    grid = Grid.of(panels_of(body, settings.resolution, settings.knots, scene.internal_wrench or scene.ledger))
+    panels = panels_of(body, settings.resolution, settings.knots, scene.internal_wrench or scene.ledger)
+    return _on_panels(body, scene, panels, settings.kinks, stations)
+
+
+@lru_cache(maxsize=256)
+def _on_panels(body: Body, scene: Scene, panels: tuple[Panel, ...], kinks: str, stations: bytes) -> Discretisation:
+    """Many resolutions give the same `panels`: nodes fill blocks of eight."""
+    x, grid = np.frombuffer(stations), Grid.of(panels)
     sections = sections_on(body, scene, grid)
     check_inertia(grid, sections, nose_of(body, scene)[0], body.length, scene.planar)
     nodes_before = np.searchsorted(grid.x, x, side="right")
     base = np.where(nodes_before > 0, grid.x[nodes_before - 1], 0.0)
-    swimmer = core_swimmer(body, scene, grid, sections, x, settings.kinks)
+    swimmer = core_swimmer(body, scene, grid, sections, x, kinks)
     tabulation = Tabulation(grid.x, grid.previous, x, base)
     mass, righting = float(grid.weight @ sections.mass), righting_time(scene, sections, grid.weight)
     return Discretisation(grid, sections, swimmer, mass, righting, tabulation)

@@ -4,6 +4,7 @@
 import math
 import time as clock
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -278,21 +279,34 @@ class Simulation:
 
 
 @cache
-def swim_time(scene: Scene, target: float) -> float:
-    """Wall time [s] per simulated second of the falling gait at a `target` in `scene`.
+def swim_time(body: Body, scene: Scene, stations: bytes, target: float) -> float:
+    """Wall time [s] per simulated second of `body` with the falling gait at a `target` in `scene`.
 
-    In a planar scene the gait is straight. The time is the least of some swims of two seconds with samples every
-    0.05 s.
+    stations: the bytes of the array of their X [m]. In a planar scene the gait is straight. The time is the least of
+    some swims of two seconds with samples every 0.05 s.
     """
-    law = straight() if scene.planar else falling()
+    x, law = np.frombuffer(stations), _scaled(straight() if scene.planar else falling(), body.length)
     settings = Accuracy.of(target).in_scene(scene).as_it_is()
     duration, best = 2.0, math.inf
     for repeat in range(4):  # the first fills caches
         start = clock.perf_counter()
-        simulation = Simulation(scene=scene, accuracy=settings, law=law)
+        simulation = Simulation(body, scene, settings, x, law=law)
         for sample in range(1, 41):
             simulation.advance(duration * sample / 40)
             simulation.observe(wrench=scene.internal_wrench, load=False)
         if repeat:
             best = min(best, (clock.perf_counter() - start) / duration)
     return best
+
+
+def _scaled(law: Law, length: float) -> Law:
+    """A `law` for a body of 1 m, for one of `length` [m]: the same angles and as many waves."""
+    terms = [
+        replace(
+            term,
+            wavelength=length * term.wavelength,
+            amplitude=tuple(part / length ** (power + 1) for power, part in enumerate(term.amplitude)),
+        )
+        for term in law.terms
+    ]
+    return Law(*terms, name=law.name)

@@ -3,7 +3,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import NamedTuple
 
 import numpy as np
@@ -64,7 +64,7 @@ class SimulationSetup:
     initial_state: InitialState
     default_transition: float  # s
     most_evaluations: float  # by simulated second
-    swim_time: Callable[[Scene, float], float]  # s of wall time by simulated second, of a scene and a target
+    swim_time: Callable[[Body, Scene, bytes, float], float]  # s by simulated second: `simulation.swim_time`
 
     @staticmethod
     def of(
@@ -76,7 +76,7 @@ class SimulationSetup:
         initial_state: tuple,
         default_transition: float,
         most_evaluations: float,
-        swim_time: Callable[[Scene, float], float],
+        swim_time: Callable[[Body, Scene, bytes, float], float],
     ) -> "SimulationSetup":
         """The set-up from the arguments of `Simulation`. `ValueError` names the one that does not fit.
 
@@ -159,7 +159,8 @@ class SimulationSetup:
     def settings(self) -> Accuracy:
         """The settings of the accuracy in this scene."""
         if isinstance(self.accuracy, Budget):
-            return within_budget(self.accuracy, self.scene, self.swim_time)
+            at_hand = partial(self.swim_time, self.body, self.scene, self.x.tobytes())
+            return within_budget(self.accuracy, self.scene, at_hand)
         return self.accuracy.in_scene(self.scene)
 
     def discretise(self, settings: GridSettings) -> Discretisation:

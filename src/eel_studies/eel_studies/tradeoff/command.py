@@ -25,6 +25,7 @@ from eel_studies.tradeoff.delivered import COUNT, SEED, deliver, delivered_table
 from eel_studies.tradeoff.delivered_page import write_delivered_page
 from eel_studies.tradeoff.drawing import DELIVERED_SIZE, SIZE, draw_delivered, draw_trade
 from eel_studies.tradeoff.page import reference_line, write_page
+from eel_studies.tradeoff.price import draw_prices, prices
 from eel_studies.tradeoff.settings import settings
 from eel_studies.tradeoff.table import model_table, trade_table, write_csv
 
@@ -102,10 +103,13 @@ def _deliver(options) -> int:
         folder = Path(options.pictures or Path(options.page).parent)
         for path in _save(lambda figure: draw_delivered(figure, trials), DELIVERED_SIZE, folder / "delivered"):
             print(f"written to {written_as(path)}")
+        found = prices(options.count, options.seed, _say)
+        for path in _save(lambda figure: draw_prices(figure, *found), DELIVERED_SIZE, folder / "price"):
+            print(f"written to {written_as(path)}")
     if options.page:
         page = Path(options.page)
-        picture = os.path.relpath(folder / "delivered.png", page.parent)
-        write_delivered_page(page, trials, options.count, options.seed, picture)
+        paths = (os.path.relpath(folder / name, page.parent) for name in ("delivered.png", "price.png"))
+        write_delivered_page(page, trials, options.count, options.seed, *paths)
         print(f"written to {written_as(page)}")
     return 0
 
