@@ -103,7 +103,7 @@ def test_body_of_what_is_no_archive(tmp_path):
     whole = packed.getvalue()
     for content in (plain.getvalue(), b"x,half_width\n", b"", whole[:-30], whole[:200] + b"###" + whole[203:]):
         path.write_bytes(content)
-        with refused("arr.npz", "it is not an .npz archive of section data"):
+        with refused("arr.npz", "it is damaged or foreign"):
             Body.from_file(path)
 
 
