@@ -81,7 +81,9 @@ def test_parameters_that_act_at_the_next_reset(start, client, tmp_path):
     assert swim.set(rate=100.0)[0].successful
     before = seconds(swim.latest("head_pose"))
     answer = swim.reset()
-    assert not answer.success and f"body file {shown(str(path))}: there is no such file" in answer.message, answer.message
+    assert not answer.success and f"body file {shown(str(path))}: there is no such file" in answer.message, (
+        answer.message
+    )
     swim.until_time(before + 0.3)
     assert swim.set(body="boyer2010")[0].successful and swim.reset().success
     swim.until(lambda: swim.received["body"][-1].length == 1.0, "the first body")

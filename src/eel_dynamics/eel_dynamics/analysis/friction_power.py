@@ -19,9 +19,9 @@ def drag_powers(run) -> np.ndarray:
     simulation = Simulation(body=run.body, scene=run.scene, accuracy=run.accuracy.as_it_is(), stations=2, law=run.law)
     follower, now = LawFollower(simulation.discretisation.tabulation, law=run.law), 0.0
     instant, powers = eel_core.Instant(simulation.discretisation.swimmer), np.zeros((len(run.time), 4))
-    for sample, time in enumerate(run.time):
-        relative = run.twist[sample].copy()
-        relative[3:] -= world_from_body(run.orientation[sample]).T @ run.scene.current
-        follower.pass_events(now, now := float(time))
-        powers[sample] = instant.drag_powers(follower.tabulated_law, float(time), relative)
+    relative = run.twist.copy()
+    relative[:, 3:] -= np.asarray(run.scene.current) @ world_from_body(run.orientation)
+    for sample, time in enumerate(run.time.tolist()):
+        follower.pass_events(now, now := time)
+        powers[sample] = instant.drag_powers(follower.tabulated_law, time, relative[sample])
     return powers

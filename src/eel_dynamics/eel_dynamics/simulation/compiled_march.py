@@ -109,9 +109,9 @@ class CompiledMarch:
 
     # -- the present
 
-    def observe(self, out: Observations, wrench: bool, load: bool):
-        """Write the observations of the present instant into `out`."""
-        if not self._march.observe(out.whole, wrench, load):
+    def observe(self, whole: np.ndarray, wrench: bool, load: bool):
+        """Write the observations of the present instant into `whole`."""
+        if not self._march.observe(whole, wrench, load):
             raise self._stopped(SINGULAR)
 
     @property

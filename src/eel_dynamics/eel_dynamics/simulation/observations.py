@@ -46,6 +46,18 @@ def empty_observations(
     return Observations(*(whole[..., begin:end].reshape(*swimmers, *shape) for begin, end, shape in places), whole)
 
 
+Places = dict[str, tuple[slice, tuple[int, ...] | None]]
+
+
+@lru_cache(maxsize=64)
+def places_of_instant(stations: int, wrench: bool, load: bool) -> tuple[Places, int]:
+    """Place and shape of each quantity of one instant, None where it is not asked for; how many numbers they hold."""
+    places = _places(1, stations, wrench, load)
+    named = zip(Observations._fields[:-1], places, strict=True)
+    found = {name: (slice(begin, end), shape[1:] if shape[0] else None) for name, (begin, end, shape) in named}
+    return found, places[-1][1]
+
+
 def size_of(samples: int, stations: int, wrench: bool, load: bool) -> int:
     """How many numbers the profiles of so many samples and stations hold."""
     return _places(samples, stations, bool(wrench), bool(load))[-1][1]

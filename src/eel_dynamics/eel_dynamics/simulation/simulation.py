@@ -25,7 +25,7 @@ from eel_dynamics.model.initial_state import InitialState
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.simulation.discretisation import Discretisation
 from eel_dynamics.simulation.law_driven_march import march_from_start
-from eel_dynamics.simulation.observations import Observations, empty_observations
+from eel_dynamics.simulation.observations import Observations, empty_observations, places_of_instant
 from eel_dynamics.simulation.simulation_setup import SimulationSetup, checked_state
 from eel_dynamics.simulation.snapshot import Snapshot
 from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
@@ -222,9 +222,11 @@ class Simulation:
         wrench, load: whether it holds the internal wrench, and the water's load along the body.
         """
         wrench, load = bool(wrench and self.scene.internal_wrench), bool(load)
-        out = empty_observations(1, len(self.x), wrench, load)
-        self._march.compiled.observe(out, wrench, load)
-        return Snapshot.of(out, self.time, self.x, self.works if self.scene.ledger else None, self.energy_at_start)
+        places, size = places_of_instant(len(self.x), wrench, load)
+        whole = np.zeros(size)
+        self._march.compiled.observe(whole, wrench, load)
+        works = self.works if self.scene.ledger else None
+        return Snapshot(self.time, self.x, whole, places, works, self.energy_at_start)
 
     @property
     def head(self) -> InitialState:
