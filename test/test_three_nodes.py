@@ -28,7 +28,8 @@ def library():
     from eel_dynamics import simulate
     from eel_gaits import falling
 
-    return simulate(falling(), duration=DURATION, sample_period=1.0 / RATE, stations=STATIONS, load=True)
+    options = {"sample_period": 1.0 / RATE, "stations": STATIONS, "load": True}
+    return simulate(falling(), duration=DURATION, estimate=False, **options)  # settings of a run that stays as it is
 
 
 def turned(vectors):
