@@ -211,12 +211,12 @@ def simulate_batch(
     """
     accuracy = accuracy.tolist() if isinstance(accuracy, np.ndarray) else accuracy
     swimmers = swimmers_of(laws, bodies, scenes, accuracy, positions, orientations, twists, most_evaluations)
-    duration = duration_of(duration, swimmers)
+    seconds = duration_of(duration, swimmers)
     if sample_period is None:
-        sample_period = default_sample_period({each.law for each in swimmers}, duration)
-    times = checked_times(duration, sample_period)
+        sample_period = default_sample_period({each.law for each in swimmers}, seconds)
+    times = checked_times(seconds, sample_period)
     for each in swimmers:
-        check_duration(each.law, duration)
+        check_duration(each.law, seconds)
     along = [0.0] if stations is None else stations
     x_of = {length: checked_stations(along, length) for length in dict.fromkeys(each.body.length for each in swimmers)}
     x = [x_of[each.body.length] for each in swimmers]

@@ -68,6 +68,6 @@ class Snapshot:
             energy=EnergyLedger.of(out.energies[0], out.powers[0], works, energy_at_start) if ledger else None,
             closure_torque=float(out.closure[0, 0]) if wrench else None,
             closure_force=float(out.closure[0, 1]) if wrench else None,
-            actuator_work=float(works[0]) if ledger else None,
+            actuator_work=float(works[0]) if works is not None else None,
             whole=out.whole,
         )
