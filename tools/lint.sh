@@ -24,6 +24,7 @@ tidy() {
 
 check "rules (ruff)" ruff check .
 check "format (ruff)" ruff format --check .
+check "types (mypy)" mypy
 check "imports (import-linter)" lint-imports --no-cache --no-logo
 check "spelling (codespell)" codespell -D- -Dtools/british.txt
 check "quoted figures (make quotes)" python tools/quoted_figures.py --check

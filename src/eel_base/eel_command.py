@@ -36,12 +36,14 @@ class MainOf:
     def __call__(self, arguments: list[str] | None = None) -> int:
         """The exit status of `main`; `arguments`: None for those of this process, which then is this command alone."""
         if arguments is not None:
-            return importlib.import_module(self._module).main(arguments)
+            status: int = importlib.import_module(self._module).main(arguments)
+            return status
         name = Path(sys.argv[0]).name
         begin(self._module, name)
         with contextlib.suppress(OSError):  # the name of the process is python's after sh
             Path("/proc/self/comm").write_text(name)
-        return importlib.import_module(self._module).main()
+        status = importlib.import_module(self._module).main()
+        return status
 
 
 def begin(module: str, name: str) -> None:

@@ -5,7 +5,7 @@ setup(
     name="eel_ros",
     version="0.1.0",
     packages=find_packages(),
-    package_data={"eel_ros": ["fastdds.xml", "testing/loopback_udp.xml"]},
+    package_data={"eel_ros": ["fastdds.xml", "py.typed", "testing/loopback_udp.xml"]},
     data_files=[
         ("share/ament_index/resource_index/packages", ["resource/eel_ros"]),
         ("share/eel_ros", ["package.xml"]),

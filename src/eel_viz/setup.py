@@ -5,6 +5,7 @@ setup(
     name="eel_viz",
     version="0.1.0",
     packages=find_packages(),
+    package_data={"eel_viz": ["py.typed"]},
     data_files=[
         ("share/ament_index/resource_index/packages", ["resource/eel_viz"]),
         ("share/eel_viz", ["package.xml"]),

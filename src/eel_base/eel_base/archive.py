@@ -54,8 +54,7 @@ def _array(archive: ZipFile, name: str, member: ZipInfo, most: int) -> np.ndarra
         if start[:6] != b"\x93NUMPY" or not 0 < length <= LONGEST_HEAD:
             raise ValueError(f"{shown(name)} is no array")
         head = HEAD.fullmatch(file.read(length).decode("latin-1"))
-        kind = head and NUMBERS.fullmatch(head[1])
-        if kind is None:
+        if head is None or NUMBERS.fullmatch(head[1]) is None:
             raise ValueError(f"{shown(name)} must be an array of real numbers, got {shown(head and head[1])}")
         shape = tuple(int(each) for each in head[3].split(",") if each.strip())
         dtype, count = np.dtype(head[1]), math.prod(shape)

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 
-def heading(orientation: Sequence[float]) -> float:
+def heading(orientation: Sequence[float] | np.ndarray) -> float:
     """Angle [rad] from the world's x to the horizontal direction of the head's x, positive to the left, -pi to pi."""
     x, y, z, w = orientation
     return math.atan2(2.0 * (w * z + x * y), w * w + x * x - y * y - z * z)

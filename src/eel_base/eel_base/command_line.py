@@ -6,6 +6,7 @@ import contextlib
 import signal
 import sys
 from collections.abc import Iterator
+from typing import Any, NoReturn
 
 from eel_base.wording import one_line
 
@@ -13,16 +14,16 @@ from eel_base.wording import one_line
 class Parser(argparse.ArgumentParser):
     """An argument parser that reports an error in one line."""
 
-    def parse_args(self, *arguments, **options):
+    def parse_args(self, *arguments: Any, **options: Any) -> Any:
         write_on_any_terminal()
         return super().parse_args(*arguments, **options)
 
-    def error(self, message):
+    def error(self, message: str) -> NoReturn:
         complain(self.prog, f"{message} (see {self.prog} --help)")
         sys.exit(2)
 
 
-def complain(program: str, error):
+def complain(program: str, error: object) -> None:
     """Write one line to stderr: the program's name and the text of `error`."""
     sys.stderr.write(f"{program}: {one_line(error)}\n")
 
@@ -38,13 +39,13 @@ def interruptible() -> Iterator[None]:
         signal.signal(signal.SIGINT, before)
 
 
-def check_seconds(argument: str, value: float | None):
+def check_seconds(argument: str, value: float | None) -> None:
     """`ValueError` that names the `argument`, unless its `value` [s] is positive or None."""
     if value is not None and not value > 0.0:
         raise ValueError(f"{argument} must be > 0 s, got {value:g}")
 
 
-def write_on_any_terminal():
+def write_on_any_terminal() -> None:
     """Let stdout write an escape for each character that its encoding lacks, as stderr does, instead of failing."""
     if hasattr(sys.stdout, "reconfigure"):
         sys.stdout.reconfigure(errors="backslashreplace")

@@ -11,6 +11,7 @@ import json
 import os
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 from eel_base.wording import one_line
 
@@ -71,10 +72,10 @@ class InputFile(io.BufferedReader):
         return super().read(size)
 
 
-def from_json(text: str | bytes, **options):
+def from_json(text: str | bytes, **options: Any) -> Any:
     """The value of a JSON `text`. `ValueError` for more than `MOST_VALUES` values; `RecursionError` for many levels."""
-    marks = (",", "[", "{") if isinstance(text, str) else (b",", b"[", b"{")
-    if (count := sum(map(text.count, marks))) > MOST_VALUES:
+    counts = map(text.count, ",[{") if isinstance(text, str) else map(text.count, b",[{")
+    if (count := sum(counts)) > MOST_VALUES:
         raise ValueError(f"its text must hold at most {MOST_VALUES} values, got {count}")
     return json.loads(text, **options)
 

@@ -4,6 +4,7 @@
 import contextlib
 import warnings
 from collections.abc import Iterator
+from typing import Any
 
 from eel_base.command_line import complain
 
@@ -12,7 +13,7 @@ from eel_base.command_line import complain
 def one_line_warnings(name: str) -> Iterator[None]:
     """Print each warning as "NAME: warning: ..."."""
 
-    def show(message, category, *place):
+    def show(message: Warning | str, category: type[Warning], *place: Any, **written: Any) -> None:
         complain(name, f"warning: {message}")
 
     with warnings.catch_warnings():

@@ -22,7 +22,7 @@ BEGINNINGS = {".npz": b"PK", ".nc": b"CDF", ".png": b"\x89PNG", ".rrd": b"RRF", 
 KINDS = {stat.S_IFLNK: "a symbolic link", stat.S_IFDIR: "a folder", stat.S_IFIFO: "a FIFO", stat.S_IFSOCK: "a socket"}
 
 _starts: list[int] = []  # ns: when the present command began
-_own: dict[Path, tuple] = {}  # files that this process has written
+_own: dict[Path, tuple[int, ...] | None] = {}  # files that this process has written
 _written_as: dict[Path, Path] = {}  # output: the path that it has got
 
 
@@ -168,7 +168,7 @@ def _renamed(path: Path, name: Path) -> bool:
     return True
 
 
-def _identity(path: Path, since: int | None = None) -> tuple | None:
+def _identity(path: Path, since: int | None = None) -> tuple[int, ...] | None:
     """What tells the file at `path` from any other; None if there is none, or if it has appeared since a time [ns]."""
     try:
         found = path.lstat()

@@ -6,20 +6,25 @@ ROS node declares its parameters from the same fields.
 """
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
+from typing import Any, TypeVar
 
 import numpy as np
 
 from eel_base.wording import shown
 
+Value = TypeVar("Value")
+Kind = TypeVar("Kind", bound=type)
 
-def quantity(default, *, unit, description, minimum, maximum, **more):
+
+def quantity(default: Value, *, unit: str, description: str, minimum: float, maximum: float, **more: Any) -> Value:
     """A dataclass field that carries its own unit, description and inclusive bounds as metadata, and what is `more`."""
     metadata = {"unit": unit, "description": description, "minimum": minimum, "maximum": maximum}
     return field(default=default, metadata=metadata | more)
 
 
-def limits(metadata) -> str:
+def limits(metadata: Mapping[str, Any]) -> str:
     """The bounds in a field's metadata as text, such as "> 0 Hz and <= 1000 Hz". Empty without bounds.
 
     Metadata: minimum, maximum (each may be absent or None), exclusive (the minimum itself is refused), unit.
@@ -29,7 +34,7 @@ def limits(metadata) -> str:
     return " and ".join(f"{sign} {bound:g}{unit}" for sign, bound in bounds if bound is not None)
 
 
-def described_fields(kind) -> str:
+def described_fields(kind: type[Any]) -> str:
     """One line for each field of the dataclass `kind`: name, default, description, unit, and bounds or choices."""
     lines = []
     for item in fields(kind):
@@ -42,13 +47,13 @@ def described_fields(kind) -> str:
     return "\n".join(lines)
 
 
-def documented(kind):
+def documented(kind: Kind) -> Kind:
     """Decorator: append the `described_fields` to the docstring of the dataclass `kind`."""
-    kind.__doc__ = f"{kind.__doc__.rstrip()}\n\n{described_fields(kind)}\n"
+    kind.__doc__ = f"{(kind.__doc__ or '').rstrip()}\n\n{described_fields(kind)}\n"
     return kind
 
 
-def is_finite(value) -> bool:
+def is_finite(value: Any) -> bool:
     """Whether `value` is one finite number. A text is not a number."""
     try:
         return math.isfinite(value) and not getattr(value, "ndim", 0)
@@ -56,7 +61,7 @@ def is_finite(value) -> bool:
         return False
 
 
-def number(name, value):
+def number(name: str, value: Any) -> float:
     """`value` as a finite float. `ValueError` names anything else. A bool or a text is not a number."""
     try:
         if isinstance(value, (bool, str, bytes)):
@@ -69,7 +74,7 @@ def number(name, value):
     return result
 
 
-def numbers(name, values):
+def numbers(name: str, values: Any) -> np.ndarray:
     """`values` as a new array of floats, of any shape. `ValueError` names anything else, complex numbers too."""
     try:
         if np.iscomplexobj(values):
@@ -83,7 +88,7 @@ def numbers(name, values):
 class Quantities:
     """Base of parameter sets. Every field becomes a float within its bounds, or a `ValueError` names it."""
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         for entry in fields(self):
             value = number(entry.name, getattr(self, entry.name))
             unit = entry.metadata["unit"]

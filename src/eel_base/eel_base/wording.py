@@ -5,6 +5,7 @@ import re
 import reprlib
 from collections.abc import Collection
 from difflib import get_close_matches
+from typing import Any
 
 LONGEST = 80  # characters shown of a value
 LONGEST_LINE = 300  # of a whole message
@@ -15,7 +16,7 @@ _brief.maxlevel = 3
 _brief.maxlist = _brief.maxtuple = 8
 
 
-def shown(value) -> str:
+def shown(value: Any) -> str:
     """`value` as Python writes it, in one line of at most `LONGEST` characters.
 
     The middle of a longer text is left out.
@@ -29,7 +30,7 @@ def shown(value) -> str:
     return _shortened(" ".join(text.split()))
 
 
-def one_line(error) -> str:
+def one_line(error: object) -> str:
     """The text of `error` in one line of at most `LONGEST_LINE` characters; those that do not print are escaped.
 
     The middle of long words, and of a long line, is left out.

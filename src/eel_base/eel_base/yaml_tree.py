@@ -2,6 +2,7 @@
 """Reads a YAML file into mappings, lists and scalars that know their lines. Size, levels and aliases are bounded."""
 
 import os
+from typing import Any
 
 import yaml
 
@@ -12,15 +13,16 @@ MOST_BYTES, MOST_NODES, DEEPEST = 500_000, 20_000, 32
 LONGEST_SCALAR = 1000  # characters of what is no text: a number, a date
 
 
-class Entries(dict):
+class Entries(dict[str, Any]):
     """A mapping of the file: keys to values. `line` is its own line, `lines` those of its keys."""
 
     def __init__(self, line: int) -> None:
         super().__init__()
-        self.line, self.lines = line, {}
+        self.line = line
+        self.lines: dict[str, int] = {}
 
 
-def read_yaml(path: str | os.PathLike[str]):
+def read_yaml(path: str | os.PathLike[str]) -> Any:
     """The document in a YAML file: `Entries`, a list, a scalar, or None.
 
     `Misplaced` for what YAML, or the bounds, do not allow; else `ValueError`, `OSError`.
@@ -44,14 +46,14 @@ class _Loader(yaml.SafeLoader):
         super().__init__(text)
         self._depth = self._nodes = self._values = 0
 
-    def compose_node(self, parent, index):
+    def compose_node(self, parent: Any, index: Any) -> Any:
         self._depth, self._nodes = self._depth + 1, self._nodes + 1
         self._check(self._depth, self._nodes, self.peek_event().start_mark)
         node = super().compose_node(parent, index)
         self._depth -= 1
         return node
 
-    def value(self, node, depth: int):
+    def value(self, node: Any, depth: int) -> Any:
         """What a node stands for. An alias counts as all that it names."""
         self._values += 1
         self._check(depth, self._values, node.start_mark)
@@ -68,7 +70,7 @@ class _Loader(yaml.SafeLoader):
             entries[key], entries.lines[key] = self.value(value_node, depth + 1), line
         return entries
 
-    def _scalar(self, node):
+    def _scalar(self, node: Any) -> Any:
         line = node.start_mark.line + 1
         if node.tag != "tag:yaml.org,2002:str" and len(node.value) > LONGEST_SCALAR:
             told = f"a value must have at most {LONGEST_SCALAR} characters, got {len(node.value)}"
@@ -84,7 +86,7 @@ class _Loader(yaml.SafeLoader):
             return float(value)  # such as 1e-3, which YAML 1.1 calls a text
         return value
 
-    def _check(self, depth: int, nodes: int, mark) -> None:
+    def _check(self, depth: int, nodes: int, mark: Any) -> None:
         if depth > DEEPEST or nodes > MOST_NODES:
             told = "too many levels" if depth > DEEPEST else f"more than {MOST_NODES} values, with all aliases"
             raise Misplaced(f"line {mark.line + 1}", told)

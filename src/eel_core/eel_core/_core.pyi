@@ -9,9 +9,12 @@ is (Omega, V) [rad/s, m/s] of the head in its own axes, relative to the water un
 """
 
 from collections.abc import Sequence
-from typing import Protocol, Self
+from typing import Any, Protocol, Self
 
-from typing_extensions import Buffer
+import numpy as np
+from typing_extensions import Buffer as _Buffer
+
+Buffer = _Buffer | np.ndarray  # numpy's stubs call an array a buffer from Python 3.12 on
 
 STATUSES: tuple[str, ...]
 """Names of the numbers by which a march tells how it ended: "marched", "not_finite", "step_too_small", "singular",
@@ -31,51 +34,82 @@ def layout(samples: int, stations: int, wrench: bool, load: bool) -> dict[str, t
 class _Points(Protocol):
     """Rows that integrate from the start of a panel to each of some points."""
 
-    matrix: Buffer  # (points, p_max) [m]
-    first: Buffer  # (points,) unsigned 64 bits, first node of the point's panel
-    count: Buffer  # (points,) unsigned 64 bits, nodes of that panel
-    fraction: Buffer  # (points,) of the panel, in its own variable
+    @property
+    def matrix(self) -> Buffer: ...  # (points, p_max) [m]
+    @property
+    def first(self) -> Buffer: ...  # (points,) unsigned 64 bits, first node of the point's panel
+    @property
+    def count(self) -> Buffer: ...  # (points,) unsigned 64 bits, nodes of that panel
+    @property
+    def fraction(self) -> Buffer: ...  # (points,) of the panel, in its own variable
 
 class _Grid(_Points, Protocol):
     """n nodes along the body, a multiple of 8; the points are the nodes."""
 
-    weight: Buffer  # (n,) [m], of the integral over the body
-    barycentric: Buffer  # (n,) weights of the interpolation within the node's panel
-    series: Buffer  # (p_max, n) [m], coefficients of Legendre polynomials, whose integrals give rows anywhere
+    @property
+    def weight(self) -> Buffer: ...  # (n,) [m], of the integral over the body
+    @property
+    def barycentric(self) -> Buffer: ...  # (n,) weights of the interpolation within the node's panel
+    @property
+    def series(
+        self,
+    ) -> Buffer: ...  # (p_max, n) [m], coefficients of Legendre polynomials, whose integrals give rows anywhere
 
 class _Sections(Protocol):
     """Section data at some points, (points,) each; eq. (37) and section 7.2.1."""
 
-    mass: Buffer  # [kg/m], of the body
-    added2: Buffer  # [kg/m], added mass along E2
-    added3: Buffer  # [kg/m], along E3
-    inertia1: Buffer  # [kg m], of body and water about E1
-    inertia2: Buffer  # [kg m], about E2
-    inertia3: Buffer  # [kg m], about E3
-    added_roll: Buffer  # [kg m], of the water about E1
-    drag2: Buffer  # [kg/m^2], 1/2 rho_f k2
-    drag3: Buffer  # [kg/m^2], 1/2 rho_f k3
-    drag_roll: Buffer  # [kg], 1/2 rho_f k4
-    laminar: Buffer  # friction force per length = -laminar |V1|^(1/2) V1
-    turbulent: Buffer  # friction force per length = -turbulent (Re/8e4)^(4/5) V1
-    reynolds: Buffer  # [s/m], Re/8e4 per |V1|
+    @property
+    def mass(self) -> Buffer: ...  # [kg/m], of the body
+    @property
+    def added2(self) -> Buffer: ...  # [kg/m], added mass along E2
+    @property
+    def added3(self) -> Buffer: ...  # [kg/m], along E3
+    @property
+    def inertia1(self) -> Buffer: ...  # [kg m], of body and water about E1
+    @property
+    def inertia2(self) -> Buffer: ...  # [kg m], about E2
+    @property
+    def inertia3(self) -> Buffer: ...  # [kg m], about E3
+    @property
+    def added_roll(self) -> Buffer: ...  # [kg m], of the water about E1
+    @property
+    def drag2(self) -> Buffer: ...  # [kg/m^2], 1/2 rho_f k2
+    @property
+    def drag3(self) -> Buffer: ...  # [kg/m^2], 1/2 rho_f k3
+    @property
+    def drag_roll(self) -> Buffer: ...  # [kg], 1/2 rho_f k4
+    @property
+    def laminar(self) -> Buffer: ...  # friction force per length = -laminar |V1|^(1/2) V1
+    @property
+    def turbulent(self) -> Buffer: ...  # friction force per length = -turbulent (Re/8e4)^(4/5) V1
+    @property
+    def reynolds(self) -> Buffer: ...  # [s/m], Re/8e4 per |V1|
 
 class _Stations(Protocol):
     """M places along the body where profiles are given."""
 
-    sections: _Sections
-    points: _Points
-    nodes_before: Buffer  # (M,) unsigned 64 bits, how many nodes lie at or before the station
-    added2_slope: Buffer  # (M,) [kg/m^2], derivative of added2 by X
-    added3_slope: Buffer  # (M,) [kg/m^2]
-    added_roll_slope: Buffer  # (M,) [kg]
-    missed: Sequence[_Sections]  # M, at the nodes, times m: what `points` miss of the sections' integral; or none
+    @property
+    def sections(self) -> _Sections: ...
+    @property
+    def points(self) -> _Points: ...
+    @property
+    def nodes_before(self) -> Buffer: ...  # (M,) unsigned 64 bits, how many nodes lie at or before the station
+    @property
+    def added2_slope(self) -> Buffer: ...  # (M,) [kg/m^2], derivative of added2 by X
+    @property
+    def added3_slope(self) -> Buffer: ...  # (M,) [kg/m^2]
+    @property
+    def added_roll_slope(self) -> Buffer: ...  # (M,) [kg]
+    @property
+    def missed(
+        self,
+    ) -> Sequence[_Sections]: ...  # M, at the nodes, times m: what `points` miss of the sections' integral; or none
 
 class _Shared:
     """Never changes: copies are the object itself."""
 
     def __copy__(self) -> Self: ...
-    def __deepcopy__(self, memo: dict) -> Self: ...
+    def __deepcopy__(self, memo: dict[int, Any]) -> Self: ...
 
 class Swimmer(_Shared):
     """Body and water on a grid, and which physics is on. It is copied from Python and never changes."""
@@ -186,7 +220,7 @@ class March:
     def __copy__(self) -> Self:
         """A march of its own in the same state; it shares the swimmer and the law."""
 
-    def __deepcopy__(self, memo: dict) -> Self:
+    def __deepcopy__(self, memo: dict[int, Any]) -> Self:
         """As `copy.copy`."""
 
     def change(self, swimmer: Swimmer, method: str, order: int, planar: bool) -> None:

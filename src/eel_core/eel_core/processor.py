@@ -38,7 +38,7 @@ def levels(found: frozenset[str]) -> list[str]:
     """The x86-64 levels of a processor with the features `found`, highest first. v2 where nothing is known."""
     if not found:
         return ["v2"]
-    reached = []
+    reached: list[str] = []
     for level, needed in FEATURES.items():
         if not needed <= found:
             break

@@ -50,6 +50,7 @@ class DepthEnv(SwimmerEnv):
 
     name = "Depth"
     Numbers = DepthNumbers
+    numbers: DepthNumbers
     observed = (
         Observed("error of the depth; positive: the target is above", "m", FARTHEST),
         Observed("velocity of the head, upwards in the world", "m/s", FASTEST),

@@ -4,6 +4,7 @@
 import contextlib
 import os
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from eel_dynamics.runs.run import Run
@@ -58,14 +59,15 @@ class EpisodeRecording:
 
 def run_of(snapshots: list[Snapshot], simulation: Simulation, name: str) -> Run:
     """The run of a `simulation` from its `snapshots`. Its law has this `name` and no terms: a policy moved it."""
-    columns = {}
+    columns: dict[str, Any] = {}
     for field in STACKED:
         values = [getattr(snapshot, field) for snapshot in snapshots]
         columns[field] = None if values[0] is None else np.array(values)
     energy = None
     if snapshots[0].energy is not None:
         names = EnergyLedger.keys()
-        energy = EnergyLedger(*(np.array([snapshot.energy[each] for snapshot in snapshots]) for each in names))
+        ledgers: list[Any] = [snapshot.energy for snapshot in snapshots]
+        energy = EnergyLedger(*(np.array([ledger[each] for ledger in ledgers]) for each in names))
     steps, _, evaluations = simulation.evaluations
     return Run(
         law=Law(name=name),

@@ -39,6 +39,7 @@ class HeadingEnv(SwimmerEnv):
 
     name = "Heading"
     Numbers = HeadingNumbers
+    numbers: HeadingNumbers
     observed = (
         Observed(
             "error of the heading, averaged over the gait's period; positive: the target is to the left", "rad", math.pi

@@ -3,7 +3,7 @@
 
 import math
 from dataclasses import dataclass, fields
-from typing import ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import gymnasium
 import numpy as np
@@ -78,7 +78,7 @@ class SwimmerEnv(gymnasium.Env):
         numbers: those of the task, see `Numbers`.
     """
 
-    metadata: ClassVar[dict] = {"render_modes": ["rgb_array", "rerun"], "render_fps": 50}
+    metadata: dict[str, Any] = {"render_modes": ["rgb_array", "rerun"], "render_fps": 50}  # noqa: RUF012  as gymnasium's
     name: ClassVar[str] = ""
     Numbers: ClassVar[type[Episode]] = Episode
     observed: ClassVar[tuple[Observed, ...]] = ()
@@ -114,12 +114,12 @@ class SwimmerEnv(gymnasium.Env):
         self._bounds = np.array([bound for _, _, bound in seen], dtype=np.float32)
         self.observation_space = gymnasium.spaces.Box(-self._bounds, self._bounds, dtype=np.float32)
         self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (self.action.size,), np.float32)
-        self._settings = {"accuracy": Accuracy.of(accuracy), "stations": 51 if render_mode else 2}
+        self._settings: dict[str, Any] = {"accuracy": Accuracy.of(accuracy), "stations": 51 if render_mode else 2}
         self._recording = EpisodeRecording(recordings, self.name) if render_mode == "rerun" else None
-        self._simulation: Simulation | None = None
+        self._simulation: Any = None  # a Simulation from `reset` on
         self._mean_heading = MeanHeading(max(1, round(self.action.period / self.numbers.control_period)))
         self._trim, self._tick = 0.0, 0
-        self.head: HeadMotion | None = None
+        self.head: Any = None  # a HeadMotion from `reset` on
         self.heading = 0.0
 
     # -- a task defines these
@@ -232,7 +232,8 @@ class SwimmerEnv(gymnasium.Env):
     def _command(self, simulation: Simulation, rows: np.ndarray) -> None:
         if self._trim:
             rows[3] -= self._trim
-        simulation.add_samples(self._tick * self.numbers.control_period, self.action.x, *rows, waves=self.action.waves)
+        time, (k2, k2_1, k2_2, k3, k3_1, k3_2) = self._tick * self.numbers.control_period, rows
+        simulation.add_samples(time, self.action.x, k2, k2_1, k2_2, k3, k3_1, k3_2, waves=self.action.waves)
 
     def _look(self) -> np.ndarray:
         if self._recording is not None:

@@ -3,7 +3,7 @@
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import gymnasium
 import numpy as np
@@ -34,7 +34,7 @@ class ThreadedVectorEnv(VectorEnv):
         settings: of each environment.
     """
 
-    metadata: ClassVar[dict] = {**SwimmerEnv.metadata, "autoreset_mode": AutoresetMode.NEXT_STEP}
+    metadata: dict[str, Any] = {**SwimmerEnv.metadata, "autoreset_mode": AutoresetMode.NEXT_STEP}  # noqa: RUF012
     task: ClassVar[type[SwimmerEnv]] = SwimmerEnv
 
     def __init__(
@@ -67,8 +67,8 @@ class ThreadedVectorEnv(VectorEnv):
         self.action_space = batch_space(first.action_space, self.num_envs)
         self._threads = min(self.num_envs, int(threads))
         self._pool = ThreadPoolExecutor(self._threads)
-        self._observations = np.zeros(self.observation_space.shape, dtype=np.float32)
-        self._over = np.zeros(self.num_envs, dtype=bool)
+        self._observations: np.ndarray = np.zeros(self.observation_space.shape or (), dtype=np.float32)
+        self._over: np.ndarray = np.zeros(self.num_envs, dtype=bool)
 
     def reset(self, *, seed=None, options: dict | None = None) -> tuple[np.ndarray, dict]:
         """Begin an episode in each environment, or in those of `options["reset_mask"]` (num_envs,) bool.
@@ -97,7 +97,7 @@ class ThreadedVectorEnv(VectorEnv):
     def step(self, actions) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, dict]:
         """One control step of each: observations, rewards, terminations, truncations, infos."""
         if np.shape(actions) != self.action_space.shape or not np.isfinite(actions).all():
-            shape = " x ".join(map(str, self.action_space.shape))
+            shape = " x ".join(map(str, self.action_space.shape or ()))
             raise gymnasium.error.InvalidAction(f"actions must be {shape} finite numbers, got {shown(actions)}")
         if self._mode is AutoresetMode.DISABLED and self._over.any():
             raise gymnasium.error.ResetNeeded("environments whose episode has ended must be reset before step")
@@ -108,7 +108,7 @@ class ThreadedVectorEnv(VectorEnv):
             self._observations[index], rewards[index] = observation, reward
             over[:, index] = terminated, truncated
             infos = self._add_info(infos, info, index)
-        self._over = over.any(axis=0)
+        self._over = np.asarray(over.any(axis=0))
         return self._observations.copy(), rewards, over[0], over[1], infos
 
     def render(self) -> tuple:

@@ -4,6 +4,7 @@
 import math
 from dataclasses import dataclass
 
+import numpy as np
 from eel_base.quantity import quantity
 from eel_dynamics.model.scene import Scene
 from eel_gaits.pilot.head_motion import wrapped
@@ -53,6 +54,7 @@ class WayPointsEnv(SwimmerEnv):
 
     name = "WayPoints"
     Numbers = WayPointsNumbers
+    numbers: WayPointsNumbers
     observed = (
         Observed(
             "bearing of the point from the heading, averaged over the gait's period; positive: left", "rad", math.pi
@@ -77,7 +79,7 @@ class WayPointsEnv(SwimmerEnv):
     def begin(self, options: dict) -> Start:
         """Random points."""
         numbers, draw = self.numbers, self.np_random.uniform
-        turns = draw(-numbers.greatest_turn, numbers.greatest_turn, round(numbers.points))
+        turns: np.ndarray = np.asarray(draw(-numbers.greatest_turn, numbers.greatest_turn, round(numbers.points)))
         x = y = bearing = 0.0
         self.points, self._turns = [], [*turns[1:].tolist(), 0.0]
         for turn in turns.tolist():

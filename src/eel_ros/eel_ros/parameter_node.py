@@ -71,9 +71,9 @@ class ParameterNode(ServedNode):
     def _as_declared(self, parameter: Parameter) -> Parameter:
         """The parameter with floats in place of other numbers, where floats were declared."""
         declared = self.get_parameter(parameter.name).type_ if self.has_parameter(parameter.name) else None
-        given, convert = CONVERTED.get(declared, ((), None))
-        if parameter.type_ not in given:
+        if declared not in CONVERTED or parameter.type_ not in CONVERTED[declared][0]:
             return parameter
+        convert = CONVERTED[declared][1]
         try:
             return Parameter(parameter.name, declared, convert(parameter.value))
         except (TypeError, ValueError):

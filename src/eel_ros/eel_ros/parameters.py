@@ -10,6 +10,7 @@ import sys
 from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import MISSING, Field, fields
 from difflib import get_close_matches
+from typing import Any
 
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from rclpy.node import Node
@@ -32,7 +33,8 @@ def take_overrides(node: Node) -> dict:
     `node` must be made with automatically_declare_parameters_from_overrides. All but ROS's own parameters are
     undeclared, so that `declare` can declare them with type and range.
     """
-    overrides = {name: parameter.value for name, parameter in node.get_parameters_by_prefix("").items()}
+    given: dict[str, Any] = node.get_parameters_by_prefix("")  # of `Parameter`s, not of values as rclpy says
+    overrides = {name: parameter.value for name, parameter in given.items()}
     for name in overrides:
         if not name.startswith(ROS_PREFIXES):
             node.undeclare_parameter(name)

@@ -8,6 +8,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable
+from typing import NoReturn
 
 POLL = 0.1  # s: a signal just before a wait does not interrupt that wait
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
@@ -86,7 +87,7 @@ class ProcessEnd:
         return not any(thread.is_alive() for thread in others)
 
 
-def leave_at_once(status: int) -> None:
+def leave_at_once(status: int) -> NoReturn:
     """End the process with this exit status, without the interpreter's clean-up: a thread may still be running."""
     sys.stdout.flush()
     sys.stderr.flush()

@@ -3,6 +3,7 @@
 
 import time
 from collections.abc import Callable
+from typing import TypeVar
 
 import rclpy
 from rclpy.executors import SingleThreadedExecutor
@@ -11,6 +12,8 @@ from rclpy.node import Node
 from eel_ros.process_end import ProcessEnd
 from eel_ros.serving import LOG_PERIOD, reason_of, serve_once
 from eel_ros.start import start
+
+Served = TypeVar("Served", bound=Node)
 
 POLL_PERIOD = 0.1  # s between two calls of `poll`
 PAUSE = 0.1  # s after a call of `take_messages` that found none: messages in bursts cost less
@@ -22,9 +25,9 @@ EMPTY_TIMEOUT = 0.005  # s that the executor waits for a message there; after th
 def run_node(
     name: str,
     words: list[str],
-    make: Callable[[], Node],
-    poll: Callable[[Node], bool],
-    take_messages: Callable[[Node], bool] | None = None,
+    make: Callable[[], Served],
+    poll: Callable[[Served], bool],
+    take_messages: Callable[[Served], bool] | None = None,
     *,
     complain: Callable[[str, object], None],
     period: float = POLL_PERIOD,

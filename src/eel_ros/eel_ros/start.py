@@ -3,6 +3,7 @@
 
 import os
 from collections.abc import Callable
+from typing import TypeVar
 
 import rclpy
 from rclpy.exceptions import NameValidationException, ParameterException
@@ -11,6 +12,8 @@ from rclpy.signals import SignalHandlerOptions
 from rosidl_generator_py.import_type_support_impl import UnsupportedTypeSupport
 
 from eel_ros.fastdds_profile import use_profile
+
+Started = TypeVar("Started", bound=Node)
 
 CANNOT_START = (
     ValueError,
@@ -24,8 +27,8 @@ REPAIR = "a library of the messages is damaged or missing, `make clean build` ma
 
 
 def start(
-    name: str, words: list[str], make: Callable[[], Node], complain: Callable[[str, object], None]
-) -> Node | None:
+    name: str, words: list[str], make: Callable[[], Started], complain: Callable[[str, object], None]
+) -> Started | None:
     """Initialise rclpy with the command line `words` (the program first) and return the node that `make()` returns.
 
     If that fails, `complain(name, error)` gets the reason: that no more files can be opened, whatever came of that; or

@@ -14,7 +14,7 @@
 
 from collections.abc import Callable
 from dataclasses import fields, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from eel_base.quantity import number
@@ -37,8 +37,8 @@ AT_REST = InitialState(np.zeros(3), np.array([0.0, 0.0, 0.0, 1.0]), np.zeros(6))
 class Point(NamedTuple):
     """One run of a study."""
 
-    index: int
-    law: Law
+    index: int  # type: ignore[assignment]  # not a tuple's `index`
+    law: Any  # Law; None in what the points of a study share
     body: Body
     scene: Scene
     accuracy: Accuracy
@@ -113,8 +113,9 @@ def _named(value) -> bool:
 
 
 def _point(index: int, values: dict, gait, base: Point) -> Point:
-    body, accuracy, own = base.body, base.accuracy, {}
-    groups = {"scene": {}, "body": {}, "initial": {}}
+    body, accuracy = base.body, base.accuracy
+    own: dict[str, Any] = {}
+    groups: dict[str, dict[str, Any]] = {"scene": {}, "body": {}, "initial": {}}
     for name, value in values.items():
         group, _, field = name.partition(".")
         if field and group in groups:

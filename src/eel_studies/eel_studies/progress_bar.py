@@ -24,7 +24,8 @@ class ProgressBar:
     """Draws a bar for what is done, with the time that is left."""
 
     def __init__(self, what: str):
-        self._what, self._first, self._start = what, None, time.monotonic()
+        self._what, self._start = what, time.monotonic()
+        self._first: int | None = None
 
     def __call__(self, done: int, count: int) -> None:
         """Draw: `done` of `count`."""

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Swims that begin at the speed that they are to keep, so that a few periods show their steady state."""
 
+from typing import Any
+
 import numpy as np
 from eel_dynamics.analysis.averaging_window import common_period
 from eel_gaits.laws.law import Law
@@ -10,7 +12,7 @@ from eel_studies.points import law_of_terms
 SAMPLES = 16  # in a period
 
 
-def swim_times(law: Law, length: float, periods: int) -> dict[str, float]:
+def swim_times(law: Law, length: float, periods: int) -> dict[str, Any]:
     """Duration and sample period [s] of so many `periods` of `law`, whose samples are whole parts of its period.
 
     length: of the body [m]. `ValueError` for a law without terms or without a period.

@@ -10,6 +10,7 @@ import time
 import numpy as np
 import pyarrow as pa
 import rerun as rr
+from numpy.typing import ArrayLike
 
 from eel_viz.entities import TIMELINE
 
@@ -39,7 +40,7 @@ class BatchedStream:
         """Add a row of the archetype `kind` at `stamp` [ns]; the first axis of each component counts its instances."""
         self._add(stamp, (path, kind, *components), components)
 
-    def add_scalars(self, stamp: int, path: str, values: np.ndarray) -> None:
+    def add_scalars(self, stamp: int, path: str, values: ArrayLike) -> None:
         """Add a row of scalars (n,) at `stamp` [ns]."""
         self._add(stamp, (path, rr.Scalars, "scalars"), {"scalars": np.asarray(values, dtype=float)})
 

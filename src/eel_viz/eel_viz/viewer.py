@@ -106,7 +106,7 @@ def display() -> bool:
 def native_viewer() -> str:
     """The viewer's own executable: the `rerun` command is a wrapper, and ending it would not end the viewer."""
     package = importlib.util.find_spec("rerun_cli")
-    if package is None:
+    if package is None or package.origin is None:
         raise CannotRender("rerun-sdk is not installed: its viewer is needed")
     return str(pathlib.Path(package.origin).parent / "rerun")
 

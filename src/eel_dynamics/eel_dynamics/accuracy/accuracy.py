@@ -18,6 +18,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from eel_base.quantity import is_finite
@@ -43,7 +44,7 @@ KINKS = tuple(WATCHED)
 ORDERS = {"adams": (1, 2, 3, 4, 5, 6), "dormand_prince": (5,), "classical": (4,)}
 FINEST_TOLERANCE = 1e-13  # below, round-off
 LONGEST_STEP = 0.1  # of the shortest time over which the shape changes. The works are integrals over it
-ANY = {"resolution": 30.0}  # until the scene is known
+ANY = 30.0  # resolution until the scene is known
 FURTHER_POINTS = 9.0  # more points per length, which make any grid finer: the last eight nodes are always filled
 WAVES_POWER = 0.85  # points grow with this power of the number of waves on the body
 SPARED = 8.0  # points per length that grow with the waves too, of those that the panels have to spare
@@ -86,7 +87,7 @@ class Accuracy:
     tolerance: float = 1e-6
     step: float | None = None
     method: str = "dormand_prince"
-    order: int | None = None
+    order: Any = None  # an int once made
     target: float | None = None
     fixed: float | None = None
     kinks: str = "all"
@@ -216,13 +217,13 @@ class Accuracy:
         return _of_number(value) if type(value) is float else Accuracy._of(value)
 
     @staticmethod
-    def _of(value) -> "Accuracy":
+    def _of(value: Any) -> Any:  # a Budget too
         if isinstance(value, Budget):
             return value
         if isinstance(value, str):
             name = value.strip()
             if name in PRESETS:
-                return Accuracy(name=name, target=PRESETS[name], **ANY)
+                return Accuracy(name=name, target=PRESETS[name], resolution=ANY)
             if name.startswith("fastest"):
                 return Budget.of(name)
             if name.endswith(FIXED):
@@ -242,7 +243,7 @@ class Accuracy:
                 f"accuracy must be a target relative error from {FINEST:g} to {COARSEST:g} (double precision carries a "
                 f"run no further than that), got {shown(value)}"
             )
-        return Accuracy(name=f"{target:g}", target=target, **ANY)
+        return Accuracy(name=f"{target:g}", target=target, resolution=ANY)
 
 
 _of_number = lru_cache(maxsize=64)(Accuracy._of)

@@ -38,10 +38,10 @@ class Budget:
 
         targets: relative errors, the coarsest first. seconds_per_second(target): wall time [s] per simulated second.
         """
-        best = fastest = None
+        best, fastest = None, float("inf")
         for target in targets:
             seconds = seconds_per_second(target)
-            fastest = seconds if fastest is None else min(fastest, seconds)
+            fastest = min(fastest, seconds)
             if seconds > self.seconds_per_second:
                 break
             best = target

@@ -46,10 +46,10 @@ class ErrorEstimate:
     def at_least(self, share: float, other: "ErrorEstimate") -> "ErrorEstimate":
         """The same, with no error below `share` of that of `other`, where this is known."""
         position, torque = (
-            value if least is None or not np.isfinite(least) else max(value, share * least)
+            value if value is None or least is None or not np.isfinite(least) else max(value, share * least)
             for value, least in ((self.position, other.position), (self.torque, other.torque))
         )
-        return replace(self, position=position, torque=torque)
+        return replace(self, position=self.position if position is None else position, torque=torque)
 
     def round_off(self, duration: float) -> float:
         """The relative error that round-off has grown to after `duration` [s] at the `growth_rate`."""

@@ -7,6 +7,7 @@ water: a current is subtracted.
 
 import math
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from eel_base.wording import shown
@@ -26,7 +27,7 @@ def strength(term: Term, x: np.ndarray, time: np.ndarray) -> float:
     return float(np.max(np.abs(term.amplitude_at(x))) * np.max(np.abs(term.envelope_at(time)[0])))
 
 
-def strongest(law: Law | SampledLaw, x, time, *, axes=("yaw", "pitch"), travelling: bool = False) -> Term | None:
+def strongest(law: Law | SampledLaw, x, time, *, axes=("yaw", "pitch"), travelling: bool = False) -> Any:
     """The periodic term of greatest curvature, yaw before pitch whatever their strength; None where there is none.
 
     x (M,) [m] and time (T,) [s]: where and when strength is measured. travelling: waves with a wavelength only.

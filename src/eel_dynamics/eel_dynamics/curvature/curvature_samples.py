@@ -86,9 +86,9 @@ class CurvatureSample(NamedTuple):
 
 
 @lru_cache(maxsize=64)
-def _checked_x(x: bytes, length: float) -> np.ndarray:
+def _checked_x(content: bytes, length: float) -> np.ndarray:
     """The points (n,) [m] of a sample, from their bytes. Equal ones are one array, which never changes."""
-    x = checked_row("curvature samples x", np.frombuffer(x), None)
+    x = checked_row("curvature samples x", np.frombuffer(content), None)
     if len(x) < 2:
         raise ValueError(f"curvature samples x must have 2 points or more, got {len(x)}")
     falls = np.flatnonzero(np.diff(x) <= 0.0)

@@ -88,7 +88,7 @@ class TabulatedLaw(NamedTuple):
         return self
 
     @staticmethod
-    def of_law(law: Law, origin: float, tabulation: Tabulation) -> "TabulatedLaw":
+    def of_law(law: Law | None, origin: float, tabulation: Tabulation) -> "TabulatedLaw":
         """Tabulate `law`, whose own t = 0 lies at `origin` [s]."""
         return _tabulated(law, tabulation)._replace(origin=origin)
 
@@ -150,10 +150,11 @@ def _tabulated(law: Law | None, tabulation: Tabulation) -> TabulatedLaw:
 def _rows_of(groups: tuple, tabulation: Tabulation) -> tuple:
     """Rows of `groups` of terms (axis, whether they have a period, their waveforms), their axes and tables, and for
     each group the rows of its sine and cosine."""
-    rows, axis, sine, cosine = [], [], [], []
+    rows: list[np.ndarray] = []
+    axis, sine, cosine = [], [], []
     for name, moving, waveforms in groups:
         angle = [wave_number * tabulation.x + phase for _, _, wave_number, phase in waveforms]
-        amplitude = [amplitude_of(*of, tabulation.x) for *of, _, _ in waveforms]
+        amplitude = [amplitude_of(values, knots, tabulation.x) for values, knots, _, _ in waveforms]
         sine.append(len(rows))
         rows.append(sum(a * np.sin(b) for a, b in zip(amplitude, angle, strict=True)))
         cosine.append(len(rows) if moving else sine[-1])

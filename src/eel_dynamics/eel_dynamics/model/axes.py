@@ -8,16 +8,17 @@ inverse.
 """
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 VECTOR, QUATERNION = np.array([-1.0, -1.0, 1.0]), np.array([-1.0, -1.0, 1.0, 1.0])
 
 
-def turn_vector(vector: np.ndarray) -> np.ndarray:
+def turn_vector(vector: ArrayLike) -> np.ndarray:
     """Components (-x, -y, z) of `vector`, shape (..., 3), in the other set of axes. Its own inverse."""
     return np.asarray(vector, dtype=float) * VECTOR
 
 
-def turn_quaternion(quaternion: np.ndarray) -> np.ndarray:
+def turn_quaternion(quaternion: ArrayLike) -> np.ndarray:
     """Orientation `quaternion`, shape (..., 4), order x y z w, in the other set of axes. Its own inverse.
 
     The axes of the world and of the body are both turned: R -> Q R Q^T with Q = diag(-1, -1, 1).

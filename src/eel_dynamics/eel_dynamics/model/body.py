@@ -9,6 +9,7 @@ import os
 import warnings
 from functools import cache, cached_property, lru_cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from eel_base.input_file import reading
@@ -225,7 +226,8 @@ class Body:
             raise ValueError(f"body file must be a path, got {shown(path)}")
         path = Path(path)
         with reading(f"{WHAT}{shown(str(path))}"):
-            body = Body(**columns_of(path), name=path.stem)
+            columns: dict[str, Any] = dict(columns_of(path))
+            body = Body(**columns, name=path.stem)
         if body.length > LONGEST:
             warnings.warn(f"body file {path} is {body.length:g} m long: are its columns in m?", stacklevel=2)
         return body

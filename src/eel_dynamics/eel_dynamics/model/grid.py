@@ -56,7 +56,7 @@ class PanelPoints(NamedTuple):
 
     matrix: np.ndarray  # (M, p_max) m: the integral from the panel's start is sum_j matrix[i, j] f[first[i] + j]
     first: np.ndarray  # (M,) unsigned, first node of the panel
-    count: np.ndarray  # (M,) unsigned, nodes of the panel
+    count: np.ndarray  # type: ignore[assignment]  # (M,) unsigned, nodes of the panel; not a tuple's `count`
     fraction: np.ndarray  # (M,) of the panel, in its own variable
 
 

@@ -3,6 +3,7 @@
 
 import math
 import time
+from typing import Any
 
 OK, WARN, ERROR = 0, 1, 2  # levels of diagnostic_msgs/DiagnosticStatus
 REPEAT = 1.0  # s: an event of one kind is logged at most once in this time
@@ -109,7 +110,7 @@ class Status:
     def __init__(self, run, report, accuracy):
         self._run, self._report, self.accuracy = run, report, accuracy
         self._seen = (0.0, 0.0)  # s: simulation time, wall time spent on samples
-        self._last_published = (-PERIOD, 0.0, None)  # s, s: wall time, simulation time; state
+        self._last_published: tuple[float, float, Any] = (-PERIOD, 0.0, None)  # s, s: wall, simulation time; state
 
     def due(self) -> bool:
         """Whether to publish: after a second of wall time or of simulation time, and when the state has changed."""

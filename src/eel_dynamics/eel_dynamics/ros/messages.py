@@ -72,7 +72,7 @@ class Sample:
         head_errors: Callable[[], HeadErrors | None] = lambda: None,
     ):
         self._nanoseconds, self._head_errors = (0, 0), head_errors
-        self._errors = None  # those in the covariances of odom
+        self._errors: HeadErrors | None = None  # those in the covariances of odom
         messages = {
             "head_pose": PoseStamped(),
             "head_twist": TwistStamped(),
@@ -122,7 +122,7 @@ class Sample:
             "joint_states": self._fill_joints,
             "/tf": self._fill_transform,
         }
-        self._of = self._head = None  # a snapshot, and the head's position, orientation and twist in it
+        self._of, self._head = None, np.zeros(13)  # a snapshot, and the head's position, orientation and twist in it
 
     def set_time(self, nanoseconds: int):
         """Set the simulation time [ns] of all messages, including /clock's."""
@@ -292,8 +292,8 @@ def state_from_message(request: SetState.Request) -> tuple[np.ndarray, np.ndarra
         if not np.isfinite(values).all():
             raise ValueError(f"{name} must be finite, got {shown(values)}")
     position, orientation, angular, linear = groups.values()
-    orientation = unit_quaternion("pose.orientation", orientation)
-    return turn_vector(position), turn_quaternion(orientation), turn_vector([angular, linear]).ravel()
+    unit = unit_quaternion("pose.orientation", orientation)
+    return turn_vector(position), turn_quaternion(unit), turn_vector([angular, linear]).ravel()
 
 
 def time_message(seconds: float) -> Time:

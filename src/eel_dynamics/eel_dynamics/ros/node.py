@@ -80,6 +80,8 @@ class NextTurn:
 class DynamicsNode(ParameterNode):
     """Topics, services and parameters of one simulation."""
 
+    run_loop: RunLoop
+
     def __init__(self):
         super().__init__(NAME, automatically_declare_parameters_from_overrides=True)
         report = Report(self.get_logger())
@@ -97,6 +99,7 @@ class DynamicsNode(ParameterNode):
             stopped=lambda: self.run_loop.requests.stopped,
             report=report,
         )
+        feed: LawFeed
         inbox = SampleInbox(self, lambda message, info: feed.receive_samples(message, info))
         self.run_loop = RunLoop(
             simulation,

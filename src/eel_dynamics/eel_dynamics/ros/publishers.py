@@ -59,7 +59,8 @@ class Publishers:
         self.lossless = values().real_time_factor == 0.0
         self._channels = {}
         self.change(sample)
-        self._subscribed, self._last_count = (), -math.inf  # topics with subscribers, and s: when that was found
+        self._subscribed: tuple[str, ...] = ()  # topics with subscribers
+        self._last_count = -math.inf  # s: when that was found
         self._counts = {}  # of subscribers by topic, at that time
         self._clock = None
         self._wait_budget = WaitBudget()
@@ -204,7 +205,7 @@ class WaitBudget:
     """The time spent waiting for subscribers: one for all topics, as a stuck subscriber is stuck on all of them."""
 
     def __init__(self):
-        self._since = None  # s, steady clock
+        self._since: float | None = None  # s, steady clock
         self._last = 0.0
 
     def begin(self, now: float):
@@ -216,7 +217,7 @@ class WaitBudget:
     def over(self, now: float, timeout: float) -> bool:
         """Whether the waiting has reached `timeout` [s]."""
         self._last = now
-        return now - self._since >= timeout
+        return self._since is not None and now - self._since >= timeout
 
     def renew(self):
         """Start over: a subscriber has caught up."""

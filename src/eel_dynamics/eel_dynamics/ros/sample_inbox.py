@@ -5,6 +5,7 @@ The loop waits for samples and requests together, in a wait set of its own, as `
 """
 
 from collections.abc import Callable
+from typing import Any
 
 from eel_ros.qos import keep_all
 from eel_ros.serving import PolledGroup, log_dropped, read_message
@@ -27,7 +28,8 @@ class SampleInbox:
     def __init__(self, node, receive: Callable[[CurvatureSamples, dict], None]):
         self._node, self._receive, self._group = node, receive, PolledGroup()
         self._guard = node.create_guard_condition(lambda: None, self._group)
-        self._subscriptions, self._wait_set = (), None
+        self._subscriptions: tuple[Any, ...] = ()
+        self._wait_set: Any = None
         self._subscribe(reliable=True)
 
     def look(self):

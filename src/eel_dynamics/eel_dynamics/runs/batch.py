@@ -211,12 +211,12 @@ def simulate_batch(
     """
     accuracy = accuracy.tolist() if isinstance(accuracy, np.ndarray) else accuracy
     swimmers = swimmers_of(laws, bodies, scenes, accuracy, positions, orientations, twists, most_evaluations)
-    duration = duration_of(duration, swimmers)
+    seconds = duration_of(duration, swimmers)
     if sample_period is None:
-        sample_period = default_sample_period({each.law for each in swimmers}, duration)
-    times = checked_times(duration, sample_period)
+        sample_period = default_sample_period({each.law for each in swimmers}, seconds)
+    times = checked_times(seconds, sample_period)
     for each in swimmers:
-        check_duration(each.law, duration)
+        check_duration(each.law, seconds)
     along = [0.0] if stations is None else stations
     x_of = {length: checked_stations(along, length) for length in dict.fromkeys(each.body.length for each in swimmers)}
     x = [x_of[each.body.length] for each in swimmers]
@@ -225,7 +225,9 @@ def simulate_batch(
     out = _space(count, len(times), len(x[0]), any(wrench), load)
     works, start = np.zeros((count, len(times), 4)), np.zeros(count)
     samples, *_ = counts = np.zeros((4, count), dtype=int)
-    settings, errors, estimates = [each.accuracy for each in swimmers], [None] * count, [None] * count
+    settings = [each.accuracy for each in swimmers]
+    errors: list[SimulationStopped | None] = [None] * count
+    estimates: list[ErrorEstimate | None] = [None] * count
 
     def swim(index: int):
         request = SwimRequest(swimmers[index], x[index], times, wrench[index], load)
@@ -242,7 +244,7 @@ def simulate_batch(
         counts[:, index] = len(run.time), run.steps, run.evaluations, run.nodes
 
     _for_each(swim, count, threads, progress)
-    for index in np.flatnonzero(samples < len(times)):
+    for index in np.flatnonzero(samples < len(times)).tolist():
         for array in (*_of_one(out, index)[:-1], works[index]):
             array[samples[index] :] = 0.0
     found = settings, errors, estimates, counts
@@ -319,7 +321,7 @@ def _batch_from(contents: Contents, laws=None, bodies=None, scenes=None) -> Batc
 
 def available_cores() -> int:
     """The number of cores that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _for_each(swim, count: int, threads: int | None, progress):

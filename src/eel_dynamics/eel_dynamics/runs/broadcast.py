@@ -80,7 +80,7 @@ def swimmers_of(
         twists=_rows("twists", twists, lambda name, row: checked_row(name, row, 6)),
     )
     most_evaluations = checked_number("most_evaluations", most_evaluations, "per simulated second")
-    swimmers = [SwimmerArguments(*row, most_evaluations) for row in zip(*columns, strict=True)]
+    swimmers = [SwimmerArguments(*(*row, most_evaluations)) for row in zip(*columns, strict=True)]
     for index, swimmer in enumerate(swimmers):
         if swimmer.scene.planar:
             _check_planar(index, swimmer)

@@ -13,6 +13,7 @@ import sys
 import time
 from importlib.util import find_spec
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from eel_base.command_line import Parser, complain
@@ -54,7 +55,7 @@ def _swim(options) -> int:
     law, scene = _law(options, body), scene_of(options.scene)
     duration = options.duration
     if duration is None:
-        duration = DURATION if options.file is None else law.duration
+        duration = law.duration if isinstance(law, SampledLaw) else DURATION
     if options.actuators is not None:
         _check_actuators(options, scene)
     start = time.perf_counter()
@@ -108,7 +109,7 @@ def _law(options, body: Body) -> Law | SampledLaw:
 def _print_smoothing(run: Run):
     """Print what the run would be without the smoothing of its motion."""
     try:
-        effect = run.smoothing
+        effect: object = run.smoothing
     except (ValueError, SimulationStopped) as error:
         effect = f"without it the motion cannot be swum: {one_line(error)}"
     if effect is not None:
@@ -227,7 +228,8 @@ def _write(run: Run, path: Path):
     errors |= {} if error is None or error.torque is None else {"error_torque": error.torque}
     if path.suffix == ".npz":
         with replacing(path) as draft:
-            np.savez_compressed(draft, **contents_of_run(run).arrays, **errors)
+            arrays: dict[str, Any] = contents_of_run(run).arrays | errors
+            np.savez_compressed(draft, **arrays)
         return
     columns = columns_of(run) | {name: np.full(len(run.time), value) for name, value in errors.items()}
     write_columns(columns, path)

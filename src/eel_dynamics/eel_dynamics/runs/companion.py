@@ -134,5 +134,6 @@ def stable_step(request, accuracy: Accuracy) -> float | None:
 
     None if `HALVINGS` give none.
     """
+    assert accuracy.step is not None
     steps = [accuracy.step * 0.5**halvings for halvings in range(1, HALVINGS + 1)]
     return next((step for step in steps if _finished(request, replace(accuracy, step=step)) is not None), None)

@@ -77,8 +77,8 @@ class SmoothingEffect(NamedTuple):
 
 def effect_of_smoothing(run, without) -> SmoothingEffect:
     """The effect on a `run` of a smoothed motion: `without` is the run of the same motion without smoothing."""
-    speeds = [_mean_speed(each) for each in (without, run)]
-    speed = speeds[0] / speeds[1] if None not in speeds and speeds[1] > 0.0 else None
+    before, after = _mean_speed(without), _mean_speed(run)
+    speed = before / after if before is not None and after is not None and after > 0.0 else None
     torque = None
     if run.torque is not None and np.any(run.torque):
         torque = float(np.linalg.norm(without.torque) / np.linalg.norm(run.torque))

@@ -24,7 +24,7 @@ def fields_of_observations(
     was not are None.
     """
     if len(times) < len(out.position):
-        out = Observations(*(array[: len(times)] for array in out[:-1]), out.whole)
+        out = Observations(*(*(array[: len(times)] for array in out[:-1]), out.whole))
     energy = EnergyLedger.of(out.energies, out.powers, works, energy_at_start) if scene.ledger else None
     return {
         "time": times,

@@ -5,7 +5,7 @@ import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from eel_gaits.laws.law import Law
@@ -283,7 +283,8 @@ def simulate(
     if until_settled(duration):
         period_of(law, length)
         duration = settling_time(SwimmerArguments.of(law, *given))
-    law = law_from(law, duration, length)
+    seconds: Any = duration  # a text is refused below
+    law = law_from(law, seconds, length)
     sample_period = default_sample_period([law], duration) if sample_period is None else sample_period
     times = checked_times(duration, sample_period)
     given = body, scene, Accuracy.to_refine(accuracy) if estimate else accuracy, *given[3:]
@@ -298,7 +299,7 @@ def simulate(
         stopped.run = swim.run
         raise stopped if settings.step is None else _with_stable_step(stopped, request, settings)
     run = (with_error_estimate(swim, request) if estimate else swim).run
-    if run.error_estimate is not None and (missed := run.error_estimate.missed(run.accuracy.target, duration)):
+    if run.error_estimate is not None and (missed := run.error_estimate.missed(run.accuracy.target, seconds)):
         warnings.warn(missed, stacklevel=2)
     return run
 

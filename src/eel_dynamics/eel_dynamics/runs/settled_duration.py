@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """How long a swimmer swims until its gait has settled: what the duration "settled" stands for."""
 
+from typing import Any
+
 import numpy as np
 from eel_base.wording import shown
 from eel_gaits.laws.law import Law
@@ -22,7 +24,7 @@ def until_settled(duration) -> bool:
     return isinstance(duration, str) and duration == UNTIL_SETTLED
 
 
-def duration_of(duration, swimmers):
+def duration_of(duration: Any, swimmers) -> Any:
     """The `duration`, or where that is "settled" the time [s] until the slowest of the `swimmers` has settled."""
     return max(map(settling_time, swimmers)) if until_settled(duration) else duration
 
@@ -49,6 +51,7 @@ def settling_time(swimmer) -> float:
         centre.append(seen.center_of_mass - current * simulation.time)
         if simulation.scene.ledger:
             work.append(simulation.works[0])
+            assert seen.energy is not None
             energy = seen.energy.kinetic_body + seen.energy.kinetic_fluid
         window = (count + 1) // 2
         if window < FEWEST or (count - window) * period < last_ramp * (1.0 - 1e-9):

@@ -2,6 +2,7 @@
 """The march of the compiled mechanics: under one tabulated law after another, with errors that say what to change."""
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -29,8 +30,8 @@ class CompiledMarch:
 
     def __init__(self, discretisation: Discretisation, scene: Scene, accuracy: Accuracy):
         self.discretisation, self.accuracy, self.time = discretisation, accuracy, 0.0
-        self.tabulated_law: eel_core.Law | None = None
-        self._bounds: eel_core.StepBounds | None = None
+        self.tabulated_law: Any = None  # an eel_core.Law and its StepBounds, from `follow` on
+        self._bounds: Any = None
         self._planar, self._ledger, self._current = bool(scene.planar), bool(scene.ledger), np.array(scene.current)
         self._march = eel_core.March(discretisation.swimmer, accuracy.method, accuracy.order, self._planar)
 

@@ -10,6 +10,7 @@ the righting moment (`Scene.metacentric_height`), 0 where every section stands u
 """
 
 from dataclasses import dataclass, fields
+from typing import Any
 
 import numpy as np
 
@@ -39,7 +40,7 @@ class EnergyLedger:
     def __eq__(self, other) -> bool:
         return same_fields(self, other)
 
-    __hash__ = None  # it holds arrays
+    __hash__ = None  # type: ignore[assignment]  # typeshed has `object` hashable; this holds arrays
 
     def __repr__(self) -> str:
         shape = np.shape(self.residual)
@@ -56,7 +57,7 @@ class EnergyLedger:
         return [item.name for item in fields(EnergyLedger)]
 
     @staticmethod
-    def of(energies: np.ndarray, powers: np.ndarray, works: np.ndarray, start: float) -> "EnergyLedger":
+    def of(energies: Any, powers: Any, works: Any, start: Any) -> "EnergyLedger":
         """A ledger from its numbers.
 
         energies (..., 3) [J]: kinetic of body and of water, potential. powers (..., 4) [W] and works (..., 4) [J]: of
@@ -64,8 +65,8 @@ class EnergyLedger:
         """
         if energies.ndim == 1:  # an instant, for a node at real time
             energies, powers, works = energies.tolist(), powers.tolist(), works.tolist()
-            return EnergyLedger(*energies, *powers, sum(energies) - start - sum(works), *works)
+            return EnergyLedger(*(*energies, *powers, sum(energies) - start - sum(works), *works))
         residual = energies.sum(axis=-1) - start - works.sum(axis=-1)
         columns = (np.moveaxis(each, -1, 0) for each in (energies, powers, works))
         energies, powers, works = columns
-        return EnergyLedger(*energies, *powers, residual, *works)
+        return EnergyLedger(*(*energies, *powers, residual, *works))

@@ -139,7 +139,7 @@ class MeasuredSimulation(Simulation):
             companion = self.copy_with(settings.with_other_points())
         return companion
 
-    def _do_alike(self, action: Callable[[Simulation], None]):
+    def _do_alike(self, action: Callable[[Simulation], object]):
         if self._companion is None:
             return
         try:

@@ -43,7 +43,8 @@ def empty_observations(
     """
     places = _places(samples, stations, bool(wrench), bool(load))
     whole = np.zeros((*swimmers, places[-1][1]))
-    return Observations(*(whole[..., begin:end].reshape(*swimmers, *shape) for begin, end, shape in places), whole)
+    parts = (whole[..., begin:end].reshape(*swimmers, *shape) for begin, end, shape in places)
+    return Observations(*(*parts, whole))
 
 
 Places = dict[str, tuple[slice, tuple[int, ...] | None]]

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The quantities of one instant of a simulation. Each is a view of what was observed, made when it is asked for."""
 
+from typing import Any
+
 import numpy as np
 
 from eel_dynamics.simulation.energy import EnergyLedger
@@ -13,7 +15,7 @@ class Observed:
     def __set_name__(self, owner: type, name: str) -> None:
         self._name = name
 
-    def __get__(self, snapshot: "Snapshot | None", owner: type | None = None):
+    def __get__(self, snapshot: "Snapshot | None", owner: type | None = None) -> Any:
         if snapshot is None:
             return self
         where, shape = snapshot.places[self._name]

@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """The reasons why a march could not continue, and what to change."""
 
+from typing import Any
+
 import numpy as np
 from eel_base.wording import shown
 from eel_gaits.laws.law import Law
+from eel_gaits.sources.sampled_law import SampledLaw
 
 import eel_core
 from eel_dynamics.accuracy.accuracy import Accuracy
@@ -16,6 +19,7 @@ class SimulationStopped(RuntimeError):
         super().__init__(f"stopped at t = {time:.6g} s: {quantity} ({value:.3g}); {hint}")
         self.time, self.quantity, self.value, self.hint = time, quantity, value, hint
         self.diverged = False  # the steps were too long
+        self.run: Any  # the Run up to there, where one was asked for
 
     def __reduce__(self):
         return SimulationStopped, (self.time, self.quantity, self.value, self.hint), self.__dict__
@@ -50,6 +54,6 @@ def remedy(accuracy: Accuracy) -> str:
     return "take a gentler law, or start slower"
 
 
-def not_begun(law: Law, stopped: SimulationStopped) -> ValueError:
+def not_begun(law: Law | SampledLaw, stopped: SimulationStopped) -> ValueError:
     """The error for a swim by `law` that cannot begin, with the quantity that `stopped` it."""
     return ValueError(f"law {shown(law.name)} cannot be begun: {stopped.quantity}")

@@ -8,6 +8,7 @@ that takes the numbers as keywords and returns a `Law`. The gaits are in the oth
 import functools
 import inspect
 from dataclasses import dataclass
+from typing import Any
 
 from eel_base.quantity import Quantities, described_fields, quantity
 from eel_base.wording import did_you_mean, shown
@@ -28,7 +29,7 @@ class Transition(Quantities):
     )
 
 
-GAITS = {}  # name of the gait: its function, whose attribute `numbers` is the class of its numbers
+GAITS: dict[str, Any] = {}  # name of the gait: its function, whose attribute `numbers` is the class of its numbers
 
 
 def gait(name, *, transition=0.0, **numbers):
@@ -56,7 +57,7 @@ def register(numbers_class):
         own_names = tuple(inspect.signature(numbers_class).parameters)
 
         @functools.wraps(terms_of)
-        def make(*, transition=0.0, **numbers):
+        def made(*, transition=0.0, **numbers):
             unknown = [key for key in numbers if key not in own_names]
             if unknown:
                 hint = did_you_mean(unknown[0], own_names)
@@ -67,6 +68,7 @@ def register(numbers_class):
             return Law(*terms_of(numbers_class(**numbers)), name=name, transition=transition)
 
         keyword = inspect.Parameter("transition", inspect.Parameter.KEYWORD_ONLY, default=0.0)
+        make: Any = made  # it gets a signature and a class of numbers of its own
         make.__signature__ = inspect.Signature(
             [keyword, *inspect.signature(numbers_class).parameters.values()], return_annotation=Law
         )

@@ -11,6 +11,7 @@ name. A number that the user has set carries over to another gait that has a num
 from dataclasses import Field, dataclass, field, fields, make_dataclass
 from functools import cache
 from types import MappingProxyType
+from typing import Any
 
 from eel_base.quantity import Quantities, quantity
 from eel_base.wording import shown
@@ -34,7 +35,7 @@ class MeasuredBody(Quantities):
     scale: float = quantity(1.0, unit="", description="metres in the file's unit of length", minimum=1e-9, maximum=1e9)
 
 
-def _law_from_file(path: str, numbers: Quantities) -> Law | SampledLaw:
+def _law_from_file(path: str, numbers: MeasuredBody) -> Law | SampledLaw:
     """The law of a sequence or of a measured motion, by the suffix of its file."""
     if path.endswith(SEQUENCES):
         return sequence_from_file(path)
@@ -154,7 +155,8 @@ def _as_ros_expects(entry: Field) -> Field:
         if entry.name == opposite:
             metadata = entry.metadata | {"minimum": -entry.metadata["maximum"], "maximum": -entry.metadata["minimum"]}
             metadata["description"] = _as_left(metadata["description"])
-            turned = field(default=0.0 - entry.default, metadata=metadata)  # not -0.0
+            default: Any = entry.default
+            turned: Any = field(default=0.0 - default, metadata=metadata)  # not -0.0
             turned.name = name
             return turned
     return entry

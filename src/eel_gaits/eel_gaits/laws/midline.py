@@ -73,7 +73,7 @@ def lateral_wave(amplitude, *, length, wavelength, period, envelope=()):
                 terms.append(
                     Term(
                         axis="yaw",
-                        amplitude=fit.coef,
+                        amplitude=tuple(fit.coef),
                         wavelength=wavelength / multiple,
                         period=period / multiple,
                         phase=phase,

@@ -99,8 +99,8 @@ class SteeredLaw:
                             (2 * k + 1, (later * c - now * s, -frequency * (now * c + later * s))),
                         ):
                             factors[AXES["pitch"], :, row] += _product(self.values[name], f, f1, frequency, speed)
-        for name, axis in BENDS.items():
-            factors[AXES[axis], :, -1] = [-value for value in self.values[name]]
+        for name, bent in BENDS.items():
+            factors[AXES[bent], :, -1] = [-value for value in self.values[name]]
         return factors.reshape(6, -1) @ self._rows
 
 

@@ -16,7 +16,7 @@ from eel_gaits.laws.law import Law
 from eel_gaits.laws.steered_law import SteeredLaw
 from eel_gaits.pilot.estimate import Estimate, Estimator
 from eel_gaits.pilot.goals import Course, Path, Station, check_first_point
-from eel_gaits.pilot.guidance import CourseGuidance, PathGuidance, StationGuidance
+from eel_gaits.pilot.guidance import CourseGuidance, Demand, PathGuidance, StationGuidance
 from eel_gaits.pilot.head_motion import HeadMotion, wrapped
 from eel_gaits.pilot.progress import Progress
 from eel_gaits.pilot.regulator import Gains, Regulator
@@ -64,9 +64,9 @@ class Pilot:
         self._progress = Progress(self.settings.patience)
         self._torque = TorqueLimiter(self.settings.slowest_tempo, self.settings.fastest_tempo)
         self.goal: Course | Path | Station = Course(0.0, 0.0, 0.0)
-        self._guidance = None
+        self._guidance: CourseGuidance | PathGuidance | StationGuidance | None = None
         self.estimate: Estimate | None = None
-        self.demand = None
+        self.demand: Demand | None = None
         self.misses: list[float] = []
         self.news: list[News] = []
 
@@ -119,11 +119,12 @@ class Pilot:
         through = self.settings.cruise_speed * values["tempo"][0] * min(1.0, values["amplitude"][0])
         self.estimate = estimate = self._estimator.add(time, head, self.law.own_time, through)
         guidance = self._guided(estimate, head)
-        self.demand = guidance.demand(estimate, self._regulator.greatest_speed)
-        self._watch(time, head)
+        self.demand = demand = guidance.demand(estimate, self._regulator.greatest_speed)
+        self._watch(time, head, estimate, demand)
 
     def steer(self, step: float) -> np.ndarray:
         """The curvature (6, points) `step` [s] after that of the last call, or of `begin`."""
+        assert self.demand is not None and self.estimate is not None, "`observe` comes first"
         targets = self._regulator.targets(self.demand, self.estimate, self.law, step)
         tempo = max(self.law.values["tempo"][0], self.settings.slowest_tempo)
         return self.law.advance(targets, step, RESPONSE * self.law.period / tempo)
@@ -143,22 +144,23 @@ class Pilot:
                 radius = settings.limits.turning_radius
                 self._guidance = StationGuidance(goal, ahead, radius, settings.station_gain, reach)
             self._progress.restart(estimate.time)
-        if isinstance(self._guidance, PathGuidance) and self._guidance.pass_points(estimate, head.position):
-            index, miss = self._guidance.target, self._guidance.last_miss
+        path = self._guidance
+        if isinstance(path, PathGuidance) and isinstance(goal, Path) and path.pass_points(estimate, head.position):
+            index, miss = path.target, path.last_miss
             self.misses.append(miss)
             reached = miss <= reach
             passed = "reached" if reached else "missed"
             text = f"way point {index} of {len(goal.points)} {passed}: {miss:.3g} m from it"
             self.news.append(News(text, good=reached))
             self._progress.restart(estimate.time)
-            if self._guidance.done:
+            if path.done:
                 self.follow(Station(goal.points[-1], goal.speed))
                 return self._guided(estimate, head)
         return self._guidance
 
-    def _watch(self, time: float, head: HeadMotion):
+    def _watch(self, time: float, head: HeadMotion, estimate: Estimate, demand: Demand):
         """Report where the goal does not come nearer."""
-        goal, estimate = self.goal, self.estimate
+        goal = self.goal
         if isinstance(goal, Course):
             error = abs(wrapped(goal.heading - estimate.heading)) + abs(-goal.depth - estimate.position[2])
             close, where = ON_COURSE, f"heading {goal.heading:.3g} rad, depth {goal.depth:.3g} m"
@@ -168,7 +170,7 @@ class Pilot:
             close = self.settings.reach * self.settings.length if isinstance(goal, Path) else self.settings.length
             where = f"({point[0]:.3g}, {point[1]:.3g}, {point[2]:.3g}) m"
         if self._progress.stalled(time, error, close):
-            why = "" if self.demand.possible else ": the water is faster than the swimmer may swim"
+            why = "" if demand.possible else ": the water is faster than the swimmer may swim"
             least, patience = self._progress.least, self.settings.patience
             text = f"the goal {where} cannot be reached: no nearer than {least:.3g} for {patience:g} s{why}"
             self.news.append(News(text))

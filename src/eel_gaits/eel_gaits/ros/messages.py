@@ -79,7 +79,7 @@ def _term_from_message(term, place):
     if term.axis not in AXIS_NAMES:
         known = " or ".join(f"{number} ({name})" for number, name in AXIS_NAMES.items())
         raise ValueError(f"{place}.axis must be {known}, got {term.axis}")
-    envelope = [_ramp_from_message(ramp, f"{place}.envelope[{index}]") for index, ramp in enumerate(term.envelope)]
+    ramps = [_ramp_from_message(ramp, f"{place}.envelope[{index}]") for index, ramp in enumerate(term.envelope)]
     try:
         return Term(
             axis=AXIS_NAMES[term.axis],
@@ -88,7 +88,7 @@ def _term_from_message(term, place):
             wavelength=term.wavelength,
             period=term.period,
             phase=term.phase,
-            envelope=envelope,
+            envelope=tuple(ramps),
         )
     except ValueError as error:
         raise ValueError(f"{place}.{error}") from None

@@ -8,6 +8,7 @@ the present time.
 
 import sys
 from dataclasses import fields
+from typing import Any
 
 from builtin_interfaces.msg import Time
 from eel_base.command_line import complain
@@ -184,7 +185,7 @@ def parameter_rows():
     """Name, description and default of each parameter. The description names the gaits that have the parameter."""
     yield "gait", f"name of the gait, one of {KNOWN}", Settings.gait
     yield "file", FILE, Settings.file
-    gaits = {}  # of each number
+    gaits: dict[tuple[str, str, Any], list[Any]] = {}  # of each number; None for all
     for kind, gait in [(Transition, None), *((numbers_of(name), name) for name in (*GAITS, *FILE_GAITS))]:
         for entry in fields(kind):
             gaits.setdefault((entry.name, described(entry), entry.default), []).append(gait)

@@ -48,7 +48,7 @@ class PilotNode(ParameterNode):
         names = {item.name for kind in GROUPS for item in fields(kind)}
         made = {}
         for kind, changeable in GROUPS.items():
-            known = kind.__dataclass_fields__
+            known = {item.name for item in fields(kind)}
             made[kind] = kind(**{name: overrides[name] for name in overrides if name in known})
             declare(self, made[kind], limits, changeable=changeable)
         warn_of_unknown(self, overrides, names)

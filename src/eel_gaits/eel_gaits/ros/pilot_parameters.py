@@ -3,6 +3,7 @@
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 from eel_base.quantity import Quantities, quantity
 
@@ -41,4 +42,8 @@ class TimingParameters(Quantities):
     )
 
 
-GROUPS = {GoalParameters: True, TimingParameters: False, PilotSettings: False}  # whether it may change
+GROUPS: dict[type[Any], bool] = {  # whether it may change
+    GoalParameters: True,
+    TimingParameters: False,
+    PilotSettings: False,
+}

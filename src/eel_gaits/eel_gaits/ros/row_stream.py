@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Streams the rows of a law as `eel_msgs/CurvatureSamples`, some time ahead of the simulation."""
 
+from typing import Any
+
 import numpy as np
 from builtin_interfaces.msg import Time
 from eel_ros.qos import keep_all
@@ -24,7 +26,8 @@ class RowStream:
 
     def __init__(self, node, frame: str):
         self._node, self._frame = node, frame
-        self._publisher = self._law = None
+        self._publisher: Any = None
+        self._law: Any = None  # a SampledLaw while it is streamed
         self._origin, self._next, self._listeners = 0.0, 0, 0
 
     @property

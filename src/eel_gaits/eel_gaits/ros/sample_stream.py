@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Streams the curvature of a chain of oscillators as `eel_msgs/CurvatureSamples`, ahead of the simulation."""
 
+from typing import Any
+
 import numpy as np
 from eel_ros.frames import frame_in
 from eel_ros.qos import keep_all
@@ -19,7 +21,9 @@ class SampleStream:
     """The stream of a `node` on the topic `curvature_samples`. Nothing is on the network until it begins."""
 
     def __init__(self, node):
-        self._node, self._publisher, self._chain = node, None, None
+        self._node = node
+        self._publisher: Any = None
+        self._chain: Any = None  # Oscillators while they are streamed
         self._count = 0  # samples since the start, which lies at `_start`
         self._start, self._listeners = 0.0, 0
 

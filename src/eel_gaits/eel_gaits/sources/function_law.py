@@ -47,7 +47,8 @@ class CheckedFunction:
     """Calls a user's function, and checks what it returns. `given`: whether it returns derivatives too."""
 
     def __init__(self, function: Callable):
-        self._function, self.given = function, None
+        self._function = function
+        self.given: bool | None = None
 
     def __call__(self, time: float, x: np.ndarray) -> np.ndarray:
         """Curvature (1, 2, n), or with derivatives (3, 2, n), at `time` [s] and `x` (n,) [m]."""

@@ -21,7 +21,7 @@ FEWEST_JOINTS = 3  # in an axis
 
 def joint_columns(names) -> dict[str, list[str]]:
     """The columns of joints among `names`, of each axis in their order."""
-    found = {}
+    found: dict[str, dict[int, str]] = {}
     for name in names:
         if match := COLUMN.fullmatch(name):
             found.setdefault(match[1], {})[int(match[2])] = name
@@ -36,7 +36,7 @@ def law_of_joints(table: Table, length: float, name: str, smooth: bool = True) -
     """
     axes = joint_columns(table.columns)
     for axis, names in axes.items():
-        numbers = [int(COLUMN.fullmatch(each)[2]) for each in names]
+        numbers = [int(each.rpartition("_")[2]) for each in names]
         if numbers != list(range(1, len(names) + 1)) or len(names) < FEWEST_JOINTS:
             raise table.error(
                 f"joints of {axis} must be {axis}_1 to {axis}_{max(FEWEST_JOINTS, len(names))} without gaps, "
@@ -46,7 +46,6 @@ def law_of_joints(table: Table, length: float, name: str, smooth: bool = True) -
     table.check_finite(("time", *columns))
     time = table.columns["time"]
     check_rising(table, time, np.arange(len(time)))
-    angles = np.stack([table.columns[each] for each in columns], axis=1)
     angles = {axis: np.stack([table.columns[each] for each in names]) for axis, names in axes.items()}
     splines = {axis: _sums(each, length) for axis, each in angles.items()}
     frames = Frames(table, time - time[0], None, time[:, None, None])

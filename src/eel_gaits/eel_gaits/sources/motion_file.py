@@ -98,7 +98,8 @@ def kind_of(table: Table) -> str:
 
 def _law_of_curvature(table: Table, length: float, scale: float, name: str, smooth: bool) -> SampledLaw:
     frames = frames_of(table, ("pitch", "yaw") if "pitch" in table.columns else ("yaw",))
-    arc = scale * frames.arc
+    assert frames.arc is not None  # the file has a column arc_length
+    arc: np.ndarray = scale * frames.arc
     if abs(arc[0]) > 0.05 * length or abs(arc[-1] - length) > 0.05 * length:
         points = len(arc) - 1
         raise table.error(

@@ -81,7 +81,7 @@ def _harmonic(axis: str, time: np.ndarray, x: np.ndarray, rows: np.ndarray, peri
     phase, weight = np.unwrap(np.angle(found)), np.abs(found) ** 2
     turns = np.polyfit(x, phase, 1, w=np.sqrt(weight))[0] / (2.0 * math.pi) if np.any(weight) else 0.0
     wavelength = 1.0 / turns if abs(turns) * (x[-1] - x[0]) > STANDING else 0.0
-    return Term(axis=axis, amplitude=np.abs(found), knots=x, wavelength=wavelength, period=period)
+    return Term(axis=axis, amplitude=tuple(np.abs(found)), knots=tuple(x), wavelength=wavelength, period=period)
 
 
 def fastest_period(time: np.ndarray, values: np.ndarray) -> float:

@@ -17,7 +17,7 @@ In time, the columns of y are first turned into their principal components (Joll
 2002). Each has a penalty of its own: the few that hold the motion stay, and the many that hold noise alone vanish.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -29,7 +29,7 @@ POWERS = np.arange(-6.0, 12.1, 0.5)  # common logarithm of p that are tried, for
 class Smoothed(NamedTuple):
     """Splines through the columns of the data, and what smoothing did."""
 
-    spline: object  # scipy.interpolate.BSpline, (..., columns)
+    spline: Any  # scipy.interpolate.BSpline, (..., columns)
     degrees: float  # of freedom that are left to each column, on average: n where nothing was smoothed
 
 

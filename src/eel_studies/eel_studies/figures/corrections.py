@@ -6,6 +6,7 @@ and that of the local Reynolds number. Without them the equations contradict eac
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from eel_dynamics.model.scene import Scene
@@ -13,7 +14,7 @@ from eel_dynamics.runs.run import Run, simulate
 
 from eel_gaits import falling
 
-READINGS = {  # label: what differs from the library's own reading
+READINGS: dict[str, dict[str, Any]] = {  # label: what differs from the library's own reading
     "the library's own: perimeter and added mass corrected, friction as printed": {},
     "perimeter as printed, half of an ellipse's": {"perimeter": "printed"},
     "friction blended over its transition, where the printed one jumps": {"friction": "blended"},

@@ -72,6 +72,7 @@ def in_space(cross_flow: bool) -> ConvergenceErrors:
         )
         swimmer.adopt(falling(), origin=-INSTANT)
         snapshot = swimmer.observe(load=False)
+        assert snapshot.torque is not None
         return snapshot.head_acceleration.copy(), snapshot.torque.copy()
 
     exact = evaluated(FINEST_NODES)
@@ -96,6 +97,7 @@ def in_time(cross_flow: bool, duration: float = 2.5) -> ConvergenceErrors:
             stations=STATIONS,
             twist=AHEAD,
         )
+        assert run.torque is not None
         return run.position[-1], run.torque[-1]
 
     exact = swum(FINEST_STEP)

@@ -40,6 +40,7 @@ def step_of(point: Point) -> float:
         return settings.step
     period = min((term.period for term in point.law.waves), default=np.inf)
     flow = time_scale(point.start.in_water(np.array(point.scene.current)), point.body.length)
+    assert settings.fixed is not None
     return min(period, flow, 1.0) / settings.fixed
 
 

@@ -67,7 +67,7 @@ class Gradient:
     def __eq__(self, other) -> bool:
         return same_fields(self, other)
 
-    __hash__ = None  # it holds arrays
+    __hash__ = None  # type: ignore[assignment]  # typeshed has `object` hashable; this holds arrays
 
     def __repr__(self) -> str:
         return f"Gradient(of {', '.join(self.of)}; by {', '.join(self.by)})"

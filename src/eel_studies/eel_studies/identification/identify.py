@@ -62,7 +62,7 @@ class Identified:
     def __eq__(self, other) -> bool:
         return same_fields(self, other)
 
-    __hash__ = None  # it holds arrays
+    __hash__ = None  # type: ignore[assignment]  # typeshed has `object` hashable; this holds arrays
 
     def __repr__(self) -> str:
         return f"Identified({', '.join(f'{name}={value:.4g}' for name, value in self.numbers.items())})"

@@ -8,13 +8,13 @@ turn about the vertical, r_measured = R(turn) r + displacement. These need no fu
 import warnings
 from collections.abc import Callable
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from eel_dynamics.runs.run import Run
 
 from eel_studies.gradients.gradient import gradient
-from eel_studies.identification.measurements import MeasuredPath, MeasuredSpeed
+from eel_studies.identification.measurements import MeasuredPath
 from eel_studies.points import Point, law_of_terms, point_at
 from eel_studies.steady_swim import at_speed, swim_times
 
@@ -40,7 +40,7 @@ class Swims(NamedTuple):
     base: Point
     threads: int | None
 
-    def predicted(self, measured: "MeasuredPath | MeasuredSpeed", at: dict[str, float]) -> Predicted:
+    def predicted(self, measured: Any, at: dict[str, float]) -> Predicted:
         """What the model says of `measured` where the parameters are `at`: positions in its own axes, or a speed."""
         path = isinstance(measured, MeasuredPath)
         numbers = {**self.numbers, **measured.numbers}
@@ -65,7 +65,7 @@ class Swims(NamedTuple):
         return Predicted(found.value, found.derivative, found.run)
 
 
-def path_times(path: MeasuredPath, law) -> dict[str, float]:
+def path_times(path: MeasuredPath, law) -> dict[str, Any]:
     """Duration and sample period [s] of the swim of a `path`. `ValueError` for a law without terms."""
     shortest = min((term.period for term in law_of_terms(law).terms if term.period), default=np.inf)
     duration = float(path.time[-1])

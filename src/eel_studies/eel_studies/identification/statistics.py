@@ -32,8 +32,8 @@ def whitened(blocks: list[Block], correlation: float) -> tuple[np.ndarray, np.nd
         left = 1.0 - factor**2
         rows += [both[:1], (both[1:] - factor * both[:-1]) / np.sqrt(left)]
         log += float(np.sum(np.log(left)))
-    rows = np.concatenate(rows)
-    return rows[:, 0], rows[:, 1:], log
+    whole = np.concatenate(rows)
+    return whole[:, 0], whole[:, 1:], log
 
 
 def correlation_of(blocks: list[Block]) -> float:

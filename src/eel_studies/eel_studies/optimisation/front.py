@@ -43,7 +43,7 @@ class Front:
     def __eq__(self, other) -> bool:
         return same_fields(self, other)
 
-    __hash__ = None  # it holds arrays
+    __hash__ = None  # type: ignore[assignment]  # typeshed has `object` hashable; this holds arrays
 
     def __repr__(self) -> str:
         return f"Front({len(self)} speeds, {self.cost_name} by {', '.join(self.names)})"

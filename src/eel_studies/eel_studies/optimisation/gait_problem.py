@@ -93,7 +93,7 @@ class GaitProblem:
             except (SimulationStopped, ValueError) as error:
                 raise NoSteadySwim(str(error)) from error
         self.jumps = self.jumps or bool(found.warnings)
-        self._note(*found.value.tolist(), measures_of(found.run, (CHANGE,))[CHANGE])
+        self._note(*(*found.value.tolist(), measures_of(found.run, (CHANGE,))[CHANGE]))
         return found.value, found.derivative * size
 
     def run(self, place: np.ndarray, speed: float) -> Run:

@@ -11,8 +11,9 @@ found for the speed before. It minimises the cost with the speed as a constraint
 """
 
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Sized
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from eel_base.quantity import number
@@ -98,7 +99,8 @@ def optimise(
 def _front(problem: GaitProblem, wanted: np.ndarray, method: str, starts: int, seed: int, progress) -> Front:
     places = _spread(len(problem.names), seed)
     measured = problem.measured(places, None)
-    found, runs, before = [], [], []
+    found, runs = [], []
+    before: list[Any] = []
     for done, speed in enumerate(wanted.tolist()):
         progress(done, len(wanted))
         order = np.argsort(_merit(measured, speed))
@@ -149,7 +151,7 @@ def _checked_bounds(bounds) -> tuple[np.ndarray, np.ndarray]:
         raise ValueError(f"bounds must be a dict of parameters and (low, high), got {shown(bounds)}")
     rows = []
     for name, pair in bounds.items():
-        if isinstance(pair, str) or not np.iterable(pair) or len(pair) != 2:
+        if isinstance(pair, str) or not np.iterable(pair) or not isinstance(pair, Sized) or len(pair) != 2:
             raise ValueError(f"bounds {shown(name)} must be (low, high), got {shown(pair)}")
         low, high = (number(f"bounds {shown(name)}", value) for value in pair)
         if not low < high:

@@ -24,8 +24,7 @@ WORST = 1e3  # of a gait that does not swim
 
 def by_gradients(problem: GaitProblem, starts: np.ndarray, speed: float, seed: int) -> np.ndarray | None:
     """Sequential least-squares programming with `gradient`, from each of the `starts` (S, P); the best end."""
-    ends = [_slsqp(problem, start, speed) for start in starts]
-    ends = [end for end in ends if end is not None]
+    ends = [end for start in starts if (end := _slsqp(problem, start, speed)) is not None]
     return min(ends, key=lambda end: end[0])[1] if ends else None
 
 

@@ -5,6 +5,8 @@ Colours are those of Okabe and Ito, distinct for colour-blind readers. Each has 
 Colour maps are perceptually uniform (cividis) or diverging without red and green (PuOr).
 """
 
+from typing import Any
+
 BLACK, BLUE, ORANGE, GREEN, PURPLE = "#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7"
 PALE_BLUE, GREY = "#d9e6f0", "#888888"
 OWN = {"color": BLUE, "linewidth": 1.6, "label": "corrected"}
@@ -32,7 +34,7 @@ def mark_pitch(panels):
 
 def legend_above(figure, columns: int = 2):
     """One legend above all panels of a figure, where it covers no curve; curves of the same name are listed once."""
-    named = {}
+    named: dict[str, Any] = {}
     for axes in figure.axes:
         for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
             named.setdefault(label, handle)

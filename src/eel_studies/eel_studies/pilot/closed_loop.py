@@ -3,6 +3,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from eel_dynamics.model.scene import Scene
@@ -45,13 +46,14 @@ def swim_with(
     """
     scene = scene or Scene(internal_wrench=False, ledger=False)
     simulation = Simulation(**{"scene": scene, "accuracy": accuracy, "stations": 2, **start})
-    x, rows, found = pilot.law.x, [], []
+    x, found = pilot.law.x, []
     simulation.add_samples(0.0, x, *pilot.begin())
     for step in range(round(duration / STEP)):
         each(simulation)
         head = head_motion_of(simulation.head)
         rows = pilot.step(step * STEP, head, STEP)
         estimate, demand = pilot.estimate, pilot.demand
+        assert estimate is not None and demand is not None
         found.append(
             (
                 *(step * STEP, *head.position, *estimate.position, estimate.heading, estimate.roll),
@@ -64,5 +66,5 @@ def swim_with(
         simulation.advance((step + 1) * STEP)
     table = np.array(found)
     parts = np.split(table, [1, 4, 7, 8, 9, 10], axis=1)
-    flat = [part[:, 0] if part.shape[1] == 1 else part for part in parts]
-    return Voyage(*flat, misses=tuple(pilot.misses), news=tuple(news.text for news in pilot.news))
+    flat: list[Any] = [part[:, 0] if part.shape[1] == 1 else part for part in parts]
+    return Voyage(*(*flat, tuple(pilot.misses), tuple(news.text for news in pilot.news)))

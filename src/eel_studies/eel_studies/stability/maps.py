@@ -8,6 +8,7 @@ target. For an inaccurate run the map records whether the run indicates it: by a
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from eel_dynamics.accuracy.accuracy import ORDERS, PRESETS, Accuracy
@@ -87,7 +88,7 @@ def measure(item: Map) -> Measured:
         chosen = [index for index, each in enumerate(durations) if each == duration]
         swims = [points[index] for index in chosen]
         shared = {"duration": duration, "sample_period": duration / SAMPLES}
-        keywords = {name: [swim[name] for swim in swims] for name in swims[0]}
+        keywords: dict[str, Any] = {name: [swim[name] for swim in swims] for name in swims[0]}
         batch = simulate_batch(**shared, **keywords, stations=STATIONS)
         finest = [FINER if each >= TARGET else FINEST for each in target[chosen]]
         finer = simulate_batch(**shared, **{**keywords, "accuracy": finest}, estimate=False)
@@ -105,6 +106,7 @@ def measure(item: Map) -> Measured:
             limits[index] = len(run.warnings) > len(ledger)
             if error[index] > target[index]:
                 warned[index] = bool(ledger)
+                assert run.error_estimate is not None
                 estimate[index] = run.error_estimate.worst / target[index]
     found = error, reason, steps, limits, warned, estimate
     return Measured(item, *(each.reshape(shape) for each in found))

@@ -80,8 +80,8 @@ def table(long: int = LONG) -> str:
     for accuracy in ACCURACIES:
         pushed = [[growth(accuracy=accuracy, push=push, axis=axis) for push in PUSHES] for axis in AXES]
         turned = growth(accuracy=accuracy, push=0.0, orientation=TURNED)
-        rates = [", ".join(f"{each.rate:.3f}" for each in row) for row in (*pushed, [turned])]
-        lines.append(f"| {accuracy:g} | {' | '.join(rates)} |")
+        texts = [", ".join(f"{each.rate:.3f}" for each in row) for row in (*pushed, [turned])]
+        lines.append(f"| {accuracy:g} | {' | '.join(texts)} |")
         found += [*(each for row in pushed for each in row), turned]
     rates = [each.rate for each in found]
     mean = np.mean(rates)

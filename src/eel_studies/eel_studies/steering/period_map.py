@@ -164,7 +164,8 @@ class PeriodMap:
             way = -rotation(start.orientation).apply([1.0, 0.0, 0.0])[:2]
         about = np.array([[0.0, 0.0, math.pi - math.atan2(way[1], way[0])]])
         turn = rotation(turned_by(np.array([0.0, 0.0, 0.0, 1.0]), about)[0])
-        return tuple(
+        first, last = (
             Motion(turn.apply(each.position), turned_by(each.orientation, about)[0], each.twist)
             for each in (start, end)
         )
+        return first, last

@@ -137,4 +137,5 @@ def sideways_acceleration(law: Law) -> tuple[float, float]:
         way = path[-1, :2] - path[0, :2]
         across = path[:, :2] @ np.array([-way[1], way[0]]) / np.linalg.norm(way)
         found.append(float(np.abs(np.diff(across, 2)).max()) * (64 / period) ** 2 / GRAVITY)
-    return tuple(found)
+    centre, tail = found
+    return centre, tail

@@ -7,6 +7,7 @@ sweep straight --vary body=boyer2010,kern2006 --vary wavelength=0.6:1.2:7 --sche
 
 import sys
 import time
+from functools import partial
 
 import numpy as np
 from eel_base.command_line import Parser, complain, interruptible
@@ -44,7 +45,7 @@ def _sweep(options) -> int:
     try:
         numbers, vary = set_numbers(options.set), named_texts("--vary", options.vary)
         check_names([*numbers, *(name for name, _ in vary)])
-        grid = {name: varied_values(text, lambda count, name=name: check_points(name, count)) for name, text in vary}
+        grid = {name: varied_values(text, partial(check_points, name)) for name, text in vary}
         with interruptible():
             data = sweep(
                 grid,

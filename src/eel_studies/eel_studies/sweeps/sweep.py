@@ -12,7 +12,7 @@ sweep resumes when it is called again. It needs `pip install './src/eel_dynamics
 
 import itertools
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sized
 
 import numpy as np
 from eel_base.wording import one_line, shown
@@ -118,9 +118,9 @@ def sweep(
         with workers_of(scheduler, workers or available_cores()) as crew:
             size = chunk or min(LONGEST_CHUNK, max(1, math.ceil(len(left) / (8 * max(1, crew.count)))))
             chunks = [left[start : start + size] for start in range(0, len(left), size)]
-            for swum, result, error in crew.spread(swim_points, chunks, how):
-                if error is not None:
-                    failures.append((swum[0].index, error))
+            for swum, result, failure in crew.spread(swim_points, chunks, how):
+                if failure is not None:
+                    failures.append((swum[0].index, failure))
                     continue
                 result = {index: checked_point(point) for index, point in result.items()}
                 parts.keep(result)
@@ -166,7 +166,7 @@ def _checked_grid(grid) -> tuple[list[str], list[list]]:
     for name, values in grid.items():
         if isinstance(values, (str, bytes)) or not np.iterable(values):
             raise ValueError(f"grid {shown(name)} must have a sequence of values, got {shown(values)}")
-        if hasattr(values, "__len__"):
+        if isinstance(values, Sized):
             check_points(f"grid {shown(name)}", len(values))
         values = [value.item() if isinstance(value, np.generic) else value for value in values]
         labels = [label_of(value) for value in values]

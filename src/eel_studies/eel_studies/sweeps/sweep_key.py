@@ -47,7 +47,7 @@ def _sources() -> bytes:
     for package in PACKAGES:
         for path in sorted(package.rglob("*.py")):
             content.update(path.name.encode() + path.read_bytes())
-    content.update(Path(eel_core._core.__file__).read_bytes())
+    content.update(Path(str(eel_core._core.__file__)).read_bytes())
     return content.digest()
 
 

@@ -9,6 +9,7 @@ import os
 import time
 import warnings
 from pathlib import Path
+from typing import Any
 
 from eel_base.input_file import InputFile, from_json, reading
 from eel_base.output_file import check_output, replacing
@@ -26,15 +27,16 @@ class Parts:
     """
 
     def __init__(self, out, key: str, count: int, overwrite: bool):
-        self.out, self._key, self._count = None if out is None else Path(out), key, count
+        self._key, self._count = key, count
+        path = self.out = None if out is None else Path(out)
         self._overwrite, self._began = overwrite, time.time_ns()
-        self.folder = None if out is None else self.out.with_name(self.out.name + ".parts")
+        self.folder: Any = None if path is None else path.with_name(path.name + ".parts")
         self._number = itertools.count()
-        if out is None:
+        if path is None or self.folder is None:
             return
-        if self.out.suffix != ".nc":
+        if path.suffix != ".nc":
             raise ValueError(f"out must end in .nc, got {shown(str(out))}")
-        check_output("out", self.out)
+        check_output("out", path)
         if self.folder.exists() and self._key_of_folder() not in (None, key):
             if not overwrite:
                 raise ValueError(
@@ -61,7 +63,7 @@ class Parts:
 
     def load(self) -> dict[int, dict]:
         """Load the stored results, by index, and create the folder. A damaged part is removed, with a warning."""
-        done = {}
+        done: dict[int, Any] = {}
         if self.folder is not None:
             self.folder.mkdir(exist_ok=True)
             with replacing(self.folder / ABOUT) as draft:

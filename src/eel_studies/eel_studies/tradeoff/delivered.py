@@ -12,6 +12,7 @@ import warnings
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from eel_dynamics.accuracy.accuracy import Accuracy
@@ -54,7 +55,7 @@ class Trial:
     """
 
     swim: dict
-    error: ErrorEstimate | None
+    error: Any  # ErrorEstimate | None
     uncertainty: float
     estimate: ErrorEstimate
     told: bool
@@ -86,7 +87,11 @@ def drawn(rng: np.random.Generator) -> dict:
     length, period = body.length, between(*PERIODS)
     envelope = (Ramp(0.0, period * rng.uniform(0.5, 2.0), 1.0),)
     amplitude = rng.uniform(0.2, 1.5, 3) / length ** np.arange(1, 4)
-    wave = {"wavelength": float(length * rng.uniform(0.7, 2.0)), "period": period, "envelope": envelope}
+    wave: dict[str, Any] = {
+        "wavelength": float(length * rng.uniform(0.7, 2.0)),
+        "period": period,
+        "envelope": envelope,
+    }
     terms = [Term(axis="yaw", amplitude=tuple(amplitude.tolist()), **wave)]
     kind, bend = rng.integers(3), (float(rng.uniform(-1.0, 1.0)) / length,)
     if kind == 1:
@@ -94,7 +99,7 @@ def drawn(rng: np.random.Generator) -> dict:
     elif kind == 2:
         terms.append(Term(axis="pitch", amplitude=bend, **wave))
     wrench = bool(rng.integers(2))
-    water = {"density": between(*DENSITIES), "friction": str(rng.choice(FRICTION))}
+    water: dict[str, Any] = {"density": between(*DENSITIES), "friction": str(rng.choice(FRICTION))}
     return {
         "law": Law(*terms, name="drawn"),
         "duration": between(*DURATIONS),
@@ -110,10 +115,11 @@ def trial_of(swim: dict) -> Trial | None:
     """The trial of one swim; None for a swim that stops before its end, with its reason."""
     try:
         run = simulate(**swim)
-        reference, uncertainty = _reference(swim, run.error_estimate.worst)
+        estimate = run.error_estimate
+        assert estimate is not None
+        reference, uncertainty = _reference(swim, estimate.worst)
     except SimulationStopped:
         return None
-    estimate = run.error_estimate
     return Trial(
         swim=swim,
         error=None if reference is None else relative_errors(run, reference),

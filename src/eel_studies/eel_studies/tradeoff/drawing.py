@@ -4,6 +4,8 @@
 Methods differ in colour (Okabe and Ito) and in mark, so that they can be told apart in print without colour.
 """
 
+from typing import Any
+
 import numpy as np
 from eel_dynamics.accuracy.accuracy import PRESETS
 
@@ -118,7 +120,7 @@ def _apart(heights: list[float], gap: float, highest: float = np.inf) -> list[fl
 
     Labels that touch form one centred group.
     """
-    groups = []  # [sum of heights, count]
+    groups: list[list[Any]] = []  # [sum of heights, count]
     for height in heights:
         groups.append([height, 1])
         while len(groups) > 1 and _edge(groups[-1], -gap) < _edge(groups[-2], gap):

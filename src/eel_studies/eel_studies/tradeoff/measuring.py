@@ -66,6 +66,7 @@ def errors_of(run: Run, reference: Run) -> tuple[float, float]:
     """Relative errors of pose and torque of `run`, which has the same samples and stations as `reference`."""
     way = max(reference.path_length, reference.body.length)
     pose = float(np.linalg.norm(run.position[-1] - reference.position[-1])) / way
+    assert run.torque is not None and reference.torque is not None
     size = float(np.max(np.linalg.norm(reference.torque, axis=2)))
     return pose, float(np.max(np.linalg.norm(run.torque - reference.torque, axis=2))) / size if size else 0.0
 
@@ -112,8 +113,8 @@ def measure(
             runs[accuracy] = swim(law, duration, body, scene, accuracy)
         except SimulationStopped:
             unstable.append(accuracy)
-    marching = {accuracy: [] for accuracy in runs}
-    whole = {accuracy: [] for accuracy in runs}
+    marching: dict[Accuracy, list[float]] = {accuracy: [] for accuracy in runs}
+    whole: dict[Accuracy, list[float]] = {accuracy: [] for accuracy in runs}
     for repeat in range(repeats):
         say(f"times, round {repeat + 1} of {repeats}")
         for accuracy in runs:

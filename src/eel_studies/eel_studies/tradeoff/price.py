@@ -57,7 +57,8 @@ def _price(known: list, accuracy, *, estimate: bool) -> Price:
         except SimulationStopped:
             rows.append((np.inf, np.inf, np.inf))
             continue
-        cost, beside = run.nodes * run.evaluations, run.error_estimate.cost if estimate else 0
+        measured = run.error_estimate if estimate else None
+        cost, beside = run.nodes * run.evaluations, measured.cost if measured is not None else 0
         rows.append((relative_errors(run, reference).worst, cost / periods, (cost + beside) / periods))
     return Price(*np.median(rows, axis=0).tolist())
 

@@ -2,6 +2,7 @@
 """The settings of the trade-off: points along the body, method and steps in time."""
 
 from dataclasses import replace
+from typing import Any
 
 from eel_dynamics.accuracy.accuracy import PRESETS, Accuracy
 from eel_dynamics.model.scene import Scene
@@ -25,19 +26,19 @@ def settings(scene: Scene, quick: bool = False) -> list[Accuracy]:
 
     quick: every third value of points and of steps only.
     """
-    part = slice(None, None, 3) if quick else slice(None)
+    every = 3 if quick else 1
     rows = []
-    for resolution in RESOLUTIONS[part]:
+    for resolution in RESOLUTIONS[::every]:
         nodes = f"{resolution:g} points"
-        for tolerance in TOLERANCES[part]:
-            common = {"resolution": resolution, "tolerance": tolerance}
+        for tolerance in TOLERANCES[::every]:
+            common: dict[str, Any] = {"resolution": resolution, "tolerance": tolerance}
             rows.append(Accuracy(name=f"{nodes}, tolerance {tolerance:g}", **common))
-            for order in ADAMS_ORDERS[part]:
+            for order in ADAMS_ORDERS[::every]:
                 name = f"{nodes}, tolerance {tolerance:g}, Adams {order}"
                 rows.append(Accuracy(name=name, method="adams", order=order, **common))
                 if resolution <= COARSE_POINTS and tolerance >= COARSE_TOLERANCE and scene.resistive:
                     rows.append(replace(rows[-1], name=f"{name}, no kinks", kinks="none"))
-        for step in STEPS[part]:
+        for step in STEPS[::every]:
             rows.append(Accuracy(name=f"{nodes}, step {step:g} s", resolution=resolution, step=step))
     # The presets lose their target: every run then takes these settings as they are.
     presets = [Accuracy.of(name).in_scene(scene) for name in PRESETS]

@@ -14,6 +14,7 @@ import sqlite3
 import tempfile
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import Any
 
 from eel_base.wording import shown
 from rosbags.interfaces import MessageDefinitionFormat
@@ -133,13 +134,14 @@ class Bag:
         found: dict[str, Topic] = {}
         for reader in self._readers:
             for connection in reader.connections:
+                offered: Any = connection.ext  # of a bag of ROS 2
                 known = found.get(connection.topic)
                 text = connection.msgdef.data or (known.definition if known else "")
                 found[connection.topic] = Topic(
                     type=connection.msgtype,
                     definition=text,
                     idl=connection.msgdef.format == MessageDefinitionFormat.IDL,
-                    publishers=max(1, len(connection.ext.offered_qos_profiles)),
+                    publishers=max(1, len(offered.offered_qos_profiles)),
                 )
         return found
 
@@ -176,7 +178,8 @@ def _checked_reader(path: pathlib.Path) -> Iterator[Reader]:
         for each in _mcap_files(path):
             check_index(each)
         if path.is_dir():
-            files, known = reader.storage.storages, {_identity(each) for each in reader.connections}
+            storage: Any = reader.storage  # of a folder: it has files
+            files, known = storage.storages, {_identity(each) for each in reader.connections}
             strange = {_identity(each) for file in files for each in file.connections} - known
             if strange or sum(file.metadata.message_count for file in files) != reader.message_count:
                 raise ValueError("metadata.yaml does not fit the files")

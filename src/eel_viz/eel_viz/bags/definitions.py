@@ -9,6 +9,7 @@ import importlib
 import json
 import pathlib
 from collections.abc import Iterator
+from typing import Any
 
 from ament_index_python.packages import PackageNotFoundError, get_package_share_directory
 from eel_base.wording import shown
@@ -52,7 +53,8 @@ def type_hash(name: str) -> str:
 
 def _inner_types(name: str, text: str) -> Iterator[str]:
     """The types of the fields that are messages themselves, or arrays of messages."""
-    for _, (node, value) in get_types_from_msg(text, name)[name][1]:
+    fields: Any = get_types_from_msg(text, name)[name][1]  # nested tuples, which its types do not tell apart
+    for _, (node, value) in fields:
         if node in (Nodetype.ARRAY, Nodetype.SEQUENCE):
             node, value = value[0]
         if node == Nodetype.NAME:

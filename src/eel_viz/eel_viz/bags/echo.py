@@ -5,6 +5,7 @@ import argparse
 import array
 import sys
 import time
+from typing import Any
 
 import numpy as np
 import yaml
@@ -29,7 +30,7 @@ class Echo(ServedNode):
         super().__init__(NAME)
         self._options = options
         self._topic = self.resolve_topic_name(options.topic)
-        self._subscription = None
+        self._subscription: Any = None
         self._began = time.monotonic()
         self.printed = 0
         self.failure = ""

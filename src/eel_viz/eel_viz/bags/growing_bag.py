@@ -12,7 +12,7 @@ import os
 import pathlib
 import struct
 from io import BytesIO
-from typing import ClassVar
+from typing import Any, Literal
 from zlib import crc32
 
 from eel_base.wording import shown
@@ -22,7 +22,7 @@ from rosbags.rosbag2.storage_mcap import McapWriter
 
 from eel_viz.bags.mcap_checksums import CHUNK_CHECKSUM, with_checksums
 
-VERSION = 9  # of metadata.yaml, as ROS 2 Jazzy writes it
+VERSION: Literal[9] = 9  # of metadata.yaml, as ROS 2 Jazzy writes it
 
 
 class GrowingFile(McapWriter):
@@ -35,7 +35,7 @@ class GrowingFile(McapWriter):
         self._end = b""  # the file's end, behind them
         self._file.flush()
         self._checksum = crc32(self.path.read_bytes())  # of the bytes that are kept
-        self.bio = _PendingData(self._kept)
+        self.bio: Any = _PendingData(self._kept)
 
     def close_chunk(self) -> None:
         """Complete the chunk, with its checksum."""
@@ -75,7 +75,7 @@ class GrowingFile(McapWriter):
 class GrowingBag(Writer):
     """`rosbags.rosbag2.Writer` with `save`; `ValueError` if the folder exists or cannot be made."""
 
-    STORAGE_PLUGINS: ClassVar = {StoragePlugin.MCAP: GrowingFile}
+    STORAGE_PLUGINS: Any = {StoragePlugin.MCAP: GrowingFile}  # noqa: RUF012  as rosbags' own
 
     def __init__(self, folder: str | os.PathLike[str]) -> None:
         try:

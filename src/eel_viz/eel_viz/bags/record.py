@@ -12,7 +12,7 @@ import argparse
 import sys
 import time
 from collections import Counter
-from collections.abc import Callable
+from typing import Any
 
 from eel_base.command_line import Parser, check_seconds, complain
 from eel_ros.qos import fitting, keep_all, matches
@@ -57,9 +57,9 @@ class Recorder(Node):
         self.counts: Counter[str] = Counter()
         self._saved_messages = 0
         self._group = PolledGroup()
-        self._subscribed: dict[str, tuple[object, QoSProfile, Callable[[bytes, dict], None]]] = {}
+        self._subscribed: dict[str, tuple[Any, QoSProfile, Any]] = {}
         self._offers: dict[str, list[QoSProfile]] = {}
-        self._connections: dict[str, object] = {}
+        self._connections: dict[str, Any] = {}
         self._start: dict[str, bytes] = {}  # topic: the last sample 0 of a run that stands at it
         self._refused: set[str] = set()
         self._began = self._looked = self._last_message = time.monotonic()
@@ -100,7 +100,7 @@ class Recorder(Node):
         self.get_logger().info(f"recorded in {self._options.output}: {counts}")
         samples = {topic: self.counts[topic] for topic in map(self.resolve_topic_name, SAMPLED) if self.counts[topic]}
         if len(set(samples.values())) > 1:
-            least, most = min(samples, key=samples.get), max(samples, key=samples.get)
+            least, most = min(samples, key=samples.__getitem__), max(samples, key=samples.__getitem__)
             self.get_logger().warning(
                 f"topics of unequal length: {least} has {samples[least]} samples, {most} has {samples[most]}"
             )
@@ -192,8 +192,9 @@ class Recorder(Node):
             self._bag.write(self._connections[topic], about.get("received_timestamp") or time.time_ns(), data)
 
         try:
+            taken: Any = receive  # with the message's times, which rclpy's types leave out for raw messages
             subscription = self.create_subscription(
-                message_class(kind), topic, receive, quality, raw=True, callback_group=self._group
+                message_class(kind), topic, taken, quality, raw=True, callback_group=self._group
             )
         except ValueError as error:
             self._refused.add(topic)

@@ -32,8 +32,8 @@ from eel_viz.without_pandas import keep_pandas_out
 
 NAME = "replay"
 DIAGNOSTICS = "/diagnostics"
-OPTIONS = ("blueprint", "rate", "skin_rate", "colour_limit", "torque_limit", "force_limit", "curvature_limit")
-OPTIONS += ("load_scale", "end_force_scale", "reach", "viewer")
+OPTIONS: tuple[str, ...] = ("blueprint", "rate", "skin_rate", "colour_limit", "torque_limit", "force_limit")
+OPTIONS += ("curvature_limit", "load_scale", "end_force_scale", "reach", "viewer")
 
 
 def _named_law(message, place: int) -> SimpleNamespace:
@@ -224,7 +224,7 @@ def main(arguments: list[str] | None = None) -> int:
         log_warning(str(error))
         return 1
     except (ValueError, OSError) as error:
-        log_warning(error)
+        log_warning(str(error))
         return 2
     except KeyboardInterrupt:
         log_warning("interrupted: the recording ends there")

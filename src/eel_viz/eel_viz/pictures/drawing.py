@@ -178,7 +178,7 @@ def drawn(
         raise ValueError(f"size must be {LEAST} to {MOST} pixels each way, got {size[0]}x{size[1]}")
     with contextlib.ExitStack() as stack:
         path = _readable(pathlib.Path(recording).resolve(), stack)
-        window = tuple(side + edge for side, edge in zip(size, FRAME, strict=True)) if bare else size
+        window = (size[0] + FRAME[0], size[1] + FRAME[1]) if bare else size
         drawing = Drawing(stack.enter_context(viewer(window)), path, size)
         if blueprint or bare:
             drawing.arrange(blueprint or ALONE, bare=bare)

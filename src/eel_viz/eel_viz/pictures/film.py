@@ -6,6 +6,7 @@ import os
 import pathlib
 import shutil
 import subprocess
+from typing import Any
 
 from eel_base.output_file import replacing
 from eel_base.wording import shown
@@ -40,7 +41,7 @@ def film(
     path = pathlib.Path(output)
     if path.suffix not in FILMS:
         raise ValueError(f"film must end in one of {', '.join(FILMS)}, got {shown(str(output))}")
-    program = ffmpeg()
+    program: Any = ffmpeg()
     if path.suffix not in ANIMATIONS and program is None:
         raise ValueError(f"ffmpeg is not installed, which {path.suffix} needs; {' and '.join(ANIMATIONS)} do without")
     with replacing(path) as draft:

@@ -7,6 +7,7 @@ run's value minus the other's, at this run's stamps and stations (see `pairs`).
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import rerun as rr
@@ -173,7 +174,8 @@ class OtherSide(Side):
         super().__init__(comparison)
         self._stream, self._due = stream, due
         self._skin: Skin | None = None
-        shade, thin = [colours.AMBER], [rr.Radius.ui_points(0.8)]
+        shade = [colours.AMBER]
+        thin: Any = [rr.Radius.ui_points(0.8)]
         for path in (entities.OTHER_HOOPS, entities.OTHER_BACKBONE):
             stream.log_static(path, rr.LineStrips3D.from_fields(colors=shade, radii=thin))
 

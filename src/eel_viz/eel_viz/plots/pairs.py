@@ -52,6 +52,6 @@ class Pairs:
 
 def _on(x: np.ndarray | None, own: np.ndarray | None, values: np.ndarray) -> np.ndarray:
     """`values` interpolated from their `own` stations to `x`."""
-    if x is None or same(x, own):
+    if x is None or own is None or same(x, own):
         return values
     return np.stack([np.interp(x, own, column) for column in values.T], axis=1)

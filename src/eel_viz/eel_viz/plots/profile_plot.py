@@ -6,6 +6,8 @@ whose y points down: drawn x = WIDTH * X / length, drawn y = -value / (2 limit).
 grows to the next round number, and the ticks with it.
 """
 
+from typing import Any
+
 import numpy as np
 import rerun as rr
 
@@ -88,15 +90,14 @@ class ProfilePlot:
         shades = [colours.TICK] * len(grid)
         shades[2] = colours.FRAME
         log = self._stream.log_static
+        thick: Any = [rr.Radius.ui_points(width) for width in self._widths]
         log(
             f"{self._root}/{entities.FRAME}",
             rr.LineStrips2D(grid, colors=shades, radii=rr.Radius.ui_points(0.6), draw_order=10.0),
         )
         log(
             f"{self._root}/{entities.CURVES}",
-            rr.LineStrips2D.from_fields(
-                colors=palette, radii=[rr.Radius.ui_points(width) for width in self._widths], draw_order=30.0
-            ),
+            rr.LineStrips2D.from_fields(colors=palette, radii=thick, draw_order=30.0),
         )
         behind = [colours.dim(colour) for colour in palette]
         log(

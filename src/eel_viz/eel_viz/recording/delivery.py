@@ -10,6 +10,7 @@ import os
 import pathlib
 import threading
 import time
+from typing import Any
 
 import rerun as rr
 
@@ -32,7 +33,8 @@ class DeliveryMonitor:
     """
 
     def __init__(self, stream: rr.RecordingStream, destination, path: pathlib.Path | None) -> None:
-        self._stream, self._destination, self._path = stream, destination, path
+        self._stream, self._destination = stream, destination
+        self._path: Any = path  # None where there is no file
         self._log_info, self._log_warning = destination.log_info, destination.log_warning
         self._watched = path is not None or destination.live
         self._last_check = time.monotonic()

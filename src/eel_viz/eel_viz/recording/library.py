@@ -67,7 +67,7 @@ def to_rerun(
     if len(runs) > 1:
         settings["compare"] = names[1]
     if isinstance(target, rr.RecordingStream):
-        destination = CallerStream(target, Settings.from_values(settings), log_warning)
+        destination: Destination = CallerStream(target, Settings.from_values(settings), log_warning)
     else:
         chosen = Settings.from_values({**settings, "recording": os.fspath(target)})
         destination = FileDestination(

@@ -11,6 +11,7 @@ Names of components are those after the colon in Rerun (`Scalars:scalars` is `sc
 import os
 import warnings
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from eel_base.input_file import reading
@@ -33,7 +34,7 @@ class Columns:
         """Simulation time of all rows, (T,) [s]."""
         return self.stamps / 1e9
 
-    def __getitem__(self, name: str) -> np.ndarray:
+    def __getitem__(self, name: str) -> Any:
         """All values of a component, one row per stamp that has it; rows of different shapes as a list of arrays."""
         rows = [np.asarray(row) for row in self.values[name]]
         return np.stack(rows) if len({row.shape for row in rows}) == 1 else rows

@@ -59,7 +59,7 @@ class FileDestination(Destination):
     def file(self, number: int) -> pathlib.Path | None:
         """The file that recording `number` is written to now."""
         draft = self._drafts.get(number)
-        return draft and draft.path
+        return draft.path if draft else None
 
     def open(self, number: int, name: str) -> rr.RecordingStream | None:
         """The stream of recording `number`; None if it cannot be written now."""

@@ -8,6 +8,7 @@ ever in the end, so the viewer's port is probed first.
 
 import ipaddress
 import socket
+import subprocess
 import threading
 from urllib.parse import urlsplit
 
@@ -38,7 +39,8 @@ class ServerDestination(LiveDestination):
 
     def __init__(self, settings: Settings, log_info: LogFunction, log_warning: LogFunction) -> None:
         super().__init__(settings, log_info, log_warning)
-        port, self._web_viewer = settings.port, None
+        port = settings.port
+        self._web_viewer: subprocess.Popen | None = None
         address = ipaddress.IPv4Address(settings.address)
         self._here = "127.0.0.1" if address.is_unspecified else settings.address
         self._name = socket.gethostname() if address.is_unspecified else settings.address
@@ -121,9 +123,9 @@ class ViewerDestination(LiveDestination):
         self._report_missing(f"the viewer at {self.settings.viewer} has gone")
         return True
 
-    def _make_stream(self, sink: rr.GrpcSink, name: str) -> rr.RecordingStream | None:
+    def _make_stream(self, sink: rr.FileSink | rr.GrpcSink, name: str) -> rr.RecordingStream | None:
         """Connect in a thread: a viewer that listens but does not answer would block for ever."""
-        made: list[rr.RecordingStream] = []
+        made: list[rr.RecordingStream | None] = []
         connect = super()._make_stream
         attempt = threading.Thread(target=lambda: made.append(connect(sink, name)), daemon=True)
         attempt.start()

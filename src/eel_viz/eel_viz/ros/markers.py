@@ -8,6 +8,7 @@ have publishers have come. Rerun is not needed.
 import sys
 import time
 from collections import OrderedDict
+from typing import Any
 
 from eel_base.command_line import complain
 from eel_ros.command_line import USE_SIM_TIME, answer_words
@@ -92,7 +93,7 @@ class Markers(ParameterNode):
 
     def _draw(self, sample: dict) -> None:
         """Publish the `sample`, messages by topic, without those that cannot be shown."""
-        values = {}
+        values: dict[str, Any] = {}
         for topic, message in sample.items():
             try:
                 values[topic] = TOPICS[topic][1](message)

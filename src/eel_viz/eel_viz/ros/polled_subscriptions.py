@@ -6,7 +6,7 @@ logging them. The callback group here is never executed, so messages stay in the
 """
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 
 from eel_ros.deliveries import Deliveries
 from eel_ros.serving import PolledGroup, log_dropped, read_message
@@ -38,7 +38,7 @@ class PolledSubscriptions:
             made = self._node.create_subscription(kind, topic, show, quality, callback_group=self._group)
             self._subscriptions.append((made, show, PublisherChange(lambda: self._publishers(topic)), deliveries))
 
-    def _publishers(self, topic: str) -> set[tuple]:
+    def _publishers(self, topic: str) -> set[Hashable]:
         """Identifiers of the processes that publish on `topic`. A node may replace one of its publishers."""
         return {tuple(info.endpoint_gid[:PROCESS]) for info in self._node.get_publishers_info_by_topic(topic)}
 
@@ -56,7 +56,7 @@ class PolledSubscriptions:
         """
         count, end = 0, time.monotonic() + TURN
         for place, each in enumerate(self._subscriptions, start=1):
-            count += self._take_from(*each, end)
+            count += self._take_from(*(*each, end))
             if time.monotonic() > end:
                 self._subscriptions = [*self._subscriptions[place:], *self._subscriptions[:place]]
                 break

@@ -32,7 +32,8 @@ class PublisherChange:
             self.note_publishers()
             self._known = set(self._seen)
             return False
-        follows = count is None or count == last[0] + 1  # None: the middleware does not count
+        # None: the middleware does not count
+        follows = count is None or (last[0] is not None and count == last[0] + 1)
         if follows and 0 <= sent - last[1] < PAUSE * 1e9:
             return False
         self.note_publishers()

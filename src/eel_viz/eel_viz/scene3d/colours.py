@@ -46,7 +46,8 @@ DIVERGING = (
 
 def dim(colour: tuple[int, int, int], factor: float = 0.45) -> tuple[int, int, int]:
     """The same hue, darker: for drawings in the background, such as an envelope."""
-    return tuple(int(channel * factor) for channel in colour)
+    red, green, blue = (int(channel * factor) for channel in colour)
+    return red, green, blue
 
 
 def faded(colour: tuple[int, int, int], left: np.ndarray) -> np.ndarray:

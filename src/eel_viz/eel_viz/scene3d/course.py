@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Draws the way points of a goal: the legs between them, and how near counts as reached."""
 
+from typing import Any
+
 import numpy as np
 import rerun as rr
 
@@ -30,7 +32,7 @@ class Course:
     def draw(self, points: np.ndarray) -> None:
         """Draw the way `points` (n, 3) [m] in the world."""
         self._points, reach = points, self._reach * self._length
-        thin = rr.Radius.ui_points(0.8)
+        thin: Any = rr.Radius.ui_points(0.8)
         legs = rr.LineStrips3D([points.astype(np.float32)], colors=[colours.LABEL], radii=[thin])
         self._stream.log_static(entities.COURSE, legs)
         spheres = rr.Ellipsoids3D(

@@ -81,7 +81,7 @@ class SwimmerScene:
         shadow[:, 2] = self._water.floor + 0.002
         self._stream.add_row(stamp, entities.SHADOW, rr.LineStrips3D, strips=shadow[None])
         self._place(stamp, entities.TAIL, position[-1], backbone.orientation[-1])
-        if self._skin is not None:
+        if self._skin is not None and self._flanks is not None:
             rings = self._skin.resampling(backbone.x).centre_line(position, backbone.orientation)
             for path, surface in ((entities.SKIN, self._skin), (entities.TORQUE_LAYER, self._flanks)):
                 vertices, normals = surface.place_on(*rings)

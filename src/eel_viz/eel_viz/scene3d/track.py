@@ -3,6 +3,8 @@
 cursor; and the last seconds of two things, which fade out: the path of the head, and what the tail left in the wake.
 """
 
+from typing import Any
+
 import numpy as np
 import rerun as rr
 
@@ -54,12 +56,12 @@ class Track:
         self._stream = stream
         self._places = RecentRows(3)  # m
         self._ages = _ages() * 1e9  # ns, (PIECES, POINTS), from the present backwards
-        thin = rr.Radius.ui_points(0.8)
+        thin: Any = rr.Radius.ui_points(0.8)
         stream.log_static(
             entities.TRACK, rr.LineStrips3D.from_fields(colors=[colours.dim(colours.AMBER)], radii=[thin])
         )
         left = 1.0 - np.arange(PIECES) / PIECES  # of the colour
-        radii = [rr.Radius.ui_points(0.5 + 1.1 * share) for share in left]
+        radii: Any = [rr.Radius.ui_points(0.5 + 1.1 * share) for share in left]
         stream.log_static(
             entities.TRAIL, rr.LineStrips3D.from_fields(colors=colours.faded(colours.AMBER, left), radii=radii)
         )
@@ -83,7 +85,7 @@ class Wake:
         self._ends = RecentRows(6)  # m: the tail's place, and the thread's tip
         self._ages = np.linspace(0.0, LENGTH * 1e9, THREADS)  # ns
         shades = colours.faded(colours.WAKE, np.linspace(1.0, 0.0, THREADS))
-        thin = [rr.Radius.ui_points(0.8)]
+        thin: Any = [rr.Radius.ui_points(0.8)]
         stream.log_static(entities.WAKE, rr.LineStrips3D.from_fields(colors=shades, radii=thin))
 
     def draw(self, stamp: int, tail: np.ndarray, momentum_rate: np.ndarray) -> None:
@@ -99,9 +101,10 @@ class Strobes:
     def __init__(self, stream: BatchedStream) -> None:
         self._stream = stream
         self._last: int | None = None  # number of the last strobe
+        thin: Any = rr.Radius.ui_points(0.6)
         stream.log_static(
             entities.STROBES,
-            rr.LineStrips3D.from_fields(colors=[colours.dim(colours.LABEL)], radii=[rr.Radius.ui_points(0.6)]),
+            rr.LineStrips3D.from_fields(colors=[colours.dim(colours.LABEL)], radii=[thin]),
         )
 
     def draw(self, stamp: int, midline: np.ndarray) -> None:

@@ -5,6 +5,8 @@ The grid's lines lie at round coordinates of the world. Every second one has a l
 (-z) along an upright edge. The box follows the frame by whole meshes, and takes the mesh that fits the frame's radius.
 """
 
+from typing import Any
+
 import numpy as np
 import rerun as rr
 
@@ -76,7 +78,8 @@ class WaterBox:
                 strip[2, first], strip[2, second] = back[first], high[second] if second == 2 else low[second]
                 strips.append(strip)
                 shades.append(colours.WATER_LINE if k % 2 else colours.WATER_LINE_MAJOR)
-        lines = rr.LineStrips3D.from_fields(strips=np.array(strips) * self._mesh, colors=shades)
+        placed: Any = np.array(strips) * self._mesh  # rerun's types have lists of strips alone
+        lines = rr.LineStrips3D.from_fields(strips=placed, colors=shades)
         self._stream.log(stamp, f"{self._root}/{GRID}", lines)
 
     def _draw_walls(self, stamp: int, low: np.ndarray, high: np.ndarray) -> None:
@@ -104,7 +107,8 @@ class WaterBox:
         apart = np.abs(places[:, None] - camera.in_picture((swimmer - centre) / radius))
         above_legend = places[:, 1] >= -camera.CLEAR["down"]
         shown = above_legend & (np.abs(places) <= LABELLED).all(axis=1) & ~(apart <= LABEL_SIZE).all(axis=2).any(axis=1)
-        clear, kept = {}, []
+        clear: dict[Any, Any] = {}
+        kept: list[Any] = []
         for (place, text), seen, free in zip(labels.items(), places, shown.tolist(), strict=True):
             if free and not any((np.abs(seen - other) <= APART).all() for other in kept):
                 clear[place] = text

@@ -22,7 +22,8 @@ class FollowedClock(Pace):
 
     def __init__(self, period: float, factor: float):
         super().__init__(period, factor)
-        self._shown, self._went_back_to = -math.inf, None  # s: the newest time on /clock, and an earlier one
+        self._shown = -math.inf  # s: the newest time on /clock
+        self._went_back_to: float | None = None  # s: an earlier one
         self._moved = -math.inf  # s, steady clock: when /clock moved last
 
     def show(self, shown: float, now: float):

@@ -28,7 +28,8 @@ class Obstacles:
         self._subscribers_complete = wanted == 0 and not publishers.lossless
         self.failed = self.paused = False
         self.held = ""
-        self._steps, self._steps_left = None, 0
+        self._steps: Request | None = None
+        self._steps_left = 0
 
     def find(self, simulation_time: float) -> str:
         """The first obstacle as text, at `simulation_time` [s]; empty if there is none."""

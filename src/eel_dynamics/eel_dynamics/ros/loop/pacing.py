@@ -69,7 +69,7 @@ class ControllerWait:
 
     def __init__(self, time_out: Callable[[float], None]):
         self._time_out = time_out
-        self._since = None  # s, steady clock: since when its samples are missing
+        self._since: float | None = None  # s, steady clock: since when its samples are missing
 
     def waits(self, missing: bool, now: float, timeout: float) -> bool:
         """Whether to wait for samples that are `missing` at `now` [s, steady clock], for `timeout` [s] at most."""

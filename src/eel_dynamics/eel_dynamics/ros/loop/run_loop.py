@@ -61,7 +61,7 @@ class RunLoop:
         self._controller = ControllerWait(lambda s: self.laws.report_missing(self._next_time, self.pace.period, s))
         self.output = SampleOutput(simulation, parameters.rate, parameters.clock_rate, publishers, report)
         self.output.torque_limit = parameters.torque_limit
-        self._sample_begun = None  # s, steady clock: when the computation of the next sample began
+        self._sample_begun: float | None = None  # s, steady clock: when the computation of the next sample began
         self.time, self.samples_published, self.standing = 0.0, 0, ""
 
     @property

@@ -2,10 +2,11 @@
 """What other threads ask of a run loop: its thread executes each request between two samples."""
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from eel_dynamics.ros.diagnostics import ERROR
 from eel_dynamics.ros.loop.request_queue import Request, RequestQueue
+from eel_dynamics.simulation.simulation import Simulation
 
 MAXIMUM_REQUESTS = 10_000  # requests
 TOO_MANY = f"curvature samples refused: at most {MAXIMUM_REQUESTS} wait for the next sample"
@@ -14,8 +15,8 @@ TOO_MANY = f"curvature samples refused: at most {MAXIMUM_REQUESTS} wait for the 
 class NewRun(NamedTuple):
     """What a reset changes: another `simulation`, `parameters`, and `begin()`, which makes its topics ready."""
 
-    simulation: object
-    parameters: object
+    simulation: Simulation
+    parameters: Any  # the node's Parameters
     begin: Callable[[], None]
 
 

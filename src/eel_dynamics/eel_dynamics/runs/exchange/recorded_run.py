@@ -9,6 +9,7 @@ import os
 import warnings
 from collections.abc import Iterable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from eel_base.input_file import reading
@@ -71,7 +72,8 @@ def fields_of_messages(messages: Iterable[tuple[str, object]], body: Body | None
     scene = replace(
         Scene() if scene is None else scene, internal_wrench="internal_wrench" in rows, ledger="energy" in rows
     )
-    found = {"time": 1e-9 * np.array(stamps), "law": _law(once), "scene": scene, "accuracy": _accuracy(once, scene)}
+    found: dict[str, Any] = {"time": 1e-9 * np.array(stamps), "law": _law(once), "scene": scene}
+    found["accuracy"] = _accuracy(once, scene)
     found |= _motion(rows, found["time"])
     found["body"] = _body(once, scene) if body is None else body
     found["center_of_mass"] = _center_of_mass(found["body"], found["x"], found["backbone"])
@@ -84,7 +86,8 @@ def _collected(messages) -> tuple[dict, dict]:
 
     Of several of one stamp, as a node sends them that waits at its start, the last counts.
     """
-    once, samples = {"curvature_law": []}, {topic: {} for topic in (*NEEDED, *FURTHER)}
+    once: dict[str, Any] = {"curvature_law": []}
+    samples: dict[str, dict[int, Any]] = {topic: {} for topic in (*NEEDED, *FURTHER)}
     for topic, message in messages:
         if topic == "curvature_law":
             once[topic].append(message)

@@ -35,7 +35,7 @@ def digest_of(file) -> str:
     for name, variable in sorted(file.variables.items()):
         data = np.ascontiguousarray(variable.data)
         content.update(repr((name, variable.dimensions, data.dtype.str, data.shape, _attributes(variable))).encode())
-        content.update(data)
+        content.update(data.data)
     return content.hexdigest()
 
 

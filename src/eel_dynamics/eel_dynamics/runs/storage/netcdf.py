@@ -9,6 +9,7 @@ import json
 import os
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from eel_base.input_file import InputFile, from_json, reading
@@ -87,7 +88,7 @@ def read(path, kind: str) -> Contents:
     named = f"{kind} file {shown(os.fspath(path))}"
     told = f"{named} cannot be read"
     with reading(told), InputFile(path) as content, netcdf_file(content, "r", mmap=False) as file:
-        about = {name: getattr(file, name, None) for name in ("software", "kind", "format", "eel")}
+        about: dict[str, Any] = {name: getattr(file, name, None) for name in ("software", "kind", "format", "eel")}
         of_sweep = about["kind"] is None and hasattr(file, "sweep")
         ours = {} if of_sweep else {name: file.variables[name] for name in KNOWN if name in file.variables}
         arrays = {name: _native(np.asarray(each.data)) for name, each in ours.items()}
@@ -118,7 +119,7 @@ def loaded(path, kind: str, made):
 
 def sizes_of(contents: Contents) -> dict[str, int]:
     """Length of each dimension. `ValueError` where arrays do not agree, or are empty."""
-    sizes = {}
+    sizes: dict[str, int] = {}
     for name, values in contents.arrays.items():
         dimensions, shape = contents.variable(name).dimensions, values.shape
         fit = len(dimensions) == len(shape) and values.size

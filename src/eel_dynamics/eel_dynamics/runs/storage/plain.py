@@ -9,6 +9,7 @@ import warnings
 from base64 import b64decode, b64encode
 from collections.abc import Callable
 from dataclasses import asdict
+from typing import Any
 
 import numpy as np
 from eel_gaits.laws.law import Law
@@ -41,7 +42,7 @@ def plain_law(law: Law | SampledLaw) -> dict:
 def law_of(plain: dict) -> Law | SampledLaw:
     """The law of `plain_law`."""
     if "rows" in plain:
-        rows = {name: np.frombuffer(b64decode(text), "<f8") for name, text in plain["rows"].items()}
+        rows: dict[str, Any] = {name: np.frombuffer(b64decode(text), "<f8") for name, text in plain["rows"].items()}
         rows["values"] = rows["values"].reshape(-1, 2, 3, plain["points"])
         return SampledLaw(**rows, **{name: plain[name] for name in ("name", "transition", "about")})
     terms = [Term(**term | {"envelope": tuple(Ramp(**ramp) for ramp in term["envelope"])}) for term in plain["terms"]]

@@ -7,6 +7,7 @@ xarray and pandas are needed for theirs alone.
 import csv
 from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from eel_base.output_file import replacing
@@ -35,7 +36,7 @@ def dataset_of(contents: Contents):
         about = contents.variable(name)
         variables[name] = about.dimensions, values, {"units": about.unit, "long_name": about.description}
     used = {dimension for dimensions, *_ in variables.values() for dimension in dimensions}
-    coordinates = {name: variables.pop(name) for name in ("time", "x")}
+    coordinates: dict[str, Any] = {name: variables.pop(name) for name in ("time", "x")}
     coordinates |= {name: list(labels) for name, labels in LABELS.items() if name in used}
     return xarray.Dataset(variables, coordinates, attributes_of(contents))
 
