@@ -69,7 +69,8 @@ class _Stations(Protocol):
     added2_slope: Buffer  # (M,) [kg/m^2], derivative of added2 by X
     added3_slope: Buffer  # (M,) [kg/m^2]
     added_roll_slope: Buffer  # (M,) [kg]
-    missed: Sequence[_Sections]  # M, at the nodes, times m: what `points` miss of the sections' integral; or none
+    missed: Sequence[Buffer]  # (M, p_max) each, times m: what the rows of `points` miss of the integral of mass, added2,
+    # added3, inertia1, 2, 3, drag2, drag3, drag_roll, laminar and turbulent; none where the sections are smooth
 
 class _Shared:
     """Never changes: copies are the object itself."""

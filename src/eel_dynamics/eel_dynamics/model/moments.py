@@ -26,8 +26,9 @@ from eel_dynamics.model.grid import (
     radau_points,
 )
 
-PARTS = np.linspace(0.0, 1.0, 9)[1:]  # of a panel, each short beside the waves of its polynomials
-GAUSS_POINTS = 8  # in each part, or between two breaks in it
+# Points of Gauss' rule in each part between two breaks, and how many equal parts of a panel are short enough for them
+# beside the waves of its polynomials.
+RULES = (8, 8), (4, 64), (3, 256)
 
 
 def with_moments(field: Callable[[np.ndarray], np.ndarray], grid: Grid, breaks: np.ndarray) -> np.ndarray:
@@ -44,17 +45,19 @@ def with_moments(field: Callable[[np.ndarray], np.ndarray], grid: Grid, breaks: 
 
 
 def missed_before(field, values: np.ndarray, grid: Grid, breaks: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """Of each node, what its part in the integral from the nose to X = `x` (M,) [m], ascending, misses: (M, m, n).
+    """Of the nodes of its panel, what their parts in the integral to X = `x` (M,) [m], ascending, miss: (m, M, p_max).
 
-    With a smooth function g, the integral of field g is the sum over the nodes of the missed times g, plus what the
-    `grid` gives for the `values` (m, n) times g.
+    With a smooth function g, the integral of field g from the nose is the sum over those nodes of the missed times g,
+    plus what the `grid` gives for the `values` (m, n) times g.
     """
     home, begin = grid.panel_at(x), 0
-    result = np.zeros((len(x), len(values), len(grid.x)))
+    result = np.zeros((len(values), len(x), grid.matrix.shape[1]))
     for index, panel in enumerate(grid.panels):
-        span, here = slice(begin, begin + panel.points), home == index
-        if here.any():
-            result[here, :, span] = _missed(field, panel, values[:, span], breaks, panel.fraction(x[here]))
+        here = np.flatnonzero(home == index)
+        if len(here):
+            span = slice(begin, begin + panel.points)
+            missed = _missed(field, panel, values[:, span], breaks, panel.fraction(x[here]))
+            result[:, here, : panel.points] = missed.transpose(1, 0, 2)
         begin += panel.points
     return result
 
@@ -72,10 +75,9 @@ def missed_within(field, values: np.ndarray, grid: Grid, breaks: np.ndarray, fra
 
 def _missed(field, panel: Panel, values: np.ndarray, breaks: np.ndarray, upto: np.ndarray) -> np.ndarray:
     """Of the p nodes of `panel`, up to the fractions `upto` (M,) of it: (M, m, p)."""
-    ends = np.unique(np.concatenate((panel.fraction(_inside(panel, breaks)), PARTS, upto)))
-    at, weight = _gauss_points(ends)
+    ends, at, weight = _gauss_points(np.concatenate((panel.fraction(_inside(panel, breaks)), upto)))
     x, scale = panel.locate(at)
-    shape = len(ends), GAUSS_POINTS
+    shape = len(ends), len(at) // len(ends)
     fields = (field(x) * (weight * scale)).reshape(-1, *shape).transpose(1, 0, 2)
     exact = np.cumsum(fields @ interpolation_matrix(panel.points, at).reshape(*shape, -1), axis=0)
     rows = integration_matrix(panel.points, upto) * panel.locate(radau_points(panel.points))[1]
@@ -87,7 +89,7 @@ def _correction(field, panel: Panel, values: np.ndarray, breaks: np.ndarray) -> 
     inside = panel.fraction(_inside(panel, breaks))
     if not len(inside):
         return np.zeros_like(values)
-    at, weight = _gauss_points(np.union1d(inside, PARTS))
+    _, at, weight = _gauss_points(inside)
     x, scale = panel.locate(at)
     moments = (field(x) * (weight * scale)) @ _legendre(panel, at)
     nodes = radau_points(panel.points)
@@ -107,8 +109,13 @@ def _inside(panel: Panel, breaks: np.ndarray) -> np.ndarray:
     return breaks[(breaks > panel.start) & (breaks < panel.end)]
 
 
-def _gauss_points(ends: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Points and weights, as fractions of a panel, of Gauss' rule from its start to the first of the `ends`, and on."""
-    points, weights = legendre.leggauss(GAUSS_POINTS)
+def _gauss_points(breaks: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The ends of parts of a panel between its `breaks`, and points and weights of Gauss' rule in each; as fractions.
+
+    The rule with the fewest points is taken.
+    """
+    number, parts = min(RULES, key=lambda rule: rule[0] * (len(breaks) + rule[1]))
+    ends = np.union1d(breaks, np.arange(1, parts + 1) / parts)
+    points, weights = legendre.leggauss(number)
     half = 0.5 * np.diff(ends, prepend=0.0)[:, None]
-    return (ends[:, None] - half * (1.0 - points)).ravel(), (half * weights).ravel()
+    return ends, (ends[:, None] - half * (1.0 - points)).ravel(), (half * weights).ravel()
