@@ -13,6 +13,7 @@ Up to a place within the panel, each node's part in the integral lacks what `mis
 """
 
 from collections.abc import Callable
+from functools import cache
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -116,6 +117,11 @@ def _gauss_points(breaks: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarra
     """
     number, parts = min(RULES, key=lambda rule: rule[0] * (len(breaks) + rule[1]))
     ends = np.union1d(breaks, np.arange(1, parts + 1) / parts)
-    points, weights = legendre.leggauss(number)
+    points, weights = _gauss_rule(number)
     half = 0.5 * np.diff(ends, prepend=0.0)[:, None]
     return ends, (ends[:, None] - half * (1.0 - points)).ravel(), (half * weights).ravel()
+
+
+@cache
+def _gauss_rule(number: int) -> tuple[np.ndarray, np.ndarray]:
+    return legendre.leggauss(number)

@@ -32,7 +32,10 @@ class MissedWrench {
         set_factors(swimmer, frame, omega, velocity);
         const std::size_t used = swimmer.resistive ? Part::count : Part::drag2;
         for (std::size_t part = 0; part < used; ++part)
-            swimmer.missed[part].add(unit_[part], factor_[part], upto);
+            if ((Part::inertia1 <= part && part < Part::drag2) || part == Part::drag_roll)  // without a force
+                swimmer.missed[part].add<Vector3<double>>(unit_[part], factor_[part], upto);
+            else
+                swimmer.missed[part].add<Wrench<Space, double>>(unit_[part], factor_[part], upto);
     }
 
   private:

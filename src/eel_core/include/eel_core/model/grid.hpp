@@ -85,15 +85,19 @@ class FromNose {
         integrate(integrand, first_row, Components<Value>::make([](std::size_t) { return 0.0; }), result, result);
     }
 
-    // Adds to `result` at the points, times their `factor`, what these rows give of all components of `integrand`.
-    template <class Value>
-    void add(const Field<Value>& integrand, const Row& factor, Field<Value>& result) const
+    // Adds to `result` at the points, times their `factor`, what these rows give of `integrand`: of the first
+    // components, those of a `Value`.
+    template <class Value, class Source>
+    void add(const Field<Source>& integrand, const Row& factor, Field<Source>& result) const
     {
         for (std::size_t s = 0; s < stretches_.size(); ++s) {
             const auto here = within<Value>(integrand, 0, stretches_[s]);
             for (std::size_t part = 0; part < parts; ++part) {
                 const std::size_t k = parts * s + part;
-                result.store(k, result[k] + factor[k] * here[part]);
+                Components<typename Field<Value>::Block>::each(here[part], [&](std::size_t c, Lanes lanes) {
+                    double* const at = result.row(c) + width * k;
+                    (Lanes::load(at) + factor[k] * lanes).store(at);
+                });
             }
         }
     }
