@@ -174,7 +174,7 @@ def sections_of(body: Body, scene: Scene, x: np.ndarray) -> SectionData:
     half_rho = 0.5 * scene.fluid_density if scene.resistive else 0.0
     # at the nose c_f P has a limit, as c_f grows like X^-1/2 and P like X^1/2
     behind = np.maximum(x, 1e-9 * body.length)
-    c, d = body.half_height(behind), body.half_width(behind)
+    c, d = (a, b) if np.array_equal(behind, x) else (body.half_height(behind), body.half_width(behind))
     perimeter = np.pi * (1.5 * (c + d) - np.sqrt(c * d)) * (0.5 if scene.perimeter == "printed" else 1.0)
     rubbed = 0.0 if scene.friction == "none" else half_rho
     transition = TRANSITION * scene.viscosity / behind  # m/s, |V1| at which Re = 8e4
