@@ -69,8 +69,9 @@ class _Stations(Protocol):
     added2_slope: Buffer  # (M,) [kg/m^2], derivative of added2 by X
     added3_slope: Buffer  # (M,) [kg/m^2]
     added_roll_slope: Buffer  # (M,) [kg]
-    missed: Sequence[Buffer]  # (M, p_max) each, times m: what the rows of `points` miss of the integral of mass, added2,
-    # added3, inertia1, 2, 3, drag2, drag3, drag_roll, laminar and turbulent; none where the sections are smooth
+    # (M, p_max) each, times m: what the rows of `points` miss of the integrals of mass, added2 and 3, inertia1 to 3,
+    # drag2 and 3, drag_roll, laminar and turbulent; none where the sections are smooth
+    missed: Sequence[Buffer]
 
 class _Shared:
     """Never changes: copies are the object itself."""

@@ -181,8 +181,7 @@ inline std::shared_ptr<const Swimmer> swimmer_from(const py::object& grid, const
     const py::object places = stations.attr("points");
     swimmer->to_station = from_nose(places, places.attr("matrix"), swimmer->grid.weight, n);
     const Row none(swimmer->grid.blocks);
-    for (const py::handle rows : stations.attr("missed"))
-        swimmer->missed.push_back(from_nose(places, rows, none, n));
+    for (const py::handle rows : stations.attr("missed")) swimmer->missed.push_back(from_nose(places, rows, none, n));
     if (!swimmer->missed.empty() && swimmer->missed.size() != SectionPart::count)
         throw py::value_error("stations must have missed rows for each part of a section, or none");
     return swimmer;

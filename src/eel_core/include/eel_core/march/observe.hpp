@@ -168,8 +168,7 @@ class Observer {
     {
         swimmer_.to_station.integrate(work.density, 0, Wrench<Space, double>{}, work.upto, here.upto);
         add_kinks(swimmer_, swimmer_.to_station, true, work, here.upto);
-        if (!swimmer_.missed.empty())
-            here.missed.add(swimmer_, work, here.frame, here.omega, here.velocity, here.upto);
+        if (!swimmer_.missed.empty()) here.missed.add(swimmer_, work, here.frame, here.omega, here.velocity, here.upto);
         for (std::size_t k = 0; k < blocks(); ++k) {
             const Section<Lanes> section = swimmer_.at_station[k].weighed(swimmer_.wake);
             const Frame3<Lanes> frame = here.frame[k];

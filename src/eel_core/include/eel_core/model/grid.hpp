@@ -129,9 +129,8 @@ class FromNose {
         if (node < nodes) add_node(node, 0);
         std::array<Block, parts> result;
         for (std::size_t part = 0; part < parts; ++part)
-            result[part] = Components<Block>::make([&](std::size_t c) {
-                return sets == 1 ? sum[0][c][part] : sum[0][c][part] + sum[sets - 1][c][part];
-            });
+            result[part] = Components<Block>::make(
+                [&](std::size_t c) { return sets == 1 ? sum[0][c][part] : sum[0][c][part] + sum[sets - 1][c][part]; });
         return result;
     }
 
