@@ -101,9 +101,9 @@ class _Stations(Protocol):
     @property
     def added_roll_slope(self) -> Buffer: ...  # (M,) [kg]
     @property
-    def missed(
-        self,
-    ) -> Sequence[_Sections]: ...  # M, at the nodes, times m: what `points` miss of the sections' integral; or none
+    def missed(self) -> Sequence[Buffer]: ...
+    # (M, p_max) each, times m: what the rows of `points` miss of the integrals of mass, added2 and 3, inertia1 to 3,
+    # drag2 and 3, drag_roll, laminar and turbulent; none where the sections are smooth
 
 class _Shared:
     """Never changes: copies are the object itself."""

@@ -106,10 +106,12 @@ inline Sections sections_from(const py::handle& s, std::size_t n)
             points(s, "reynolds", n)};
 }
 
-inline FromNose from_nose(const py::handle& points, const Row& weight, std::size_t nodes)
+// `matrix`: rows for the `points`, as those of `PanelRows`.
+inline FromNose from_nose(const py::handle& points, const py::handle& matrix, const Row& weight, std::size_t nodes)
 {
-    const auto rows = array_of<double>(points, "matrix"), fraction = array_of<double>(points, "fraction");
+    const Numbers rows(matrix, "matrix"), fraction = array_of<double>(points, "fraction");
     const auto first = array_of<std::uint64_t>(points, "first"), count = array_of<std::uint64_t>(points, "count");
+    rows.check_size(array_of<double>(points, "matrix").size(), "matrix");
     return FromNose({rows.span(), first.span(), count.span(), fraction.span()}, {weight.row(0), nodes});
 }
 
@@ -124,7 +126,7 @@ inline Grid grid_from(const py::handle& g)
     grid.first.assign(first.span().begin(), first.span().end());
     grid.count.assign(count.span().begin(), count.span().end());
     grid.weight = points(g, "weight", n);
-    grid.from_nose = from_nose(g, grid.weight, n);
+    grid.from_nose = from_nose(g, g.attr("matrix"), grid.weight, n);
     grid.fraction = points(g, "fraction", n);
     grid.barycentric = points(g, "barycentric", n);
     grid.set_steps();
@@ -176,10 +178,12 @@ inline std::shared_ptr<const Swimmer> swimmer_from(const py::object& grid, const
     swimmer->added2_slope = points(stations, "added2_slope", m);
     swimmer->added3_slope = points(stations, "added3_slope", m);
     swimmer->added_roll_slope = points(stations, "added_roll_slope", m);
-    swimmer->to_station = from_nose(stations.attr("points"), swimmer->grid.weight, n);
-    for (const py::handle each : stations.attr("missed")) swimmer->missed.push_back(sections_from(each, n));
-    if (!swimmer->missed.empty() && swimmer->missed.size() != m)
-        throw py::value_error("stations must have missed sections for each of them, or none");
+    const py::object places = stations.attr("points");
+    swimmer->to_station = from_nose(places, places.attr("matrix"), swimmer->grid.weight, n);
+    const Row none(swimmer->grid.blocks);
+    for (const py::handle rows : stations.attr("missed")) swimmer->missed.push_back(from_nose(places, rows, none, n));
+    if (!swimmer->missed.empty() && swimmer->missed.size() != SectionPart::count)
+        throw py::value_error("stations must have missed rows for each part of a section, or none");
     return swimmer;
 }
 

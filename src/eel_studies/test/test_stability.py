@@ -90,6 +90,15 @@ def test_an_explicit_added_mass_blows_up_where_water_outweighs_the_body():
     assert all(treat(ratio).condition < 1e4 for ratio in (1e-3, 1.0, 1e3))
 
 
+def test_inertias_of_a_body_from_data_are_those_of_its_spline():
+    x = np.array([0.0, 0.07, 0.2, 0.33, 0.41, 0.6, 0.78, 0.9, 1.0])
+    width = np.array([0.0, 0.03, 0.02, 0.035, 0.03, 0.04, 0.02, 0.025, 0.01])
+    body = Body(x=x, half_width=width, half_height=1.5 * width[[0, 2, 1, 3, 5, 4, 6, 8, 7]])
+    cut = Body(half_width=body.half_width, half_height=body.half_height, length=1.0, kinks=x[1:-1])
+    for ours, theirs in zip(inertias(body, 900.0, 1000.0), inertias(cut, 900.0, 1000.0), strict=True):
+        assert np.abs(ours - theirs).max() < 1e-6 * np.abs(theirs).max()
+
+
 def test_bad_input_is_one_line(tmp_path, capsys):
     assert command.main(["--points", "1", "--out", str(tmp_path)]) == 2
     assert capsys.readouterr().err == "stability: points must be >= 2, got 1\n"

@@ -97,7 +97,9 @@ class ArrayHalfAxis:
         return self._each(self._slopes, x)
 
     def _each(self, functions, x):
-        x = np.clip(np.asarray(x, dtype=float), 0.0, self._length)
+        x = np.minimum(np.maximum(np.asarray(x, dtype=float), 0.0), self._length)
+        if len(functions) == 1:
+            return functions[0](x)
         home = np.clip(np.searchsorted(self._starts, x, side="left") - 1, 0, len(functions) - 1)
         result = np.empty(x.shape)
         for index, function in enumerate(functions):

@@ -13,6 +13,8 @@ Up to a place within the panel, each node's part in the integral lacks what `mis
 """
 
 from collections.abc import Callable
+from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -26,8 +28,19 @@ from eel_dynamics.model.grid import (
     radau_points,
 )
 
-PARTS = np.linspace(0.0, 1.0, 9)[1:]  # of a panel, each short beside the waves of its polynomials
-GAUSS_POINTS = 8  # in each part, or between two breaks in it
+# Points of Gauss' rule in each part between two breaks, and how many equal parts of a panel are short enough for them
+# beside the waves of its polynomials.
+RULES = (8, 8), (4, 64), (3, 256)
+
+
+class Part(NamedTuple):
+    """A panel with p nodes and E ends of parts of it, in each of which the field is smooth."""
+
+    panel: Panel
+    nodes: slice  # of the grid
+    ends: np.ndarray  # (E,), fractions of the panel
+    at: np.ndarray  # (M,), Gauss points in each part, fractions
+    field: np.ndarray  # (m, M) there, times the weights of Gauss' rule [m]
 
 
 def with_moments(field: Callable[[np.ndarray], np.ndarray], grid: Grid, breaks: np.ndarray) -> np.ndarray:
@@ -35,63 +48,57 @@ def with_moments(field: Callable[[np.ndarray], np.ndarray], grid: Grid, breaks: 
 
     field: of X (M,) [m] to values (m, M); it is smooth between the `breaks` [m], which rise.
     """
-    values, begin = field(grid.x), 0
-    for panel in grid.panels:
-        span = slice(begin, begin + panel.points)
-        values[:, span] += _correction(field, panel, values[:, span], breaks)
-        begin += panel.points
+    values = field(grid.x)
+    inner = [_inside(panel, breaks) for panel in grid.panels]
+    for part in _parts(field, grid, [ends if len(ends) else None for ends in inner]):
+        values[:, part.nodes] += _correction(part, values[:, part.nodes])
     return values
 
 
 def missed_before(field, values: np.ndarray, grid: Grid, breaks: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """Of each node, what its part in the integral from the nose to X = `x` (M,) [m], ascending, misses: (M, m, n).
+    """Of the nodes of its panel, what their parts in the integral to X = `x` (M,) [m], ascending, miss: (m, M, p_max).
 
-    With a smooth function g, the integral of field g is the sum over the nodes of the missed times g, plus what the
-    `grid` gives for the `values` (m, n) times g.
+    With a smooth function g, the integral of field g from the nose is the sum over those nodes of the missed times g,
+    plus what the `grid` gives for the `values` (m, n) times g.
     """
-    home, begin = grid.panel_at(x), 0
-    result = np.zeros((len(x), len(values), len(grid.x)))
-    for index, panel in enumerate(grid.panels):
-        span, here = slice(begin, begin + panel.points), home == index
-        if here.any():
-            result[here, :, span] = _missed(field, panel, values[:, span], breaks, panel.fraction(x[here]))
-        begin += panel.points
+    home = grid.panel_at(x)
+    upto = [panel.fraction(x[home == index]) for index, panel in enumerate(grid.panels)]
+    ends = [
+        np.concatenate((_inside(panel, breaks), each)) if len(each) else None
+        for panel, each in zip(grid.panels, upto, strict=True)
+    ]
+    result = np.zeros((len(values), len(x), grid.matrix.shape[1]))
+    for part in _parts(field, grid, ends):
+        index = grid.panels.index(part.panel)
+        missed = _missed(part, values[:, part.nodes], upto[index])
+        result[:, home == index, : part.panel.points] = missed.transpose(1, 0, 2)
     return result
 
 
 def missed_within(field, values: np.ndarray, grid: Grid, breaks: np.ndarray, fractions: np.ndarray) -> np.ndarray:
     """The same from the start of each node's panel to `fractions` (K,) of it, by the values at the nodes: (m, K, n)."""
-    result, begin = np.zeros((len(fractions), *values.shape)), 0
-    for panel in grid.panels:
-        span = slice(begin, begin + panel.points)
-        result[:, :, span] = _missed(field, panel, values[:, span], breaks, fractions)
-        begin += panel.points
+    result = np.zeros((len(fractions), *values.shape))
+    ends = [np.concatenate((_inside(panel, breaks), fractions)) for panel in grid.panels]
+    for part in _parts(field, grid, ends):
+        result[:, :, part.nodes] = _missed(part, values[:, part.nodes], fractions)
     result = np.divide(result, values, out=np.zeros_like(result), where=values != 0.0)
     return np.ascontiguousarray(result.transpose(1, 0, 2))
 
 
-def _missed(field, panel: Panel, values: np.ndarray, breaks: np.ndarray, upto: np.ndarray) -> np.ndarray:
-    """Of the p nodes of `panel`, up to the fractions `upto` (M,) of it: (M, m, p)."""
-    ends = np.unique(np.concatenate((panel.fraction(_inside(panel, breaks)), PARTS, upto)))
-    at, weight = _gauss_points(ends)
-    x, scale = panel.locate(at)
-    shape = len(ends), GAUSS_POINTS
-    fields = (field(x) * (weight * scale)).reshape(-1, *shape).transpose(1, 0, 2)
-    exact = np.cumsum(fields @ interpolation_matrix(panel.points, at).reshape(*shape, -1), axis=0)
+def _missed(part: Part, values: np.ndarray, upto: np.ndarray) -> np.ndarray:
+    """Of the p nodes of the panel with the `values` (m, p), up to the fractions `upto` (K,) of it: (K, m, p)."""
+    panel, shape = part.panel, (len(part.ends), len(part.at) // len(part.ends))
+    fields = part.field.reshape(-1, *shape).transpose(1, 0, 2)
+    exact = np.cumsum(fields @ interpolation_matrix(panel.points, part.at).reshape(*shape, -1), axis=0)
     rows = integration_matrix(panel.points, upto) * panel.locate(radau_points(panel.points))[1]
-    return exact[np.searchsorted(ends, upto)] - rows[:, None, :] * values
+    return exact[np.searchsorted(part.ends, upto)] - rows[:, None, :] * values
 
 
-def _correction(field, panel: Panel, values: np.ndarray, breaks: np.ndarray) -> np.ndarray:
-    """What the `values` (m, p) at the nodes of `panel` lack of the moments; nothing at the panel's end."""
-    inside = panel.fraction(_inside(panel, breaks))
-    if not len(inside):
-        return np.zeros_like(values)
-    at, weight = _gauss_points(np.union1d(inside, PARTS))
-    x, scale = panel.locate(at)
-    moments = (field(x) * (weight * scale)) @ _legendre(panel, at)
-    nodes = radau_points(panel.points)
+def _correction(part: Part, values: np.ndarray) -> np.ndarray:
+    """What the `values` (m, p) at the nodes of the panel lack of the moments; nothing at the panel's end."""
+    panel, nodes = part.panel, radau_points(part.panel.points)
     scale, basis = panel.locate(nodes)[1], _legendre(panel, nodes)
+    moments = part.field @ _legendre(panel, part.at)
     moments -= (values * (collocation_matrix(panel.points)[-1] * scale)) @ basis
     series = moments * (2.0 * np.arange(panel.points) + 1.0)
     series[:, -1] = -series[:, :-1].sum(axis=1)  # P_k = 1 at the panel's end
@@ -104,11 +111,41 @@ def _legendre(panel: Panel, at: np.ndarray) -> np.ndarray:
 
 
 def _inside(panel: Panel, breaks: np.ndarray) -> np.ndarray:
-    return breaks[(breaks > panel.start) & (breaks < panel.end)]
+    """Those of the rising `breaks` [m] that lie within the panel, as its fractions."""
+    first, last = np.searchsorted(breaks, panel.start, side="right"), np.searchsorted(breaks, panel.end)
+    return panel.fraction(breaks[first:last])
 
 
-def _gauss_points(ends: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Points and weights, as fractions of a panel, of Gauss' rule from its start to the first of the `ends`, and on."""
-    points, weights = legendre.leggauss(GAUSS_POINTS)
+def _parts(field, grid: Grid, ends: list[np.ndarray | None]) -> list[Part]:
+    """The panels of `grid` with `ends` of parts, fractions of each; None for a panel that is not wanted."""
+    parts, weights, places, begin = [], [], [], 0
+    for panel, each in zip(grid.panels, ends, strict=True):
+        if each is not None:
+            last, at, weight = _gauss_points(each)
+            x, scale = panel.locate(at)
+            places.append(x)
+            weights.append(weight * scale)
+            parts.append(Part(panel, slice(begin, begin + panel.points), last, at, np.empty(0)))
+        begin += panel.points
+    if not parts:
+        return parts
+    fields = field(np.concatenate(places)) * np.concatenate(weights)
+    cuts = np.cumsum([len(each) for each in places])[:-1]
+    return [part._replace(field=each) for part, each in zip(parts, np.split(fields, cuts, axis=1), strict=True)]
+
+
+def _gauss_points(breaks: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The ends of parts of a panel between its `breaks`, and points and weights of Gauss' rule in each; as fractions.
+
+    The rule with the fewest points is taken.
+    """
+    number, parts = min(RULES, key=lambda rule: rule[0] * (len(breaks) + rule[1]))
+    ends = np.union1d(breaks, np.arange(1, parts + 1) / parts)
+    points, weights = _gauss_rule(number)
     half = 0.5 * np.diff(ends, prepend=0.0)[:, None]
-    return (ends[:, None] - half * (1.0 - points)).ravel(), (half * weights).ravel()
+    return ends, (ends[:, None] - half * (1.0 - points)).ravel(), (half * weights).ravel()
+
+
+@cache
+def _gauss_rule(number: int) -> tuple[np.ndarray, np.ndarray]:
+    return legendre.leggauss(number)

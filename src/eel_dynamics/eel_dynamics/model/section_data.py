@@ -62,6 +62,10 @@ class SectionData(NamedTuple):
         return self._replace(mass=none, inertia1=self.added_roll, inertia2=none, inertia3=none)
 
 
+# In which a section's inertial wrench and its drag are linear; the order is that of the core's `SectionPart`.
+PARTS = tuple(name for name in SectionData._fields if name not in ("added_roll", "reynolds"))
+
+
 class StationData(NamedTuple):
     """Data of the M stations, at which profiles are given."""
 
@@ -71,7 +75,7 @@ class StationData(NamedTuple):
     added2_slope: np.ndarray  # (M,) kg/m^2, derivative of `added2` by X
     added3_slope: np.ndarray  # (M,) kg/m^2
     added_roll_slope: np.ndarray  # (M,) kg
-    missed: list[SectionData]  # for each station, at the nodes, times m: what `points` miss of the sections' integral
+    missed: np.ndarray | tuple  # (11, M, p_max) for each of `PARTS`: what the rows of `points` miss, times m; or none
 
 
 def nose_of(body: Body, scene: Scene) -> tuple[float, float]:
@@ -123,10 +127,9 @@ def righting_time(scene: Scene, sections: SectionData, weight: np.ndarray) -> fl
 
 def stations_of(body: Body, scene: Scene, grid: Grid, nodes: SectionData, x: np.ndarray) -> StationData:
     """Tabulate `body` in `scene` at the stations `x` (M,) [m]; `nodes`: the sections at the nodes of `grid`."""
-    missed = []
+    missed: np.ndarray | tuple = ()
     if len(body.breaks):
-        table = missed_before(lambda at: np.array(sections_of(body, scene, at)), np.array(nodes), grid, body.breaks, x)
-        missed = [SectionData(*each)._replace(reynolds=nodes.reynolds) for each in np.ascontiguousarray(table)]
+        missed = missed_before(lambda at: _parts(sections_of(body, scene, at)), _parts(nodes), grid, body.breaks, x)
     a_squared, b_squared, a_slope, b_slope = body.squares(x)
     slope2, slope3, _ = added_masses(body, scene, a_slope, b_slope)
     rho = scene.fluid_density if scene.reactive else 0.0
@@ -139,6 +142,10 @@ def stations_of(body: Body, scene: Scene, grid: Grid, nodes: SectionData, x: np.
         added_roll_slope=rho * np.pi / 4.0 * (a_squared - b_squared) * (a_slope - b_slope),
         missed=missed,
     )
+
+
+def _parts(sections: SectionData) -> np.ndarray:
+    return np.array([getattr(sections, name) for name in PARTS])
 
 
 def sections_on(body: Body, scene: Scene, grid: Grid) -> SectionData:
@@ -167,7 +174,7 @@ def sections_of(body: Body, scene: Scene, x: np.ndarray) -> SectionData:
     half_rho = 0.5 * scene.fluid_density if scene.resistive else 0.0
     # at the nose c_f P has a limit, as c_f grows like X^-1/2 and P like X^1/2
     behind = np.maximum(x, 1e-9 * body.length)
-    c, d = body.half_height(behind), body.half_width(behind)
+    c, d = (a, b) if np.array_equal(behind, x) else (body.half_height(behind), body.half_width(behind))
     perimeter = np.pi * (1.5 * (c + d) - np.sqrt(c * d)) * (0.5 if scene.perimeter == "printed" else 1.0)
     rubbed = 0.0 if scene.friction == "none" else half_rho
     transition = TRANSITION * scene.viscosity / behind  # m/s, |V1| at which Re = 8e4

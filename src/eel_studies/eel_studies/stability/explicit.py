@@ -12,6 +12,8 @@ import numpy as np
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.grid import Grid
 from eel_dynamics.model.panels import panels_of
+from eel_dynamics.model.scene import Scene
+from eel_dynamics.model.section_data import sections_on
 
 STEPS = 20
 
@@ -55,16 +57,12 @@ def inertias(body: Body, density: float, fluid_density: float) -> tuple[np.ndarr
     Densities are in kg/m^3. Rotations are scaled by the body's length, so that all entries are masses [kg].
     """
     grid = Grid.of(panels_of(body, 40.0))
-    height, width = body.half_height(grid.x), body.half_width(grid.x)
-    mass = density * np.pi * height * width
-    second, third = mass * height**2 / 4.0, mass * width**2 / 4.0
-    across = fluid_density * np.pi
-    own = _assemble(grid, body.length, np.array([mass, mass, mass]), np.array([second + third, second, third]))
-    zero = np.zeros_like(mass)
-    roll = across / 8.0 * (height**2 - width**2) ** 2
-    water = _assemble(
-        grid, body.length, np.array([zero, across * height**2, across * width**2]), np.array([roll, zero, zero])
-    )
+    sections = sections_on(body, Scene(density=density, fluid_density=fluid_density), grid)
+    mass, zero, roll = sections.mass, np.zeros_like(sections.mass), sections.added_roll
+    turning = np.array([sections.inertia1 - roll, sections.inertia2, sections.inertia3])
+    own = _assemble(grid, body.length, np.array([mass, mass, mass]), turning)
+    added = np.array([zero, sections.added2, sections.added3])
+    water = _assemble(grid, body.length, added, np.array([roll, zero, zero]))
     return own, water
 
 

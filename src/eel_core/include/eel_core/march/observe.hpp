@@ -5,19 +5,19 @@
 #pragma once
 
 #include "eel_core/algorithm.hpp"
+#include "eel_core/march/missed.hpp"
 #include "eel_core/march/profiles.hpp"
 
 namespace eel_core {
 
 // Work space at the stations.
 struct StationWork {
-    explicit StationWork(const Swimmer& swimmer)
+    explicit StationWork(const Swimmer& swimmer) : missed(swimmer)
     {
         const std::size_t n = blocks_of(swimmer.stations);
         frame = Field<Frame3<double>>(n), curvature = Field<Vector2<double>>(n), base = Field<Quaternion<double>>(n);
         position = omega = velocity = alpha = acceleration = Field<Vector3<double>>(n);
         upto = Field<Wrench<Space, double>>(n);
-        friction = Field<Vector3<double>>(swimmer.grid.blocks);
         for (std::size_t i = 0; i < swimmer.stations; ++i) base.row(3)[i] = 1.0;
     }
 
@@ -26,7 +26,7 @@ struct StationWork {
     Field<Vector2<double>> curvature;
     Field<Vector3<double>> position, omega, velocity, alpha, acceleration;
     Field<Wrench<Space, double>> upto;  // integral of the balance's density from the nose
-    Field<Vector3<double>> friction;    // of the nodes, by their coefficients: laminar, turbulent; and its part
+    MissedWrench missed;                // of it, where the sections are from data
 };
 
 // Puts components of a block of stations, of which there are `stations`, into rows (stations, Components of the value).
@@ -163,58 +163,12 @@ class Observer {
         swimmer_.to_station.integrate(work.integrand, 3, head.linear, work.acceleration, here.acceleration);
     }
 
-    // Adds to the integral of the balance up to the stations what the polynomials through the nodes miss of it.
-    void add_missed(const Workspace<Space>& work, StationWork& here) const
-    {
-        for (std::size_t k = 0; k < swimmer_.grid.blocks; ++k) {
-            const DragSection<Lanes> unit{0.0, 0.0, 0.0, 1.0, 1.0, swimmer_.sections.reynolds[k]};
-            const AxialFriction friction = axial_friction(unit, swimmer_.friction, work.speed[axial][k]);
-            here.friction.store(k, {friction.laminar, friction.excess + friction.laminar, friction.turbulent_part});
-        }
-        for (std::size_t station = 0; station < swimmer_.stations; ++station) {
-            const auto missed = total_of(missed_before(station, work, here));
-            Components<Wrench<Space, double>>::each(
-                missed, [&](std::size_t c, double value) { here.upto.row(c)[station] += value; });
-        }
-    }
-
-    // Its lanes for a `station`. The drag has the signs that the speeds have at the station, as if none changed within
-    // its panel.
-    Wrench<Space, Lanes> missed_before(std::size_t station, const Workspace<Space>& work, const StationWork& here) const
-    {
-        const Sections& missed = swimmer_.missed[station];
-        const auto there = here.frame.node(station);
-        const Vector3<double> v_there = there.local(here.velocity.node(station));
-        const auto sign_of = [](double value) { return Lanes(std::copysign(1.0, value)); };
-        LoadSigns<Lanes> sign{1.0, 0.0, sign_of(v_there.y), sign_of(v_there.z),
-                              sign_of(dot(there.axis1, here.omega.node(station)))};
-        const bool turbulent = std::abs(v_there.x) * swimmer_.at_station.reynolds.node(station) > 1.0;
-        const std::size_t home = std::min(swimmer_.nodes_before[station], swimmer_.grid.nodes - 1);
-        const std::size_t first = swimmer_.grid.first[home], end = first + swimmer_.grid.count[home];
-        Wrench<Space, Lanes> sum{};
-        for (std::size_t k = first / width; k < blocks_of(end); ++k) {
-            const Frame3<Lanes> frame = work.frame[k];
-            sum += inertial_wrench<Space>(missed[k], work, k);
-            if (swimmer_.righting != 0.0)
-                sum.angular = sum.angular - righting_torque(swimmer_.righting * missed.mass[k], frame.axis3, work.up);
-            if (!swimmer_.resistive) continue;
-            const DragSection<Lanes> drag = missed.drag(k);
-            const Vector3<Lanes> friction = here.friction[k];
-            const Lanes laminar = drag.laminar * friction.x, excess = drag.turbulent * friction.y - laminar;
-            sign.excess = swimmer_.friction == Friction::printed ? Lanes(turbulent ? 1.0 : 0.0) : friction.z;
-            const auto load =
-                resistive_load(drag, laminar, excess, sign, speeds_from(work, width * k), roll_from(work, width * k));
-            sum += -about_head<Space>(frame, work.position[k], load);
-        }
-        return sum;
-    }
-
     // Eq. (50), (51): the wrench behind each station less the momentum of the water that is swept past it.
     void show_internal_wrench(std::size_t sample, Workspace<Space>& work, StationWork& here) const
     {
         swimmer_.to_station.integrate(work.density, 0, Wrench<Space, double>{}, work.upto, here.upto);
         add_kinks(swimmer_, swimmer_.to_station, true, work, here.upto);
-        if (!swimmer_.missed.empty()) add_missed(work, here);
+        if (!swimmer_.missed.empty()) here.missed.add(swimmer_, work, here.frame, here.omega, here.velocity, here.upto);
         for (std::size_t k = 0; k < blocks(); ++k) {
             const Section<Lanes> section = swimmer_.at_station[k].weighed(swimmer_.wake);
             const Frame3<Lanes> frame = here.frame[k];

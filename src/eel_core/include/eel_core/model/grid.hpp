@@ -70,33 +70,11 @@ class FromNose {
     void integrate(const Field<Source>& integrand, std::size_t first_row, const Value& at_nose,
                    const Field<Value>& known, Field<Value>& result) const
     {
-        using Block = typename Field<Value>::Block;
-        constexpr std::size_t count = Components<Block>::count;
-        const std::size_t stride = integrand.stride();
         for (std::size_t s = 0; s < stretches_.size(); ++s) {
-            const Stretch& stretch = stretches_[s];
-            const Column* column = columns(stretch);
-            const double* f = integrand.row(first_row) + stretch.begin;
-            // Few sums would wait for their last term: the nodes go to two sets of them in turn.
-            constexpr std::size_t sets = count * parts < 6 ? 2 : 1;
-            std::array<std::array<std::array<Lanes, parts>, count>, sets> sum{};
-            const auto add_node = [&](std::size_t node, std::size_t set) {
-                for (std::size_t part = 0; part < parts; ++part) {
-                    const Lanes weight = column[node][part];
-                    for (std::size_t c = 0; c < count; ++c) sum[set][c][part] += f[c * stride + node] * weight;
-                }
-            };
-            const std::size_t nodes = stretch.end - stretch.begin;
-            std::size_t node = 0;
-            for (; node + sets <= nodes; node += sets)
-                for (std::size_t set = 0; set < sets; ++set) add_node(node + set, set);
-            if (node < nodes) add_node(node, 0);
-            const Value before = stretch.begin > 0 ? known.node(stretch.begin - 1) : at_nose;
-            for (std::size_t part = 0; part < parts; ++part)
-                result.store(parts * s + part, before + Components<Block>::make([&](std::size_t c) {
-                                                   return sets == 1 ? sum[0][c][part]
-                                                                    : sum[0][c][part] + sum[sets - 1][c][part];
-                                               }));
+            const auto here = within<Value>(integrand, first_row, stretches_[s]);
+            const std::size_t begin = stretches_[s].begin;
+            const Value before = begin > 0 ? known.node(begin - 1) : at_nose;
+            for (std::size_t part = 0; part < parts; ++part) result.store(parts * s + part, before + here[part]);
         }
     }
 
@@ -107,7 +85,55 @@ class FromNose {
         integrate(integrand, first_row, Components<Value>::make([](std::size_t) { return 0.0; }), result, result);
     }
 
+    // Adds to `result` at the points, times their `factor`, what these rows give of `integrand`: of the first
+    // components, those of a `Value`.
+    template <class Value, class Source>
+    void add(const Field<Source>& integrand, const Row& factor, Field<Source>& result) const
+    {
+        for (std::size_t s = 0; s < stretches_.size(); ++s) {
+            const auto here = within<Value>(integrand, 0, stretches_[s]);
+            for (std::size_t part = 0; part < parts; ++part) {
+                const std::size_t k = parts * s + part;
+                Components<typename Field<Value>::Block>::each(here[part], [&](std::size_t c, Lanes lanes) {
+                    double* const at = result.row(c) + width * k;
+                    (Lanes::load(at) + factor[k] * lanes).store(at);
+                });
+            }
+        }
+    }
+
   private:
+    // Of the points of a stretch: the integral from the start of its first panel.
+    template <class Value, class Source>
+    std::array<typename Field<Value>::Block, parts> within(const Field<Source>& integrand, std::size_t first_row,
+                                                           const Stretch& stretch) const
+    {
+        using Block = typename Field<Value>::Block;
+        constexpr std::size_t count = Components<Block>::count;
+        const std::size_t stride = integrand.stride();
+        const Column* column = columns(stretch);
+        const double* f = integrand.row(first_row) + stretch.begin;
+        // Few sums would wait for their last term: the nodes go to two sets of them in turn.
+        constexpr std::size_t sets = count * parts < 6 ? 2 : 1;
+        std::array<std::array<std::array<Lanes, parts>, count>, sets> sum{};
+        const auto add_node = [&](std::size_t node, std::size_t set) {
+            for (std::size_t part = 0; part < parts; ++part) {
+                const Lanes weight = column[node][part];
+                for (std::size_t c = 0; c < count; ++c) sum[set][c][part] += f[c * stride + node] * weight;
+            }
+        };
+        const std::size_t nodes = stretch.end - stretch.begin;
+        std::size_t node = 0;
+        for (; node + sets <= nodes; node += sets)
+            for (std::size_t set = 0; set < sets; ++set) add_node(node + set, set);
+        if (node < nodes) add_node(node, 0);
+        std::array<Block, parts> result;
+        for (std::size_t part = 0; part < parts; ++part)
+            result[part] = Components<Block>::make(
+                [&](std::size_t c) { return sets == 1 ? sum[0][c][part] : sum[0][c][part] + sum[sets - 1][c][part]; });
+        return result;
+    }
+
     std::vector<Stretch> stretches_;
     std::vector<Column> columns_;
     Row place_;

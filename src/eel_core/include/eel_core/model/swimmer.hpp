@@ -13,6 +13,24 @@ enum class Friction { printed, laminar, blended };
 // `lateral` on, the drag has a kink or a jump where the speed changes its sign.
 enum Speed : std::size_t { axial = 0, lateral = 1, vertical = 2, roll = 3, above_transition = 4, speeds = 5 };
 
+// Numbers of a section in which its inertial wrench and, from `drag2` on, its drag are linear.
+struct SectionPart {
+    enum : std::size_t {
+        mass,
+        added2,
+        added3,
+        inertia1,
+        inertia2,
+        inertia3,
+        drag2,
+        drag3,
+        drag_roll,
+        laminar,
+        turbulent
+    };
+    static constexpr std::size_t count = 11;
+};
+
 struct Swimmer {
     Grid grid;
     Sections sections;
@@ -36,9 +54,9 @@ struct Swimmer {
     Row added2_slope, added3_slope, added_roll_slope;  // derivatives by X
     std::vector<std::size_t> nodes_before;             // how many nodes lie at or before the station
     FromNose to_station;
-    // For each station: of each node, the part of the sections' integral up to the station that `to_station` misses.
-    // Empty where the sections are as smooth as the motion.
-    std::vector<Sections> missed;
+    // For each `SectionPart`: what the sum of `to_station` over a station's own panel misses of its integral. Empty
+    // where the sections are as smooth as the motion.
+    std::vector<FromNose> missed;
 };
 
 }  // namespace eel_core

@@ -25,6 +25,7 @@ from eel_dynamics.model.arguments import checked_instance
 from eel_dynamics.model.axes import turn_quaternion, turn_vector
 from eel_dynamics.model.body import Body, checked_body
 from eel_dynamics.model.grid import Grid
+from eel_dynamics.model.moments import with_moments
 from eel_dynamics.model.panels import panels_of
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.exchange.eel_viz_functions import messages_of_bag
@@ -209,7 +210,8 @@ def _accuracy(once: dict, scene: Scene) -> Accuracy:
 def _center_of_mass(body: Body, x: np.ndarray, backbone: np.ndarray) -> np.ndarray:
     """(T, 3) [m], from the backbone (T, M, 3) [m] at the stations x (M,) [m]."""
     grid = Grid.of(panels_of(body, resolution=40))
-    weight = grid.weight * body.half_width(grid.x) * body.half_height(grid.x)
+    areas = with_moments(lambda at: body.half_width(at)[None] * body.half_height(at), grid, body.breaks)
+    weight = grid.weight * areas[0]
     inside = np.clip(grid.x, x[0], x[-1])
     return np.einsum("n,tnk->tk", weight / weight.sum(), _spline(x, backbone, axis=1)(inside))
 

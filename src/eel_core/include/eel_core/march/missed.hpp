@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the integral of the balance up to the stations misses of sections that are smooth only between a body's data.
+//
+// The wrench of a section is a sum of its numbers (`SectionPart`), each times the wrench that one of it gives in the
+// motion. These unit wrenches are as smooth as the motion. So their values at the nodes, with the rows of
+// `Swimmer::missed`, give what is missed of each number's part.
+#pragma once
+
+#include "eel_core/internal_wrench.hpp"
+
+namespace eel_core {
+
+class MissedWrench {
+    using Part = SectionPart;
+
+  public:
+    explicit MissedWrench(const Swimmer& swimmer)
+    {
+        if (swimmer.missed.empty()) return;
+        for (auto& field : unit_) field = Field<Wrench<Space, double>>(swimmer.grid.blocks);
+        for (Row& row : factor_) row = Row(blocks_of(swimmer.stations));
+    }
+
+    // Adds it to `upto`. The drag has the signs of the speeds at each station, as if none changed within its panel.
+    // omega, velocity: true ones of the stations.
+    void add(const Swimmer& swimmer, const Workspace<Space>& work, const Field<Frame3<double>>& frame,
+             const Field<Vector3<double>>& omega, const Field<Vector3<double>>& velocity,
+             Field<Wrench<Space, double>>& upto)
+    {
+        set_inertial_units(swimmer, work);
+        if (swimmer.resistive) set_drag_units(swimmer, work);
+        set_factors(swimmer, frame, omega, velocity);
+        const std::size_t used = swimmer.resistive ? Part::count : Part::drag2;
+        for (std::size_t part = 0; part < used; ++part)
+            if ((Part::inertia1 <= part && part < Part::drag2) || part == Part::drag_roll)  // without a force
+                swimmer.missed[part].add<Vector3<double>>(unit_[part], factor_[part], upto);
+            else
+                swimmer.missed[part].add<Wrench<Space, double>>(unit_[part], factor_[part], upto);
+    }
+
+  private:
+    void set_inertial_units(const Swimmer& swimmer, const Workspace<Space>& work)
+    {
+        for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
+            const auto of = [&](const Section<Lanes>& one) { return inertial_wrench<Space>(one, work, k); };
+            const std::array<Wrench<Space, Lanes>, Part::drag2> unit{
+                of({1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0}), of({0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0}),
+                of({0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0}), of({0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0}),
+                of({0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0}), of({0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0})};
+            for (std::size_t part = 0; part < Part::drag2; ++part) unit_[part].store(k, unit[part]);
+            if (swimmer.righting == 0.0) continue;
+            Wrench<Space, Lanes> upright = unit[Part::mass];
+            upright.angular = upright.angular - righting_torque(Lanes(swimmer.righting), work.frame[k].axis3, work.up);
+            unit_[Part::mass].store(k, upright);
+        }
+    }
+
+    void set_drag_units(const Swimmer& swimmer, const Workspace<Space>& work)
+    {
+        for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
+            const DragSection<Lanes> rough{0.0, 0.0, 0.0, 1.0, 1.0, swimmer.sections.reynolds[k]};
+            const AxialFriction friction = axial_friction(rough, swimmer.friction, work.speed[axial][k]);
+            const Lanes turned = swimmer.friction == Friction::printed ? Lanes(1.0) : friction.turbulent_part;
+            const Lanes kept = swimmer.friction == Friction::printed ? Lanes(1.0) : 1.0 - friction.turbulent_part;
+            const LoadSigns<Lanes> sign{1.0, 0.0, 1.0, 1.0, 1.0};
+            const auto store = [&](std::size_t part, const DragSection<Lanes>& one, Lanes friction_of_one) {
+                const auto load = resistive_load(one, friction_of_one, 0.0, sign, speeds_from(work, width * k),
+                                                 roll_from(work, width * k));
+                unit_[part].store(k, -about_head<Space>(work.frame[k], work.position[k], load));
+            };
+            store(Part::drag2, {1.0, 0.0, 0.0, 0.0, 0.0, 0.0}, 0.0);
+            store(Part::drag3, {0.0, 1.0, 0.0, 0.0, 0.0, 0.0}, 0.0);
+            store(Part::drag_roll, {0.0, 0.0, 1.0, 0.0, 0.0, 0.0}, 0.0);
+            store(Part::laminar, {}, kept * friction.laminar);
+            store(Part::turbulent, {}, turned * (friction.excess + friction.laminar));
+        }
+    }
+
+    void set_factors(const Swimmer& swimmer, const Field<Frame3<double>>& frame, const Field<Vector3<double>>& omega,
+                     const Field<Vector3<double>>& velocity)
+    {
+        for (std::size_t k = 0; k < blocks_of(swimmer.stations); ++k) {
+            const Frame3<Lanes> there = frame[k];
+            const Vector3<Lanes> v = there.local(velocity[k]);
+            const Lanes ratio = size(v.x) * swimmer.at_station.reynolds[k];
+            const Mask above = ratio > Lanes(1.0);
+            const bool printed = swimmer.friction == Friction::printed;
+            for (std::size_t part = 0; part < Part::drag2; ++part) factor_[part].store(k, 1.0);
+            factor_[Part::drag2].store(k, with_sign_of(1.0, v.y));
+            factor_[Part::drag3].store(k, with_sign_of(1.0, v.z));
+            factor_[Part::drag_roll].store(k, with_sign_of(1.0, dot(there.axis1, omega[k])));
+            factor_[Part::laminar].store(k, printed ? select(above, 0.0, 1.0) : Lanes(1.0));
+            factor_[Part::turbulent].store(k, printed ? select(above, 1.0, 0.0) : Lanes(1.0));
+        }
+    }
+
+    std::array<Field<Wrench<Space, double>>, Part::count> unit_;  // at the nodes, per length
+    std::array<Row, Part::count> factor_;                         // at the stations
+};
+
+}  // namespace eel_core
