@@ -56,6 +56,24 @@ def test_every_source_file_names_its_licence(tracked):
     ] == []
 
 
+def test_every_extra_that_is_named_is_in_its_package(tracked):
+    """In pages and messages alike; a path, since the packages are on no index."""
+    has = {
+        path.parent.name: set(re.findall(r'"(\w+)": \[', path.read_text()))
+        for path in (ROOT / "src").glob("*/setup.py")
+    }
+    pattern = re.compile(r"(\S*)\b(eel_\w+)\[(\w+)\][\"'`]")
+    found = {
+        (str(path.relative_to(ROOT)), *words)
+        for path in tracked
+        if path.suffix in (".md", ".py") and path.name != "CHANGELOG.md" and path != Path(__file__)
+        for words in pattern.findall(path.read_text())
+    }
+    assert {extra for *_, extra in found} >= {"data", "cluster", "cma", "pictures"}
+    assert [each for each in sorted(found) if each[3] not in has[each[2]]] == []
+    assert [each for each in sorted(found) if "pip" in each[1] and "./src/" not in each[1]] == []
+
+
 def test_no_large_file(tracked):
     """Only the film at the head of the README may be larger than 1 MB."""
     film = ROOT / "docs/images/falling.webp"

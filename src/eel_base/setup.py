@@ -11,7 +11,7 @@ setup(
         ("share/ament_index/resource_index/packages", ["resource/eel_base"]),
         ("share/eel_base", ["package.xml"]),
     ],
-    install_requires=["setuptools"],
+    install_requires=["setuptools", "numpy", "PyYAML"],
     extras_require={"test": ["pytest"]},
     zip_safe=False,
     maintainer="Eel simulator maintainers",

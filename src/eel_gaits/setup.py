@@ -10,7 +10,7 @@ setup(
         ("share/ament_index/resource_index/packages", ["resource/eel_gaits"]),
         ("share/eel_gaits", ["package.xml"]),
     ],
-    install_requires=["setuptools"],
+    install_requires=["setuptools", "numpy", "scipy"],
     extras_require={"test": ["pytest"]},
     zip_safe=True,
     maintainer="Eel simulator maintainers",

@@ -15,6 +15,7 @@ setup(
         "test": ["pytest"],
         "cluster": ["dask", "distributed", "xarray"],
         "cma": ["cma"],
+        "pictures": ["matplotlib"],
     },
     zip_safe=False,
     maintainer="Eel simulator maintainers",

@@ -28,8 +28,12 @@ def read_yaml(path: str | os.PathLike[str]) -> Any:
     `Misplaced` for what YAML, or the bounds, do not allow; else `ValueError`, `OSError`.
     """
     with InputFile(path, MOST_BYTES) as file:
-        text = file.read().decode("utf-8")
-    loader = _Loader(text)
+        return from_yaml(file.read().decode("utf-8"))
+
+
+def from_yaml(text: str, most: int = MOST_NODES):
+    """The document in a YAML `text` of at most `most` values. Errors as in `read_yaml`."""
+    loader = _Loader(text, most)
     try:
         node = loader.get_single_node()
         return None if node is None else loader.value(node, 1)
@@ -42,8 +46,9 @@ def read_yaml(path: str | os.PathLike[str]) -> Any:
 class _Loader(yaml.SafeLoader):
     """PyYAML's safe loader, with bounds on the levels and on the nodes, each as often as it is named."""
 
-    def __init__(self, text: str) -> None:
+    def __init__(self, text: str, most: int) -> None:
         super().__init__(text)
+        self._most = most
         self._depth = self._nodes = self._values = 0
 
     def compose_node(self, parent: Any, index: Any) -> Any:
@@ -87,8 +92,8 @@ class _Loader(yaml.SafeLoader):
         return value
 
     def _check(self, depth: int, nodes: int, mark: Any) -> None:
-        if depth > DEEPEST or nodes > MOST_NODES:
-            told = "too many levels" if depth > DEEPEST else f"more than {MOST_NODES} values, with all aliases"
+        if depth > DEEPEST or nodes > self._most:
+            told = "too many levels" if depth > DEEPEST else f"more than {self._most} values, with all aliases"
             raise Misplaced(f"line {mark.line + 1}", told)
 
 

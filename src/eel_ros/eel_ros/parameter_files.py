@@ -6,12 +6,12 @@ ROS has read the files before. As there, an alias is an error, and so are many l
 
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
-from pathlib import Path
 
 import yaml
+from eel_base.input_file import InputFile
 
 OPTION, VALUES = "--params-file", "ros__parameters"
-MOST_CHARACTERS = 200_000  # of a file: what follows is not read
+MOST_BYTES = 200_000  # of a file: what follows is not read
 
 
 def shared_names(words: Sequence[str]) -> set[str]:
@@ -30,8 +30,9 @@ class _Texts(yaml.BaseLoader):
 
 def _of_file(path: str) -> set[str]:
     try:
-        with Path(path).open(encoding="utf-8") as file:
-            content = yaml.load(file.read(MOST_CHARACTERS), Loader=_Texts)
+        with InputFile(path) as file:
+            text = file.read(min(file.size, MOST_BYTES)).decode("utf-8", "ignore")
+        content = yaml.load(text, Loader=_Texts)
     except Exception:  # PyYAML raises others than its own
         return set()
     return {name for node, names in _nodes(content, "") if "*" in node for name in names}

@@ -286,7 +286,7 @@ def test_says_when_matplotlib_is_missing(tmp_path):
     code = "import sys; sys.modules['matplotlib'] = None\n"
     code += "from eel_studies.figures.command import main; sys.exit(main())"
     done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, timeout=60)
-    assert done.returncode == 2 and "eel_dynamics[pictures]" in done.stderr and len(done.stderr.splitlines()) == 1
+    assert done.returncode == 2 and "eel_studies[pictures]" in done.stderr and len(done.stderr.splitlines()) == 1
     assert os.listdir(tmp_path) == []
 
 

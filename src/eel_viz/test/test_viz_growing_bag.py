@@ -7,9 +7,12 @@ import random
 import re
 import struct
 
+import lz4.frame
 import pytest
 import yaml
+import zstandard
 from eel_viz.bags.bag import Bag, DamagedBag
+from eel_viz.bags.chunk_sizes import check_chunks
 from eel_viz.bags.definitions import definition, type_hash
 from eel_viz.bags.growing_bag import GrowingBag
 from mcap.reader import make_reader
@@ -134,6 +137,52 @@ def test_no_flipped_bit_of_a_bag_is_silent(tmp_path, count):
         path.write_bytes(data)
     print(counts)
     assert counts["told"] > 0.75 * count  # a file of MCAP has no bit without a checksum
+
+
+@pytest.mark.fault(
+    "names",
+    "a bag whose chunks inflate to 500 MB, or to more than they say",
+    "one line, and nothing is inflated",
+)
+@pytest.mark.parametrize("compression", ["zstd", "lz4"])
+@pytest.mark.parametrize("told", [500_000_000, 100])
+def test_a_chunk_that_inflates_is_refused_before_it_does(tmp_path, compression, told):
+    pack = {"zstd": zstandard.compress, "lz4": lz4.frame.compress}[compression]
+    data = pack(bytes(100_000))
+    chunk = struct.pack("<QQQI", 0, 1, told, 0) + struct.pack("<I", len(compression)) + compression.encode()
+    chunk += struct.pack("<Q", len(data)) + data
+    path = tmp_path / "bag.mcap"
+    path.write_bytes(b"\x89MCAP0\r\n\x06" + struct.pack("<Q", len(chunk)) + chunk)
+    with pytest.raises(ValueError, match="a chunk must have"):
+        check_chunks(path)
+    with pytest.raises(ValueError, match=r"no bag|cannot be read"):
+        Bag(path)
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("a: " + "[" * 20_000, "too many levels"),
+        ("a: &a [1]\nb: &b [*a, *a]\nc: [" + "*b, " * 9000 + "]", "more than 20000 values"),
+        ("[" + "1, " * 15_000 + "]", "it is damaged or foreign"),
+    ],
+)
+def test_metadata_without_bounds_are_not_read(tmp_path, text, told):
+    bag = GrowingBag(tmp_path / "bag")
+    bag.write(connect(bag, "/one"), 10**18, bytes(28))
+    bag.close()
+    (tmp_path / "bag" / "metadata.yaml").write_text(text)
+    with Bag(tmp_path / "bag") as found:
+        assert "metadata.yaml" in found.damage and told in found.damage
+        assert [topic for topic, _, _ in found.messages("/one")] == ["/one"]  # the file is whole
+
+
+@pytest.mark.parametrize("name", ["bag", "bag.mcap", "folder/bag.mcap"])
+def test_a_bag_that_is_a_fifo_is_refused(tmp_path, name):
+    (tmp_path / "folder").mkdir()
+    os.mkfifo(tmp_path / name)
+    with pytest.raises(ValueError, match=r"no regular file|no \.mcap or \.db3 file"):
+        Bag(tmp_path / name.split("/")[0])
 
 
 def test_the_place_of_damage_is_said(tmp_path):

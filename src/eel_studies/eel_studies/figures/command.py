@@ -44,7 +44,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _figures(options) -> int:
-    needed("matplotlib", "figures", "pictures")
+    needed("matplotlib", "figures", "eel_studies[pictures]")
     folder = Path(options.out)
     for reading in corrections.READINGS.values():
         Accuracy.of(options.accuracy).in_scene(Scene(**reading))  # refused before the folder exists

@@ -87,7 +87,7 @@ def by_cma(problem: GaitProblem, starts: np.ndarray, speed: float, seed: int) ->
     """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of matplotlib's absence, on import
-        cma = needed("cma", "method 'cma' of optimise", "cma")
+        cma = needed("cma", "method 'cma' of optimise", "eel_studies[cma]")
     options = {
         "bounds": [0.0, 1.0],
         "maxiter": GENERATIONS,

@@ -28,7 +28,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _study(options) -> int:
-    needed("matplotlib", "stability", "pictures")
+    needed("matplotlib", "stability", "eel_studies[pictures]")
     if options.points < 2:
         raise ValueError(f"points must be >= 2, got {options.points}")
     if options.page:

@@ -30,7 +30,7 @@ def _scan(options) -> int:
         raise ValueError(f"--points must be {FEWEST} or more, got {options.points}")
     if options.page:
         check_output("--page", options.page)
-    needed("matplotlib", "steering", "pictures")
+    needed("matplotlib", "steering", "eel_studies[pictures]")
     folder = Path(options.out)
     folder.mkdir(exist_ok=True)
     scans = scans_of(options.points)

@@ -70,7 +70,7 @@ def workers_of(scheduler, count: int) -> Iterator[Threads | Cluster]:
     if scheduler is None:
         yield Threads(count)
         return
-    needed("distributed", "a sweep with a scheduler", "cluster")
+    needed("distributed", "a sweep with a scheduler", "eel_studies[cluster]")
     with connected(scheduler, count) as client:
         yield Cluster(client)
 

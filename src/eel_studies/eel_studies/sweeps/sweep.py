@@ -7,7 +7,7 @@
 
 It runs in threads, one per core, or on a Dask scheduler. Finished points are stored beside the output: an interrupted
 sweep resumes when it is called again. It needs `pip install './src/eel_dynamics[data]'`, with a scheduler
-`'./src/eel_dynamics[cluster]'`.
+`'./src/eel_studies[cluster]'`.
 """
 
 import itertools

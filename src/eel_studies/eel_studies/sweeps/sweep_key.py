@@ -58,7 +58,7 @@ def _content_of_function(argument: str, function) -> bytes:
     """
     if isinstance(function, NamedHalfAxis):
         return repr(function).encode()
-    needed("dask", f"the key of a sweep with a {argument} of your own", "cluster")
+    needed("dask", f"the key of a sweep with a {argument} of your own", "eel_studies[cluster]")
     from dask.tokenize import TokenizationError, tokenize
 
     try:

@@ -2,8 +2,8 @@
 """Reads a rosbag2 folder, or one of its files, without ROS: MCAP or sqlite3, split or not, compressed or not.
 
 After a crash (no metadata, no index, a truncated file) the readable part is read, and so it is where checksums tell of
-damage. Types are those that the bag defines;
-a bag without definitions (sqlite3 before Iron) needs the message packages installed.
+damage. Types are those that the bag defines; a bag without definitions (sqlite3 before Iron) needs the message
+packages installed. What metadata.yaml and chunks inflate to is bounded.
 """
 
 import contextlib
@@ -16,13 +16,16 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from eel_base.wording import shown
+from eel_base.input_file import InputFile, reading
+from eel_base.wording import one_line, shown
 from rosbags.interfaces import MessageDefinitionFormat
 from rosbags.rosbag2 import Reader
 from rosbags.typesys import Stores, TypesysError, get_types_from_idl, get_types_from_msg, get_typestore
 
+from eel_viz.bags.chunk_sizes import check_chunks
 from eel_viz.bags.damaged_mcap import DamagedMcapReader
 from eel_viz.bags.mcap_checksums import check_index, damage_of_data
+from eel_viz.bags.metadata import NAME, check_metadata
 
 SUFFIXES = (".mcap", ".db3")
 
@@ -56,8 +59,11 @@ class Bag:
         self._store = get_typestore(Stores.EMPTY)
         self.damage = ""
         self.topics: dict[str, Topic] = {}
-        if not self._path.exists():
-            raise ValueError(f"bag {shown(str(path))} does not exist")
+        with reading(f"bag {shown(str(path))}"):
+            if not self._path.exists():
+                raise ValueError(f"bag {shown(str(path))} does not exist")
+            if not self._path.is_dir():
+                InputFile(self._path).close()
         try:
             self._open()
             self.topics = self._topics()
@@ -105,7 +111,7 @@ class Bag:
                 yield connection.topic, stamp, message
 
     def _open(self) -> None:
-        if self._path.is_file() or (self._path / "metadata.yaml").is_file():
+        if self._path.is_file() or (self._path / NAME).exists():
             try:
                 self._readers = [self._stack.enter_context(_checked_reader(self._path))]
                 self.damage = next(filter(None, map(damage_of_data, _mcap_files(self._path))), "")
@@ -113,9 +119,9 @@ class Bag:
             except Exception as error:  # on damaged files rosbags raises struct.error, KeyError, sqlite's and others
                 self.damage = _line(error)
         else:
-            self.damage = "no metadata.yaml"
+            self.damage = f"no {NAME}"
         files = [self._path] if self._path.is_file() else sorted(self._path.iterdir())
-        files = [each for each in files if each.suffix in SUFFIXES]
+        files = [each for each in files if each.suffix in SUFFIXES and each.is_file()]
         if not files:
             raise ValueError(
                 f"bag {shown(str(self._path))} cannot be read: {self.damage}, no .mcap or .db3 file"
@@ -174,6 +180,11 @@ class Bag:
 @contextlib.contextmanager
 def _checked_reader(path: pathlib.Path) -> Iterator[Reader]:
     """A reader of a bag or one of its files. `ValueError` where its index or its metadata do not fit."""
+    if path.is_dir():
+        check_metadata(path)
+    for each in _mcap_files(path):
+        with reading(each.name):
+            check_chunks(each)
     with Reader(path) as reader:
         for each in _mcap_files(path):
             check_index(each)
@@ -193,7 +204,7 @@ def _identity(connection) -> tuple:
 
 def _mcap_files(path: pathlib.Path) -> list[pathlib.Path]:
     found = sorted(path.glob("*.mcap")) if path.is_dir() else [path]
-    return [each for each in found if each.suffix == ".mcap"]
+    return [each for each in found if each.suffix == ".mcap" and each.is_file()]
 
 
 def _reader(path: pathlib.Path, stack: contextlib.ExitStack):
@@ -216,4 +227,4 @@ def _reader(path: pathlib.Path, stack: contextlib.ExitStack):
 
 
 def _line(error: BaseException) -> str:
-    return " ".join(str(error).split()) or type(error).__name__
+    return one_line(error) or type(error).__name__

@@ -7,10 +7,11 @@ The interface is that of rosbags' `Reader`; messages come in the order in which 
 import pathlib
 from collections.abc import Iterator
 
-from mcap.records import Channel, McapRecord, Message, Schema
-from mcap.stream_reader import StreamReader
+from mcap.records import Channel, Chunk, McapRecord, Message, Schema
+from mcap.stream_reader import StreamReader, breakup_chunk
 from rosbags.interfaces import Connection, ConnectionExtRosbag2, MessageDefinition, MessageDefinitionFormat
 
+from eel_viz.bags.chunk_sizes import check_chunk
 from eel_viz.bags.mcap_checksums import DAMAGE_ERRORS
 
 FORMATS = {"ros2msg": MessageDefinitionFormat.MSG, "ros2idl": MessageDefinitionFormat.IDL}
@@ -53,9 +54,16 @@ class DamagedMcapReader:
     def _records(self) -> Iterator[McapRecord]:
         with self._path.open("rb") as file:
             size = self._path.stat().st_size
-            records = iter(StreamReader(file, validate_crcs=True, record_size_limit=size).records)
+            records = StreamReader(file, emit_chunks=True, validate_crcs=True, record_size_limit=size).records
             while True:
                 try:
-                    yield next(records)
+                    record = next(records)
+                    inner = _records_of(record) if isinstance(record, Chunk) else [record]
                 except (StopIteration, *DAMAGE_ERRORS):
                     return
+                yield from inner
+
+
+def _records_of(chunk: Chunk) -> list[McapRecord]:
+    check_chunk(chunk.compression, chunk.uncompressed_size, chunk.data)
+    return breakup_chunk(chunk, validate_crc=True)

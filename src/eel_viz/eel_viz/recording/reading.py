@@ -5,7 +5,8 @@
     columns.time                    # (T,) s
     columns["torque_3"]             # (T, 51) N m
 
-Names of components are those after the colon in Rerun (`Scalars:scalars` is `scalars`).
+Names of components are those after the colon in Rerun (`Scalars:scalars` is `scalars`). The format has no checksums:
+damage may give other numbers, and may end the process within Rerun.
 """
 
 import os

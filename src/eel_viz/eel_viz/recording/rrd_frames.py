@@ -8,12 +8,14 @@ content. A complete file ends with a footer after the last message (Rerun 0.41, 
 import contextlib
 import os
 import pathlib
-import shutil
 import struct
 import tempfile
 from collections.abc import Iterator
 
+from eel_base.input_file import InputFile
+
 HEAD, FRAME = 12, struct.Struct("<QQ")  # bytes
+BLOCK = 2**20  # bytes copied at once
 FOOTER, FOOTER_PLACE = b"RRF2FOOT", 12  # and how many bytes before the end it begins
 
 
@@ -34,7 +36,7 @@ def end_of_whole_messages(path: str | os.PathLike[str]) -> int:
         while end + FRAME.size <= size:
             file.seek(end)
             _, length = FRAME.unpack(file.read(FRAME.size))
-            if end + FRAME.size + length > size:
+            if not length or end + FRAME.size + length > size:  # zeros are left where a machine lost its power
                 break
             end += FRAME.size + length
     return end
@@ -52,14 +54,17 @@ def cut_to_whole_messages(path: str | os.PathLike[str]) -> int:
 def complete_file(path: str | os.PathLike[str]) -> Iterator[pathlib.Path]:
     """The file if it is complete, else a temporary copy of its complete messages.
 
-    A copy, because an incomplete file may still be growing.
+    A copy, because an incomplete file may still be growing. `ValueError` where there is no regular file.
     """
     path = pathlib.Path(path)
+    InputFile(path).close()
     if is_complete(path):
         yield path
         return
     with tempfile.TemporaryDirectory() as folder:
         copy = pathlib.Path(folder) / path.name
-        shutil.copy(path, copy)
-        cut_to_whole_messages(copy)
+        left = end_of_whole_messages(path)
+        with path.open("rb") as source, copy.open("wb") as target:
+            while block := source.read(min(left, BLOCK)):
+                left -= target.write(block)
         yield copy

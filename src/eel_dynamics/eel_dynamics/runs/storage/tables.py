@@ -18,14 +18,12 @@ from eel_dynamics.runs.storage.variables import LABELS, LEDGER, Contents
 COLUMNS = {"position": "xyz", "orientation": "xyzw", "center_of_mass": "xyz"}
 
 
-def needed(name: str, by: str, extra: str = "data"):
-    """The module `name`, which `by` needs. `ImportError` names the `extra` that brings it."""
+def needed(name: str, by: str, extra: str = "eel_dynamics[data]"):
+    """The module `name`, which `by` needs. `ImportError` names the package and its `extra` that bring it."""
     try:
         return import_module(name)
     except ImportError as error:
-        raise ImportError(
-            f"{by} needs {name} ({error}); install it with: pip install './src/eel_dynamics[{extra}]'"
-        ) from None
+        raise ImportError(f"{by} needs {name} ({error}); install it with: pip install './src/{extra}'") from None
 
 
 def dataset_of(contents: Contents):
