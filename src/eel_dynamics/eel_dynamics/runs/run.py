@@ -292,7 +292,7 @@ def simulate(
     check_memory(1, len(times), len(x), wrench, bool(load), runs=2 if estimate else 1)
     request = SwimRequest(swimmer, x, times, wrench, bool(load))
     look = ProgressMonitor(float(duration), progress).update
-    swim = request.swim(look=look)
+    swim = request.swim(request.simulation(), look)
     if swim.stopped is not None:
         stopped, settings = swim.stopped, swim.run.accuracy
         stopped.run = swim.run
@@ -351,9 +351,8 @@ class SwimRequest(NamedTuple):
         swimmer = self.swimmer if accuracy is None else self.swimmer._replace(accuracy=accuracy)
         return Simulation(stations=self.x, **swimmer._asdict())
 
-    def swim(self, accuracy: Accuracy | None = None, look=None) -> Swim:
-        """Simulate it, with other settings if `accuracy` is given. look(time [s]) is called every few milliseconds."""
-        simulation = self.simulation(accuracy)
+    def swim(self, simulation: Simulation, look=None) -> Swim:
+        """Swim it with a `simulation` of its own, at its start. look(time [s]) is called every few milliseconds."""
         out, works, done, stopped = simulation.record(self.times, self.wrench, self.load, look)
         steps, _, evaluations = simulation.evaluations
         observed = fields_of_observations(
