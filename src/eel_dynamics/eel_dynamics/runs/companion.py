@@ -16,6 +16,7 @@ from eel_dynamics.simulation.stopping import SimulationStopped
 
 ACCEPTED = 1.5  # factor of the target by which an estimate must lie below it
 MOST_REFINEMENTS = 4  # of a run whose error is above its target
+BLENDED_ORDER = 3.0  # at most, at which the error of the grid falls where friction changes its law along the body
 RESAMPLING = 1.0 / 3.0  # 1 / (2^p - 1) of the order p = 2 of an interpolation
 HALVINGS = 8  # of an unstable step, at most, in the search for a stable one
 
@@ -51,9 +52,11 @@ def with_error_estimate(swim, request):
     companion = _finished(marching, swim.run.accuracy.coarser().by_adams(), swim.run.nodes)
     for refinement in range(MOST_REFINEMENTS + 1):
         error = ErrorEstimate(np.inf, None) if companion is None else relative_errors(swim.run, companion.run)
-        if refinement and companion is not None:  # it falls with the tolerance at most: else the two agree by chance
-            tighter = swim.run.accuracy.tolerance / companion.run.accuracy.tolerance
-            error = error.at_least(tighter, companion.run.error_estimate)
+        if refinement and companion is not None:  # it falls no faster than this: else the two agree by chance
+            share = swim.run.accuracy.tolerance / companion.run.accuracy.tolerance
+            if request.swimmer.scene.friction == "blended":
+                share = max(share, (companion.run.nodes / swim.run.nodes) ** BLENDED_ORDER)
+            error = error.at_least(share, companion.run.error_estimate)
         others += [] if companion is None else [companion.run]
         cost = sum(each.evaluations * each.nodes for each in others)
         error = replace(error, evaluations=sum(each.evaluations for each in others), cost=cost)
