@@ -112,7 +112,7 @@ def test_a_reader_of_a_mean_is_told_once():
     run = simulate(straight(), 3.0, **COARSE)
     with pytest.warns(Unsettled, match="straight: the mean speed has not settled") as told:
         assert run.mean_speed == run.analysis().mean_speed == run.mean_speed
-    assert len(told) == 1
+    assert len(told) == 1 and told[0].filename == __file__
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         assert "NOT settled" in run.summary() and run.warnings == ()
