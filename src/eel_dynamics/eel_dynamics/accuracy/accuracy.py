@@ -51,8 +51,8 @@ SPARED = 8.0  # points per length that grow with the waves too, of those that th
 # Half of the points tell the error of the grid even where it falls as slowly as with the first power of the points.
 # The longest step differs too, because it alone may limit the steps of both. With ten times the tolerance Adams' method
 # often takes the same steps: 9 of 277 random swims then had an error above its estimate, with 30 times 3.
-# A tolerance below `FINE` needs no more than 20 times; above, two steps too long may agree by chance (1 of 240 sensitive
-# swims at a target of 1e-2).
+# A tolerance below `FINE` needs no more than 20 times; above, two runs of long steps may agree by chance (1 of 239
+# sensitive swims at a target of 1e-2).
 LOOSER, FEWER_POINTS, LONGER_STEPS = 30.0, 0.5, 1.5
 FINE, LOOSER_THAN_FINE = 1e-6, 20.0
 ADAMS_ERROR = 3.0  # some times that of the embedded pair at the same tolerance

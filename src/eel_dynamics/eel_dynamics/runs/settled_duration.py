@@ -34,8 +34,8 @@ def settling_time(swimmer) -> float:
     The later half of that time lies after the law's last ramp. Over its periods the mean speed and the mean power of
     the actuators change by `SETTLED` at most, and as much at most is left to come (`analysis.settling.change_of`).
     Both are exact means of a swim whose error is that of the preset draft, or the swimmer's own if that is greater.
-    A body at rest has settled. `MOST_PERIODS` where the gait does not settle within them, or the swim stops. `ValueError` for a law without a
-    period.
+    A body at rest has settled. `MOST_PERIODS` where the gait does not settle within them, or the swim stops.
+    `ValueError` for a law without a period.
     """
     law = swimmer.law
     period, last_ramp = period_of(law, swimmer.body.length), _last_ramp(law)

@@ -83,8 +83,8 @@ Each point is a run. Below the line the estimate is greater than the true error.
 ![Cost over delivered error]({price})
 
 Each grey point is a setting (points along the body, method, tolerance): medians over {priced} of the swims. The targets
-lie near the lower edge of the grey points, which is what is possible, at coarse targets, and up to 1.8 times above it
-at fine ones. What sets the margin between target and delivered error:
+lie at the lower edge of the grey points, which is what is possible. What sets the margin
+between target and delivered error:
 - The steps. At targets of 1e-3 and coarser the pair's steps are as long as stability allows: a looser tolerance leaves
   the number of evaluations and the error as they are. Adams' method has cheaper steps there.
 - The grid is no limit but for its smallest sizes. Nodes come in blocks of eight; each block gains a factor of 100 or
