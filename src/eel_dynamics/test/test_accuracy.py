@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What an accuracy gives: settings by one rule from the target and the scene, budgets of time, bad input."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from eel_dynamics.accuracy.accuracy import BUDGET_TARGETS
@@ -55,7 +57,7 @@ def test_a_budget_buys_the_finest_target_that_keeps_within_it(monkeypatch):
     )
     bought = Simulation(accuracy="fastest within 5 ms per second").accuracy
     affordable = [target for target in BUDGET_TARGETS if 1e-3 * (1e-2 / target) ** 0.5 <= 5e-3]
-    assert bought.target == min(affordable)
+    assert bought == replace(Accuracy.of(min(affordable)).in_scene(Scene()), name=bought.name, target=None)
     with pytest.raises(ValueError, match="cannot be met"):
         Simulation(accuracy="fastest within 1 us per second")
 
@@ -73,7 +75,7 @@ def test_a_budget_is_measured_for_the_body_scene_and_stations_at_hand(monkeypatc
     few = Simulation(body, scene, "fastest within 5 ms per second", x).accuracy
     assert set(asked) == {(body, scene, x.tobytes())}
     many = Simulation(accuracy="fastest within 5 ms per second").accuracy
-    assert few.target < many.target
+    assert few.tolerance < many.tolerance and few.target is many.target is None
 
 
 def test_the_time_of_a_swim_is_of_that_body():
@@ -82,11 +84,13 @@ def test_the_time_of_a_swim_is_of_that_body():
 
 def test_a_budget_is_measured_on_this_machine():
     run = simulate(gait("straight"), 0.2, accuracy="fastest within 900 s per second", scene=Scene(planar=True))
-    assert run.accuracy.target == BUDGET_TARGETS[-1]  # so much time affords the finest
+    finest = Accuracy.of(BUDGET_TARGETS[-1]).in_scene(run.scene)
+    assert run.accuracy.tolerance == finest.tolerance  # so much time affords the finest
+    assert run.error_estimate.worst > BUDGET_TARGETS[-1] and not any("target" in each for each in run.warnings)
     batch = simulate_batch(
         [gait("straight")] * 2, 0.2, accuracy="fastest within 900 s per second", scenes=Scene(planar=True)
     )
-    assert [each.target for each in batch.accuracies] == [run.accuracy.target] * 2
+    assert list(batch.accuracies) == [run.accuracy] * 2 and not batch.above_target.any()
     np.testing.assert_array_equal(batch.position, [run.position] * 2)
 
 

@@ -71,6 +71,12 @@ def test_a_current_does_not_count():
     assert simulate(straight(), "settled", **drifting, **COARSE).time[-1] == still_water.time[-1]
 
 
+def test_a_body_at_rest_has_settled():
+    wave = Term(axis="yaw", amplitude=(0.0,), wavelength=1.0, period=1.0)
+    run = simulate(Law(wave, name="rest"), "settled", **COARSE)
+    assert run.time[-1] < 0.2 * MOST_PERIODS and run.mean_speed == 0.0
+
+
 def test_what_does_not_settle_ends_at_the_limit():
     """A wave that ends leaves a body that coasts, ever more slowly."""
     ends = Term(
@@ -106,7 +112,7 @@ def test_a_reader_of_a_mean_is_told_once():
     run = simulate(straight(), 3.0, **COARSE)
     with pytest.warns(Unsettled, match="straight: the mean speed has not settled") as told:
         assert run.mean_speed == run.analysis().mean_speed == run.mean_speed
-    assert len(told) == 1
+    assert len(told) == 1 and told[0].filename == __file__
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         assert "NOT settled" in run.summary() and run.warnings == ()

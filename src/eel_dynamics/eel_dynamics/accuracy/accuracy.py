@@ -33,7 +33,7 @@ COARSEST, FINEST = 0.1, 1e-10
 # of motions that cannot be, such as a node's, with room for sensitive ones.
 STEPS_ERRORS, SAFE_STEPS_ERRORS = 400.0, 1000.0
 POINTS_PER_DECADE = 8.0  # per body length: one block of nodes, which processors take at once
-COARSE_POINTS = 11.0, -12.0  # per decade, and at a target of one, where these are fewer: for runs that are made finer
+COARSE_POINTS = 7.0, -3.0  # per decade, and at a target of one, where these are fewer: for runs that are made finer
 # The pair's output between steps is of order 4 and Adams' is a cubic: below this target its torque needs shorter steps.
 CUBIC_TARGET = 5e-4
 LEAST_POINTS = 4.0  # per body length
@@ -52,7 +52,10 @@ SPARED = 8.0  # points per length that grow with the waves too, of those that th
 # Half of the points tell the error of the grid even where it falls as slowly as with the first power of the points.
 # The longest step differs too, because it alone may limit the steps of both. With ten times the tolerance Adams' method
 # often takes the same steps: 9 of 277 random swims then had an error above its estimate, with 30 times 3.
+# A tolerance below `FINE` needs no more than 20 times; above, two runs of long steps may agree by chance (1 of 239
+# sensitive swims at a target of 1e-2).
 LOOSER, FEWER_POINTS, LONGER_STEPS = 30.0, 0.5, 1.5
+FINE, LOOSER_THAN_FINE = 1e-6, 20.0
 ADAMS_ERROR = 3.0  # some times that of the embedded pair at the same tolerance
 # What a tightened run changes with the ratio r < 1 of the wanted error to the measured one: the tolerance with r^1.2,
 # the points with r^-0.2, the longest steps with r^0.2. Orders 5 to 6 lose r or more in each of them.
@@ -149,7 +152,7 @@ class Accuracy:
             return self
         decades = math.log10(1.0 / self.target)
         points = POINTS_PER_DECADE * decades
-        if self.refinable:
+        if self.refinable and scene.friction != "blended":  # which needs points where it changes its law
             points = min(points, COARSE_POINTS[0] * decades + COARSE_POINTS[1])
         resolution = max(LEAST_POINTS, points)
         if self.fixed is not None:
@@ -166,7 +169,8 @@ class Accuracy:
 
     def coarser(self) -> "Accuracy":
         """Settings with some ten times the error, for the companion with which a run measures its own error."""
-        return self._changed(LOOSER, FEWER_POINTS, LONGER_STEPS)
+        looser = LOOSER if self.tolerance > FINE else LOOSER_THAN_FINE
+        return self._changed(looser, FEWER_POINTS, LONGER_STEPS)
 
     def by_adams(self) -> "Accuracy":
         """Settings with some such error by Adams' method, where these are those of the embedded pair."""
@@ -252,7 +256,8 @@ _of_number = lru_cache(maxsize=64)(Accuracy._of)
 def within_budget(budget: Budget, scene, swim_time: Callable[[float], float]) -> Accuracy:
     """The finest settings of the `BUDGET_TARGETS` that keep within the `budget` in `scene`. `ValueError` if none do.
 
+    They have no target: the error of such a run is measured, and not compared with one.
     swim_time(target): wall time [s] per simulated second.
     """
     best = budget.finest(BUDGET_TARGETS, swim_time)
-    return replace(Accuracy.of(best).in_scene(scene), name=budget.name)
+    return replace(Accuracy.of(best).in_scene(scene), name=budget.name, target=None)

@@ -23,6 +23,7 @@ class Motors:
     angle: np.ndarray  # (T, n) rad
     speed: np.ndarray  # (T, n) rad/s
     torque: np.ndarray  # (T, n) N m, of the motor
+    peak: dict[str, np.ndarray]  # (n,) greatest magnitudes of the `QUANTITIES`, between samples too (`analysis.peaks`)
 
     @property
     def power(self) -> np.ndarray:
@@ -35,18 +36,13 @@ class Motors:
         return np.stack((self.speed, self.torque), axis=2)
 
     @property
-    def peak(self) -> dict[str, np.ndarray]:
-        """Greatest magnitudes (n,) of angle [rad], speed [rad/s], torque [N m], power [W], between samples too."""
-        return {name: peaks(self.time, getattr(self, name))[0] for name in QUANTITIES}
-
-    @property
     def rms(self) -> dict[str, np.ndarray]:
-        """Roots of the mean squares over the samples (n,), of the same."""
+        """Roots of the mean squares over the samples (n,), of the `QUANTITIES`."""
         return {name: np.sqrt(np.mean(getattr(self, name) ** 2, axis=0)) for name in QUANTITIES}
 
 
 MOST_JOINTS = 1000  # per axis
-QUANTITIES = ("angle", "speed", "torque", "power")
+QUANTITIES = ("angle", "speed", "torque", "power")  # rad, rad/s, N m, W
 
 
 class Joints:
@@ -141,12 +137,21 @@ def actuators_of(run, joints: int) -> Actuators:
     if len(run.x) < 4:
         raise ValueError(f"actuators needs a run of 4 stations or more, got {len(run.x)}")
     robot = Joints(run.x, run.body.length, int(joints))
-    angle, speed = robot.angle(run.curvature), robot.angle(run.curvature_rate)
-    torque = robot.motor_torque(run.torque)
-    return Actuators(
-        time=run.time,
-        x=robot.x,
-        pitch=Motors(run.time, angle[..., 1], speed[..., 1], torque[..., 1]),
-        yaw=Motors(run.time, angle[..., 2], speed[..., 2], torque[..., 2]),
-        continuous_power=area(density, run.x),
+    pitch, yaw = _motors(run, robot)
+    return Actuators(time=run.time, x=robot.x, pitch=pitch, yaw=yaw, continuous_power=area(density, run.x))
+
+
+def _motors(run, robot: Joints) -> list[Motors]:
+    """The motors in pitch and yaw of `robot`, with the peaks of a run of finer samples."""
+    finer = run.finely_sampled()
+    here, fine = (
+        (robot.angle(each.curvature), robot.angle(each.curvature_rate), robot.motor_torque(each.torque))
+        for each in (run, finer)
     )
+    found = []
+    for axis in (1, 2):
+        angle, speed, torque = (values[..., axis] for values in fine)
+        sizes = zip(QUANTITIES, (angle, speed, torque, speed * torque), strict=True)
+        peak = {name: peaks(finer.time, values)[0] for name, values in sizes}
+        found.append(Motors(run.time, *(values[..., axis] for values in here), peak))
+    return found

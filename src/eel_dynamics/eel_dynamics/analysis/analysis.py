@@ -134,7 +134,8 @@ class Analysis:
     @property
     def peak_actuator_power(self) -> float:
         """Greatest power [W] of all actuators together, between samples too (`analysis.peaks`)."""
-        return float(self._peaks(self._ledger.actuator_power, np.positive))
+        _ = self._ledger
+        return float(self._peaks(lambda run: run.energy.actuator_power, np.positive))
 
     @property
     def positive_actuator_power(self) -> float:
@@ -150,7 +151,7 @@ class Analysis:
     def peak_positive_actuator_power(self) -> float:
         """Greatest integral [W] of max(-C . dK/dt, 0) over the body, between samples too (`analysis.peaks`)."""
         x = self.run.x
-        return float(self._peaks(power_density(self.run), lambda density: area(np.maximum(density, 0.0), x)))
+        return float(self._peaks(power_density, lambda density: area(np.maximum(density, 0.0), x)))
 
     @property
     def wake_power(self) -> float:
@@ -201,16 +202,20 @@ class Analysis:
     def peak_torque(self) -> np.ndarray:
         """Greatest magnitude [N m] of the internal torque in the window at each station, (M,), between samples too
         (`analysis.peaks`)."""
-        return self._peaks(torque_of(self.run), torque_size)
+        return self._peaks(torque_of, torque_size)
 
     @property
     def rms_torque(self) -> np.ndarray:
         """Root of the mean square [N m] of the internal torque in the window at each station, (M,)."""
         return np.sqrt(np.maximum(0.0, self.window.mean(np.sum(torque_of(self.run) ** 2, axis=2))))
 
-    def _peaks(self, values: np.ndarray, size) -> np.ndarray:
-        """The greatest `size` in the window of `values` (T, ...)."""
-        return peaks(self.run.time, values, size, self.window.start, self.window.end)[0]
+    def _peaks(self, values_of, size) -> np.ndarray:
+        """The greatest `size` in the window of the values (T, ...) of a run."""
+        return peaks(self._fine.time, values_of(self._fine), size, self.window.start, self.window.end)[0]
+
+    @cached_property
+    def _fine(self):
+        return self.run.finely_sampled()
 
     @property
     def _ledger(self):

@@ -23,7 +23,7 @@ import eel_core
 from eel_dynamics.curvature.law_waves import AXES, groups_of
 
 SEGMENT_AXES = np.repeat((0, 1), 6)  # of the rows of a quintic between two samples
-MOMENT_POINTS = 10  # Gauss points per interval for the Magnus moments
+POINTS, WEIGHTS = np.polynomial.legendre.leggauss(10)  # of Gauss, per interval, for the Magnus moments
 
 
 class Tabulation:
@@ -34,12 +34,11 @@ class Tabulation:
 
     def __init__(self, nodes: np.ndarray, previous: np.ndarray, stations: np.ndarray, station_base: np.ndarray):
         self.nodes, self.stations = len(nodes), len(stations)
-        points, weights = np.polynomial.legendre.leggauss(MOMENT_POINTS)
         start, end = np.concatenate((previous, station_base)), np.concatenate((nodes, stations))
         self._length = end - start
-        inside = 0.5 * (start + end)[:, None] + 0.5 * self._length[:, None] * points
+        inside = 0.5 * (start + end)[:, None] + 0.5 * self._length[:, None] * POINTS
         self.x = np.concatenate((nodes, stations, inside.ravel()))
-        b0, b1, b2 = 0.5 * weights, 0.25 * weights * points, 0.125 * weights * points**2
+        b0, b1, b2 = 0.5 * WEIGHTS, 0.25 * WEIGHTS * POINTS, 0.125 * WEIGHTS * POINTS**2
         self._moments = np.stack((b0, 12.0 * b1, 180.0 * b2 - 15.0 * b0))  # B0, alpha2, alpha3 per unit length
 
     @property
@@ -50,7 +49,7 @@ class Tabulation:
     def columns(self, values: np.ndarray) -> np.ndarray:
         """Tabulated rows (..., width) of fields with `values` (..., len(x)) at the points x."""
         n, s = self.nodes, self.stations
-        inside = values[..., n + s :].reshape(*values.shape[:-1], n + s, MOMENT_POINTS)
+        inside = values[..., n + s :].reshape(*values.shape[:-1], n + s, len(POINTS))
         moments = np.einsum("...ig,kg->...ki", inside, self._moments) * self._length
         flat = values.shape[:-1]
         return np.concatenate(

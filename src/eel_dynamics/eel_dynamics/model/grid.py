@@ -127,8 +127,10 @@ class Grid:
 
     def fraction_at(self, x) -> np.ndarray:
         """The variable (M,) of the panel that holds X = `x` (M,) [m]."""
-        home = self.panel_at(x)
-        return np.array([float(self.panels[k].fraction(here)) for k, here in zip(home, np.asarray(x), strict=True)])
+        home, result = self.panel_at(x), np.empty(len(x))
+        for index, panel in enumerate(self.panels):
+            result[home == index] = panel.fraction(x[home == index])
+        return result
 
     def rows_at(self, x, kind: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Rows that turn nodal values into values at X = `x` (M,) [m].

@@ -11,6 +11,7 @@ moves along one axis is proportional to the square of the other half-axis (Lamb;
 `added_mass="printed"` keeps the printed form.
 """
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -130,7 +131,7 @@ def stations_of(body: Body, scene: Scene, grid: Grid, nodes: SectionData, x: np.
     missed: np.ndarray | tuple = ()
     if len(body.breaks):
         missed = missed_before(lambda at: _parts(sections_of(body, scene, at)), _parts(nodes), grid, body.breaks, x)
-    a_squared, b_squared, a_slope, b_slope = body.squares(x)
+    a_squared, b_squared, a_slope, b_slope = _squares_at(body, x.tobytes())
     slope2, slope3, _ = added_masses(body, scene, a_slope, b_slope)
     rho = scene.fluid_density if scene.reactive else 0.0
     return StationData(
@@ -146,6 +147,12 @@ def stations_of(body: Body, scene: Scene, grid: Grid, nodes: SectionData, x: np.
 
 def _parts(sections: SectionData) -> np.ndarray:
     return np.array([getattr(sections, name) for name in PARTS])
+
+
+@lru_cache(maxsize=64)
+def _squares_at(body: Body, x: bytes) -> tuple:
+    """`Body.squares` at the stations, which all runs and companions of a body share."""
+    return body.squares(np.frombuffer(x))
 
 
 def sections_on(body: Body, scene: Scene, grid: Grid) -> SectionData:

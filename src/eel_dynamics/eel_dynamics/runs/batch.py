@@ -232,7 +232,8 @@ def simulate_batch(
     def swim(index: int):
         request = SwimRequest(swimmers[index], x[index], times, wrench[index], load)
         try:
-            found = request.swim(Accuracy.to_refine(request.swimmer.accuracy) if estimate else None)
+            settings_to_try = Accuracy.to_refine(request.swimmer.accuracy) if estimate else None
+            found = request.swim(request.simulation(settings_to_try))
             found = with_error_estimate(found, request) if estimate else found
         except (SimulationStopped, ValueError) as error:
             errors[index] = _stopped_at_start(error)

@@ -16,6 +16,7 @@ from eel_dynamics.simulation.stopping import SimulationStopped
 
 ACCEPTED = 1.5  # factor of the target by which an estimate must lie below it
 MOST_REFINEMENTS = 4  # of a run whose error is above its target
+BLENDED_ORDER = 3.0  # at most, at which the error of the grid falls where friction changes its law along the body
 RESAMPLING = 1.0 / 3.0  # 1 / (2^p - 1) of the order p = 2 of an interpolation
 HALVINGS = 8  # of an unstable step, at most, in the search for a stable one
 
@@ -48,12 +49,14 @@ def with_error_estimate(swim, request):
     if swim.stopped is not None or len(request.times) < 2:
         return swim
     marching = _without_ledger(request)
-    companion = _finished(marching, _on_another_grid(marching, swim, swim.run.accuracy.coarser().by_adams()))
+    companion = _finished(marching, swim.run.accuracy.coarser().by_adams(), swim.run.nodes)
     for refinement in range(MOST_REFINEMENTS + 1):
         error = ErrorEstimate(np.inf, None) if companion is None else relative_errors(swim.run, companion.run)
-        if refinement and companion is not None:  # it falls with the tolerance at most: else the two agree by chance
-            tighter = swim.run.accuracy.tolerance / companion.run.accuracy.tolerance
-            error = error.at_least(tighter, companion.run.error_estimate)
+        if refinement and companion is not None:  # it falls no faster than this: else the two agree by chance
+            share = swim.run.accuracy.tolerance / companion.run.accuracy.tolerance
+            if request.swimmer.scene.friction == "blended":
+                share = max(share, (companion.run.nodes / swim.run.nodes) ** BLENDED_ORDER)
+            error = error.at_least(share, companion.run.error_estimate)
         others += [] if companion is None else [companion.run]
         cost = sum(each.evaluations * each.nodes for each in others)
         error = replace(error, evaluations=sum(each.evaluations for each in others), cost=cost)
@@ -63,7 +66,7 @@ def with_error_estimate(swim, request):
         if refinement and error.hopeless(target, float(swim.run.time[-1])):  # the first pair may be far apart
             break
         tightened = swim.run.accuracy.tightened(target / ACCEPTED / error.worst)
-        finer = _finished(request, _on_another_grid(request, swim, tightened))
+        finer = _finished(request, tightened, swim.run.nodes)
         if finer is None:
             break
         companion, swim = swim, _for_target(finer, target)
@@ -100,30 +103,23 @@ def _with_resampling(run, request, others: list):
 def _without_ledger(request):
     """The `request` for a motion and its torque alone: Adams' method is the cheaper one without a ledger."""
     swimmer = request.swimmer
-    return request._replace(swimmer=swimmer._replace(scene=replace(swimmer.scene, ledger=False)))
+    return request._replace(swimmer=swimmer._replace(scene=replace(swimmer.scene, ledger=False)), load=False)
 
 
 def _for_target(swim, target: float | None):
     return swim._replace(run=replace(swim.run, accuracy=replace(swim.run.accuracy, target=target))) if target else swim
 
 
-def _on_another_grid(request, swim, accuracy: Accuracy) -> Accuracy:
-    """The settings `accuracy`, with more points where they would give the grid of `swim` (nodes fill blocks)."""
-    return accuracy.with_other_points() if _nodes(request, accuracy) == swim.run.nodes else accuracy
+def _finished(request, accuracy: Accuracy, nodes: int | None = None):
+    """The swim with the settings `accuracy`; None where it does not come to its end.
 
-
-def _nodes(request, accuracy: Accuracy) -> int | None:
-    """Number of nodes along the body with the settings `accuracy`; None where the swim cannot begin."""
+    Where these would give a grid of so many `nodes`, as that of another run, there are more points (nodes fill blocks).
+    """
     try:
-        return len(request.simulation(accuracy).grid.x)
-    except (SimulationStopped, ValueError):
-        return None
-
-
-def _finished(request, accuracy: Accuracy):
-    """The swim with the settings `accuracy`; None where it does not come to its end."""
-    try:
-        swim = request.swim(accuracy)
+        simulation = request.simulation(accuracy)
+        if len(simulation.grid.x) == nodes:
+            simulation = request.simulation(accuracy.with_other_points())
+        swim = request.swim(simulation)
     except (SimulationStopped, ValueError):
         return None
     return swim if swim.stopped is None else None

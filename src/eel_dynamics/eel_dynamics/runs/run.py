@@ -16,7 +16,7 @@ from eel_dynamics.accuracy.error_estimate import ErrorEstimate
 from eel_dynamics.analysis.actuators import Actuators, actuators_of
 from eel_dynamics.analysis.analysis import Analysis
 from eel_dynamics.analysis.model_limits import warnings_of
-from eel_dynamics.analysis.peaks import greatest_torque_of
+from eel_dynamics.analysis.peaks import FINER, MOST_SAMPLES, greatest_torque_of
 from eel_dynamics.analysis.run_summary import describe
 from eel_dynamics.analysis.settling import Unsettled
 from eel_dynamics.model.arguments import checked_stations
@@ -125,7 +125,7 @@ class Run:
 
         `ValueError` where the gait has no period, or the run does not hold one. It warns as `analysis` does.
         """
-        return self.analysis().mean_speed
+        return self._told(Analysis(self)).mean_speed
 
     def greatest_torque(self) -> tuple[float, float, float]:
         """Greatest magnitude [N m] of the internal torque over the run, with its X [m] and its time [s].
@@ -147,7 +147,9 @@ class Run:
         None: those of the run's later half. `ValueError` if the run is shorter than one period. The first analysis of
         a run over periods in which its gait had not settled gives an `Unsettled` warning.
         """
-        found = Analysis(self, periods)
+        return self._told(Analysis(self, periods))
+
+    def _told(self, found: Analysis) -> Analysis:
         if not found.settled:
             _ = self._told_unsettled
         return found
@@ -158,7 +160,7 @@ class Run:
         change = Analysis(self).change_per_period
         by = "one period does not tell its change" if change is None else f"it changes by {change:.1%} a period"
         told = f"{self.law.name}: the mean speed has not settled ({by}); swim longer, or with duration='settled'"
-        warnings.warn(told, Unsettled, stacklevel=4)
+        warnings.warn(told, Unsettled, stacklevel=5)
         return True
 
     def actuators(self, joints: int) -> Actuators:
@@ -229,6 +231,20 @@ class Run:
         """The same run with a tenth of the error, simulated on first access. `ValueError` if it begins after t = 0."""
         return _simulated_again(self, self.law, self.accuracy.tightened(0.1))
 
+    def finely_sampled(self) -> "Run":
+        """The same run, simulated anew with `FINER` samples in each sample period, for peaks (`analysis.peaks`).
+
+        There are fewer where they would be more than `MOST_SAMPLES`. The run itself where it was recorded elsewhere or
+        begins after t = 0.
+        """
+        finer = min(FINER, MOST_SAMPLES // max(1, len(self.time)))
+        if not self.steps or finer < 2 or len(self.time) < 2:
+            return self
+        try:
+            return _simulated_again(self, self.law, self.accuracy.as_it_is(), finer=finer)
+        except (SimulationStopped, ValueError):
+            return self
+
     @cached_property
     def smoothing(self) -> SmoothingEffect | None:
         """What the run would be without the smoothing of its measured motion; None where nothing was smoothed.
@@ -293,7 +309,7 @@ def simulate(
     check_memory(1, len(times), len(x), wrench, bool(load), runs=2 if estimate else 1)
     request = SwimRequest(swimmer, x, times, wrench, bool(load))
     look = ProgressMonitor(float(duration), progress).update
-    swim = request.swim(look=look)
+    swim = request.swim(request.simulation(), look)
     if swim.stopped is not None:
         stopped, settings = swim.stopped, swim.run.accuracy
         stopped.run = swim.run
@@ -305,9 +321,12 @@ def simulate(
 
 
 def _simulated_again(
-    run: Run, law: Law | SampledLaw, accuracy: Accuracy, most_evaluations: float = MOST_EVALUATIONS
+    run: Run, law: Law | SampledLaw, accuracy: Accuracy, most_evaluations: float = MOST_EVALUATIONS, finer: int = 1
 ) -> Run:
-    """The swim of `run` with another law or accuracy; its error is not estimated. `ValueError` if it began later."""
+    """The swim of `run` with another law or accuracy, or `finer` samples; its error is not estimated.
+
+    `ValueError` if it began later.
+    """
     if run.time[0] != 0.0:
         raise ValueError(f"run must begin at t = 0 to be simulated again, got {run.time[0]:g} s")
     return simulate(
@@ -316,7 +335,7 @@ def _simulated_again(
         body=run.body,
         scene=run.scene,
         accuracy=accuracy,
-        sample_period=float(run.time[1] - run.time[0]) if len(run.time) > 1 else 1.0,
+        sample_period=float(run.time[1] - run.time[0]) / finer if len(run.time) > 1 else 1.0,
         stations=run.x,
         position=run.position[0],
         orientation=run.orientation[0] / np.linalg.norm(run.orientation[0]),
@@ -352,9 +371,8 @@ class SwimRequest(NamedTuple):
         swimmer = self.swimmer if accuracy is None else self.swimmer._replace(accuracy=accuracy)
         return Simulation(stations=self.x, **swimmer._asdict())
 
-    def swim(self, accuracy: Accuracy | None = None, look=None) -> Swim:
-        """Simulate it, with other settings if `accuracy` is given. look(time [s]) is called every few milliseconds."""
-        simulation = self.simulation(accuracy)
+    def swim(self, simulation: Simulation, look=None) -> Swim:
+        """Swim it with a `simulation` of its own, at its start. look(time [s]) is called every few milliseconds."""
         out, works, done, stopped = simulation.record(self.times, self.wrench, self.load, look)
         steps, _, evaluations = simulation.evaluations
         observed = fields_of_observations(

@@ -8,6 +8,7 @@ from eel_base.wording import shown
 from eel_gaits.laws.law import Law
 
 from eel_dynamics.accuracy.accuracy import PRESETS, Accuracy
+from eel_dynamics.analysis.analysis import AT_REST
 from eel_dynamics.analysis.averaging_window import PLACES, common_period
 from eel_dynamics.analysis.settling import FEWEST, SETTLED, change_of
 from eel_dynamics.simulation.simulation import Simulation
@@ -35,8 +36,8 @@ def settling_time(swimmer) -> float:
     The later half of that time lies after the law's last ramp. Over its periods the mean speed and the mean power of
     the actuators change by `SETTLED` at most, and as much at most is left to come (`analysis.settling.change_of`).
     Both are exact means of a swim whose error is that of the preset draft, or the swimmer's own if that is greater.
-    `MOST_PERIODS` where the gait does not settle within them, or the swim stops. `ValueError` for a law without a
-    period.
+    A body at rest has settled. `MOST_PERIODS` where the gait does not settle within them, or the swim stops.
+    `ValueError` for a law without a period.
     """
     law = swimmer.law
     period, last_ramp = period_of(law, swimmer.body.length), _last_ramp(law)
@@ -57,7 +58,8 @@ def settling_time(swimmer) -> float:
         if window < FEWEST or (count - window) * period < last_ramp * (1.0 - 1e-9):
             continue
         speeds = np.linalg.norm(np.diff(centre[-window - 1 :], axis=0), axis=1)
-        if change_of(speeds) > MARGIN * SETTLED:
+        moves = np.max(speeds) > AT_REST * swimmer.body.length
+        if moves and change_of(speeds) > MARGIN * SETTLED:
             continue
         works = np.diff(work[-window - 1 :])
         if not len(works) or np.max(np.abs(works)) <= NO_WORK * energy or change_of(works) <= MARGIN * SETTLED:

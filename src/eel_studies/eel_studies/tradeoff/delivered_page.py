@@ -23,24 +23,29 @@ The presets are targets: `draft` 1e-2, `standard` 1e-4, `fine` 1e-6, `reference`
 **From a target to settings.** One rule (`accuracy.py`) chooses them. `simulate` and `simulate_batch` begin with a
 tolerance per step of a 400th of the target, because a run takes hundreds of steps, and make the run finer where its
 measured error asks for it. A motion that cannot be made finer (a node's, `Simulation`, `estimate=False`) has a
-thousandth, and more points at coarse targets: sensitive ones need that. The body gets eight points per length for each
-decade of the target, because Gauss quadrature in panels without kinks converges exponentially. Runs with energy ledger
-use an embedded Runge-Kutta pair of orders 5(4), and so do runs with torque at targets below 5e-4; others use Adams'
-method of order 5.
+thousandth, and more points: sensitive ones need that. The body gets eight points per length for each decade of the
+target (seven, less three, in a run that can be made finer), because Gauss quadrature in panels without kinks converges
+exponentially. With `friction="blended"`, whose law changes along the body, it converges no faster than with some third
+power of the points: then no points are spared. Runs with energy ledger use an embedded Runge-Kutta pair of orders 5(4),
+and so do runs with torque at targets below 5e-4; others use Adams' method of order 5.
+The data points of a body from a file are kinks that lie inside the panels. There the section data at the nodes have the
+moments of the data's spline, so that the integrals converge as those of a smooth body
+([moments.py](../../src/eel_dynamics/eel_dynamics/model/moments.py)).
 
-**Each run measures its own error** (`companion.py`). A second run, the *companion*, has 30 times the tolerance, half
-of the points (always on another grid) and longest steps of 1.5 times the length. It keeps no ledger, so it marches by
-Adams' method, with 10 times the tolerance where the run used the pair: Adams' error is some three times that.
+**Each run measures its own error** (`companion.py`). A second run, the *companion*, has 20 times the tolerance (30
+times where that of the run is above 1e-6), half of the points (always on another grid) and longest steps of 1.5 times
+the length. It keeps no ledger, so it marches by Adams' method, with a third of that tolerance where the run used the
+pair: Adams' error is some three times that of the pair.
 The difference between the two is `run.error_estimate`. It is mostly the companion's error, so the estimate is
 conservative. It is not scaled by an order. It includes the growth of errors in a sensitive motion, which the error of a
 single step does not.
 
 **If the estimate is above two thirds of the target**, the run becomes the companion of a finer run, up to four
-times. The new estimate counts for no less than the last one times the ratio of the tolerances: where two runs are
-nearer than that, they agree by chance. If the estimate is still above the target, `simulate` warns. `run.warnings` has
-the same line, with the estimate and the time in which errors grow by a factor of e. A warning also says so if the
-growth of round-off alone exceeds a tenth of the target. In `simulate_batch` this is `batch.above_target`, in `sweep`
-the measures error_position and error_torque.
+times. The new estimate counts for no less than the last one times the ratio of the tolerances (or, with blended
+friction, the third power of that of the nodes): where two runs are nearer than that, they agree by chance. If the
+estimate is still above the target, `simulate` warns. `run.warnings` has the same line, with the estimate and the time
+in which errors grow by a factor of e. A warning also says so if the growth of round-off alone exceeds a tenth of the
+target. In `simulate_batch` this is `batch.above_target`, in `sweep` the measures error_position and error_torque.
 
 **Without a target.** `estimate=False` gives the run without a companion. Settings given one by one are kept; their
 error is measured, and not compared with a target. The same holds for a budget of time. `Simulation` measures no error.
@@ -78,15 +83,16 @@ Each point is a run. Below the line the estimate is greater than the true error.
 ![Cost over delivered error]({price})
 
 Each grey point is a setting (points along the body, method, tolerance): medians over {priced} of the swims. The targets
-lie near the lower edge of the grey points, which is what is possible, at coarse targets, and up to 1.8 times above it
-at fine ones. What sets the margin between target and delivered error:
+lie at the lower edge of the grey points, which is what is possible. What sets the margin
+between target and delivered error:
 - The steps. At targets of 1e-3 and coarser the pair's steps are as long as stability allows: a looser tolerance leaves
   the number of evaluations and the error as they are. Adams' method has cheaper steps there.
 - The grid is no limit but for its smallest sizes. Nodes come in blocks of eight; each block gains a factor of 100 or
-  more: 16 nodes deliver 1e-1, 24 nodes 1e-3, 32 nodes 1e-5. Where drag has kinks, a plateau near 5e-5 remains.
+  more: 16 nodes deliver 1e-1, 24 nodes 1e-3, 32 nodes 1e-5. Blended friction is the
+  exception: a swim delivered 3e-4, 6e-5 and 2e-5 with 25, 60 and 100 points per length, whatever the tolerance.
 - The estimate. It is the companion's error, some 15 times that of the run, and must lie below two thirds of the target.
-  A closer companion, or a part of the estimate, has missed errors: in up to 1 of 100 swims the run was as wrong as its
-  companion.
+  A closer companion is cheaper, and has missed errors: with 15 times the tolerance 4 of 355 sensitive swims, and with
+  20 times 1 of 239 at a target of 1e-2, were as wrong as their companion, without a word.
 - The spread. Errors of swims at one setting differ by a factor of 30 either way, and a run that is made finer for its
   estimate's sake gains a factor of 6 or more.
 
