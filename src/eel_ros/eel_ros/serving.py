@@ -45,17 +45,14 @@ class ServedNode(Node):
 
     def create_subscription(self, msg_type, topic: str, callback: Callable, qos_profile, **options) -> Subscription:
         """As of `Node`; what the `callback(message)` raises is logged, and the message dropped, as one that is too
-        large."""
-        if options.pop("raw", False):
-            return super().create_subscription(msg_type, topic, callback, qos_profile, raw=True, **options)
+        large. With `raw=True` it is `callback(data, about)`: the serialised message, and the message info."""
+        what, raw = f"a message of {self.resolve_topic_name(topic)}", options.pop("raw", False)
 
-        name = self.resolve_topic_name(topic)
-
-        def take(data: bytes) -> None:
+        def take(data: bytes, about: dict) -> None:
             try:
-                callback(read_message(data, msg_type))
+                callback(*((data, about) if raw else (read_message(data, msg_type),)))
             except Exception as error:
-                log_dropped(self, error, f"a message of {name}")
+                log_dropped(self, error, what)
 
         return super().create_subscription(msg_type, topic, take, qos_profile, raw=True, **options)
 
