@@ -45,7 +45,6 @@ from eel_msgs.msg import (
 from eel_msgs.srv import SetState
 
 SECOND = 1_000_000_000  # ns
-LARGEST_LAW = 2**23  # bytes: mostly numbers, which are read at once
 
 
 class Sample:
@@ -262,7 +261,7 @@ def parse_law(data: bytes) -> tuple[str, Callable[[], CurvatureLaw]]:
     def make() -> CurvatureLaw:
         if terms > MAXIMUM_TERMS:
             raise ValueError(f"terms must be at most {MAXIMUM_TERMS}, got {terms}")
-        return read_message(data, CurvatureLaw, LARGEST_LAW)
+        return read_message(data, CurvatureLaw)
 
     return name, make
 
