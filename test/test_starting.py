@@ -68,7 +68,8 @@ def test_an_interrupt_during_the_imports_is_silent(executable, start_until):
 
 
 @pytest.mark.parametrize(
-    ("place", "executable"), [("rclpy", "pilot"), ("rclpy", "dynamics"), ("rerun", "visualiser"), ("eel_core", "simulate")]
+    ("place", "executable"),
+    [("rclpy", "pilot"), ("rclpy", "dynamics"), ("rerun", "visualiser"), ("eel_core", "simulate")],
 )
 def test_an_interrupt_during_a_later_import_is_silent(place, executable, start_until):
     node = start_until(place, executable, *WORDS.get(executable, ()))

@@ -106,7 +106,7 @@ def reason_of(error: Exception) -> str:
 
 
 def read_message(data: bytes, kind: type):
-    """The message of the type `kind` that is serialised in `data`. `ValueError` for more than `LARGEST_MESSAGE` [bytes].
+    """The message of the type `kind` that is serialised in `data`. `ValueError` for more bytes than are read.
 
     A sequence of messages takes microseconds for each of its bytes, and no signal is heard meanwhile.
     """

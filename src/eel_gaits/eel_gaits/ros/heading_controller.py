@@ -106,7 +106,7 @@ class HeadingController(ParameterNode):
             self.publisher.publish(answer)
 
     def next_bend(self, present):
-        """The bend of the body one period on, at the `present` heading [rad]: K3 [rad/m], its rate and its acceleration.
+        """The bend of the body one period on, at the `present` heading [rad]: K3 [rad/m], its rate and acceleration.
         K3 > 0 turns to the right."""
         target, gain, limit = (self.get_parameter(name).value for name in ("heading", "gain", "greatest_bend"))
         wanted = -gain * math.remainder(target - present, 2.0 * math.pi)

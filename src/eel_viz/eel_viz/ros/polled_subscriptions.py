@@ -65,7 +65,7 @@ class PolledSubscriptions:
         return count
 
     def _take_from(self, subscription, show, publisher_change, deliveries, end: float, before: int) -> int:
-        """Take messages of one subscription until `end` [s, steady clock]; returns the number of those from `before`."""
+        """Take messages of one subscription until `end` [s, steady clock]; returns how many are from `before`."""
         count = 0
         with subscription.handle:  # keeps it from being destroyed meanwhile
             for _ in range(BATCH):

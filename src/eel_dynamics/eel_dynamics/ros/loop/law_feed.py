@@ -146,11 +146,11 @@ class LawAdopter:
             )
 
     def add_samples(self, samples: dict, period: float = 0.0):
-        """Add one instant of a law: the arguments of `Simulation.add_samples`, in a run with a sample every `period` [s].
+        """Add one instant of a law: the arguments of `Simulation.add_samples`, in a run of one every `period` [s].
 
         An instant that is the same as one from before the start is an answer to a repeated sample 0, and changes
         nothing. Shortly after a reset, a sample that lies more than twice as far ahead as any before was sent before
-        the controller saw the reset, and is left out. One that lies far from all others would be the end of a long, wide
+        the controller saw the reset, and is left out. One far from all others would be the end of a long, wide
         swing of the body once they run out, and is refused.
         """
         ahead = samples["time"] - self.simulation.time
