@@ -11,45 +11,49 @@ import sys
 from pathlib import Path
 
 import numpy as np
-import rclpy
+from eel_base.command_line import complain
+from eel_gaits.ros.lead import Lead
+from eel_gaits.ros.pilot_messages import head_motion
+from eel_ros.parameter_node import ParameterNode
 from eel_ros.qos import keep_all
+from eel_ros.run_node import run_node
+from eel_ros.stamps import seconds_of
 from nav_msgs.msg import Odometry
-from rcl_interfaces.msg import ParameterDescriptor
-from rclpy.executors import ExternalShutdownException
-from rclpy.node import Node
 from row_policy import actions_of, file_of
 
-from eel_gym import HeadingEnv, HeadMotion
+from eel_gym import HeadingEnv
 from eel_msgs.msg import CurvatureSamples
 
+NAME = "policy_controller"
 FIELDS = "pitch", "pitch_rate", "pitch_accel", "yaw", "yaw_rate", "yaw_accel"
 
 
-class PolicyController(Node):
+class PolicyController(ParameterNode):
     """Answers each sample on `odom` with the curvature one control step on. The rate of the run is that of training."""
 
     def __init__(self):
-        super().__init__("policy_controller")
+        super().__init__(NAME)
         found = json.loads(Path(self.declare_parameter("policy", str(file_of("heading"))).value).read_text())
         self.weights, self.step = np.array(found["weights"]), found["task"]["control_period"]
-        self.env = HeadingEnv(control_period=self.step)
-        self.declare_parameter("heading", 0.0, ParameterDescriptor(dynamic_typing=True))  # an integer will do
+        self.env, self.lead = HeadingEnv(control_period=self.step), Lead(self.step, self.step)
+        self.declare_parameter("heading", 0.0)
         self.last, self.answers = np.inf, []
         self.publisher = self.create_publisher(CurvatureSamples, "curvature_samples", keep_all())
         self.create_subscription(Odometry, "odom", self.receive, keep_all())
 
     def receive(self, odometry):
-        """Answer one sample. A stamp that goes back is a start; one that is repeated gets the same answers."""
-        now = odometry.header.stamp.sec + 1e-9 * odometry.header.stamp.nanosec
+        """Answer one sample. In a run that is under way the first answer lies ahead too; a stamp that is repeated gets
+        the same answers."""
+        now, head = seconds_of(odometry.header.stamp), head_motion(odometry)
         if now != self.last:
-            self.answers = []
-            if not now > self.last:
-                self.answers.append(self.message(now, self.env.restart()))
-            self.env.target = float(self.get_parameter("heading").value)
-            observation = self.env.see(head_motion(odometry))
-            action = actions_of(self.weights, observation[np.newaxis])[0]
-            self.answers.append(self.message(now + self.step, self.env.action.advance(action, self.step)))
-            self.last = now
+            self.last, self.answers = now, []
+            if self.lead.begins(now):
+                self.answers.append(self.message(self.lead.begin(now), self.env.restart()))
+            self.env.target = self.get_parameter("heading").value
+            observation = self.env.see(head)
+            for time in self.lead.after(now):
+                action = actions_of(self.weights, observation[np.newaxis])[0]
+                self.answers.append(self.message(time, self.env.action.advance(action, self.step)))
         for answer in self.answers:
             self.publisher.publish(answer)
 
@@ -62,28 +66,9 @@ class PolicyController(Node):
         return message
 
 
-def head_motion(odometry) -> HeadMotion:
-    """The head's motion in a message, which has the axes that the policy knows."""
-    pose, twist = odometry.pose.pose, odometry.twist.twist
-    q = pose.orientation
-    vectors = (np.array((v.x, v.y, v.z)) for v in (pose.position, twist.angular, twist.linear))
-    position, angular_velocity, velocity = vectors
-    return HeadMotion(position, np.array((q.x, q.y, q.z, q.w)), angular_velocity, velocity)
-
-
 def main() -> int:
     """Run until a signal comes. Status 2 for a policy that cannot be read."""
-    rclpy.init()
-    try:
-        rclpy.spin(PolicyController())
-    except (KeyboardInterrupt, ExternalShutdownException):
-        return 0
-    except (OSError, ValueError, KeyError) as error:
-        print(f"policy_controller: the policy cannot be read: {error}", file=sys.stderr)
-        return 2
-    finally:
-        rclpy.try_shutdown()
-    return 0
+    return run_node(NAME, sys.argv, PolicyController, lambda node: True, complain=complain)
 
 
 if __name__ == "__main__":

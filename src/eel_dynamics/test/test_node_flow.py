@@ -377,10 +377,14 @@ def test_bad_samples_are_refused(start, client):
     assert not np.any(swim.latest("curvature").yaw) and node.status is None
 
 
-@pytest.mark.fault("samples", "a sample of 20,000 points, or of a million", "refused: at most 1601")
 @pytest.mark.fault(
     "samples",
-    "630 samples of 1601 points, an hour ahead",
+    "a sample of 20,000 points, or of a million",
+    "refused: at most 1601 points, at most 2 MiB",
+)
+@pytest.mark.fault(
+    "samples",
+    "630 samples of 1601 points while the run is paused",
     "samples of at most 1,000,000 points are kept, the others refused with the number",
 )
 def test_samples_of_too_many_points_and_too_many_of_them_are_refused(start, client):
@@ -389,25 +393,52 @@ def test_samples_of_too_many_points_and_too_many_of_them_are_refused(start, clie
     node = start("dynamics", "--ros-args")
     swim.until_time(0.2, "curvature")
     swim.until(lambda: swim.samples.get_subscription_count() == 1, "the node's subscription")
-    for points in (20_000, 1_000_000):
-        message, row = instant(100.0), array.array("d", bytes(8 * points))
+    for points, said in (
+        (20_000, "curvature samples refused: x must have at most 1601 points, got 20000"),
+        (1_000_000, "ValueError: it must have at most 2097152 bytes, got 56000"),
+    ):
+        message, row = instant(1.0), array.array("d", bytes(8 * points))
         for name in ("x", *ROWS):
             setattr(message, name, row)
         swim.spin(1.1)  # errors of one kind are said once a second
         swim.samples.publish(message)
-        said = f"curvature samples refused: x must have at most 1601 points, got {points}"
         swim.until(lambda said=said: said in node.output(), said)
     x = np.linspace(0.0, 1.0, 1601)
     rows = {name: array.array("d", bytes(8 * 1601)) for name in ROWS}
-    swim.deliver([CurvatureSamples(header=instant(2000.0 + k).header, x=x.tolist(), **rows) for k in range(600)])
-    assert "ahead of the simulation" not in node.output()
+    begin = swim.stop_the_clock("curvature") + 0.1
+    swim.deliver([CurvatureSamples(header=instant(begin + 2.0 * k).header, x=x.tolist(), **rows) for k in range(600)])
+    assert "refused" not in node.output().partition("2097152")[2]
     swim.spin(1.1)
-    swim.deliver([CurvatureSamples(header=instant(2900.0 + k).header, x=x.tolist(), **rows) for k in range(30)])
+    begin += 1200.0
+    swim.deliver([CurvatureSamples(header=instant(begin + 2.0 * k).header, x=x.tolist(), **rows) for k in range(30)])
     limit = "ahead of the simulation must be at most 10000, of 1000000 points, got 625 of 1000625"
     swim.until(lambda: limit in node.output(), "limit")
-    assert swim.reset().success
+    assert swim.reset().success and swim.pause(False).success
     swim.until_time(0.5, "curvature")
     swim.until(lambda: swim.diagnosis()[0] == 0, "good diagnostics")
+
+
+@pytest.mark.fault(
+    "samples",
+    "a sample far ahead of all others, from a controller that heard another robot's odom",
+    "refused, if it lies more than 5 s after the last one; the body comes to rest when the controller stops",
+)
+def test_a_stray_sample_far_ahead_does_not_keep_the_body_from_coming_to_rest(start, client):
+    swim = client(topics=("curvature",))
+    node = start("dynamics")
+    swim.until(lambda: swim.samples.get_subscription_count() == 1, "the node's subscription")
+    assert swim.pause(True).success
+    swim.deliver([instant(0.02 * k) for k in range(50)])
+    for ahead in (3000.0, 100.0):
+        swim.spin(1.1)  # errors of one kind are said once a second
+        swim.samples.publish(instant(ahead))
+        said = f"at most 5 s after the last sample or the simulation (0.98 s), got {ahead:g} s"
+        swim.until(lambda said=said: said in node.output(), said)
+    assert swim.pause(False).success
+    swim.until(lambda: "curvature samples have run out" in node.output(), "rest")
+    swim.until_time(3.0, "curvature")
+    assert not np.any(swim.latest("curvature").yaw_rate)
+    assert np.abs([message.yaw for message in swim.received["curvature"]]).max() < 4.0
 
 
 # /clock

@@ -50,6 +50,17 @@ def test_a_second_delay_adds_to_what_is_not_yet_regained_and_a_restart_forgets_b
     assert pace.lost(110) == 0.0 and pace.due(111) == pytest.approx(50.01)
 
 
+def test_of_hours_that_are_lost_ten_seconds_are_regained_and_the_rest_is_given_up():
+    pace = Pace(0.01, 1.0)
+    pace.restart(0, 0.0)
+    pace.give_up_delay(0, 7200.0)
+    assert pace.lost(0) == 10.0 and pace.given_up == pytest.approx(7190.0) and pace.due(0) == 7200.0
+    pace.give_up_delay(1, pace.due(1) + 1.0)
+    assert pace.lost(1) == 10.0 and pace.given_up == pytest.approx(7191.0, abs=0.01)
+    pace.restart(5, 9000.0)
+    assert pace.given_up == 0.0 and pace.lost(5) == 0.0
+
+
 def test_no_pace_is_never_late():
     pace = Pace(0.01, 0.0)
     pace.restart(0, 50.0)

@@ -10,10 +10,11 @@ from eel_gaits.gaits.cpg import Oscillation, Oscillators
 from eel_gaits.pilot import goals
 from eel_gaits.pilot.settings import PilotSettings
 from eel_gaits.ros.messages import samples_to_message
-from eel_gaits.ros.pilot_messages import LATEST, head_motion, path_message, read_path, seconds_of
+from eel_gaits.ros.pilot_messages import head_motion, path_message, read_path
 from eel_gaits.ros.row_stream import AHEAD, MOST_ROWS, RowStream
 from eel_gaits.ros.sample_stream import SampleStream
 from eel_gaits.sources.sampled_law import SampledLaw
+from eel_ros.stamps import LATEST, seconds_of
 from nav_msgs.msg import Odometry
 from rclpy.serialization import serialize_message
 

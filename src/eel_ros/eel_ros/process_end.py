@@ -26,8 +26,7 @@ class ProcessEnd:
 
     def __init__(self) -> None:
         self._reasons: queue.SimpleQueue[tuple[bool, Exception | None]] = queue.SimpleQueue()
-        self.over = False
-        self.signalled = False
+        self.over = self.signalled = self._stays = False
         for number in SIGNALS:
             signal.signal(number, self._take_signal)
 
@@ -41,7 +40,8 @@ class ProcessEnd:
             signal.signal(number, signal.SIG_IGN)
 
     def leave_when_stuck(self, seconds: float) -> None:
-        """From now on leave, with status 0, where the main thread is not `over` so many `seconds` after a signal.
+        """From now on leave, with status 0, where the main thread is not `over` so many `seconds` after a signal,
+        until `stay_when_stuck` is called.
 
         Python's handlers wait until the main thread is back from a long computation; the byte does not.
         """
@@ -52,10 +52,14 @@ class ProcessEnd:
         def watch() -> None:
             os.read(reader, 1)
             time.sleep(seconds)
-            if not self.over:
+            if not self.over and not self._stays:
                 leave_at_once(0)
 
         threading.Thread(target=watch, daemon=True).start()
+
+    def stay_when_stuck(self) -> None:
+        """From now on do not leave so: there are files to complete."""
+        self._stays = True
 
     def start(self, work: Callable[[], None]) -> None:
         """Run `work()` in a thread. When it returns or raises, `wait` returns."""

@@ -2,7 +2,7 @@
 """Runs a node in the main thread: SIGINT and SIGTERM end it with status 0 and no traceback."""
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TypeVar
 
 import rclpy
@@ -17,9 +17,10 @@ Served = TypeVar("Served", bound=Node)
 
 POLL_PERIOD = 0.1  # s between two calls of `poll`
 PAUSE = 0.1  # s after a call of `take_messages` that found none: messages in bursts cost less
-DRAIN_LIMIT = 1.0  # s at most, at the end, to take messages that have arrived: a busy machine needs it
-STUCK = 0.5  # s after a signal, after which a node that keeps no files leaves in the middle of a callback
-EMPTY_TIMEOUT = 0.005  # s that the executor waits for a message there; after three time-outs there is none
+QUIET = 0.2  # s at the end without a message from before it: publishers repeat what is missing every 0.05 s
+ON_THE_WAY = 5_000_000_000  # ns that a publisher waits at its end for a message to arrive
+DRAIN_LIMIT = 30.0  # s at most, at the end, to take messages from before it
+STUCK = 0.5  # s after a signal, after which a node that starts, or keeps no files, leaves in the middle of a callback
 
 
 def run_node(
@@ -27,7 +28,7 @@ def run_node(
     words: list[str],
     make: Callable[[], Served],
     poll: Callable[[Served], bool],
-    take_messages: Callable[[Served], bool] | None = None,
+    take_messages: Callable[[Served, int], int] | None = None,
     *,
     complain: Callable[[str, object], None],
     period: float = POLL_PERIOD,
@@ -35,25 +36,27 @@ def run_node(
 ) -> int:
     """Make the node and spin it until a signal comes or `poll(node)` returns False.
 
-    take_messages: takes the waiting messages itself and returns whether there were any; the executor then only serves
-    rare callbacks, such as parameter services. period: between two calls of `poll` [s]. complete: at the end, take the
-    messages that have arrived. At the end the node's `close()` is called, if it has one.
+    take_messages(node, before): takes some of the waiting messages itself and returns how many of them are from before
+    this time [ns, as `is_from_before`]; 0: all. The executor then only serves rare callbacks, such as parameter
+    services. period: between two calls of `poll` [s]. complete: a node that keeps files. At the end, it takes all that
+    was sent before. At the end the node's `close()` is called, if it has one.
     Returns the exit status: 0; 1 if the node has a `failure` (a text), which `complain(name, failure)` gets; 2 if it
     cannot start.
     """
     end = ProcessEnd()
+    end.leave_when_stuck(STUCK)
     node = start(name, words, make, complain)
     if node is None:
         return 2
     executor = SingleThreadedExecutor()
     executor.add_node(node)
-    if not complete:
-        end.leave_when_stuck(STUCK)
+    if complete:
+        end.stay_when_stuck()
     try:
         _serve(executor, node, poll, take_messages, period, end)
         end.over = True
-        if complete and not getattr(node, "failure", ""):
-            _drain(executor, node, take_messages)
+        if complete and take_messages is not None:
+            _drain(node, take_messages)
     finally:
         executor.shutdown()
         if hasattr(node, "close"):
@@ -79,7 +82,7 @@ def _serve(executor, node, poll, take_messages, period: float, end: ProcessEnd) 
                 serve_once(executor, node, 0.0)
         if take_messages is None:
             serve_once(executor, node, period)
-        elif not take_messages(node):
+        elif not take_messages(node, 0):
             time.sleep(PAUSE)
 
 
@@ -92,14 +95,22 @@ def _goes_on(poll, node) -> bool:
         return True
 
 
-def _drain(executor, node, take_messages) -> None:
-    """Take the messages that have arrived, for at most `DRAIN_LIMIT` [s]: they belong to the run."""
-    limit, empty_polls = time.monotonic() + DRAIN_LIMIT, 0
-    while empty_polls < 3 and time.monotonic() < limit:
-        began = time.monotonic()
-        if take_messages is not None:
-            found = take_messages(node)
+def is_from_before(about: Mapping, before: int) -> bool:
+    """Whether the message with this message info `about` had come `before` [ns, system clock], or had been sent and was
+    on its way."""
+    late = (about["received_timestamp"] or time.time_ns()) - before
+    return late <= (ON_THE_WAY if about["source_timestamp"] <= before else 0)
+
+
+def _drain(node, take_messages) -> None:
+    """Take what was sent before now: until none of it has come for `QUIET` [s], or the node has a `failure`."""
+    before, last = time.time_ns(), time.monotonic()
+    limit = last + DRAIN_LIMIT
+    while (now := time.monotonic()) - last < QUIET and not getattr(node, "failure", ""):
+        if now > limit:
+            node.get_logger().warning(f"messages that were sent before the end are left after {DRAIN_LIMIT:g} s")
+            return
+        if take_messages(node, before):
+            last = time.monotonic()
         else:
-            serve_once(executor, node, EMPTY_TIMEOUT)
-            found = time.monotonic() - began < EMPTY_TIMEOUT
-        empty_polls = 0 if found else empty_polls + 1
+            time.sleep(QUIET / 10)

@@ -17,17 +17,17 @@ class Beginning:
         self._order = "<" if data[1:2] == b"\x01" else ">"
 
     def number(self) -> int:
-        """The next field, a uint32 or the length of a sequence. `ValueError` if the message ends before."""
+        """The next field, a uint32 or the length of a sequence. `EOFError` if the message ends before."""
         self._place += -self._place % 4
         try:
             (number,) = struct.unpack_from(self._order + "I", self._data, ENCODING + self._place)
         except struct.error:
-            raise ValueError("it ends before its fields") from None
+            raise EOFError("it ends before its fields") from None
         self._place += 4
         return number
 
     def text(self) -> str:
-        """The next field, a string. `ValueError` if the message ends before."""
+        """The next field, a string. `EOFError` if the message ends before."""
         size = self.number()
         begin = ENCODING + self._place
         self._place += size

@@ -37,7 +37,7 @@ def complain(name, error):
     print(f"{name}: {error}", flush=True)
 
 what = sys.argv[1]
-work = (lambda node: False) if "work" in sys.argv else None
+work = (lambda node, before: 0) if "work" in sys.argv else None
 sys.exit(run_node("tank", ["tank"], lambda: Tank(what), Tank.poll, work, complain=complain,
     complete=what != "compute"))
 """

@@ -113,3 +113,26 @@ def test_the_executor_runs_nothing_of_an_unattended_group(served):
     while ran["attended"] < 20:
         serve_once(executor, node, 10.0)
     assert ran["unattended"] == 0
+
+
+def test_a_raw_callback_that_raises_names_its_topic(served):
+    plain, _, _ = served
+    node = ServedNode("pool", context=plain.context, start_parameter_services=False)
+    executor, log, received = SingleThreadedExecutor(context=plain.context), Log(), []
+    executor.add_node(node)
+    node.get_logger = lambda: log
+
+    def refuse(data, about):
+        received.append(about["source_timestamp"])
+        raise EOFError("it ends before its fields")
+
+    node.create_subscription(Header, "level", refuse, 10, raw=True)
+    publisher = plain.create_publisher(Header, "level", 10)
+    deadline = time.monotonic() + 60.0
+    while not received and time.monotonic() < deadline:
+        publisher.publish(Header())
+        serve_once(executor, node, 0.1)
+    executor.shutdown()
+    node.destroy_node()
+    assert received
+    assert log.lines[0] == "a message of /level cannot be taken and is left out: EOFError: it ends before its fields"

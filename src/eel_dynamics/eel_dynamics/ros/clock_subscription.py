@@ -3,11 +3,10 @@
 
 from collections.abc import Callable
 
+from eel_ros.stamps import seconds_of
 from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rosgraph_msgs.msg import Clock
-
-from eel_dynamics.ros.messages import seconds_of
 
 
 class ClockSubscription:
@@ -33,7 +32,7 @@ class ClockSubscription:
 
     def _subscribed(self):
         def take(message):
-            self._receive(seconds_of(message.clock))
+            self._receive(seconds_of(message.clock, "clock"))
 
         quality = QoSProfile(depth=1, reliability=self._reliability)
         quiet = SubscriptionEventCallbacks(use_default_callbacks=False)  # `look` finds what does not match

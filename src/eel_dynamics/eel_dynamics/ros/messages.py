@@ -17,6 +17,7 @@ from eel_base.wording import shown
 from eel_gaits.laws.law import MAXIMUM_TERMS
 from eel_ros.serialised import Beginning
 from eel_ros.serving import read_message
+from eel_ros.stamps import seconds_of
 from geometry_msgs.msg import PoseStamped, TransformStamped, TwistStamped
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
@@ -44,12 +45,6 @@ from eel_msgs.msg import (
 from eel_msgs.srv import SetState
 
 SECOND = 1_000_000_000  # ns
-LARGEST_LAW = 2**23  # bytes: mostly numbers, which are read at once
-
-
-def seconds_of(time: Time) -> float:
-    """The stamp `time` in seconds."""
-    return time.sec + 1e-9 * time.nanosec
 
 
 class Sample:
@@ -266,7 +261,7 @@ def parse_law(data: bytes) -> tuple[str, Callable[[], CurvatureLaw]]:
     def make() -> CurvatureLaw:
         if terms > MAXIMUM_TERMS:
             raise ValueError(f"terms must be at most {MAXIMUM_TERMS}, got {terms}")
-        return read_message(data, CurvatureLaw, LARGEST_LAW)
+        return read_message(data, CurvatureLaw)
 
     return name, make
 

@@ -56,15 +56,18 @@ def natural_spline(knots, values, x):
 
 
 def _moments(spacing, slopes):
-    """Second derivatives at the knots, shape (..., n), by elimination without pivoting (diagonally dominant)."""
-    count = spacing.size + 1
-    moments = np.zeros((*slopes.shape[:-1], count))
-    right_side = 6.0 * np.diff(slopes, axis=-1)
-    pivots = 2.0 * (spacing[:-1] + spacing[1:])
-    for row in range(1, count - 2):
+    """Second derivatives at the knots, shape (..., n), by elimination without pivoting (diagonally dominant).
+
+    The loops run over numbers of Python where there is one spline: NumPy's take ten times as long.
+    """
+    rows = np.moveaxis(6.0 * np.diff(slopes, axis=-1), -1, 0)
+    rows, zero = (rows.tolist(), 0.0) if rows.ndim == 1 else (list(rows), np.zeros(slopes.shape[:-1]))
+    pivots, spacing = (2.0 * (spacing[:-1] + spacing[1:])).tolist(), spacing.tolist()
+    for row in range(1, len(rows)):
         factor = spacing[row] / pivots[row - 1]
         pivots[row] -= factor * spacing[row]
-        right_side[..., row] -= factor * right_side[..., row - 1]
-    for row in range(count - 3, -1, -1):
-        moments[..., row + 1] = (right_side[..., row] - spacing[row + 1] * moments[..., row + 2]) / pivots[row]
-    return moments
+        rows[row] = rows[row] - factor * rows[row - 1]
+    moments = [zero] * (len(rows) + 2)
+    for row in reversed(range(len(rows))):
+        moments[row + 1] = (rows[row] - spacing[row + 1] * moments[row + 2]) / pivots[row]
+    return np.stack(moments, axis=-1)

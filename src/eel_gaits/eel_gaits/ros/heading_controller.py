@@ -20,11 +20,13 @@ from eel_ros.parameter_node import ParameterNode
 from eel_ros.parameters import declare, help_rows, take_overrides, warn_of_unknown
 from eel_ros.qos import keep_all
 from eel_ros.run_node import run_node
+from eel_ros.stamps import seconds_of
 from nav_msgs.msg import Odometry
 from std_msgs.msg import Header
 
 from eel_gaits.gaits.swimming import straight
 from eel_gaits.ros.lead import Lead
+from eel_gaits.ros.pilot_messages import head_motion
 from eel_msgs.msg import CurvatureSamples
 
 NAME = "heading_controller"
@@ -90,23 +92,24 @@ class HeadingController(ParameterNode):
 
     def receive(self, odometry):
         """Answer one sample: the curvature up to `lead` later. A stamp that is repeated gets the same answers."""
-        now = odometry.header.stamp.sec + 1e-9 * odometry.header.stamp.nanosec
+        now, head = seconds_of(odometry.header.stamp), head_motion(odometry)  # bad values are errors, and left out
         if now != self.last:
             self.last, self.answers = now, []
             if self.lead.begins(now):
                 self.bend = np.zeros(3)
                 self.answers.append(self.sample(self.lead.begin(now)))
             for time in self.lead.after(now):
-                self.bend = self.next_bend(odometry.pose.pose.orientation)
+                self.bend = self.next_bend(heading(head.orientation))
                 if time > now:
                     self.answers.append(self.sample(time))
         for answer in self.answers:
             self.publisher.publish(answer)
 
-    def next_bend(self, q):
-        """The bend of the body one period on: K3 [rad/m], its rate and its acceleration. K3 > 0 turns to the right."""
+    def next_bend(self, present):
+        """The bend of the body one period on, at the `present` heading [rad]: K3 [rad/m], its rate and acceleration.
+        K3 > 0 turns to the right."""
         target, gain, limit = (self.get_parameter(name).value for name in ("heading", "gain", "greatest_bend"))
-        wanted = -gain * math.remainder(target - heading((q.x, q.y, q.z, q.w)), 2.0 * math.pi)
+        wanted = -gain * math.remainder(target - present, 2.0 * math.pi)
         value, rate, _ = self.bend
         acceleration = FOLLOWING**2 * (max(-limit, min(limit, wanted)) - value) - 2.0 * FOLLOWING * rate
         rate += self.period * acceleration

@@ -83,7 +83,7 @@ class GaitGenerator(ParameterNode):
             with ticks.handle:
                 taken = ticks.handle.take_message(ticks.msg_type, ticks.raw)
             if taken is not None:
-                ticks.callback(taken[0])
+                ticks.callback(*taken)
         return True
 
     def look(self) -> bool:

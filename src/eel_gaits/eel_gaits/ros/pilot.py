@@ -20,6 +20,7 @@ from eel_ros.parameter_node import ParameterNode
 from eel_ros.parameters import declare, help_rows, take_overrides, warn_of_unknown
 from eel_ros.qos import keep_all, latched
 from eel_ros.run_node import run_node
+from eel_ros.stamps import seconds_of
 from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import Odometry, Path
 from rcl_interfaces.msg import SetParametersResult
@@ -29,7 +30,7 @@ from eel_gaits.pilot.pilot import Pilot
 from eel_gaits.pilot.settings import PilotSettings
 from eel_gaits.ros.lead import Lead
 from eel_gaits.ros.messages import FRAME, samples_to_message
-from eel_gaits.ros.pilot_messages import head_motion, path_message, point_of, read_path, seconds_of
+from eel_gaits.ros.pilot_messages import head_motion, path_message, point_of, read_path
 from eel_gaits.ros.pilot_parameters import GROUPS, GoalParameters, TimingParameters
 from eel_msgs.msg import CurvatureSamples, SwimState
 
@@ -95,7 +96,7 @@ class PilotNode(ParameterNode):
         self._subscribe_to_torque()
         return SetParametersResult(successful=True)
 
-    def _receive_path(self, data: bytes):
+    def _receive_path(self, data: bytes, about: dict):
         def goal():
             message = read_path(data)
             self._check_frame(message.header.frame_id)

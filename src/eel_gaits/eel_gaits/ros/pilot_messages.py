@@ -2,7 +2,6 @@
 """What the pilot reads of messages, and the goal as one."""
 
 import numpy as np
-from builtin_interfaces.msg import Time
 from eel_base.wording import shown
 from eel_ros.serialised import Beginning
 from eel_ros.serving import read_message
@@ -12,18 +11,8 @@ from std_msgs.msg import Header
 
 from eel_gaits.pilot.goals import FARTHEST, check_count
 from eel_gaits.pilot.head_motion import HeadMotion
-from eel_gaits.ros.messages import END_OF_TIME
 
-LATEST = END_OF_TIME - 60  # s: answers lie ahead
 GREATEST = 10.0 * FARTHEST  # m, m/s, rad/s: farther than any goal, and nothing overflows
-
-
-def seconds_of(stamp: Time) -> float:
-    """The time [s] of a stamp. `ValueError` for one that is not valid, or so late that no answer can follow it."""
-    if not 0 <= stamp.sec < LATEST or stamp.nanosec >= 1_000_000_000:
-        rule = f">= 0 s and < {LATEST} s, with nanosec < 1e9"
-        raise ValueError(f"header.stamp must be {rule}, got sec {stamp.sec}, nanosec {stamp.nanosec}")
-    return stamp.sec + 1e-9 * stamp.nanosec
 
 
 def point_of(point: Point) -> tuple[float, float, float]:
@@ -32,7 +21,8 @@ def point_of(point: Point) -> tuple[float, float, float]:
 
 
 def read_path(data: bytes) -> Path:
-    """The path that is serialised in `data`. `ValueError` for too many points, which are counted first."""
+    """The path that is serialised in `data`. `ValueError` for too many points, which are counted first;
+    another error for bytes that are no message."""
     beginning = Beginning(data)
     beginning.text()  # frame_id
     check_count(beginning.number())

@@ -16,7 +16,7 @@ from typing import Any
 
 from eel_base.command_line import Parser, check_seconds, complain
 from eel_ros.qos import fitting, keep_all, matches
-from eel_ros.run_node import run_node
+from eel_ros.run_node import is_from_before, run_node
 from eel_ros.serving import PolledGroup, log_dropped
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
@@ -33,8 +33,6 @@ LOOK = 0.2  # s between two look-ups of the topics
 SAVE = 0.5  # s between two saves of the bag, at least
 SHARE = 15.0  # the least ratio of that period to the CPU time of a save
 BATCH = 64  # messages taken from one subscription before the next one
-QUIET = 0.2  # s at the end without a message from before it: publishers repeat what is missing every 0.05 s
-ON_THE_WAY = 5.0  # s that a publisher waits at its end for a message to arrive
 STAMP = slice(4, 12)  # of a serialised message that begins with a header
 NOT_BY_DEFAULT = ("/rosout", "/parameter_events")  # recorded only by name
 
@@ -85,14 +83,8 @@ class Recorder(Node):
             return not self._present or now - self._last_message < GONE
         return True
 
-    def take_messages(self) -> bool:
-        """Record the messages that have come; whether there were any."""
-        return self._take() > 0
-
     def close(self) -> None:
-        """Complete the bag with all that was sent before, and log its contents."""
-        if not self.failure:
-            self._drain()
+        """Complete the bag, and log its contents."""
         if not self.failure:
             self._save()
         self._bag.abort()
@@ -105,11 +97,9 @@ class Recorder(Node):
                 f"topics of unequal length: {least} has {samples[least]} samples, {most} has {samples[most]}"
             )
 
-    def _take(self, before: int = 0) -> int:
+    def take_messages(self, before: int) -> int:
         """Record the messages that have come, at most `BATCH` a topic; the number of those from `before` [ns]; 0: all.
-
-        A message is from before if it had come by then, or had been sent and was on its way.
-        """
+        The bag is saved where it is time."""
         count = 0
         for topic, (subscription, _, receive) in list(self._subscribed.items()):
             with subscription.handle:  # keeps it from being destroyed meanwhile
@@ -118,22 +108,13 @@ class Recorder(Node):
                     if taken is None:
                         break
                     data, about = taken
-                    late = (about["received_timestamp"] or time.time_ns()) - before
-                    count += not before or late <= (1e9 * ON_THE_WAY if about["source_timestamp"] <= before else 0)
+                    count += not before or is_from_before(about, before)
                     try:
                         receive(data, about)
                     except Exception as error:
                         log_dropped(self, error, f"a message of {topic}")
+        self._save_if_due(time.monotonic())
         return count
-
-    def _drain(self) -> None:
-        """Record what was sent before now: until none of it has come for `QUIET` [s]."""
-        before, last = time.time_ns(), time.monotonic()
-        while (now := time.monotonic()) - last < QUIET and self._save_if_due(now):
-            if self._take(before):
-                last = time.monotonic()
-            else:
-                time.sleep(QUIET / 10)
 
     def _save_if_due(self, now: float) -> bool:
         """Save the bag where it is time; False if that fails."""

@@ -104,9 +104,9 @@ class Visualiser(ParameterNode):
         """The reason for exit status 1; empty if there is none."""
         return "a recording lacks a part of its run" if self._recordings.incomplete else ""
 
-    def take_messages(self) -> bool:
-        """Log the messages that have come; whether there were any."""
-        return self._polled.take() > 0
+    def take_messages(self, before: int) -> int:
+        """Log messages that have come; the number of those from `before` [ns]; 0: all."""
+        return self._polled.take(before)
 
     def _subscribe_swimmer(self, space: str, dispatcher: Dispatcher) -> None:
         """Subscribe to the topics of the swimmer in the namespace `space`."""

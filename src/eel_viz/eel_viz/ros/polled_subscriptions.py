@@ -9,6 +9,7 @@ import time
 from collections.abc import Callable, Hashable
 
 from eel_ros.deliveries import Deliveries
+from eel_ros.run_node import is_from_before
 from eel_ros.serving import PolledGroup, log_dropped, read_message
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
@@ -47,8 +48,9 @@ class PolledSubscriptions:
         for _, _, publisher_change, _ in self._subscriptions:
             publisher_change.note_publishers()
 
-    def take(self) -> int:
-        """Take the waiting messages, at most `BATCH` per subscription, and pass them on; returns their number.
+    def take(self, before: int = 0) -> int:
+        """Take the waiting messages, at most `BATCH` per subscription, and pass them on; returns the number of those
+        from `before` [ns]; 0: all.
 
         After a `TURN` it returns, and the next call begins with the next subscription. A message that raises an error
         is logged and left out. Messages are taken as bytes: otherwise rclpy would build a message object even if none
@@ -56,22 +58,24 @@ class PolledSubscriptions:
         """
         count, end = 0, time.monotonic() + TURN
         for place, each in enumerate(self._subscriptions, start=1):
-            count += self._take_from(*(*each, end))
+            count += self._take_from(*(*each, end, before))
             if time.monotonic() > end:
                 self._subscriptions = [*self._subscriptions[place:], *self._subscriptions[:place]]
                 break
         return count
 
-    def _take_from(self, subscription, show, publisher_change: PublisherChange, deliveries, end: float) -> int:
-        """Take messages of one subscription until `end` [s, steady clock]; returns their number."""
+    def _take_from(self, subscription, show, publisher_change, deliveries, end: float, before: int) -> int:
+        """Take messages of one subscription until `end` [s, steady clock]; returns how many are from `before`."""
         count = 0
         with subscription.handle:  # keeps it from being destroyed meanwhile
-            while count < BATCH and time.monotonic() <= end:
+            for _ in range(BATCH):
+                if time.monotonic() > end:
+                    break
                 taken = subscription.handle.take_message(subscription.msg_type, True)
                 if taken is None:
                     break
-                count += 1
                 data, about = taken
+                count += not before or is_from_before(about, before)
                 new_publisher = publisher_change.changes(
                     about["publication_sequence_number"], about["source_timestamp"]
                 )

@@ -14,6 +14,7 @@ import time
 import numpy as np
 from eel_base.wording import shown
 from eel_ros.deliveries import Deliveries
+from eel_ros.stamps import seconds_of
 
 from eel_dynamics.curvature.curvature_samples import LateSample
 from eel_dynamics.ros.diagnostics import ERROR, WARN
@@ -21,6 +22,7 @@ from eel_dynamics.ros.diagnostics import ERROR, WARN
 FAR_AHEAD = 3600.0  # s: a stamp further ahead of the simulation is wall time by mistake
 DROPPED = 1_000_000_000  # ns: a publisher's law that arrives after a later one is at most this much older
 JOIN = "a controller that joins a running simulation begins 1/rate or more after the stamp of the last odom"
+LONGEST_WAY = 5.0  # s from the last sample, or from the simulation, to the next one: it is not on the same way
 ECHO = 2.0  # s after a reset, within which samples that were sent before it may come
 SHOWN = reprlib.Repr()
 SHOWN.maxstring = 60  # characters of a refused law's name
@@ -77,11 +79,7 @@ class LawFeed:
             self._run.take_samples(samples)
 
     def _checked_stamp(self, stamp) -> float:
-        stamped = stamp.sec + 1e-9 * stamp.nanosec
-        if stamp.sec < 0 or stamp.nanosec >= 1_000_000_000:
-            raise ValueError(
-                f"header.stamp must be >= 0 s, with nanosec < 1e9, got sec {stamp.sec}, nanosec {stamp.nanosec}"
-            )
+        stamped = seconds_of(stamp)
         if stamped > self._run.time + FAR_AHEAD:
             raise ValueError(
                 f"header.stamp must be simulation time, at most {FAR_AHEAD:g} s ahead of {self._run.time:g} s, "
@@ -147,12 +145,13 @@ class LawAdopter:
                 f"curvature samples up to t = {until:g} s are dropped: law {shown(law.name)} is newer",
             )
 
-    def add_samples(self, samples: dict):
-        """Add one instant of a law: the arguments of `Simulation.add_samples`.
+    def add_samples(self, samples: dict, period: float = 0.0):
+        """Add one instant of a law: the arguments of `Simulation.add_samples`, in a run of one every `period` [s].
 
         An instant that is the same as one from before the start is an answer to a repeated sample 0, and changes
         nothing. Shortly after a reset, a sample that lies more than twice as far ahead as any before was sent before
-        the controller saw the reset, and is left out.
+        the controller saw the reset, and is left out. One far from all others would be the end of a long, wide
+        swing of the body once they run out, and is refused.
         """
         ahead = samples["time"] - self.simulation.time
         if ahead > 2.0 * self._farthest and time.monotonic() < self._echo_until:
@@ -162,6 +161,7 @@ class LawAdopter:
         if self._first.get(samples["time"]) == values:
             return
         try:
+            self._check_way(samples["time"], max(LONGEST_WAY, 2.0 * period))
             self.simulation.add_samples(**samples)
         except REFUSALS as error:
             level = WARN if isinstance(error, LateSample) else ERROR
@@ -171,6 +171,15 @@ class LawAdopter:
             self._farthest = max(self._farthest, ahead)
             if self.simulation.time == 0.0:
                 self._first[samples["time"]] = values
+
+    def _check_way(self, time: float, longest: float):
+        """`ValueError` for a sample of `time` [s] more than `longest` [s] after the last one, or the simulation."""
+        last = max(self.simulation.time, self.simulation.samples_until or 0.0)
+        if time > last + longest:
+            raise ValueError(
+                f"time must be at most {longest:g} s after the last sample or the simulation ({last:.9g} s), "
+                f"got {time:.9g} s"
+            )
 
     def lacks_samples(self, instant: float) -> bool:
         """Whether a controller's samples drive the swimmer and do not reach simulation time `instant` [s] yet."""

@@ -3,7 +3,8 @@
 
 Sample k is due at start + (k - first) * period / factor. A run that is late by more than a period and `SHORTEST_DELAY`
 does not hurry: it regains the lost time at `CATCH_UP` above its pace, so that a controller can follow. Until then later
-samples are due later. The run keeps its accuracy, not its pace.
+samples are due later. Of the lost time `MOST_REGAINED` at most is regained, and the rest given up: a run that stood for
+hours is not faster for days. The run keeps its accuracy, not its pace.
 """
 
 import math
@@ -12,21 +13,28 @@ from collections.abc import Callable
 
 SHORTEST_DELAY = 0.02  # s: shorter delays come from the operating system's scheduling
 CATCH_UP = 0.1  # of the pace, by which a late run is faster until it has regained the lost time
+MOST_REGAINED = 10.0  # s: it is regained in 110 s
 
 
 class Pace:
-    """Due times of samples `period` [simulated s] apart at `factor` simulated seconds per second; 0: due at once."""
+    """Due times of samples `period` [simulated s] apart at `factor` simulated seconds per second; 0: due at once.
+
+    Attributes:
+        given_up: lost time [s] that will not be regained.
+    """
 
     def __init__(self, period: float, factor: float):
         self.period = period
         self.factor = factor
         self._first, self._start, self._lost = 0, -math.inf, 0.0  # _lost: s, by which the first one was late
+        self.given_up = 0.0
 
     def restart(self, sample: int, now: float, factor: float | None = None):
         """Make `sample` due `now` [s, steady clock], and later samples relative to it. Nothing is late any more."""
         if factor is not None:
             self.factor = factor
         self._first, self._start, self._lost = sample, now, 0.0
+        self.given_up = 0.0
 
     def due(self, sample: int) -> float:
         """Time [s, steady clock] at which `sample` is due."""
@@ -48,9 +56,10 @@ class Pace:
         delay = now - self.due(sample)
         if delay <= self.period / self.factor + SHORTEST_DELAY:
             return 0.0
-        lost = self.lost(sample) + delay
+        lost, given_up = self.lost(sample) + delay, self.given_up
         self.restart(sample, now)
-        self._lost = lost
+        self._lost = min(lost, MOST_REGAINED)
+        self.given_up = given_up + lost - self._lost
         return delay
 
     def obstacle(self, sample: int) -> str:

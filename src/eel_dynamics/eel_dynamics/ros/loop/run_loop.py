@@ -161,8 +161,11 @@ class RunLoop:
         self.laws.report_samples(self.time)
         delay = self.pace.give_up_delay(self.samples_published, now)
         if delay > 0.0:
-            lost = self.pace.lost(self.samples_published)
-            self._report.event("late", f"late by {lost:.3g} s at t = {self.time:g} s: accuracy is kept, not the pace")
+            lost, given_up = self.pace.lost(self.samples_published), self.pace.given_up
+            more = f"; {given_up:.3g} s more are given up" if given_up > 0.0 else ""
+            self._report.event(
+                "late", f"late by {lost:.3g} s at t = {self.time:g} s: accuracy is kept, not the pace{more}"
+            )
         if self.samples_published > 0:
             self.obstacles.count_step(self.time)
         self.samples_published += 1

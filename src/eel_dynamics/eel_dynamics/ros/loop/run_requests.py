@@ -50,7 +50,7 @@ class RunRequests:
     def take_samples(self, samples: dict):
         """Add one instant of a law, the arguments of `Simulation.add_samples`; refused while too many wait."""
         if len(self._queue) < MAXIMUM_REQUESTS:
-            self.put(lambda: self._loop.laws.add_samples(samples))
+            self.put(lambda: self._loop.laws.add_samples(samples, self._loop.pace.period))
         else:
             self._report.event("samples", TOO_MANY, ERROR)
 
