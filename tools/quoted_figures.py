@@ -17,7 +17,6 @@ WRITTEN_WHOLE = (
     "docs/appendix/validation.md",
     "docs/appendix/tradeoff.md",
     "docs/appendix/tradeoff_tables.md",
-    "docs/appendix/transcript.md",
     "docs/explanation/accuracy.md",
     "docs/explanation/steering.md",
     "docs/figures/README.md",
