@@ -4,18 +4,11 @@
 from collections.abc import Callable
 from pathlib import Path
 
-from eel_base.output_file import replacing, written_as
+from eel_base.output_file import replacing
 
 from eel_studies.pictures.style import SETTINGS
 
 METADATA = {".png": {"Software": None}, ".svg": {"Date": None}, ".pdf": {"CreationDate": None}}  # None: left out
-
-
-def write_both(draw: Callable, size: tuple[float, float], stem: Path) -> list[Path]:
-    """Write the picture as `stem`.png and `stem`.svg (`write_picture`); returns the paths that it has got."""
-    paths = [stem.with_name(f"{stem.name}.{suffix}") for suffix in ("png", "svg")]
-    write_picture(draw, size, *paths)
-    return [written_as(path) for path in paths]
 
 
 def write_picture(draw: Callable, size: tuple[float, float], *paths: Path, settings: dict | None = None) -> None:
