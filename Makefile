@@ -2,7 +2,7 @@
 # The two commands are `make demo` and `make test`; each does all the set-up itself, inside this folder.
 SHELL := /bin/bash
 .DEFAULT_GOAL := help
-.PHONY: transcript docs notebook quotes pictures help demo test sanitize aarch64 validation build bench lint soak robustness clean manoeuvres pilot
+.PHONY: docs notebook quotes pictures help demo test sanitize aarch64 validation build bench lint soak robustness clean manoeuvres pilot
 RUN := tools/run.sh
 
 help:   ## this list
@@ -36,6 +36,7 @@ notebook: build   ## run docs/tutorials/swim.ipynb anew, with its outputs in out
 	@$(RUN) tools/docs.sh notebook
 
 pictures: build   ## draw the pictures of the visualiser in docs/images
+	@$(RUN) python tools/marker_picture.py
 	@$(RUN) python tools/pictures.py
 
 manoeuvres: build   ## swim every gait, and write docs/reference/manoeuvres.md with its pictures
@@ -43,9 +44,6 @@ manoeuvres: build   ## swim every gait, and write docs/reference/manoeuvres.md w
 
 pilot: build   ## swim random courses with the pilot, and write the figures of docs/howto/pilot.md (ARGS="--courses 10")
 	@$(RUN) python tools/pilot_figures.py $(ARGS)
-
-transcript: build   ## use the nodes from a shell, and write docs/appendix/transcript.md with a picture (ARGS="3": that section alone, shown)
-	@$(RUN) python tools/transcript $(ARGS)
 
 robustness: build   ## write the table of faults in docs/appendix/robustness.md from the tests
 	@$(RUN) python tools/fault_table.py

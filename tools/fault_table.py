@@ -16,9 +16,10 @@ from pathlib import Path
 
 from soak_table import with_soak
 
+from eel_base import markdown
+
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "appendix" / "robustness.md"
-BEGIN, END = "<!-- faults: written by `make robustness` -->", "<!-- end of faults -->"
 GROUPS = {  # key in the decorator: heading, in the order of the page
     "laws": "Laws",
     "samples": "Curvature samples of a controller",
@@ -75,19 +76,14 @@ def table() -> str:
     for group, heading in GROUPS.items():
         rows = [row for row in faults() if row.group == group]
         if rows:
-            lines += [f"### {heading}", "| fault | what happens | test |", "|---|---|---|"]
-            lines += [f"| {row.fault} | {row.outcome} | `{row.test}` |" for row in rows]
-            lines.append("")
-    return "\n".join(lines)
+            cells = [(row.fault, row.outcome, f"`{row.test}`") for row in rows]
+            lines += [f"### {heading}", markdown.table(("fault", "what happens", "test"), cells), ""]
+    return "\n".join(lines).rstrip()
 
 
 def with_table(page: str) -> str:
     """The page's text with the present table between its marker lines."""
-    before, begin, rest = page.partition(BEGIN)
-    _, end, after = rest.partition(END)
-    if not begin or not end:
-        raise ValueError(f"{PAGE.relative_to(ROOT)} must have the lines {BEGIN!r} and {END!r}")
-    return f"{before}{BEGIN}\n{table()}{END}{after}"
+    return markdown.with_part(page, "faults", table())
 
 
 def main() -> int:

@@ -18,9 +18,10 @@ from eel_studies.pictures.style import BLUE, ORANGE
 from eel_studies.pilot.courses import figures_of, random_path, swim_path
 from matplotlib.patches import Circle
 
+from eel_base import markdown
+
 ROOT = Path(__file__).resolve().parent.parent
 PAGE, PICTURE = ROOT / "docs/howto/pilot.md", ROOT / "docs/images/pilot.png"
-BEGIN, END = "<!-- pilot: written by `make pilot` -->\n", "<!-- end of pilot -->"
 HEIGHTS = (0.0, 0.002, 0.005)  # m, metacentric heights
 SHOWN = 4  # seed of the course in the picture
 
@@ -54,10 +55,9 @@ def table(courses: int, processes: int) -> str:
         ),
     }
     heads = ["no keel", *(f"metacentric height {1e3 * height:g} mm" for height in HEIGHTS[1:])]
-    lines = [f"{courses} random tasks of each kind, seeds 0 to {courses - 1}.", "", f"| | {' | '.join(heads)} |"]
-    lines += ["|---" * (len(heads) + 1) + "|"]
-    lines += [f"| {name} | {' | '.join(figure(each) for each in found)} |" for name, figure in rows.items()]
-    return "\n".join(lines) + "\n"
+    told = f"{courses} random tasks of each kind, seeds 0 to {courses - 1}."
+    cells = [[name, *(figure(each) for each in found)] for name, figure in rows.items()]
+    return f"{told}\n\n{markdown.table(['', *heads], cells)}"
 
 
 def share(good) -> str:
@@ -101,13 +101,10 @@ def main() -> int:
     parser.add_argument("--processes", type=int, default=2)
     options = parser.parse_args()
     page = PAGE.read_text(encoding="utf-8")
-    before, begin, rest = page.partition(BEGIN)
-    _, end, after = rest.partition(END)
-    if not begin or not end:
-        raise ValueError(f"{PAGE} must have the lines {BEGIN!r} and {END!r}")
+    markdown.with_part(page, "pilot", "")  # refused before the swims
     draw(PICTURE)
     text = table(options.courses, options.processes)
-    PAGE.write_text(before + begin + text + end + after, encoding="utf-8")
+    markdown.write_page(PAGE, markdown.with_part(page, "pilot", text))
     print(text)
     return 0
 

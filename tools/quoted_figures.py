@@ -8,8 +8,9 @@ but what another command writes between markers of its own.
 
 import re
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
+from eel_base.markdown import table, with_part
 from reports import ROOT, Report
 
 VALIDATION = ROOT / "docs" / "appendix" / "validation.md"
@@ -17,7 +18,6 @@ WRITTEN_WHOLE = (
     "docs/appendix/validation.md",
     "docs/appendix/tradeoff.md",
     "docs/appendix/tradeoff_tables.md",
-    "docs/appendix/transcript.md",
     "docs/explanation/accuracy.md",
     "docs/explanation/steering.md",
     "docs/figures/README.md",
@@ -48,17 +48,14 @@ ALL = "ledger, wrench, 201 samples"
 def speed() -> str:
     """README: error against cost of the falling gait, and what other programs take for it."""
     falling, evaluation, scheme, peers = map(Report, ("falling", "evaluation", "paper_scheme", "peers"))
-    lines = [
-        f"| target | error, motion alone | times real time | error, {ALL} | times real time |",
-        "|---" * 5 + "|",
-    ]
+    rows = []
     for target, label in TARGETS.items():
         cells = [label]
         for case in ("motion alone", ALL):
             told = falling.rest(f"{case}, target {target}")
             pace, error = re.match(r"(\S+) times real time, error (\S+),", told).groups()
             cells += [error, f"{float(f'{float(pace):.2g}'):,.0f}"]
-        lines.append(f"| {' | '.join(cells)} |")
+        rows.append(cells)
 
     def span(ratios: list[float]) -> str:
         return f"{min(ratios):,.0f} to {max(ratios):,.0f} times as long"
@@ -67,7 +64,9 @@ def speed() -> str:
         f"with the error estimate, {case}, target {target}" for case in ("motion alone", ALL) for target in TARGETS
     ]
     longer = [falling.value(case) for case in cases]
-    lines += [
+    head = "target", "error, motion alone", "times real time", f"error, {ALL}", "times real time"
+    lines = [
+        table(head, rows),
         "",
         "Errors are of the head's position at the end, by its path, with laminar friction. A run that measures",
         f"its own error, as `simulate` does, takes {min(longer):.1f} to {max(longer):.1f} times as long.",
@@ -102,56 +101,60 @@ MASS = "mass of the paper's robot"
 
 def trust() -> str:
     """README: what the checks of the mechanics measure, the worst of each kind."""
-    rows = [line.split(" | ") for line in VALIDATION.read_text(encoding="utf-8").splitlines() if line.count(" | ") == 4]
-    measured = {row[0].removeprefix("| "): row[1] for row in rows}
-    lines = ["| check | difference |", "|---|---|"]
+    lines = [
+        line.split(" | ") for line in VALIDATION.read_text(encoding="utf-8").splitlines() if line.count(" | ") == 4
+    ]
+    measured = {row[0].removeprefix("| "): row[1] for row in lines}
+    rows = []
     for check, (pattern, scale) in CHECKS.items():
         found = [float(value.split()[0]) for what, value in measured.items() if re.fullmatch(pattern, what)]
         if not found:
             raise ValueError(f"docs/appendix/validation.md has no line like {pattern!r}: make validation")
-        lines.append(f"| {check} | {max(found):.1e}{scale} |")
-    return "\n".join([*lines, f"| {MASS} (printed: 1.94 kg) | {measured[MASS]} |"])
+        rows.append((check, f"{max(found):.1e}{scale}"))
+    return table(("check", "difference"), [*rows, (f"{MASS} (printed: 1.94 kg)", measured[MASS])])
 
 
 def integrators() -> str:
     """docs/explanation/integrators.md: evaluations by method and target."""
     report = Report("integrators")
-    table = [re.split(r" {2,}", line) for line in report.lines if not line.startswith("order seen")]
-    head, *rows = table
-    lines = [f"From {link(report, '../../')}.", "", f"| {' | '.join(head)} |", "|---" * len(head) + "|"]
-    return "\n".join([*lines, *(f"| {' | '.join(row)} |" for row in rows)])
+    head, *rows = [re.split(r" {2,}", line) for line in report.lines if not line.startswith("order seen")]
+    return _from(report, head, rows)
 
 
 def orders() -> str:
     """docs/explanation/integrators.md: the orders that are seen."""
-    report = Report("integrators")
-    head = "| what is not smooth | order | error at 20 and 80 per second |"
-    lines = [f"From {link(report, '../../')}.", "", head, "|---|---|---|"]
+    report, rows = Report("integrators"), []
     for line in report.lines:
         if found := re.fullmatch(r"order seen, (.*?) {2,}(\S+) errors (\S+) to (\S+) m", line):
-            lines.append(f"| {found[1]} | {found[2]} | {found[3]} m, {found[4]} m |")
-    return "\n".join(lines)
+            rows.append((found[1], found[2], f"{found[3]} m, {found[4]} m"))
+    return _from(report, ("what is not smooth", "order", "error at 20 and 80 per second"), rows)
 
 
 def lockstep() -> str:
     """docs/howto/controllers.md: what a tick of a controller in the loop costs."""
-    report = Report("lockstep")
-    lines = [f"From {link(report, '../../')} (`{report.command}`).", "", "| way | a tick |", "|---|---|"]
-    for label in ("the library alone", "bare messages, there and back", "the dynamics node", "node over the sum"):
-        lines.append(f"| {label} | {report.rest(label)} |")
-    return "\n".join(lines)
+    labels = "the library alone", "bare messages, there and back", "the dynamics node", "node over the sum"
+    return _labelled("lockstep", ("way", "a tick"), labels)
 
 
 def gym() -> str:
     """docs/howto/learning.md: what a control step of the environments costs."""
-    report = Report("gym")
-    lines = [f"From {link(report, '../../')} (`{report.command}`).", "", "| what | measured |", "|---|---|"]
-    for name in ("Heading", "Depth"):
-        for label in (f"bare, scene of {name}", f"Eel/{name}-v0", f"Eel/{name}-v0 by bare"):
-            lines.append(f"| {label} | {report.rest(label)} |")
-    for label in ("a control step of Eel/Depth-v0", "2 threads"):
-        lines.append(f"| {label} | {report.rest(label)} |")
-    return "\n".join(lines)
+    labels = [
+        label
+        for name in ("Heading", "Depth")
+        for label in (f"bare, scene of {name}", f"Eel/{name}-v0", f"Eel/{name}-v0 by bare")
+    ]
+    return _labelled("gym", ("what", "measured"), [*labels, "a control step of Eel/Depth-v0", "2 threads"])
+
+
+def _labelled(figure: str, head: Sequence[str], labels: Sequence[str]) -> str:
+    """A row for each of the `labels` of a report's `figure`."""
+    report = Report(figure)
+    return _from(report, head, [(label, report.rest(label)) for label in labels], f" (`{report.command}`)")
+
+
+def _from(report: Report, head: Sequence[str], rows: Sequence[Sequence[str]], made: str = "") -> str:
+    """A table below the line that names its report."""
+    return f"From {link(report, '../../')}{made}.\n\n{table(head, rows)}"
 
 
 BLOCKS: dict[str, dict[str, Callable[[], str]]] = {
@@ -165,12 +168,7 @@ BLOCKS: dict[str, dict[str, Callable[[], str]]] = {
 def with_figures(page: str, blocks: dict[str, Callable[[], str]]) -> str:
     """The page's text with what the figures are now between their marker lines."""
     for name, write in blocks.items():
-        begin, end = f"<!-- {name}: written by `make quotes` -->\n", f"\n<!-- end of {name} -->"
-        before, found, rest = page.partition(begin)
-        _, ends, after = rest.partition(end)
-        if not found or not ends:
-            raise ValueError(f"the page must have the lines {begin.strip()} and {end.strip()}")
-        page = f"{before}{begin}{write()}{end}{after}"
+        page = with_part(page, name, write())
     return page
 
 

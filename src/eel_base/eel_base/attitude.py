@@ -10,6 +10,18 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from eel_base.wording import shown
+
+ROUNDED = 1e-3  # of a norm: a quaternion of few digits is a unit quaternion, and is normalised
+
+
+def unit_quaternion(name: str, values: Sequence[float]) -> tuple[float, ...]:
+    """`values` (x, y, z, w) of norm 1; `ValueError` with the `name` where the norm differs by more than `ROUNDED`."""
+    norm = math.hypot(*values)
+    if not abs(norm - 1.0) <= ROUNDED:
+        raise ValueError(f"{name} must be a unit quaternion, got {shown(list(values))} of norm {norm:.6g}")
+    return tuple(value / norm for value in values)
+
 
 def heading(orientation: Sequence[float] | np.ndarray) -> float:
     """Angle [rad] from the world's x to the horizontal direction of the head's x, positive to the left, -pi to pi."""

@@ -7,7 +7,7 @@ ROS node declares its parameters from the same fields.
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import Field, dataclass, field, fields
 from typing import Any, TypeVar
 
 import numpy as np
@@ -32,6 +32,18 @@ def limits(metadata: Mapping[str, Any]) -> str:
     unit = f" {metadata['unit']}" if metadata.get("unit") else ""
     bounds = ((">" if metadata.get("exclusive") else ">=", metadata.get("minimum")), ("<=", metadata.get("maximum")))
     return " and ".join(f"{sign} {bound:g}{unit}" for sign, bound in bounds if bound is not None)
+
+
+def check_bounds(item: Field[Any], value: Any, name: str) -> None:
+    """`ValueError` where the number `value` is not within a bound of the field `item`, which it names."""
+    low, high = (item.metadata.get(bound) for bound in ("minimum", "maximum"))
+    broken = {}
+    if low is not None and not (value > low if item.metadata.get("exclusive") else value >= low):
+        broken = {"maximum": None}
+    elif high is not None and not value <= high:
+        broken = {"minimum": None}
+    if broken:
+        raise ValueError(f"{name} must be {limits(item.metadata | broken)}, got {shown(value)}")
 
 
 def described_fields(kind: type[Any]) -> str:
@@ -91,10 +103,5 @@ class Quantities:
     def __post_init__(self) -> None:
         for entry in fields(self):
             value = number(entry.name, getattr(self, entry.name))
-            unit = entry.metadata["unit"]
-            minimum, maximum = entry.metadata["minimum"], entry.metadata["maximum"]
-            if value < minimum:
-                raise ValueError(f"{entry.name} must be >= {minimum:g} {unit}, got {value}")
-            if value > maximum:
-                raise ValueError(f"{entry.name} must be <= {maximum:g} {unit}, got {value}")
+            check_bounds(entry, value, entry.name)
             object.__setattr__(self, entry.name, value)

@@ -36,13 +36,13 @@ def test_every_float_takes_an_integer(kind):
 @pytest.mark.parametrize(
     ("name", "value", "expected"),
     [
-        ("rate", 0, "rate must be > 0 Hz and <= 10000 Hz, got 0"),
-        ("rate", -5.0, "rate must be > 0 Hz and <= 10000 Hz, got -5"),
+        ("rate", 0, "rate must be > 0 Hz, got 0.0"),
+        ("rate", -5.0, "rate must be > 0 Hz, got -5.0"),
         ("rate", math.nan, "rate must be a finite number, got nan"),
         ("rate", "fast", "rate must be a finite number, got 'fast'"),
         ("rate", True, "rate must be a finite number, got True"),
-        ("real_time_factor", -1.0, "real_time_factor must be >= 0 and <= 1e+06, got -1"),
-        ("stations", 1, "stations must be >= 2 and <= 10000, got 1"),
+        ("real_time_factor", -1.0, "real_time_factor must be >= 0, got -1.0"),
+        ("stations", 1, "stations must be >= 2, got 1"),
         ("stations", 51.0, "stations must be an integer, got 51.0"),
         ("clock", 1, "clock must be true or false, got 1"),
         ("body", 3, "body must be a text, got 3"),

@@ -101,7 +101,7 @@ def test_a_roll_over_is_straight_again_at_its_end():
     [
         ("burst_and_coast", {"bursts": 2.5}, "bursts must be a whole number, got 2.5"),
         ("joint_wave", {"joints": 3.5}, "joints must be a whole number, got 3.5"),
-        ("joint_wave", {"eel_like": 2.0}, "eel_like must be <= 1 , got 2.0"),
+        ("joint_wave", {"eel_like": 2.0}, "eel_like must be <= 1, got 2.0"),
         ("diving", {"bend_end": 2.9}, "bend_end must be > unbend_start (3 s), got 2.9"),
     ],
 )

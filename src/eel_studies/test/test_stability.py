@@ -9,17 +9,19 @@ from eel_dynamics.model.inertia import condition_of, straight_inertia
 from eel_dynamics.model.section_data import nose_of
 from eel_studies.stability import command, condition, drift, plane
 from eel_studies.stability.explicit import inertias, treat
-from eel_studies.stability.maps import ACCURATE, INACCURATE, STOPPED, maps_of, measure
+from eel_studies.stability.maps import ACCURATE, INACCURATE, STOPPED, Axis, maps_of, measure
 from eel_studies.stability.report import report
 from eel_studies.stability.studies import STUDIES, Study
 
 from eel_dynamics import Body, Scene, Simulation
 from eel_gaits import falling
 
+PART = "<!-- {0}: written by `stability` -->\n{1}<!-- end of {0} -->"  # of a page
+
 
 def test_maps_keep_the_target_and_tell_what_stops():
     items = {item.name: item for item in maps_of(2)}
-    coarse = replace(items.pop("method"), x=np.array([1e-2, 1.0]))
+    coarse = replace(items.pop("method"), across=Axis("tolerance of a step", 1e-2, 1.0))
     items.pop("preset")  # seconds for what test_accuracy shows
     measured = {name: measure(item) for name, item in items.items()}
     for name in ("gait", "wave", "water", "viscosity", "velocity", "body"):
@@ -37,7 +39,7 @@ def test_maps_keep_the_target_and_tell_what_stops():
 
 def test_a_page_keeps_what_is_not_the_studys():
     study = Study("| new |", {"gait": ("a map", None)})
-    page = f"a\n{command.BEGIN.format('maps')}\nold\n{command.END.format('maps')}\nb"
+    page = "a\n" + PART.format("maps", "old\n") + "\nb"
     page = command.with_study(page, "maps", study, "../images")
     assert "| new |" in page and "![a map](../images/stability_gait.svg)" in page and "old" not in page
     assert page.endswith("\nb") and page.startswith("a\n")
@@ -72,7 +74,7 @@ def test_the_condition_of_the_matrix_is_that_of_the_inertia_that_is_solved():
     bent = condition.inertia_at(swimmer, 5.0)
     assert np.linalg.eigvalsh(bent).min() > 0.0 and not np.allclose(bent, at_rest, rtol=1e-2)
     assert condition_of(bent) == pytest.approx(np.linalg.cond(bent), rel=1e-6)
-    thin, thick = (condition.of_straight(condition.needle(size), 1.0) for size in (1e-4, 1e-2))
+    thin, thick = (condition.of_body(condition.needle(size), 1.0) for size in (1e-4, 1e-2))
     assert thin == pytest.approx(1e4 * thick, rel=0.1)  # inertia in roll goes like the mass by the square of the radius
     maps = condition.maps_of(2)
     assert all(np.isfinite(each.value).all() and each.value.min() >= 1.0 for each in maps)
@@ -107,7 +109,7 @@ def test_bad_input_is_one_line(tmp_path, capsys):
 def test_a_page_that_cannot_be_is_refused_before_the_studies(tmp_path, monkeypatch, capsys):
     monkeypatch.setitem(STUDIES, "condition", lambda points: pytest.fail("it has begun"))
     bare, folder = tmp_path / "bare.md", tmp_path / "pictures"
-    bare.write_text(f"{command.BEGIN.format('drift')}\n{command.END.format('drift')}\n")
+    bare.write_text(PART.format("drift", ""))
     for page, word in ((tmp_path / "nosuch.md", "nosuch.md"), (tmp_path, "it is a folder"), (bare, "condition")):
         assert command.main(["--study", "condition", "--page", str(page), "--out", str(folder)]) == 2
         said = capsys.readouterr().err

@@ -5,7 +5,7 @@ import ipaddress
 from dataclasses import dataclass, field, fields
 from typing import Self
 
-from eel_base.quantity import is_finite, limits
+from eel_base.field_values import checked
 from eel_base.wording import shown
 from eel_gaits.pilot.settings import PilotSettings
 
@@ -37,7 +37,8 @@ class Drawing:
 
         `ValueError` names the setting, what it must be, and what it got.
         """
-        return cls(**{item.name: _checked(item, values[item.name]) for item in fields(cls) if item.name in values})
+        given = [item for item in fields(cls) if item.name in values]
+        return cls(**{item.name: checked(item, values[item.name], item.name) for item in given})
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -141,29 +142,3 @@ class Settings(Drawing):
             ipaddress.IPv4Address(self.address)
         except ValueError:
             raise ValueError(f"address must be an IPv4 address such as 127.0.0.1, got {shown(self.address)}") from None
-
-
-def _checked(item, value):
-    default, name = item.default, item.name
-    if isinstance(default, bool):
-        if not isinstance(value, bool):
-            raise ValueError(f"{name} must be true or false, got {shown(value)}")
-    elif isinstance(default, str):
-        if not isinstance(value, str):
-            raise ValueError(f"{name} must be a text, got {shown(value)}")
-    elif isinstance(default, tuple):
-        words = value.split(",") if isinstance(value, str) else value
-        if not isinstance(words, (list, tuple)) or not all(isinstance(word, str) for word in words):
-            raise ValueError(f"{name} must be a list of texts, got {shown(value)}")
-        return tuple(word.strip() for word in words)
-    elif isinstance(value, bool) or not isinstance(value, int if isinstance(default, int) else (int, float)):
-        raise ValueError(
-            f"{name} must be {'an integer' if isinstance(default, int) else 'a number'}, got {shown(value)}"
-        )
-    else:
-        told = shown(value) if isinstance(value, int) else f"{value:g}"
-        low, high = item.metadata["minimum"], item.metadata["maximum"]
-        if not is_finite(value) or (low is not None and value < low) or (high is not None and value > high):
-            raise ValueError(f"{name} must be {limits(item.metadata)}, got {told}")
-        return type(default)(value)
-    return value

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks of arguments. `ValueError` names the argument that does not fit, and its value."""
 
-import math
 from functools import lru_cache
 
 import numpy as np
+from eel_base.attitude import unit_quaternion
 from eel_base.quantity import is_finite, numbers
 from eel_base.wording import shown
 
@@ -53,12 +53,8 @@ def _checked_row(name: str, values, size: int | None) -> np.ndarray:
 
 
 def checked_quaternion(name: str, quaternion) -> np.ndarray:
-    """`quaternion` (x, y, z, w) as an array (4,), normalised. Its norm must be 1 to within 1e-6."""
-    array = checked_row(name, quaternion, 4)
-    size = math.hypot(*array.tolist())
-    if abs(size - 1.0) > 1e-6:
-        raise ValueError(f"{name} must be a unit quaternion (x, y, z, w), got norm {size:.6g}")
-    return array / size
+    """`quaternion` (x, y, z, w) as an array (4,), normalised (`unit_quaternion`)."""
+    return np.array(unit_quaternion(name, checked_row(name, quaternion, 4).tolist()))
 
 
 @lru_cache(maxsize=64)

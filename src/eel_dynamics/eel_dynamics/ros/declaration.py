@@ -3,6 +3,7 @@
 
 from dataclasses import fields, replace
 
+from eel_base.field_values import checked
 from eel_base.quantity import limits
 from eel_ros.frames import frame_in
 from eel_ros.parameters import AT_RESET, as_parameter, declare, default_of, take_overrides, warn_of_unknown
@@ -11,7 +12,7 @@ from rclpy.parameter import Parameter
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.model.scene import Scene
-from eel_dynamics.ros.parameters import FRAMES, ROOT, DynamicsParameters, checked, from_values
+from eel_dynamics.ros.parameters import FRAMES, ROOT, DynamicsParameters, from_values
 from eel_dynamics.ros.simulation_from_parameters import body_of
 
 SCENE, USE_SIM_TIME = "scene.", "use_sim_time"

@@ -7,9 +7,10 @@ namespace, the defaults of its frames begin with it.
 """
 
 import math
-from dataclasses import Field, dataclass, field, fields
+from dataclasses import dataclass, field, fields
 
-from eel_base.quantity import is_finite, limits
+from eel_base.attitude import unit_quaternion
+from eel_base.field_values import checked
 from eel_base.wording import shown
 from eel_ros.parameters import AT_RESET
 
@@ -168,61 +169,6 @@ class DynamicsParameters:
         return math.floor(self.duration * self.rate + 1e-9) if self.duration > 0.0 else math.inf
 
 
-def unit_quaternion(name: str, values) -> tuple[float, ...]:
-    """`values` (x, y, z, w) of norm 1; `ValueError` with the `name` where the norm differs by more than 1e-3."""
-    norm = math.sqrt(math.fsum(value * value for value in values))
-    if not abs(norm - 1.0) <= 1e-3:
-        raise ValueError(f"{name} must be a unit quaternion, got {shown(list(values))} of norm {norm:g}")
-    return tuple(value / norm for value in values)
-
-
-def checked(item: Field, value, name: str):
-    """`value` in the field's type; `ValueError` names the parameter `name`, what it must be, and what it got."""
-    default = item.default
-    if isinstance(default, bool):
-        if not isinstance(value, bool):
-            raise ValueError(f"{name} must be true or false, got {shown(value)}")
-    elif isinstance(default, str):
-        if item.metadata.get("number") and is_finite(value) and not isinstance(value, bool):
-            return float(value)
-        if not isinstance(value, str):
-            raise ValueError(
-                f"{name} must be a text{' or a number' if item.metadata.get('number') else ''}, got {shown(value)}"
-            )
-        if value not in item.metadata.get("choices", (value,)):
-            raise ValueError(f"{name} must be one of {', '.join(item.metadata['choices'])}, got {shown(value)}")
-    elif isinstance(default, tuple):
-        return _checked_vector(default, value, name)
-    elif isinstance(default, int):
-        if isinstance(value, bool) or not isinstance(value, int):
-            raise ValueError(f"{name} must be an integer, got {shown(value)}")
-        _check_bounds(item, value, name)
-    else:
-        if isinstance(value, bool) or not isinstance(value, (int, float)) or not is_finite(value):
-            raise ValueError(f"{name} must be a finite number, got {shown(value)}")
-        value = float(value)
-        if default is None and value == 0.0:
-            return None
-        _check_bounds(item, value, name)
-    return value
-
-
 def from_values(kind, values: dict, prefix: str = ""):
     """An instance of the dataclass `kind` from its fields' `values`, checked; names in errors begin with `prefix`."""
     return kind(**{item.name: checked(item, values[item.name], prefix + item.name) for item in fields(kind)})
-
-
-def _check_bounds(item: Field, value, name: str):
-    low, high = item.metadata.get("minimum", -math.inf), item.metadata.get("maximum", math.inf)
-    if not low <= value <= high or (item.metadata.get("exclusive") and value == low):
-        told = shown(value) if isinstance(value, int) else f"{value:g}"
-        raise ValueError(f"{name} must be {limits(item.metadata)}, got {told}")
-
-
-def _checked_vector(default: tuple, value, name: str) -> tuple:
-    numbers = value if isinstance(value, (list, tuple)) or hasattr(value, "typecode") else ()
-    if any(isinstance(number, (bool, str)) or not isinstance(number, (int, float)) for number in numbers):
-        numbers = ()
-    if len(numbers) != len(default) or not all(is_finite(number) for number in numbers):
-        raise ValueError(f"{name} must be {len(default)} finite numbers, got {shown(value)}")
-    return tuple(float(number) for number in numbers)

@@ -8,7 +8,7 @@ figures --out out/figures --format pdf --columns 1       # for a journal
 from pathlib import Path
 
 from eel_base.command_line import Parser
-from eel_base.output_file import replacing
+from eel_base.markdown import write_page
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.run import simulate
@@ -57,8 +57,7 @@ def _figures(options) -> int:
     errors = {rule.__name__: {drag: rule(drag) for drag in (False, True)} for rule in (orders.in_space, orders.in_time)}
     for path in draw(drawings_of(readings, errors), folder, options.format, options.columns):
         print(f"{path}  {path.stat().st_size / 1000.0:.0f} kB")
-    with replacing(folder / "README.md") as draft:
-        draft.write_text(page(readings, control, comparison, errors), encoding="utf-8")
+    write_page(folder / "README.md", page(readings, control, comparison, errors))
     print(folder / "README.md")
     return 0
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from eel_base.markdown import table
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.run import Run, simulate
 
@@ -26,6 +27,10 @@ READINGS: dict[str, dict[str, Any]] = {  # label: what differs from the library'
         "added_mass": "printed",
     },
 }
+HEAD = (
+    *("reading of the formulae", "head at the end, x, y, z [m]", "apart [m]", "mean speed U [m/s]"),
+    *("peak torque [N m]", "in the later half [N m]"),
+)
 OWN, PRINTED = next(iter(READINGS)), list(READINGS)[-1]
 
 
@@ -70,16 +75,11 @@ def swim(duration: float = 10.0, accuracy="fine", sample_period: float = 0.02, s
 
 def table_of(rows: list[Correction]) -> str:
     """The readings as a Markdown table."""
-    lines = [
-        "| reading of the formulae | head at the end, x, y, z [m] | apart [m] | mean speed U [m/s] "
-        "| peak torque [N m] | in the later half [N m] |",
-        "|---|---|---|---|---|---|",
-    ]
+    cells = []
     for row in rows:
         x, y, z = row.run.position[-1]
         torque, place, time = row.run.greatest_torque()
-        lines.append(
-            f"| {row.label} | ({x:+.3f}, {y:+.3f}, {z:+.3f}) | {row.apart:.3f} | {row.mean_speed:.3f} | "
-            f"{torque:.3f} at X = {place:.2f} m, t = {time:.2f} s | {row.later_torque:.3f} |"
-        )
-    return "\n".join(lines)
+        peak = f"{torque:.3f} at X = {place:.2f} m, t = {time:.2f} s"
+        figures = f"{row.apart:.3f}", f"{row.mean_speed:.3f}", peak, f"{row.later_torque:.3f}"
+        cells.append((row.label, f"({x:+.3f}, {y:+.3f}, {z:+.3f})", *figures))
+    return table(HEAD, cells)

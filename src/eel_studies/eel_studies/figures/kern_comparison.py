@@ -7,6 +7,7 @@ three dimensions.
 
 from dataclasses import dataclass
 
+from eel_base.markdown import table
 from eel_dynamics.analysis.analysis import Analysis
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
@@ -64,8 +65,7 @@ def table_of(comparison: Comparison) -> str:
         _row("hydromechanical efficiency", comparison, "hydromechanical_efficiency", "defined otherwise"),
         ("its excess over the other", f"{-comparison.less('hydromechanical_efficiency'):+.1%}", "", _less()),
     ]
-    lines = ["| quantity | `kern_fast` | `kern_efficient` | computed flow |", "|---|---|---|---|"]
-    return "\n".join([*lines, *(f"| {' | '.join(row)} |" for row in rows)])
+    return table(("quantity", "`kern_fast`", "`kern_efficient`", "computed flow"), rows)
 
 
 def _row(name: str, comparison: Comparison, field: str, theirs: str, form: str = ".3f") -> tuple[str, ...]:

@@ -10,8 +10,8 @@ import os
 from pathlib import Path
 
 from eel_base.command_line import Parser
-from eel_base.output_file import check_output, replacing
-from eel_base.wording import shown
+from eel_base.markdown import with_part, write_page
+from eel_base.output_file import check_output
 from eel_dynamics.runs.run_command import run_command
 from eel_dynamics.runs.storage.tables import needed
 
@@ -19,7 +19,6 @@ from eel_studies.pictures.picture_file import write_picture
 from eel_studies.stability.studies import STUDIES
 
 SIZE = 5.6, 4.2  # inches
-BEGIN, END = "<!-- {}: written by `stability` -->", "<!-- end of {} -->"
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -43,9 +42,7 @@ def _study(options) -> int:
         if options.page:
             page = Path(options.page)
             link = os.path.relpath(folder, page.parent)
-            text = with_study(page.read_text(encoding="utf-8"), name, study, link)
-            with replacing(page) as draft:
-                draft.write_text(text, encoding="utf-8")
+            write_page(page, with_study(page.read_text(encoding="utf-8"), name, study, link))
     return 0
 
 
@@ -54,7 +51,7 @@ def _check_page(page: str, studies):
     check_output("--page", page)
     text = Path(page).read_text(encoding="utf-8")
     for name in studies:
-        _around(text, name)
+        with_part(text, name, "")
 
 
 def with_study(page: str, name: str, study, folder: str) -> str:
@@ -62,20 +59,8 @@ def with_study(page: str, name: str, study, folder: str) -> str:
 
     folder: of the pictures, as seen from the page. `ValueError` where the marker lines are missing.
     """
-    before, first, last, after = _around(page, name)
     pictures = [f"![{title}]({folder}/stability_{picture}.svg)" for picture, (title, _) in study.pictures.items()]
-    text = "\n".join([study.text, *(["", *pictures] if pictures else [])])
-    return f"{before}{first}\n{text}\n{last}{after}"
-
-
-def _around(page: str, name: str) -> tuple[str, str, str, str]:
-    """The text of the page before the study `name`, both marker lines, and the text after it."""
-    first, last = BEGIN.format(name), END.format(name)
-    before, begin, rest = page.partition(first)
-    _, end, after = rest.partition(last)
-    if not begin or not end:
-        raise ValueError(f"the page must have the lines {shown(first)} and {shown(last)}")
-    return before, first, last, after
+    return with_part(page, name, "\n".join([study.text, *(["", *pictures] if pictures else [])]))
 
 
 def _parser() -> Parser:

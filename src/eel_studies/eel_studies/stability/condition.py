@@ -9,6 +9,7 @@ Singular bodies are refused beforehand (`inertia.py`).
 from dataclasses import dataclass
 
 import numpy as np
+from eel_base.markdown import table as table_of
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.inertia import MOST, condition_of, straight_inertia
 from eel_dynamics.model.scene import Scene
@@ -18,6 +19,7 @@ from eel_dynamics.simulation.simulation import Simulation, SimulationStopped
 
 import eel_core
 from eel_gaits import falling, straight
+from eel_studies.stability.maps import DENSITY, SLENDERNESS, Map, sized
 
 INSTANTS = 8  # per period, after the ramps of the gait
 NEEDLES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7)  # greatest half-axes [m] of a round needle of 1 m
@@ -25,52 +27,34 @@ NEEDLES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7)  # greatest half-axes [m] of a ro
 
 @dataclass(frozen=True)
 class Conditions:
-    """A map of condition numbers. x, y: density ratio, and slenderness or amplitude ratio; value: (len(y), len(x))."""
+    """The condition numbers (len(y), len(x)) of a map, whose `swimmer` gives one of them."""
 
-    name: str
-    title: str
-    x_label: str
-    y_label: str
-    x: np.ndarray
-    y: np.ndarray
+    map: Map
     value: np.ndarray
 
 
 def maps_of(points: int = 13) -> tuple[Conditions, ...]:
     """Two maps of `points` by `points` matrices each: of straight bodies, and of the swimming robot."""
-    ratios = np.geomspace(1e-3, 1e3, points)
-    slenderness, sizes = np.geomspace(5.0, 500.0, points), np.geomspace(1e-3, 4.0, points)
-    bodies = [Body.spindle(1.0, each) for each in slenderness]
-    return (
-        Conditions(
-            "condition",
-            "condition of the 6 x 6 matrix: straight bodies",
-            "density of the body, by water's",
-            "slenderness l / (2 max(a, b))",
-            ratios,
-            slenderness,
-            np.array([[of_straight(body, ratio) for ratio in ratios] for body in bodies]),
-        ),
-        Conditions(
-            "bent",
-            "condition of the 6 x 6 matrix: the robot as it swims",
-            "density of the body, by water's",
-            "amplitude, by the paper's",
-            ratios,
-            sizes,
-            np.array([[of_bent(size, ratio) for ratio in ratios] for size in sizes]),
-        ),
+    found = (
+        Map("condition", "condition of the 6 x 6 matrix: straight bodies", DENSITY, SLENDERNESS, points, of_straight),
+        Map("bent", "condition of the 6 x 6 matrix: the robot as it swims", DENSITY, sized(1e-3, 4.0), points, of_bent),
     )
+    return tuple(Conditions(each, np.array([[each.swimmer(x, y) for x in each.x] for y in each.y])) for each in found)
 
 
-def of_straight(body: Body, ratio: float) -> float:
+def of_straight(ratio: float, slenderness: float) -> float:
+    """Condition number for a straight spindle of 1 m, of `ratio` times the density of the water."""
+    return of_body(Body.spindle(1.0, slenderness), ratio)
+
+
+def of_body(body: Body, ratio: float) -> float:
     """Condition number for the straight `body` of `ratio` times the density of the water."""
     scene = _water(ratio)
     here = Simulation(body, scene, "draft", [0.0]).discretisation
     return condition_of(straight_inertia(here.grid, here.sections, nose_of(body, scene)[0], body.length))
 
 
-def of_bent(size: float, ratio: float) -> float:
+def of_bent(ratio: float, size: float) -> float:
     """Greatest condition number for the robot over a period of its wave, of `size` times the paper's amplitude."""
     law = straight(amplitude_0=size, amplitude_1=0.5 * size, amplitude_2=2.0 * size)
     swimmer = Simulation(Body.boyer2010(), _water(ratio), "draft", [0.0], law=law)
@@ -84,15 +68,17 @@ def inertia_at(swimmer: Simulation, time: float) -> np.ndarray:
 
 def needles() -> str:
     """The outcome of runs of thinner and thinner needles, as a Markdown table."""
-    lines = ["| half-axes of a needle of 1 m (m) | what happens to it in the falling gait |", "|---|---|"]
+    rows = []
     for thickness in NEEDLES:
         try:
             run = simulate(falling(), 2.0, body=needle(thickness), accuracy=1e-3, stations=2, estimate=False)
-            told = f"swims {run.path_length:.3g} m, greatest residual of the ledger {_open(run):.1g} of what passed"
-        except (ValueError, SimulationStopped) as error:
-            told = f"refused: {error}" if isinstance(error, ValueError) else str(error)
-        lines.append(f"| {thickness:g} | {told} |")
-    return "\n".join(lines)
+            outcome = f"swims {run.path_length:.3g} m, greatest residual of the ledger {_open(run):.1g} of what passed"
+        except SimulationStopped as error:
+            outcome = str(error)
+        except ValueError as error:
+            outcome = f"refused: {error}"
+        rows.append((f"{thickness:g}", outcome))
+    return table_of(("half-axes of a needle of 1 m (m)", "what happens to it in the falling gait"), rows)
 
 
 def needle(thickness: float) -> Body:
@@ -106,13 +92,9 @@ def needle(thickness: float) -> Body:
 
 def table(maps: tuple[Conditions, ...]) -> str:
     """The least and greatest values of the maps, then the needles, as Markdown tables."""
-    lines = ["| map | least | greatest |", "|---|---|---|"]
-    lines += [f"| {each.title} | {each.value.min():.3g} | {each.value.max():.3g} |" for each in maps]
-    lines += [
-        "",
-        f"Bodies of a condition above {MOST:g} are refused as singular:",
-    ]
-    return "\n".join([*lines, "", needles()])
+    rows = [(each.map.title, f"{each.value.min():.3g}", f"{each.value.max():.3g}") for each in maps]
+    refused = f"Bodies of a condition above {MOST:g} are refused as singular:"
+    return "\n".join([table_of(("map", "least", "greatest"), rows), "", refused, "", needles()])
 
 
 def _water(ratio: float) -> Scene:

@@ -12,6 +12,7 @@ path: distance of the head from that of a finer run, relative to its distance fr
 from dataclasses import dataclass
 
 import numpy as np
+from eel_base.markdown import table as table_of
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.simulation.simulation import Simulation
@@ -24,6 +25,10 @@ DECADES = 5
 SETTLED = 2  # decade from which on the motion is periodic
 COMPARED = 3  # decades over which a finer run is simulated as well
 ACCURACY = "draft"
+FIGURES = (  # columns
+    *("ledger's residual, by the work", "norm of the quaternion, less 1", "phase of the law (rad)"),
+    *("beat, by the hundredth", "path, by a finer run"),
+)
 STATIONS = 5  # at which the law's phase is evaluated
 
 
@@ -83,18 +88,15 @@ def drift_of(name: str, law: Law, scene: Scene, decades: int = DECADES, compared
 
 def table(found: list[Drift]) -> str:
     """The drifts as a Markdown table."""
-    lines = [
-        "| swimmer | periods | ledger's residual, by the work | norm of the quaternion, less 1 | phase of the law "
-        "(rad) | beat, by the hundredth | path, by a finer run | way (m) |",
-        "|---|---|---|---|---|---|---|---|",
-    ]
+    head = "swimmer", "periods", *FIGURES, "way (m)"
+    rows = []
     for each in found:
         for index, periods in enumerate(each.periods):
             figures = (row[index] for row in (each.ledger, each.norm, each.phase, each.beat, each.path))
-            told = " | ".join("" if np.isnan(figure) else f"{figure:.1e}" for figure in figures)
-            lines.append(f"| {each.name} | {periods:,.0f} | {told} | {each.way[index]:,.4g} |")
+            cells = ("" if np.isnan(figure) else f"{figure:.1e}" for figure in figures)
+            rows.append((each.name, f"{periods:,.0f}", *cells, f"{each.way[index]:,.4g}"))
     counts = ", ".join(f"{each.steps:,} of the {each.name}" for each in found)
-    return "\n".join([*lines, "", f"Accuracy `{ACCURACY}`, period {PERIOD} s; steps in time: {counts}."])
+    return f"{table_of(head, rows)}\n\nAccuracy `{ACCURACY}`, period {PERIOD} s; steps in time: {counts}."
 
 
 def _swum(law, scene, accuracy, times):

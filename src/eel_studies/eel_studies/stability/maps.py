@@ -8,7 +8,7 @@ target. For an inaccurate run the map records whether the run indicates it: by a
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from eel_dynamics.accuracy.accuracy import ORDERS, PRESETS, Accuracy
@@ -28,23 +28,55 @@ FIXED_RESOLUTION = 36.0  # points per body length with a fixed step: the error i
 ACCURATE, INACCURATE, STOPPED = "accurate", "inaccurate", "stopped"
 
 
-@dataclass(frozen=True, kw_only=True)
-class Map:
-    """A sweep over `x` and `y`.
+class Axis(NamedTuple):
+    """An axis of a map: label, least and greatest value."""
 
-    swimmer(x, y): arguments of one run by their names in `simulate_batch`, and `duration` [s]. target: of the relative
-    error, one number or one per row. y_names: labels of the rows where y is not a number.
+    label: str
+    low: float
+    high: float
+
+
+PERIOD = Axis("period (s)", 0.02, 50.0)
+DENSITY = Axis("density of the body, by water's", 1e-3, 1e3)
+SLENDERNESS = Axis("slenderness l / (2 max(a, b))", 5.0, 500.0)
+
+
+def named(label: str, count: int) -> Axis:
+    """An axis of `count` rows with names: the values are the powers of 2."""
+    return Axis(label, 1.0, 2.0 ** (count - 1))
+
+
+def sized(low: float, high: float) -> Axis:
+    """The amplitude of the wave as an axis."""
+    return Axis("amplitude, by the paper's", low, high)
+
+
+@dataclass(frozen=True)
+class Map:
+    """A sweep over two axes, with `points` values of each in geometric sequence.
+
+    swimmer(x, y): arguments of one run by their names in `simulate_batch`, and `duration` [s]. y_names: labels of the
+    rows where y is not a number: one row for each (`named`). target: of the relative error, one number or one per row.
     """
 
     name: str
     title: str
-    x_label: str
-    y_label: str
-    x: np.ndarray
-    y: np.ndarray
+    across: Axis
+    up: Axis
+    points: int
     swimmer: Callable
-    target: np.ndarray | float = TARGET
     y_names: tuple[str, ...] = ()
+    target: np.ndarray | float = TARGET
+
+    @property
+    def x(self) -> np.ndarray:
+        """Values along the map."""
+        return np.geomspace(self.across.low, self.across.high, self.points)
+
+    @property
+    def y(self) -> np.ndarray:
+        """Values of the rows; of rows with names the powers of 2."""
+        return np.geomspace(self.up.low, self.up.high, len(self.y_names) or self.points)
 
 
 @dataclass(frozen=True)
@@ -114,111 +146,41 @@ def measure(item: Map) -> Measured:
 
 def maps_of(points: int = 13) -> tuple[Map, ...]:
     """The maps, of `points` by `points` runs each. Maps over presets or methods have one row for each of them."""
-
-    def spread(low, high):
-        return np.geomspace(low, high, points)
-
-    return (
-        Map(
-            name="gait",
-            title="period and amplitude: 4 periods",
-            x_label="period (s)",
-            y_label="amplitude, by the paper's",
-            x=spread(0.02, 50.0),
-            y=spread(1e-12, 4.0),
-            swimmer=lambda period, size: _swim(_wave(period=period, size=size), 4.0 * period),
-        ),
-        Map(
-            name="wave",
-            title="wavelength and amplitude: 4 periods",
-            x_label="wavelength (body lengths)",
-            y_label="amplitude, by the paper's",
-            x=spread(0.2, 100.0),
-            y=spread(1e-3, 12.0),
-            swimmer=lambda wavelength, size: _swim(_wave(wavelength=wavelength, size=size), 4.0),
-        ),
-        Map(
-            name="water",
-            title="density and viscosity: 4 periods",
-            x_label="density of the body, by water's",
-            y_label="viscosity (m²/s)",
-            x=spread(1e-3, 1e3),
-            y=spread(1e-9, 1.0),
-            swimmer=lambda ratio, viscosity: _swim(
-                _wave(), 4.0, scenes=Scene(density=1000.0 * ratio, viscosity=viscosity)
-            ),
-        ),
-        Map(
-            name="viscosity",
-            title="period and viscosity: 4 periods",
-            x_label="period (s)",
-            y_label="viscosity (m²/s), the lowest row: 0",
-            x=spread(0.02, 50.0),
-            y=spread(LEAST_VISCOSITY, 1.0),
-            swimmer=lambda period, viscosity: _swim(
-                _wave(period=period), 4.0 * period, scenes=Scene(viscosity=viscosity * (viscosity > LEAST_VISCOSITY))
-            ),
-        ),
-        Map(
-            name="velocity",
-            title="initial velocity, and spin about three axes: 0.2 s",
-            x_label="speed (m/s)",
-            y_label="spin (turns/s)",
-            x=spread(1e-2, 100.0),
-            y=spread(1e-2, 100.0),
-            swimmer=lambda speed, turns: _swim(
-                _wave(), 0.2, twists=np.array([*np.full(3, 2.0 * np.pi * turns / np.sqrt(3.0)), -speed, 0.0, 0.0])
-            ),
-        ),
-        Map(
-            name="body",
-            title="length and slenderness: 4 periods",
-            x_label="length (m)",
-            y_label="slenderness l / (2 max(a, b))",
-            x=spread(0.01, 100.0),
-            y=spread(5.0, 500.0),
-            swimmer=lambda length, slenderness: _swim(
-                _wave(length=length), 4.0, bodies=Body.spindle(length, slenderness)
-            ),
-        ),
-        Map(
-            name="step",
-            title="a fixed step (classical Runge-Kutta): 4 periods",
-            x_label="step (periods)",
-            y_label="density of the body, by water's",
-            x=spread(1e-2, 1.0),
-            y=spread(1e-3, 1e3),
-            swimmer=lambda step, ratio: _swim(
-                _wave(),
-                4.0,
-                scenes=Scene(density=1000.0 * ratio),
-                accuracy=Accuracy(name=f"step {step:.3g}", resolution=FIXED_RESOLUTION, step=step),
-            ),
-        ),
-        Map(
-            name="preset",
-            title="the presets, each by its own target: 4 periods",
-            x_label="period (s)",
-            y_label="preset",
-            x=spread(0.02, 50.0),
-            y=np.geomspace(1.0, 8.0, len(PRESETS)),
-            y_names=tuple(PRESETS),
-            target=np.array(list(PRESETS.values())),
-            swimmer=lambda period, row: _swim(
-                _wave(period=period), 4.0 * period, accuracy=list(PRESETS)[round(np.log2(row))]
-            ),
-        ),
-        Map(
-            name="method",
-            title="every adaptive method: 4 periods",
-            x_label="tolerance of a step",
-            y_label="method",
-            x=spread(1e-8, 1.0),
-            y=np.geomspace(1.0, 2.0 ** (len(METHODS) - 1), len(METHODS)),
-            y_names=tuple(f"{method} {order}" for method, order in METHODS),
-            swimmer=lambda tolerance, row: _swim(_wave(), 4.0, accuracy=_method(round(np.log2(row)), tolerance)),
-        ),
+    rows = [
+        ("gait", "period and amplitude: 4 periods", PERIOD, sized(1e-12, 4.0),
+         lambda period, size: _swim(_wave(period=period, size=size), 4.0 * period)),
+        ("wave", "wavelength and amplitude: 4 periods",
+         Axis("wavelength (body lengths)", 0.2, 100.0), sized(1e-3, 12.0),
+         lambda wavelength, size: _swim(_wave(wavelength=wavelength, size=size), 4.0)),
+        ("water", "density and viscosity: 4 periods", DENSITY, Axis("viscosity (m²/s)", 1e-9, 1.0),
+         lambda ratio, viscosity: _swim(_wave(), 4.0, scenes=Scene(density=1000.0 * ratio, viscosity=viscosity))),
+        ("viscosity", "period and viscosity: 4 periods", PERIOD,
+         Axis("viscosity (m²/s), the lowest row: 0", LEAST_VISCOSITY, 1.0),
+         lambda period, viscosity: _swim(_wave(period=period), 4.0 * period,
+                                         scenes=Scene(viscosity=viscosity * (viscosity > LEAST_VISCOSITY)))),
+        ("velocity", "initial velocity, and spin about three axes: 0.2 s",
+         Axis("speed (m/s)", 1e-2, 100.0), Axis("spin (turns/s)", 1e-2, 100.0),
+         lambda speed, turns: _swim(
+             _wave(), 0.2, twists=np.array([*np.full(3, 2.0 * np.pi * turns / np.sqrt(3.0)), -speed, 0.0, 0.0]))),
+        ("body", "length and slenderness: 4 periods", Axis("length (m)", 0.01, 100.0), SLENDERNESS,
+         lambda length, slenderness: _swim(_wave(length=length), 4.0, bodies=Body.spindle(length, slenderness))),
+        ("step", "a fixed step (classical Runge-Kutta): 4 periods", Axis("step (periods)", 1e-2, 1.0), DENSITY,
+         lambda step, ratio: _swim(_wave(), 4.0, scenes=Scene(density=1000.0 * ratio), accuracy=Accuracy(
+             name=f"step {step:.3g}", resolution=FIXED_RESOLUTION, step=step))),
+    ]  # fmt: skip
+    presets = Map(
+        *("preset", "the presets, each by its own target: 4 periods", PERIOD, named("preset", len(PRESETS)), points),
+        lambda period, row: _swim(_wave(period=period), 4.0 * period, accuracy=list(PRESETS)[round(np.log2(row))]),
+        tuple(PRESETS),
+        np.array(list(PRESETS.values())),
     )
+    methods = Map(
+        *("method", "every adaptive method: 4 periods", Axis("tolerance of a step", 1e-8, 1.0)),
+        *(named("method", len(METHODS)), points),
+        lambda tolerance, row: _swim(_wave(), 4.0, accuracy=_method(round(np.log2(row)), tolerance)),
+        tuple(f"{method} {order}" for method, order in METHODS),
+    )
+    return *(Map(*row[:4], points, row[4]) for row in rows), presets, methods
 
 
 def _wave(period=1.0, wavelength=1.0, size=1.0, length=1.0):

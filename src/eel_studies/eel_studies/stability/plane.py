@@ -10,6 +10,7 @@ depends neither on the accuracy nor on the perturbation is a property of the mod
 from dataclasses import dataclass
 
 import numpy as np
+from eel_base.markdown import table as table_of
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.simulation.simulation import Simulation
@@ -23,6 +24,10 @@ PUSHES = (1e-15, 1e-12)  # rad/s, or m/s
 AXES = {"roll": 0, "pitch": 1, "vertical": 5}  # of the head's twist
 LONGEST = 40  # periods over which a perturbation is followed
 LINEAR = 1e-6  # m/s: below it, growth is linear in the perturbation
+HEAD = (
+    *("accuracy", "pushed in roll", "in pitch", "along axis 3"),
+    "by round-off alone, head turned across all axes",
+)
 SETTLED = 6  # periods after which the fastest mode dominates
 TURNED = np.array([0.15, 0.30, -0.08, np.sqrt(1.0 - 0.1189)])  # quaternion of a head turned about all axes
 
@@ -72,29 +77,22 @@ def growth(**swimmer) -> Growth:
 
 def table(long: int = LONG) -> str:
     """The result in words and numbers, as Markdown. long: periods of the run without a perturbation."""
-    lines = [
-        "| accuracy | pushed in roll | in pitch | along axis 3 | by round-off alone, head turned across all axes |",
-        "|---|---|---|---|---|",
-    ]
-    found = []
+    found, rows = [], []
     for accuracy in ACCURACIES:
         pushed = [[growth(accuracy=accuracy, push=push, axis=axis) for push in PUSHES] for axis in AXES]
-        turned = growth(accuracy=accuracy, push=0.0, orientation=TURNED)
-        texts = [", ".join(f"{each.rate:.3f}" for each in row) for row in (*pushed, [turned])]
-        lines.append(f"| {accuracy:g} | {' | '.join(texts)} |")
-        found += [*(each for row in pushed for each in row), turned]
+        turned = [growth(accuracy=accuracy, push=0.0, orientation=TURNED)]
+        rows.append((f"{accuracy:g}", *(", ".join(f"{each.rate:.3f}" for each in row) for row in (*pushed, turned))))
+        found += [each for row in (*pushed, turned) for each in row]
     rates = [each.rate for each in found]
-    mean = np.mean(rates)
-    lines += ["", "| swimmer | growth | mode: roll, pitch, vertical |", "|---|---|---|"]
-    lines += [f"| the paper's robot | {mean:.3f} | {_mode(found[-1])} |"]
+    mean, spread = np.mean(rates), max(rates) - min(rates)
+    swimmers = [("the paper's robot", f"{mean:.3f}", _mode(found[-1]))]
     for name, changes in variants().items():
         each = growth(**changes)
-        lines.append(f"| {name} | {each.rate:.3f} | {_mode(each)} |")
+        swimmers.append((name, f"{each.rate:.3f}", _mode(each)))
     rest = max(
         np.abs(out_of_plane(np.linspace(0.0, long, LOOKED_AT + 1), accuracy=accuracy)).max()
         for accuracy in ACCURACIES[:2]
     )
-    spread = max(rates) - min(rates)
     return "\n".join(
         [
             f"Without a push the swimmer is out of its plane by {rest:g} m/s in {long:,} periods: zeros stay zeros.",
@@ -102,7 +100,9 @@ def table(long: int = LONG) -> str:
             f"within {spread:.2g} in the exponent whatever its",
             "axis, its size and the accuracy; so does round-off, once the plane is not one of the axes':",
             "",
-            *lines,
+            table_of(HEAD, rows),
+            "",
+            table_of(("swimmer", "growth", "mode: roll, pitch, vertical"), swimmers),
         ]
     )
 

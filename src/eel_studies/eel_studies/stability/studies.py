@@ -21,13 +21,13 @@ class Study:
 def maps(points: int) -> Study:
     """Maps of runs over two parameters, with `points` values of each: accurate, inaccurate, or stopped."""
     found = [measure(item) for item in maps_of(points)]
-    return Study(report(found), {each.map.name: (each.map.title, _drawn(draw, each)) for each in found})
+    return Study(report(found), _pictures(draw, found))
 
 
 def conditions(points: int) -> Study:
     """Maps of the condition number of the 6 x 6 matrix, with `points` values of each parameter; singular bodies."""
     found = condition.maps_of(points)
-    return Study(condition.table(found), {each.name: (each.title, _drawn(draw_condition, each)) for each in found})
+    return Study(condition.table(found), _pictures(draw_condition, found))
 
 
 def drifts(points: int) -> Study:
@@ -43,5 +43,5 @@ def planes(points: int) -> Study:
 STUDIES = {"maps": maps, "condition": conditions, "drift": drifts, "plane": planes}
 
 
-def _drawn(function, item) -> Callable:
-    return lambda figure: function(figure, item)
+def _pictures(draw_one: Callable, found) -> dict[str, tuple[str, Callable]]:
+    return {each.map.name: (each.map.title, lambda figure, each=each: draw_one(figure, each)) for each in found}

@@ -4,9 +4,9 @@
 from pathlib import Path
 
 import numpy as np
-from eel_base.output_file import replacing
 from eel_gaits.laws.law import Law
 
+from eel_base import markdown
 from eel_studies.steering.linearisation import INPUTS, PeriodicLinearisation, periodic_linearisation
 from eel_studies.steering.study import (
     CONTROLLED,
@@ -139,13 +139,12 @@ def write_page(path: Path, scans: list[Scan], picture: str):
         tail=tail,
         error=max(each.error for each in first.values()),
     )
-    with replacing(path) as draft:
-        draft.write_text(text, encoding="utf-8")
+    markdown.write_page(path, text)
 
 
 def _modes(found: PeriodicLinearisation) -> str:
     """The modes as a table; a conjugate pair takes one line."""
-    lines = ["| multiplier | magnitude | motion | held by yaw | by pitch | by both |", "|---|---|---|---|---|---|"]
+    rows = []
     held = [found.controllability(inputs) for inputs in (YAW, PITCH, INPUTS)]
     attitude = list(np.flatnonzero(found.neutral))
     for mode, multiplier in enumerate(found.multipliers):
@@ -155,9 +154,8 @@ def _modes(found: PeriodicLinearisation) -> str:
         motion = found.motion_of(mode).replace("_", " ")
         if mode in attitude and len(attitude) > 1:
             value, motion = f"{value}, three times", "roll, pitch, heading"
-        singular = " | ".join(f"{_rounded(each[mode])}" for each in held)
-        lines.append(f"| {value} | {abs(multiplier):.3f} | {motion} | {singular} |")
-    return "\n".join(lines)
+        rows.append((value, f"{abs(multiplier):.3f}", motion, *(_rounded(each[mode]) for each in held)))
+    return markdown.table(("multiplier", "magnitude", "motion", "held by yaw", "by pitch", "by both"), rows)
 
 
 def _kicks(law: Law) -> str:
@@ -173,32 +171,28 @@ def _rounded(value: float) -> str:
 
 
 def _recovered(first: dict[float, PeriodicLinearisation]) -> str:
-    lines = [
-        f"| metacentric height | roll at the start | after 1, 2, 4, 8, {CONTROLLED} periods | greatest bend |",
-        "|---|---|---|---|",
-    ]
+    head = "metacentric height", "roll at the start", f"after 1, 2, 4, 8, {CONTROLLED} periods", "greatest bend"
+    rows = []
     for height, found in first.items():
         for lean in LEANS:
             roll, bend = recovery(found, np.radians(lean), BEND)
             rolls = ", ".join(f"{np.degrees(roll[k - 1]):.2g}" for k in (1, 2, 4, 8, CONTROLLED))
-            lines.append(f"| {1e3 * height:g} mm | {lean:g}° | {rolls}° | {bend:.2g} rad/m |")
-    return "\n".join(lines)
+            rows.append((f"{1e3 * height:g} mm", f"{lean:g}°", f"{rolls}°", f"{bend:.2g} rad/m"))
+    return markdown.table(head, rows)
 
 
 def _gaits(scans: list[Scan]) -> str:
     heights = [f"{1e3 * height:g} mm" for height in SHOWN]
-    lines = [
-        f"| gait | speed | steady from | growth at {', '.join(heights)} | sway at {', '.join(heights[1:])} |",
-        "|---|---|---|---|---|",
-    ]
+    head = "gait", "speed", "steady from", f"growth at {', '.join(heights)}", f"sway at {', '.join(heights[1:])}"
+    rows = []
     for scan in scans:
         found = [linearised(scan.law, height) for height in SHOWN]
         speed = np.linalg.norm(found[0].end.position) / found[0].period
         growth = ", ".join(f"{each.growth:.3f}" for each in found)
         swaying = ", ".join(f"{np.degrees(sway(each)):.1f}°" for each in found[1:])
         steady = f"none up to {1e3 * HIGHEST:g} mm" if scan.steady_from is None else f"{1e3 * scan.steady_from:.1f} mm"
-        lines.append(f"| {scan.name} | {speed:.2f} m/s | {steady} | {growth} | {swaying} |")
-    return "\n".join(lines)
+        rows.append((scan.name, f"{speed:.2f} m/s", steady, growth, swaying))
+    return markdown.table(head, rows)
 
 
 def scans_of(points: int) -> list[Scan]:

@@ -7,9 +7,8 @@ import platform
 from datetime import date
 from pathlib import Path
 
-from eel_base.output_file import replacing
-
 import eel_core
+from eel_base import markdown
 from eel_studies.tradeoff.models import Model
 from eel_studies.tradeoff.settings import CHECK, REFERENCE
 from eel_studies.tradeoff.table import WANTED, cheapest, digits_table, model_table, trade_table
@@ -81,9 +80,8 @@ def write_page(path: Path, found: list[tuple], pictures: Path) -> Path:
         long += f"\n## {trade.law.name}, {trade.duration:g} s\n\n{reference_line(trade)}\n\n"
         long += trade_table(trade, markdown=True) + "\n\n"
         long += model_table(models, trade, markdown=True) + "\n"
-    for each, text in ((path, short), (tables, long)):
-        with replacing(each) as draft:
-            draft.write_text(text, encoding="utf-8")
+    markdown.write_page(path, short)
+    markdown.write_page(tables, long)
     return tables
 
 

@@ -2,8 +2,10 @@
 """The trade-off as text: aligned for a terminal, or as Markdown tables."""
 
 import csv
+from operator import attrgetter
 from pathlib import Path
 
+from eel_base.markdown import table
 from eel_base.output_file import replacing
 from eel_dynamics.accuracy.accuracy import PRESETS
 
@@ -26,31 +28,17 @@ HEAD = (
 )
 SHORT = (1, 4, 5, 6, 7, 8, 10)  # columns of `HEAD` that the short table has
 WANTED = 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7  # relative errors of its rows
+SECONDS = attrgetter("seconds")  # of a row: its cost
 EXACT_ENOUGH = 0.1  # of a model's error, allowed for the discretisation
 
 
 def marks_of(trade: Trade) -> dict[int, str]:
     """Marks by the `id` of each row. P: on the front of pose error against time; T: on that of torque error."""
     marks = {id(row): "" for row in trade.rows}
-    for letter, error in (("P", pose), ("T", torque)):
-        for row in front(trade.rows, error, seconds):
+    for letter, error in (("P", attrgetter("pose_error")), ("T", attrgetter("torque_error"))):
+        for row in front(trade.rows, error, SECONDS):
             marks[id(row)] += letter
     return marks
-
-
-def pose(row: Measured) -> float:
-    """Relative error of pose."""
-    return row.pose_error
-
-
-def torque(row: Measured) -> float:
-    """Relative error of torque."""
-    return row.torque_error
-
-
-def seconds(row: Measured) -> float:
-    """CPU time of the run [s]."""
-    return row.seconds
 
 
 def cells_of(row: Measured, mark: str) -> list[str]:
@@ -75,7 +63,7 @@ def listed(trade: Trade, everything: bool = False) -> list[Measured]:
     """The settings of the fronts and the presets, the cheapest first; `everything`: all settings."""
     marks = marks_of(trade)
     rows = [row for row in trade.rows if everything or marks[id(row)] or row.accuracy.name in PRESETS]
-    return sorted(rows, key=seconds)
+    return sorted(rows, key=SECONDS)
 
 
 def cheapest(trade: Trade) -> list[Measured | None]:
@@ -115,7 +103,7 @@ def model_table(models: list[Model], trade: Trade, *, markdown: bool = False) ->
 
 def exact_enough(model: Model, trade: Trade) -> tuple[str, str]:
     """Name and speed of the cheapest setting with at most a tenth of the model's errors, in times real time."""
-    for row in sorted(trade.rows, key=seconds):
+    for row in sorted(trade.rows, key=SECONDS):
         if row.pose_error <= EXACT_ENOUGH * model.pose_error and row.torque_error <= EXACT_ENOUGH * model.torque_error:
             return row.accuracy.name, f"{row.times_real_time:.0f}"
     return "no difference that a setting resolves", "-"
@@ -127,14 +115,13 @@ def write_csv(trade: Trade, path: Path):
     with replacing(path) as draft, draft.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(HEAD)
-        writer.writerows(cells_of(row, marks[id(row)]) for row in sorted(trade.rows, key=seconds))
+        writer.writerows(cells_of(row, marks[id(row)]) for row in sorted(trade.rows, key=SECONDS))
 
 
 def laid_out(head, rows, markdown: bool) -> str:
     """A table as aligned text, or in Markdown."""
     if markdown:
-        lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
-        return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows])
+        return table(head, rows)
     widths = [max(len(cell) for cell in column) for column in zip(head, *rows, strict=True)]
     return "\n".join(
         "  ".join(

@@ -1,31 +1,30 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Draws what the node `markers` publishes, as RViz would: `marker_picture.py SECONDS FILE`, of the sample at that time.
+"""Draws what the node `markers` publishes for the falling gait as RViz would, into docs/images: `make pictures`.
 
 The skin is shaded, arrows keep their colours, the midline is black; one square of the grid is 0.1 m.
 """
 
-import sys
 from itertools import pairwise
 
-import matplotlib
 import numpy as np
-import rclpy
-from eel_ros.qos import keep_all
+from eel_dynamics.runs.exchange.records import records
+from eel_viz.messages import read_backbone, read_body, read_load, read_wrench
+from eel_viz.ros.marker_messages import ForceMarkers, SkinMarker, midline
+from eel_viz.settings import MarkerSettings
 from matplotlib.colors import LightSource
+from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 from nav_msgs.msg import Path
-from visualization_msgs.msg import Marker, MarkerArray
+from pictures import FOLDER, MOMENT, tell
+from std_msgs.msg import Header
+from visualization_msgs.msg import Marker
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
+from eel_dynamics import simulate
+from eel_gaits import falling
 
 SQUARE, BACKGROUND = 0.1, "#303030"  # m; RViz's own colour
 FROM = {"elev": 62.0, "azim": -70.0}
-SIDES, PARTS, HEAD = (
-    8,
-    8,
-    0.23,
-)  # of an arrow: sides, parts of its shaft, RViz's length of the head by that of the arrow
+SIDES, PARTS, HEAD = 8, 8, 0.23  # of an arrow: sides, parts of its shaft, RViz's length of its head by its own
 LIGHT = LightSource(azdeg=300.0, altdeg=60.0)
 
 
@@ -34,23 +33,14 @@ def triples(points) -> np.ndarray:
     return np.array([(point.x, point.y, point.z) for point in points])
 
 
-def received(time: float) -> tuple[MarkerArray, Path]:
-    """Markers and midline of the sample at that simulation time [s]."""
-    rclpy.init()
-    node = rclpy.create_node("marker_picture")
-    wanted, got = round(time * 1e9), {}
-
-    def keep(message, header) -> None:
-        if header.stamp.sec * 10**9 + header.stamp.nanosec == wanted:
-            got[type(message)] = message
-
-    node.create_subscription(MarkerArray, "markers", lambda each: keep(each, each.markers[0].header), keep_all())
-    node.create_subscription(Path, "midline", lambda each: keep(each, each.header), keep_all())
-    print(f"waiting for the sample at {time:g} s", flush=True)
-    while len(got) < 2:
-        rclpy.spin_once(node, timeout_sec=0.1)
-    rclpy.shutdown()
-    return got[MarkerArray], got[Path]
+def shown(time: float) -> tuple[list[Marker], Path]:
+    """What the node makes of the falling gait at that time [s]: markers and midline."""
+    topics = dict(records(simulate(falling(), time, sample_period=time, load=True)))
+    backbone, settings = read_backbone(topics["backbone"]), MarkerSettings()
+    skin = SkinMarker(read_body(topics["body"]), settings.colour_limit)
+    forces = ForceMarkers(settings).markers(Header(), backbone, read_load(topics["hydrodynamic_load"]))
+    markers = [skin.marker(Header(), backbone, read_wrench(topics["internal_wrench"])), *forces]
+    return markers, midline(Header(), backbone)
 
 
 def arrow(start: np.ndarray, end: np.ndarray, shaft: float, head: float) -> np.ndarray:
@@ -70,12 +60,12 @@ def arrow(start: np.ndarray, end: np.ndarray, shaft: float, head: float) -> np.n
     return np.concatenate(corners)
 
 
-def draw(markers: MarkerArray, midline: Path, file: str) -> None:
+def draw(markers: list[Marker], line: Path, file) -> None:
     """Write the picture. All triangles are one collection, so that near ones hide those behind."""
-    figure = plt.figure(figsize=(9.6, 5.4), facecolor=BACKGROUND)
+    figure = Figure(figsize=(9.6, 5.4), facecolor=BACKGROUND)
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0), projection="3d", facecolor=BACKGROUND, computed_zorder=False)
     shapes, colours = [], []
-    for marker in markers.markers:
+    for marker in markers:
         if marker.action != Marker.ADD:
             continue
         points, colour = triples(marker.points), (marker.color.r, marker.color.g, marker.color.b)
@@ -91,8 +81,9 @@ def draw(markers: MarkerArray, midline: Path, file: str) -> None:
         corners, facecolors=np.concatenate(colours), shade=True, lightsource=LIGHT, zorder=3, clip_on=False
     )
     axes.add_collection3d(faces)
-    line = triples(pose.pose.position for pose in midline.poses)
-    axes.plot(*line.T, color="black", linewidth=1.0, zorder=4, clip_on=False)
+    axes.plot(
+        *triples(pose.pose.position for pose in line.poses).T, color="black", linewidth=1.0, zorder=4, clip_on=False
+    )
     every = corners.reshape(-1, 3)
     low, high = (SQUARE * each for each in (np.floor(every.min(axis=0) / SQUARE), np.ceil(every.max(axis=0) / SQUARE)))
     for k, other in ((0, 1), (1, 0)):  # the grid lies below the swimmer
@@ -108,4 +99,5 @@ def draw(markers: MarkerArray, midline: Path, file: str) -> None:
 
 
 if __name__ == "__main__":
-    draw(*received(float(sys.argv[1])), sys.argv[2])
+    draw(*shown(MOMENT), FOLDER / "markers.png")
+    tell(FOLDER / "markers.png")
