@@ -3,13 +3,14 @@
 
 import numpy as np
 from eel_base.wording import shown
+from eel_base.work_stopped import WorkStopped
 from eel_gaits.laws.law import Law
 
 import eel_core
 from eel_dynamics.accuracy.accuracy import Accuracy
 
 
-class SimulationStopped(RuntimeError):
+class SimulationStopped(WorkStopped):
     """The march could not continue. `quantity` failed with `value` at `time` [s]. `hint` says what to change."""
 
     def __init__(self, time: float, quantity: str, value: float, hint: str):

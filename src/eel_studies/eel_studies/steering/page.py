@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Writes docs/explanation/steering.md: what grows in a swim, what bends can do about it, what ballast does."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -201,6 +202,10 @@ def _gaits(scans: list[Scan]) -> str:
     return "\n".join(lines)
 
 
-def scans_of(points: int) -> list[Scan]:
-    """The scans of all `GAITS`."""
-    return [Scan.of(name, law, points) for name, law in GAITS.items()]
+def scans_of(points: int, progress: Callable[[int, int], object] = lambda done, count: None) -> list[Scan]:
+    """The scans of all `GAITS`. progress(done, count) is called after each."""
+    scans = []
+    for name, law in GAITS.items():
+        scans.append(Scan.of(name, law, points))
+        progress(len(scans), len(GAITS))
+    return scans
