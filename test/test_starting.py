@@ -133,7 +133,7 @@ def test_an_interrupt_in_mid_sweep_says_how_it_goes_on(start, tmp_path):
         assert sweep.status is None and time.monotonic() < deadline, sweep.output()
         time.sleep(0.02)
     assert sweep.interrupt() == 130
-    assert sweep.output().splitlines()[-1] == "sweep: interrupted; the same command goes on from here"
+    assert sweep.output().splitlines()[-1] == "eel sweep: interrupted; the same command goes on from here"
     assert "Traceback" not in sweep.output()
 
 

@@ -163,7 +163,7 @@ def draw() -> None:
     if drawn is not None and drawn.returncode == 0 and PICTURE.exists():
         say(f"picture: {PICTURE}")
     else:
-        say(reason[0].removeprefix("render: ") if reason else "no picture: the viewer gave none")
+        say(reason[0].removeprefix("eel render: ") if reason else "no picture: the viewer gave none")
 
 
 def say(text: str) -> None:

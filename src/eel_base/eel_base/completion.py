@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`eel completion`: print the lines with which bash or zsh completes commands, options and gaits.
+"""`eel completion`: print what lets bash or zsh complete commands and options.
 
 bash: eval "$(eel completion bash)"     zsh: eval "$(eel completion zsh)"
 """

@@ -349,7 +349,7 @@ def test_command_with_a_cluster_of_its_own(tmp_path, capsys):
 def test_bad_input_of_the_command(options, words, tmp_path, capsys):
     assert main([*options, "--out", str(tmp_path / "out.nc")]) == 2
     said = capsys.readouterr().err
-    assert words in said and said.startswith("sweep: ") and said.count("\n") == 1
+    assert words in said and said.startswith("eel sweep: ") and said.count("\n") == 1
 
 
 def test_out_of_memory_is_one_line(tmp_path, monkeypatch, capsys):
@@ -358,7 +358,7 @@ def test_out_of_memory_is_one_line(tmp_path, monkeypatch, capsys):
 
     monkeypatch.setattr(sweep_command, "sweep", swum)
     assert main(["--vary", "period=1", "--out", str(tmp_path / "out.nc")]) == 2
-    assert capsys.readouterr().err == "sweep: it does not fit into memory: 72 GiB\n"
+    assert capsys.readouterr().err == "eel sweep: it does not fit into memory: 72 GiB\n"
 
 
 @pytest.mark.parametrize(

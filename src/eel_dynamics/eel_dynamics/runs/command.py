@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`eel simulate`: swim a gait, a sequence of gaits or a measured motion, and print its figures.
+"""`eel simulate`: swim a gait, a sequence or a measured motion; print its figures.
 
 eel simulate falling
 eel simulate falling --duration 20 --periods 4 --actuators 8

@@ -51,7 +51,8 @@ class _Help(argparse.Action):
     """Prints the help of the command, or with a gait that of the gait."""
 
     def __call__(self, parser, namespace, values, option_string=None):
-        name = values or getattr(namespace, "gait", None)
+        given = getattr(namespace, "gait", None)
+        name = values or (None if given == parser.get_default("gait") else given)
         try:
             print(f"{name}: {inspect.getdoc(find(name))}" if isinstance(name, str) else parser.format_help())
         except ValueError as error:

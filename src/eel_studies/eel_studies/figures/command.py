@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`eel figures`: draw the paper's figures 5 to 9, and more, with a page that explains them.
+"""`eel figures`: draw the paper's figures 5 to 9, and more, with their page.
 
 eel figures                   # into docs/figures
 eel figures --out out/figures --format pdf --columns 1       # for a journal

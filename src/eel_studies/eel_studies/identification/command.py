@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`eel identify`: find coefficients of the model, with their intervals, from measured swims.
+"""`eel identify`: find coefficients of the model from measured swims.
 
 eel identify path.csv --gait turning --first body.lateral_drag=1.5 --first body.nose_drag=0.1 --out fit.png
 eel identify speeds.csv --gait straight --first body.lateral_drag=1.5 --noise 0.005

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`eel midlines`: swim a file of midlines, and compare those that come out with it.
+"""`eel midlines`: swim a file of midlines, and compare what comes out.
 
 eel midlines fish.csv                       # the distance, as a number
 eel midlines fish.csv --out midlines.png    # and a picture

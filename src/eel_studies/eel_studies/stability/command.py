@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`eel stability`: drive the simulator to its extremes: maps, long runs, singular bodies.
+"""`eel stability`: drive the simulator to its extremes, and map where it stops.
 
 eel stability                   # every study; pictures into docs/images
 eel stability --study drift     # one of them: maps, condition, drift, plane
@@ -20,7 +20,7 @@ from eel_studies.pictures.picture_file import write_picture
 from eel_studies.stability.studies import STUDIES
 
 SIZE = 5.6, 4.2  # inches
-BEGIN, END = "<!-- {}: written by `stability` -->", "<!-- end of {} -->"
+BEGIN, END = "<!-- {}: written by `eel stability` -->", "<!-- end of {} -->"
 
 
 def main(arguments: list[str] | None = None) -> int:

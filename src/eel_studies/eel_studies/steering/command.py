@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`eel steering`: linearise swims over a period: what grows, and what bends can do.
+"""`eel steering`: linearise swims over a period: what grows, what bends do.
 
 eel steering                                         # prints a line per gait and height, draws out/steering.png
 eel steering --page docs/explanation/steering.md     # the page, and its picture in docs/images

@@ -33,7 +33,7 @@ SAME = 1e-6  # multipliers that differ by less are one
 
 PAGE = """# Can it be steered?
 
-Made by `steering --page {page}`. The paper's robot, in the scene's default physics.
+Made by `eel steering --page {page}`. The paper's robot, in the scene's default physics.
 
 The motion is linearised over one period of the gait. The settled motion repeats itself, except for position and
 heading. The monodromy matrix maps a small disturbance at the start of a period to the disturbance at its end. Its

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`eel sweep`: swim a grid of parameters on all cores or a cluster, into one file.
+"""`eel sweep`: swim a grid of parameters, on all cores, into one file.
 
 eel sweep straight --vary period=0.5:2:16 --vary scene.friction=printed,laminar --out periods.nc
 eel sweep straight --vary body=boyer2010,kern2006 --vary wavelength=0.6:1.2:7 --scheduler tcp://host:8786 --out waves.nc

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`eel tradeoff`: measure the cost of accuracy, and the error of models that leave physics out.
+"""`eel tradeoff`: measure what accuracy costs, and what poorer models miss.
 
 eel tradeoff falling
 eel tradeoff falling straight turning --page docs/appendix/tradeoff.md --pictures docs/images

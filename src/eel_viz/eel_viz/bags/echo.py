@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`eel echo`: print the messages of a topic as YAML, as `ros2 topic echo` does, without `ros2`."""
+"""`eel echo`: print the messages of a topic as YAML, without `ros2`."""
 
 import argparse
 import array

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`eel replay`: turn a bag into the Rerun recording that the visualiser would make, without ROS.
+"""`eel replay`: turn a bag into a Rerun recording, as of the visualiser.
 
     eel replay BAG -o run.rrd
 
