@@ -135,10 +135,10 @@ def test_what_costs_more_on_the_way_stops_with_what_to_change(monkeypatch):
 @pytest.fixture
 def hurried(monkeypatch):
     """A wall clock by which every look is a second after the one before."""
-    ticks = itertools.count()
-    monkeypatch.setattr(
-        "eel_dynamics.runs.progress_monitor.time", type("Clock", (), {"monotonic": lambda: float(next(ticks))})
-    )
+    for module in ("eel_dynamics.runs.progress_monitor", "eel_base.progress"):
+        ticks = itertools.count()
+        clock = type("Clock", (), {"monotonic": lambda ticks=ticks: float(next(ticks))})
+        monkeypatch.setattr(f"{module}.time", clock)
 
 
 def test_progress_is_told_with_what_is_left(hurried):

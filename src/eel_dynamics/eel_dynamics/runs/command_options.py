@@ -33,8 +33,10 @@ def add_options(parser: Parser, *options: str, **defaults) -> None:
         default = defaults.get(option.strip("-").replace("-", "_"), about.get("default"))
         default, told = default if isinstance(default, tuple) else (default, default)
         text = f"{about['help']} ({told})" if told else about["help"]
-        parser.add_argument(option, **{**about, "default": default, "help": text.replace("%", "%%")})
-    if "gait" in options or "gaits" in options:
+        added = parser.add_argument(option, **{**about, "default": default, "help": text.replace("%", "%%")})
+        if "gait" in option:
+            added.completer = lambda **_: GAITS  # for argcomplete
+    if "gait" in options:
         parser.add_argument("-h", "--help", nargs="?", metavar="GAIT", action=_Help, help="this, or a gait's numbers")
 
 
