@@ -15,8 +15,10 @@ WORDS = {
     "visualiser": ("--ros-args", "-p", "sink:=[save]"),
     "record": ("-o", "bag"),
     "eel_echo": ("odom",),
+    "eel": ("simulate",),
     "simulate": ("--duration", "2000", "--accuracy", "reference"),  # longer than the test
 }
+FIRST = {"record": "rclpy"}  # module at whose import it is stopped, where that is not numpy
 # Stands still where the module that the variable names is imported, or at the interpreter's start; LIMIT is far above
 # what a signal takes to end a process.
 STANDSTILL = """
@@ -62,12 +64,13 @@ def start_until(start, tmp_path, monkeypatch):
 )
 @pytest.mark.parametrize("executable", COMMANDS)
 def test_an_interrupt_during_the_imports_is_silent(executable, start_until):
-    node = start_until("numpy", executable, *WORDS.get(executable, ()))
+    node = start_until(FIRST.get(executable, "numpy"), executable, *WORDS.get(executable, ()))
     assert (node.interrupt(timeout=LIMIT), node.output()) == (-signal.SIGINT, "")
 
 
 @pytest.mark.parametrize(
-    ("place", "executable"), [("rclpy", "pilot"), ("rclpy", "dynamics"), ("rerun", "visualiser"), ("scipy", "simulate")]
+    ("place", "executable"),
+    [("rclpy", "pilot"), ("rclpy", "dynamics"), ("rerun", "visualiser"), ("eel_core", "simulate")],
 )
 def test_an_interrupt_during_a_later_import_is_silent(place, executable, start_until):
     node = start_until(place, executable, *WORDS.get(executable, ()))
@@ -80,9 +83,9 @@ def test_an_interrupt_while_python_itself_starts_is_silent(executable, start_unt
     assert (node.interrupt(timeout=LIMIT), node.output()) == (-signal.SIGINT, "")
 
 
-@pytest.mark.parametrize("module", ["eel_studies.figures", "eel_viz.bags.record", "eel_gaits.ros.node"])
+@pytest.mark.parametrize("module", ["eel_studies.figures.command", "eel_viz.bags.record", "eel_gaits.ros.node"])
 def test_an_interrupt_of_a_module_that_python_runs_is_silent(module, start_until):
-    node = start_until("numpy", "python", "-m", module)
+    node = start_until("rclpy" if "record" in module else "numpy", "python", "-m", module)
     assert (node.interrupt(timeout=LIMIT), node.output()) == (-signal.SIGINT, "")
 
 
@@ -99,7 +102,7 @@ def ends_silently(start, executable, moment) -> bool:
     node = start(executable, *WORDS.get(executable, ()))
     time.sleep(moment)  # the moment of the signal is what is tried here
     status = node.interrupt(timeout=LIMIT)
-    own = "[INFO]" if executable in NODES else (f"{executable}: ", "[INFO]")
+    own = "[INFO]" if executable in NODES else ("eel ", "[INFO]")
     good = (0, -signal.SIGINT) if executable in NODES else (0, 2, -signal.SIGINT)
     return status in good and all(line.startswith(own) for line in node.output().splitlines())
 

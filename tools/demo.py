@@ -154,7 +154,7 @@ def library_speed() -> float:
 
 def draw() -> None:
     """The picture, where the viewer can draw without a display."""
-    command = [sys.executable, "-m", "eel_viz.pictures.render", str(RECORDING), str(PICTURE)]
+    command = ["eel", "render", str(RECORDING), str(PICTURE)]
     try:
         drawn = subprocess.run(command, capture_output=True, text=True, timeout=60)
         reason = (drawn.stderr or drawn.stdout).strip().splitlines()[-1:] if drawn.returncode else []

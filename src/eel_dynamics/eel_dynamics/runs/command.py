@@ -8,7 +8,6 @@ eel simulate --file midlines.csv
 eel simulate straight --set wavelength=0.8 --scene friction=laminar --accuracy 1e-6 --out run.npz
 """
 
-import sys
 import time
 from importlib.util import find_spec
 from pathlib import Path
@@ -196,7 +195,3 @@ def _write(run: Run, path: Path):
         return
     columns = columns_of(run) | {name: np.full(len(run.time), value) for name, value in errors.items()}
     write_columns(columns, path)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

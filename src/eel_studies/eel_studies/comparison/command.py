@@ -6,7 +6,6 @@ eel compare before.nc after.nc --out pair.png
 eel compare measured.nc straight          # the gait swims in the body, scene and time of the file
 """
 
-import sys
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -122,7 +121,3 @@ def _parser() -> Parser:
     )  # fmt: skip
     parser.add_argument("--out", metavar="FILE", help=".rrd: for Rerun's viewer (needs eel_viz); .png, .svg, .pdf")
     return parser
-
-
-if __name__ == "__main__":
-    sys.exit(main())

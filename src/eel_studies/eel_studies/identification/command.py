@@ -6,7 +6,6 @@ eel identify speeds.csv --gait straight --first body.lateral_drag=1.5 --noise 0.
 eel identify run.nc --first body.lateral_drag=1.5 --out fit.png --out fit.csv
 """
 
-import sys
 import time
 from dataclasses import replace
 
@@ -127,7 +126,3 @@ def _parser() -> Parser:
     parser.add_argument("--noise", type=float, metavar="SIZE", help="standard deviation of the errors, m or m/s")
     parser.add_argument("--level", type=float, default=0.95, help="of the intervals (0.95)")
     return parser
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -5,7 +5,6 @@ eel optimise straight --bound period=0.4:3 --bound amplitude_0=0:2 --bound ampli
 eel optimise kern_fast --body kern2006 --bound period=0.5:2 --bound bend_tail=0:8 --speeds 0.3,0.4 --out front.png
 """
 
-import sys
 import time
 
 from eel_base.command_line import Parser
@@ -109,7 +108,3 @@ def _parser() -> Parser:
     parser.add_argument("--starts", type=int, default=1, metavar="N", help="gaits from which a search begins (1)")
     parser.add_argument("--seed", type=int, default=0, metavar="N", help="of what is random (0)")
     return parser
-
-
-if __name__ == "__main__":
-    sys.exit(main())

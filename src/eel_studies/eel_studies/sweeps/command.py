@@ -5,7 +5,6 @@ eel sweep straight --vary period=0.5:2:16 --vary scene.friction=printed,laminar 
 eel sweep straight --vary body=boyer2010,kern2006 --vary wavelength=0.6:1.2:7 --scheduler tcp://host:8786 --out waves.nc
 """
 
-import sys
 import time
 
 import numpy as np
@@ -86,7 +85,3 @@ def _parser() -> Parser:
     parser.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask scheduler, or processes; without: threads")
     parser.add_argument("--workers", type=int, metavar="N", help="threads, or processes (one per core)")
     return parser
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -8,7 +8,6 @@ eel tradeoff --delivered --seed 7 --page docs/explanation/accuracy.md --pictures
 """
 
 import os
-import sys
 from pathlib import Path
 
 from eel_base.command_line import Parser
@@ -192,7 +191,3 @@ def _parser() -> Parser:
     parser.add_argument("--count", type=int, help=f"of the random swims ({COUNT})")
     parser.add_argument("--seed", type=int, help=f"of the random swims ({SEED})")
     return parser
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -9,7 +9,6 @@ reset in the bag begins a second file, as in the visualiser.
 
 import contextlib
 import os
-import sys
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import fields
@@ -224,7 +223,3 @@ def _replay(chosen) -> int:
     if chosen.spawn:
         open_window(output)
     return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

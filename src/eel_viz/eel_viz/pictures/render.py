@@ -13,7 +13,6 @@ import contextlib
 import math
 import os
 import pathlib
-import sys
 import tempfile
 from collections.abc import Callable, Sequence
 
@@ -219,7 +218,3 @@ def _check_writable(output: pathlib.Path, *, folder: bool) -> None:
         raise ValueError(
             f"output {shown(str(output))} cannot be written: {shown(str(where))} is no folder that can be written to"
         )
-
-
-if __name__ == "__main__":
-    sys.exit(main())
