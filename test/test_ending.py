@@ -87,4 +87,4 @@ def test_interrupted_simulate(start):
         assert tool.status is None and time.monotonic() < deadline, tool.output()
         time.sleep(0.1)
     assert tool.interrupt() == -signal.SIGINT
-    assert all(line.startswith("simulate: at ") for line in tool.output().splitlines()), tool.output()
+    assert all(line.startswith("eel simulate: ") for line in tool.output().splitlines()), tool.output()

@@ -15,6 +15,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[1]
 PYTHON_PACKAGES = ("eel_base", "eel_ros", "eel_gaits", "eel_dynamics", "eel_studies", "eel_gym", "eel_viz")
 EXECUTABLES = {
+    "eel_base": {"eel"},
     "eel_gaits": {"gait_generator", "heading_controller", "pilot"},
     "eel_dynamics": {"dynamics", "simulate"},
     "eel_studies": {
@@ -41,7 +42,17 @@ ROSDEP_KEY = {
 with (ROOT / "pyproject.toml").open("rb") as settings:
     CONTRACTS = tomllib.load(settings)["tool"]["importlinter"]["contracts"]
 (MAY_IMPORT_ROS,) = (each["allowed_importers"] for each in CONTRACTS if each["type"] == "protected")
-OPTIONAL = {"pytest", "dask", "distributed", "eel_viz", "gymnasium", "xarray"}  # used where it is installed
+# Used where it is installed:
+OPTIONAL = {
+    "argcomplete",
+    "rich_argparse",
+    "pytest",
+    "dask",
+    "distributed",
+    "eel_viz",
+    "gymnasium",
+    "xarray",
+}  # used where it is installed
 FROM_REQUIREMENTS = {
     "rerun",
     "rerun_bindings",

@@ -2,8 +2,8 @@
 """The examples of README.md and docs: Python runs, and shell lines name commands, options and parameters that exist.
 
 Blocks of a page run one after the other in one name space and one folder. A block below `<!-- listing ... -->` only
-shows a file. A block without a language is shell. `simulate` and `identify` run; of other commands the options are
-looked up, of nodes the parameters.
+shows a file. A block without a language is shell. `eel simulate` and `eel identify` run; of other commands the options
+are looked up, of nodes the parameters.
 """
 
 import contextlib
@@ -12,10 +12,10 @@ import io
 import re
 import shlex
 from functools import cache
-from importlib.metadata import entry_points
 from pathlib import Path
 
 import pytest
+from eel_base.suite import commands
 from eel_viz.topics import OWN
 from reference_pages import COMMANDS, NODES, ROOT, parameter_names
 from test_run_from_bag import write_bag
@@ -25,7 +25,7 @@ from eel_gaits import straight
 
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 BLOCK = re.compile(r"(?:<!-- (listing)[^\n]*-->\n)?^```([^\n`]*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
-RUN = ("simulate", "identify")
+RUN = ("eel simulate", "eel identify")
 FOREIGN = ("colcon", "dask", "export", "pip", "python", "python3", "rerun", "rosdep", "source", "sudo", "touch")
 GOALS = ("goal_path", "goal_pose")  # of the pilot
 SERVICES = ("reset", "pause", "step", "set_state")
@@ -58,9 +58,8 @@ def lines_of(block: str) -> list[list[str]]:
 
 @cache
 def main_of(name: str):
-    """The function that a command of the suite calls."""
-    (entry,) = {each.value: each for each in entry_points(group="console_scripts", name=name)}.values()
-    return entry.load()
+    """The function that a command of `eel` calls."""
+    return commands()[name.removeprefix("eel ")].load().main
 
 
 @cache
@@ -76,6 +75,8 @@ def check(words: list[str]):
     name, *rest = words
     if name == "ros2" and rest[0] == "run":
         name, *rest = rest[2:]
+    if name == "eel" and rest:
+        name, *rest = f"eel {rest[0]}", *rest[1:]
     if name in NODES:
         for given in (rest[k + 1] for k, word in enumerate(rest) if word == "-p"):
             parameter, sign, value = given.partition(":=")
@@ -143,11 +144,13 @@ def test_shell_of_a_page_names_what_exists(page, folder):
     "line",
     [
         "dynamics --ros-args -p exactness:=fine",
-        "render run.rrd --speeed 2",
+        "eel render run.rrd --speeed 2",
         "make nothing",
         "ros2 service call /dynamics/nothing std_srvs/srv/Trigger",
         "ros2 topic echo /nothing",
         "unknown --option",
+        "eel unknown",
+        "simulate",
     ],
 )
 def test_a_shell_line_that_is_wrong_is_found(line):

@@ -15,9 +15,10 @@ WORDS = {
     "visualiser": ("--ros-args", "-p", "sink:=[save]"),
     "record": ("-o", "bag"),
     "eel_echo": ("odom",),
+    "eel": ("simulate",),
     "simulate": ("--duration", "2000", "--accuracy", "reference"),  # longer than the test
 }
-LATER = {"record": "rosbags", "eel_viz.bags.record": "rosbags"}  # which do not import numpy
+FIRST = {"record": "rclpy"}  # module at whose import it is stopped, where that is not numpy
 # Stands still where the module that the variable names is imported, or at the interpreter's start; LIMIT is far above
 # what a signal takes to end a process.
 STANDSTILL = """
@@ -63,7 +64,7 @@ def start_until(start, tmp_path, monkeypatch):
 )
 @pytest.mark.parametrize("executable", COMMANDS)
 def test_an_interrupt_during_the_imports_is_silent(executable, start_until):
-    node = start_until(LATER.get(executable, "numpy"), executable, *WORDS.get(executable, ()))
+    node = start_until(FIRST.get(executable, "numpy"), executable, *WORDS.get(executable, ()))
     assert (node.interrupt(timeout=LIMIT), node.output()) == (-signal.SIGINT, "")
 
 
@@ -82,9 +83,9 @@ def test_an_interrupt_while_python_itself_starts_is_silent(executable, start_unt
     assert (node.interrupt(timeout=LIMIT), node.output()) == (-signal.SIGINT, "")
 
 
-@pytest.mark.parametrize("module", ["eel_studies.figures", "eel_viz.bags.record", "eel_gaits.ros.node"])
+@pytest.mark.parametrize("module", ["eel_studies.figures.command", "eel_viz.bags.record", "eel_gaits.ros.node"])
 def test_an_interrupt_of_a_module_that_python_runs_is_silent(module, start_until):
-    node = start_until(LATER.get(module, "numpy"), "python", "-m", module)
+    node = start_until("rclpy" if "record" in module else "numpy", "python", "-m", module)
     assert (node.interrupt(timeout=LIMIT), node.output()) == (-signal.SIGINT, "")
 
 
@@ -101,7 +102,7 @@ def ends_silently(start, executable, moment) -> bool:
     node = start(executable, *WORDS.get(executable, ()))
     time.sleep(moment)  # the moment of the signal is what is tried here
     status = node.interrupt(timeout=LIMIT)
-    own = "[INFO]" if executable in NODES else (f"{executable}: ", "[INFO]")
+    own = "[INFO]" if executable in NODES else ("eel ", "[INFO]")
     good = (0, -signal.SIGINT) if executable in NODES else (0, 2, -signal.SIGINT)
     return status in good and all(line.startswith(own) for line in node.output().splitlines())
 
@@ -135,7 +136,7 @@ def test_an_interrupt_in_mid_sweep_says_how_it_goes_on(start, tmp_path):
         assert sweep.status is None and time.monotonic() < deadline, sweep.output()
         time.sleep(0.02)
     assert sweep.interrupt() == 130
-    assert sweep.output().splitlines()[-1] == "sweep: interrupted; the same command goes on from here"
+    assert sweep.output().splitlines()[-1] == "eel sweep: interrupted; the same command goes on from here"
     assert "Traceback" not in sweep.output()
 
 

@@ -154,7 +154,7 @@ def library_speed() -> float:
 
 def draw() -> None:
     """The picture, where the viewer can draw without a display."""
-    command = [sys.executable, "-m", "eel_viz.pictures.render", str(RECORDING), str(PICTURE)]
+    command = ["eel", "render", str(RECORDING), str(PICTURE)]
     try:
         drawn = subprocess.run(command, capture_output=True, text=True, timeout=60)
         reason = (drawn.stderr or drawn.stdout).strip().splitlines()[-1:] if drawn.returncode else []
@@ -163,7 +163,7 @@ def draw() -> None:
     if drawn is not None and drawn.returncode == 0 and PICTURE.exists():
         say(f"picture: {PICTURE}")
     else:
-        say(reason[0].removeprefix("render: ") if reason else "no picture: the viewer gave none")
+        say(reason[0].removeprefix("eel render: ") if reason else "no picture: the viewer gave none")
 
 
 def say(text: str) -> None:

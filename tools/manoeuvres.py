@@ -42,11 +42,11 @@ are those of the whole run, in the axes of REP-103: x ahead, y to the left, z up
 positive roll lifts the left side. The roll is the integral of the head's rotation about its own axis. The pictures show
 the shape over a period, the path of the centre of mass, the internal torque along the body, and the speed.
 ```
-simulate c_start --set yaw_bend=-4.0 --duration 4                    # to the left: the library has the paper's sign
+eel simulate c_start --set yaw_bend=-4.0 --duration 4                    # to the left: the library has the paper's sign
 gait_generator --ros-args -p gait:=c_start -p left_bend:=4.0         # to the left: the node has that of REP-103
 gait_generator --ros-args -p gait:=sequence -p file:=patrol.yaml     # gaits that follow one another
 ```
-`simulate --sequence patrol.yaml` simulates a sequence offline. The node streams `cpg` as samples on
+`eel simulate --sequence patrol.yaml` simulates a sequence offline. The node streams `cpg` as samples on
 `curvature_samples`. New numbers act half a second later, without a jump.
 
 ## Laws made of laws

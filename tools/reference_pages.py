@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, fields
 from pathlib import Path
 
 from eel_base.quantity import limits
+from eel_base.suite import commands as known_commands
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_gaits.gaits.registry import GAITS, Transition
@@ -47,21 +48,7 @@ NODES = {  # name of the node: heading, prefix and dataclass of its parameters
     "visualiser": [("", "", Settings)],
     "markers": [("", "", MarkerSettings)],
 }
-COMMANDS = (
-    "simulate",
-    "sweep",
-    "optimise",
-    "identify",
-    "tradeoff",
-    "stability",
-    "steering",
-    "figures",
-    "midlines",
-    "record",
-    "eel_echo",
-    "replay",
-    "render",
-)
+COMMANDS = tuple(f"eel {name}" for name in known_commands())
 
 
 def parameter_names(node: str) -> set[str]:
@@ -102,8 +89,8 @@ def _row(prefix: str, item) -> str:
 def commands() -> str:
     """What `--help` of every command and node says."""
     parts = ["# Commands", ""]
-    for name in (*COMMANDS, *NODES):
-        told = subprocess.run([name, "--help"], capture_output=True, text=True, check=True, timeout=60)
+    for name in ("eel", *COMMANDS, *NODES):
+        told = subprocess.run([*name.split(), "--help"], capture_output=True, text=True, check=True, timeout=60)
         parts += [f"## {name}", "", "```text", told.stdout.rstrip(), "```", ""]
     return "\n".join(parts)
 

@@ -24,6 +24,7 @@ setup(
         "console_scripts": [
             "dynamics = eel_command:main_of.eel_dynamics.ros.node",
             "simulate = eel_command:main_of.eel_dynamics.runs.command",
-        ]
+        ],
+        "eel.commands.swim": ["simulate = eel_dynamics.runs.command"],
     },
 )

@@ -32,6 +32,17 @@ setup(
             "stability = eel_command:main_of.eel_studies.stability.command",
             "steering = eel_command:main_of.eel_studies.steering.command",
             "tradeoff = eel_command:main_of.eel_studies.tradeoff.command",
-        ]
+        ],
+        "eel.commands.swim": ["compare = eel_studies.comparison.command"],
+        "eel.commands.study": [
+            "sweep = eel_studies.sweeps.command",
+            "optimise = eel_studies.optimisation.command",
+            "identify = eel_studies.identification.command",
+            "steering = eel_studies.steering.command",
+            "tradeoff = eel_studies.tradeoff.command",
+            "stability = eel_studies.stability.command",
+            "midlines = eel_studies.midlines.command",
+            "figures = eel_studies.figures.command",
+        ],
     },
 )

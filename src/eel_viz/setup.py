@@ -26,6 +26,12 @@ setup(
             "replay = eel_command:main_of.eel_viz.bags.replay",
             "render = eel_command:main_of.eel_viz.pictures.render",
         ],
+        "eel.commands.look": [
+            "record = eel_viz.bags.record",
+            "echo = eel_viz.bags.echo",
+            "replay = eel_viz.bags.replay",
+            "render = eel_viz.pictures.render",
+        ],
         "eel_dynamics.drawing": ["rerun = eel_viz.recording.library:to_rerun"],
         "eel_dynamics.bags": ["messages = eel_viz.bags.run_messages:run_messages"],
     },

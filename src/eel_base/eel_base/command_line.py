@@ -3,27 +3,85 @@
 
 import argparse
 import contextlib
+import os
+import shutil
 import signal
 import sys
+import textwrap
 from collections.abc import Iterator
-from typing import Any, NoReturn
+from typing import NoReturn
 
-from eel_base.wording import one_line
+from eel_base.wording import did_you_mean, one_line, shown
+
+COMPLETING = "_ARGCOMPLETE"  # in the environment where a shell asks for completions
 
 
 class Parser(argparse.ArgumentParser):
-    """An argument parser that reports an error in one line."""
+    """An argument parser that reports an error in one line, and wraps each line of its texts."""
 
-    def parse_args(self, *arguments: Any, **options: Any) -> Any:
+    def __init__(self, *, description: str, epilog: str = "", **options):
+        super().__init__(
+            description=_wrapped(description),
+            epilog=_wrapped(epilog),
+            formatter_class=_formatter(),
+            conflict_handler="resolve",
+            **options,
+        )
+
+    def parse_args(self, args=None, namespace=None):
         write_on_any_terminal()
-        return super().parse_args(*arguments, **options)
+        if COMPLETING in os.environ:
+            import argcomplete
+
+            argcomplete.autocomplete(self)
+        self._check_options(sys.argv[1:] if args is None else args)
+        return super().parse_args(args, namespace)
+
+    def _check_options(self, words):
+        """Refuse an option that there is not before one is missed that must be given."""
+        for word in words:
+            name = word.partition("=")[0]
+            if name == "--":
+                return
+            if (
+                name.startswith("--")
+                and not name.count(" ")
+                and not any(known.startswith(name) for known in self._option_string_actions)
+            ):
+                self.error(f"no option {shown(name)}{did_you_mean(name, self._option_string_actions)}")
 
     def error(self, message: str) -> NoReturn:
         complain(self.prog, f"{message} (see {self.prog} --help)")
         sys.exit(2)
 
 
-def complain(program: str, error: object) -> None:
+def _formatter() -> type[argparse.HelpFormatter]:
+    """Colours where the output is a terminal and rich-argparse is installed."""
+    if sys.stdout is not None and sys.stdout.isatty():
+        with contextlib.suppress(ImportError):
+            from rich_argparse import RawDescriptionRichHelpFormatter
+
+            class Coloured(RawDescriptionRichHelpFormatter):
+                """Brackets are units, not marks of a style."""
+
+                text_markup = help_markup = False
+
+            return Coloured
+    return argparse.RawDescriptionHelpFormatter
+
+
+def _wrapped(text: str) -> str:
+    """The text with each line wrapped to the terminal's width; what follows is indented as the line, and by 4."""
+    width = shutil.get_terminal_size().columns - 2
+    lines = text.splitlines()
+    if len(lines) == 1:
+        return textwrap.fill(text, width)
+    return "\n".join(
+        textwrap.fill(line, width, subsequent_indent=" " * (len(line) - len(line.lstrip()) + 4)) for line in lines
+    )
+
+
+def complain(program: str, error):
     """Write one line to stderr: the program's name and the text of `error`."""
     sys.stderr.write(f"{program}: {one_line(error)}\n")
 

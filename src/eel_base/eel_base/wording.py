@@ -3,7 +3,7 @@
 
 import re
 import reprlib
-from collections.abc import Collection
+from collections.abc import Iterable
 from difflib import get_close_matches
 from typing import Any
 
@@ -43,10 +43,10 @@ def one_line(error: object) -> str:
     return _shortened(line, LONGEST_LINE)
 
 
-def did_you_mean(name: str, known: Collection[str]) -> str:
-    """The `known` name that is most like `name`, as a question in brackets. Empty if none is."""
-    alike = get_close_matches(str(name), known, n=1)
-    return f" (did you mean {alike[0]!r}?)" if alike else ""
+def did_you_mean(name: str, known: Iterable[str], alike: float = 0.6) -> str:
+    """The `known` name that is most like `name`, as a question in brackets. Empty if none is `alike`, from 0 to 1."""
+    found = get_close_matches(str(name), known, n=1, cutoff=alike)
+    return f" (did you mean {found[0]!r}?)" if found else ""
 
 
 def _shortened(text: str, longest: int = LONGEST) -> str:

@@ -9,7 +9,7 @@ from eel_dynamics.runs import command
 def said_of(words, capsys) -> str:
     assert command.main(words.split()) == 2
     said = capsys.readouterr().err
-    assert said.startswith("simulate: ") and said.count("\n") == 1
+    assert said.startswith("eel simulate: ") and said.count("\n") == 1
     return said
 
 
@@ -44,4 +44,4 @@ def test_out_of_memory_is_one_line(monkeypatch, capsys):
         raise MemoryError("72 GiB")
 
     monkeypatch.setattr(command, "simulate", swum)
-    assert said_of("straight", capsys) == "simulate: it does not fit into memory: 72 GiB\n"
+    assert said_of("straight", capsys) == "eel simulate: it does not fit into memory: 72 GiB\n"

@@ -148,7 +148,7 @@ def test_the_commands_swim_until_it_has_settled(tmp_path, capsys):
     assert "gait                settled" in capsys.readouterr().out
     words = f"straight --vary period=0.5,0.6 --accuracy 1e-2 --duration 1 --out {tmp_path / 'short.nc'}"
     assert sweep_command.main(words.split()) == 0
-    assert capsys.readouterr().err.splitlines()[-1] == "sweep: warning: 2 of 2 points have not settled"
+    assert capsys.readouterr().err.splitlines()[-1] == "eel sweep: warning: 2 of 2 points have not settled"
     with pytest.raises(SystemExit):
         command.main(["straight", "--duration", "soon"])
     assert "must be a number of seconds, or settled, got 'soon'" in capsys.readouterr().err

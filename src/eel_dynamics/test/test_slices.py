@@ -135,10 +135,10 @@ def test_what_costs_more_on_the_way_stops_with_what_to_change(monkeypatch):
 @pytest.fixture
 def hurried(monkeypatch):
     """A wall clock by which every look is a second after the one before."""
-    ticks = itertools.count()
-    monkeypatch.setattr(
-        "eel_dynamics.runs.progress_monitor.time", type("Clock", (), {"monotonic": lambda: float(next(ticks))})
-    )
+    for module in ("eel_dynamics.runs.progress_monitor", "eel_base.progress"):
+        ticks = itertools.count()
+        clock = type("Clock", (), {"monotonic": lambda ticks=ticks: float(next(ticks))})
+        monkeypatch.setattr(f"{module}.time", clock)
 
 
 def test_progress_is_told_with_what_is_left(hurried):
@@ -174,8 +174,8 @@ def test_a_swim_is_interrupted_from_the_keyboard(monkeypatch):
 
 def test_the_command_tells_how_far_a_swim_has_come_and_takes_the_limit(hurried, capsys):
     assert main(["falling", "--duration", "20", "--accuracy", "1e-5", "--stations", "5"]) == 0
-    told = [line for line in capsys.readouterr().err.splitlines() if "to go" in line]
-    assert re.fullmatch(r"simulate: at [\d.]+ s of 20 s, about [\d.]+ s to go", told[0])
+    told = [line for line in capsys.readouterr().err.splitlines() if "left" in line]
+    assert re.fullmatch(r"eel simulate: [\d.]+ of 20 simulated s, about [\d.]+ s left", told[0])
     assert 3 <= len(told) <= 12  # seldom, of some twenty looks
     assert main(["falling", "--most-evaluations", "5"]) == 2
     assert "most_evaluations is 5" in capsys.readouterr().err

@@ -7,11 +7,11 @@ changes. `ros2 param set` and `load` hand over 1e-06, nan and [1.0, 2] as texts:
 two, and rclpy no array in the third.
 """
 
+from eel_base.wording import did_you_mean
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.exceptions import ParameterNotDeclaredException
 from rclpy.parameter import Parameter
 
-from eel_ros.parameters import did_you_mean
 from eel_ros.serving import ServedNode
 
 WRONG_TYPE = "Wrong parameter type"  # rclpy's words, which name neither parameter nor value

@@ -9,9 +9,9 @@ import math
 import sys
 from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import MISSING, Field, fields
-from difflib import get_close_matches
 from typing import Any
 
+from eel_base.wording import did_you_mean
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from rclpy.node import Node
 
@@ -23,7 +23,7 @@ ROS_PREFIXES = (
     "qos_overrides.",
 )  # of ROS's own parameters
 AT_RESET = "at the next reset"  # when a change acts
-ALIKE = 0.8  # of two names, from 0 to 1: one may be meant for the other
+ALIKE = 0.8  # of two names, from 0 to 1: a parameter of another node is no slip
 MAXIMUM_INTEGER = 2**63 - 1  # of a ROS parameter
 
 
@@ -49,16 +49,10 @@ def warn_of_unknown(node: Node, overrides: Mapping, known: Collection[str]) -> N
     """
     unknown = [name for name in overrides if name not in known and not name.startswith(ROS_PREFIXES)]
     shared = shared_names(sys.argv) if unknown else set()
-    hints = {name: did_you_mean(name, known) for name in unknown}
+    hints = {name: did_you_mean(name, known, ALIKE) for name in unknown}
     told = [f"{name!r}{hint}" for name, hint in hints.items() if hint or name not in shared]
     if told:
         node.get_logger().warning(f"not parameters of this node, ignored: {', '.join(told)}")
-
-
-def did_you_mean(name: str, known: Collection[str]) -> str:
-    """The `known` name that is most like `name`, as a question in brackets; empty if none is."""
-    alike = get_close_matches(name, known, n=1, cutoff=ALIKE)
-    return f" (did you mean {alike[0]!r}?)" if alike else ""
 
 
 def declare(

@@ -296,4 +296,4 @@ def test_the_command_refuses_bad_input_in_one_line(files, words, told, capsys, m
     monkeypatch.chdir(files)
     assert main([*words, *ONE]) == 2
     (line,) = capsys.readouterr().err.splitlines()
-    assert line.startswith("identify: ") and told in line, line
+    assert line.startswith("eel identify: ") and told in line, line

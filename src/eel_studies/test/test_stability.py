@@ -103,7 +103,7 @@ def test_inertias_of_a_body_from_data_are_those_of_its_spline():
 
 def test_bad_input_is_one_line(tmp_path, capsys):
     assert command.main(["--points", "1", "--out", str(tmp_path)]) == 2
-    assert capsys.readouterr().err == "stability: points must be >= 2, got 1\n"
+    assert capsys.readouterr().err == "eel stability: points must be >= 2, got 1\n"
 
 
 def test_a_page_that_cannot_be_is_refused_before_the_studies(tmp_path, monkeypatch, capsys):
@@ -113,4 +113,4 @@ def test_a_page_that_cannot_be_is_refused_before_the_studies(tmp_path, monkeypat
     for page, word in ((tmp_path / "nosuch.md", "nosuch.md"), (tmp_path, "it is a folder"), (bare, "condition")):
         assert command.main(["--study", "condition", "--page", str(page), "--out", str(folder)]) == 2
         said = capsys.readouterr().err
-        assert word in said and said.startswith("stability: ") and said.count("\n") == 1 and not folder.exists()
+        assert word in said and said.startswith("eel stability: ") and said.count("\n") == 1 and not folder.exists()

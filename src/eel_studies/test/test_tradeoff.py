@@ -177,7 +177,7 @@ def test_the_counts_of_delivered_errors():
 )
 def test_options_that_do_not_go_together_are_named(words, told, capsys):
     assert main(words.split()) == 2
-    assert capsys.readouterr() == ("", f"tradeoff: {told}\n")
+    assert capsys.readouterr() == ("", f"eel tradeoff: {told}\n")
 
 
 def test_pictures_of_what_is_delivered_need_no_page(tmp_path, capsys):

@@ -17,6 +17,8 @@ import time
 from collections.abc import Iterator
 from typing import IO
 
+from eel_base.work_stopped import WorkStopped
+
 # Makes Linux end the process when the thread that started it ends, even by SIGKILL (PR_SET_PDEATHSIG, SIGTERM).
 DIE_WITH_PARENT = "import ctypes, os, sys; ctypes.CDLL(None).prctl(1, 15); os.execv(sys.argv[1], sys.argv[1:])"
 DRIVER = "it needs a Vulkan driver: apt-get install --no-install-recommends mesa-vulkan-drivers"
@@ -24,7 +26,7 @@ START_LIMIT = 60.0  # s until the viewer must listen
 END_LIMIT = 5.0  # s until it must have ended
 
 
-class CannotRender(RuntimeError):
+class CannotRender(WorkStopped):
     """The viewer cannot draw on this machine; the text gives the reason and the remedy."""
 
 

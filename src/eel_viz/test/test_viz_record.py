@@ -206,7 +206,7 @@ def test_a_full_disk_is_said_in_one_line_and_what_was_written_opens(start, netwo
     assert recorder.status == 1, recorder.output()
     assert "Traceback" not in recorder.output()
     last = recorder.output().strip().splitlines()[-1]
-    assert last.startswith(f"record: {tmp_path / 'bag'}: File too large: the bag ends with the ")
+    assert last.startswith(f"eel record: {tmp_path / 'bag'}: File too large: the bag ends with the ")
     kept = contents(tmp_path / "bag")["/backbone"]
     assert f"the {len(kept)} messages before" in last
     assert [message.header.stamp.sec for _, message in kept] == list(range(len(kept)))
@@ -256,10 +256,10 @@ def test_a_folder_that_is_there_is_refused(start, tmp_path):
 @pytest.mark.parametrize(
     ("words", "line"),
     [
-        (("record", "-o", "bag", "--duration", "nan"), "record: --duration must be > 0 s, got nan"),
-        (("record", "-o", "bag", "--duration", "-1"), "record: --duration must be > 0 s, got -1"),
-        ((*ECHO, "x", "--timeout", "nan"), "eel_echo: --timeout must be > 0 s, got nan"),
-        ((*ECHO, "x", "--timeout", "0"), "eel_echo: --timeout must be > 0 s, got 0"),
+        (("record", "-o", "bag", "--duration", "nan"), "eel record: --duration must be > 0 s, got nan"),
+        (("record", "-o", "bag", "--duration", "-1"), "eel record: --duration must be > 0 s, got -1"),
+        ((*ECHO, "x", "--timeout", "nan"), "eel echo: --timeout must be > 0 s, got nan"),
+        ((*ECHO, "x", "--timeout", "0"), "eel echo: --timeout must be > 0 s, got 0"),
     ],
 )
 def test_a_time_that_cannot_be_is_refused_in_one_line(start, tmp_path, monkeypatch, words, line):

@@ -1,15 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command `simulate`: simulates a gait offline, prints the summary, and writes the run.
+"""`eel simulate`: swim a gait, a sequence or a measured motion; print its figures.
 
-simulate falling
-simulate falling --duration 20 --periods 4 --actuators 8
-simulate --sequence patrol.yaml --duration 20
-simulate --file midlines.csv
-simulate straight --set wavelength=0.8 --scene friction=laminar --accuracy 1e-6 --out run.npz
+eel simulate falling
+eel simulate falling --duration 20 --periods 4 --actuators 8
+eel simulate --sequence patrol.yaml --duration 20
+eel simulate --file midlines.csv
+eel simulate straight --set wavelength=0.8 --scene friction=laminar --accuracy 1e-6 --out run.npz
 """
 
-import argparse
-import sys
 import time
 from importlib.util import find_spec
 from pathlib import Path
@@ -18,27 +16,28 @@ from typing import Any
 import numpy as np
 from eel_base.command_line import Parser, complain
 from eel_base.output_file import replacing, written_as
+from eel_base.progress import Progress
 from eel_base.quantity import described_fields
+from eel_base.run_command import checked_out, run_command
 from eel_base.wording import one_line, shown
-from eel_gaits.gaits.registry import GAITS, gait
+from eel_gaits.gaits.registry import gait
 from eel_gaits.gaits.sequence_file import sequence_from_file
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.motion_file import read_motion
 from eel_gaits.sources.sampled_law import SampledLaw
 
-from eel_dynamics.accuracy.accuracy import PRESETS
 from eel_dynamics.analysis.actuators import MOST_JOINTS
-from eel_dynamics.model.body import NAMED, Body
+from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
-from eel_dynamics.runs.command_options import add_repeated, body_of, duration_option, scene_of, set_numbers
+from eel_dynamics.runs.command_options import add_options, body_of, scene_of, set_numbers
 from eel_dynamics.runs.run import Run, simulate
-from eel_dynamics.runs.run_command import checked_out, run_command
 from eel_dynamics.runs.settled_duration import until_settled
 from eel_dynamics.runs.storage.run_contents import contents_of_run
 from eel_dynamics.runs.storage.tables import columns_of, write_columns
 from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.simulation.stopping import SimulationStopped
 
+NAME = "eel simulate"
 DURATION = 10.0  # s, by default
 SUFFIXES = (".nc", ".npz", ".csv", ".rrd")
 
@@ -58,7 +57,8 @@ def _swim(options) -> int:
         duration = law.duration if isinstance(law, SampledLaw) else DURATION
     if options.actuators is not None:
         _check_actuators(options, scene)
-    start = time.perf_counter()
+    start, progress = time.perf_counter(), Progress(NAME, "simulated s")
+    end = None if until_settled(duration) else duration
     try:
         run = simulate(
             law,
@@ -71,10 +71,10 @@ def _swim(options) -> int:
             load=options.load,
             estimate=not options.bare,
             most_evaluations=options.most_evaluations,
-            progress=Progress(duration),
+            progress=lambda reached, left: progress(float(f"{reached:.3g}"), end),
         )
     except SimulationStopped as stopped:
-        complain("simulate", stopped)
+        complain(NAME, stopped)
         if out is not None and len(stopped.run.time):
             _write(stopped.run, out)
         return 3
@@ -116,28 +116,13 @@ def _print_smoothing(run: Run):
         print(f"smoothing           {effect}")
 
 
-class Progress:
-    """Prints the progress of a run of `duration` [s] to stderr: after 1, 2, 4 ... s, and every minute."""
-
-    def __init__(self, duration: float | str):
-        self._duration, self._count = duration if until_settled(duration) else f"{duration:g} s", 0
-
-    def __call__(self, reached: float, left: float):
-        """Print, if due; called once a second. reached: simulation time [s]. left: remaining wall time [s]."""
-        self._count += 1
-        if self._count & (self._count - 1) == 0 or self._count % 60 == 0:
-            print(f"simulate: at {reached:.3g} s of {self._duration}, about {left:.3g} s to go", file=sys.stderr)
-
-
 def _parser() -> Parser:
     parser = Parser(
-        prog="simulate",
+        prog=NAME,
         description="Simulate a gait, a sequence of gaits or a measured motion without ROS, and print a summary.",
         epilog=f"fields of the scene, with default, meaning, unit, and bounds or choices:\n{described_fields(Scene)}",
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("gait", nargs="?", help=f"one of {', '.join(sorted(GAITS))} (falling)")
-    add_repeated(parser, "--set", "NAME=VALUE", "a number of the gait")
+    add_options(parser, "gait", "--set", gait=(None, "falling"))
     parser.add_argument(
         "--sequence",
         metavar="FILE",
@@ -149,31 +134,12 @@ def _parser() -> Parser:
         help="a measured motion in place of a gait: .csv or .npz with columns time and x, y (midlines), yaw_1, "
         "yaw_2 ... (joint angles), or arc_length, yaw (curvature): docs/howto/motions.md",
     )
-    parser.add_argument("--scale", type=float, default=1.0, metavar="M", help="metres in the file's unit of length (1)")
     parser.add_argument("--unsmoothed", action="store_true", help="do not smooth what was measured")
-    parser.add_argument(
-        "--duration",
-        type=duration_option,
-        help=f"s, or settled: until the gait has settled ({DURATION:g}; of a file: all of it)",
-    )
-    parser.add_argument(
-        "--accuracy", default="standard", help=f"{', '.join(PRESETS)}, or a target relative error (standard)"
-    )
-    parser.add_argument(
-        "--bare", action="store_true", help="do not measure the run's own error; --accuracy is not kept"
-    )
-    parser.add_argument(
-        "--body",
-        default="boyer2010",
-        help=f"{', '.join(NAMED)}, or a .csv or .npz file with columns x, half_width, half_height [m]",
-    )
-    add_repeated(parser, "--scene", "NAME=VALUE", "physics, a field of the list below")
-    parser.add_argument(
-        "--sample-period",
-        type=float,
-        help="s (0.05, or a 20th of the gait's period where that is less); the last sample is "
-        "at its last whole multiple within the duration",
-    )
+    duration = None, f"{DURATION:g}; of a file: all of it"
+    add_options(
+        parser, "--scale", "--duration", "--accuracy", "--bare", "--body", "--scene", "--sample-period",
+        duration=duration,
+    )  # fmt: skip
     parser.add_argument("--stations", type=int, default=51, help="points along the body (51)")
     parser.add_argument(
         "--most-evaluations",
@@ -209,11 +175,9 @@ def _check_actuators(options, scene: Scene):
 
 
 def _checked_out(out: str | None) -> Path | None:
-    if out is None:
-        return None
-    if Path(out).suffix == ".rrd" and find_spec("eel_viz") is None:
+    if out is not None and Path(out).suffix == ".rrd" and find_spec("eel_viz") is None:
         raise ValueError("--out .rrd needs the package eel_viz, with rerun-sdk, which is not installed")
-    return checked_out("simulate", out, SUFFIXES)
+    return checked_out(NAME, out, SUFFIXES)
 
 
 def _write(run: Run, path: Path):
@@ -233,7 +197,3 @@ def _write(run: Run, path: Path):
         return
     columns = columns_of(run) | {name: np.full(len(run.time), value) for name, value in errors.items()}
     write_columns(columns, path)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

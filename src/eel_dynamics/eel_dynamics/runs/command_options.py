@@ -1,16 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The options that commands share: --set, --scene, --vary (NAME=VALUE, may be repeated), --body and --out.
+"""The options that commands share: each stands here once, with its words. Their values, checked.
 
-A value is a number, true or false (on or off), or a word.
+A value of NAME=VALUE is a number, true or false (on or off), or a word.
 """
 
-from argparse import ArgumentParser, ArgumentTypeError
+import argparse
+import inspect
 from collections.abc import Callable
 from dataclasses import fields
 
 import numpy as np
-from eel_base.wording import shown
+from eel_base.command_line import Parser
+from eel_base.wording import did_you_mean, shown
+from eel_gaits.gaits.registry import GAITS, find
 
+from eel_dynamics.accuracy.accuracy import PRESETS
 from eel_dynamics.model.body import NAMED, Body
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.settled_duration import UNTIL_SETTLED, until_settled
@@ -18,10 +22,44 @@ from eel_dynamics.runs.settled_duration import UNTIL_SETTLED, until_settled
 TRUTH = {"true": True, "on": True, "false": False, "off": False}
 
 
-def add_repeated(parser: ArgumentParser, option: str, metavar: str, about: str, required: bool = False):
+def add_options(parser: Parser, *options: str, **defaults) -> None:
+    """Add shared `options` to the `parser` of a command.
+
+    defaults: of options by name, shown in their help; a text in place of a default that the command finds out itself
+    is given as a pair (None, text).
+    """
+    for option in options:
+        about = OPTIONS[option]
+        default = defaults.get(option.strip("-").replace("-", "_"), about.get("default"))
+        default, told = default if isinstance(default, tuple) else (default, default)
+        text = f"{about['help']} ({told})" if told else about["help"]
+        added = parser.add_argument(option, **{**about, "default": default, "help": text.replace("%", "%%")})
+        if "gait" in option:
+            added.completer = lambda **_: GAITS  # for argcomplete
+    if "gait" in options:
+        parser.add_argument("-h", "--help", nargs="?", metavar="GAIT", action=_Help, help="this, or a gait's numbers")
+
+
+def add_repeated(parser: argparse.ArgumentParser, option: str, metavar: str, about: str, required: bool = False):
     """Add an `option` that may be repeated to the `parser` of a command; its value is a list."""
-    about = f"{about}; may be repeated"
-    parser.add_argument(option, action="append", default=[], metavar=metavar, required=required, help=about)
+    parser.add_argument(option, **_repeated(metavar, about), required=required)
+
+
+def _repeated(metavar: str, about: str) -> dict:
+    return {"action": "append", "default": [], "metavar": metavar, "help": f"{about}; may be repeated"}
+
+
+class _Help(argparse.Action):
+    """Prints the help of the command, or with a gait that of the gait."""
+
+    def __call__(self, parser, namespace, values, option_string=None):
+        given = getattr(namespace, "gait", None)
+        name = values or (None if given == parser.get_default("gait") else given)
+        try:
+            print(f"{name}: {inspect.getdoc(find(name))}" if isinstance(name, str) else parser.format_help())
+        except ValueError as error:
+            parser.error(str(error))
+        parser.exit()
 
 
 def named_texts(option: str, texts: list[str]) -> list[tuple[str, str]]:
@@ -57,7 +95,9 @@ def duration_option(text: str) -> float | str:
     try:
         return text if until_settled(text) else float(text)
     except ValueError:
-        raise ArgumentTypeError(f"must be a number of seconds, or {UNTIL_SETTLED}, got {shown(text)}") from None
+        raise argparse.ArgumentTypeError(
+            f"must be a number of seconds, or {UNTIL_SETTLED}, got {shown(text)}"
+        ) from None
 
 
 def body_of(text: str) -> Body:
@@ -74,7 +114,8 @@ def scene_of(texts: list[str], **defaults) -> Scene:
     found = dict(defaults)
     for name, text in named_texts("--scene", texts):
         if name not in known:
-            raise ValueError(f"scene has no field {shown(name)}, it has: {', '.join(known)}")
+            hint = did_you_mean(name, known)
+            raise ValueError(f"scene has no field {shown(name)}{hint}, it has: {', '.join(known)}")
         if isinstance(known[name].default, bool):
             found[name] = {"1": True, "0": False, **TRUTH}.get(text.lower(), text)
         elif "choices" in known[name].metadata:
@@ -110,3 +151,23 @@ def value_of(text: str):
         return float(text)
     except ValueError:
         return text
+
+
+OPTIONS = {  # what argparse takes
+    "gait": {"nargs": "?", "help": f"one of {', '.join(sorted(GAITS))}"},
+    "gaits": {"nargs": "*", "metavar": "GAIT", "help": f"of {', '.join(sorted(GAITS))}"},
+    "--gait": {"help": f"one of {', '.join(sorted(GAITS))}"},
+    "--set": _repeated("NAME=VALUE", "a number of the gait, listed by --help GAIT"),
+    "--scene": _repeated("NAME=VALUE", "physics, a field of the list that eel simulate --help ends with"),
+    "--body": {"default": "boyer2010", "help": f"{', '.join(NAMED)}, or a .csv or .npz file of half-axes"},
+    "--accuracy": {"default": "standard", "help": f"{', '.join(PRESETS)}, or a target relative error"},
+    "--duration": {"type": duration_option, "help": f"s, or {UNTIL_SETTLED}: until the gait has settled"},
+    "--bare": {"action": "store_true", "help": "do not measure a run's own error; --accuracy is not kept"},
+    "--sample-period": {
+        "type": float,
+        "default": (None, "0.05, or a 20th of the gait's period where that is less"),
+        "help": "s; the last sample is at its last whole multiple within the duration",
+    },
+    "--scale": {"type": float, "default": 1.0, "metavar": "M", "help": "metres in the file's unit of length"},
+    "--out": _repeated("FILE", ".png, .svg: a picture; .csv: a table"),
+}

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 from eel_base.wording import shown
+from eel_base.work_stopped import WorkStopped
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
 
@@ -12,7 +13,7 @@ import eel_core
 from eel_dynamics.accuracy.accuracy import Accuracy
 
 
-class SimulationStopped(RuntimeError):
+class SimulationStopped(WorkStopped):
     """The march could not continue. `quantity` failed with `value` at `time` [s]. `hint` says what to change."""
 
     def __init__(self, time: float, quantity: str, value: float, hint: str):

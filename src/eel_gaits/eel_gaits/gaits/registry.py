@@ -43,7 +43,8 @@ def gait(name, *, transition=0.0, **numbers):
 def find(name):
     """The function of the gait called `name`. `ValueError` for an unknown gait lists the known ones."""
     if not isinstance(name, str) or name not in GAITS:
-        raise ValueError(f"unknown gait {shown(name)}, must be one of {', '.join(sorted(GAITS))}")
+        hint = did_you_mean(name, GAITS) if isinstance(name, str) else ""
+        raise ValueError(f"unknown gait {shown(name)}{hint}, must be one of {', '.join(sorted(GAITS))}")
     return GAITS[name]
 
 

@@ -1,18 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`figures`: the paper's figures 5 to 9 from our own runs, further figures, and a page that explains them.
+"""`eel figures`: draw the paper's figures 5 to 9, and more, with their page.
 
-figures                       # into docs/figures
-figures --out out/figures --format pdf --columns 1       # for a journal
+eel figures                   # into docs/figures
+eel figures --out out/figures --format pdf --columns 1       # for a journal
 """
 
 from pathlib import Path
 
 from eel_base.command_line import Parser
 from eel_base.markdown import write_page
+from eel_base.progress import Progress
+from eel_base.run_command import run_command
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.model.scene import Scene
+from eel_dynamics.runs.command_options import add_options
 from eel_dynamics.runs.run import simulate
-from eel_dynamics.runs.run_command import run_command
 from eel_dynamics.runs.storage.tables import needed
 
 from eel_gaits import straight
@@ -49,11 +51,14 @@ def _figures(options) -> int:
     for reading in corrections.READINGS.values():
         Accuracy.of(options.accuracy).in_scene(Scene(**reading))  # refused before the folder exists
     folder.mkdir(exist_ok=True)
+    progress = Progress("eel figures", "")
+    progress.say("runs of the falling gait")
     readings = corrections.swim(accuracy=options.accuracy)
     print(corrections.table_of(readings))
     control = simulate(straight(), readings[0].run.time[-1], accuracy=options.accuracy)
     comparison = kern_comparison.compare()
     print(kern_comparison.table_of(comparison))
+    progress.say("convergence in space and time")
     errors = {rule.__name__: {drag: rule(drag) for drag in (False, True)} for rule in (orders.in_space, orders.in_time)}
     for path in draw(drawings_of(readings, errors), folder, options.format, options.columns):
         print(f"{path}  {path.stat().st_size / 1000.0:.0f} kB")
@@ -108,7 +113,7 @@ def drawings_of(readings, errors) -> dict:
 
 def _parser() -> Parser:
     parser = Parser(
-        prog="figures",
+        prog="eel figures",
         description="Draw the paper's figures and more from runs of the falling gait, and write the page that explains "
         "them; half a minute.",
     )
@@ -121,5 +126,5 @@ def _parser() -> Parser:
         help="columns of a journal's page that a figure is wide, 3.4 or 7 inches, with letters of 8 points; panels "
         "side by side take both (a size for screens)",
     )
-    parser.add_argument("--accuracy", default="fine", help="of the runs: a preset or a target relative error (fine)")
+    add_options(parser, "--accuracy", accuracy="fine")
     return parser

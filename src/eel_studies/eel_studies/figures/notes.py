@@ -38,8 +38,8 @@ def page(readings, control, comparison, errors) -> str:
     above = comparison.fast.stride / kern_comparison.PUBLISHED_SPEEDS[1] - 1.0
     parts = [
         "# The paper's figures, computed again",
-        "The command `figures` makes this page and its figures. Each number comes from the runs that are drawn. *The "
-        "paper* is Boyer, Porez and Leroyer (2010), "
+        "The command `eel figures` makes this page and its figures. Each number comes from the runs that are drawn. "
+        "*The paper* is Boyer, Porez and Leroyer (2010), "
         "[doi:10.1007/s00332-009-9050-5](https://doi.org/10.1007/s00332-009-9050-5). It prints curves without tables. "
         "So agreement is claimed here only where its text has a number or a statement to compare with. *Corrected* is "
         "the library's own reading of its formulae, *as printed* takes perimeter and added mass as printed. The "

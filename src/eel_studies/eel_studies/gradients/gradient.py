@@ -20,6 +20,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from eel_base.progress import progress_of
 from eel_base.quantity import number
 from eel_base.wording import shown
 from eel_dynamics.accuracy.accuracy import Accuracy
@@ -38,7 +39,6 @@ from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
 from eel_studies.gradients.fixed_discretisation import fixed_steps, on_one_grid, step_of
 from eel_studies.gradients.friction_jump import share_across_jump
 from eel_studies.points import Point, SwimSettings, batch_of_points, law_of_terms, point_at
-from eel_studies.progress_bar import progress_of
 
 RELATIVE_STEP = 1e-5  # of a parameter; of one unit where its value is 0
 COMPANION_STEP = 2.0  # times the steps, of the companions

@@ -1,30 +1,28 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`identify`: coefficients of the model from measured swims, with their intervals, as a table and a picture.
+"""`eel identify`: find coefficients of the model from measured swims.
 
-identify path.csv --gait turning --set period=0.8 --first body.lateral_drag=1.5 --first body.nose_drag=0.1 --out fit.png
-identify speeds.csv --gait straight --first body.lateral_drag=1.5 --noise 0.005
-identify run.nc --first body.lateral_drag=1.5 --out fit.png --out fit.csv
+eel identify path.csv --gait turning --first body.lateral_drag=1.5 --first body.nose_drag=0.1 --out fit.png
+eel identify speeds.csv --gait straight --first body.lateral_drag=1.5 --noise 0.005
+eel identify run.nc --first body.lateral_drag=1.5 --out fit.png --out fit.csv
 """
 
-import sys
 import time
 from dataclasses import replace
 
 from eel_base.command_line import Parser
 from eel_base.output_file import written_as
+from eel_base.progress import Progress
+from eel_base.run_command import checked_out, run_command
 from eel_base.wording import shown
-from eel_dynamics.accuracy.accuracy import PRESETS
-from eel_dynamics.model.body import NAMED
 from eel_dynamics.model.scene import Scene
-from eel_dynamics.runs.command_options import add_repeated, body_of, scene_of, set_numbers
-from eel_dynamics.runs.run_command import checked_out, run_command
+from eel_dynamics.runs.command_options import add_options, add_repeated, body_of, scene_of, set_numbers
 from eel_dynamics.runs.storage.tables import write_columns
-from eel_gaits.gaits.registry import GAITS
 
 from eel_studies.identification.drawing import FORMATS, draw_identified
 from eel_studies.identification.identify import identify
 from eel_studies.identification.measured_file import MeasuredFile, read_measured
 
+NAME = "eel identify"
 SUFFIXES = (*FORMATS, ".csv")
 
 
@@ -34,8 +32,8 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _identify(options) -> int:
-    start = time.perf_counter()
-    outs = [checked_out("identify", out, SUFFIXES) for out in options.out]
+    start, progress = time.perf_counter(), Progress(NAME, "evaluations")
+    outs = [checked_out(NAME, out, SUFFIXES) for out in options.out]
     first, numbers = set_numbers(options.first, "--first"), set_numbers(options.set)
     files = [read_measured(path, station=options.station, namespace=options.namespace) for path in options.file]
     measured = [each for file in files for each in file.measured]
@@ -49,6 +47,7 @@ def _identify(options) -> int:
         accuracy=options.accuracy,
         noise=options.noise,
         level=options.level,
+        progress=lambda done, _: progress(done, None),
     )
     print(found.table())
     print(f"wall time  {time.perf_counter() - start:.1f} s, {sum(each.count for each in measured)} measured numbers")
@@ -98,7 +97,7 @@ def _scene(options, files: list[MeasuredFile]) -> Scene:
 
 def _parser() -> Parser:
     parser = Parser(
-        prog="identify",
+        prog=NAME,
         description="Find coefficients of the model, with their intervals, from measured paths or steady speeds.",
     )
     parser.add_argument(
@@ -109,21 +108,21 @@ def _parser() -> Parser:
     )
     about = "a parameter and its first guess: body.FIELD, scene.FIELD, initial.v_1, a number of the gait"
     add_repeated(parser, "--first", "NAME=VALUE", about, required=True)
-    parser.add_argument("--gait", help=f"one of {', '.join(sorted(GAITS))}; by default the law of the run or bag")
-    add_repeated(parser, "--set", "NAME=VALUE", "a number of the gait")
-    about = "physics, as for simulate; by default that of the run. The friction is blended unless it is given here"
-    add_repeated(parser, "--scene", "NAME=VALUE", about)
-    parser.add_argument(
-        "--body", help=f"{', '.join(NAMED)}, or a file as for simulate; by default that of the run, or boyer2010"
+    add_options(
+        parser,
+        "--gait",
+        "--set",
+        "--scene",
+        "--body",
+        "--accuracy",
+        "--out",
+        gait=(None, "the law of the run or bag"),
+        scene=([], "that of the run; the friction is blended unless it is given here"),
+        body=(None, "that of the run, or boyer2010"),
+        accuracy=1e-4,
     )
     parser.add_argument("--station", type=float, default=0.0, metavar="X", help="m, of the point that was tracked (0)")
     parser.add_argument("--namespace", help="of the swimmer in a bag; by default that of the only one")
     parser.add_argument("--noise", type=float, metavar="SIZE", help="standard deviation of the errors, m or m/s")
     parser.add_argument("--level", type=float, default=0.95, help="of the intervals (0.95)")
-    parser.add_argument("--accuracy", default=1e-4, help=f"{', '.join(PRESETS)}, or a target (1e-4)")
-    add_repeated(parser, "--out", "FILE", ".png, .svg: a picture; .csv: a table")
     return parser
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -16,6 +16,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from eel_base.progress import progress_of
 from eel_base.quantity import number
 from eel_base.wording import shown
 from eel_dynamics.model.arguments import checked_instance, checked_number
@@ -30,7 +31,6 @@ from eel_studies.identification.measurements import MeasuredPath, MeasuredSpeed
 from eel_studies.identification.prediction import Swims
 from eel_studies.identification.statistics import gauss_newton_covariance
 from eel_studies.points import Point, point_at
-from eel_studies.progress_bar import progress_of
 
 UNLIKELY = 1e-3  # probability of such residuals, for the noise given, below which a warning names the misfit
 

@@ -1,25 +1,25 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`midlines`: swims a file of midlines, and shows the midlines that come out against those that went in.
+"""`eel midlines`: swim a file of midlines, and compare what comes out.
 
-midlines fish.csv                       # the distance, as a number
-midlines fish.csv --out midlines.png    # and a picture
+eel midlines fish.csv                       # the distance, as a number
+eel midlines fish.csv --out midlines.png    # and a picture
 """
 
 from pathlib import Path
 
 import numpy as np
 from eel_base.command_line import Parser
-from eel_base.output_file import check_output, written_as
-from eel_base.wording import shown
-from eel_dynamics.model.body import NAMED
-from eel_dynamics.runs.command_options import body_of
+from eel_base.output_file import written_as
+from eel_base.progress import Progress
+from eel_base.run_command import checked_out, run_command
+from eel_dynamics.runs.command_options import add_options, body_of
 from eel_dynamics.runs.run import simulate
-from eel_dynamics.runs.run_command import run_command
 from eel_gaits.sources.motion_file import read_midlines
 
 from eel_studies.midlines.comparison import MidlineComparison, compared
 from eel_studies.pictures.picture_file import write_picture
 
+NAME = "eel midlines"
 SUFFIXES = (".png", ".svg", ".pdf")
 SHOWN = 8  # instants in the picture
 
@@ -30,20 +30,24 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _compare(options) -> int:
-    out = None if options.out is None else Path(options.out)
-    if out is not None:
-        if out.suffix not in SUFFIXES:
-            raise ValueError(f"--out must end in {', '.join(SUFFIXES)}, got {shown(options.out)}")
-        check_output("--out", out)
+    out = checked_out(NAME, options.out, SUFFIXES)
     body = body_of(options.body)
     midlines = read_midlines(options.file, length=body.length, scale=options.scale)
     law = midlines.law(Path(options.file).stem)
     stations = midlines.arc / midlines.arc[-1] * body.length
     period = law.duration / max(1, round(law.duration / 0.05))
-    found = compared(
-        simulate(law, law.duration, body=body, accuracy=1e-2, sample_period=period, stations=stations, estimate=False),
-        midlines,
+    progress = Progress(NAME, "simulated s")
+    run = simulate(
+        law,
+        law.duration,
+        body=body,
+        accuracy=1e-2,
+        sample_period=period,
+        stations=stations,
+        estimate=False,
+        progress=lambda reached, left: progress(float(f"{reached:.3g}"), law.duration),
     )
+    found = compared(run, midlines)
     print(f"motion              {law.about}")
     print(f"midlines            {found}")
     if out is not None:
@@ -81,12 +85,9 @@ def _upright(points: np.ndarray, reference: np.ndarray) -> np.ndarray:
 
 def _parser() -> Parser:
     parser = Parser(
-        prog="midlines", description="Simulate a file of midlines, and compare the computed ones with those measured."
+        prog=NAME, description="Simulate a file of midlines, and compare the computed ones with those measured."
     )
     parser.add_argument("file", help="a .csv or .npz file with the columns time, x, y: docs/howto/motions.md")
-    parser.add_argument(
-        "--body", default="boyer2010", help=f"{', '.join(NAMED)}, or a file as for simulate (boyer2010)"
-    )
-    parser.add_argument("--scale", type=float, default=1.0, metavar="M", help="metres in the file's unit of length (1)")
+    add_options(parser, "--body", "--scale")
     parser.add_argument("--out", metavar="FILE", help="a picture: .png, .svg or .pdf")
     return parser

@@ -1,28 +1,34 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`optimise`: the gait of least cost of transport at each speed; prints the front, draws it, writes it as a table.
+"""`eel optimise`: find the gait of least cost of transport at each speed.
 
-optimise straight --bound period=0.4:3 --bound amplitude_0=0:2 --bound amplitude_2=0:6 --speeds 0.2:0.6:5
-optimise kern_fast --body kern2006 --bound period=0.5:2 --bound bend_tail=0:8 --speeds 0.3,0.4 --out front.png
+eel optimise straight --bound period=0.4:3 --bound amplitude_0=0:2 --bound amplitude_2=0:6 --speeds 0.2:0.6:5
+eel optimise kern_fast --body kern2006 --bound period=0.5:2 --bound bend_tail=0:8 --speeds 0.3,0.4 --out front.png
 """
 
-import sys
 import time
 
 from eel_base.command_line import Parser
 from eel_base.output_file import written_as
+from eel_base.progress import Progress
+from eel_base.run_command import checked_out, run_command
 from eel_base.wording import shown
-from eel_dynamics.accuracy.accuracy import PRESETS
 from eel_dynamics.analysis.measures import MEASURES
-from eel_dynamics.model.body import NAMED
-from eel_dynamics.runs.command_options import add_repeated, body_of, named_texts, scene_of, set_numbers, varied_values
-from eel_dynamics.runs.run_command import checked_out, run_command
+from eel_dynamics.runs.command_options import (
+    add_options,
+    add_repeated,
+    body_of,
+    named_texts,
+    scene_of,
+    set_numbers,
+    varied_values,
+)
 from eel_dynamics.runs.storage.tables import write_columns
-from eel_gaits.gaits.registry import GAITS
 
 from eel_studies.optimisation.front import FORMATS
 from eel_studies.optimisation.optimise import optimise
 from eel_studies.optimisation.searches import METHODS
 
+NAME = "eel optimise"
 SUFFIXES = (*FORMATS, ".csv")
 MOST_SPEEDS = 1000
 
@@ -34,7 +40,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 def _optimise(options) -> int:
     start = time.perf_counter()
-    outs = [checked_out("optimise", out, SUFFIXES) for out in options.out]
+    outs = [checked_out(NAME, out, SUFFIXES) for out in options.out]
     bounds = {name: _bounds(name, text) for name, text in named_texts("--bound", options.bound)}
     front = optimise(
         bounds,
@@ -49,6 +55,7 @@ def _optimise(options) -> int:
         method=options.method,
         starts=options.starts,
         seed=options.seed,
+        progress=Progress(NAME, "speeds"),
     )
     print(front.table())
     if front.at_bound.any() or front.dominated.any():
@@ -87,25 +94,17 @@ def _check_count(count: int):
 
 def _parser() -> Parser:
     parser = Parser(
-        prog="optimise",
+        prog=NAME,
         description="Find the gait of least cost at each speed. The friction is blended unless --scene says otherwise.",
     )
-    parser.add_argument("gait", nargs="?", default="straight", help=f"one of {', '.join(sorted(GAITS))} (straight)")
+    add_options(parser, "gait", gait="straight")
     about = "a parameter and its bounds: a number of the gait, scene.FIELD, body.FIELD"
     add_repeated(parser, "--bound", "NAME=LOW:HIGH", about, required=True)
     parser.add_argument("--speeds", required=True, metavar="SPEEDS", help="m/s: a,b,c or start:end:count")
-    add_repeated(parser, "--set", "NAME=VALUE", "what is held fixed")
-    add_repeated(parser, "--scene", "NAME=VALUE", "physics, as for simulate")
-    parser.add_argument("--body", default="boyer2010", help=f"{', '.join(NAMED)}, or a file as for simulate")
+    add_options(parser, "--set", "--scene", "--body", "--accuracy", "--out", accuracy=1e-3)
     parser.add_argument("--cost", default="cost_of_transport", help=f"one of {', '.join(MEASURES)} (cost_of_transport)")
     parser.add_argument("--method", default="gradient", help=f"{' or '.join(METHODS)} (gradient); cma needs cma")
     parser.add_argument("--periods", type=int, default=10, metavar="N", help="of each swim (10)")
-    parser.add_argument("--accuracy", default=1e-3, help=f"{', '.join(PRESETS)}, or a target (1e-3)")
     parser.add_argument("--starts", type=int, default=1, metavar="N", help="gaits from which a search begins (1)")
     parser.add_argument("--seed", type=int, default=0, metavar="N", help="of what is random (0)")
-    add_repeated(parser, "--out", "FILE", ".png, .svg: a picture; .csv: a table")
     return parser
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -16,6 +16,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from eel_base.progress import progress_of
 from eel_base.quantity import number
 from eel_base.wording import shown
 from eel_dynamics.analysis.measures import checked_measures, measures_of
@@ -28,7 +29,6 @@ from eel_studies.optimisation.front import Front
 from eel_studies.optimisation.gait_problem import GaitProblem
 from eel_studies.optimisation.searches import METHODS
 from eel_studies.points import Point
-from eel_studies.progress_bar import progress_of
 from eel_studies.steady_swim import swim_times
 
 SPREAD_OVER_BOUNDS = 16  # gaits per parameter that are tried first

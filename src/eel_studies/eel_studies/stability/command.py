@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`stability`: maps over two parameters beyond the range of any swimmer; long runs, planar laws, singular bodies.
+"""`eel stability`: drive the simulator to its extremes, and map where it stops.
 
-stability                       # every study; pictures into docs/images
-stability --study drift         # one of them: maps, condition, drift, plane
-stability --page docs/appendix/stability.md --out docs/images
+eel stability                   # every study; pictures into docs/images
+eel stability --study drift     # one of them: maps, condition, drift, plane
+eel stability --page docs/appendix/stability.md --out docs/images
 """
 
 import os
@@ -12,7 +12,8 @@ from pathlib import Path
 from eel_base.command_line import Parser
 from eel_base.markdown import with_part, write_page
 from eel_base.output_file import check_output
-from eel_dynamics.runs.run_command import run_command
+from eel_base.progress import Progress
+from eel_base.run_command import run_command
 from eel_dynamics.runs.storage.tables import needed
 
 from eel_studies.pictures.picture_file import write_picture
@@ -34,7 +35,9 @@ def _study(options) -> int:
         _check_page(options.page, options.study or STUDIES)
     folder = Path(options.out)
     folder.mkdir(exist_ok=True)
+    progress = Progress("eel stability", "")
     for name in options.study or STUDIES:
+        progress.say(f"study {name}")
         study = STUDIES[name](options.points)
         print(f"{study.text}\n")
         for picture, (_, draw) in study.pictures.items():
@@ -65,7 +68,7 @@ def with_study(page: str, name: str, study, folder: str) -> str:
 
 def _parser() -> Parser:
     parser = Parser(
-        prog="stability",
+        prog="eel stability",
         description="Drive the simulator to the extremes: maps of where a swim is accurate, inaccurate, or stops, the "
         "condition of the inertia, drift over 100,000 periods, growth out of a plane.",
     )

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`steering`: the swim linearised over a period, over the metacentric height; what grows, and what bends can do.
+"""`eel steering`: linearise swims over a period: what grows, what bends do.
 
-steering                                             # prints a line per gait and height, draws out/steering.png
-steering --page docs/explanation/steering.md         # the page, and its picture in docs/images
+eel steering                                         # prints a line per gait and height, draws out/steering.png
+eel steering --page docs/explanation/steering.md     # the page, and its picture in docs/images
 """
 
 import os
@@ -10,7 +10,8 @@ from pathlib import Path
 
 from eel_base.command_line import Parser
 from eel_base.output_file import check_output, written_as
-from eel_dynamics.runs.run_command import run_command
+from eel_base.progress import Progress
+from eel_base.run_command import run_command
 from eel_dynamics.runs.storage.tables import needed
 
 from eel_studies.pictures.picture_file import write_picture
@@ -33,7 +34,7 @@ def _scan(options) -> int:
     needed("matplotlib", "steering", "eel_studies[pictures]")
     folder = Path(options.out)
     folder.mkdir(exist_ok=True)
-    scans = scans_of(options.points)
+    scans = scans_of(options.points, Progress("eel steering", "gaits"))
     for scan in scans:
         for height, growth in zip(scan.heights, scan.growth, strict=True):
             print(f"{scan.name}: metacentric height {1e3 * height:.3g} mm, growth {growth:.4g} a period")
@@ -50,7 +51,7 @@ def _scan(options) -> int:
 
 def _parser() -> Parser:
     parser = Parser(
-        prog="steering",
+        prog="eel steering",
         description="Linearise swims over a period of their gaits, at metacentric heights: what grows, and whether "
         "bends in yaw and pitch can hold it.",
     )

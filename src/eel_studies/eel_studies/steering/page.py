@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Writes docs/explanation/steering.md: what grows in a swim, what bends can do about it, what ballast does."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -32,7 +33,7 @@ SAME = 1e-6  # multipliers that differ by less are one
 
 PAGE = """# Can it be steered?
 
-Made by `steering --page {page}`. The paper's robot, in the scene's default physics.
+Made by `eel steering --page {page}`. The paper's robot, in the scene's default physics.
 
 The motion is linearised over one period of the gait. The settled motion repeats itself, except for position and
 heading. The monodromy matrix maps a small disturbance at the start of a period to the disturbance at its end. Its
@@ -195,6 +196,10 @@ def _gaits(scans: list[Scan]) -> str:
     return markdown.table(head, rows)
 
 
-def scans_of(points: int) -> list[Scan]:
-    """The scans of all `GAITS`."""
-    return [Scan.of(name, law, points) for name, law in GAITS.items()]
+def scans_of(points: int, progress: Callable[[int, int], object] = lambda done, count: None) -> list[Scan]:
+    """The scans of all `GAITS`. progress(done, count) is called after each."""
+    scans = []
+    for name, law in GAITS.items():
+        scans.append(Scan.of(name, law, points))
+        progress(len(scans), len(GAITS))
+    return scans

@@ -15,7 +15,9 @@ import math
 from collections.abc import Callable, Sized
 
 import numpy as np
+from eel_base.progress import progress_of
 from eel_base.wording import one_line, shown
+from eel_base.work_stopped import WorkStopped
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.analysis.measures import checked_measures, checked_point, described
 from eel_dynamics.analysis.settling import tell_unsettled
@@ -30,13 +32,18 @@ from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
 from eel_gaits.laws.law import Law
 
 from eel_studies.points import Point, SwimSettings, batch_of_points, label_of, point_at
-from eel_studies.progress_bar import progress_of
 from eel_studies.sweeps.cluster import workers_of
 from eel_studies.sweeps.sweep_key import key_of
 from eel_studies.sweeps.sweep_parts import Parts
 
 LONGEST_CHUNK = 64  # points
 MOST_POINTS = 1_000_000  # of a grid, which is built as a whole before the first run
+
+
+class PointsMissing(WorkStopped):
+    """Points of a sweep could not be computed; the others are kept."""
+
+    exit_status = 4
 
 
 def sweep(
@@ -76,7 +83,7 @@ def sweep(
     and its parts. A point that stops has NaN for its measures, `stopped` is true, and `error` is its message.
 
     `ValueError` names the point or the measure that is invalid. `ImportError`: a package is missing. `OSError`: the
-    output cannot be written to its end. `RuntimeError`: points could not be computed; the others are kept.
+    output cannot be written to its end. `PointsMissing`: points could not be computed; the others are kept.
     """
     xarray = needed("xarray", "a sweep")
     names, axes = _checked_grid(grid)
@@ -127,7 +134,7 @@ def sweep(
                 done |= result
                 progress(len(done), len(points))
     if failures:
-        raise RuntimeError(
+        raise PointsMissing(
             f"{len(points) - len(done)} of {len(points)} points could not be computed, the first at {failures[0][0]}: "
             f"{one_line(repr(failures[0][1]))}; "
             + (f"the others are kept in {parts.folder}" if out else "nothing was kept")

@@ -1,23 +1,22 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`tradeoff`: cost of accuracy for a gait, and error of models that leave physics out, as tables and pictures.
+"""`eel tradeoff`: measure what accuracy costs, and what poorer models miss.
 
-tradeoff falling
-tradeoff falling straight turning --page docs/appendix/tradeoff.md --pictures docs/images
-tradeoff straight --set period=0.7 --quick --rerun trade.rrd
-tradeoff --delivered --seed 7 --page docs/explanation/accuracy.md --pictures docs/images
+eel tradeoff falling
+eel tradeoff falling straight turning --page docs/appendix/tradeoff.md --pictures docs/images
+eel tradeoff straight --set period=0.7 --quick --rerun trade.rrd
+eel tradeoff --delivered --seed 7 --page docs/explanation/accuracy.md --pictures docs/images
 """
 
 import os
-import sys
 from pathlib import Path
 
 from eel_base.command_line import Parser
 from eel_base.output_file import check_output, written_as
-from eel_dynamics.model.body import NAMED
+from eel_base.progress import Progress
+from eel_base.run_command import run_command
 from eel_dynamics.model.scene import Scene
-from eel_dynamics.runs.command_options import add_repeated, body_of, set_numbers
-from eel_dynamics.runs.run_command import run_command
-from eel_gaits.gaits.registry import GAITS, gait
+from eel_dynamics.runs.command_options import add_options, body_of, set_numbers
+from eel_gaits.gaits.registry import gait
 
 from eel_studies.pictures.picture_file import write_picture
 from eel_studies.tradeoff import measuring, models
@@ -29,6 +28,8 @@ from eel_studies.tradeoff.price import draw_prices, prices
 from eel_studies.tradeoff.settings import settings
 from eel_studies.tradeoff.table import model_table, trade_table, write_csv
 
+NAME = "eel tradeoff"
+PROGRESS = Progress(NAME, "settings")
 OF_GAITS = {  # options that do not go with --delivered: their defaults
     "gaits": ["falling"],
     "set": [],
@@ -97,13 +98,13 @@ def _check_outputs(options):
 
 def _deliver(options) -> int:
     """Measure what the targets deliver; print it, and write page and picture if they are asked for."""
-    trials = deliver(options.count, options.seed, _say)
+    trials = deliver(options.count, options.seed, PROGRESS.say)
     print(delivered_table(trials))
     if options.pictures or options.page:
         folder = Path(options.pictures or Path(options.page).parent)
         for path in _save(lambda figure: draw_delivered(figure, trials), DELIVERED_SIZE, folder / "delivered"):
             print(f"written to {written_as(path)}")
-        found = prices(options.count, options.seed, _say)
+        found = prices(options.count, options.seed, PROGRESS.say)
         for path in _save(lambda figure: draw_prices(figure, *found), DELIVERED_SIZE, folder / "price"):
             print(f"written to {written_as(path)}")
     if options.page:
@@ -112,10 +113,6 @@ def _deliver(options) -> int:
         write_delivered_page(page, trials, options.count, options.seed, *paths)
         print(f"written to {written_as(page)}")
     return 0
-
-
-def _say(text: str):
-    print(f"tradeoff: {text}", file=sys.stderr, flush=True)
 
 
 def _measure_all(options) -> list[tuple]:
@@ -129,8 +126,8 @@ def _measure_all(options) -> list[tuple]:
         raise ValueError(f"--repeats must be 1 or more, got {options.repeats}")
     found = []
     for law in laws:
-        fixed = {"duration": options.duration, "body": body, "scene": Scene(), "say": _say}
-        _say(f"gait {law.name}")
+        fixed = {"duration": options.duration, "body": body, "scene": Scene(), "say": PROGRESS.say}
+        PROGRESS.say(f"gait {law.name}")
         rows = settings(fixed["scene"], options.quick)
         trade = measuring.measure(law, rows, repeats=options.repeats, **fixed)
         found.append((trade, models.compare(law, trade.reference, **fixed)))
@@ -170,15 +167,12 @@ def _save(draw, size, stem: Path) -> list[Path]:
 
 def _parser() -> Parser:
     parser = Parser(
-        prog="tradeoff",
+        prog=NAME,
         description="Measure error and cost of many settings for a gait, mark the Pareto front, and compare with the "
         "error of models that leave physics out. Takes about a minute per gait.",
     )
-    names = ", ".join(sorted(GAITS))
-    parser.add_argument("gaits", nargs="*", metavar="GAIT", help=f"of {names} (falling)")
-    add_repeated(parser, "--set", "NAME=VALUE", "a number of the gaits")
+    add_options(parser, "gaits", "--set", "--body", gaits=([], "falling"), body=(None, "boyer2010"))
     parser.add_argument("--duration", type=float, help="s (10)")
-    parser.add_argument("--body", help=f"{', '.join(NAMED)}, or a file as for simulate")
     parser.add_argument("--repeats", type=int, help="rounds of timing, of which the median counts (5)")
     parser.add_argument("--quick", action="store_true", help="a ninth of the settings, for a look")
     parser.add_argument("--all", action="store_true", help="print every setting, not the fronts and presets alone")
@@ -197,7 +191,3 @@ def _parser() -> Parser:
     parser.add_argument("--count", type=int, help=f"of the random swims ({COUNT})")
     parser.add_argument("--seed", type=int, help=f"of the random swims ({SEED})")
     return parser
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -10,7 +10,7 @@ from eel_studies.tradeoff.price import SWIMS
 
 PAGE = """# What a target of accuracy means
 
-Made by `tradeoff --delivered --count {count} --seed {seed} --page {page}`.
+Made by `eel tradeoff --delivered --count {count} --seed {seed} --page {page}`.
 
 `simulate(law, accuracy=1e-4)` sets a target for two relative errors:
 - The error of the head's position is the greatest over the later half of the run, relative to the length of the path,

@@ -15,7 +15,7 @@ from eel_studies.tradeoff.table import WANTED, cheapest, digits_table, model_tab
 
 PAGE = """# Accuracy against cost, and the effect of simpler models
 
-Made by `tradeoff {gaits} --pictures {pictures} --page {page}`{machine}.
+Made by `eel tradeoff {gaits} --pictures {pictures} --page {page}`{machine}.
 
 The {gait} gait, {duration:g} s, on the nodes that the torque needs; the time is without the ledger and without samples,
 set-up included. Each row is the cheapest of the measured settings whose errors, of pose and of torque, are both below
@@ -35,7 +35,7 @@ models, for {count} gaits: [{tables}]({tables}).
 """
 TABLES = """# Accuracy against cost: all tables
 
-Made by `tradeoff {gaits} --pictures {pictures} --page {page}`{machine}. The short of it: [{short}]({short}).
+Made by `eel tradeoff {gaits} --pictures {pictures} --page {page}`{machine}. The short of it: [{short}]({short}).
 
 Times are processor times without ledger and samples, medians of {repeats} rounds in which all settings take turns.
 Errors are of runs with the same steps on the same nodes, against a run of {points:g} points per body length and a

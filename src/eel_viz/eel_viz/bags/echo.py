@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command `eel_echo`: prints the messages of a topic as YAML, as `ros2 topic echo` does, without `ros2`."""
+"""`eel echo`: print the messages of a topic as YAML, without `ros2`."""
 
 import argparse
 import array
@@ -18,7 +18,7 @@ from rclpy.utilities import remove_ros_args
 
 from eel_viz.bags.definitions import message_class
 
-NAME = "eel_echo"
+NAME, COMMAND = "eel_echo", "eel echo"
 SHORT = 128  # elements of an array that are printed without --full-length
 
 
@@ -108,7 +108,7 @@ def main(arguments: list[str] | None = None) -> int:
     """Run the command. Exit status: 0; 1 if no message came or it has no such field; 2 if it cannot start."""
     words = sys.argv if arguments is None else [NAME, *arguments]
     parser = Parser(
-        prog=NAME,
+        prog=COMMAND,
         description="Print the messages of a topic as YAML, as ros2 topic echo does. It waits for a publisher, and "
         "takes its type and quality of service.",
         epilog="Exit status: 0; 1 if no message came or it has no such field, 2 if it cannot begin, with one line that "
@@ -120,7 +120,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--timeout", type=float, metavar="SECONDS", help="give up, with status 1, if nothing comes")
     parser.add_argument("-f", "--full-length", action="store_true", help=f"print arrays beyond {SHORT} elements")
     options = parser.parse_args(remove_ros_args(args=words)[1:])
-    return run_node(NAME, words, lambda: Echo(options), Echo.poll, complain=complain)
+    return run_node(COMMAND, words, lambda: Echo(options), Echo.poll, complain=complain)
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command `record`: records topics to a rosbag2 folder in MCAP storage, without `ros2 bag`.
+"""`eel record`: record topics to a rosbag2 folder (MCAP), without `ros2 bag`.
 
 Messages are written undecoded. The bag is completed twice a second (see `growing_bag`), so that it opens however the
 recorder ends. The swimmer's topics are subscribed to from the start, so that no message of a run as fast as possible is
@@ -27,7 +27,7 @@ from eel_viz.bags.definitions import definition, message_class, type_hash
 from eel_viz.bags.growing_bag import GrowingBag
 from eel_viz.topics import GLOBAL, LATCHED, OWN, SAMPLED, SWIMMER
 
-NAME = "record"
+NAME, COMMAND = "record", "eel record"
 GONE = 1.0  # s without publishers and messages, after which --stop-with-publisher ends it
 LOOK = 0.2  # s between two look-ups of the topics
 SAVE = 0.5  # s between two saves of the bag, at least
@@ -218,7 +218,7 @@ def main(arguments: list[str] | None = None) -> int:
     (disk full); 2 if it cannot start."""
     words = sys.argv if arguments is None else [NAME, *arguments]
     parser = Parser(
-        prog=NAME,
+        prog=COMMAND,
         description="Record topics to a rosbag2 folder (MCAP), readable by ros2 bag and rosbags: all messages, as they "
         "come, with the quality of service that their publishers offer.",
         epilog="The bag is made whole twice a second, so that it opens even if the recorder is killed or the disk is "
@@ -235,7 +235,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--stop-with-publisher", action="store_true", help="end when the swimmer has gone")
     options = parser.parse_args(remove_ros_args(args=words)[1:])
     make, poll, take_messages = lambda: Recorder(options), Recorder.poll, Recorder.take_messages
-    return run_node(NAME, words, make, poll, take_messages, complain=complain, complete=True)
+    return run_node(COMMAND, words, make, poll, take_messages, complain=complain, complete=True)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command `replay`: turns a bag into the Rerun recording that the visualiser would make, without ROS.
+"""`eel replay`: turn a bag into a Rerun recording, as of the visualiser.
 
-    replay BAG -o run.rrd
+    eel replay BAG -o run.rrd
 
 Messages pass through the visualiser's `dispatcher`, in the order in which they were recorded, as fast as possible. A
 reset in the bag begins a second file, as in the visualiser.
@@ -9,15 +9,14 @@ reset in the bag begins a second file, as in the visualiser.
 
 import contextlib
 import os
-import sys
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import fields
 from types import SimpleNamespace
 
-from eel_base.command_line import Parser, complain, interruptible
-from eel_base.output_file import NotWritten
+from eel_base.command_line import Parser, complain
 from eel_base.quantity import limits
+from eel_base.run_command import run_command
 from eel_base.wording import shown
 
 from eel_viz.bags.bag import Bag, DamagedBag
@@ -30,7 +29,7 @@ from eel_viz.topics import GLOBAL, OWN
 from eel_viz.viewer import display, open_window
 from eel_viz.without_pandas import keep_pandas_out
 
-NAME = "replay"
+NAME = "eel replay"
 DIAGNOSTICS = "/diagnostics"
 OPTIONS: tuple[str, ...] = ("blueprint", "rate", "skin_rate", "colour_limit", "torque_limit", "force_limit")
 OPTIONS += ("curvature_limit", "load_scale", "end_force_scale", "reach", "viewer")
@@ -198,42 +197,29 @@ def parser() -> Parser:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Run the command. Exit status: 0; with one line on stderr 1 if the recording cannot be written completely, 2 if it
-    cannot be begun, 130 after Ctrl-C."""
+    """Exit status as of `run_command`; 130 after Ctrl-C."""
     keep_pandas_out()
-    chosen = parser().parse_args(arguments)
+    return run_command(parser(), _replay, arguments, interrupted=": the recording ends there")
+
+
+def _replay(chosen) -> int:
     output = chosen.output or f"{name_of(chosen.bag)}.rrd"
     other = chosen.compare if chosen.compare.strip("/") and os.path.exists(chosen.compare) else None
-
-    def log_warning(text: str) -> None:
-        complain(NAME, text)
-
     began = time.monotonic()
-    try:
-        if chosen.spawn and not display():
-            raise ValueError("--spawn needs a display, and there is none")
-        values = {name: getattr(chosen, name) for name in OPTIONS}
-        values["compare"] = name_of(other, chosen.bag) if other else chosen.compare
-        sink = ("save", "connect") if chosen.connect else ("save",)
-        settings = Settings.from_values({**values, "sink": sink, "recording": output})
-        with interruptible():
-            told = replay(
-                chosen.bag, settings, other=other, namespace=chosen.namespace, log_info=print, log_warning=log_warning
-            )
-    except NotWritten as error:
-        log_warning(str(error))
-        return 1
-    except (ValueError, OSError) as error:
-        log_warning(str(error))
-        return 2
-    except KeyboardInterrupt:
-        log_warning("interrupted: the recording ends there")
-        return 130
+    if chosen.spawn and not display():
+        raise ValueError("--spawn needs a display, and there is none")
+    values = {name: getattr(chosen, name) for name in OPTIONS}
+    values["compare"] = name_of(other, chosen.bag) if other else chosen.compare
+    sink = ("save", "connect") if chosen.connect else ("save",)
+    told = replay(
+        chosen.bag,
+        Settings.from_values({**values, "sink": sink, "recording": output}),
+        other=other,
+        namespace=chosen.namespace,
+        log_info=print,
+        log_warning=lambda text: complain(NAME, text),
+    )
     print(f"replayed in {time.monotonic() - began:.1f} s: {told}")
     if chosen.spawn:
         open_window(output)
     return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

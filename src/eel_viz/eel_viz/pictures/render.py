@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command `render`: draws a recording to pictures, or to a film, without a display.
+"""`eel render`: draw a recording to pictures, or to a film, without a display.
 
-render RUN.rrd -o picture.png                # --at 7.0: at another time
-render RUN.rrd -o frames/ --fps 30           # frames/frame_00000.png ..., and frames/film.mp4 where ffmpeg is
-render RUN.rrd -o swim.webp --fps 15 --size 960x540
-render RUN.rrd -o swim.webp --fps 15 --size 800x450 --bare    # the swimmer alone
-render RUN.rrd -o pair.webp --fps 15 --size 640x400 --bare --beside OTHER.rrd
+eel render RUN.rrd -o picture.png                # --at 7.0: at another time
+eel render RUN.rrd -o frames/ --fps 30           # frames/frame_00000.png ..., and frames/film.mp4 where ffmpeg is
+eel render RUN.rrd -o swim.webp --fps 15 --size 960x540
+eel render RUN.rrd -o swim.webp --fps 15 --size 800x450 --bare    # the swimmer alone
+eel render RUN.rrd -o pair.webp --fps 15 --size 640x400 --bare --beside OTHER.rrd
 """
 
 import argparse
@@ -13,13 +13,13 @@ import contextlib
 import math
 import os
 import pathlib
-import sys
 import tempfile
 from collections.abc import Callable, Sequence
 
-from eel_base.command_line import Parser, complain, interruptible
-from eel_base.one_line_warnings import one_line_warnings
-from eel_base.output_file import NotWritten, check_output, command_begins, replacing, written_as
+from eel_base.command_line import Parser, complain
+from eel_base.output_file import NotWritten, check_output, replacing, written_as
+from eel_base.progress import Progress
+from eel_base.run_command import run_command
 from eel_base.wording import shown
 
 from eel_viz.pictures.drawing import SIZE, Drawing, check_recording
@@ -28,7 +28,7 @@ from eel_viz.pictures.side_by_side import SideBySide, drawn_beside
 from eel_viz.viewer import CannotRender
 from eel_viz.without_pandas import keep_pandas_out
 
-NAME = "render"
+NAME = "eel render"
 FILM = "film.mp4"
 MANY = 100_000  # pictures
 DEFAULT_SHARE = 0.7  # of a recording's duration, at which a single picture is taken: the swimmer moves by then
@@ -77,7 +77,7 @@ def frames(
     drawing: Drawing | SideBySide,
     folder: pathlib.Path,
     at: Sequence[float],
-    progress: Callable[[str], None] = lambda text: None,
+    progress: Callable[[int, int], object] = lambda done, count: None,
 ) -> list[pathlib.Path]:
     """Write pictures at the times `at` [s] to frame_00000.png and so on in `folder`; returns their paths.
 
@@ -91,7 +91,7 @@ def frames(
             draft.write_bytes(png)
         if written_as(written[-1]) != written[-1]:  # a film would have the other's picture
             raise NotWritten(f"another process writes pictures to {shown(str(folder))} too")
-        progress(f"\r{k + 1} of {len(at)}")
+        progress(k + 1, len(at))
     return written
 
 
@@ -146,38 +146,24 @@ def parser() -> Parser:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Run the command. Exit status: 0; 1 if the output cannot be written completely; 2 for bad arguments; 3 if the
-    viewer cannot draw; 130 after Ctrl-C."""
+    """Exit status as of `run_command`; 3 if the viewer cannot draw; 130 after Ctrl-C."""
     keep_pandas_out()
-    made = parser()
-    chosen = made.parse_args(arguments)
+    return run_command(parser(), _render, arguments, interrupted=" ")
+
+
+def _render(chosen: argparse.Namespace) -> int:
     output = chosen.output or chosen.picture
-    try:
-        check_recording(pathlib.Path(chosen.recording))
-    except (ValueError, OSError) as reason:
-        complain(NAME, reason)
-        return 2
+    check_recording(pathlib.Path(chosen.recording))
     if output is None:
-        made.error("where to write is missing: -o PICTURE.png, or -o FOLDER with --fps")
+        raise ValueError("where to write is missing: -o PICTURE.png, or -o FOLDER with --fps")
     try:
         width, height = (int(number) for number in chosen.size.split("x"))
     except ValueError:
-        made.error(f"--size must look like 1920x1080, got {shown(chosen.size)}")
+        raise ValueError(f"--size must look like 1920x1080, got {shown(chosen.size)}") from None
     try:
-        with one_line_warnings(NAME), command_begins(), interruptible():
-            _draw(chosen, pathlib.Path(output), (width, height))
+        _draw(chosen, pathlib.Path(output), (width, height))
     except (CannotRender, ConnectionError) as reason:
-        complain(NAME, f"no picture: {reason}")
-        return 3
-    except NotWritten as reason:
-        _say(f"{NAME}: {reason}\n")
-        return 1
-    except (ValueError, OSError) as reason:
-        complain(NAME, reason)
-        return 2
-    except KeyboardInterrupt:
-        _say(f"\n{NAME}: interrupted\n")
-        return 130
+        raise CannotRender(f"no picture: {reason}") from reason
     return 0
 
 
@@ -205,8 +191,8 @@ def _draw(chosen: argparse.Namespace, output: pathlib.Path, size: tuple[int, int
         else:
             folder.mkdir(exist_ok=True)
         if any(folder.glob("frame_*.png")):
-            _say(f"{NAME}: {folder} has pictures already, those of the same number are replaced\n")
-        written = frames(drawing, folder, at, _say if sys.stderr.isatty() else lambda text: None)
+            complain(NAME, f"{folder} has pictures already, those of the same number are replaced")
+        written = frames(drawing, folder, at, Progress(NAME, "pictures"))
         name = output if alone else folder / FILM
         print(f"{len(written)} pictures" + ("" if alone else f" in {folder}"))
         if alone or ffmpeg() is not None:
@@ -232,12 +218,3 @@ def _check_writable(output: pathlib.Path, *, folder: bool) -> None:
         raise ValueError(
             f"output {shown(str(output))} cannot be written: {shown(str(where))} is no folder that can be written to"
         )
-
-
-def _say(text: str) -> None:
-    sys.stderr.write(text)
-    sys.stderr.flush()
-
-
-if __name__ == "__main__":
-    sys.exit(main())

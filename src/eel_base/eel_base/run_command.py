@@ -2,26 +2,32 @@
 """What all commands have in common: errors of one line, the exit status, Ctrl-C, and the check of outputs."""
 
 import argparse
+import contextlib
 from collections.abc import Callable
 from pathlib import Path
 
-from eel_base.command_line import Parser, complain
+from eel_base.command_line import Parser, complain, interruptible
 from eel_base.one_line_warnings import one_line_warnings
 from eel_base.output_file import NotWritten, check_output, command_begins
 from eel_base.wording import shown
+from eel_base.work_stopped import WorkStopped
 
-from eel_dynamics.simulation.stopping import SimulationStopped
 
-
-def run_command(parser: Parser, work: Callable[[argparse.Namespace], int], arguments: list[str] | None) -> int:
+def run_command(
+    parser: Parser,
+    work: Callable[[argparse.Namespace], int],
+    arguments: list[str] | None,
+    interrupted: str = "",
+) -> int:
     """Do the `work` of a command with its `arguments`; None: those of this process.
 
     Returns the exit status: that of the work; 1 where an output cannot be written to its end; 2 for bad input, a
-    missing package or too little memory; 3 for a swim that stops. An error prints one line with its reason.
+    missing package or too little memory; that of a `WorkStopped`, 3 for a swim that stops. An error prints one line
+    with its reason. interrupted: what Ctrl-C leaves, told with status 130; empty: Ctrl-C ends the command at once.
     """
     options, name = parser.parse_args(arguments), parser.prog
     try:
-        with one_line_warnings(name), command_begins():
+        with one_line_warnings(name), command_begins(), interruptible() if interrupted else contextlib.nullcontext():
             return work(options)
     except NotWritten as error:
         complain(name, error)
@@ -32,13 +38,18 @@ def run_command(parser: Parser, work: Callable[[argparse.Namespace], int], argum
     except MemoryError as error:
         complain(name, f"it does not fit into memory: {error}")
         return 2
-    except SimulationStopped as error:
+    except WorkStopped as error:
         complain(name, error)
-        return 3
+        return error.exit_status
+    except KeyboardInterrupt:
+        complain(name, f"interrupted{interrupted}")
+        return 130
 
 
-def checked_out(command: str, out: str, suffixes: tuple[str, ...]) -> Path:
+def checked_out(command: str, out: str | None, suffixes: tuple[str, ...]) -> Path | None:
     """The path of an output of the `command`, which says so where the file exists. `ValueError` for another suffix."""
+    if out is None:
+        return None
     path = Path(out)
     if path.suffix not in suffixes:
         raise ValueError(f"--out must end in {', '.join(suffixes[:-1])} or {suffixes[-1]}, got {shown(out)}")
@@ -46,6 +57,3 @@ def checked_out(command: str, out: str, suffixes: tuple[str, ...]) -> Path:
     if path.exists():
         complain(command, f"{path} exists and will be overwritten")
     return path
-
-
-__all__ = ["checked_out", "run_command"]

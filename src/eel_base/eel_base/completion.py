@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`eel completion`: print what lets bash or zsh complete commands and options.
+
+bash: eval "$(eel completion bash)"     zsh: eval "$(eel completion zsh)"
+"""
+
+from eel_base.command_line import Parser
+from eel_base.run_command import run_command
+from eel_base.suite import commands
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Exit status as of `run_command`."""
+    parser = Parser(prog="eel completion", description="Print a shell's completion of eel, for eval in its start file.")
+    parser.add_argument("shell", choices=("bash", "zsh"))
+    return run_command(parser, _print_script, arguments)
+
+
+def _print_script(options) -> int:
+    """Without argcomplete, the names of the commands are completed alone."""
+    try:
+        from argcomplete import shellcode
+    except ImportError:
+        first = "autoload -U +X bashcompinit && bashcompinit\n" if options.shell == "zsh" else ""
+        print(f"{first}complete -o default -W '{' '.join(commands())}' eel")
+    else:
+        print(shellcode(["eel"], shell=options.shell))
+    return 0

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`eel compare`: two runs side by side."""

@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`eel compare`: draw two runs, files or gaits, and print the measures of both.
+
+eel compare straight turning --out pair.rrd
+eel compare before.nc after.nc --out pair.png
+eel compare measured.nc straight          # the gait swims in the body, scene and time of the file
+"""
+
+from importlib.util import find_spec
+from pathlib import Path
+
+import numpy as np
+from eel_base.command_line import Parser
+from eel_base.output_file import written_as
+from eel_base.progress import Progress
+from eel_base.run_command import checked_out, run_command
+from eel_dynamics.analysis.measures import MEASURES, measures_of
+from eel_dynamics.model.body import Body
+from eel_dynamics.model.scene import Scene
+from eel_dynamics.runs.command_options import add_options, body_of, scene_of, set_numbers
+from eel_dynamics.runs.run import Run, simulate
+from eel_dynamics.runs.settled_duration import until_settled
+from eel_gaits.gaits.registry import gait
+
+from eel_studies.pictures.picture_file import write_picture
+from eel_studies.pictures.style import BLUE, ORANGE, legend_above, plain
+
+NAME = "eel compare"
+PICTURES = (".png", ".svg", ".pdf")
+DURATION = 10.0  # s, of two gaits
+SIZE = 6.8, 6.4  # inches
+STYLES = ({"color": BLUE}, {"color": ORANGE, "linestyle": (0, (4, 2))})
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Exit status as of `run_command`."""
+    return run_command(_parser(), _compare, arguments)
+
+
+def _compare(options) -> int:
+    out = checked_out(NAME, options.out, (".rrd", *PICTURES))
+    if out is not None and out.suffix == ".rrd" and find_spec("eel_viz") is None:
+        raise ValueError("--out .rrd needs the package eel_viz, with rerun-sdk, which is not installed")
+    loaded = [Run.load(name) if Path(name).suffix == ".nc" else None for name in (options.first, options.second)]
+    like = loaded[0] or loaded[1]
+    names = [Path(options.first).stem, Path(options.second).stem]
+    first, second = (run or _swum(options, name, like) for run, name in zip(loaded, names, strict=True))
+    print(table_of(first, second, names))
+    if out is not None:
+        if out.suffix == ".rrd":
+            first.to_rerun(out, compare=second)
+        else:
+            write_picture(lambda figure: draw(figure, (first, second), names), SIZE, out)
+        print(f"written to {written_as(out)}")
+    return 0
+
+
+def _swum(options, name: str, like: Run | None) -> Run:
+    """The run of the gait `name`: what no option says is as in the run `like`, where there is one."""
+    body, scene, duration = Body.boyer2010(), Scene(), DURATION
+    if like is not None:
+        body, scene, duration = like.body, like.scene, float(like.time[-1])
+    if options.duration is not None:
+        duration = options.duration
+    progress = Progress(NAME, f"simulated s of {name}")
+    return simulate(
+        gait(name, **set_numbers(options.set)),
+        duration,
+        body=body if options.body is None else body_of(options.body),
+        scene=scene_of(options.scene) if options.scene else scene,
+        accuracy=options.accuracy,
+        estimate=not options.bare,
+        progress=lambda reached, left: progress(float(f"{reached:.3g}"), None if until_settled(duration) else duration),
+    )
+
+
+def table_of(first: Run, second: Run, names: list[str]) -> str:
+    """The measures that either run has, and by how much those of the second are greater; relative to the first."""
+    width = max(map(len, MEASURES))
+    lines = [f"{'':{width}s}  {names[0]:>12.12s}  {names[1]:>12.12s}  {'difference':>12s}"]
+    one, two = measures_of(first), measures_of(second)
+    for name, (unit, *_) in MEASURES.items():
+        if np.isnan(one[name]) and np.isnan(two[name]):
+            continue
+        change = two[name] - one[name]
+        relative = f"{change / abs(one[name]):+9.2%}" if one[name] and np.isfinite(change) else " " * 9
+        line = f"{name:{width}s}  {one[name]:12.5g}  {two[name]:12.5g}  {change:12.3g}  {relative}  {unit}"
+        lines.append(line.rstrip())
+    return "\n".join(lines)
+
+
+def draw(figure, runs: tuple[Run, Run], names: list[str]) -> None:
+    """Draw the paths of both heads from above, and in time their speeds and the greatest torques along the bodies."""
+    path, speed, torque = figure.subplots(3, 1, height_ratios=(2, 1, 1))
+    for run, name, style in zip(runs, names, STYLES, strict=True):
+        path.plot(run.position[:, 0], run.position[:, 1], label=name, **style)
+        speed.plot(run.time, np.linalg.norm(run.twist[:, 3:], axis=1), **style)
+        if run.torque is not None:
+            torque.plot(run.time, np.linalg.norm(run.torque, axis=2).max(axis=1), **style)
+    path.set(xlabel="x of the head [m]", ylabel="y [m]")
+    path.set_aspect("equal", adjustable="datalim")
+    path.grid(alpha=0.3)
+    speed.set(ylabel="head's speed [m/s]")
+    torque.set(xlabel="time [s]", ylabel="most torque [N m]")
+    plain(speed)
+    plain(torque)
+    legend_above(figure)
+
+
+def _parser() -> Parser:
+    parser = Parser(
+        prog=NAME,
+        description="Draw two runs over one another, and print the measures of both with their difference. A gait "
+        "beside a file swims in the body and scene of the file, and as long.",
+    )
+    for name in ("first", "second"):
+        parser.add_argument(name, metavar="RUN", help="a run (.nc, of eel simulate --out), or a gait")
+    add_options(
+        parser, "--set", "--duration", "--accuracy", "--bare", "--body", "--scene",
+        duration=(None, f"of a file, or {DURATION:g}"), body=(None, "of a file, or boyer2010"),
+    )  # fmt: skip
+    parser.add_argument("--out", metavar="FILE", help=".rrd: for Rerun's viewer (needs eel_viz); .png, .svg, .pdf")
+    return parser
