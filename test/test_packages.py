@@ -59,7 +59,8 @@ FROM_REQUIREMENTS = {
     "mcap",
     "pyarrow",
     "zstandard",
-}  # no rosdep key: requirements.txt brings them (pyarrow and rerun_bindings with rerun, zstandard with mcap)
+    "lz4",
+}  # no rosdep key: requirements.txt brings them (pyarrow and rerun_bindings with rerun, zstandard and lz4 with mcap)
 
 
 def imported_modules(package: str) -> set[str]:

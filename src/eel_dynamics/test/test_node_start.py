@@ -16,7 +16,7 @@ from eel_gaits import falling
 BAD = {
     "rate of 0": (("rate:=0",), ("rate", "> 0", "got 0")),
     "rate as text": (("rate:=fast",), ("rate", "'fast'")),
-    "rate too high": (("rate:=1e9",), ("rate", "<= 10000", "1e+09")),
+    "rate too high": (("rate:=1e9",), ("rate", "<= 10000", "1000000000")),
     "negative factor": (("real_time_factor:=-1",), ("real_time_factor", "-1")),
     "unknown accuracy": (("accuracy:=perfect",), ("accuracy", "perfect")),
     "impossible accuracy": (("accuracy:=-0.5",), ("accuracy", "-0.5")),

@@ -4,6 +4,7 @@
 import errno
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -362,11 +363,12 @@ def test_out_of_memory_is_one_line(tmp_path, monkeypatch, capsys):
 
 
 @pytest.mark.parametrize(
-    "name, extra, given", [("xarray", "data", {}), ("distributed", "cluster", {"scheduler": "processes"})]
+    "name, extra, given",
+    [("xarray", "eel_dynamics[data]", {}), ("distributed", "eel_studies[cluster]", {"scheduler": "processes"})],
 )
 def test_missing_extra_is_one_clear_error(name, extra, given, monkeypatch):
     monkeypatch.setitem(sys.modules, name, None)
-    with pytest.raises(ImportError, match=rf"needs {name} .* pip install './src/eel_dynamics\[{extra}\]'"):
+    with pytest.raises(ImportError, match=rf"needs {name} .* pip install './src/{re.escape(extra)}'"):
         sweep({"period": [1.0]}, **given)
 
 

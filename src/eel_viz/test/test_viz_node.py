@@ -185,7 +185,7 @@ def test_what_cannot_be_is_refused_in_one_line_with_status_2(start_in_turn, tmp_
         "sink:=7": "sink must be a list of texts, got 7",
         "rate:=0": "rate must be >= 0.1 Hz",
         "rate:=0.0": "rate",
-        "rate:=often": "rate must be a number, got 'often'",
+        "rate:=often": "rate must be a finite number, got 'often'",
         "port:=1": "port",
         "compare:=/": "compare must be another namespace than the swimmer's own, got '/'",
         "blueprint:=mine": "blueprint must be one of overview, torques, motion, swimmer, compare, got 'mine'",
