@@ -8,8 +8,8 @@ import shutil
 import signal
 import sys
 import textwrap
-from collections.abc import Iterator
-from typing import NoReturn
+from collections.abc import Iterable, Iterator
+from typing import Any, NoReturn
 
 from eel_base.wording import did_you_mean, one_line, shown
 
@@ -19,7 +19,7 @@ COMPLETING = "_ARGCOMPLETE"  # in the environment where a shell asks for complet
 class Parser(argparse.ArgumentParser):
     """An argument parser that reports an error in one line, and wraps each line of its texts."""
 
-    def __init__(self, *, description: str, epilog: str = "", **options):
+    def __init__(self, *, description: str, epilog: str = "", **options: Any) -> None:
         super().__init__(
             description=_wrapped(description),
             epilog=_wrapped(epilog),
@@ -28,16 +28,17 @@ class Parser(argparse.ArgumentParser):
             **options,
         )
 
-    def parse_args(self, args=None, namespace=None):
+    def parse_args(self, args: Iterable[str] | None = None, namespace: Any = None) -> Any:
         write_on_any_terminal()
         if COMPLETING in os.environ:
             import argcomplete
 
             argcomplete.autocomplete(self)
-        self._check_options(sys.argv[1:] if args is None else args)
-        return super().parse_args(args, namespace)
+        words = sys.argv[1:] if args is None else list(args)
+        self._check_options(words)
+        return super().parse_args(words, namespace)
 
-    def _check_options(self, words):
+    def _check_options(self, words: list[str]) -> None:
         """Refuse an option that there is not before one is missed that must be given."""
         for word in words:
             name = word.partition("=")[0]
@@ -81,7 +82,7 @@ def _wrapped(text: str) -> str:
     )
 
 
-def complain(program: str, error):
+def complain(program: str, error: object) -> None:
     """Write one line to stderr: the program's name and the text of `error`."""
     sys.stderr.write(f"{program}: {one_line(error)}\n")
 

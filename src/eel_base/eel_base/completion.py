@@ -4,6 +4,8 @@
 bash: eval "$(eel completion bash)"     zsh: eval "$(eel completion zsh)"
 """
 
+import argparse
+
 from eel_base.command_line import Parser
 from eel_base.run_command import run_command
 from eel_base.suite import commands
@@ -16,7 +18,7 @@ def main(arguments: list[str] | None = None) -> int:
     return run_command(parser, _print_script, arguments)
 
 
-def _print_script(options) -> int:
+def _print_script(options: argparse.Namespace) -> int:
     """Without argcomplete, the names of the commands are completed alone."""
     try:
         from argcomplete import shellcode

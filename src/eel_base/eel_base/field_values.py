@@ -5,13 +5,15 @@ The default gives the type; its metadata may have minimum, maximum, exclusive (t
 choices (of a text) and number (a text or a number).
 """
 
+from collections.abc import Mapping, Sequence
 from dataclasses import Field
+from typing import Any
 
 from eel_base.quantity import check_bounds, is_finite
 from eel_base.wording import shown
 
 
-def checked(item: Field, value, name: str):
+def checked(item: Field[Any], value: Any, name: str) -> Any:
     """`value` in the type of the field `item`; `ValueError` says what `name` must be, and what it got.
 
     A float may be given as an integer, a row of texts as one text with commas. For a default of None 0 is None.
@@ -34,17 +36,17 @@ def checked(item: Field, value, name: str):
     return value
 
 
-def _of_kind(good: bool, value, rule: str):
+def _of_kind(good: bool, value: Any, rule: str) -> Any:
     if not good:
         raise ValueError(f"{rule}, got {shown(value)}")
     return value
 
 
-def _is_number(value) -> bool:
+def _is_number(value: Any) -> bool:
     return isinstance(value, (int, float)) and not isinstance(value, bool) and is_finite(value)
 
 
-def _checked_text(about, value, name: str):
+def _checked_text(about: Mapping[str, Any], value: Any, name: str) -> Any:
     if about.get("number") and _is_number(value):
         return float(value)
     _of_kind(isinstance(value, str), value, f"{name} must be a text{' or a number' if about.get('number') else ''}")
@@ -52,10 +54,10 @@ def _checked_text(about, value, name: str):
     return _of_kind(value in choices, value, f"{name} must be one of {', '.join(choices)}")
 
 
-def _checked_row(default: tuple, value, name: str) -> tuple:
+def _checked_row(default: tuple[Any, ...], value: Any, name: str) -> tuple[Any, ...]:
     row = isinstance(value, (list, tuple)) or hasattr(value, "typecode")  # of rclpy: an array.array
     if isinstance(default[0], str):
-        words = value.split(",") if isinstance(value, str) else value if row else (None,)
+        words: Sequence[Any] = value.split(",") if isinstance(value, str) else value if row else (None,)
         _of_kind(all(isinstance(word, str) for word in words), value, f"{name} must be a list of texts")
         return tuple(word.strip() for word in words)
     good = row and len(value) == len(default) and all(_is_number(number) for number in value)

@@ -49,7 +49,9 @@ class Progress:
         sys.stderr.flush()
 
 
-def progress_of(progress: "Callable | bool | None", unit: str = "points") -> Callable[[float, float], object]:
+def progress_of(
+    progress: Callable[..., object] | bool | None, unit: str = "points"
+) -> Callable[[float, float], object]:
     """The function progress(done, count) that the argument `progress` asks for.
 
     progress: a function; True: `Progress`; False: nothing; None: `Progress` where stderr is a terminal.

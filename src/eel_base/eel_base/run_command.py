@@ -46,10 +46,8 @@ def run_command(
         return 130
 
 
-def checked_out(command: str, out: str | None, suffixes: tuple[str, ...]) -> Path | None:
+def checked_out(command: str, out: str, suffixes: tuple[str, ...]) -> Path:
     """The path of an output of the `command`, which says so where the file exists. `ValueError` for another suffix."""
-    if out is None:
-        return None
     path = Path(out)
     if path.suffix not in suffixes:
         raise ValueError(f"--out must end in {', '.join(suffixes[:-1])} or {suffixes[-1]}, got {shown(out)}")

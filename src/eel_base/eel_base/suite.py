@@ -41,7 +41,8 @@ def main(arguments: list[str] | None = None) -> int:
     if words and words[0] in known:
         module = known[words[0]].value
         eel_command.begin(module, f"eel {words[0]}")
-        return importlib.import_module(module).main(words[1:])
+        status: int = importlib.import_module(module).main(words[1:])
+        return status
     parser = _parser(known)
     if words and not words[0].startswith("-"):
         parser.error(f"no command {shown(words[0])}{did_you_mean(words[0], known)}")

@@ -31,7 +31,7 @@ def read_yaml(path: str | os.PathLike[str]) -> Any:
         return from_yaml(file.read().decode("utf-8"))
 
 
-def from_yaml(text: str, most: int = MOST_NODES):
+def from_yaml(text: str, most: int = MOST_NODES) -> Any:
     """The document in a YAML `text` of at most `most` values. Errors as in `read_yaml`."""
     loader = _Loader(text, most)
     try:

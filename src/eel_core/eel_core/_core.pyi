@@ -8,7 +8,7 @@ is (Omega, V) [rad/s, m/s] of the head in its own axes, relative to the water un
 (torque, force) [N m, N] about the head, in its axes. T instants, M stations, n nodes, m rows of a law.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any, Protocol, Self
 
 import numpy as np
@@ -101,7 +101,7 @@ class _Stations(Protocol):
     @property
     def added_roll_slope(self) -> Buffer: ...  # (M,) [kg]
     @property
-    def missed(self) -> Sequence[Buffer]: ...
+    def missed(self) -> Iterable[Buffer]: ...
     # (M, p_max) each, times m: what the rows of `points` miss of the integrals of mass, added2 and 3, inertia1 to 3,
     # drag2 and 3, drag_roll, laminar and turbulent; none where the sections are smooth
 
@@ -128,7 +128,7 @@ class Swimmer(_Shared):
         nose_drag: float,
         distributed_pressure: bool,
         righting: float,
-        missed_drag: Sequence[Buffer] = (),
+        missed_drag: Iterable[Buffer] = (),
     ) -> None:
         """sections: at the nodes. friction: "printed", "laminar" or "blended". resistive: drag along the body.
         first_watched: first of the speeds (0 V1, 1 V2, 2 V3, 3 Omega1, 4 Re/8e4 - 1) whose changes of sign within a

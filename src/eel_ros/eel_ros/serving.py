@@ -54,7 +54,8 @@ class ServedNode(Node):
             except Exception as error:
                 log_dropped(self, error, what)
 
-        return super().create_subscription(msg_type, topic, take, qos_profile, raw=True, **options)
+        taken: Callable[..., None] = take  # the hint of rclpy leaves out the message info
+        return super().create_subscription(msg_type, topic, taken, qos_profile, raw=True, **options)
 
 
 class PolledGroup(CallbackGroup):

@@ -153,5 +153,6 @@ def _motors(run, robot: Joints) -> list[Motors]:
         angle, speed, torque = (values[..., axis] for values in fine)
         sizes = zip(QUANTITIES, (angle, speed, torque, speed * torque), strict=True)
         peak = {name: peaks(finer.time, values)[0] for name, values in sizes}
-        found.append(Motors(run.time, *(values[..., axis] for values in here), peak))
+        angle, speed, torque = (values[..., axis] for values in here)
+        found.append(Motors(run.time, angle, speed, torque, peak))
     return found

@@ -12,7 +12,7 @@ panel of the field times a smooth function, such as the motion of the body, is t
 Up to a place within the panel, each node's part in the integral lacks what `missed_before` and `missed_within` give.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cache
 from typing import NamedTuple
 
@@ -116,7 +116,7 @@ def _inside(panel: Panel, breaks: np.ndarray) -> np.ndarray:
     return panel.fraction(breaks[first:last])
 
 
-def _parts(field, grid: Grid, ends: list[np.ndarray | None]) -> list[Part]:
+def _parts(field, grid: Grid, ends: Sequence[np.ndarray | None]) -> list[Part]:
     """The panels of `grid` with `ends` of parts, fractions of each; None for a panel that is not wanted."""
     parts, weights, places, begin = [], [], [], 0
     for panel, each in zip(grid.panels, ends, strict=True):

@@ -175,7 +175,9 @@ def _check_actuators(options, scene: Scene):
 
 
 def _checked_out(out: str | None) -> Path | None:
-    if out is not None and Path(out).suffix == ".rrd" and find_spec("eel_viz") is None:
+    if out is None:
+        return None
+    if Path(out).suffix == ".rrd" and find_spec("eel_viz") is None:
         raise ValueError("--out .rrd needs the package eel_viz, with rerun-sdk, which is not installed")
     return checked_out(NAME, out, SUFFIXES)
 

@@ -8,6 +8,7 @@ import argparse
 import inspect
 from collections.abc import Callable
 from dataclasses import fields
+from typing import Any
 
 import numpy as np
 from eel_base.command_line import Parser
@@ -33,7 +34,7 @@ def add_options(parser: Parser, *options: str, **defaults) -> None:
         default = defaults.get(option.strip("-").replace("-", "_"), about.get("default"))
         default, told = default if isinstance(default, tuple) else (default, default)
         text = f"{about['help']} ({told})" if told else about["help"]
-        added = parser.add_argument(option, **{**about, "default": default, "help": text.replace("%", "%%")})
+        added: Any = parser.add_argument(option, **{**about, "default": default, "help": text.replace("%", "%%")})
         if "gait" in option:
             added.completer = lambda **_: GAITS  # for argcomplete
     if "gait" in options:

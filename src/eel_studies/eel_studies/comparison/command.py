@@ -8,6 +8,7 @@ eel compare measured.nc straight          # the gait swims in the body, scene an
 
 from importlib.util import find_spec
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from eel_base.command_line import Parser
@@ -29,7 +30,7 @@ NAME = "eel compare"
 PICTURES = (".png", ".svg", ".pdf")
 DURATION = 10.0  # s, of two gaits
 SIZE = 6.8, 6.4  # inches
-STYLES = ({"color": BLUE}, {"color": ORANGE, "linestyle": (0, (4, 2))})
+STYLES: tuple[dict[str, Any], ...] = ({"color": BLUE}, {"color": ORANGE, "linestyle": (0, (4, 2))})
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -38,7 +39,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _compare(options) -> int:
-    out = checked_out(NAME, options.out, (".rrd", *PICTURES))
+    out = None if options.out is None else checked_out(NAME, options.out, (".rrd", *PICTURES))
     if out is not None and out.suffix == ".rrd" and find_spec("eel_viz") is None:
         raise ValueError("--out .rrd needs the package eel_viz, with rerun-sdk, which is not installed")
     loaded = [Run.load(name) if Path(name).suffix == ".nc" else None for name in (options.first, options.second)]

@@ -23,7 +23,9 @@ MOST_EVALUATIONS = 50  # of the model, in a pass
 class Fit:
     """Fits parameters, from their values `first`, to what was `measured`. `ValueError`: they are not determined."""
 
-    def __init__(self, swims: Swims, measured: list, first: dict[str, float], progress: Callable[[int, int], None]):
+    def __init__(
+        self, swims: Swims, measured: list, first: dict[str, float], progress: Callable[[float, float], object]
+    ):
         self.names, self._swims, self._progress = tuple(first), swims, progress
         self._start = np.array(list(first.values()))
         self._known: dict[bytes, list[Predicted]] = {}

@@ -30,7 +30,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _compare(options) -> int:
-    out = checked_out(NAME, options.out, SUFFIXES)
+    out = None if options.out is None else checked_out(NAME, options.out, SUFFIXES)
     body = body_of(options.body)
     midlines = read_midlines(options.file, length=body.length, scale=options.scale)
     law = midlines.law(Path(options.file).stem)

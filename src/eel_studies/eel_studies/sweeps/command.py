@@ -6,6 +6,7 @@ eel sweep straight --vary body=boyer2010,kern2006 --vary wavelength=0.6:1.2:7 --
 """
 
 import time
+from functools import partial
 
 import numpy as np
 from eel_base.command_line import Parser
@@ -38,7 +39,7 @@ def _sweep(options) -> int:
     start = time.perf_counter()
     numbers, vary = set_numbers(options.set), named_texts("--vary", options.vary)
     check_names([*numbers, *(name for name, _ in vary)])
-    grid = {name: varied_values(text, lambda count, name=name: check_points(name, count)) for name, text in vary}
+    grid = {name: varied_values(text, partial(check_points, name)) for name, text in vary}
     data = sweep(
         grid,
         gait=options.gait,

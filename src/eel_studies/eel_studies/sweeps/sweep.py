@@ -118,8 +118,8 @@ def sweep(
         return _told(complete)
     done = parts.load()
     left = [point for point in points if point.index not in done]
-    progress = progress_of(progress)
-    progress(len(done), len(points))
+    tell = progress_of(progress)
+    tell(len(done), len(points))
     failures = []
     if left:
         with workers_of(scheduler, workers or available_cores()) as crew:
@@ -132,7 +132,7 @@ def sweep(
                 result = {index: checked_point(point) for index, point in result.items()}
                 parts.keep(result)
                 done |= result
-                progress(len(done), len(points))
+                tell(len(done), len(points))
     if failures:
         raise PointsMissing(
             f"{len(points) - len(done)} of {len(points)} points could not be computed, the first at {failures[0][0]}: "
