@@ -45,7 +45,7 @@ from eel_msgs.msg import (
 from eel_msgs.srv import SetState
 
 SECOND = 1_000_000_000  # ns
-LARGEST_LAW = 2**19  # bytes: 1,000 terms of 30 knots, which are adopted in half a second
+LARGEST_LAW = 2**19  # bytes, without the name: 1,000 terms of 30 knots, which are adopted in half a second
 
 
 class Sample:
@@ -262,8 +262,8 @@ def parse_law(data: bytes) -> tuple[str, Callable[[], CurvatureLaw]]:
     def make() -> CurvatureLaw:
         if terms > MAXIMUM_TERMS:
             raise ValueError(f"terms must be at most {MAXIMUM_TERMS}, got {terms}")
-        if len(data) > LARGEST_LAW:
-            raise ValueError(f"its terms must have at most {LARGEST_LAW} bytes, got {len(data)}")
+        if len(data) - len(name) > LARGEST_LAW:
+            raise ValueError(f"its terms must have at most {LARGEST_LAW} bytes, got {len(data) - len(name)}")
         return read_message(data, CurvatureLaw)
 
     return name, make
