@@ -29,7 +29,7 @@ class Snapshot:
     works (4,) [J]: of actuators, wake, nose and drag since the start; None without a ledger. energy_at_start: [J].
     """
 
-    __slots__ = ("_energy_at_start", "_works", "places", "time", "whole", "x")
+    __slots__ = ("_energy", "_energy_at_start", "_works", "places", "time", "whole", "x")
 
     position = Observed()  #: (3,) m, head, world
     orientation = Observed()  #: (4,) x y z w, world from head
@@ -62,13 +62,14 @@ class Snapshot:
     ):
         self.time, self.x, self.whole, self.places = time, x, whole, places
         self._works, self._energy_at_start = works, energy_at_start
+        self._energy: EnergyLedger | None = None
 
     @property
     def energy(self) -> EnergyLedger | None:
         """One float per field; None without a ledger."""
-        if self._works is None:
-            return None
-        return EnergyLedger.of(self.energies, self.powers, self._works, self._energy_at_start)
+        if self._energy is None and self._works is not None:
+            self._energy = EnergyLedger.of(self.energies, self.powers, self._works, self._energy_at_start)
+        return self._energy
 
     @property
     def actuator_work(self) -> float | None:
