@@ -15,7 +15,7 @@ from functools import cache
 from pathlib import Path
 
 import pytest
-from eel_base.suite import commands
+from eel_base.command.suite import commands
 from eel_viz.topics import OWN
 from reference_pages import COMMANDS, NODES, ROOT, parameter_names
 from test_run_from_bag import write_bag

@@ -6,11 +6,10 @@ import subprocess
 import sys
 
 import pytest
-from eel_base.command_line import COMPLETING
+from eel_base.command import suite
+from eel_base.command.command_line import COMPLETING
 from eel_dynamics.runs import command
 from test_packages import EXECUTABLES
-
-from eel_base import suite
 
 NOT_COMMANDS = {"gait_generator", "heading_controller", "pilot", "dynamics", "visualiser", "markers", "eel"}
 
@@ -32,7 +31,9 @@ def test_the_list_has_a_line_for_each_command(capsys):
 
 
 def test_the_list_imports_no_command():
-    code = "import sys; from eel_base import suite; suite.main([]); print('numpy' in sys.modules, file=sys.stderr)"
+    code = (
+        "import sys; from eel_base.command import suite; suite.main([]); print('numpy' in sys.modules, file=sys.stderr)"
+    )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=True)
     assert done.stderr == "False\n"
 

@@ -5,7 +5,7 @@ import os
 import subprocess
 
 import pytest
-from eel_base.suite import commands
+from eel_base.command.suite import commands
 
 LONG = "lang und breit " * 6000  # 90 kB: a single argument can have 128 kB
 GIVEN = {  # each with an argument that does not fit, as long as can be

@@ -12,13 +12,12 @@ from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
+from eel_base.files import markdown
 from eel_gaits.pilot.settings import PilotSettings
 from eel_studies.pictures.picture_file import write_picture
 from eel_studies.pictures.style import BLUE, ORANGE
 from eel_studies.pilot.courses import figures_of, random_path, swim_path
 from matplotlib.patches import Circle
-
-from eel_base import markdown
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE, PICTURE = ROOT / "docs/howto/pilot.md", ROOT / "docs/images/pilot.png"

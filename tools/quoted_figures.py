@@ -10,7 +10,7 @@ import re
 import sys
 from collections.abc import Callable, Sequence
 
-from eel_base.markdown import table, with_part
+from eel_base.files.markdown import table, with_part
 from reports import ROOT, Report
 
 VALIDATION = ROOT / "docs" / "appendix" / "validation.md"

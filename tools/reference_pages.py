@@ -10,8 +10,8 @@ import sys
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 
+from eel_base.command.suite import commands as known_commands
 from eel_base.quantity import limits
-from eel_base.suite import commands as known_commands
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_gaits.gaits.registry import GAITS, Transition

@@ -5,7 +5,7 @@ import csv
 import shutil
 from pathlib import Path
 
-from eel_base.markdown import table, with_part
+from eel_base.files.markdown import table, with_part
 
 ROOT = Path(__file__).resolve().parent.parent
 LEFT = ROOT / "out" / "soak.csv"  # columns simulation_time_s and NODE_MB, one row a look

@@ -11,7 +11,6 @@ import sys
 from pathlib import Path
 
 import numpy as np
-from eel_base.command_line import complain
 from eel_gaits.ros.lead import Lead
 from eel_gaits.ros.pilot_messages import head_motion
 from eel_ros.parameter_node import ParameterNode
@@ -68,7 +67,7 @@ class PolicyController(ParameterNode):
 
 def main() -> int:
     """Run until a signal comes. Status 2 for a policy that cannot be read."""
-    return run_node(NAME, sys.argv, PolicyController, lambda node: True, complain=complain)
+    return run_node(NAME, sys.argv, PolicyController, lambda node: True)
 
 
 if __name__ == "__main__":

@@ -19,7 +19,7 @@ setup(
     description="What every package of the eel simulator uses: numbers with bounds, words of messages, output files.",
     license="Apache-2.0",
     entry_points={
-        "console_scripts": ["eel = eel_command:main_of.eel_base.suite"],
-        "eel.commands.shell": ["completion = eel_base.completion"],
+        "console_scripts": ["eel = eel_command:main_of.eel_base.command.suite"],
+        "eel.commands.shell": ["completion = eel_base.command.completion"],
     },
 )

@@ -2,7 +2,7 @@
 """Pages: tables, and parts that a command writes between marker lines."""
 
 import pytest
-from eel_base.markdown import table, with_part
+from eel_base.files.markdown import table, with_part
 
 PAGE = (
     "a\n<!-- one: written by `x` -->\nold\n<!-- end of one -->\nb\n<!-- two: written by `x` -->\n<!-- end of two -->\n"

@@ -10,7 +10,7 @@ import threading
 import time
 
 import pytest
-from eel_base.output_file import (
+from eel_base.files.output_file import (
     Draft,
     NotWritten,
     check_output,
@@ -166,7 +166,7 @@ def test_two_drafts_of_one_name_are_two_files(tmp_path):
 def test_a_killed_process_leaves_the_older_file(tmp_path):
     name = tmp_path / "run.npz"
     name.write_bytes(OLD)
-    code = "import sys, time\nfrom eel_base.output_file import replacing\n"
+    code = "import sys, time\nfrom eel_base.files.output_file import replacing\n"
     code += "with replacing(sys.argv[1]) as path:\n    path.write_bytes(b'PK half')\n    print('half', flush=True)\n"
     code += "    sys.stdin.read()\n"
     pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}

@@ -4,7 +4,7 @@
 import io
 
 import pytest
-from eel_base.progress import Progress
+from eel_base.command.progress import Progress
 
 
 @pytest.fixture
@@ -16,7 +16,7 @@ def told(monkeypatch):
         stderr.isatty = lambda: on_terminal
         monkeypatch.setattr("sys.stderr", stderr)
         now = [0.0]
-        monkeypatch.setattr("eel_base.progress.time", type("Clock", (), {"monotonic": lambda: now[0]}))
+        monkeypatch.setattr("eel_base.command.progress.time", type("Clock", (), {"monotonic": lambda: now[0]}))
         progress = Progress("eel sweep", "points")
         for done in range(1, count + 1):
             now[0] = float(done)

@@ -2,16 +2,15 @@
 """The command line of a node: --help lists its parameters; other arguments than ROS arguments are refused."""
 
 import re
-import reprlib
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 
+from eel_base.command.command_line import print_to_stderr
+from eel_base.wording import shown
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.utilities import remove_ros_args
 
 USE_SIM_TIME = ("--ros-args", "-p", "use_sim_time:=true", "--")  # before the user's arguments, which override it
-SHOWN = reprlib.Repr()
-SHOWN.maxstring = 80  # characters of a refused argument
 POSITIONS = re.compile(r",? at \S+\.c:\d+")  # in the C sources of rcl
 
 
@@ -20,23 +19,21 @@ def answer_words(
     about: str,
     parameters: Iterable[tuple],
     words: list[str],
-    complain: Callable[[str, object], None],
 ) -> int | None:
     """Handle the arguments in `words` (the program first) that are not ROS arguments; returns the exit status.
 
     0 after -h or --help, which print `about` and the `parameters` (name, description, default); 2 for any other
-    argument, or bad ROS arguments, after `complain(name, error)`; None if the node is to start.
+    argument, or bad ROS arguments, after a line that says so; None if the node is to start.
     """
     try:
         rest = remove_ros_args(words)[1:]
     except RuntimeError as error:  # from rcl's parser
-        complain(name, refusal(error))
+        print_to_stderr(name, refusal(error))
         return 2
     if not rest:
         return None
     if not {"-h", "--help"} & set(rest):
-        word = SHOWN.repr(rest[0])
-        complain(name, f"unknown argument {word} (parameters come after --ros-args as -p NAME:=VALUE)")
+        print_to_stderr(name, f"unknown argument {shown(rest[0])} (parameters come after --ros-args as -p NAME:=VALUE)")
         return 2
     lines = [f"usage: {name} [--ros-args -p NAME:=VALUE ...]", "", about, "", "parameters:"]
     for key, description, default in parameters:

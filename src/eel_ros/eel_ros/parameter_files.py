@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 import yaml
-from eel_base.input_file import InputFile
+from eel_base.files.input_file import InputFile
 
 OPTION, VALUES = "--params-file", "ros__parameters"
 MOST_BYTES = 200_000  # of a file: what follows is not read

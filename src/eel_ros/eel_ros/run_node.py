@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import TypeVar
 
 import rclpy
+from eel_base.command.command_line import print_to_stderr
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 
@@ -30,7 +31,6 @@ def run_node(
     poll: Callable[[Served], bool],
     take_messages: Callable[[Served, int], int] | None = None,
     *,
-    complain: Callable[[str, object], None],
     period: float = POLL_PERIOD,
     complete: bool = False,
 ) -> int:
@@ -40,12 +40,12 @@ def run_node(
     this time [ns, as `is_from_before`]; 0: all. The executor then only serves rare callbacks, such as parameter
     services. period: between two calls of `poll` [s]. complete: a node that keeps files. At the end, it takes all that
     was sent before. At the end the node's `close()` is called, if it has one.
-    Returns the exit status: 0; 1 if the node has a `failure` (a text), which `complain(name, failure)` gets; 2 if it
+    Returns the exit status: 0; 1 if the node has a `failure` (a text), which is printed; 2 if it
     cannot start.
     """
     end = ProcessEnd()
     end.leave_when_stuck(STUCK)
-    node = start(name, words, make, complain)
+    node = start(name, words, make)
     if node is None:
         return 2
     executor = SingleThreadedExecutor()
@@ -66,7 +66,7 @@ def run_node(
         end.ignore_signals()
     failure = getattr(node, "failure", "")
     if failure:
-        complain(name, failure)
+        print_to_stderr(name, failure)
     return int(bool(failure))
 
 

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import TypeVar
 
 import rclpy
+from eel_base.command.command_line import print_to_stderr
 from rclpy.exceptions import NameValidationException, ParameterException
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
@@ -26,12 +27,10 @@ CANNOT_START = (
 REPAIR = "a library of the messages is damaged or missing, `make clean build` makes all anew"
 
 
-def start(
-    name: str, words: list[str], make: Callable[[], Started], complain: Callable[[str, object], None]
-) -> Started | None:
+def start(name: str, words: list[str], make: Callable[[], Started]) -> Started | None:
     """Initialise rclpy with the command line `words` (the program first) and return the node that `make()` returns.
 
-    If that fails, `complain(name, error)` gets the reason: that no more files can be opened, whatever came of that; or
+    If that fails, one line on stderr says why: that no more files can be opened, whatever came of that; or
     the error, with the command that repairs a damaged build. The result is then None.
     """
     use_profile()
@@ -40,7 +39,7 @@ def start(
         return make()
     except CANNOT_START as error:
         damaged = isinstance(error, UnsupportedTypeSupport) or "type support" in str(error).lower()
-        complain(name, _no_more_files() or (f"{REPAIR}: {error}" if damaged else error))
+        print_to_stderr(name, _no_more_files() or (f"{REPAIR}: {error}" if damaged else error))
         rclpy.try_shutdown()
         return None
 

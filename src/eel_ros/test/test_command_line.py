@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The words of a node's command line: a usage, one line of refusal, or none of them."""
 
+import sys
+
 import pytest
 from eel_ros.command_line import answer_words
 
@@ -8,13 +10,14 @@ ROWS = [("depth", "of the water [m]", 2.0), ("lid", "closed", False), ("label", 
 
 
 @pytest.fixture
-def answer():
-    """answer(*words): the status, and what was complained of."""
+def answer(capsys):
+    """answer(*words): the status, and what was written to stderr, as name and text of each line."""
 
     def answer_these(*words):
-        lines = []
-        status = answer_words("tank", "Holds water.", ROWS, ["tank", *words], lambda *line: lines.append(line))
-        return status, [(name, str(error)) for name, error in lines]
+        status = answer_words("tank", "Holds water.", ROWS, ["tank", *words])
+        output, lines = capsys.readouterr()
+        sys.stdout.write(output)
+        return status, [tuple(line.split(": ", 1)) for line in lines.splitlines()]
 
     return answer_these
 

@@ -33,13 +33,9 @@ class Tank(Node):
     def close(self):
         print("closed", flush=True)
 
-def complain(name, error):
-    print(f"{name}: {error}", flush=True)
-
 what = sys.argv[1]
 work = (lambda node, before: 0) if "work" in sys.argv else None
-sys.exit(run_node("tank", ["tank"], lambda: Tank(what), Tank.poll, work, complain=complain,
-    complete=what != "compute"))
+sys.exit(run_node("tank", ["tank"], lambda: Tank(what), Tank.poll, work, complete=what != "compute"))
 """
 
 

@@ -14,13 +14,19 @@ from rclpy.node import Node
 from rosidl_generator_py.import_type_support_impl import UnsupportedTypeSupport
 
 
-def tried(make, words=("tank",)):
-    lines = []
-    node = start("tank", list(words), make, lambda *line: lines.append(line))
-    return node, lines
+@pytest.fixture
+def tried(monkeypatch):
+    """tried(make, words): the node, and what was printed, as pairs of name and text."""
+
+    def try_to_start(make, words=("tank",)):
+        lines = []
+        monkeypatch.setattr("eel_ros.start.print_to_stderr", lambda *line: lines.append(line))
+        return start("tank", list(words), make), lines
+
+    return try_to_start
 
 
-def test_the_node_is_made_with_the_ros_arguments_given():
+def test_the_node_is_made_with_the_ros_arguments_given(tried):
     node, lines = tried(lambda: Node("tank"), ("tank", "--ros-args", "-r", "__node:=pool"))
     assert node.get_name() == "pool" and lines == []
     node.destroy_node()
@@ -28,7 +34,7 @@ def test_the_node_is_made_with_the_ros_arguments_given():
 
 
 @pytest.mark.parametrize("error", [ValueError("depth must be > 0 m"), OSError("disk full"), RuntimeError("no network")])
-def test_the_reason_is_told_and_rclpy_is_shut_down(error):
+def test_the_reason_is_told_and_rclpy_is_shut_down(tried, error):
     def make():
         raise error
 
@@ -39,7 +45,7 @@ def test_the_reason_is_told_and_rclpy_is_shut_down(error):
 @pytest.mark.parametrize(
     "error", [UnsupportedTypeSupport("eel_msgs"), RuntimeError("Could not import 'rosidl_typesupport_c': Type Support")]
 )
-def test_a_damaged_build_is_told_with_its_repair(error):
+def test_a_damaged_build_is_told_with_its_repair(tried, error):
     def make():
         raise error
 
@@ -47,7 +53,7 @@ def test_a_damaged_build_is_told_with_its_repair(error):
     assert node is None and text == f"{REPAIR}: {error}"
 
 
-def test_where_no_more_files_can_be_opened_that_is_the_reason():
+def test_where_no_more_files_can_be_opened_that_is_the_reason(tried):
     before, held = resource.getrlimit(resource.RLIMIT_NOFILE), []
 
     def make():
@@ -66,12 +72,12 @@ def test_where_no_more_files_can_be_opened_that_is_the_reason():
     assert node is None and lines == [("tank", "Too many open files (ulimit -n raises the limit)")]
 
 
-def test_bad_ros_arguments_are_a_reason():
+def test_bad_ros_arguments_are_a_reason(tried):
     node, lines = tried(lambda: Node("tank"), ("tank", "--ros-args", "-p", "depth"))
     assert node is None and len(lines) == 1 and not rclpy.ok()
 
 
-def test_an_error_of_the_program_itself_is_not_hidden():
+def test_an_error_of_the_program_itself_is_not_hidden(tried):
     def make():
         raise AttributeError("a mistake")
 

@@ -13,7 +13,7 @@ import time
 from pathlib import Path
 
 import made_up
-from eel_base.output_file import part_of
+from eel_base.files.output_file import part_of
 from eel_ros.process_end import leave_at_once
 from eel_viz.recording.recordings import Recordings
 from eel_viz.recording.sinks import destinations

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from eel_base.input_file import reading
+from eel_base.files.input_file import reading
 from eel_base.wording import shown
 
 from eel_dynamics.model.arguments import checked_instance, checked_number, checked_row

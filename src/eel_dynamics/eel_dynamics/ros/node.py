@@ -11,8 +11,7 @@ import traceback
 
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
-from eel_base.command_line import complain
-from eel_base.one_line_warnings import one_line_warnings
+from eel_base.command.command_line import one_line_warnings
 from eel_base.wording import one_line
 from eel_gaits.ros.messages import law_from_message
 from eel_ros.command_line import answer_words
@@ -278,11 +277,11 @@ def main(args=None) -> int:
     """Run the node. Exit status: 0 after its duration, SIGINT or SIGTERM; 1 if it fails, or if an unattended simulation
     (with a duration, as fast as possible) stops; 2 if it cannot start."""
     end, words = ProcessEnd(), sys.argv if args is None else args
-    status = answer_words(NAME, ABOUT, parameter_rows(), words, complain)
+    status = answer_words(NAME, ABOUT, parameter_rows(), words)
     if status is not None:
         return status
     with one_line_warnings(NAME):
-        node = start(NAME, words, DynamicsNode, complain)
+        node = start(NAME, words, DynamicsNode)
     if node is None:
         return 2
     executor = SingleThreadedExecutor()

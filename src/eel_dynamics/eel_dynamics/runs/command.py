@@ -14,11 +14,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from eel_base.command_line import Parser, complain
-from eel_base.output_file import replacing, written_as
-from eel_base.progress import Progress
+from eel_base.command.command_line import Parser, print_to_stderr
+from eel_base.command.progress import Progress
+from eel_base.command.run_command import checked_out, run_command
+from eel_base.files.output_file import replacing, written_as
 from eel_base.quantity import described_fields
-from eel_base.run_command import checked_out, run_command
 from eel_base.wording import one_line, shown
 from eel_gaits.gaits.registry import gait
 from eel_gaits.gaits.sequence_file import sequence_from_file
@@ -74,7 +74,7 @@ def _swim(options) -> int:
             progress=lambda reached, left: progress(float(f"{reached:.3g}"), end),
         )
     except SimulationStopped as stopped:
-        complain(NAME, stopped)
+        print_to_stderr(NAME, stopped)
         if out is not None and len(stopped.run.time):
             _write(stopped.run, out)
         return 3

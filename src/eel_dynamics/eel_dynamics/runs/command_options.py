@@ -11,7 +11,7 @@ from dataclasses import fields
 from typing import Any
 
 import numpy as np
-from eel_base.command_line import Parser
+from eel_base.command.command_line import Parser
 from eel_base.wording import did_you_mean, shown
 from eel_gaits.gaits.registry import GAITS, find
 

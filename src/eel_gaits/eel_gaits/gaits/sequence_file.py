@@ -3,10 +3,10 @@
 
 from pathlib import Path
 
-from eel_base.input_file import Misplaced, reading
+from eel_base.files.input_file import Misplaced, reading
+from eel_base.files.yaml_tree import Entries, read_yaml
 from eel_base.quantity import number
 from eel_base.wording import shown
-from eel_base.yaml_tree import Entries, read_yaml
 
 from eel_gaits.gaits.numbers import TURNS
 from eel_gaits.gaits.registry import find

@@ -13,7 +13,6 @@ from dataclasses import dataclass
 import numpy as np
 from builtin_interfaces.msg import Time
 from eel_base.attitude import heading
-from eel_base.command_line import complain
 from eel_base.quantity import Quantities, limits, quantity
 from eel_ros.command_line import answer_words
 from eel_ros.parameter_node import ParameterNode
@@ -131,10 +130,10 @@ class HeadingController(ParameterNode):
 def main(args=None):
     """Run the node. The exit status is 0 after SIGINT or SIGTERM, and 2 if a parameter or word is refused at start."""
     words = sys.argv if args is None else args
-    status = answer_words(NAME, ABOUT, help_rows(HeadingParameters), words, complain)
+    status = answer_words(NAME, ABOUT, help_rows(HeadingParameters), words)
     if status is not None:
         return status
-    return run_node(NAME, words, HeadingController, lambda node: True, complain=complain)
+    return run_node(NAME, words, HeadingController, lambda node: True)
 
 
 if __name__ == "__main__":

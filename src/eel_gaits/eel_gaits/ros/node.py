@@ -11,7 +11,6 @@ from dataclasses import fields
 from typing import Any
 
 from builtin_interfaces.msg import Time
-from eel_base.command_line import complain
 from eel_base.quantity import limits
 from eel_base.wording import shown
 from eel_ros.command_line import USE_SIM_TIME, answer_words
@@ -196,11 +195,11 @@ def parameter_rows():
 def main(args=None):
     """Run the node. The exit status is 0 after SIGINT or SIGTERM, and 2 if a parameter or word is refused at start."""
     words = sys.argv if args is None else args
-    status = answer_words(NAME, ABOUT, parameter_rows(), words, complain)
+    status = answer_words(NAME, ABOUT, parameter_rows(), words)
     if status is not None:
         return status
     look = GaitGenerator.look
-    return run_node(NAME, [*USE_SIM_TIME, *words], GaitGenerator, look, complain=complain, period=LOOK)
+    return run_node(NAME, [*USE_SIM_TIME, *words], GaitGenerator, look, period=LOOK)
 
 
 if __name__ == "__main__":

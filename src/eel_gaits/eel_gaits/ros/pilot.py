@@ -11,7 +11,6 @@ import sys
 from dataclasses import fields
 
 import numpy as np
-from eel_base.command_line import complain
 from eel_base.quantity import limits
 from eel_base.wording import shown
 from eel_ros.command_line import USE_SIM_TIME, answer_words
@@ -228,10 +227,10 @@ def main(args=None):
     """Run the node. The exit status is 0 after SIGINT or SIGTERM, and 2 if a parameter or word is refused at start."""
     words = sys.argv if args is None else args
     rows = (row for kind in GROUPS for row in help_rows(kind))
-    status = answer_words(NAME, ABOUT, rows, words, complain)
+    status = answer_words(NAME, ABOUT, rows, words)
     if status is not None:
         return status
-    return run_node(NAME, [*USE_SIM_TIME, *words], PilotNode, lambda node: True, complain=complain)
+    return run_node(NAME, [*USE_SIM_TIME, *words], PilotNode, lambda node: True)
 
 
 if __name__ == "__main__":

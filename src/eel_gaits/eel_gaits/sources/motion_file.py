@@ -16,9 +16,9 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
-from eel_base.archive import read_archive
-from eel_base.input_file import reading
-from eel_base.output_file import replacing
+from eel_base.files.archive import read_archive
+from eel_base.files.input_file import reading
+from eel_base.files.output_file import replacing
 from eel_base.quantity import is_finite
 from eel_base.wording import shown
 

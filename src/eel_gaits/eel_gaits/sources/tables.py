@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from eel_base.archive import MOST_NUMBERS, read_archive
-from eel_base.input_file import InputFile, Misplaced, reading
+from eel_base.files.archive import MOST_NUMBERS, read_archive
+from eel_base.files.input_file import InputFile, Misplaced, reading
 from eel_base.wording import shown
 
 MOST_BYTES, MOST_LINES, LONGEST_LINE, MOST_COLUMNS = 200_000_000, 5_000_000, 1_000_000, 10_000  # of a .csv file

@@ -11,10 +11,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from eel_base.command_line import Parser
-from eel_base.output_file import written_as
-from eel_base.progress import Progress
-from eel_base.run_command import checked_out, run_command
+from eel_base.command.command_line import Parser
+from eel_base.command.progress import Progress
+from eel_base.command.run_command import checked_out, run_command
+from eel_base.files.output_file import written_as
 from eel_dynamics.analysis.measures import MEASURES, measures_of
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene

@@ -7,10 +7,10 @@ eel figures --out out/figures --format pdf --columns 1       # for a journal
 
 from pathlib import Path
 
-from eel_base.command_line import Parser
-from eel_base.markdown import write_page
-from eel_base.progress import Progress
-from eel_base.run_command import run_command
+from eel_base.command.command_line import Parser
+from eel_base.command.progress import Progress
+from eel_base.command.run_command import run_command
+from eel_base.files.markdown import write_page
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.command_options import add_options

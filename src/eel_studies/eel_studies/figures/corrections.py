@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from eel_base.markdown import table
+from eel_base.files.markdown import table
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.run import Run, simulate
 

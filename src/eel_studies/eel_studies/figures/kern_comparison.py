@@ -7,7 +7,7 @@ three dimensions.
 
 from dataclasses import dataclass
 
-from eel_base.markdown import table
+from eel_base.files.markdown import table
 from eel_dynamics.analysis.analysis import Analysis
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene

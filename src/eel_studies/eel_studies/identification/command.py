@@ -9,10 +9,10 @@ eel identify run.nc --first body.lateral_drag=1.5 --out fit.png --out fit.csv
 import time
 from dataclasses import replace
 
-from eel_base.command_line import Parser
-from eel_base.output_file import written_as
-from eel_base.progress import Progress
-from eel_base.run_command import checked_out, run_command
+from eel_base.command.command_line import Parser
+from eel_base.command.progress import Progress
+from eel_base.command.run_command import checked_out, run_command
+from eel_base.files.output_file import written_as
 from eel_base.wording import shown
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.command_options import add_options, add_repeated, body_of, scene_of, set_numbers

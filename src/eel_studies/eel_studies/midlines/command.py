@@ -8,10 +8,10 @@ eel midlines fish.csv --out midlines.png    # and a picture
 from pathlib import Path
 
 import numpy as np
-from eel_base.command_line import Parser
-from eel_base.output_file import written_as
-from eel_base.progress import Progress
-from eel_base.run_command import checked_out, run_command
+from eel_base.command.command_line import Parser
+from eel_base.command.progress import Progress
+from eel_base.command.run_command import checked_out, run_command
+from eel_base.files.output_file import written_as
 from eel_dynamics.runs.command_options import add_options, body_of
 from eel_dynamics.runs.run import simulate
 from eel_gaits.sources.motion_file import read_midlines

@@ -7,10 +7,10 @@ eel optimise kern_fast --body kern2006 --bound period=0.5:2 --bound bend_tail=0:
 
 import time
 
-from eel_base.command_line import Parser
-from eel_base.output_file import written_as
-from eel_base.progress import Progress
-from eel_base.run_command import checked_out, run_command
+from eel_base.command.command_line import Parser
+from eel_base.command.progress import Progress
+from eel_base.command.run_command import checked_out, run_command
+from eel_base.files.output_file import written_as
 from eel_base.wording import shown
 from eel_dynamics.analysis.measures import MEASURES
 from eel_dynamics.runs.command_options import (

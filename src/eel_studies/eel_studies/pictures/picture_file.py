@@ -4,7 +4,7 @@
 from collections.abc import Callable
 from pathlib import Path
 
-from eel_base.output_file import replacing
+from eel_base.files.output_file import replacing
 
 from eel_studies.pictures.style import SETTINGS
 

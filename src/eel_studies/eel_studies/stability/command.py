@@ -9,11 +9,11 @@ eel stability --page docs/appendix/stability.md --out docs/images
 import os
 from pathlib import Path
 
-from eel_base.command_line import Parser
-from eel_base.markdown import with_part, write_page
-from eel_base.output_file import check_output
-from eel_base.progress import Progress
-from eel_base.run_command import run_command
+from eel_base.command.command_line import Parser
+from eel_base.command.progress import Progress
+from eel_base.command.run_command import run_command
+from eel_base.files.markdown import with_part, write_page
+from eel_base.files.output_file import check_output
 from eel_dynamics.runs.storage.tables import needed
 
 from eel_studies.pictures.picture_file import write_picture

@@ -9,7 +9,7 @@ Singular bodies are refused beforehand (`inertia.py`).
 from dataclasses import dataclass
 
 import numpy as np
-from eel_base.markdown import table as table_of
+from eel_base.files.markdown import table as table_of
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.inertia import MOST, condition_of, straight_inertia
 from eel_dynamics.model.scene import Scene

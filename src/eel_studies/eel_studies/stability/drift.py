@@ -12,7 +12,7 @@ path: distance of the head from that of a finer run, relative to its distance fr
 from dataclasses import dataclass
 
 import numpy as np
-from eel_base.markdown import table as table_of
+from eel_base.files.markdown import table as table_of
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.simulation.simulation import Simulation

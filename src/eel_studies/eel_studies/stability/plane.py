@@ -10,7 +10,7 @@ depends neither on the accuracy nor on the perturbation is a property of the mod
 from dataclasses import dataclass
 
 import numpy as np
-from eel_base.markdown import table as table_of
+from eel_base.files.markdown import table as table_of
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.simulation.simulation import Simulation

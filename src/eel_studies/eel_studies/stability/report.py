@@ -2,7 +2,7 @@
 """The results of the maps, and the explicit treatment of the added mass, as Markdown tables."""
 
 import numpy as np
-from eel_base.markdown import table
+from eel_base.files.markdown import table
 
 from eel_studies.stability.explicit import STEPS, treat
 from eel_studies.stability.maps import ACCURATE, INACCURATE, STOPPED, TARGET

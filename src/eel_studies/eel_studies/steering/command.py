@@ -8,10 +8,10 @@ eel steering --page docs/explanation/steering.md     # the page, and its picture
 import os
 from pathlib import Path
 
-from eel_base.command_line import Parser
-from eel_base.output_file import check_output, written_as
-from eel_base.progress import Progress
-from eel_base.run_command import run_command
+from eel_base.command.command_line import Parser
+from eel_base.command.progress import Progress
+from eel_base.command.run_command import run_command
+from eel_base.files.output_file import check_output, written_as
 from eel_dynamics.runs.storage.tables import needed
 
 from eel_studies.pictures.picture_file import write_picture

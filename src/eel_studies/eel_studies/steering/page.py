@@ -5,9 +5,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+from eel_base.files import markdown
 from eel_gaits.laws.law import Law
 
-from eel_base import markdown
 from eel_studies.steering.linearisation import INPUTS, PeriodicLinearisation, periodic_linearisation
 from eel_studies.steering.study import (
     CONTROLLED,

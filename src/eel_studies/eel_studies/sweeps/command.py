@@ -9,10 +9,10 @@ import time
 from functools import partial
 
 import numpy as np
-from eel_base.command_line import Parser
-from eel_base.output_file import written_as
-from eel_base.progress import Progress
-from eel_base.run_command import run_command
+from eel_base.command.command_line import Parser
+from eel_base.command.progress import Progress
+from eel_base.command.run_command import run_command
+from eel_base.files.output_file import written_as
 from eel_dynamics.analysis.measures import MEASURES
 from eel_dynamics.runs.command_options import (
     add_options,

@@ -15,7 +15,7 @@ import math
 from collections.abc import Callable, Sized
 
 import numpy as np
-from eel_base.progress import progress_of
+from eel_base.command.progress import progress_of
 from eel_base.wording import one_line, shown
 from eel_base.work_stopped import WorkStopped
 from eel_dynamics.accuracy.accuracy import Accuracy

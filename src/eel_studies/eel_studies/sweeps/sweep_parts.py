@@ -11,8 +11,8 @@ import warnings
 from pathlib import Path
 from typing import Any
 
-from eel_base.input_file import InputFile, from_json, reading
-from eel_base.output_file import check_output, replacing
+from eel_base.files.input_file import InputFile, from_json, reading
+from eel_base.files.output_file import check_output, replacing
 from eel_base.wording import one_line, shown
 from eel_dynamics.analysis.measures import checked_point
 from eel_dynamics.runs.storage.digest import ATTRIBUTE, add_digest_to, check_digest_of, digest_of_text

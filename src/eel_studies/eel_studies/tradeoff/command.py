@@ -10,10 +10,10 @@ eel tradeoff --delivered --seed 7 --page docs/explanation/accuracy.md --pictures
 import os
 from pathlib import Path
 
-from eel_base.command_line import Parser
-from eel_base.output_file import check_output, written_as
-from eel_base.progress import Progress
-from eel_base.run_command import run_command
+from eel_base.command.command_line import Parser
+from eel_base.command.progress import Progress
+from eel_base.command.run_command import run_command
+from eel_base.files.output_file import check_output, written_as
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.command_options import add_options, body_of, set_numbers
 from eel_gaits.gaits.registry import gait

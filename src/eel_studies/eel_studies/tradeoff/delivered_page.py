@@ -3,7 +3,7 @@
 
 from pathlib import Path
 
-from eel_base.output_file import replacing
+from eel_base.files.output_file import replacing
 
 from eel_studies.tradeoff.delivered import REFERENCES, Trial, delivered_table
 from eel_studies.tradeoff.price import SWIMS

@@ -7,8 +7,9 @@ import platform
 from datetime import date
 from pathlib import Path
 
+from eel_base.files import markdown
+
 import eel_core
-from eel_base import markdown
 from eel_studies.tradeoff.models import Model
 from eel_studies.tradeoff.settings import CHECK, REFERENCE
 from eel_studies.tradeoff.table import WANTED, cheapest, digits_table, model_table, trade_table

@@ -6,7 +6,7 @@ import warnings
 from pathlib import Path
 
 import numpy as np
-from eel_base.output_file import replacing
+from eel_base.files.output_file import replacing
 from eel_dynamics.accuracy.accuracy import PRESETS
 
 from eel_studies.tradeoff.models import Model

@@ -5,8 +5,8 @@ import csv
 from operator import attrgetter
 from pathlib import Path
 
-from eel_base.markdown import table
-from eel_base.output_file import replacing
+from eel_base.files.markdown import table
+from eel_base.files.output_file import replacing
 from eel_dynamics.accuracy.accuracy import PRESETS
 
 from eel_studies.tradeoff.measuring import Measured, Trade, front

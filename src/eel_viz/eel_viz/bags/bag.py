@@ -16,7 +16,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from eel_base.input_file import InputFile, reading
+from eel_base.files.input_file import InputFile, reading
 from eel_base.wording import one_line, shown
 from rosbags.interfaces import MessageDefinitionFormat
 from rosbags.rosbag2 import Reader

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import yaml
-from eel_base.command_line import Parser, check_seconds, complain
+from eel_base.command.command_line import Parser, check_seconds
 from eel_base.wording import shown
 from eel_ros.qos import fitting
 from eel_ros.run_node import run_node
@@ -120,7 +120,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--timeout", type=float, metavar="SECONDS", help="give up, with status 1, if nothing comes")
     parser.add_argument("-f", "--full-length", action="store_true", help=f"print arrays beyond {SHORT} elements")
     options = parser.parse_args(remove_ros_args(args=words)[1:])
-    return run_node(COMMAND, words, lambda: Echo(options), Echo.poll, complain=complain)
+    return run_node(COMMAND, words, lambda: Echo(options), Echo.poll)
 
 
 if __name__ == "__main__":

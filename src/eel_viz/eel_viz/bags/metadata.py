@@ -3,8 +3,8 @@
 
 import pathlib
 
-from eel_base.input_file import InputFile, reading
-from eel_base.yaml_tree import MOST_BYTES, from_yaml, read_yaml
+from eel_base.files.input_file import InputFile, reading
+from eel_base.files.yaml_tree import MOST_BYTES, from_yaml, read_yaml
 
 NAME = "metadata.yaml"
 MOST_VALUES = 10_000  # a publisher takes 20, a file 10

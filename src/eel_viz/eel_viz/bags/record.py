@@ -14,7 +14,7 @@ import time
 from collections import Counter
 from typing import Any
 
-from eel_base.command_line import Parser, check_seconds, complain
+from eel_base.command.command_line import Parser, check_seconds
 from eel_ros.qos import fitting, keep_all, matches
 from eel_ros.run_node import is_from_before, run_node
 from eel_ros.serving import PolledGroup, log_dropped
@@ -235,7 +235,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--stop-with-publisher", action="store_true", help="end when the swimmer has gone")
     options = parser.parse_args(remove_ros_args(args=words)[1:])
     make, poll, take_messages = lambda: Recorder(options), Recorder.poll, Recorder.take_messages
-    return run_node(COMMAND, words, make, poll, take_messages, complain=complain, complete=True)
+    return run_node(COMMAND, words, make, poll, take_messages, complete=True)
 
 
 if __name__ == "__main__":

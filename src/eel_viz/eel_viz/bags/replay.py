@@ -14,9 +14,9 @@ from collections.abc import Callable, Iterator
 from dataclasses import fields
 from types import SimpleNamespace
 
-from eel_base.command_line import Parser, complain
+from eel_base.command.command_line import Parser, print_to_stderr
+from eel_base.command.run_command import run_command
 from eel_base.quantity import limits
-from eel_base.run_command import run_command
 from eel_base.wording import shown
 
 from eel_viz.bags.bag import Bag, DamagedBag
@@ -217,7 +217,7 @@ def _replay(chosen) -> int:
         other=other,
         namespace=chosen.namespace,
         log_info=print,
-        log_warning=lambda text: complain(NAME, text),
+        log_warning=lambda text: print_to_stderr(NAME, text),
     )
     print(f"replayed in {time.monotonic() - began:.1f} s: {told}")
     if chosen.spawn:

@@ -8,7 +8,7 @@ import shutil
 import subprocess
 from typing import Any
 
-from eel_base.output_file import replacing
+from eel_base.files.output_file import replacing
 from eel_base.wording import shown
 
 ANIMATIONS = (".gif", ".webp")

@@ -16,10 +16,10 @@ import pathlib
 import tempfile
 from collections.abc import Callable, Sequence
 
-from eel_base.command_line import Parser, complain
-from eel_base.output_file import NotWritten, check_output, replacing, written_as
-from eel_base.progress import Progress
-from eel_base.run_command import run_command
+from eel_base.command.command_line import Parser, print_to_stderr
+from eel_base.command.progress import Progress
+from eel_base.command.run_command import run_command
+from eel_base.files.output_file import NotWritten, check_output, replacing, written_as
 from eel_base.wording import shown
 
 from eel_viz.pictures.drawing import SIZE, Drawing, check_recording
@@ -191,7 +191,7 @@ def _draw(chosen: argparse.Namespace, output: pathlib.Path, size: tuple[int, int
         else:
             folder.mkdir(exist_ok=True)
         if any(folder.glob("frame_*.png")):
-            complain(NAME, f"{folder} has pictures already, those of the same number are replaced")
+            print_to_stderr(NAME, f"{folder} has pictures already, those of the same number are replaced")
         written = frames(drawing, folder, at, Progress(NAME, "pictures"))
         name = output if alone else folder / FILM
         print(f"{len(written)} pictures" + ("" if alone else f" in {folder}"))

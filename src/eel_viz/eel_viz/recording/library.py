@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import rerun as rr
-from eel_base.output_file import appeared, written_as
+from eel_base.files.output_file import appeared, written_as
 
 from eel_viz.recording.destination import Destination, LogFunction
 from eel_viz.recording.merged_messages import Messages, record_messages

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from eel_base.input_file import reading
+from eel_base.files.input_file import reading
 from eel_base.wording import shown
 
 from eel_viz.entities import TIMELINE

@@ -7,7 +7,7 @@ import pathlib
 import time
 
 import rerun as rr
-from eel_base.output_file import Draft, NotWritten, appeared, numbered
+from eel_base.files.output_file import Draft, NotWritten, appeared, numbered
 from eel_base.wording import shown
 
 from eel_viz.recording.delivery import space_error, write_error

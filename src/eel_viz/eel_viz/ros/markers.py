@@ -10,7 +10,6 @@ import time
 from collections import OrderedDict
 from typing import Any
 
-from eel_base.command_line import complain
 from eel_ros.command_line import USE_SIM_TIME, answer_words
 from eel_ros.parameter_node import ParameterNode
 from eel_ros.parameters import help_rows
@@ -121,10 +120,10 @@ class Markers(ParameterNode):
 def main(arguments: list[str] | None = None) -> int:
     """Run the node. Exit status: 0 after SIGINT or SIGTERM; 2 if a parameter or an argument is refused at start."""
     given = sys.argv if arguments is None else [NAME, *arguments]
-    status = answer_words(NAME, ABOUT, help_rows(MarkerSettings), given, complain)
+    status = answer_words(NAME, ABOUT, help_rows(MarkerSettings), given)
     if status is not None:
         return status
-    return run_node(NAME, [*USE_SIM_TIME, *given], Markers, Markers.poll, complain=complain)
+    return run_node(NAME, [*USE_SIM_TIME, *given], Markers, Markers.poll)
 
 
 if __name__ == "__main__":

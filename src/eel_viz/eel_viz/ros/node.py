@@ -10,7 +10,6 @@ import sys
 import time
 
 from diagnostic_msgs.msg import DiagnosticArray
-from eel_base.command_line import complain
 from eel_base.wording import shown
 from eel_ros.command_line import USE_SIM_TIME, answer_words
 from eel_ros.parameter_node import ParameterNode
@@ -137,12 +136,12 @@ def main(arguments: list[str] | None = None) -> int:
     parameter or an argument is refused at start."""
     keep_pandas_out()
     given = sys.argv if arguments is None else [NAME, *arguments]
-    status = answer_words(NAME, ABOUT, help_rows(Settings), given, complain)
+    status = answer_words(NAME, ABOUT, help_rows(Settings), given)
     if status is not None:
         return status
     words = [*USE_SIM_TIME, *given]
     node, poll, take_messages = Visualiser, Visualiser.poll, Visualiser.take_messages
-    status = run_node(NAME, words, node, poll, take_messages, complain=complain, complete=True)
+    status = run_node(NAME, words, node, poll, take_messages, complete=True)
     # Not by Python's own way: a stream may be blocked, and a thread of LTTng, which ROS brings, may fork just then. It
     # would wait for a lock of Arrow, and the destructors of LTTng for the thread.
     return status if status == CANNOT_START else leave_at_once(status)

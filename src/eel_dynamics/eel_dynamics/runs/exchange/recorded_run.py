@@ -12,7 +12,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from eel_base.input_file import reading
+from eel_base.files.input_file import reading
 from eel_base.quantity import is_finite
 from eel_base.wording import one_line, shown
 from eel_gaits.laws.law import Law

@@ -10,7 +10,7 @@ import os
 import warnings
 
 import numpy as np
-from eel_base.input_file import InputFile
+from eel_base.files.input_file import InputFile
 
 ATTRIBUTE = "digest"
 

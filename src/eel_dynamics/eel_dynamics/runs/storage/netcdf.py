@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from eel_base.input_file import InputFile, from_json, reading
-from eel_base.output_file import check_output, replacing
+from eel_base.files.input_file import InputFile, from_json, reading
+from eel_base.files.output_file import check_output, replacing
 from eel_base.wording import shown
 
 from eel_dynamics.runs.storage.digest import add_digest, check_digest

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from eel_base.output_file import replacing
+from eel_base.files.output_file import replacing
 
 from eel_dynamics.runs.storage.netcdf import attributes_of
 from eel_dynamics.runs.storage.variables import LABELS, LEDGER, Contents

@@ -6,7 +6,7 @@ from typing import Any
 
 import yaml
 
-from eel_base.input_file import InputFile, Misplaced
+from eel_base.files.input_file import InputFile, Misplaced
 from eel_base.wording import shown
 
 MOST_BYTES, MOST_NODES, DEEPEST = 500_000, 20_000, 32

@@ -6,9 +6,8 @@ import contextlib
 from collections.abc import Callable
 from pathlib import Path
 
-from eel_base.command_line import Parser, complain, interruptible
-from eel_base.one_line_warnings import one_line_warnings
-from eel_base.output_file import NotWritten, check_output, command_begins
+from eel_base.command.command_line import Parser, interruptible, one_line_warnings, print_to_stderr
+from eel_base.files.output_file import NotWritten, check_output, command_begins
 from eel_base.wording import shown
 from eel_base.work_stopped import WorkStopped
 
@@ -30,19 +29,19 @@ def run_command(
         with one_line_warnings(name), command_begins(), interruptible() if interrupted else contextlib.nullcontext():
             return work(options)
     except NotWritten as error:
-        complain(name, error)
+        print_to_stderr(name, error)
         return 1
     except (ValueError, OSError, ImportError) as error:
-        complain(name, error)
+        print_to_stderr(name, error)
         return 2
     except MemoryError as error:
-        complain(name, f"it does not fit into memory: {error}")
+        print_to_stderr(name, f"it does not fit into memory: {error}")
         return 2
     except WorkStopped as error:
-        complain(name, error)
+        print_to_stderr(name, error)
         return error.exit_status
     except KeyboardInterrupt:
-        complain(name, f"interrupted{interrupted}")
+        print_to_stderr(name, f"interrupted{interrupted}")
         return 130
 
 
@@ -53,5 +52,5 @@ def checked_out(command: str, out: str, suffixes: tuple[str, ...]) -> Path:
         raise ValueError(f"--out must end in {', '.join(suffixes[:-1])} or {suffixes[-1]}, got {shown(out)}")
     check_output("--out", path)
     if path.exists():
-        complain(command, f"{path} exists and will be overwritten")
+        print_to_stderr(command, f"{path} exists and will be overwritten")
     return path

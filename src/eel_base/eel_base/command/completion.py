@@ -6,9 +6,9 @@ bash: eval "$(eel completion bash)"     zsh: eval "$(eel completion zsh)"
 
 import argparse
 
-from eel_base.command_line import Parser
-from eel_base.run_command import run_command
-from eel_base.suite import commands
+from eel_base.command.command_line import Parser
+from eel_base.command.run_command import run_command
+from eel_base.command.suite import commands
 
 
 def main(arguments: list[str] | None = None) -> int:

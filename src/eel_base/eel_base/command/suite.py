@@ -15,7 +15,7 @@ from pathlib import Path
 
 import eel_command
 
-from eel_base.command_line import COMPLETING, Parser
+from eel_base.command.command_line import COMPLETING, Parser
 from eel_base.wording import did_you_mean, shown
 
 GROUPS = {  # of entry points: heading in the list

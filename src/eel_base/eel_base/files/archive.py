@@ -13,7 +13,7 @@ from zipfile import ZIP_DEFLATED, ZIP_STORED, ZipFile, ZipInfo
 
 import numpy as np
 
-from eel_base.input_file import InputFile
+from eel_base.files.input_file import InputFile
 from eel_base.wording import shown
 
 MOST_ARRAYS = 1000

@@ -8,6 +8,7 @@ import shutil
 import signal
 import sys
 import textwrap
+import warnings
 from collections.abc import Iterable, Iterator
 from typing import Any, NoReturn
 
@@ -52,7 +53,7 @@ class Parser(argparse.ArgumentParser):
                 self.error(f"no option {shown(name)}{did_you_mean(name, self._option_string_actions)}")
 
     def error(self, message: str) -> NoReturn:
-        complain(self.prog, f"{message} (see {self.prog} --help)")
+        print_to_stderr(self.prog, f"{message} (see {self.prog} --help)")
         sys.exit(2)
 
 
@@ -82,9 +83,21 @@ def _wrapped(text: str) -> str:
     )
 
 
-def complain(program: str, error: object) -> None:
-    """Write one line to stderr: the program's name and the text of `error`."""
-    sys.stderr.write(f"{program}: {one_line(error)}\n")
+def print_to_stderr(program: str, message: object) -> None:
+    """Write one line: the program's name and the text of `message`."""
+    sys.stderr.write(f"{program}: {one_line(message)}\n")
+
+
+@contextlib.contextmanager
+def one_line_warnings(program: str) -> Iterator[None]:
+    """Print each warning as "PROGRAM: warning: ...", without its place in the sources."""
+
+    def show(message: Warning | str, category: type[Warning], *place: Any, **written: Any) -> None:
+        print_to_stderr(program, f"warning: {message}")
+
+    with warnings.catch_warnings():
+        warnings.showwarning = show
+        yield
 
 
 @contextlib.contextmanager

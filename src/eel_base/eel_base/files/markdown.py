@@ -8,7 +8,7 @@ import os
 import re
 from collections.abc import Iterable, Sequence
 
-from eel_base.output_file import replacing
+from eel_base.files.output_file import replacing
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
