@@ -318,8 +318,11 @@ class Instant:
     def loads(self, law: Law, time: float, twist: Buffer) -> tuple[list[float], list[float]]:
         """Wrenches (6,) of the wake and of the drag along the body, for a twist (6,) of the head at a time [s]."""
 
-    def drag_powers(self, law: Law, time: float, twist: Buffer) -> list[float]:
-        """Powers (4,) [W] on the body of the axial friction, the lateral, the vertical and the roll drag."""
+    def drag_powers(self, law: Law, times: Buffer, twists: np.ndarray, powers: Buffer) -> None:
+        """Writes powers (T, 4) [W] on the body: of the axial friction, the lateral, the vertical and the roll drag.
+
+        times (T,) [s]; twists (T, 6) of the head.
+        """
 
     def momentum_taken(self, law: Law, time: float, twist: Buffer, acceleration: Buffer) -> list[float]:
         """Rate (6,) of the momentum along the body, [N m, N] about the head in its axes, for a twist (6,) and a true

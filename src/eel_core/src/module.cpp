@@ -407,10 +407,16 @@ PYBIND11_MODULE(EEL_CORE_MODULE, module)
             py::arg("law"), py::arg("time"), py::arg("twist"))
         .def(
             "drag_powers",
-            [](Instant<Space>& instant, const Law& law, double time, const py::object& twist) {
-                return list_of(instant.drag_powers(law, time, twist_from(twist, "twist")));
+            [](Instant<Space>& instant, const Law& law, const py::object& times, const py::object& twists,
+               const py::object& powers) {
+                const Numbers at(times, "times"), into(powers, "powers", true);
+                into.check_size(4 * at.size(), "powers");
+                for (std::size_t k = 0; k < at.size(); ++k)
+                    std::ranges::copy(
+                        instant.drag_powers(law, at.data()[k], twist_from(twists[py::int_(k)], "twists")),
+                        into.data() + 4 * k);
             },
-            py::arg("law"), py::arg("time"), py::arg("twist"))
+            py::arg("law"), py::arg("times"), py::arg("twists"), py::arg("powers"))
         .def(
             "momentum_taken",
             [](Instant<Space>& instant, const Law& law, double time, const py::object& twist,

@@ -15,7 +15,6 @@ from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.batch import Batch, simulate_batch
 from eel_dynamics.runs.run import Run, simulate
 from eel_dynamics.simulation.energy import EnergyLedger
-from eel_dynamics.simulation.measured_simulation import MeasuredSimulation
 from eel_dynamics.simulation.prescribed import HydrodynamicWrench, hydrodynamic_wrench
 from eel_dynamics.simulation.simulation import Simulation
 from eel_dynamics.simulation.snapshot import Snapshot
@@ -27,7 +26,6 @@ __all__ = [
     "Body",
     "EnergyLedger",
     "HydrodynamicWrench",
-    "MeasuredSimulation",
     "Run",
     "Scene",
     "Simulation",

@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from eel_dynamics.analysis.friction_power import drag_powers
+from eel_dynamics.analysis.powers import drag_powers
 
 from eel_dynamics import Body, Scene, Simulation, simulate, simulate_batch
 from eel_gaits import Law, Ramp, Term, sequence, straight

@@ -20,8 +20,8 @@ from eel_gaits import Law, Ramp, Term, falling, helix, still, straight
 def test_steps_are_counted_over_the_run_however_often_it_is_sampled(ledger, monkeypatch):
     """A run of 40 steps to spare and 20 per simulated second, which needs more, is stopped at the same place by 3 as by
     3,000 samples."""
-    monkeypatch.setattr("eel_dynamics.simulation.step_bounds.SPARE_STEPS", 40.0)
-    monkeypatch.setattr("eel_dynamics.simulation.step_bounds.LEAST_SPARE", 40.0)
+    monkeypatch.setattr("eel_dynamics.accuracy.step_bounds.SPARE_STEPS", 40.0)
+    monkeypatch.setattr("eel_dynamics.accuracy.step_bounds.LEAST_SPARE", 40.0)
     stopped = []
     for period in (1.0, 0.1, 0.001):
         with pytest.raises(

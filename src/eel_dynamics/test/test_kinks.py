@@ -17,11 +17,13 @@ def drag_powers(friction: str, kinks: str) -> np.ndarray:
     scene, law = Scene(friction=friction), falling()
     swimmer = Simulation(scene=scene, law=law, accuracy=Accuracy(name="some", resolution=13.0, tolerance=1e-4))
     other = Simulation(scene=scene, law=law, accuracy=Accuracy(name="some", resolution=13.0, kinks=kinks))
-    instant, powers = eel_core.Instant(other.discretisation.swimmer), []
-    for time in np.arange(2.0, 4.0, 0.1):
+    times, twists = np.arange(2.0, 4.0, 0.1), []
+    for time in times:
         swimmer.advance(time)
-        powers.append(instant.drag_powers(other.tabulated_law, time, swimmer.observe().twist))
-    return np.array(powers)
+        twists.append(swimmer.observe().twist)
+    powers = np.empty((len(times), 4))
+    eel_core.Instant(other.discretisation.swimmer).drag_powers(other.tabulated_law, times, np.array(twists), powers)
+    return powers
 
 
 @pytest.mark.parametrize("friction", ["printed", "laminar"])

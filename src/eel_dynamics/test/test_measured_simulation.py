@@ -7,7 +7,7 @@ from eel_gaits.laws.law import Law
 from eel_gaits.laws.term import Term
 from scipy.spatial.transform import Rotation
 
-from eel_dynamics import Accuracy, MeasuredSimulation, Scene, Simulation, SimulationStopped
+from eel_dynamics import Accuracy, Scene, Simulation, SimulationStopped
 from eel_gaits import falling, helix, straight, turning
 
 FINE = Accuracy(name="fine settings", resolution=70.0, tolerance=1e-11)
@@ -50,7 +50,7 @@ def with_controller(simulation):
 @pytest.mark.parametrize("accuracy", ["draft", "standard", "1e-3, fixed steps"])
 def test_it_moves_to_the_same_bits_as_any_other(motion, accuracy):
     for measured, bare in zip(
-        motion(MeasuredSimulation(accuracy=accuracy)), motion(Simulation(accuracy=accuracy)), strict=True
+        motion(Simulation(measure_error=True, accuracy=accuracy)), motion(Simulation(accuracy=accuracy)), strict=True
     ):
         assert measured.state.tobytes() == bare.state.tobytes() and measured.time == bare.time
         assert measured.observe().whole.tobytes() == bare.observe().whole.tobytes()
@@ -60,7 +60,7 @@ def test_it_moves_to_the_same_bits_as_any_other(motion, accuracy):
 
 def test_the_head_is_nearer_to_the_true_motion_than_its_errors_say():
     scene = Scene(friction="laminar")
-    simulation = MeasuredSimulation(law=helix(), accuracy="standard", scene=scene)
+    simulation = Simulation(measure_error=True, law=helix(), accuracy="standard", scene=scene)
     reference = Simulation(law=helix(), accuracy=FINE, scene=scene)
     greatest = np.zeros(4)
     assert np.isinf(simulation.head_errors.position) and simulation.head_errors.relative == 0.0
@@ -75,7 +75,7 @@ def test_the_head_is_nearer_to_the_true_motion_than_its_errors_say():
 
 
 def test_a_head_whose_position_was_lost_has_no_absolute_errors():
-    simulation = MeasuredSimulation(law=falling(period=0.4), **SENSITIVE)
+    simulation = Simulation(measure_error=True, law=falling(period=0.4), **SENSITIVE)
     while simulation.lost_at is None:
         simulation.advance(simulation.time + 0.1)
     assert np.isinf(simulation.head_errors[1:]).all() and np.isfinite(simulation.head_errors.relative)
@@ -87,7 +87,7 @@ def test_a_head_whose_position_was_lost_has_no_absolute_errors():
 @pytest.mark.parametrize("law", [falling(), straight(), helix()])
 @pytest.mark.parametrize("accuracy", ["draft", "standard"])
 def test_its_estimate_is_above_its_error(law, accuracy):
-    simulation = MeasuredSimulation(law=law, accuracy=accuracy, scene=Scene(friction="laminar"))
+    simulation = Simulation(measure_error=True, law=law, accuracy=accuracy, scene=Scene(friction="laminar"))
     reference = Simulation(law=law, accuracy=FINE, scene=Scene(friction="laminar"))
     position, torque, path, largest = 0.0, 0.0, 0.0, 0.0
     before = np.zeros(3)
@@ -104,13 +104,13 @@ def test_its_estimate_is_above_its_error(law, accuracy):
 
 def test_the_error_of_a_controller_s_motion_is_small_though_it_rests_and_resumes():
     """If the companion took over, rested or resumed at another time, it would be far away."""
-    (simulation,) = with_controller(MeasuredSimulation())
+    (simulation,) = with_controller(Simulation(measure_error=True))
     assert simulation.sampled and simulation.measured_since == 0.0
     assert simulation.error_estimate.position < 1e-3
 
 
 def test_what_errors_have_spoilt_is_said_and_measured_anew():
-    simulation = MeasuredSimulation(law=falling(period=0.4), **SENSITIVE)
+    simulation = Simulation(measure_error=True, law=falling(period=0.4), **SENSITIVE)
     for number in range(1, 91):
         simulation.advance(number / 10.0)
     assert simulation.lost_at == pytest.approx(simulation.measured_since) and simulation.lost_at > 1.0
@@ -123,13 +123,14 @@ def test_what_errors_have_spoilt_is_said_and_measured_anew():
 
 
 def test_a_companion_that_stops_leaves_the_motion_alone(monkeypatch):
-    simulation, bare = MeasuredSimulation(law=falling()), Simulation(law=falling())
+    simulation, bare = Simulation(measure_error=True, law=falling()), Simulation(law=falling())
     simulation.advance(0.5)
 
     def stop(companion, time, interrupted=None):
         raise SimulationStopped(companion.time, "twist", np.inf, "for this test")
 
-    monkeypatch.setattr(simulation._companion, "advance", stop.__get__(simulation._companion))
+    companion = simulation._meter._companion
+    monkeypatch.setattr(companion, "advance", stop.__get__(companion))
     for each in (simulation, bare):
         each.advance(1.0)
     assert simulation.state.tobytes() == bare.state.tobytes()
@@ -156,9 +157,9 @@ def test_a_copy_with_other_settings_goes_on_from_the_present():
 
 
 def test_a_recorded_motion_is_measured_too():
-    simulation = MeasuredSimulation(law=straight(), accuracy="draft")
+    simulation = Simulation(measure_error=True, law=straight(), accuracy="draft")
     simulation.record(np.linspace(0.0, 4.0, 41), True, False)
-    stepped = MeasuredSimulation(law=straight(), accuracy="draft")
+    stepped = Simulation(measure_error=True, law=straight(), accuracy="draft")
     for time in np.linspace(0.1, 4.0, 40):
         stepped.advance(float(time))
     assert 0.3 < simulation.error_estimate.position / stepped.error_estimate.position < 3.0

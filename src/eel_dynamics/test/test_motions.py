@@ -10,7 +10,7 @@ from eel_dynamics.runs.command import main
 from eel_gaits.sources.lateral import LateralMidline
 from midline_files import ARC, kern_midline, write_midlines
 
-from eel_dynamics import Body, MeasuredSimulation, Run, Scene, Simulation, hydrodynamic_wrench, simulate, simulate_batch
+from eel_dynamics import Body, Run, Scene, Simulation, hydrodynamic_wrench, simulate, simulate_batch
 from eel_gaits import Law, Ramp, SampledLaw, Term, kern_fast, sampled, straight
 
 WAVE = Law(Term(amplitude=(1.0, 0.5, 2.0), wavelength=1.0, period=1.0), name="wave")
@@ -75,7 +75,7 @@ def test_rows_in_a_batch_swim_as_alone(run, law):
 
 
 def test_rows_take_over_in_mid_swim_without_a_jump(law):
-    simulation = MeasuredSimulation(scene=PLANE, law=straight())
+    simulation = Simulation(measure_error=True, scene=PLANE, law=straight())
     simulation.advance(0.5)
     before = simulation.observe().curvature
     simulation.adopt(law, origin=-0.7, transition=0.6)

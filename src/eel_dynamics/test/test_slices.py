@@ -125,8 +125,8 @@ def test_a_batch_takes_the_limit_as_a_single_run_does():
 
 def test_what_costs_more_on_the_way_stops_with_what_to_change(monkeypatch):
     """An initial velocity that takes a million steps per simulated second."""
-    monkeypatch.setattr("eel_dynamics.simulation.step_bounds.SPARE_STEPS", 500.0)
-    monkeypatch.setattr("eel_dynamics.simulation.step_bounds.LEAST_SPARE", 500.0)
+    monkeypatch.setattr("eel_dynamics.accuracy.step_bounds.SPARE_STEPS", 500.0)
+    monkeypatch.setattr("eel_dynamics.accuracy.step_bounds.LEAST_SPARE", 500.0)
     with pytest.raises(SimulationStopped, match=r"coarser accuracy, .* or raise most_evaluations") as caught:
         simulate(straight(), 1.0, twist=(0.0, 0.0, 1e5, 0.0, 0.0, 0.0), sample_period=1e-4)
     assert caught.value.run.time[-1] == caught.value.time < 0.1

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 from eel_base.wording import shown
-from eel_dynamics.curvature.law_waves import check_law
+from eel_dynamics.accuracy.law_waves import check_law
 from eel_dynamics.model.arguments import checked_instance, checked_number, checked_row
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.steered_law import BENDS, NUMBERS, SteeredLaw

@@ -20,12 +20,12 @@ import numpy as np
 from eel_base.quantity import number
 from eel_base.wording import did_you_mean, shown
 from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.measures import measures_of
 from eel_dynamics.model.body import NUMBERS, Body
 from eel_dynamics.model.initial_state import InitialState
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.batch import Batch, simulate_batch
-from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
 from eel_gaits.gaits.registry import find
 from eel_gaits.laws.law import Law
 

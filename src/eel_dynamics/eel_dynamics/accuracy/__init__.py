@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The accuracy of a run: settings from a target or from a budget of time."""
+"""What decides grid and steps of a run: a target or a budget of time, the needs of its law, bounds of the steps."""

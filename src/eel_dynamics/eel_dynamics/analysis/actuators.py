@@ -12,7 +12,7 @@ import numpy as np
 from eel_base.wording import shown
 
 from eel_dynamics.analysis.peaks import peaks
-from eel_dynamics.analysis.power_density import area, power_density
+from eel_dynamics.analysis.powers import area, power_density
 
 
 @dataclass(frozen=True)

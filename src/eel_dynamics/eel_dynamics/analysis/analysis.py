@@ -14,9 +14,8 @@ import numpy as np
 
 from eel_dynamics.analysis.averaged_path import AveragedPath
 from eel_dynamics.analysis.averaging_window import AveragingWindow
-from eel_dynamics.analysis.friction_power import drag_powers
 from eel_dynamics.analysis.peaks import peaks, torque_size
-from eel_dynamics.analysis.power_density import area, power_density, torque_of
+from eel_dynamics.analysis.powers import area, drag_powers, power_density, torque_of
 from eel_dynamics.analysis.settling import FEWEST, SETTLED, change_of
 from eel_dynamics.model.section_data import GRAVITY
 

@@ -8,7 +8,7 @@ over a cycle likewise).
 import numpy as np
 
 from eel_dynamics.analysis.averaging_window import AveragingWindow
-from eel_dynamics.analysis.power_density import area
+from eel_dynamics.analysis.powers import area
 
 
 class AveragedPath:

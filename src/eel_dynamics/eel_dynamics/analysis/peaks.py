@@ -18,13 +18,14 @@ DEGREE = 5
 BETWEEN = 8  # instants in a sample period, among which the greatest is looked for; a parabola then gives the peak
 FINER, MOST_SAMPLES = 10, 10_000  # samples in a sample period, and in all, of a run that is swum anew for its peaks
 AT_ONCE = 64  # sample periods that are looked at together
+NEAR = 0.7  # of the greatest sample: a station whose samples stay below does not hold the peak between samples
 AROUND = 1  # sample periods, and distances of stations, to either side of the peak that are swum anew
 FINE = 24  # instants and stations in each of these
 
 
 def torque_size(torque: np.ndarray) -> np.ndarray:
     """Magnitudes (...) [N m] of internal torques (..., 3)."""
-    return np.linalg.norm(torque, axis=-1)
+    return np.sqrt(np.einsum("...k,...k->...", torque, torque))
 
 
 def peaks(x: np.ndarray, values: np.ndarray, size=np.abs, start=-np.inf, end=np.inf) -> tuple[np.ndarray, np.ndarray]:
@@ -53,11 +54,13 @@ def greatest_torque_of(run) -> tuple[float, float, float]:
 
     A run that was recorded elsewhere, or with a single sample, is not swum anew.
     """
-    sizes, times = peaks(run.time, run.torque, torque_size)
-    station = int(np.argmax(sizes))
+    greatest = torque_size(run.torque).max(axis=0)
+    near = np.flatnonzero(greatest >= NEAR * greatest.max())
+    sizes, times = peaks(run.time, run.torque[:, near], torque_size)
+    station, time = near[np.argmax(sizes)], times[np.argmax(sizes)]
     found = (run.time, run.x, run.torque)
     if run.steps and len(run.time) > 1:
-        found = _swum_anew(run, times[station], station)
+        found = _swum_anew(run, time, int(station))
     return peak_along(*found)
 
 

@@ -13,7 +13,7 @@ from eel_base.quantity import is_finite
 from eel_base.wording import shown
 from eel_gaits.sources.sampled_law import SampledLaw
 
-from eel_dynamics.curvature.law_waves import MOST_WAVES, waves_of_rows
+from eel_dynamics.accuracy.law_waves import MOST_WAVES, waves_of_rows
 from eel_dynamics.model.arguments import checked_row
 
 POINTS_PER_WAVE = 8

@@ -15,8 +15,8 @@ from eel_gaits.laws.spline import natural_spline
 from eel_gaits.sources.sampled_law import SampledLaw
 
 import eel_core
+from eel_dynamics.accuracy.law_speed import speed_of
 from eel_dynamics.curvature.curvature_samples import CurvatureSample, SampleQueue
-from eel_dynamics.curvature.law_speed import speed_of
 from eel_dynamics.curvature.tabulated_law import TabulatedLaw, Tabulation
 
 DEFAULT_TRANSITION = 1.0  # s

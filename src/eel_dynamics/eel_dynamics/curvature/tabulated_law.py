@@ -20,7 +20,7 @@ from eel_gaits.laws.ramp import factors_of
 from eel_gaits.laws.term import amplitude_of
 
 import eel_core
-from eel_dynamics.curvature.law_waves import AXES, groups_of
+from eel_dynamics.accuracy.law_waves import AXES, groups_of
 
 SEGMENT_AXES = np.repeat((0, 1), 6)  # of the rows of a quintic between two samples
 POINTS, WEIGHTS = np.polynomial.legendre.leggauss(10)  # of Gauss, per interval, for the Magnus moments

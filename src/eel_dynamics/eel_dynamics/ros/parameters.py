@@ -14,8 +14,8 @@ from eel_base.field_values import checked
 from eel_base.wording import shown
 from eel_ros.parameters import AT_RESET
 
+from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.actuators import MOST_JOINTS
-from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
 
 FRAMES = ("world_frame", "head_frame", "section_frame")
 ROOT = "world"  # the frame that swimmers in namespaces share

@@ -8,15 +8,13 @@ from eel_dynamics.model.axes import turn_quaternion, turn_vector
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.ros.parameters import DynamicsParameters
-from eel_dynamics.simulation.measured_simulation import MeasuredSimulation
 from eel_dynamics.simulation.simulation import Simulation
 
 
 def simulation_from_parameters(parameters: DynamicsParameters, scene: Scene) -> Simulation:
     """The simulation at t = 0; the scene's current is in the ROS world frame. `ValueError` names what does not fit."""
     twist = (*parameters.initial_angular_velocity, *parameters.initial_linear_velocity)
-    kind = MeasuredSimulation if parameters.estimate_error else Simulation
-    return kind(
+    return Simulation(
         body=body_of(parameters.body),
         scene=replace(scene, current=tuple(turn_vector(scene.current).tolist())),
         accuracy=parameters.accuracy,
@@ -26,6 +24,7 @@ def simulation_from_parameters(parameters: DynamicsParameters, scene: Scene) -> 
         twist=turn_vector([twist[:3], twist[3:]]).ravel(),
         default_transition=parameters.default_transition,
         most_evaluations=parameters.most_evaluations,
+        measure_error=parameters.estimate_error,
     )
 
 

@@ -23,6 +23,7 @@ from eel_gaits.sources.sampled_law import SampledLaw
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.error_estimate import ErrorEstimate
+from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.measures import MEASURES, measures_of
 from eel_dynamics.analysis.settling import tell_unsettled
 from eel_dynamics.model.arguments import checked_stations
@@ -43,7 +44,6 @@ from eel_dynamics.runs.storage.tables import dataset_of, frame_of_all, needed
 from eel_dynamics.runs.storage.variables import Contents
 from eel_dynamics.simulation.energy import EnergyLedger
 from eel_dynamics.simulation.observations import Observations, empty_observations
-from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 ALONG = "backbone", "section_orientation", "curvature", "curvature_rate", "torque", "force", "fluid_force"

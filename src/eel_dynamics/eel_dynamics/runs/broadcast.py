@@ -10,6 +10,7 @@ from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
 
 from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.model.arguments import (
     check_planar,
     check_planar_law,
@@ -22,7 +23,6 @@ from eel_dynamics.model.body import Body, checked_body
 from eel_dynamics.model.initial_state import InitialState
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.motions import LAWS
-from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
 
 
 class SwimmerArguments(NamedTuple):

@@ -26,6 +26,7 @@ from eel_gaits.laws.law import Law
 from eel_gaits.sources.motion_file import read_motion
 from eel_gaits.sources.sampled_law import SampledLaw
 
+from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.actuators import MOST_JOINTS
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
@@ -34,7 +35,6 @@ from eel_dynamics.runs.run import Run, simulate
 from eel_dynamics.runs.settled_duration import until_settled
 from eel_dynamics.runs.storage.run_contents import contents_of_run
 from eel_dynamics.runs.storage.tables import columns_of, write_columns
-from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 NAME = "eel simulate"

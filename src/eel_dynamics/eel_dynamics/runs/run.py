@@ -13,6 +13,7 @@ from eel_gaits.sources.sampled_law import SampledLaw
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.error_estimate import ErrorEstimate
+from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.actuators import Actuators, actuators_of
 from eel_dynamics.analysis.analysis import Analysis
 from eel_dynamics.analysis.model_limits import warnings_of
@@ -39,7 +40,6 @@ from eel_dynamics.runs.storage.tables import dataset_of, frame_of
 from eel_dynamics.simulation.energy import EnergyLedger
 from eel_dynamics.simulation.observations import Observations
 from eel_dynamics.simulation.simulation import Simulation
-from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 MOST_UNSMOOTHED = 5_000.0  # evaluations per simulated second of a motion without smoothing

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 import eel_core
-from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.accuracy.grid_settings import GridSettings
 from eel_dynamics.curvature.tabulated_law import Tabulation
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.grid import Grid, Panel
@@ -15,25 +15,6 @@ from eel_dynamics.model.inertia import check_inertia
 from eel_dynamics.model.panels import panels_of
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.model.section_data import SectionData, core_swimmer, nose_of, righting_time, sections_on
-
-
-class GridSettings(NamedTuple):
-    """Points per body length, the kinks of the drag that are integrated exactly, and the knots [m] of a law."""
-
-    resolution: float
-    kinks: str
-    knots: tuple[float, ...]
-
-    @staticmethod
-    def of(accuracy: Accuracy, waves: float, knots: tuple[float, ...]) -> "GridSettings":
-        """The settings that an `accuracy` needs for `waves` on the body and the `knots` [m] of a law."""
-        return GridSettings(accuracy.points_per_length(waves), accuracy.kinks, knots)
-
-    def at_least(self, other: "GridSettings") -> "GridSettings":
-        """These settings where they are fine enough for `other`. Else those of `other`, but no coarser than these."""
-        resolution = max(self.resolution, other.resolution)
-        fine_enough = resolution <= self.resolution * (1.0 + 1e-9) and set(other.knots) <= set(self.knots)
-        return self if fine_enough and self.kinks == other.kinks else other._replace(resolution=resolution)
 
 
 class Discretisation(NamedTuple):

@@ -5,7 +5,7 @@ import math
 import time as clock
 from collections.abc import Callable
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 from eel_base.quantity import is_finite
@@ -16,19 +16,21 @@ from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
 
 import eel_core
-from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.accuracy.accuracy import Accuracy, within_budget
+from eel_dynamics.accuracy.budget import Budget
 from eel_dynamics.accuracy.error_estimate import ErrorEstimate, HeadErrors
+from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.curvature.curvature_samples import CurvatureSample, check_points
 from eel_dynamics.curvature.law_follower import DEFAULT_TRANSITION
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.initial_state import InitialState
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.simulation.discretisation import Discretisation
-from eel_dynamics.simulation.law_driven_march import march_from_start
-from eel_dynamics.simulation.observations import Observations, empty_observations, places_of_instant
+from eel_dynamics.simulation.error_meter import ErrorMeter
+from eel_dynamics.simulation.march import March
+from eel_dynamics.simulation.observations import Observations, empty_observations
 from eel_dynamics.simulation.simulation_setup import SimulationSetup, checked_state
 from eel_dynamics.simulation.snapshot import Snapshot
-from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 
@@ -49,6 +51,7 @@ class Simulation:
         law: the first law to adopt.
         most_evaluations: of the head's dynamics per simulated second. A law that needs more is refused, or the run
             stops.
+        measure_error: whether a companion with coarser settings follows, for `error_estimate` and `head_errors`.
     """
 
     def __init__(
@@ -63,8 +66,9 @@ class Simulation:
         default_transition: float = DEFAULT_TRANSITION,
         law: Law | SampledLaw | None = None,
         most_evaluations: float = MOST_EVALUATIONS,
+        measure_error: bool = False,
     ):
-        self._setup = setup = SimulationSetup.of(
+        setup = SimulationSetup.of(
             body=body,
             scene=scene,
             accuracy=accuracy,
@@ -72,21 +76,25 @@ class Simulation:
             initial_state=(position, orientation, twist),
             default_transition=default_transition,
             most_evaluations=most_evaluations,
-            swim_time=swim_time,
         )
+        if isinstance(setup.accuracy, Budget):
+            at_hand = partial(swim_time, setup.body, setup.scene, setup.x.tobytes())
+            setup = replace(setup, accuracy=within_budget(setup.accuracy, setup.scene, at_hand))
+        self._setup = setup
         self.body, self.scene, self.x = setup.body, setup.scene, setup.x
-        self._march = march_from_start(setup, setup.shape_needs(law), law)
+        self._march = March.from_start(setup, law)
         self.ready, self._started = law is not None, False
+        self._meter = ErrorMeter(self._march, setup) if measure_error else None
 
     @property
     def time(self) -> float:
         """Present time [s]."""
-        return self._march.compiled.time
+        return self._march.time
 
     @property
     def state(self) -> np.ndarray:
         """(13,) position, orientation, momentum about the head, in the world's axes."""
-        return self._march.compiled.state
+        return np.array(self._march.core.state)
 
     @property
     def accuracy(self) -> Accuracy:
@@ -101,7 +109,7 @@ class Simulation:
     @property
     def discretisation(self) -> Discretisation:
         """Body and scene on the grid."""
-        return self._march.compiled.discretisation
+        return self._march.discretisation
 
     # -- law and samples
 
@@ -113,7 +121,7 @@ class Simulation:
     @property
     def tabulated_law(self) -> eel_core.Law:
         """The law or the samples that drive the body, on the grid."""
-        return self._march.compiled.tabulated_law
+        return self._march.tabulated_law
 
     @property
     def samples_until(self) -> float | None:
@@ -137,14 +145,20 @@ class Simulation:
         own transition, or during the default one. After the last row of a `SampledLaw` the shape comes to rest.
         `ValueError` for a law that the scene does not allow.
         """
-        needs = self._setup.shape_needs(law)
+        needs, march, meter = self._setup.shape_needs(law), self._march, self._meter
         if not is_finite(origin):
             raise ValueError(f"law origin must be finite, got {shown(origin)} s")
-        blend = self._setup.transition_to(law, transition)
+        origin, blend = float(origin), self._setup.transition_to(law, transition)
         if self._started:
-            self._march.adopt(law, float(origin), blend, needs)
+            if meter is not None:
+                meter.catch_up(march)
+            march.adopt(law, origin, blend, needs)
+            if meter is not None:
+                meter.adopt(march, law, origin, blend, needs)
         else:
-            self._march = march_from_start(self._setup, needs, law, float(origin), self._march.settings)
+            self._march = march = March.from_start(self._setup, law, origin, march.settings)
+            if meter is not None:
+                meter.begin_with(march, law, origin)
         self.ready = True
 
     def add_samples(self, time, x, pitch, pitch_rate, pitch_accel, yaw, yaw_rate, yaw_accel, waves=None):
@@ -171,7 +185,11 @@ class Simulation:
             now=self.time,
             begun=self._started,
         )
+        if self._meter is not None:
+            self._meter.catch_up(self._march)
         self._march.follower.add(sample)
+        if self._meter is not None:
+            self._meter.add(sample)
         self.ready = True
 
     def copy_with(self, accuracy: Accuracy) -> "Simulation":
@@ -195,7 +213,10 @@ class Simulation:
         if not is_finite(time) or time < self.time:
             raise ValueError(f"time must be finite and >= the present {self.time} s, got {shown(time)}")
         self._started = True
-        return self._march.advance(float(time), interrupted)
+        reached = self._march.advance(float(time), interrupted)
+        if reached and self._meter is not None:
+            self._meter.advanced(self._march, interrupted)
+        return reached
 
     def set_state(self, position, orientation, twist):
         """Put the head elsewhere, with another twist, at the present time. The arguments are those of `Simulation`.
@@ -204,15 +225,18 @@ class Simulation:
         energy. `ValueError` for a state that the scene does not allow, or without a finite energy.
         """
         self._march.set_state(checked_state(self.scene, position, orientation, twist))
+        if self._meter is not None:
+            self._meter.begin_again(self._march)
 
     def reset(self):
         """Reset state and time to the start. The last law stays, with its own t = 0 at 0.
 
         `ValueError` for a law that cannot begin from the initial state; the simulation then stays as it is.
         """
-        law, setup = self.law, self._setup
-        self._march = march_from_start(setup, setup.shape_needs(law), law)
-        self.ready, self._started = law is not None, False
+        self._march = March.from_start(self._setup, self.law)
+        self.ready, self._started = self.law is not None, False
+        if self._meter is not None:
+            self._meter.restart(self._march)
 
     # -- observe
 
@@ -221,12 +245,7 @@ class Simulation:
 
         wrench, load: whether it holds the internal wrench, and the water's load along the body.
         """
-        wrench, load = bool(wrench and self.scene.internal_wrench), bool(load)
-        places, size = places_of_instant(len(self.x), wrench, load)
-        whole = np.zeros(size)
-        self._march.compiled.observe(whole, wrench, load)
-        works = self.works if self.scene.ledger else None
-        return Snapshot(self.time, self.x, whole, places, works, self.energy_at_start)
+        return self._march.observe(wrench, load)
 
     @property
     def head(self) -> InitialState:
@@ -247,7 +266,10 @@ class Simulation:
         """
         out, works = empty_observations(len(times), len(self.x), wrench, load), np.zeros((len(times), 4))
         self._started = True
-        return out, works, *self._march.record(np.array(times, dtype=float), out, works, wrench, load, look)
+        recorded = self._march.record(np.array(times, dtype=float), out, works, wrench, load, look)
+        if self._meter is not None:
+            self._meter.compare(self._march)
+        return out, works, *recorded
 
     @property
     def energy_at_start(self) -> float:
@@ -257,27 +279,46 @@ class Simulation:
     @property
     def works(self) -> np.ndarray:
         """(4,) J of actuators, wake, nose and drag since the start."""
-        return self._march.compiled.works
+        return np.array(self._march.core.works)
 
     @property
     def evaluations(self) -> tuple[int, int, int]:
         """Numbers of steps, rejected steps and evaluations of the head's dynamics so far."""
-        return self._march.compiled.counts
+        return self._march.core.counts
+
+    # -- error, where it is measured (`measure_error`); else None
 
     @property
     def error_estimate(self) -> ErrorEstimate | None:
-        """None: a `MeasuredSimulation` has one."""
-        return None
+        """The errors of the motion since `measured_since`, at the last comparison.
+
+        They are relative to the path and to the greatest torque since then, and infinite where the companion stopped.
+        """
+        return None if self._meter is None else self._meter.estimate(self._march)
 
     @property
     def head_errors(self) -> HeadErrors | None:
-        """None: a `MeasuredSimulation` has them."""
-        return None
+        """The errors of the head's motion since `measured_since`, at the last comparison.
+
+        All are infinite where the companion stopped. The absolute ones are also infinite before the first comparison,
+        and once the position was lost.
+        """
+        return None if self._meter is None else self._meter.head_errors
+
+    @property
+    def measured_since(self) -> float | None:
+        """[s], start of the estimate. It begins again once the errors have grown so far that they grow no more."""
+        return None if self._meter is None else self._meter.measured_since
+
+    @property
+    def lost_at(self) -> float | None:
+        """[s], when it first began again because of that; None where it never did."""
+        return None if self._meter is None else self._meter.lost_at
 
     @property
     def memory(self) -> int:
         """Bytes that an evaluation reads and writes."""
-        return self._march.compiled.memory
+        return self._march.core.memory
 
 
 @cache

@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The set-up of a simulation: its checked arguments, and the accuracy and grid that follow from them."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property, partial
-from typing import NamedTuple
+from functools import cached_property
 
 import numpy as np
 from eel_base.quantity import is_finite
@@ -12,10 +10,12 @@ from eel_base.wording import shown
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
 
-from eel_dynamics.accuracy.accuracy import Accuracy, within_budget
+from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.budget import Budget
+from eel_dynamics.accuracy.grid_settings import ShapeNeeds
+from eel_dynamics.accuracy.law_waves import check_law, knots_of_law, waves_of_rows
+from eel_dynamics.accuracy.step_bounds import check_cost
 from eel_dynamics.curvature.curvature_samples import check_points
-from eel_dynamics.curvature.law_waves import check_law, knots_of_law, waves_of_rows
 from eel_dynamics.model.arguments import (
     check_planar,
     check_planar_law,
@@ -28,8 +28,6 @@ from eel_dynamics.model.arguments import (
 from eel_dynamics.model.body import Body, checked_body
 from eel_dynamics.model.initial_state import InitialState, time_scale
 from eel_dynamics.model.scene import Scene
-from eel_dynamics.simulation.discretisation import Discretisation, GridSettings, discretise
-from eel_dynamics.simulation.step_bounds import check_cost
 
 FITTING = 1e-6  # part of the body's length by which the rows of a law may be shorter or longer
 
@@ -46,13 +44,6 @@ def checked_state(scene: Scene, position, orientation, twist) -> InitialState:
     return state
 
 
-class ShapeNeeds(NamedTuple):
-    """The properties of a curvature that its grid must fit: waves on the body, and knots [m] of splines."""
-
-    waves: float = 1.0
-    knots: tuple[float, ...] = ()
-
-
 @dataclass(frozen=True)
 class SimulationSetup:
     """The part of a simulation that neither a march nor a reset changes. `of` checks the arguments."""
@@ -64,7 +55,6 @@ class SimulationSetup:
     initial_state: InitialState
     default_transition: float  # s
     most_evaluations: float  # by simulated second
-    swim_time: Callable[[Body, Scene, bytes, float], float]  # s by simulated second: `simulation.swim_time`
 
     @staticmethod
     def of(
@@ -76,7 +66,6 @@ class SimulationSetup:
         initial_state: tuple,
         default_transition: float,
         most_evaluations: float,
-        swim_time: Callable[[Body, Scene, bytes, float], float],
     ) -> "SimulationSetup":
         """The set-up from the arguments of `Simulation`. `ValueError` names the one that does not fit.
 
@@ -90,7 +79,7 @@ class SimulationSetup:
             raise ValueError(f"default_transition must be finite and > 0 s, got {shown(default_transition)}")
         most_evaluations = checked_number("most_evaluations", most_evaluations, "per simulated second")
         transition = float(default_transition)
-        return SimulationSetup(body, scene, accuracy, x, start, transition, most_evaluations, swim_time)
+        return SimulationSetup(body, scene, accuracy, x, start, transition, most_evaluations)
 
     @property
     def arguments(self) -> dict:
@@ -158,11 +147,5 @@ class SimulationSetup:
     @cached_property
     def settings(self) -> Accuracy:
         """The settings of the accuracy in this scene."""
-        if isinstance(self.accuracy, Budget):
-            at_hand = partial(self.swim_time, self.body, self.scene, self.x.tobytes())
-            return within_budget(self.accuracy, self.scene, at_hand)
+        assert not isinstance(self.accuracy, Budget)  # `Simulation` has replaced it
         return self.accuracy.in_scene(self.scene)
-
-    def discretise(self, settings: GridSettings) -> Discretisation:
-        """Body, scene and stations on a grid of these `settings`."""
-        return discretise(self.body, self.scene, settings, self.x.tobytes())

@@ -24,6 +24,7 @@ from eel_base.command.progress import progress_of
 from eel_base.quantity import number
 from eel_base.wording import shown
 from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.analysis import Analysis
 from eel_dynamics.analysis.measures import checked_measures
 from eel_dynamics.model.arguments import checked_instance, checked_number
@@ -34,7 +35,6 @@ from eel_dynamics.model.section_data import TRANSITION
 from eel_dynamics.runs.companion import relative_errors
 from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.sampling import default_sample_period
-from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
 
 from eel_studies.gradients.fixed_discretisation import fixed_steps, on_one_grid, step_of
 from eel_studies.gradients.friction_jump import share_across_jump

@@ -19,6 +19,7 @@ from eel_base.command.progress import progress_of
 from eel_base.wording import one_line, shown
 from eel_base.work_stopped import WorkStopped
 from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.measures import checked_measures, checked_point, described
 from eel_dynamics.analysis.settling import tell_unsettled
 from eel_dynamics.model.arguments import checked_number
@@ -28,7 +29,6 @@ from eel_dynamics.runs.batch import available_cores
 from eel_dynamics.runs.sampling import checked_times, default_sample_period
 from eel_dynamics.runs.settled_duration import UNTIL_SETTLED, period_of, until_settled
 from eel_dynamics.runs.storage.tables import needed
-from eel_dynamics.simulation.step_bounds import MOST_EVALUATIONS
 from eel_gaits.laws.law import Law
 
 from eel_studies.points import Point, SwimSettings, batch_of_points, label_of, point_at

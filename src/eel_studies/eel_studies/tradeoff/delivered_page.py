@@ -48,9 +48,9 @@ in which errors grow by a factor of e. A warning also says so if the growth of r
 target. In `simulate_batch` this is `batch.above_target`, in `sweep` the measures error_position and error_torque.
 
 **Without a target.** `estimate=False` gives the run without a companion. Settings given one by one are kept; their
-error is measured, and not compared with a target. The same holds for a budget of time. `Simulation` measures no error.
+error is measured, and not compared with a target. The same holds for a budget of time. `Simulation` measures none.
 
-**In the node** `dynamics` (and `MeasuredSimulation` in Python) a companion advances with the simulation. It gets
+**In the node** `dynamics` (in Python: `Simulation(..., measure_error=True)`) a companion advances with it. It gets
 the same laws and samples. Published samples cannot be refined, so a missed target is reported: WARN in the log and
 in `/diagnostics`, which has `error_position`, `error_torque`, `error_growth_rate` [1/s] and `error_since` [s]. In a
 sensitive motion the difference grows until it is no estimate any more. This is reported once, and the companion

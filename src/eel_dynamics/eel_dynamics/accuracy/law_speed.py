@@ -13,7 +13,7 @@ from eel_gaits.laws.law import Law
 from eel_gaits.laws.ramp import height_of
 from eel_gaits.laws.term import amplitude_of
 
-from eel_dynamics.curvature.law_waves import groups_of
+from eel_dynamics.accuracy.law_waves import groups_of
 
 POINTS = 64  # along the body
 

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Powers along the body of a run: of the actuators, from its internal torque, and of each kind of drag."""
+
+import numpy as np
+from eel_base.attitude import world_from_body
+
+import eel_core
+from eel_dynamics.curvature.law_follower import LawFollower
+from eel_dynamics.simulation.simulation import Simulation
+
+
+def power_density(run) -> np.ndarray:
+    """Power of the actuators per length, -C . dK/dt (T, M) [W/m], at the stations of `run`.
+
+    `ValueError` where these do not reach from nose to tail.
+    """
+    length = run.body.length
+    if len(run.x) < 2 or run.x[0] > 1e-9 * length or run.x[-1] < (1.0 - 1e-9) * length:
+        raise ValueError(f"run must have stations from 0 to {length:g} m, got {run.x[0]:g} to {run.x[-1]:g} m")
+    return -np.einsum("tmk,tmk->tm", torque_of(run), run.curvature_rate)
+
+
+def torque_of(run) -> np.ndarray:
+    """The internal torque (T, M, 3) [N m] of `run`. `ValueError` where it holds none."""
+    if run.torque is None:
+        raise ValueError("torque needs a run with scene internal_wrench on")
+    return run.torque
+
+
+def drag_powers(run) -> np.ndarray:
+    """Powers (T, 4) [W] of the drag along the body at each sample of `run`.
+
+    Columns: forces along section axes 1 (friction, k1 of section 7.2.1), 2 and 3 (cross flow), and the torque about
+    axis 1. Positive is into the body, so none is positive. They are evaluated from the law and the head's motion, at
+    the nodes of a simulation with the run's settings; their sum is the ledger's `drag_power`.
+    """
+    simulation = Simulation(body=run.body, scene=run.scene, accuracy=run.accuracy.as_it_is(), stations=2, law=run.law)
+    follower, now = LawFollower(simulation.discretisation.tabulation, law=run.law), 0.0
+    instant, powers = eel_core.Instant(simulation.discretisation.swimmer), np.zeros((len(run.time), 4))
+    time, relative = np.ascontiguousarray(run.time), run.twist.copy()
+    relative[:, 3:] -= np.asarray(run.scene.current) @ world_from_body(run.orientation)
+    begin = 0
+    while begin < len(time):  # once for a law in closed form, and for each row of a `SampledLaw`
+        follower.pass_events(now, now := float(time[begin]))
+        end = max(begin + 1, int(np.searchsorted(time, follower.next_event(now), side="right")))
+        part = slice(begin, end)
+        instant.drag_powers(follower.tabulated_law, time[part], relative[part], powers[part])
+        begin = end
+    return powers
+
+
+def area(values: np.ndarray, x: np.ndarray) -> np.ndarray:
+    """Integral of `values` (..., n) by `x` (n,), by the trapezoidal rule."""
+    return 0.5 * ((values[..., 1:] + values[..., :-1]) @ np.diff(x))

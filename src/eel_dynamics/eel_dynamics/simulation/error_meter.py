@@ -1,0 +1,189 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Measures the error of a march as it goes: a companion with coarser settings follows it.
+
+Both get the same laws and samples. Their distance is the estimate of the error (accuracy/error_estimate.py). A motion
+that is already known to others cannot be refined, so a missed target can only be told. With a controller in the loop,
+the estimate is the error for the same curvature. It does not contain what the controller would have done with a more
+accurate observation.
+"""
+
+from collections import deque
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from eel_gaits.laws.law import Law
+from eel_gaits.sources.sampled_law import SampledLaw
+
+from eel_dynamics.accuracy.error_estimate import (
+    LEAST_SAMPLES,
+    SMALL,
+    ErrorEstimate,
+    HeadErrors,
+    growth_rate_of,
+    least_torque,
+)
+from eel_dynamics.accuracy.grid_settings import ShapeNeeds
+from eel_dynamics.curvature.curvature_samples import CurvatureSample
+from eel_dynamics.simulation.march import March
+from eel_dynamics.simulation.simulation_setup import SimulationSetup
+from eel_dynamics.simulation.snapshot import Snapshot
+from eel_dynamics.simulation.stopping import SimulationStopped
+
+COMPARED_EVERY = 0.1  # s of simulated time between two comparisons
+ROUND_OFF = 1e-9  # part of it
+REMEMBERED = 300  # comparisons from which the growth rate is taken: those of the last 30 s
+FAILURES = SimulationStopped, ValueError, ArithmeticError, MemoryError
+
+
+class ErrorMeter:
+    """The estimate of the error of a `march` with this `setup`.
+
+    Attributes:
+        measured_since: [s], start of the estimate. The companion begins again from the present state when the
+            difference has become so great that it no longer grows, and so is no estimate any more.
+        lost_at: [s], the first such time; None if there was none.
+    """
+
+    def __init__(self, march: March, setup: SimulationSetup):
+        self._setup, self._companion = setup, None  # type: SimulationSetup, March | None
+        self._length = setup.body.length  # m
+        self.lost_at: float | None = None
+        self.measured_since = self._compared_at = march.time
+        self._last_position: np.ndarray | None = None
+        self._growth_rate = 0.0  # 1/s, until a new one is measured
+        self._path = self._torque_distance = 0.0  # m, N m: since `measured_since`
+        self._apart = np.zeros(4)  # as in `HeadErrors`: m, rad, m/s, rad/s
+        self._torque: float | None = None  # N m, the greatest since then
+        self._distances: deque = deque(maxlen=REMEMBERED)  # (time [s], distance of the heads [m])
+        self.begin_again(march)
+
+    def restart(self, march: March):
+        """Measure a `march` that has been reset."""
+        self.lost_at = None
+        self.begin_again(march)
+
+    def begin_again(self, march: March, growth_rate: float = 0.0):
+        """Let the companion begin from the present state. `growth_rate` [1/s]: until a new one is measured."""
+        self.measured_since = self._compared_at = march.time
+        self._last_position, self._growth_rate, self._torque = None, growth_rate, None
+        self._path, self._torque_distance, self._apart = 0.0, 0.0, np.zeros(4)
+        self._distances.clear()
+        try:
+            settings = self._setup.settings.coarser()
+            self._companion = march.copy_with(replace(self._setup, accuracy=settings))
+            if self._has_same_grid(march):
+                self._companion = march.copy_with(replace(self._setup, accuracy=settings.with_other_points()))
+        except FAILURES:
+            self._companion = None
+
+    def _has_same_grid(self, march: March) -> bool:
+        there = self._companion
+        return there is not None and len(there.discretisation.grid.x) == len(march.discretisation.grid.x)
+
+    # -- the companion does what the march does
+
+    def catch_up(self, march: March, interrupted: Callable[[], bool] | None = None):
+        """Have the companion at the present time, so that what happens next happens to both at once."""
+        if self._companion is not None and self._companion.time < march.time:
+            self._repeat(lambda companion: companion.advance(march.time, interrupted))
+
+    def adopt(self, march: March, law: Law | SampledLaw, origin: float, transition: float, needs: ShapeNeeds):
+        """As the `march` has done: `March.adopt`."""
+        self._repeat(lambda companion: companion.adopt(law, origin, transition, needs))
+        if self._has_same_grid(march):
+            self.begin_again(march)
+
+    def begin_with(self, march: March, law: Law | SampledLaw, origin: float):
+        """As the `march` has done before its start: `March.from_start`."""
+        if (there := self._companion) is not None:
+            try:
+                self._companion = March.from_start(there.setup, law, origin, there.settings)
+            except FAILURES:
+                self._companion = None
+        if self._has_same_grid(march):
+            self.begin_again(march)
+
+    def add(self, sample: CurvatureSample):
+        """As the march has done: `LawFollower.add`."""
+        self._repeat(lambda companion: companion.follower.add(sample))
+
+    def _repeat(self, action: Callable[[March], object]):
+        if self._companion is None:
+            return
+        try:
+            action(self._companion)
+        except FAILURES:
+            self._companion = None
+
+    # -- comparisons
+
+    def advanced(self, march: March, interrupted: Callable[[], bool] | None):
+        """Compare the two, where that is due."""
+        if march.time - self._compared_at >= COMPARED_EVERY * (1.0 - ROUND_OFF):
+            self.compare(march, interrupted)
+
+    def compare(self, march: March, interrupted: Callable[[], bool] | None = None):
+        """Compare the two now."""
+        self.catch_up(march, interrupted)
+        if self._companion is None or self._companion.time < march.time:
+            return
+        self._compared_at = march.time
+        try:
+            this, other = march.observe(load=False), self._companion.observe(load=False)
+        except SimulationStopped:
+            self._companion = None
+            return
+        self._include(this, other)
+        if not self._apart[0] <= SMALL * self._scale:
+            self.lost_at = march.time if self.lost_at is None else self.lost_at
+            self.begin_again(march, self.estimate(march).growth_rate)
+
+    def _include(self, this: Snapshot, other: Snapshot):
+        """Add a comparison of two snapshots of one time."""
+        apart = _distances(this, other)
+        if self._last_position is not None:
+            self._path += float(np.linalg.norm(this.position - self._last_position))
+        self._last_position, self._apart = this.position, np.maximum(self._apart, apart)
+        self._distances.append((this.time, float(apart[0])))
+        if this.torque is not None:
+            size, differs = np.linalg.norm((this.torque, this.torque - other.torque), axis=2).max(axis=1)
+            self._torque, self._torque_distance = max(self._torque or 0.0, size), max(self._torque_distance, differs)
+
+    @property
+    def _scale(self) -> float:
+        """Length [m] by which the position's error is relative."""
+        return max(self._path, self._length)
+
+    # -- the estimate
+
+    def estimate(self, march: March) -> ErrorEstimate:
+        """As `Simulation.error_estimate`."""
+        if self._companion is None:
+            return ErrorEstimate(np.inf, None)
+        torque = None
+        if self._torque is not None:
+            duration = self._compared_at - self.measured_since
+            least = least_torque(march.follower.law, march.discretisation.mass, self._length, duration)
+            torque = self._torque_distance / max(self._torque, least)
+        rate = self._growth_rate
+        if len(self._distances) >= LEAST_SAMPLES:
+            time, distances = np.array(self._distances).T
+            rate = growth_rate_of(time - self.measured_since, distances, SMALL * self._scale)
+        return ErrorEstimate(self.head_errors.relative, torque, rate)
+
+    @property
+    def head_errors(self) -> HeadErrors:
+        """As `Simulation.head_errors`."""
+        if self._companion is None:
+            return HeadErrors(*[np.inf] * 5)
+        unknown = self.lost_at is not None or self._last_position is None
+        return HeadErrors(self._apart[0] / self._scale, *([np.inf] * 4 if unknown else self._apart.tolist()))
+
+
+def _distances(this: Snapshot, other: Snapshot) -> np.ndarray:
+    """(4,) m, rad, m/s, rad/s: how far the heads are apart in two snapshots of one time."""
+    position, twist = this.position - other.position, this.twist - other.twist
+    same, opposite = (np.linalg.norm(this.orientation + sign * other.orientation) for sign in (-1.0, 1.0))
+    angle = 4.0 * np.arcsin(min(same, opposite) / 2.0)  # q and -q are one orientation
+    return np.array((np.linalg.norm(position), angle, np.linalg.norm(twist[3:]), np.linalg.norm(twist[:3])))

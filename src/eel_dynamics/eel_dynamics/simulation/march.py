@@ -1,0 +1,242 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The march in time of a swimmer: under one law after another, on a grid that fits the law."""
+
+from collections.abc import Callable
+from copy import deepcopy
+
+import numpy as np
+from eel_gaits.laws.law import Law
+from eel_gaits.sources.sampled_law import SampledLaw
+
+import eel_core
+from eel_dynamics.accuracy.grid_settings import GridSettings, ShapeNeeds
+from eel_dynamics.accuracy.step_bounds import step_bounds_of
+from eel_dynamics.curvature.curvature_samples import CurvatureSample
+from eel_dynamics.curvature.law_follower import LawFollower
+from eel_dynamics.model.initial_state import InitialState, time_scale
+from eel_dynamics.simulation.discretisation import discretise
+from eel_dynamics.simulation.observations import Observations, places_of_instant
+from eel_dynamics.simulation.sample_check import first_bad_sample
+from eel_dynamics.simulation.simulation_setup import SimulationSetup
+from eel_dynamics.simulation.snapshot import Snapshot
+from eel_dynamics.simulation.stopping import SimulationStopped, not_begun, remedy, stopped_by
+
+MARCHED, SINGULAR, UNFINISHED = (eel_core.STATUSES.index(name) for name in ("marched", "singular", "unfinished"))
+
+
+class March:
+    """A march from the initial state of a `setup`, on a grid of these `settings`.
+
+    It begins under `law`, which has these `needs` and whose own t = 0 lies at `origin` [s]. Without a law the body is
+    straight. `SimulationStopped` where the initial state has no finite energy.
+
+    Attributes:
+        core: the march of eel_core: state, works and counts.
+        time: [s], the present.
+        settings: of the grid.
+        discretisation: body and scene on the grid.
+        follower: what drives the shape, and its blends.
+        tabulated_law: the law or the samples in force, on the grid.
+        energy_at_start: [J], kinetic and potential.
+    """
+
+    def __init__(self, setup: SimulationSetup, settings: GridSettings, needs: ShapeNeeds, law=None, origin=0.0):
+        self.setup, self._needs, self._time_scale = setup, needs, setup.time_scale
+        self.time, self.settings = 0.0, settings
+        self.discretisation = discretise(setup.body, setup.scene, settings, setup.x.tobytes())
+        self.follower = LawFollower(self.discretisation.tabulation, setup.default_transition, law, origin)
+        self.core = eel_core.March(self.discretisation.swimmer, *self._method)
+        self.tabulated_law, self._bounds = self.follower.tabulated_law, self._step_bounds()
+        self._hand_over_law()
+        position, orientation, _ = setup.initial_state
+        self.energy_at_start = self.core.start(position, orientation, setup.initial_twist)
+        if not np.isfinite(self.energy_at_start):
+            raise SimulationStopped(0.0, "kinetic energy", self.energy_at_start, "start slower")
+
+    @property
+    def _method(self) -> tuple[str, int, bool]:
+        return self.setup.settings.method, self.setup.settings.order, bool(self.setup.scene.planar)
+
+    @staticmethod
+    def from_start(
+        setup: SimulationSetup,
+        law: Law | SampledLaw | None,
+        origin: float = 0.0,
+        settings: GridSettings | None = None,
+    ) -> "March":
+        """A march from the initial state under `law`, on a grid of these `settings`, or a finer one that it needs.
+
+        `ValueError` where the law cannot be begun.
+        """
+        needs = setup.shape_needs(law)
+        wanted = GridSettings.of(setup.settings, needs)
+        try:
+            with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is reported
+                return March(setup, wanted if settings is None else settings.at_least(wanted), needs, law, origin)
+        except SimulationStopped as stopped:
+            raise stopped if law is None else not_begun(law, stopped) from None
+
+    def copy_with(self, setup: SimulationSetup) -> "March":
+        """A copy in the present state, on a grid for the accuracy of `setup`, which differs in that alone."""
+        copied, finer = deepcopy(self), setup.settings.resolution / self.setup.settings.resolution
+        copied.setup, resolution = setup, max(1.0, finer * self.settings.resolution)
+        copied._change_grid(GridSettings(resolution, setup.settings.kinks, self.settings.knots))
+        return copied
+
+    # -- law and grid
+
+    def adopt(self, law: Law | SampledLaw, origin: float, transition: float, needs: ShapeNeeds):
+        """Follow `law` from now on, with a blend over `transition` [s].
+
+        origin [s]: the time of the law's own t = 0. The grid fits the `needs` of the law and of the last one.
+        """
+        both = ShapeNeeds(max(self._needs.waves, needs.waves), needs.knots)
+        self._use(self.settings.at_least(GridSettings.of(self.setup.settings, both)))
+        self.follower.adopt(law, origin=origin, time=self.time, transition=transition)
+        self._hand_over_law()
+        self._needs = needs
+
+    def _fit(self, needs: ShapeNeeds):
+        """Make the grid fine enough for the `needs` and, once no finer motion is left, not much finer."""
+        wanted = GridSettings.of(self.setup.settings, needs)
+        self._use(self.settings.at_least(wanted) if self.follower.blending else self.settings.fitted(wanted))
+
+    def _fit_samples(self, samples: list[CurvatureSample]):
+        self._fit(ShapeNeeds(max(sample.waves for sample in samples)))
+
+    def _use(self, settings: GridSettings):
+        """Continue on a grid of these `settings`. The head's motion does not change."""
+        if settings is not self.settings:
+            self._change_grid(settings)
+
+    def _change_grid(self, settings: GridSettings):
+        old, twist = self.discretisation.grid, self.twist
+        self.discretisation = new = discretise(self.setup.body, self.setup.scene, settings, self.setup.x.tobytes())
+        self.follower.move(new.tabulation, old.interpolation_at(new.tabulation.x))
+        self.settings = settings
+        self.core.change(new.swimmer, *self._method)
+        self._hand_over_law()
+        self.core.set_twist(twist)
+
+    def _hand_over_law(self, smoothly: bool = False):
+        """Continue under the follower's law. The next step begins anew, unless the motion goes on `smoothly`."""
+        self.tabulated_law, self._bounds = self.follower.tabulated_law, self._step_bounds()
+        breakpoints, ledger = self.follower.breakpoints, bool(self.setup.scene.ledger)
+        self.core.follow(self.tabulated_law, breakpoints, self._bounds, ledger, self.setup.current, smoothly)
+
+    def _step_bounds(self) -> eel_core.StepBounds:
+        setup, follower, here = self.setup, self.follower, self.discretisation
+        return step_bounds_of(
+            accuracy=setup.settings,
+            ledger=bool(setup.scene.ledger),
+            between_samples=follower.between_samples,
+            nodes=len(here.grid.x),
+            mass=here.mass,
+            length=setup.body.length,
+            speed=follower.speed(setup.body.length),
+            scale=min(follower.time_scale, self._time_scale, here.righting_time),
+            most_evaluations=setup.most_evaluations,
+        )
+
+    # -- march
+
+    def advance(self, time: float, interrupted: Callable[[], bool] | None) -> bool:
+        """As `Simulation.advance`."""
+        while True:
+            event = self._pass_event()
+            while (status := self.core.advance(min(time, event))) == UNFINISHED:
+                if interrupted is not None and interrupted():
+                    self.time = self.core.time
+                    return False
+            self.time = self.core.time
+            if status != MARCHED:
+                raise self._stopped(status)
+            if time <= event:
+                break
+        self.follower.end_blend(self.time)
+        if self.follower.tabulated_law is not self.tabulated_law:
+            self._hand_over_law(smoothly=True)
+            if not self.follower.sampled and self.follower.law is not None:
+                self._fit(self.setup.shape_needs(self.follower.law))
+        return True
+
+    def _pass_event(self) -> float:
+        """Change the source of curvature where that is due at the present; the next time [s] of such a change.
+
+        From one pair of samples to the next the curvature has two continuous derivatives, and the motion goes on
+        smoothly: the rate of the momentum depends on the curvature and its rate.
+        """
+        before = self.follower.between_samples
+        self.follower.pass_event(self.time, self._fit_samples)
+        if self.follower.tabulated_law is not self.tabulated_law:
+            self._hand_over_law(smoothly=before and self.follower.between_samples)
+        return self.follower.next_event(self.time)
+
+    def record(self, times: np.ndarray, out: Observations, works: np.ndarray, wrench: bool, load: bool, look) -> tuple:
+        """As `Simulation.record`, into `out` and `works` (T, 4) [J]."""
+        done, status = 0, MARCHED
+        while status == MARCHED and done < len(times):
+            event, status = self._pass_event(), UNFINISHED
+            while status == UNFINISHED:
+                done, status = self.core.record(times, done, out.whole, works, bool(wrench), bool(load), event)
+                if status == MARCHED and done < len(times):
+                    status = self.core.advance(event)
+                if look is not None and status == UNFINISHED:
+                    look(self.core.time)
+            self.time = self.core.time
+        checked = bool(self.setup.scene.ledger) and self.setup.settings.method == "classical"
+        floor = self._bounds.momentum_floor**2 / self.discretisation.mass if checked else np.inf
+        failure = first_bad_sample(out, works, done, self.energy_at_start, floor)
+        if failure:
+            done, quantity, value = failure
+        if done:
+            self.time = float(times[done - 1])
+        if failure:
+            return done, SimulationStopped(self.time, quantity, value, remedy(self.setup.settings))
+        return done, None if status == MARCHED else self._stopped(status)
+
+    def _stopped(self, status: int) -> SimulationStopped:
+        return stopped_by(status, self.time, self._bounds, self.setup.settings)
+
+    # -- the present
+
+    def observe(self, wrench: bool = True, load: bool = True) -> Snapshot:
+        """As `Simulation.observe`."""
+        x, scene = self.setup.x, self.setup.scene
+        wrench, load = bool(wrench and scene.internal_wrench), bool(load)
+        places, size = places_of_instant(len(x), wrench, load)
+        whole = np.zeros(size)
+        if not self.core.observe(whole, wrench, load):
+            raise self._stopped(SINGULAR)
+        works = np.array(self.core.works) if scene.ledger else None
+        return Snapshot(self.time, x, whole, places, works, self.energy_at_start)
+
+    @property
+    def twist(self) -> np.ndarray:
+        """(6,) of the head in its axes at present, relative to the water."""
+        try:
+            return np.array(self.core.twist())
+        except ValueError:
+            raise self._stopped(SINGULAR) from None
+
+    @property
+    def head(self) -> InitialState:
+        """As `Simulation.head`."""
+        state = np.array(self.core.state)
+        return InitialState(state[:3], state[3:7], self.twist).against_water(self.setup.current)
+
+    def set_state(self, state: InitialState):
+        """Put the head into `state` at the present time; the next step begins anew.
+
+        `ValueError` without a finite energy; the march then stays as it is.
+        """
+        before, twist, relative = np.array(self.core.state), self.twist, state.in_water(self.setup.current)
+        with np.errstate(over="ignore", invalid="ignore"):
+            energy = self.core.set_state(state.position, state.orientation, relative)
+            present = self.core.set_state(before[:3], before[3:7], twist)
+        if not np.isfinite(energy):
+            raise ValueError(f"twist must give a finite kinetic energy, got {energy} J")
+        self._time_scale = min(self.setup.time_scale, time_scale(relative, self.setup.body.length))
+        self._hand_over_law()
+        self.core.set_state(state.position, state.orientation, relative)
+        self.energy_at_start += energy - present
