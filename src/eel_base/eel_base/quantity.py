@@ -2,13 +2,19 @@
 """Numbers with a unit, bounds and a one-line description. They are declared once and checked on entry.
 
 A parameter set is a frozen, keyword-only dataclass. It derives from `Quantities`, and `quantity` makes its fields. A
-ROS node declares its parameters from the same fields.
+ROS node declares its parameters from the same fields. Metadata of a field:
+
+    unit, description, minimum, maximum (inclusive; either may be None)
+    exclusive       the minimum itself is refused
+    choices         of a text
+    number          a text or a number
+    changeable      of a ROS parameter: while the node runs (True), or with effect at the next reset (`AT_RESET`)
 """
 
 import math
 from collections.abc import Mapping
 from dataclasses import Field, dataclass, field, fields
-from typing import Any, TypeVar
+from typing import Any, Self, TypeVar
 
 import numpy as np
 
@@ -17,33 +23,41 @@ from eel_base.wording import shown
 Value = TypeVar("Value")
 Kind = TypeVar("Kind", bound=type)
 
+AT_RESET = "at the next reset"  # when a change acts
 
-def quantity(default: Value, *, unit: str, description: str, minimum: float, maximum: float, **more: Any) -> Value:
-    """A dataclass field that carries its own unit, description and inclusive bounds as metadata, and what is `more`."""
+
+def quantity(
+    default: Value,
+    unit: str,
+    description: str,
+    minimum: float | None = None,
+    maximum: float | None = None,
+    **more: Any,
+) -> Value:
+    """A dataclass field with these metadata, and what is `more`."""
     metadata = {"unit": unit, "description": description, "minimum": minimum, "maximum": maximum}
     return field(default=default, metadata=metadata | more)
 
 
-def limits(metadata: Mapping[str, Any]) -> str:
-    """The bounds in a field's metadata as text, such as "> 0 Hz and <= 1000 Hz". Empty without bounds.
+@dataclass(frozen=True, kw_only=True)
+class Quantities:
+    """Base of parameter sets. Every field gets the type of its default, or a `ValueError` names it (`checked`)."""
 
-    Metadata: minimum, maximum (each may be absent or None), exclusive (the minimum itself is refused), unit.
-    """
+    def __post_init__(self) -> None:
+        for item in fields(self):
+            object.__setattr__(self, item.name, checked(item, getattr(self, item.name), item.name))
+
+    @classmethod
+    def among(cls, values: Mapping[str, Any]) -> Self:
+        """The set with those of the `values` by name that are fields of it."""
+        return cls(**{item.name: values[item.name] for item in fields(cls) if item.name in values})
+
+
+def limits(metadata: Mapping[str, Any]) -> str:
+    """The bounds in a field's metadata as text, such as "> 0 Hz and <= 1000 Hz". Empty without bounds."""
     unit = f" {metadata['unit']}" if metadata.get("unit") else ""
     bounds = ((">" if metadata.get("exclusive") else ">=", metadata.get("minimum")), ("<=", metadata.get("maximum")))
     return " and ".join(f"{sign} {bound:g}{unit}" for sign, bound in bounds if bound is not None)
-
-
-def check_bounds(item: Field[Any], value: Any, name: str) -> None:
-    """`ValueError` where the number `value` is not within a bound of the field `item`, which it names."""
-    low, high = (item.metadata.get(bound) for bound in ("minimum", "maximum"))
-    broken = {}
-    if low is not None and not (value > low if item.metadata.get("exclusive") else value >= low):
-        broken = {"maximum": None}
-    elif high is not None and not value <= high:
-        broken = {"minimum": None}
-    if broken:
-        raise ValueError(f"{name} must be {limits(item.metadata | broken)}, got {shown(value)}")
 
 
 def described_fields(kind: type[Any]) -> str:
@@ -65,16 +79,19 @@ def documented(kind: Kind) -> Kind:
     return kind
 
 
-def is_finite(value: Any) -> bool:
-    """Whether `value` is one finite number. A text is not a number."""
-    try:
-        return math.isfinite(value) and not getattr(value, "ndim", 0)
-    except (TypeError, ValueError, OverflowError):
-        return False
+# -- checks of values: what does not fit is a `ValueError` that says what `name` must be, and what it got
 
 
-def number(name: str, value: Any) -> float:
-    """`value` as a finite float. `ValueError` names anything else. A bool or a text is not a number."""
+def number(
+    name: str,
+    value: Any,
+    unit: str = "",
+    *,
+    minimum: float | None = None,
+    maximum: float | None = None,
+    exclusive: bool = False,
+) -> float:
+    """`value` as a finite float within the bounds. A bool or a text is not a number."""
     try:
         if isinstance(value, (bool, str, bytes)):
             raise TypeError
@@ -83,11 +100,22 @@ def number(name: str, value: Any) -> float:
         raise ValueError(f"{name} must be a number, got {shown(value)}") from None
     if not math.isfinite(result):
         raise ValueError(f"{name} must be finite, got {result}")
+    low = minimum is not None and (result <= minimum if exclusive else result < minimum)
+    high = maximum is not None and result > maximum
+    if low or high:
+        got = value if type(value) is int else result  # not np.float64(1.0)
+        broken = {"minimum": minimum, "exclusive": exclusive} if low else {"maximum": maximum}
+        raise ValueError(f"{name} must be {limits({'unit': unit, **broken})}, got {shown(got)}")
     return result
 
 
+def positive(name: str, value: Any, unit: str = "") -> float:
+    """`value` as a finite float above 0."""
+    return number(name, value, unit, minimum=0.0, exclusive=True)
+
+
 def numbers(name: str, values: Any) -> np.ndarray:
-    """`values` as a new array of floats, of any shape. `ValueError` names anything else, complex numbers too."""
+    """`values` as a new array of floats, of any shape. Complex numbers are refused."""
     try:
         if np.iscomplexobj(values):
             raise TypeError
@@ -96,12 +124,51 @@ def numbers(name: str, values: Any) -> np.ndarray:
         raise ValueError(f"{name} must be real numbers, got {shown(values)}") from None
 
 
-@dataclass(frozen=True, kw_only=True)
-class Quantities:
-    """Base of parameter sets. Every field becomes a float within its bounds, or a `ValueError` names it."""
+def is_finite(value: Any) -> bool:
+    """Whether `value` is one finite number. A text is not a number."""
+    try:
+        return math.isfinite(value) and not getattr(value, "ndim", 0)
+    except (TypeError, ValueError, OverflowError):
+        return False
 
-    def __post_init__(self) -> None:
-        for entry in fields(self):
-            value = number(entry.name, getattr(self, entry.name))
-            check_bounds(entry, value, entry.name)
-            object.__setattr__(self, entry.name, value)
+
+def checked(item: Field[Any], value: Any, name: str) -> Any:
+    """`value` in the type of the default of the field `item`, within its metadata.
+
+    A float may be given as an integer, a row of texts as one text with commas. For a default of None 0 is None.
+    """
+    default, about = item.default, item.metadata
+    if isinstance(default, bool):
+        return _of_kind(isinstance(value, bool), value, f"{name} must be true or false")
+    if isinstance(default, str):
+        if about.get("number") and not isinstance(value, (bool, str)) and is_finite(value):
+            return float(value)
+        _of_kind(isinstance(value, str), value, f"{name} must be a text{' or a number' if about.get('number') else ''}")
+        choices = about.get("choices", (value,))
+        return _of_kind(value in choices, value, f"{name} must be one of {', '.join(choices)}")
+    if isinstance(default, tuple):
+        return _checked_row(default, value, name)
+    if isinstance(default, int):
+        _of_kind(isinstance(value, int) and not isinstance(value, bool), value, f"{name} must be an integer")
+    bounds = {key: about[key] for key in ("minimum", "maximum", "exclusive") if key in about}
+    if default is None and number(name, value) == 0.0:
+        return None
+    result = number(name, value, about.get("unit", ""), **bounds)
+    return int(value) if isinstance(default, int) else result
+
+
+def _of_kind(good: bool, value: Any, rule: str) -> Any:
+    if not good:
+        raise ValueError(f"{rule}, got {shown(value)}")
+    return value
+
+
+def _checked_row(default: tuple[Any, ...], value: Any, name: str) -> tuple[Any, ...]:
+    row = isinstance(value, (list, tuple)) or hasattr(value, "typecode")  # of rclpy: an array.array
+    if isinstance(default[0], str):
+        words: Any = value.split(",") if isinstance(value, str) else value if row else (None,)
+        _of_kind(all(isinstance(word, str) for word in words), value, f"{name} must be a list of texts")
+        return tuple(word.strip() for word in words)
+    good = row and len(value) == len(default) and all(not isinstance(each, str) and is_finite(each) for each in value)
+    _of_kind(good, value, f"{name} must be {len(default)} finite numbers")
+    return tuple(float(number) for number in value)

@@ -96,7 +96,7 @@ def test_a_bad_step_in_python_is_named(rows, message):
         ("duration: 8.0", "duration: long", "line 6, key 'duration': duration must be a number, got 'long'"),
         ("duration: 8.0", "durations: 8", "line 6, key 'durations': is unknown, must be one of gait, set, together"),
         ("    duration: 3\n", "", "line 14, key 'duration': must be given for all steps but the last, got none"),
-        ("wavelength: 0.8", "wavelength: -1", "line 5, key 'wavelength': wavelength must be >= 0.0001 m, got -1.0"),
+        ("wavelength: 0.8", "wavelength: -1", "line 5, key 'wavelength': wavelength must be >= 0.0001 m, got -1"),
         ("wavelength: 0.8", "wave: 1", "line 5, key 'wave': gait 'straight' has no number 'wave', it has: period"),
         ("gait: turning", "gait: turn", "line 7, key 'gait': unknown gait 'turn' (did you mean 'turning'?)"),
         ("gait: turning", "gait: [turning]", "line 7, key 'gait': unknown gait ['turning'], must be one of"),

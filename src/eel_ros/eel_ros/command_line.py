@@ -3,7 +3,9 @@
 
 import re
 import sys
+import textwrap
 from collections.abc import Iterable
+from typing import Any
 
 from eel_base.command.command_line import print_to_stderr
 from eel_base.wording import shown
@@ -11,13 +13,14 @@ from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.utilities import remove_ros_args
 
 USE_SIM_TIME = ("--ros-args", "-p", "use_sim_time:=true", "--")  # before the user's arguments, which override it
+WIDTH, COLUMN = 100, 24  # characters of a line of --help, and of its column of names
 POSITIONS = re.compile(r",? at \S+\.c:\d+")  # in the C sources of rcl
 
 
-def answer_words(
+def handle_arguments(
     name: str,
     about: str,
-    parameters: Iterable[tuple],
+    parameters: Iterable[tuple[str, str, Any]],
     words: list[str],
 ) -> int | None:
     """Handle the arguments in `words` (the program first) that are not ROS arguments; returns the exit status.
@@ -35,10 +38,11 @@ def answer_words(
     if not {"-h", "--help"} & set(rest):
         print_to_stderr(name, f"unknown argument {shown(rest[0])} (parameters come after --ros-args as -p NAME:=VALUE)")
         return 2
-    lines = [f"usage: {name} [--ros-args -p NAME:=VALUE ...]", "", about, "", "parameters:"]
+    lines = [f"usage: {name} [--ros-args -p NAME:=VALUE ...]", "", *about.splitlines(), "", "parameters:"]
     for key, description, default in parameters:
         shown_default = str(default).lower() if isinstance(default, bool) else "empty" if default == "" else default
-        lines.append(f"  {key:<24}  {description} (default {shown_default})")
+        row = f"  {key:<{COLUMN}}  {description} (default {shown_default})"
+        lines += textwrap.wrap(row, WIDTH, subsequent_indent=" " * (COLUMN + 4), break_on_hyphens=False)
     sys.stdout.write("\n".join([*lines, ""]))
     return 0
 

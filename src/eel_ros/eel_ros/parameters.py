@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """ROS parameters from dataclasses: type, default, range and description come from the fields.
 
-Metadata of a field: description, unit; optional minimum, maximum, choices, changeable (at run time: True, or AT_RESET),
-number (a text or a number).
+`eel_base.quantity` lists the metadata of a field.
 """
 
 import math
 import sys
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import MISSING, Field, fields
 from typing import Any
 
+from eel_base.quantity import AT_RESET, Quantities, limits
 from eel_base.wording import did_you_mean
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from rclpy.node import Node
@@ -22,12 +22,11 @@ ROS_PREFIXES = (
     "start_type_description_service",
     "qos_overrides.",
 )  # of ROS's own parameters
-AT_RESET = "at the next reset"  # when a change acts
 ALIKE = 0.8  # of two names, from 0 to 1: a parameter of another node is no slip
 MAXIMUM_INTEGER = 2**63 - 1  # of a ROS parameter
 
 
-def take_overrides(node: Node) -> dict:
+def take_overrides(node: Node) -> dict[str, Any]:
     """The user's parameter overrides, by name.
 
     `node` must be made with automatically_declare_parameters_from_overrides. All but ROS's own parameters are
@@ -41,7 +40,20 @@ def take_overrides(node: Node) -> dict:
     return overrides
 
 
-def warn_of_unknown(node: Node, overrides: Mapping, known: Collection[str]) -> None:
+def declare_all(node: Node, *kinds: type[Quantities]) -> list[Any]:
+    """Declare the fields of these classes of `Quantities` as parameters, with the user's overrides, and return them.
+
+    `ValueError` names an override that does not fit. A warning names those that no field has.
+    """
+    overrides = take_overrides(node)
+    made = [kind.among(overrides) for kind in kinds]
+    for values in made:
+        declare(node, values)
+    warn_of_unknown(node, overrides, [item.name for kind in kinds for item in fields(kind)])
+    return made
+
+
+def warn_of_unknown(node: Node, overrides: Iterable[str], known: Collection[str]) -> None:
     """Warn of overrides that are not `known`; they are ignored.
 
     Those for all nodes (`/**` in a parameter file) may be another node's: of them only those are named that are like a
@@ -55,45 +67,43 @@ def warn_of_unknown(node: Node, overrides: Mapping, known: Collection[str]) -> N
         node.get_logger().warning(f"not parameters of this node, ignored: {', '.join(told)}")
 
 
-def declare(
-    node: Node, values, limits: Callable[[Mapping], str], prefix: str = "", changeable: bool | str | None = None
-) -> None:
+def declare(node: Node, values: Any, prefix: str = "", changeable: bool | str | None = None) -> None:
     """Declare a parameter, named `prefix` and field, for each field of the dataclass instance `values`.
 
-    limits: the bounds in a field's metadata in words. changeable: replaces the metadata's.
+    changeable: replaces the metadata's.
     """
     for item in fields(values):
-        descriptor = _descriptor(item, limits, changeable)
+        descriptor = _descriptor(item, changeable)
         value = as_parameter(getattr(values, item.name))
         node.declare_parameter(prefix + item.name, value, descriptor, ignore_override=True)
 
 
-def help_rows(kind: type, prefix: str = "") -> Iterator[tuple]:
+def help_rows(kind: type[Any], prefix: str = "") -> Iterator[tuple[str, str, Any]]:
     """Name, description and default of each parameter of the dataclass `kind`."""
     for item in fields(kind):
         yield prefix + item.name, described(item), default_of(item)
 
 
-def described(item: Field) -> str:
+def described(item: Field[Any]) -> str:
     """The description of a field, with its unit in brackets."""
     unit = item.metadata["unit"]
     return item.metadata["description"] + (f" [{unit}]" if unit else "")
 
 
-def default_of(item: Field):
+def default_of(item: Field[Any]) -> Any:
     """The default of a field as a ROS parameter holds it: a list for a tuple, 0.0 for None."""
     assert item.default is not MISSING, item.name
     return as_parameter(item.default)
 
 
-def as_parameter(value):
+def as_parameter(value: Any) -> Any:
     """`value` as a ROS parameter holds it: a list for a tuple, 0.0 for None."""
     if value is None:
         return 0.0
     return list(value) if isinstance(value, tuple) else value
 
 
-def _descriptor(item: Field, limits: Callable[[Mapping], str], changeable: bool | str | None) -> ParameterDescriptor:
+def _descriptor(item: Field[Any], changeable: bool | str | None) -> ParameterDescriptor:
     metadata = item.metadata
     if changeable is None:
         changeable = metadata.get("changeable", False)

@@ -2,14 +2,15 @@
 """Runs a node in the main thread: SIGINT and SIGTERM end it with status 0 and no traceback."""
 
 import time
-from collections.abc import Callable, Mapping
-from typing import TypeVar
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any, TypeVar
 
 import rclpy
 from eel_base.command.command_line import print_to_stderr
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 
+from eel_ros.command_line import USE_SIM_TIME, handle_arguments
 from eel_ros.process_end import ProcessEnd
 from eel_ros.serving import LOG_PERIOD, reason_of, serve_once
 from eel_ros.start import start
@@ -28,13 +29,20 @@ def run_node(
     name: str,
     words: list[str],
     make: Callable[[], Served],
-    poll: Callable[[Served], bool],
+    poll: Callable[[Served], bool] = lambda node: True,
     take_messages: Callable[[Served, int], int] | None = None,
     *,
+    about: str = "",
+    parameters: Iterable[tuple[str, str, Any]] = (),
+    sim_time: bool = False,
     period: float = POLL_PERIOD,
     complete: bool = False,
 ) -> int:
     """Make the node and spin it until a signal comes or `poll(node)` returns False.
+
+    words: the command line, the program first. about, parameters: what --help prints (`handle_arguments`); without
+    them, the caller has handled other arguments than ROS arguments. sim_time: whether `use_sim_time` is true by
+    default.
 
     take_messages(node, before): takes some of the waiting messages itself and returns how many of them are from before
     this time [ns, as `is_from_before`]; 0: all. The executor then only serves rare callbacks, such as parameter
@@ -43,9 +51,11 @@ def run_node(
     Returns the exit status: 0; 1 if the node has a `failure` (a text), which is printed; 2 if it
     cannot start.
     """
+    if about and (status := handle_arguments(name, about, parameters, words)) is not None:
+        return status
     end = ProcessEnd()
     end.leave_when_stuck(STUCK)
-    node = start(name, words, make)
+    node = start(name, [*(USE_SIM_TIME if sim_time else ()), *words], make)
     if node is None:
         return 2
     executor = SingleThreadedExecutor()

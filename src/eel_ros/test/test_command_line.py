@@ -4,7 +4,7 @@
 import sys
 
 import pytest
-from eel_ros.command_line import answer_words
+from eel_ros.command_line import handle_arguments
 
 ROWS = [("depth", "of the water [m]", 2.0), ("lid", "closed", False), ("label", "text on it", "")]
 
@@ -14,7 +14,7 @@ def answer(capsys):
     """answer(*words): the status, and what was written to stderr, as name and text of each line."""
 
     def answer_these(*words):
-        status = answer_words("tank", "Holds water.", ROWS, ["tank", *words])
+        status = handle_arguments("tank", "Holds water.", ROWS, ["tank", *words])
         output, lines = capsys.readouterr()
         sys.stdout.write(output)
         return status, [tuple(line.split(": ", 1)) for line in lines.splitlines()]

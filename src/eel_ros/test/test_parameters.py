@@ -47,17 +47,13 @@ def make_node(ros_domain):
         context.try_shutdown()
 
 
-def limits(metadata):
-    return f"at least {metadata['minimum']}"
-
-
 def test_descriptors_tell_unit_range_choices_and_whether_it_changes(make_node):
     node = make_node()
-    declare(node, Tank(), limits, "tank.")
+    declare(node, Tank(), "tank.")
     depth, pumps, wall, size, density = (
         node.describe_parameter(f"tank.{name}") for name in ("depth", "pumps", "wall", "size", "density")
     )
-    assert depth.description == "of the water [m]" and depth.additional_constraints == "at least 0.5"
+    assert depth.description == "of the water [m]" and depth.additional_constraints == ">= 0.5 m"
     (bounds,) = depth.floating_point_range
     assert bounds.from_value == 0.5 and bounds.to_value == float("inf") and depth.read_only
     (bounds,) = pumps.integer_range
@@ -69,7 +65,7 @@ def test_descriptors_tell_unit_range_choices_and_whether_it_changes(make_node):
 
 def test_a_declared_parameter_is_set_within_its_range_alone(make_node):
     node = make_node()
-    declare(node, Tank(), limits)
+    declare(node, Tank())
     for value, successful in ((2, True), (4, False), (2.0, False)):
         (result,) = node.set_parameters([Parameter("pumps", value=value)])
         assert result.successful == successful, value
@@ -81,7 +77,7 @@ def test_a_declared_parameter_is_set_within_its_range_alone(make_node):
 def test_numbers_in_any_form_are_taken_for_floats_and_misfits_are_named(make_node):
     """`ros2 param set` hands over 1e-06, nan and [1.0, 2] as texts."""
     node = make_node(kind=ParameterNode)
-    declare(node, Tank(), limits, changeable=True)
+    declare(node, Tank(), changeable=True)
     for name, given, held in (
         ("depth", 7, 7.0),
         ("depth", "1e+02", 100.0),
@@ -107,7 +103,7 @@ def test_numbers_in_any_form_are_taken_for_floats_and_misfits_are_named(make_nod
 
 def test_changeable_for_all_replaces_the_metadata(make_node):
     node = make_node()
-    declare(node, Tank(), limits, changeable=True)
+    declare(node, Tank(), changeable=True)
     (result,) = node.set_parameters([Parameter("depth", value=3.0)])
     assert result.successful
 
@@ -118,7 +114,7 @@ def test_overrides_are_taken_with_their_own_type_and_ros_keeps_its_own(make_node
     assert overrides["depth"] == 7 and isinstance(overrides["depth"], int) and overrides["colour"] == "blue"
     assert not node.has_parameter("depth") and not node.has_parameter("colour")
     assert node.get_parameter("use_sim_time").value is True
-    declare(node, Tank(depth=float(overrides["depth"])), limits)
+    declare(node, Tank(depth=float(overrides["depth"])))
     assert node.get_parameter("depth").value == 7.0
 
 

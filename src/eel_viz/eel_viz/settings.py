@@ -5,7 +5,7 @@ import ipaddress
 from dataclasses import dataclass, field, fields
 from typing import Self
 
-from eel_base.field_values import checked
+from eel_base.quantity import checked
 from eel_base.wording import shown
 from eel_gaits.pilot.settings import PilotSettings
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The visualiser as a process, over DDS: nothing is lost, nothing bad comes through, and it ends well."""
 
+import re
 import signal
 import subprocess
 import time
@@ -185,7 +186,7 @@ def test_what_cannot_be_is_refused_in_one_line_with_status_2(start_in_turn, tmp_
         "sink:=7": "sink must be a list of texts, got 7",
         "rate:=0": "rate must be >= 0.1 Hz",
         "rate:=0.0": "rate",
-        "rate:=often": "rate must be a finite number, got 'often'",
+        "rate:=often": "rate must be a number, got 'often'",
         "port:=1": "port",
         "compare:=/": "compare must be another namespace than the swimmer's own, got '/'",
         "blueprint:=mine": "blueprint must be one of overview, torques, motion, swimmer, compare, got 'mine'",
@@ -197,20 +198,20 @@ def test_what_cannot_be_is_refused_in_one_line_with_status_2(start_in_turn, tmp_
 
 @pytest.mark.fault("names", "words for the visualiser that are no ROS arguments", "one line, status 2; --help: a usage")
 @pytest.mark.parametrize(
-    ("word", "status", "beginning", "lines"),
+    ("word", "status", "beginning", "rows"),
     [
-        ("--help", 0, "usage: visualiser [--ros-args -p NAME:=VALUE ...]\n", len(fields(Settings)) + 5),
-        ("--rosargs", 2, "visualiser: unknown argument '--rosargs' (parameters come after --ros-args", 1),
+        ("--help", 0, "usage: visualiser [--ros-args -p NAME:=VALUE ...]\n", len(fields(Settings))),
+        ("--rosargs", 2, "visualiser: unknown argument '--rosargs' (parameters come after --ros-args", 0),
     ],
 )
-def test_words_that_are_no_ros_arguments(start, tmp_path, monkeypatch, word, status, beginning, lines):
+def test_words_that_are_no_ros_arguments(start, tmp_path, monkeypatch, word, status, beginning, rows):
     folder = tmp_path / "empty"
     folder.mkdir()
     monkeypatch.chdir(folder)
     node = start("visualiser", word, "--ros-args", "-p", "sink:=[save]")
     assert node.wait(90.0) == status
     assert node.output().startswith(beginning)
-    assert node.output().count("\n") == lines
+    assert len(re.findall(r"^  \w", node.output(), re.MULTILINE)) == rows
     assert list(folder.iterdir()) == []
 
 

@@ -3,8 +3,7 @@
 
 from dataclasses import fields, replace
 
-from eel_base.field_values import checked
-from eel_base.quantity import limits
+from eel_base.quantity import checked
 from eel_ros.frames import frame_in
 from eel_ros.parameters import AT_RESET, as_parameter, declare, default_of, take_overrides, warn_of_unknown
 from rcl_interfaces.msg import SetParametersResult
@@ -132,5 +131,5 @@ def _declared(node, kind: type, overrides: dict, prefix: str, changeable: str | 
     """An instance of the dataclass `kind` from the user's `overrides` and the defaults, declared as parameters."""
     given = {item.name: overrides.get(prefix + item.name, default_of(item)) for item in fields(kind)}
     values = from_values(kind, given, prefix)
-    declare(node, values, limits, prefix, changeable)
+    declare(node, values, prefix, changeable)
     return values

@@ -14,7 +14,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 from eel_base.command.command_line import one_line_warnings
 from eel_base.wording import one_line
 from eel_gaits.ros.messages import law_from_message
-from eel_ros.command_line import answer_words
+from eel_ros.command_line import handle_arguments
 from eel_ros.parameter_node import ParameterNode
 from eel_ros.parameters import help_rows
 from eel_ros.process_end import ProcessEnd, leave_at_once
@@ -277,7 +277,7 @@ def main(args=None) -> int:
     """Run the node. Exit status: 0 after its duration, SIGINT or SIGTERM; 1 if it fails, or if an unattended simulation
     (with a duration, as fast as possible) stops; 2 if it cannot start."""
     end, words = ProcessEnd(), sys.argv if args is None else args
-    status = answer_words(NAME, ABOUT, parameter_rows(), words)
+    status = handle_arguments(NAME, ABOUT, parameter_rows(), words)
     if status is not None:
         return status
     with one_line_warnings(NAME):

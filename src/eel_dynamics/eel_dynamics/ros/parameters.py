@@ -10,7 +10,7 @@ import math
 from dataclasses import dataclass, field, fields
 
 from eel_base.attitude import unit_quaternion
-from eel_base.field_values import checked
+from eel_base.quantity import checked
 from eel_base.wording import shown
 from eel_ros.parameters import AT_RESET
 

@@ -20,7 +20,7 @@ from eel_gaits.laws.ramp import Ramp
 
 
 def _duration(default, description):
-    return quantity(default, unit="s", description=description, minimum=1e-3, maximum=1e4)
+    return quantity(default, "s", description, 1e-3, 1e4)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,10 +36,8 @@ class Start(Wave):
 class Bursts(Wave):
     """The forward wave in bursts. Each begins and ends over `start_periods`."""
 
-    bursts: float = quantity(20.0, unit="", description="number of bursts", minimum=1.0, maximum=400.0)
-    burst_periods: float = quantity(
-        1.0, unit="periods", description="time at full amplitude in a burst", minimum=0.0, maximum=1e4
-    )
+    bursts: float = quantity(20.0, "", "number of bursts", 1.0, 400.0)
+    burst_periods: float = quantity(1.0, "periods", "time at full amplitude in a burst", 0.0, 1e4)
     coast_time: float = _duration(3.0, "time of the straight body between two bursts")
 
     def __post_init__(self):

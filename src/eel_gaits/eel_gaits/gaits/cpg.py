@@ -36,12 +36,8 @@ class Oscillation(Wave):
     """The numbers of a chain of oscillators. The node streams its curvature; a law has the settled wave."""
 
     yaw_bend: float = bend_quantity(0.0, "yaw curvature of a turn; positive: to the right, negative: to the left")
-    convergence: float = quantity(
-        8.0, unit="1/s", description="rate at which amplitudes settle, a", minimum=0.01, maximum=1e3
-    )
-    following: float = quantity(
-        4.0, unit="1/s", description="rate at which new numbers are followed, g", minimum=0.01, maximum=1e3
-    )
+    convergence: float = quantity(8.0, "1/s", "rate at which amplitudes settle, a", 0.01, 1e3)
+    following: float = quantity(4.0, "1/s", "rate at which new numbers are followed, g", 0.01, 1e3)
     length: float = length_quantity()
 
     @property

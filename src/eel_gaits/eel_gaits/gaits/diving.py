@@ -83,9 +83,7 @@ class Spiral(Wave):
     pitch_bend: float = bend_quantity(0.5, "pitch curvature of the spiral; positive: down, negative: up")
     first_pitch_bend: float = bend_quantity(0.2, "pitch curvature of the entry; positive: down, negative: up")
     entry_start: float = instant_quantity(1.0, "the entry begins; it lasts two entry times")
-    entry_time: float = quantity(
-        1.0, unit="s", description="duration of each of the entry's ramps", minimum=1e-3, maximum=1e4
-    )
+    entry_time: float = quantity(1.0, "s", "duration of each of the entry's ramps", 1e-3, 1e4)
 
 
 @register(Dive)

@@ -21,7 +21,7 @@ from eel_gaits.laws.midline import lateral_wave
 
 
 def _lateral(default, description):
-    return quantity(default, unit="L", description=description, minimum=-1.0, maximum=1.0)
+    return quantity(default, "L", description, -1.0, 1.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,9 +65,7 @@ class Anguilliform(Fish):
 
     waves: float = waves_quantity(1.0 / 0.642)
     lateral_tail: float = _lateral(0.089, "lateral amplitude at the tail, a_tail")
-    growth: float = quantity(
-        1.0, unit="", description="growth of the lateral amplitude, growth", minimum=-10.0, maximum=10.0
-    )
+    growth: float = quantity(1.0, "", "growth of the lateral amplitude, growth", -10.0, 10.0)
 
 
 @register(Carangiform)

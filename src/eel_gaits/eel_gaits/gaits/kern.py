@@ -16,16 +16,16 @@ from eel_gaits.laws.term import Term
 
 def _scaled_bend(default, place):
     description = f"curvature times body length, K L, at {place}"
-    return quantity(default, unit="rad", description=description, minimum=-1e3, maximum=1e3)
+    return quantity(default, "rad", description, -1e3, 1e3)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Kern(Quantities):
     """A wave whose amplitude is a natural cubic spline through four values of K L, at X = 0, L/3, 2L/3 and L."""
 
-    length: float = quantity(1.0, unit="m", description="body length L", minimum=1e-4, maximum=1e3)
+    length: float = quantity(1.0, "m", "body length L", 1e-4, 1e3)
     period: float = period_quantity(1.0)
-    waves: float = quantity(1.44, unit="", description="waves on the body, tau", minimum=0.0, maximum=100.0)
+    waves: float = quantity(1.44, "", "waves on the body, tau", 0.0, 100.0)
     bend_nose: float = _scaled_bend(1.51, "the nose")
     bend_third: float = _scaled_bend(0.48, "one third of the body")
     bend_two_thirds: float = _scaled_bend(5.74, "two thirds of the body")
@@ -37,7 +37,7 @@ class Kern(Quantities):
 class EfficientKern(Kern):
     """The numbers of `Kern` for the gait that was optimised for efficiency."""
 
-    waves: float = quantity(1.72, unit="", description="waves on the body, tau", minimum=0.0, maximum=100.0)
+    waves: float = quantity(1.72, "", "waves on the body, tau", 0.0, 100.0)
     bend_nose: float = _scaled_bend(3.34, "the nose")
     bend_third: float = _scaled_bend(1.67, "one third of the body")
     bend_two_thirds: float = _scaled_bend(2.0 * math.pi, "two thirds of the body")

@@ -14,38 +14,38 @@ TURNS = {"left_bend": "yaw_bend", "left_angle": "yaw_angle"}
 
 def period_quantity(default):
     """The period of a wave [s]."""
-    return quantity(default, unit="s", description="period T of the wave", minimum=1e-3, maximum=1e4)
+    return quantity(default, "s", "period T of the wave", 1e-3, 1e4)
 
 
 def wavelength_quantity(default, description="wavelength of the wave"):
     """The wavelength of a wave [m]."""
-    return quantity(default, unit="m", description=description, minimum=1e-4, maximum=1e4)
+    return quantity(default, "m", description, 1e-4, 1e4)
 
 
 def start_periods_quantity():
     """The duration of the start from rest, in periods."""
     description = "length of the smooth start from rest, in periods of the wave"
-    return quantity(1.0, unit="periods", description=description, minimum=0.01, maximum=1e3)
+    return quantity(1.0, "periods", description, 0.01, 1e3)
 
 
 def bend_quantity(default, description):
     """A curvature [rad/m]."""
-    return quantity(default, unit="rad/m", description=description, minimum=-1e5, maximum=1e5)
+    return quantity(default, "rad/m", description, -1e5, 1e5)
 
 
 def instant_quantity(default, description):
     """A time of the law [s]."""
-    return quantity(default, unit="s", description=description + ", in the law's own time", minimum=0.0, maximum=1e6)
+    return quantity(default, "s", description + ", in the law's own time", 0.0, 1e6)
 
 
 def length_quantity():
     """The length of the body [m]."""
-    return quantity(1.0, unit="m", description="body length L", minimum=1e-4, maximum=1e3)
+    return quantity(1.0, "m", "body length L", 1e-4, 1e3)
 
 
 def waves_quantity(default):
     """The number of waves on the body."""
-    return quantity(default, unit="", description="waves on the body, L / wavelength", minimum=1e-3, maximum=100.0)
+    return quantity(default, "", "waves on the body, L / wavelength", 1e-3, 100.0)
 
 
 def constant_bend(axis, bend, envelope):

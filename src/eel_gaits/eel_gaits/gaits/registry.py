@@ -20,13 +20,7 @@ from eel_gaits.laws.law import Law
 class Transition(Quantities):
     """How a receiver that is already moving takes over the law."""
 
-    transition: float = quantity(
-        0.0,
-        unit="s",
-        description="duration of the blend into the law; 0: the receiver's default",
-        minimum=0.0,
-        maximum=1e4,
-    )
+    transition: float = quantity(0.0, "s", "duration of the blend into the law; 0: the receiver's default", 0.0, 1e4)
 
 
 GAITS: dict[str, Any] = {}  # name of the gait: its function, whose attribute `numbers` is the class of its numbers

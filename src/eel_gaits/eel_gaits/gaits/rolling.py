@@ -45,12 +45,8 @@ class RollOver(Quantities):
 
     period: float = period_quantity(1.0)
     bend: float = bend_quantity(0.3, "amplitude of the bend; positive: the left side goes up, negative: the right side")
-    start_periods: float = quantity(
-        3.0, unit="periods", description="length of the start and of the end", minimum=0.01, maximum=1e3
-    )
-    hold_periods: float = quantity(
-        1.1, unit="periods", description="time between start and end", minimum=0.0, maximum=1e3
-    )
+    start_periods: float = quantity(3.0, "periods", "length of the start and of the end", 0.01, 1e3)
+    hold_periods: float = quantity(1.1, "periods", "time between start and end", 0.0, 1e3)
 
 
 @register(Roll)

@@ -31,8 +31,8 @@ SEQUENCES = (".yaml", ".yml")  # suffixes of files of sequences
 class MeasuredBody(Quantities):
     """The numbers of the gait `file`, for a motion that was measured."""
 
-    length: float = quantity(1.0, unit="m", description="body length L", minimum=1e-4, maximum=1e3)
-    scale: float = quantity(1.0, unit="", description="metres in the file's unit of length", minimum=1e-9, maximum=1e9)
+    length: float = quantity(1.0, "m", "body length L", 1e-4, 1e3)
+    scale: float = quantity(1.0, "", "metres in the file's unit of length", 1e-9, 1e9)
 
 
 def _law_from_file(path: str, numbers: MeasuredBody) -> Law | SampledLaw:

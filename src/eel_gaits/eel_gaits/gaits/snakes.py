@@ -41,9 +41,7 @@ class Serpenoid(Quantities):
     length: float = length_quantity()
     period: float = period_quantity(1.0)
     waves: float = waves_quantity(1.0)
-    winding_angle: float = quantity(
-        0.5, unit="rad", description="greatest angle of the backbone to its mean direction", minimum=-1e3, maximum=1e3
-    )
+    winding_angle: float = quantity(0.5, "rad", "greatest angle of the backbone to its mean direction", -1e3, 1e3)
     yaw_bend: float = bend_quantity(0.0, "yaw curvature of a turn; positive: to the right, negative: to the left")
     start_periods: float = start_periods_quantity()
 
@@ -53,24 +51,18 @@ class JointWave(Quantities):
     """A wave of the angles of n joints."""
 
     length: float = length_quantity()
-    joints: float = quantity(10.0, unit="", description="number of joints, n", minimum=1.0, maximum=1000.0)
+    joints: float = quantity(10.0, "", "number of joints, n", 1.0, 1000.0)
     period: float = period_quantity(1.0)
-    joint_amplitude: float = quantity(
-        0.35, unit="rad", description="amplitude of the joint angles, alpha", minimum=-math.pi, maximum=math.pi
-    )
-    joint_phase: float = quantity(
-        0.6, unit="rad", description="phase from joint to joint, delta", minimum=-math.pi, maximum=math.pi
-    )
+    joint_amplitude: float = quantity(0.35, "rad", "amplitude of the joint angles, alpha", -math.pi, math.pi)
+    joint_phase: float = quantity(0.6, "rad", "phase from joint to joint, delta", -math.pi, math.pi)
     yaw_angle: float = quantity(
         0.0,
-        unit="rad",
-        description="offset of every joint, phi_0; positive: turns to the right, negative: to the left",
-        minimum=-math.pi,
-        maximum=math.pi,
+        "rad",
+        "offset of every joint, phi_0; positive: turns to the right, negative: to the left",
+        -math.pi,
+        math.pi,
     )
-    eel_like: float = quantity(
-        1.0, unit="", description="amplitude along the body: 1: (n - i) / (n + 1), 0: g = 1", minimum=0.0, maximum=1.0
-    )
+    eel_like: float = quantity(1.0, "", "amplitude along the body: 1: (n - i) / (n + 1), 0: g = 1", 0.0, 1.0)
     start_periods: float = start_periods_quantity()
 
     def __post_init__(self):

@@ -31,12 +31,8 @@ class Wave(Quantities):
     period: float = period_quantity(1.0)
     wavelength: float = wavelength_quantity(1.0)
     amplitude_0: float = bend_quantity(1.0, "amplitude of the wave at the nose, a0")
-    amplitude_1: float = quantity(
-        0.5, unit="rad/m^2", description="growth of the amplitude with X, a1", minimum=-1e8, maximum=1e8
-    )
-    amplitude_2: float = quantity(
-        2.0, unit="rad/m^3", description="growth of the amplitude with X^2, a2", minimum=-1e11, maximum=1e11
-    )
+    amplitude_1: float = quantity(0.5, "rad/m^2", "growth of the amplitude with X, a1", -1e8, 1e8)
+    amplitude_2: float = quantity(2.0, "rad/m^3", "growth of the amplitude with X^2, a2", -1e11, 1e11)
     start_periods: float = start_periods_quantity()
 
     def term(self, direction=1.0):

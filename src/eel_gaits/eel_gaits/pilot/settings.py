@@ -17,48 +17,20 @@ class PilotSettings(Quantities):
 
     Fields:"""
 
-    length: float = quantity(1.0, unit="m", description="body length", minimum=1e-3, maximum=1e3)
-    cruise_speed: float = quantity(
-        0.653, unit="m/s", description="speed of the gait in still water", minimum=1e-4, maximum=1e2
-    )
-    speed_time: float = quantity(
-        2.2, unit="s", description="time in which the speed follows the gait", minimum=1e-2, maximum=1e3
-    )
-    metacentric_height: float = quantity(
-        0.0, unit="m", description="height of the buoyancy above the weight; 0: no keel", minimum=0.0, maximum=1.0
-    )
-    slowest_tempo: float = quantity(
-        0.3, unit="", description="least tempo of the gait; below it the beat gets smaller", minimum=0.01, maximum=1.0
-    )
-    fastest_tempo: float = quantity(1.5, unit="", description="greatest tempo of the gait", minimum=0.1, maximum=10.0)
-    greatest_bend: float = quantity(
-        1.0, unit="rad/m", description="limit of the bends in yaw and in pitch", minimum=0.0, maximum=100.0
-    )
-    greatest_curvature: float = quantity(
-        6.0, unit="rad/m", description="limit of the curvature along the body", minimum=0.01, maximum=1e3
-    )
-    greatest_climb: float = quantity(
-        0.3, unit="rad", description="limit of the slope of the path", minimum=0.0, maximum=1.0
-    )
-    look_ahead: float = quantity(
-        2.5, unit="lengths", description="look-ahead of the guidance; above 2", minimum=1.0, maximum=100.0
-    )
-    reach: float = quantity(
-        0.25, unit="lengths", description="distance at which a point counts as reached", minimum=0.01, maximum=10.0
-    )
-    water_time: float = quantity(
-        8.0, unit="s", description="time in which the estimate of the current follows", minimum=0.1, maximum=1e4
-    )
-    station_gain: float = quantity(
-        0.08, unit="1/s", description="velocity towards a station by its distance", minimum=0.01, maximum=10.0
-    )
-    patience: float = quantity(
-        40.0,
-        unit="s",
-        description="time without progress after which a goal counts as out of reach",
-        minimum=1.0,
-        maximum=1e5,
-    )
+    length: float = quantity(1.0, "m", "body length", 1e-3, 1e3)
+    cruise_speed: float = quantity(0.653, "m/s", "speed of the gait in still water", 1e-4, 1e2)
+    speed_time: float = quantity(2.2, "s", "time in which the speed follows the gait", 1e-2, 1e3)
+    metacentric_height: float = quantity(0.0, "m", "height of the buoyancy above the weight; 0: no keel", 0.0, 1.0)
+    slowest_tempo: float = quantity(0.3, "", "least tempo of the gait; below it the beat gets smaller", 0.01, 1.0)
+    fastest_tempo: float = quantity(1.5, "", "greatest tempo of the gait", 0.1, 10.0)
+    greatest_bend: float = quantity(1.0, "rad/m", "limit of the bends in yaw and in pitch", 0.0, 100.0)
+    greatest_curvature: float = quantity(6.0, "rad/m", "limit of the curvature along the body", 0.01, 1e3)
+    greatest_climb: float = quantity(0.3, "rad", "limit of the slope of the path", 0.0, 1.0)
+    look_ahead: float = quantity(2.5, "lengths", "look-ahead of the guidance; above 2", 1.0, 100.0)
+    reach: float = quantity(0.25, "lengths", "distance at which a point counts as reached", 0.01, 10.0)
+    water_time: float = quantity(8.0, "s", "time in which the estimate of the current follows", 0.1, 1e4)
+    station_gain: float = quantity(0.08, "1/s", "velocity towards a station by its distance", 0.01, 10.0)
+    patience: float = quantity(40.0, "s", "time without progress after which a goal counts as out of reach", 1.0, 1e5)
 
     @property
     def limits(self) -> Limits:

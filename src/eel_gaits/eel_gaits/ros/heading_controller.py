@@ -13,10 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 from builtin_interfaces.msg import Time
 from eel_base.attitude import heading
-from eel_base.quantity import Quantities, limits, quantity
-from eel_ros.command_line import answer_words
+from eel_base.quantity import Quantities, quantity
 from eel_ros.parameter_node import ParameterNode
-from eel_ros.parameters import declare, help_rows, take_overrides, warn_of_unknown
+from eel_ros.parameters import declare_all, help_rows
 from eel_ros.qos import keep_all
 from eel_ros.run_node import run_node
 from eel_ros.stamps import seconds_of
@@ -38,39 +37,21 @@ class HeadingParameters(Quantities):
     """The parameters of the controller."""
 
     heading: float = quantity(
-        0.5,
-        unit="rad",
-        description="target heading in the world frame; positive: left",
-        minimum=-1e3,
-        maximum=1e3,
-        changeable=True,
+        0.5, "rad", "target heading in the world frame; positive: left", -1e3, 1e3, changeable=True
     )
-    gain: float = quantity(
-        1.0,
-        unit="1/m",
-        description="bend of the body by error of the heading",
-        minimum=0.0,
-        maximum=1e3,
-        changeable=True,
-    )
-    greatest_bend: float = quantity(
-        0.5, unit="rad/m", description="limit of that bend", minimum=0.0, maximum=1e3, changeable=True
-    )
+    gain: float = quantity(1.0, "1/m", "bend of the body by error of the heading", 0.0, 1e3, changeable=True)
+    greatest_bend: float = quantity(0.5, "rad/m", "limit of that bend", 0.0, 1e3, changeable=True)
     period: float = quantity(
-        0.01,
-        unit="s",
-        description="time from one sample of the curvature to the next, whatever the rate of odom",
-        minimum=1e-3,
-        maximum=1.0,
+        0.01, "s", "time from one sample of the curvature to the next, whatever the rate of odom", 1e-3, 1.0
     )
     lead: float = quantity(
         0.1,
-        unit="s",
-        description="time by which samples are sent ahead of odom; at least a period, and the dynamics node's 1/rate",
-        minimum=1e-3,
-        maximum=1.0,
+        "s",
+        "time by which samples are sent ahead of odom; at least a period, and the dynamics node's 1/rate",
+        1e-3,
+        1.0,
     )
-    length: float = quantity(1.0, unit="m", description="body length", minimum=1e-4, maximum=1e3)
+    length: float = quantity(1.0, "m", "body length", 1e-4, 1e3)
 
 
 # [controller]
@@ -79,10 +60,7 @@ class HeadingController(ParameterNode):
 
     def __init__(self):
         super().__init__(NAME, automatically_declare_parameters_from_overrides=True)
-        overrides, names = take_overrides(self), HeadingParameters.__dataclass_fields__
-        given = HeadingParameters(**{name: overrides[name] for name in overrides if name in names})
-        declare(self, given, limits)
-        warn_of_unknown(self, overrides, names)
+        (given,) = declare_all(self, HeadingParameters)
         self.gait, self.x = straight(), np.linspace(0.0, given.length, 21)
         self.period, self.lead = given.period, Lead(given.period, given.lead)
         self.bend, self.last, self.answers = np.zeros(3), math.inf, []
@@ -129,11 +107,8 @@ class HeadingController(ParameterNode):
 
 def main(args=None):
     """Run the node. The exit status is 0 after SIGINT or SIGTERM, and 2 if a parameter or word is refused at start."""
-    words = sys.argv if args is None else args
-    status = answer_words(NAME, ABOUT, help_rows(HeadingParameters), words)
-    if status is not None:
-        return status
-    return run_node(NAME, words, HeadingController, lambda node: True)
+    rows = help_rows(HeadingParameters)
+    return run_node(NAME, sys.argv if args is None else args, HeadingController, about=ABOUT, parameters=rows)
 
 
 if __name__ == "__main__":

@@ -7,16 +7,12 @@ the present time.
 """
 
 import sys
-from dataclasses import fields
-from typing import Any
 
 from builtin_interfaces.msg import Time
-from eel_base.quantity import limits
 from eel_base.wording import shown
-from eel_ros.command_line import USE_SIM_TIME, answer_words
 from eel_ros.frames import frame_in
 from eel_ros.parameter_node import ParameterNode
-from eel_ros.parameters import declare, described, take_overrides, warn_of_unknown
+from eel_ros.parameters import declare, help_rows, take_overrides, warn_of_unknown
 from eel_ros.qos import latched
 from eel_ros.run_node import run_node
 from eel_ros.serving import PolledGroup
@@ -26,7 +22,7 @@ from rclpy.duration import Duration
 from rclpy.parameter import Parameter
 
 from eel_gaits.gaits.registry import GAITS, Transition
-from eel_gaits.gaits.settings import FILE_GAITS, Settings, numbers_of
+from eel_gaits.gaits.settings import FILE_GAITS, MeasuredBody, Settings
 from eel_gaits.gaits.swimming import still
 from eel_gaits.ros.messages import FRAME, law_to_message
 from eel_gaits.ros.row_stream import RowStream
@@ -35,9 +31,17 @@ from eel_gaits.sources.sampled_law import SampledLaw
 from eel_msgs.msg import CurvatureLaw
 
 NAME = "gait_generator"
-ABOUT = "Publishes the curvature law of a gait, and a new one whenever a parameter is set."
+ABOUT = """\
+Publishes the curvature law of a gait, and a new one whenever a parameter is set. The numbers of the
+gait are parameters too: `eel simulate --help GAIT` lists them."""
 KNOWN = ", ".join(sorted((*GAITS, *FILE_GAITS)))
 FILE = "file of the gait 'file' (.csv, .npz: a measured motion; .yaml: a sequence) or 'sequence'; read when it is set"
+ROWS = [
+    ("gait", f"name of the gait, one of {KNOWN}", Settings.gait),
+    ("file", FILE, Settings.file),
+    *help_rows(Transition),
+    *((name, f"{text}, of the gait 'file'", default) for name, text, default in help_rows(MeasuredBody)),
+]
 LOOK = 0.05  # s between two looks at the time: whether it went back, and how far samples must reach
 
 
@@ -98,7 +102,7 @@ class GaitGenerator(ParameterNode):
 
     def _declare_numbers(self):
         for group in self._settings.groups():
-            declare(self, group, limits, changeable=True)
+            declare(self, group, changeable=True)
 
     def _plan_change(self, parameters):
         """Before a set: find the new settings, and give rclpy the parameters that the present gait can store."""
@@ -180,26 +184,10 @@ class GaitGenerator(ParameterNode):
         self._publish_law(still())
 
 
-def parameter_rows():
-    """Name, description and default of each parameter. The description names the gaits that have the parameter."""
-    yield "gait", f"name of the gait, one of {KNOWN}", Settings.gait
-    yield "file", FILE, Settings.file
-    gaits: dict[tuple[str, str, Any], list[Any]] = {}  # of each number; None for all
-    for kind, gait in [(Transition, None), *((numbers_of(name), name) for name in (*GAITS, *FILE_GAITS))]:
-        for entry in fields(kind):
-            gaits.setdefault((entry.name, described(entry), entry.default), []).append(gait)
-    for (name, description, default), names in gaits.items():
-        yield name, description if None in names else f"{description}, of {', '.join(names)}", default
-
-
 def main(args=None):
     """Run the node. The exit status is 0 after SIGINT or SIGTERM, and 2 if a parameter or word is refused at start."""
-    words = sys.argv if args is None else args
-    status = answer_words(NAME, ABOUT, parameter_rows(), words)
-    if status is not None:
-        return status
-    look = GaitGenerator.look
-    return run_node(NAME, [*USE_SIM_TIME, *words], GaitGenerator, look, period=LOOK)
+    words, look = sys.argv if args is None else args, GaitGenerator.look
+    return run_node(NAME, words, GaitGenerator, look, about=ABOUT, parameters=ROWS, sim_time=True, period=LOOK)
 
 
 if __name__ == "__main__":

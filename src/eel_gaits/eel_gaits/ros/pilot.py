@@ -11,12 +11,10 @@ import sys
 from dataclasses import fields
 
 import numpy as np
-from eel_base.quantity import limits
 from eel_base.wording import shown
-from eel_ros.command_line import USE_SIM_TIME, answer_words
 from eel_ros.frames import frame_in
 from eel_ros.parameter_node import ParameterNode
-from eel_ros.parameters import declare, help_rows, take_overrides, warn_of_unknown
+from eel_ros.parameters import declare_all, help_rows
 from eel_ros.qos import keep_all, latched
 from eel_ros.run_node import run_node
 from eel_ros.stamps import seconds_of
@@ -26,7 +24,6 @@ from rcl_interfaces.msg import SetParametersResult
 
 from eel_gaits.pilot import goals
 from eel_gaits.pilot.pilot import Pilot
-from eel_gaits.pilot.settings import PilotSettings
 from eel_gaits.ros.lead import Lead
 from eel_gaits.ros.messages import FRAME, samples_to_message
 from eel_gaits.ros.pilot_messages import head_motion, path_message, point_of, read_path
@@ -44,16 +41,10 @@ class PilotNode(ParameterNode):
 
     def __init__(self):
         super().__init__(NAME, automatically_declare_parameters_from_overrides=True)
-        overrides = take_overrides(self)
-        names = {item.name for kind in GROUPS for item in fields(kind)}
-        made = {}
-        for kind, changeable in GROUPS.items():
-            known = {item.name for item in fields(kind)}
-            made[kind] = kind(**{name: overrides[name] for name in overrides if name in known})
-            declare(self, made[kind], limits, changeable=changeable)
-        warn_of_unknown(self, overrides, names)
-        self._numbers, self._timing = made[GoalParameters], made[TimingParameters]
-        self._pilot = Pilot(made[PilotSettings])
+        self._numbers: GoalParameters
+        self._timing: TimingParameters
+        self._numbers, self._timing, settings = declare_all(self, *GROUPS)
+        self._pilot = Pilot(settings)
         self._goal = self.create_publisher(Path, "goal", latched(1))  # the goal in force
         self._follow(self._course(self._numbers), "parameters")
         self._frames = {frame_in(self.get_namespace(), "odom"), ""}
@@ -225,12 +216,8 @@ class PilotNode(ParameterNode):
 
 def main(args=None):
     """Run the node. The exit status is 0 after SIGINT or SIGTERM, and 2 if a parameter or word is refused at start."""
-    words = sys.argv if args is None else args
-    rows = (row for kind in GROUPS for row in help_rows(kind))
-    status = answer_words(NAME, ABOUT, rows, words)
-    if status is not None:
-        return status
-    return run_node(NAME, [*USE_SIM_TIME, *words], PilotNode, lambda node: True)
+    words, rows = sys.argv if args is None else args, [row for kind in GROUPS for row in help_rows(kind)]
+    return run_node(NAME, words, PilotNode, about=ABOUT, parameters=rows, sim_time=True)
 
 
 if __name__ == "__main__":

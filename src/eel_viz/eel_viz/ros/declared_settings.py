@@ -4,7 +4,6 @@
 from dataclasses import fields
 from typing import TypeVar
 
-from eel_base.quantity import limits
 from eel_ros.parameters import declare, default_of, take_overrides, warn_of_unknown
 from rclpy.node import Node
 
@@ -18,6 +17,6 @@ def declared_settings(node: Node, kind: type[Kind]) -> Kind:
     overrides = take_overrides(node)
     values = {item.name: overrides.get(item.name, default_of(item)) for item in fields(kind)}
     settings = kind.from_values(values)
-    declare(node, settings, limits)
+    declare(node, settings)
     warn_of_unknown(node, overrides, values)
     return settings

@@ -10,7 +10,6 @@ import time
 from collections import OrderedDict
 from typing import Any
 
-from eel_ros.command_line import USE_SIM_TIME, answer_words
 from eel_ros.parameter_node import ParameterNode
 from eel_ros.parameters import help_rows
 from eel_ros.qos import latched
@@ -119,11 +118,8 @@ class Markers(ParameterNode):
 
 def main(arguments: list[str] | None = None) -> int:
     """Run the node. Exit status: 0 after SIGINT or SIGTERM; 2 if a parameter or an argument is refused at start."""
-    given = sys.argv if arguments is None else [NAME, *arguments]
-    status = answer_words(NAME, ABOUT, help_rows(MarkerSettings), given)
-    if status is not None:
-        return status
-    return run_node(NAME, [*USE_SIM_TIME, *given], Markers, Markers.poll)
+    words, rows = sys.argv if arguments is None else [NAME, *arguments], help_rows(MarkerSettings)
+    return run_node(NAME, words, Markers, Markers.poll, about=ABOUT, parameters=rows, sim_time=True)
 
 
 if __name__ == "__main__":

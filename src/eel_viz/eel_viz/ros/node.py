@@ -11,7 +11,7 @@ import time
 
 from diagnostic_msgs.msg import DiagnosticArray
 from eel_base.wording import shown
-from eel_ros.command_line import USE_SIM_TIME, answer_words
+from eel_ros.command_line import handle_arguments
 from eel_ros.parameter_node import ParameterNode
 from eel_ros.parameters import help_rows
 from eel_ros.process_end import leave_at_once
@@ -135,13 +135,11 @@ def main(arguments: list[str] | None = None) -> int:
     """Run the node. Exit status: 0 after SIGINT or SIGTERM; 1 if a file could not be written completely; 2 if a
     parameter or an argument is refused at start."""
     keep_pandas_out()
-    given = sys.argv if arguments is None else [NAME, *arguments]
-    status = answer_words(NAME, ABOUT, help_rows(Settings), given)
-    if status is not None:
+    words, rows = sys.argv if arguments is None else [NAME, *arguments], list(help_rows(Settings))
+    if (status := handle_arguments(NAME, ABOUT, rows, words)) is not None:
         return status
-    words = [*USE_SIM_TIME, *given]
-    node, poll, take_messages = Visualiser, Visualiser.poll, Visualiser.take_messages
-    status = run_node(NAME, words, node, poll, take_messages, complete=True)
+    take = Visualiser.take_messages
+    status = run_node(NAME, words, Visualiser, Visualiser.poll, take, sim_time=True, complete=True)
     # Not by Python's own way: a stream may be blocked, and a thread of LTTng, which ROS brings, may fork just then. It
     # would wait for a lock of Arrow, and the destructors of LTTng for the thread.
     return status if status == CANNOT_START else leave_at_once(status)

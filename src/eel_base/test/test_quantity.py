@@ -5,7 +5,7 @@ from array import array
 from dataclasses import dataclass, field, fields
 
 import pytest
-from eel_base.field_values import checked
+from eel_base.quantity import checked
 
 
 @dataclass
@@ -50,9 +50,9 @@ def test_a_value_comes_in_the_type_of_the_field(name, given, taken):
         ("target", True, "n must be a text or a number, got True"),
         ("count", 2.0, "n must be an integer, got 2.0"),
         ("count", 0, "n must be >= 1, got 0"),
-        ("rate", 0, "n must be > 0 Hz, got 0.0"),
-        ("rate", 10, "n must be <= 9 Hz, got 10.0"),
-        ("rate", float("nan"), "n must be a finite number, got nan"),
+        ("rate", 0, "n must be > 0 Hz, got 0"),
+        ("rate", 10, "n must be <= 9 Hz, got 10"),
+        ("rate", float("nan"), "n must be finite, got nan"),
         ("place", [1.0], r"n must be 2 finite numbers, got \[1.0\]"),
         ("sinks", [1], r"n must be a list of texts, got \[1\]"),
     ],
