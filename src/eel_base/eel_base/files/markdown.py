@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Pages in Markdown: tables, and parts between marker lines that a command writes.
 
-A part stands between the lines `<!-- NAME: written by ... -->` and `<!-- end of NAME -->`.
+A part stands between the lines `<!-- NAME: written by ... -->` and `<!-- end of NAME -->`. A value within a sentence
+stands between `<!-- NAME -->` and `<!-- / -->`; it may occur more than once.
 """
 
 import os
@@ -18,12 +19,16 @@ def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 
 def with_part(page: str, name: str, text: str) -> str:
-    """The `page` with `text` in place of its part `name`. `ValueError` where the marker lines are missing."""
-    first, last = rf"<!-- {re.escape(name)}: written by [^\n]* -->\n", f"<!-- end of {name} -->"
+    """The `page` with `text` in place of its part, or of its value, `name`. `ValueError` where the marks are missing."""
+    mark = re.escape(name)
+    first, last = rf"<!-- {mark}: written by [^\n]* -->\n", f"<!-- end of {name} -->"
     found = re.search(f"({first}).*?(?={re.escape(last)})", page, re.DOTALL)
-    if not found:
+    if found:
+        return f"{page[: found.start()]}{found[1]}{text}\n{page[found.end() :]}"
+    written, count = re.subn(rf"(<!-- {mark} -->)[^\n]*?(?=<!-- / -->)", lambda value: value[1] + text, page)
+    if not count:
         raise ValueError(f"the page must have the lines '<!-- {name}: written by ... -->' and {last!r}")
-    return f"{page[: found.start()]}{found[1]}{text}\n{page[found.end() :]}"
+    return written
 
 
 def write_page(path: str | os.PathLike[str], text: str) -> None:
