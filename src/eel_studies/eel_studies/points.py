@@ -22,10 +22,12 @@ from eel_base.wording import did_you_mean, shown
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.measures import measures_of
-from eel_dynamics.model.body import NUMBERS, Body
+from eel_dynamics.model.arguments import checked_instance
+from eel_dynamics.model.body import NUMBERS, Body, checked_body
 from eel_dynamics.model.initial_state import InitialState
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.batch import Batch, simulate_batch
+from eel_dynamics.runs.run import Run, simulate
 from eel_gaits.gaits.registry import find
 from eel_gaits.laws.law import Law
 
@@ -37,12 +39,25 @@ AT_REST = InitialState(np.zeros(3), np.array([0.0, 0.0, 0.0, 1.0]), np.zeros(6))
 class Point(NamedTuple):
     """One run of a study."""
 
-    index: int  # type: ignore[assignment]  # not a tuple's `index`
     law: Any  # Law; None in what the points of a study share
     body: Body
     scene: Scene
     accuracy: Accuracy
     start: InitialState = AT_REST
+
+    def swim(self, duration: float, **how: Any) -> Run:
+        """The run of `duration` [s]. how: further arguments of `simulate`. `SimulationStopped`: it cannot go on."""
+        return simulate(
+            self.law,
+            duration,
+            **how,
+            body=self.body,
+            scene=self.scene,
+            accuracy=self.accuracy,
+            position=self.start.position,
+            orientation=self.start.orientation,
+            twist=self.start.twist,
+        )
 
 
 class SwimSettings(NamedTuple):
@@ -80,7 +95,13 @@ def batch_of_points(points: list[Point], how: SwimSettings, threads: int | None 
     )
 
 
-def point_at(index: int, values: dict, gait: "str | Callable[..., Law]", numbers: dict, base: Point) -> Point:
+def base_point(body: Body | None, scene: Scene | None, accuracy: Accuracy, friction: str = "printed") -> Point:
+    """What the points of a study share. friction: of the default scene. `ValueError` names what does not fit."""
+    scene = Scene(friction=friction) if scene is None else checked_instance("scene", scene, Scene)
+    return Point(None, checked_body(body), scene, accuracy)
+
+
+def point_at(values: dict, gait: "str | Callable[..., Law]", numbers: dict, base: Point) -> Point:
     """The point of these `values` by name; all else is as in `numbers`, by the same names, and in `base`.
 
     gait: its name, or a function of numbers that returns a law. `ValueError` tells the point and what does not fit.
@@ -88,7 +109,7 @@ def point_at(index: int, values: dict, gait: "str | Callable[..., Law]", numbers
     if not (isinstance(gait, str) or callable(gait)):
         raise ValueError(f"gait must be the name of a gait, or a function that returns a law, got {shown(gait)}")
     try:
-        return _point(index, {**numbers, **values}, gait, base)
+        return _point({**numbers, **values}, gait, base)
     except (ValueError, TypeError) as error:
         at = ", ".join(f"{name}={label_of(value) if _named(value) else shown(value)}" for name, value in values.items())
         raise ValueError(f"at {at}: {error}") from None
@@ -112,7 +133,7 @@ def _named(value) -> bool:
     return isinstance(value, (Body, Accuracy))
 
 
-def _point(index: int, values: dict, gait, base: Point) -> Point:
+def _point(values: dict, gait, base: Point) -> Point:
     body, accuracy = base.body, base.accuracy
     own: dict[str, Any] = {}
     groups: dict[str, dict[str, Any]] = {"scene": {}, "body": {}, "initial": {}}
@@ -130,9 +151,7 @@ def _point(index: int, values: dict, gait, base: Point) -> Point:
     _check_names("body", groups["body"], NUMBERS)
     law = (find(gait) if isinstance(gait, str) else gait)(**own)
     body = body.changed(**groups["body"]) if groups["body"] else body
-    return Point(
-        index, law, body, replace(base.scene, **groups["scene"]), accuracy, _start(base.start, groups["initial"])
-    )
+    return Point(law, body, replace(base.scene, **groups["scene"]), accuracy, _start(base.start, groups["initial"]))
 
 
 def _start(start: InitialState, changes: dict) -> InitialState:

@@ -181,7 +181,7 @@ def test_random_swims_keep_their_target_or_say_so(count, seed, monkeypatch):
     trials = deliver(count, seed)
     assert len(trials) > 0.97 * count
     assert not any(each.missed for each in trials)
-    assert sum(each.error is None and not each.told for each in trials) <= count // 200
+    assert sum(each.error is None and not each.reported for each in trials) <= count // 200
     known = [each for each in trials if each.error is not None]
     assert len(known) > 0.9 * count
     ratios = np.array([each.underestimated for each in known])

@@ -61,11 +61,11 @@ def test_derivatives_that_are_known_exactly():
 
 
 def test_neighbouring_swims_share_grid_and_steps():
-    base = Point(0, None, Body.boyer2010(), SMOOTH, Accuracy.of("1e-3, fixed steps").in_scene(SMOOTH))
+    base = Point(None, Body.boyer2010(), SMOOTH, Accuracy.of("1e-3, fixed steps").in_scene(SMOOTH))
     values = [{"period": 1.0, "wavelength": 0.5}] + [
         {"period": 1.0 + a, "wavelength": 0.5 + b} for a, b in ((1e-4, 0), (-1e-4, 0), (0, 1e-4), (0, -1e-4))
     ]
-    points = [point_at(0, each, "straight", {}, base) for each in values]
+    points = [point_at(each, "straight", {}, base) for each in values]
     points = on_one_grid(points, step_of(points[0]))
     runs = [simulate(each.law, 2.0, scene=SMOOTH, accuracy=each.accuracy, estimate=False) for each in points]
     assert len({(run.nodes, run.steps) for run in runs}) == 1

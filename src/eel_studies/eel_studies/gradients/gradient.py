@@ -28,7 +28,7 @@ from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.analysis import Analysis
 from eel_dynamics.analysis.measures import checked_measures
 from eel_dynamics.model.arguments import checked_instance, checked_number
-from eel_dynamics.model.body import Body, checked_body
+from eel_dynamics.model.body import Body
 from eel_dynamics.model.equality import same_fields
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.model.section_data import TRANSITION
@@ -38,7 +38,7 @@ from eel_dynamics.runs.sampling import default_sample_period
 
 from eel_studies.gradients.fixed_discretisation import fixed_steps, on_one_grid, step_of
 from eel_studies.gradients.friction_jump import share_across_jump
-from eel_studies.points import Point, SwimSettings, batch_of_points, law_of_terms, point_at
+from eel_studies.points import Point, SwimSettings, base_point, batch_of_points, law_of_terms, point_at
 
 RELATIVE_STEP = 1e-5  # of a parameter; of one unit where its value is 0
 COMPANION_STEP = 2.0  # times the steps, of the companions
@@ -110,13 +110,7 @@ def gradient(
         raise ValueError(f"parameters must be a dict of names and values, got {shown(parameters)}")
     at = {name: number(f"parameter {name}", value) for name, value in parameters.items()}
     apart = _steps_of(at, steps)
-    base = Point(
-        0,
-        None,
-        checked_body(body),
-        Scene() if scene is None else checked_instance("scene", scene, Scene),
-        fixed_steps(accuracy),
-    )
+    base = base_point(body, scene, fixed_steps(accuracy))
     point = _point(at, gait, numbers, base)
     settings = point.accuracy.in_scene(point.scene)
     if sample_period is None:
@@ -185,7 +179,7 @@ def _periods(run: Run) -> int | None:
 
 def _point(values: dict, gait, numbers: dict | None, base: Point) -> Point:
     try:
-        point = point_at(0, values, gait, numbers or {}, base)
+        point = point_at(values, gait, numbers or {}, base)
         law_of_terms(point.law)
     except ValueError as error:
         raise ValueError(f"gradient {error}") from None

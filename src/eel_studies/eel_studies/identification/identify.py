@@ -19,8 +19,8 @@ import numpy as np
 from eel_base.command.progress import progress_of
 from eel_base.quantity import number
 from eel_base.wording import shown
-from eel_dynamics.model.arguments import checked_instance, checked_number
-from eel_dynamics.model.body import Body, checked_body
+from eel_dynamics.model.arguments import checked_number
+from eel_dynamics.model.body import Body
 from eel_dynamics.model.equality import same_fields
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.run import Run
@@ -30,7 +30,7 @@ from eel_studies.identification.fit import Fit
 from eel_studies.identification.measurements import MeasuredPath, MeasuredSpeed
 from eel_studies.identification.prediction import Swims
 from eel_studies.identification.statistics import gauss_newton_covariance
-from eel_studies.points import Point, point_at
+from eel_studies.points import base_point, point_at
 
 UNLIKELY = 1e-3  # probability of such residuals, for the noise given, below which a warning names the misfit
 
@@ -117,17 +117,11 @@ def identify(
     level = checked_number("level", level, "")
     if level >= 1.0:
         raise ValueError(f"level must be below 1, got {level:g}")
-    base = Point(
-        0,
-        None,
-        checked_body(body),
-        Scene(friction="blended") if scene is None else checked_instance("scene", scene, Scene),
-        fixed_steps(accuracy),
-    )
+    base = base_point(body, scene, fixed_steps(accuracy), friction="blended")
     swims = Swims(gait, dict(numbers or {}), base, threads)
     for each in measured:
         try:
-            point_at(0, first, gait, {**swims.numbers, **each.numbers}, base)
+            point_at(first, gait, {**swims.numbers, **each.numbers}, base)
         except ValueError as error:
             raise ValueError(f"parameters {error}") from None
         if isinstance(each, MeasuredPath) and each.station > base.body.length:

@@ -45,7 +45,7 @@ class Swims(NamedTuple):
         path = isinstance(measured, MeasuredPath)
         numbers = {**self.numbers, **measured.numbers}
         numbers = numbers if path else at_speed(numbers, measured.speed)
-        law = point_at(0, at, self.gait, numbers, self.base).law
+        law = point_at(at, self.gait, numbers, self.base).law
         times = path_times(measured, law) if path else swim_times(law, self.base.body.length, PERIODS)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # the jump of the printed friction: it is in the derivatives' error

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from eel_dynamics.analysis.measures import measures_of
 from eel_dynamics.runs.batch import available_cores
-from eel_dynamics.runs.run import Run, simulate
+from eel_dynamics.runs.run import Run
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 from eel_studies.gradients.gradient import gradient
@@ -58,7 +58,7 @@ class GaitProblem:
 
     def law(self, place: np.ndarray):
         """The law at a `place` (P,). `ValueError` where the parameters make none."""
-        return point_at(0, self.values(place), self.gait, self.numbers, self.base).law
+        return point_at(self.values(place), self.gait, self.numbers, self.base).law
 
     def measured(self, places: np.ndarray, speed: float | None) -> np.ndarray:
         """Speed [m/s] and cost (N, 2) at `places` (N, P), of swims that begin at `speed` [m/s]; NaN where one stops.
@@ -131,16 +131,6 @@ class GaitProblem:
             self.tried.append((speed, cost))
 
     def _swim(self, place: np.ndarray, speed: float, periods: int, stations: int, estimate: bool) -> Run:
-        point = point_at(0, self.values(place), self.gait, at_speed(self.numbers, speed), self.base)
-        return simulate(
-            point.law,
-            body=point.body,
-            scene=point.scene,
-            accuracy=point.accuracy,
-            stations=stations,
-            position=point.start.position,
-            orientation=point.start.orientation,
-            twist=point.start.twist,
-            estimate=estimate,
-            **swim_times(point.law, point.body.length, periods),
-        )
+        point = point_at(self.values(place), self.gait, at_speed(self.numbers, speed), self.base)
+        times = swim_times(point.law, point.body.length, periods)
+        return point.swim(**times, stations=stations, estimate=estimate)

@@ -21,14 +21,14 @@ from eel_base.quantity import number
 from eel_base.wording import shown
 from eel_dynamics.analysis.measures import checked_measures, measures_of
 from eel_dynamics.model.arguments import checked_instance, checked_row
-from eel_dynamics.model.body import Body, checked_body
+from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
 
 from eel_studies.gradients.fixed_discretisation import fixed_steps
 from eel_studies.optimisation.front import Front
 from eel_studies.optimisation.gait_problem import GaitProblem
 from eel_studies.optimisation.searches import METHODS
-from eel_studies.points import Point
+from eel_studies.points import base_point
 from eel_studies.steady_swim import swim_times
 
 SPREAD_OVER_BOUNDS = 16  # gaits per parameter that are tried first
@@ -79,14 +79,9 @@ def optimise(
         if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < least:
             raise ValueError(f"{name} must be a whole number >= {least}, got {shown(value)}")
     (cost,) = checked_measures("cost", checked_instance("cost", cost, str), estimate=False)
-    scene = Scene(friction="blended") if scene is None else checked_instance("scene", scene, Scene)
-    base = Point(
-        0,
-        None,
-        checked_body(body),
-        replace(scene, current=(0.0, 0.0, 0.0), internal_wrench=scene.internal_wrench or cost == "greatest_torque"),
-        fixed_steps(accuracy),
-    )
+    base = base_point(body, scene, fixed_steps(accuracy), friction="blended")
+    wrench = base.scene.internal_wrench or cost == "greatest_torque"
+    base = base._replace(scene=replace(base.scene, current=(0.0, 0.0, 0.0), internal_wrench=wrench))
     problem = GaitProblem(tuple(bounds), low, high, gait, dict(numbers or {}), base, cost, int(periods), threads)
     for place in np.vstack((np.zeros(len(low)), np.ones(len(low)), 0.5 * np.ones(len(low)))):
         try:

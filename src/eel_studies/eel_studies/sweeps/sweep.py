@@ -23,7 +23,7 @@ from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.measures import checked_measures, checked_point, described
 from eel_dynamics.analysis.settling import tell_unsettled
 from eel_dynamics.model.arguments import checked_number
-from eel_dynamics.model.body import Body, checked_body
+from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.batch import available_cores
 from eel_dynamics.runs.sampling import checked_times, default_sample_period
@@ -31,7 +31,7 @@ from eel_dynamics.runs.settled_duration import UNTIL_SETTLED, period_of, until_s
 from eel_dynamics.runs.storage.tables import needed
 from eel_gaits.laws.law import Law
 
-from eel_studies.points import Point, SwimSettings, batch_of_points, label_of, point_at
+from eel_studies.points import Point, SwimSettings, base_point, batch_of_points, label_of, point_at
 from eel_studies.sweeps.cluster import workers_of
 from eel_studies.sweeps.sweep_key import key_of
 from eel_studies.sweeps.sweep_parts import Parts
@@ -94,17 +94,11 @@ def sweep(
     limit = checked_number("most_evaluations", most_evaluations, "per simulated second")
     _check_count("workers", workers)
     _check_count("chunk", chunk)
-    base = Point(
-        -1,
-        None,
-        checked_body(body),
-        Scene() if scene is None else scene,
-        Accuracy.of(accuracy),
-    )
+    base = base_point(body, scene, Accuracy.of(accuracy))
     try:
         points = [
-            point_at(index, dict(zip(names, values, strict=True)), gait, numbers or {}, base)
-            for index, values in enumerate(itertools.product(*axes))
+            point_at(dict(zip(names, values, strict=True)), gait, numbers or {}, base)
+            for values in itertools.product(*axes)
         ]
         for point in points if until_settled(duration) else ():
             period_of(point.law, point.body.length)
@@ -117,7 +111,7 @@ def sweep(
     if complete is not None:
         return _told(complete)
     done = parts.load()
-    left = [point for point in points if point.index not in done]
+    left = [(index, point) for index, point in enumerate(points) if index not in done]
     tell = progress_of(progress)
     tell(len(done), len(points))
     failures = []
@@ -127,7 +121,7 @@ def sweep(
             chunks = [left[start : start + size] for start in range(0, len(left), size)]
             for swum, result, failure in crew.spread(swim_points, chunks, how):
                 if failure is not None:
-                    failures.append((swum[0].index, failure))
+                    failures.append((swum[0][0], failure))
                     continue
                 result = {index: checked_point(point) for index, point in result.items()}
                 parts.keep(result)
@@ -153,16 +147,16 @@ def _told(data):
     return data
 
 
-def swim_points(points: list[Point], how: SwimSettings) -> dict[int, dict]:
-    """The task of a worker: simulate the points and measure each.
+def swim_points(points: list[tuple[int, Point]], how: SwimSettings) -> dict[int, dict]:
+    """The task of a worker: simulate the points, given with their indices, and measure each.
 
     Returns the measures of each point by its index, with "error": the message of a point that stopped, else empty.
     """
     result = {}
-    for point in points:
+    for index, point in points:
         batch = batch_of_points([point], how, threads=1)
         (error,) = batch.error
-        result[point.index] = {"error": ""} | how.measured(batch[0]) if error is None else {"error": str(error)}
+        result[index] = {"error": ""} | how.measured(batch[0]) if error is None else {"error": str(error)}
     return result
 
 
@@ -201,11 +195,12 @@ def check_points(name: str, count: int):
 def _dataset(xarray, names, axes, points, done, how, gait):
     shape = [len(values) for values in axes]
     measured = list(dict.fromkeys(name for index in sorted(done) for name in done[index] if name != "error"))
+    found = [done[index] for index in range(len(points))]
     variables = {
-        name: (names, np.reshape([done[point.index].get(name, np.nan) for point in points], shape), described(name))
+        name: (names, np.reshape([point.get(name, np.nan) for point in found], shape), described(name))
         for name in measured
     }
-    errors = [done[point.index]["error"] for point in points]
+    errors = [point["error"] for point in found]
     variables["stopped"] = names, np.reshape([bool(error) for error in errors], shape), {"long_name": "did not end"}
     variables["error"] = names, np.reshape(np.array(errors, dtype=object), shape), {"long_name": "what stopped it"}
     coordinates = {name: [label_of(value) for value in values] for name, values in zip(names, axes, strict=True)}

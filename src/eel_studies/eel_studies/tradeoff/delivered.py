@@ -20,13 +20,13 @@ from eel_dynamics.accuracy.error_estimate import ErrorEstimate
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import FRICTION, Scene
 from eel_dynamics.runs.companion import relative_errors
-from eel_dynamics.runs.run import simulate
+from eel_dynamics.runs.run import Run, simulate
 from eel_dynamics.simulation.stopping import SimulationStopped
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.ramp import Ramp
 from eel_gaits.laws.term import Term
 
-from eel_studies.tradeoff.table import laid_out
+from eel_studies.table import Table
 
 TARGETS = 1e-2, 1e-3, 1e-4, 1e-5, 1e-6
 # Two methods on two grids, which are trusted where they agree; finer ones where the first do not. Two grids may have
@@ -49,35 +49,35 @@ SPEED = 0.3  # m/s and rad/s, of heads that move at the start
 class Trial:
     """One swim at a target.
 
-    error: its true error; None where the references do not agree. uncertainty: their distance. told: whether the run
-    says that it misses its target. cost: nodes times evaluations of all its runs, relative to those of the delivered
-    run alone.
+    error: its true error; None where the references do not agree. uncertainty: their distance. reported: whether the
+    run says that it misses its target. cost: nodes times evaluations of all its runs, relative to those of the
+    delivered run alone.
     """
 
-    swim: dict
+    swim: dict[str, Any]
     error: Any  # ErrorEstimate | None
     uncertainty: float
     estimate: ErrorEstimate
-    told: bool
+    reported: bool
     cost: float
 
     @property
     def target(self) -> float:
         """The relative error that was asked for."""
-        return self.swim["accuracy"]
+        return float(self.swim["accuracy"])
 
     @property
     def missed(self) -> bool:
         """Whether the error is above the target, or not known, and the run does not say so."""
-        return not self.told and self.error is not None and self.error.worst > self.target
+        return not self.reported and self.error is not None and self.error.worst > self.target
 
     @property
     def underestimated(self) -> float:
         """The true error, less what the reference leaves uncertain, divided by its estimate."""
-        return max(self.error.worst - self.uncertainty, LEAST) / max(self.estimate.worst, LEAST)
+        return float(max(self.error.worst - self.uncertainty, LEAST) / max(self.estimate.worst, LEAST))
 
 
-def drawn(rng: np.random.Generator) -> dict:
+def drawn(rng: np.random.Generator) -> dict[str, Any]:
     """Arguments of `simulate` for one swim."""
 
     def between(low: float, high: float) -> float:
@@ -111,7 +111,7 @@ def drawn(rng: np.random.Generator) -> dict:
     }
 
 
-def trial_of(swim: dict) -> Trial | None:
+def trial_of(swim: dict[str, Any]) -> Trial | None:
     """The trial of one swim; None for a swim that stops before its end, with its reason."""
     try:
         run = simulate(**swim)
@@ -125,12 +125,12 @@ def trial_of(swim: dict) -> Trial | None:
         error=None if reference is None else relative_errors(run, reference),
         uncertainty=uncertainty,
         estimate=estimate,
-        told=bool(estimate.missed(swim["accuracy"], float(run.time[-1]))),
+        reported=bool(estimate.missed(swim["accuracy"], float(run.time[-1]))),
         cost=1.0 + estimate.cost / (run.nodes * run.evaluations),
     )
 
 
-def _reference(swim: dict, estimate: float):
+def _reference(swim: dict[str, Any], estimate: float) -> tuple[Run | None, float]:
     """A run that is trusted, and its distance from another method on another grid; None and infinity if there is none.
 
     The first of the `REFERENCES` that agree to a tenth of the `estimate` of the error and of the target. If none do,
@@ -148,49 +148,61 @@ def _reference(swim: dict, estimate: float):
     return reference, uncertainty
 
 
-def deliver(count: int = COUNT, seed: int = SEED, say: Callable = lambda text: None) -> list[Trial]:
+def deliver(count: int = COUNT, seed: int = SEED, say: Callable[[str], object] = lambda text: None) -> list[Trial]:
     """The trials of `count` swims that `seed` draws. say(text): called with progress."""
     say(f"what the targets deliver: {count} swims of seed {seed}")
-    swims = [drawn(np.random.default_rng([seed, index])) for index in range(count)]
     with warnings.catch_warnings(), ThreadPoolExecutor(os.cpu_count()) as pool:
-        warnings.simplefilter("ignore")  # a trial keeps whether its run was told to miss its target
-        return [each for each in pool.map(trial_of, swims) if each is not None]
+        warnings.simplefilter("ignore")  # a trial keeps whether its run reported that it misses its target
+        return [each for each in pool.map(trial_of, swims_of(count, seed)) if each is not None]
 
 
-def delivered_table(trials: list[Trial], *, markdown: bool = False) -> str:
+def swims_of(count: int, seed: int) -> list[dict[str, Any]]:
+    """The arguments of `simulate` for `count` swims that `seed` draws."""
+    return [drawn(np.random.default_rng([seed, index])) for index in range(count)]
+
+
+def delivered_table(trials: list[Trial]) -> Table:
     """The counts of the trials as a table: a row for the motion alone, for runs with torque, and for all."""
     groups = {
         "position, motion alone": [each for each in trials if each.estimate.torque is None],
         "position and torque": [each for each in trials if each.estimate.torque is not None],
         "all": trials,
     }
-    head = (
-        *(
-            "error of",
-            "swims",
-            "with a reference",
-            "above the target",
-            "of these not reported",
-            "reported without a reference",
-        ),
-        *("estimate below the error", "by more than 2", "error by estimate, median", "greatest"),
-        *("target by error, median", "cost, median"),
-    )
-    return laid_out(head, [_row(name, part) for name, part in groups.items()], markdown)
+    columns = [_cells(part) for part in groups.values()]
+    rows = [(name, *each.values()) for name, each in zip(groups, columns, strict=True)]
+    return Table(("error of", *columns[0]), rows)
 
 
-def _row(name: str, trials: list[Trial]) -> list[str]:
+def _cells(trials: list[Trial]) -> dict[str, str]:
     known = [each for each in trials if each.error is not None]
     above = [each for each in known if each.error.worst > each.target]
     ratios = np.array([each.underestimated for each in known] or [np.nan])
     below = np.array([each.target / max(each.error.worst, LEAST) for each in known] or [np.nan])
-    counts = (
-        *(len(trials), len(known), len(above), sum(each.missed for each in known)),
-        *(
-            sum(each.told for each in trials if each.error is None),
-            int(np.sum(ratios > 1.0)),
-            int(np.sum(ratios > 2.0)),
-        ),
-    )
-    figures = f"{np.median(ratios):.3f}", f"{np.max(ratios):.2f}", f"{np.median(below):.0f}"
-    return [name, *map(str, counts), *figures, f"{np.median([each.cost for each in trials] or [np.nan]):.2f}"]
+    return {
+        "swims": str(len(trials)),
+        "with a reference": str(len(known)),
+        "above the target": str(len(above)),
+        "of these not reported": str(sum(each.missed for each in known)),
+        "reported without a reference": str(sum(each.reported for each in trials if each.error is None)),
+        "estimate below the error": str(np.sum(ratios > 1.0)),
+        "by more than 2": str(np.sum(ratios > 2.0)),
+        "error by estimate, median": f"{np.median(ratios):.3f}",
+        "greatest": f"{np.max(ratios):.2f}",
+        "target by error, median": f"{np.median(below):.0f}",
+        "cost, median": f"{np.median([each.cost for each in trials] or [np.nan]):.2f}",
+    }
+
+
+def draw_delivered(figure: Any, trials: list[Trial]) -> None:
+    """Draw true errors against estimates, both relative to the target, into an empty matplotlib figure."""
+    axes = figure.subplots()
+    for label, torque, marker in (("motion alone", False, "o"), ("with torque", True, "s")):
+        known = [each for each in trials if each.error is not None and (each.estimate.torque is not None) is torque]
+        estimate = [max(each.estimate.worst, LEAST) / each.target for each in known]
+        error = [max(each.error.worst, LEAST) / each.target for each in known]
+        axes.loglog(estimate, error, marker, markersize=3, alpha=0.6, label=label)
+    ends = [1e-4, 10.0]
+    axes.plot(ends, ends, "k-", linewidth=0.8)
+    axes.axhline(1.0, color="0.5", linewidth=0.8, linestyle="--")
+    axes.set(xlabel="estimated error / target", ylabel="true error / target", xlim=ends, ylim=[1e-6, 10.0])
+    axes.legend()

@@ -12,19 +12,21 @@ import statistics
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from operator import attrgetter
+from typing import TypeVar
 
 import numpy as np
 from eel_dynamics.accuracy.accuracy import Accuracy
-from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
-from eel_dynamics.runs.run import Run, simulate
+from eel_dynamics.runs.run import Run
 from eel_dynamics.simulation.simulation import Simulation, SimulationStopped
-from eel_gaits.laws.law import Law
 
+from eel_studies.points import Point
 from eel_studies.tradeoff.settings import CHECK, REFERENCE
 
 SAMPLE_PERIOD = 0.05  # s
 STATIONS = 51
+Row = TypeVar("Row")
 
 
 @dataclass(frozen=True)
@@ -32,11 +34,8 @@ class Measured:
     """Relative errors and cost of a setting. Times are without the ledger and without samples."""
 
     accuracy: Accuracy
-    nodes: int
-    step: float  # s, mean
     pose_error: float
     torque_error: float
-    evaluations: int
     microseconds: float  # CPU time per evaluation, without set-up
     seconds: float  # CPU time of the whole run on one core, set-up included
     times_real_time: float
@@ -53,13 +52,18 @@ class Measured:
 class Trade:
     """All that was measured for a gait."""
 
-    law: Law
+    swim: Point  # with the accuracy of the reference
     duration: float  # s
     reference: Run
     reference_error: tuple[float, float]  # of pose and torque, compared with a coarser run
     rows: list[Measured]
     unstable: list[Accuracy]  # settings that diverged
     repeats: int
+
+    @property
+    def name(self) -> str:
+        """Of the gait."""
+        return str(self.swim.law.name)
 
 
 def errors_of(run: Run, reference: Run) -> tuple[float, float]:
@@ -71,83 +75,60 @@ def errors_of(run: Run, reference: Run) -> tuple[float, float]:
     return pose, float(np.max(np.linalg.norm(run.torque - reference.torque, axis=2))) / size if size else 0.0
 
 
-def swim(law: Law, duration: float, body: Body, scene: Scene, accuracy: Accuracy) -> Run:
-    """Simulate `duration` [s] with torque and without the ledger, for the measurement of errors.
+def swim_with(swim: Point, duration: float, accuracy: Accuracy, **scene: object) -> Run:
+    """The `swim` of `duration` [s] with torque and without the ledger, for the measurement of errors.
 
-    `SimulationStopped` where the run cannot go on.
+    scene: fields of `Scene` that differ. `SimulationStopped` where the run cannot go on.
     """
-    return simulate(
-        law,
-        duration,
-        body=body,
-        scene=_measured_in(scene),
-        accuracy=accuracy,
-        sample_period=SAMPLE_PERIOD,
-        stations=STATIONS,
-        estimate=False,
-    )
+    swim = swim._replace(scene=_measured_in(replace(swim.scene, **scene)), accuracy=accuracy)  # type: ignore[arg-type]
+    return swim.swim(duration, sample_period=SAMPLE_PERIOD, stations=STATIONS, estimate=False)
 
 
 def measure(
-    law: Law,
+    swim: Point,
     settings: list[Accuracy],
-    *,
     duration: float = 10.0,
-    body: Body,
-    scene: Scene,
     repeats: int = 5,
-    say: Callable[[str], None] = lambda text: None,
+    say: Callable[[str], object] = lambda text: None,
 ) -> Trade:
-    """Simulate `duration` [s] of `law` with every setting and measure errors and times.
+    """Errors and times of `duration` [s] of a `swim` with every one of the `settings`.
 
     repeats: rounds of timing. say(text): called with a line of progress. Settings that diverge are listed in
     `Trade.unstable`.
     """
     say("the reference run, and a check of it")
-    reference = swim(law, duration, body, scene, REFERENCE)
-    reference_error = errors_of(swim(law, duration, body, scene, CHECK), reference)
+    reference = swim_with(swim, duration, REFERENCE)
+    reference_error = errors_of(swim_with(swim, duration, CHECK), reference)
     runs, unstable = {}, []
     say(f"errors of {len(settings)} settings")
     for accuracy in settings:
         try:
-            runs[accuracy] = swim(law, duration, body, scene, accuracy)
+            runs[accuracy] = swim_with(swim, duration, accuracy)
         except SimulationStopped:
             unstable.append(accuracy)
-    marching: dict[Accuracy, list[float]] = {accuracy: [] for accuracy in runs}
-    whole: dict[Accuracy, list[float]] = {accuracy: [] for accuracy in runs}
+    times: dict[Accuracy, list[tuple[float, float]]] = {accuracy: [] for accuracy in runs}  # of the march, of all
     for repeat in range(repeats):
         say(f"times, round {repeat + 1} of {repeats}")
         for accuracy in runs:
             start = time.thread_time()
-            swimmer = _ready(law, body, scene, accuracy)
+            swimmer = ready(swim, accuracy)
             begin = time.thread_time()
             swimmer.advance(duration)
             end = time.thread_time()
-            marching[accuracy].append(end - begin)
-            whole[accuracy].append(end - start)
+            times[accuracy].append((end - begin, end - start))
     rows = []
     for accuracy, run in runs.items():
-        pose, torque = errors_of(run, reference)
-        seconds = statistics.median(whole[accuracy])
-        rows.append(
-            Measured(
-                accuracy=accuracy,
-                nodes=run.nodes,
-                step=duration / max(1, run.steps),
-                pose_error=pose,
-                torque_error=torque,
-                evaluations=run.evaluations,
-                microseconds=1e6 * statistics.median(marching[accuracy]) / max(1, run.evaluations),
-                seconds=seconds,
-                times_real_time=duration / seconds,
-                memory=_ready(law, body, scene, accuracy).memory,
-                run=run,
-            )
-        )
-    return Trade(law, duration, reference, reference_error, rows, unstable, repeats)
+        marching, seconds = map(statistics.median, zip(*times[accuracy], strict=True))
+        microseconds = 1e6 * marching / max(1, run.evaluations)
+        memory = ready(swim, accuracy).memory
+        cost = microseconds, seconds, duration / seconds, memory
+        rows.append(Measured(accuracy, *errors_of(run, reference), *cost, run))
+    return Trade(swim, duration, reference, reference_error, rows, unstable, repeats)
 
 
-def front(rows: list, error: Callable, cost: Callable) -> list:
+def front(
+    rows: list[Row], error: Callable[[Row], float], cost: Callable[[Row], float] = attrgetter("seconds")
+) -> list[Row]:
     """The Pareto front: those `rows` that no other row beats in both error and cost, the cheapest first."""
     best, result = np.inf, []
     for row in sorted(rows, key=lambda row: (cost(row), error(row))):
@@ -157,12 +138,11 @@ def front(rows: list, error: Callable, cost: Callable) -> list:
     return result
 
 
+def ready(swim: Point, accuracy: Accuracy) -> Simulation:
+    """The `swim` before its first step, without samples."""
+    return Simulation(swim.body, _measured_in(swim.scene), accuracy, 2, law=swim.law)
+
+
 def _measured_in(scene: Scene) -> Scene:
     """`scene` with the torque and without the ledger: errors and times are of the grid that the torque needs."""
     return replace(scene, ledger=False, internal_wrench=True)
-
-
-def _ready(law: Law, body: Body, scene: Scene, accuracy: Accuracy) -> Simulation:
-    swimmer = Simulation(body=body, scene=_measured_in(scene), accuracy=accuracy, stations=2)
-    swimmer.adopt(law)
-    return swimmer

@@ -6,17 +6,17 @@ A discretisation error far below the error of the model has no benefit. This set
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
-from eel_dynamics.model.body import Body
-from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.run import Run
 from eel_dynamics.simulation.simulation import SimulationStopped
 from eel_gaits.laws.law import Law
 
-from eel_studies.tradeoff.measuring import errors_of, swim
+from eel_studies.points import Point
+from eel_studies.tradeoff.measuring import errors_of, swim_with
 from eel_studies.tradeoff.settings import REFERENCE
 
-VARIANTS: dict[str, dict] = {
+VARIANTS: dict[str, dict[str, Any]] = {  # what differs in the scene
     "planar": {"planar": True},
     "reactive only (no drag)": {"resistive": False},
     "resistive only (no added mass, no wake)": {"reactive": False},
@@ -32,41 +32,32 @@ VARIANTS: dict[str, dict] = {
 
 @dataclass(frozen=True)
 class Model:
-    """Relative errors of a simpler model, compared with the full model; NaN where it stopped."""
+    """Relative errors of a simpler model, compared with the full model; infinite where it stopped."""
 
     name: str
     pose_error: float
     torque_error: float
-    run: Run | None  # None where the simulation stopped
     stopped: str = ""
 
 
 def compare(
-    law: Law,
-    reference: Run,
-    *,
-    duration: float,
-    body: Body,
-    scene: Scene,
-    say: Callable[[str], None] = lambda text: None,
+    swim: Point, reference: Run, duration: float, say: Callable[[str], object] = lambda text: None
 ) -> list[Model]:
-    """Compare every variant that changes `scene` with the `reference` run in `scene`, over `duration` [s].
+    """Compare every variant that changes the scene of the `swim` with its `reference`, over `duration` [s].
 
     say(text): called with a line of progress.
     """
     found = []
     for name, changes in VARIANTS.items():
-        changed = replace(scene, **changes)
-        if changed == scene:
+        if replace(swim.scene, **changes) == swim.scene:
             continue
         say(f"the model without: {name}")
-        driven = flattened(law) if changed.planar else law
+        law = flattened(swim.law) if "planar" in changes else swim.law
         try:
-            run = swim(driven, duration, body, changed, REFERENCE)
+            errors = errors_of(swim_with(swim._replace(law=law), duration, REFERENCE, **changes), reference)
+            found.append(Model(name, *errors))
         except SimulationStopped as stopped:
-            found.append(Model(name, float("nan"), float("nan"), None, str(stopped)))
-            continue
-        found.append(Model(name, *errors_of(run, reference), run))
+            found.append(Model(name, float("inf"), float("inf"), str(stopped)))
     return found
 
 

@@ -3,16 +3,16 @@
 
 from collections.abc import Callable
 from itertools import product
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.runs.companion import relative_errors
-from eel_dynamics.runs.run import simulate
+from eel_dynamics.runs.run import Run, simulate
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 from eel_studies.pictures.style import BLACK, BLUE, GREY, ORANGE
-from eel_studies.tradeoff.delivered import LEAST, REFERENCES, TARGETS, drawn
+from eel_studies.tradeoff.delivered import LEAST, REFERENCES, TARGETS, swims_of
 
 SWIMS = 24  # of the settings: each takes some milliseconds
 RESOLUTIONS = 4.0, 10.0, 16.0, 24.0, 32.0, 48.0
@@ -28,9 +28,9 @@ class Price(NamedTuple):
     whole: float
 
 
-def prices(count: int, seed: int, say: Callable = lambda text: None) -> tuple[list[Price], list[Price]]:
+def prices(count: int, seed: int, say: Callable[[str], object] = lambda text: None) -> tuple[list[Price], list[Price]]:
     """The prices of all settings and of the `TARGETS`, over at most `SWIMS` of the `count` swims of a `seed`."""
-    swims = [drawn(np.random.default_rng([seed, index])) for index in range(min(count, SWIMS))]
+    swims = swims_of(min(count, SWIMS), seed)
     known = [(swim, reference) for swim in swims if (reference := _reference(swim)) is not None]
     say(f"the price of a target: {len(known)} swims")
     settings = [
@@ -41,14 +41,14 @@ def prices(count: int, seed: int, say: Callable = lambda text: None) -> tuple[li
     return grey, [_price(known, target, estimate=True) for target in TARGETS]
 
 
-def _reference(swim: dict):
+def _reference(swim: dict[str, Any]) -> Run | None:
     try:
         return simulate(**swim | {"accuracy": REFERENCES[0][0]}, estimate=False)
     except SimulationStopped:
         return None
 
 
-def _price(known: list, accuracy, *, estimate: bool) -> Price:
+def _price(known: list[tuple[dict[str, Any], Run]], accuracy: Accuracy | float, *, estimate: bool) -> Price:
     rows = []
     for swim, reference in known:
         periods = swim["duration"] / swim["law"].terms[0].period
@@ -63,13 +63,11 @@ def _price(known: list, accuracy, *, estimate: bool) -> Price:
     return Price(*np.median(rows, axis=0).tolist())
 
 
-def draw_prices(figure, grey: list[Price], targets: list[Price]):
+def draw_prices(figure: Any, grey: list[Price], targets: list[Price]) -> None:
     """Cost over delivered error: every setting a grey point, and the targets, without and with their estimate."""
     axes = figure.subplots()
-    axes.loglog(
-        [max(each.error, LEAST) for each in grey], [each.cost for each in grey], ".", color=GREY, label="settings"
-    )
-    error = [max(each.error, LEAST) for each in targets]
+    others, error = ([max(each.error, LEAST) for each in prices] for prices in (grey, targets))
+    axes.loglog(others, [each.cost for each in grey], ".", color=GREY, label="settings")
     axes.loglog(error, [each.cost for each in targets], "o-", color=BLUE, label="targets: the run")
     axes.loglog(error, [each.whole for each in targets], "s:", color=ORANGE, label="with its estimate")
     for target, at, price in zip(TARGETS, error, targets, strict=True):

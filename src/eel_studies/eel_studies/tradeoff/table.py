@@ -1,33 +1,30 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The trade-off as text: aligned for a terminal, or as Markdown tables."""
+"""The trade-off as tables."""
 
-import csv
 from operator import attrgetter
-from pathlib import Path
 
-from eel_base.files.markdown import table
-from eel_base.files.output_file import replacing
 from eel_dynamics.accuracy.accuracy import PRESETS
 
+from eel_studies.table import Table
 from eel_studies.tradeoff.measuring import Measured, Trade, front
 from eel_studies.tradeoff.models import Model
 
-HEAD = (
-    "front",
-    "setting",
-    "method",
-    "order",
-    "nodes",
-    "mean step [s]",
-    "error of pose",
-    "error of torque",
-    "evaluations",
-    "us per evaluation",
-    "times real time",
-    "memory [kB]",
-)
-SHORT = (1, 4, 5, 6, 7, 8, 10)  # columns of `HEAD` that the short table has
-WANTED = 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7  # relative errors of its rows
+COLUMNS = {  # head: text of a row
+    "setting": lambda row: row.accuracy.name,
+    "method": lambda row: row.accuracy.method.replace("_", "-"),
+    "order": lambda row: str(row.accuracy.order),
+    "nodes": lambda row: str(row.run.nodes),
+    "mean step [s]": lambda row: f"{row.run.time[-1] / max(1, row.run.steps):.2g}",
+    "error of pose": lambda row: f"{row.pose_error:.1e}",
+    "error of torque": lambda row: f"{row.torque_error:.1e}",
+    "evaluations": lambda row: str(row.run.evaluations),
+    "us per evaluation": lambda row: f"{row.microseconds:.2f}",
+    "times real time": lambda row: f"{row.times_real_time:.0f}",
+    "memory [kB]": lambda row: f"{row.memory / 1000.0:.0f}",
+}
+LEFT = 3  # columns that are texts
+LONG_ONLY = "method", "order", "us per evaluation", "memory [kB]"  # columns that the short table leaves out
+WANTED = 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7  # relative errors of the rows of the short table
 SECONDS = attrgetter("seconds")  # of a row: its cost
 EXACT_ENOUGH = 0.1  # of a model's error, allowed for the discretisation
 
@@ -36,27 +33,9 @@ def marks_of(trade: Trade) -> dict[int, str]:
     """Marks by the `id` of each row. P: on the front of pose error against time; T: on that of torque error."""
     marks = {id(row): "" for row in trade.rows}
     for letter, error in (("P", attrgetter("pose_error")), ("T", attrgetter("torque_error"))):
-        for row in front(trade.rows, error, SECONDS):
+        for row in front(trade.rows, error):
             marks[id(row)] += letter
     return marks
-
-
-def cells_of(row: Measured, mark: str) -> list[str]:
-    """The cells of a row, in the order of `HEAD`."""
-    return [
-        mark or "-",
-        row.accuracy.name,
-        row.accuracy.method.replace("_", "-"),
-        str(row.accuracy.order),
-        str(row.nodes),
-        f"{row.step:.2g}",
-        f"{row.pose_error:.1e}",
-        f"{row.torque_error:.1e}",
-        str(row.evaluations),
-        f"{row.microseconds:.2f}",
-        f"{row.times_real_time:.0f}",
-        f"{row.memory / 1000.0:.0f}",
-    ]
 
 
 def listed(trade: Trade, everything: bool = False) -> list[Measured]:
@@ -68,65 +47,44 @@ def listed(trade: Trade, everything: bool = False) -> list[Measured]:
 
 def cheapest(trade: Trade) -> list[Measured | None]:
     """For each of the errors `WANTED` the cheapest listed setting whose pose and torque are both as exact, or None."""
-    rows = listed(trade)
-    return [next((row for row in rows if max(row.pose_error, row.torque_error) <= wanted), None) for wanted in WANTED]
+    return [next((row for row in listed(trade) if row.error <= wanted), None) for wanted in WANTED]
 
 
-def digits_table(trade: Trade, *, markdown: bool = False) -> str:
+def digits_table(trade: Trade) -> Table:
     """A row for each of the errors `WANTED`: its `cheapest` setting."""
-    head = "relative error", *(HEAD[place] for place in SHORT)
-    rows = []
-    for wanted, row in zip(WANTED, cheapest(trade), strict=True):
-        cells = ["-"] * len(HEAD) if row is None else cells_of(row, "")
-        rows.append([f"{wanted:.0e}", *(cells[place] for place in SHORT)])
-    return laid_out(head, rows, markdown)
+    columns = {name: text for name, text in COLUMNS.items() if name not in LONG_ONLY}
+    rows = [
+        [f"{wanted:.0e}", *("-" if row is None else text(row) for text in columns.values())]
+        for wanted, row in zip(WANTED, cheapest(trade), strict=True)
+    ]
+    return Table(("relative error", *columns), rows)
 
 
-def trade_table(trade: Trade, *, everything: bool = False, markdown: bool = False) -> str:
+def trade_table(trade: Trade, everything: bool = False) -> Table:
     """A table of the `listed` settings."""
-    marks, rows = marks_of(trade), listed(trade, everything)
-    return laid_out(HEAD, [cells_of(row, marks[id(row)]) for row in rows], markdown)
+    marks = marks_of(trade)
+    rows = [[marks[id(row)] or "-", *(text(row) for text in COLUMNS.values())] for row in listed(trade, everything)]
+    return Table(("front", *COLUMNS), rows, LEFT)
 
 
-def model_table(models: list[Model], trade: Trade, *, markdown: bool = False) -> str:
+def model_table(models: list[Model], trade: Trade) -> Table:
     """A table of each simpler model's errors, and the cheapest setting whose own errors are a tenth of them or less."""
     head = "left out, or otherwise", "error of pose", "error of torque", "exact enough for it", "times real time"
     rows = []
     for model in sorted(models, key=lambda model: -max(model.pose_error, model.torque_error)):
-        if model.run is None:
-            rows.append([model.name, "-", "-", model.stopped, "-"])
+        if model.stopped:
+            rows.append((model.name, "-", "-", model.stopped, "-"))
             continue
-        setting, speed = exact_enough(model, trade)
-        rows.append([model.name, f"{model.pose_error:.1e}", f"{model.torque_error:.1e}", setting, speed])
-    return laid_out(head, rows, markdown)
+        setting = exact_enough(model, trade)
+        named = "no difference that a setting resolves" if setting is None else setting.accuracy.name
+        speed = "-" if setting is None else f"{setting.times_real_time:.0f}"
+        rows.append((model.name, f"{model.pose_error:.1e}", f"{model.torque_error:.1e}", named, speed))
+    return Table(head, rows, LEFT)
 
 
-def exact_enough(model: Model, trade: Trade) -> tuple[str, str]:
-    """Name and speed of the cheapest setting with at most a tenth of the model's errors, in times real time."""
+def exact_enough(model: Model, trade: Trade) -> Measured | None:
+    """The cheapest setting with at most a tenth of the model's errors, or None."""
     for row in sorted(trade.rows, key=SECONDS):
         if row.pose_error <= EXACT_ENOUGH * model.pose_error and row.torque_error <= EXACT_ENOUGH * model.torque_error:
-            return row.accuracy.name, f"{row.times_real_time:.0f}"
-    return "no difference that a setting resolves", "-"
-
-
-def write_csv(trade: Trade, path: Path):
-    """Write all measurements to `path`, one line per setting. `OSError` where the file cannot be written."""
-    marks = marks_of(trade)
-    with replacing(path) as draft, draft.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(HEAD)
-        writer.writerows(cells_of(row, marks[id(row)]) for row in sorted(trade.rows, key=SECONDS))
-
-
-def laid_out(head, rows, markdown: bool) -> str:
-    """A table as aligned text, or in Markdown."""
-    if markdown:
-        return table(head, rows)
-    widths = [max(len(cell) for cell in column) for column in zip(head, *rows, strict=True)]
-    return "\n".join(
-        "  ".join(
-            cell.ljust(width) if place < 3 else cell.rjust(width)
-            for place, (cell, width) in enumerate(zip(row, widths, strict=True))
-        ).rstrip()
-        for row in (head, *rows)
-    )
+            return row
+    return None
