@@ -19,7 +19,7 @@ def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 
 def with_part(page: str, name: str, text: str) -> str:
-    """The `page` with `text` in place of its part, or of its value, `name`. `ValueError` where the marks are missing."""
+    """The `page` with `text` in place of its part, or its value, `name`. `ValueError` where the marks are missing."""
     mark = re.escape(name)
     first, last = rf"<!-- {mark}: written by [^\n]* -->\n", f"<!-- end of {name} -->"
     found = re.search(f"({first}).*?(?={re.escape(last)})", page, re.DOTALL)
