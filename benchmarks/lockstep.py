@@ -11,13 +11,12 @@ the dynamics node. The least of several turns counts: others may use the machine
 import array
 import math
 import sys
-import tempfile
 import time
-from pathlib import Path
+from collections.abc import Callable
+from typing import Any
 
 from eel_ros.qos import keep_all
-from eel_ros.testing.node_process import NodeProcess
-from eel_ros.testing.ros_domain import reserve_domain
+from measuring import Lines, nodes_in_a_domain
 from nav_msgs.msg import Odometry
 
 from eel_dynamics import Simulation
@@ -31,34 +30,25 @@ FLAT = array.array("d", bytes(8 * POINTS))
 PERIOD = 1.0  # s
 
 
-def lockstep():
+def lockstep() -> Lines:
     """A tick of the falling eel's scene under a controller's samples: library, messages, and both in the node."""
-    times = {"library": [], "messages": [], "node": []}
-    with tempfile.TemporaryDirectory() as folder:
-        for turn in range(TURNS):
-            times["library"].append(_library())
-            times["messages"].append(_over_topics(Path(folder), f"messages-{turn}", sys.executable, __file__, "echo"))
-            node = (
-                "dynamics",
-                "--ros-args",
-                "-p",
-                "real_time_factor:=0",
-                "-p",
-                "rate:=50",
-                "-p",
-                "estimate_error:=false",
-            )
-            times["node"].append(_over_topics(Path(folder), f"node-{turn}", *node))
-    library, messages, node = (1e6 * min(times[name]) for name in ("library", "messages", "node"))
+    node = ("real_time_factor:=0", "rate:=50", "estimate_error:=false")
+    plants = {
+        "messages": lambda start, begin: begin(sys.executable, __file__, "echo"),
+        "node": lambda start, begin: start("dynamics", *node),
+    }
+    times: dict[str, list[float]] = {"library": [], "messages": [], "node": []}
+    for _ in range(TURNS):
+        times["library"].append(_library())
+        for name, plant in plants.items():
+            times[name].append(_over_topics(plant))
+    library, messages, whole = (1e6 * min(times[name]) for name in times)
     yield "the library alone", library, "us a tick"
     yield "bare messages, there and back", messages, "us a tick"
-    yield "the dynamics node", node, f"us a tick, {TICK / 1e3 / node:.1f} times real time"
+    yield "the dynamics node", whole, f"us a tick, {TICK / 1e3 / whole:.1f} times real time"
     ratios = [node / (library + messages) for library, messages, node in zip(*times.values(), strict=True)]
-    yield (
-        "node over the sum",
-        node / (library + messages),
-        f"times; turn by turn {min(ratios):.2f} to {max(ratios):.2f}",
-    )
+    said = f"times; turn by turn {min(ratios):.2f} to {max(ratios):.2f}"
+    yield "node over the sum", whole / (library + messages), said
 
 
 def rows(time: int) -> tuple[array.array, ...]:
@@ -82,19 +72,13 @@ def _library() -> float:
     return (time.perf_counter() - began) / (LAST - FIRST)
 
 
-def _over_topics(folder: Path, name: str, *plant: str) -> float:
+def _over_topics(plant: Callable[..., Any]) -> float:
     """Seconds a tick of the process `plant` under a controller in another."""
-    domain = reserve_domain()
-    environment = domain.environment()
-    words = (plant, (sys.executable, __file__, "controller"))
-    running = [NodeProcess(*each, environment=environment, log=folder / f"{name}-{k}") for k, each in enumerate(words)]
-    try:
-        assert running[1].wait(120.0) == 0, running[1].output() + running[0].output()
-        return float(running[1].output().splitlines()[-1])
-    finally:
-        for node in running:
-            node.end()
-        domain.claim.close()
+    with nodes_in_a_domain() as (start, begin, *_):
+        running = plant(start, begin)
+        controlling = begin(sys.executable, __file__, "controller")
+        assert controlling.wait(120.0) == 0, controlling.output() + running.output()
+        return float(controlling.output().splitlines()[-1])
 
 
 def controller():

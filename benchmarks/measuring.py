@@ -1,29 +1,112 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How contenders are compared: in turn, so that whatever else the machine does meets all alike, and by the CPU
-time of this process, to which the time that others take does not count. For contenders that use one thread."""
+"""How benchmarks measure: contenders in turn, so that whatever else the machine does meets all alike, and medians.
 
+The CPU time of this process does not count what others take; it is for contenders that use one thread. Nodes run in a
+ROS domain of their own, other codes in an environment of their own with pinned packages (`.venv-peers`).
+"""
+
+import contextlib
+import json
+import os
 import statistics
+import subprocess
+import sys
+import tempfile
 import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
 
+import numpy as np
+from eel_ros.testing.fixtures import starter
+from eel_ros.testing.ros_domain import reserve_domain
+
+from eel_dynamics import Accuracy, Scene, Simulation
+from eel_gaits import Law
+
+HERE = Path(__file__).resolve().parent
 REPEATS = 9
+MOTION: dict[str, Any] = {"ledger": False, "internal_wrench": False}  # of a Scene: the motion alone
+Lines = Iterator[tuple[str, float | None, str]]  # label, value (None: there is the label alone), unit
+Action = Callable[[], object]
 
 
-def times_in_turn(contenders: dict, repeats: int = REPEATS) -> dict[str, list[float]]:
-    """CPU times [s] of the contenders, taken in turn after one call each that does not count. A contender is a function
-    to be timed, or a pair: one that prepares, and does not count, and the one to be timed."""
-    times = {name: [] for name in contenders}
+def times_in_turn(
+    contenders: dict[Any, Any], repeats: int = REPEATS, clock: Callable[[], float] = time.process_time
+) -> dict[Any, list[float]]:
+    """Times [s] of the contenders, taken in turn after one call each that does not count. A contender is a function to
+    be timed, or a pair: one that prepares, and does not count, and the one to be timed."""
+    times: dict[Any, list[float]] = {name: [] for name in contenders}
     for repeat in range(repeats + 1):
         for name, contender in contenders.items():
             prepare, action = contender if isinstance(contender, tuple) else (None, contender)
             if prepare:
                 prepare()
-            start = time.process_time()
+            start = clock()
             action()
             if repeat:
-                times[name].append(time.process_time() - start)
+                times[name].append(clock() - start)
     return times
 
 
 def median_ratio(slow: list[float], fast: list[float]) -> float:
     """Median over the turns of how many times longer `slow` took than `fast`."""
     return statistics.median(a / b for a, b in zip(slow, fast, strict=True))
+
+
+def swimming(law: Law, scene: Scene, resolution: float = 13.0, kinks: str = "all") -> Simulation:
+    """A swimmer in the midst of its gait, 2.3 s after the start. resolution: points per body length."""
+    accuracy = Accuracy(name="bench", resolution=resolution, kinks=kinks)
+    simulation = Simulation(scene=scene, law=law, accuracy=accuracy)
+    simulation.advance(2.3)
+    return simulation
+
+
+@contextlib.contextmanager
+def nodes_in_a_domain() -> Iterator[tuple[Callable[..., Any], Callable[..., Any], Path, Any]]:
+    """start(node, *parameters) and begin(executable, *words), which give a NodeProcess; a folder; the ROS domain. After
+    the block all have ended."""
+    domain = reserve_domain()
+    starting = contextlib.contextmanager(starter)
+    with tempfile.TemporaryDirectory() as name, starting(Path(name), **domain.environment()) as begin:
+
+        def start(executable: str, *parameters: str) -> Any:
+            return begin(executable, "--ros-args", *(word for each in parameters for word in ("-p", each)))
+
+        yield start, begin, Path(name), domain
+    domain.claim.close()
+
+
+def cpu_time(pid: int) -> float:
+    """CPU time [s] that all threads of a process have used."""
+    fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def environment(name: str) -> Path | None:
+    """Python of the environment that `peers/NAME.txt` pins, made on the first call; None where it cannot be
+    installed."""
+    folder, pins = HERE.parent / ".venv-peers" / name, HERE / "peers" / f"{name}.txt"
+    python, stamp = folder / "bin" / "python", folder / "pins.txt"
+    if stamp.is_file() and stamp.read_text() == pins.read_text():
+        return python
+    try:
+        subprocess.run([sys.executable, "-m", "venv", folder], check=True, capture_output=True)
+        (folder.parent / "COLCON_IGNORE").touch()
+        install = [python, "-m", "pip", "install", "--quiet", "--require-hashes", "--only-binary", ":all:", "-r", pins]
+        subprocess.run(install, check=True, capture_output=True)
+    except (OSError, subprocess.CalledProcessError):
+        return None
+    stamp.write_text(pins.read_text())
+    return python
+
+
+def measured(python: Path, script: str, **task: Any) -> dict[str, Any]:
+    """What `script` of the folder `peers` says about the `task`."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "task.npz"
+        np.savez(path, **task)
+        command = [python, HERE / "peers" / script, path]
+        done = subprocess.run(command, check=True, cwd=folder, capture_output=True, text=True, timeout=900)
+    found: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])
+    return found

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # The nodes used from a shell by ROS 2's own command, as a user does: run, topic, param, service, node, bag.
 # A command that fails, or answers otherwise than it should, ends it with status 1. It needs `ros2`, and a workspace that is sourced.
+# ros2_commands.sh [SECTION ...]: some of the sections below; without a name all of them.
 set -uo pipefail
 set -m   # each process in the background in a group of its own, where SIGINT reaches it
 LIMIT=60   # s, for any one command
@@ -124,7 +125,8 @@ bad_input() {
     end dynamics gaits
 }
 
-for section in a_controller_in_the_loop experiments_without_a_restart frames_and_namespaces a_bag rates bad_input; do
+all=(a_controller_in_the_loop experiments_without_a_restart frames_and_namespaces a_bag rates bad_input)
+for section in "${@:-${all[@]}}"; do
     echo "[ros2] == ${section//_/ }"
     "$section"
 done

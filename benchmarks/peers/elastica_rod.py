@@ -9,15 +9,13 @@ of the area of the body's, since the library's rods are round. Verlet steps, exp
 them.
 """
 
-import json
-import statistics
-import sys
 import time
 from importlib.metadata import version
 
 import elastica as ea
 import numpy as np
 from numba import njit
+from task import answer, read_task
 
 
 class Simulator(ea.BaseSystemCollection, ea.Forcing):
@@ -49,21 +47,21 @@ class Muscles(ea.NoForces):
 
 def rods_of(task, count: int):
     """`count` equal rods in one system, ready to be stepped; the first of them."""
-    simulator, step, rods = Simulator(), float(task["step"]), []
+    simulator, rods = Simulator(), []
     for _ in range(count):
         rod = ea.CosseratRod.straight_rod(
-            int(task["elements"]),
+            task["elements"],
             np.zeros(3),
             np.array([1.0, 0.0, 0.0]),
             np.array([0.0, 0.0, 1.0]),
-            float(task["length"]),
+            task["length"],
             task["radius"],
-            float(task["density"]),
-            youngs_modulus=float(task["youngs_modulus"]),
+            task["density"],
+            youngs_modulus=task["youngs_modulus"],
         )
         simulator.append(rod)
-        simulator.add_forcing_to(rod).using(ea.SlenderBodyTheory, dynamic_viscosity=float(task["viscosity"]))
-        simulator.add_forcing_to(rod).using(Muscles, task["shapes"], task["weights"], step)
+        simulator.add_forcing_to(rod).using(ea.SlenderBodyTheory, dynamic_viscosity=task["viscosity"])
+        simulator.add_forcing_to(rod).using(Muscles, task["shapes"], task["weights"], task["step"])
         rods.append(rod)
     simulator.finalize()
     return simulator, rods[0]
@@ -83,30 +81,19 @@ def swim(task, steps: int, count: int = 1):
     return head, time.process_time() - start, apart
 
 
-def main(path: str) -> int:
-    """Measure the task in the file at `path`."""
-    task = dict(np.load(path))
-    steps, batch = int(task["steps"]), int(task["batch"])
+def main() -> None:
+    """Measure the task."""
+    task = read_task()
+    steps, batch = task["steps"], task["batch"]
     for count in {1, batch}:
         swim(task, 20, count)  # compiles
-    results = [swim(task, steps) for _ in range(int(task["repeats"]))]
+    results = [swim(task, steps) for _ in range(task["repeats"])]
     part = steps // 5  # of a batch, a fifth of the way tells its cost
     together = swim(task, part, batch)[1] * steps / part / batch if batch > 1 else None
     head, _, apart = results[0]
-    print(
-        json.dumps(
-            {
-                "version": version("pyelastica"),
-                "seconds": statistics.median(seconds for _, seconds, _ in results),
-                "batch_seconds": together,
-                "head": head[-1].tolist(),
-                "path": float(np.sum(np.linalg.norm(np.diff(head, axis=0), axis=1))),
-                "shape_error": apart,
-            }
-        )
-    )
-    return 0
+    seconds = float(np.median([each for _, each, _ in results]))
+    answer(seconds, head, version=version("pyelastica"), batch_seconds=together, shape_error=apart)
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1]))
+    main()

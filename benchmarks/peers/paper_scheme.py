@@ -10,17 +10,14 @@ equal cells, of section twists and their rates in section axes,
 and of the head's inertia I_o and wrench F_o, which give the rate of the head's twist (G_ext). Once a step a second
 sweep with the true rates integrates the balance (50) for the internal wrench (G_int). Written plainly, with the same
 corrections of the formulae as the library, and compiled by numba. Cells and the curvature at all instants come
-tabulated in the task (`against_paper_scheme.py`), which is not counted. No code of the library takes part.
+tabulated in the task (`benchmarks/paper_scheme.py`), which is not counted. No code of the library takes part.
 """
 
-import json
-import statistics
-import sys
-import time
 from typing import NamedTuple
 
 import numpy as np
 from numba import njit
+from task import answer, read_task, timed
 
 STATE = 46  # quaternion 4, r 3, Omega 3, V 3, Omegadot 3, Vdot 3, I_o 21, F_o 6
 OPTIONS = {"cache": True, "fastmath": {"contract", "reassoc", "nsz", "arcp"}, "error_model": "numpy"}
@@ -259,21 +256,15 @@ def _torque_of(cells, j, y, nose, torque):
     torque[2] = cx * gx + cy * gy + cz * gz
 
 
-def main(path: str) -> int:
-    """Measure the task in the file at `path`."""
-    task = dict(np.load(path))
-    cells = Cells(**{name: task[name] if task[name].ndim else float(task[name]) for name in Cells._fields})
-    arguments = cells, task["shapes"], float(task["step"]), bool(task["wrench"])
-    positions, torque = swim(*arguments)  # compiles
-    times = []
-    for _ in range(int(task["repeats"])):
-        start = time.process_time()
-        swim(*arguments)
-        times.append(time.process_time() - start)
-    shown = torque[:, :: int(task["every"])]
-    print(json.dumps({"seconds": statistics.median(times), "position": positions.tolist(), "torque": shown.tolist()}))
-    return 0
+def main() -> None:
+    """Measure the task."""
+    task = read_task()
+    cells = Cells(**{name: task[name] for name in Cells._fields})
+    arguments = cells, task["shapes"], task["step"], task["wrench"]
+    swim(*arguments)  # compiles
+    (positions, torque), seconds = timed(lambda: swim(*arguments), task["repeats"])
+    answer(seconds, positions, position=positions.tolist(), torque=torque[:, :: task["every"]].tolist())
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1]))
+    main()

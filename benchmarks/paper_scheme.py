@@ -1,30 +1,26 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The paper's own scheme against the library, at equal error: `python benchmarks/run.py paper_scheme`.
+"""The paper's own scheme (`peers/paper_scheme.py`, in numba) against the library, at equal error."""
 
-The scheme runs in numba, in an environment of its own, which is made on the first call.
-"""
-
-import statistics
 from functools import partial
 from pathlib import Path
+from statistics import median
+from typing import Any
 
 import numpy as np
 from eel_studies.tradeoff.settings import REFERENCE
-from measuring import times_in_turn
-from peer_processes import environment, measured
+from measuring import REPEATS, Lines, environment, measured, times_in_turn
 
-from eel_dynamics import Body, Scene, Simulation, simulate
-from eel_gaits import falling
+from eel_dynamics import Body, Run, Scene, Simulation, simulate
+from eel_gaits import Law, falling
 
-DURATION = 10.0  # s
+BODY, LAW, DURATION = Body.boyer2010(), falling(), 10.0  # s
 STEP = 0.01  # s, of the paper's scheme
-CELLS = (50, 100, 200)
-TARGETS = (1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6, 1e-7)
+CELLS = (50, 100, 200)  # of the paper's scheme
 COMMON = 50  # cells whose ends all share, where torques are compared
-REPEATS = 9
+TARGETS = (1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6, 1e-7)
 
 
-def paper_scheme():
+def paper_scheme() -> Lines:
     """Runge-Kutta 4 in space (cells) and time (steps of 0.01 s), as in section 7.1 of the paper, in numba, against the
     library at no greater error; falling gait, 10 s, laminar friction. Errors of the head's position at the end by its
     path, and of the torque by its maximum. CPU times; set-up is the tabulation of body and law, theirs never
@@ -33,26 +29,28 @@ def paper_scheme():
     if python is None:
         yield "skipped, numba could not be installed", None, ""
         return
-    law, body = falling(), Body.boyer2010()
     for internal in (False, True):
-        scene = Scene(friction="laminar", ledger=False, internal_wrench=internal)
-        ours = partial(simulate, law, DURATION, body=body, scene=scene)
-        period = STEP if internal else DURATION
-        finest = ours(accuracy=REFERENCE, sample_period=period, stations=COMMON + 1)
-        runs = {target: ours(accuracy=target, sample_period=period, stations=COMMON + 1) for target in TARGETS}
-        errors = {target: _errors(run.position[-1], run.torque, finest) for target, run in runs.items()}
+        scene, period = (
+            Scene(friction="laminar", ledger=False, internal_wrench=internal),
+            STEP if internal else DURATION,
+        )
+        ours = partial(simulate, LAW, DURATION, body=BODY, scene=scene, estimate=False)
+        finest = ours(accuracy=REFERENCE, sample_period=STEP, stations=COMMON + 1)
+        errors = {}
+        for target in TARGETS:
+            run = ours(accuracy=target, sample_period=period, stations=COMMON + 1)
+            errors[target] = _errors(run.position, run.torque, finest)
         yield "with the internal torque at each step" if internal else "motion alone", None, ""
         for count in CELLS:
-            theirs = swum(python, law, body, DURATION, STEP, count, wrench=internal, repeats=REPEATS)
-            error = _errors(theirs["position"][-1], theirs["torque"] if internal else None, finest)
-            target = next(target for target in TARGETS if all(np.array(errors[target]) <= error))
-            swimmer = Simulation(body=body, scene=scene, accuracy=target, stations=count + 1)
-            swimmer.adopt(law)
-            instants = np.arange(round(DURATION / period) + 1) * period
-            marched = partial(swimmer.record, instants, internal, False)
+            theirs = swum(python, LAW, BODY, DURATION, STEP, count, wrench=internal, repeats=REPEATS)
+            error = _errors(theirs["position"], theirs["torque"] if internal else None, finest)
+            target = next(target for target, own in errors.items() if all(np.array(own) <= error))
+            swimmer = Simulation(body=BODY, scene=scene, accuracy=target, stations=count + 1)
+            swimmer.adopt(LAW)
+            marched = partial(swimmer.record, np.arange(round(DURATION / period) + 1) * period, internal, False)
             whole = partial(ours, accuracy=target, sample_period=period, stations=count + 1)
             times = times_in_turn({"ours": (swimmer.reset, marched), "with set-up": whole})
-            seconds = {name: statistics.median(values) for name, values in times.items()}
+            seconds = {name: median(values) for name, values in times.items()}
             yield f"  {count} cells", DURATION / theirs["seconds"], f"s per CPU second, error {_text(error)}"
             said = f"s per CPU second, error {_text(errors[target])}, target {target:g}"
             yield "    ours", DURATION / seconds["ours"], said
@@ -60,7 +58,20 @@ def paper_scheme():
             yield "    its set-up counted", theirs["seconds"] / seconds["with set-up"], "times"
 
 
-def swum(python: Path, law, body: Body, duration, step, count, *, wrench: bool, repeats: int = 1) -> dict:
+def _errors(position: np.ndarray, torque: np.ndarray | None, finest: Run) -> tuple[float, ...]:
+    error = float(np.linalg.norm(position[-1] - finest.position[-1]) / finest.path_length)
+    if torque is None or finest.torque is None:
+        return (error,)
+    return error, float(np.max(np.abs(torque - finest.torque)) / np.max(np.linalg.norm(finest.torque, axis=2)))
+
+
+def _text(errors: tuple[float, ...]) -> str:
+    return " and ".join(f"{error:.1e}" for error in errors)
+
+
+def swum(
+    python: Path, law: Law, body: Body, duration: float, step: float, count: int, *, wrench: bool, repeats: int = 1
+) -> dict[str, Any]:
     """The paper's scheme in `count` cells, by the interpreter `python`: head's position (T, 3) [m] at all steps, the
     internal torque (T, COMMON + 1, 3) [N m], and the median CPU time of the repeats, seconds [s]."""
     theirs = measured(
@@ -76,7 +87,7 @@ def swum(python: Path, law, body: Body, duration, step, count, *, wrench: bool, 
     return theirs | {name: np.array(theirs[name]) for name in ("position", "torque")}
 
 
-def cells_of(body: Body, count: int, density: float = 1000.0, viscosity: float = 1e-6) -> dict:
+def cells_of(body: Body, count: int, density: float = 1000.0, viscosity: float = 1e-6) -> dict[str, Any]:
     """`body`, as heavy as water, cut into `count` equal cells: what the scheme's `Cells` hold."""
     x = np.linspace(0.0, body.length, 2 * count + 1)
     a, b = body.half_height(x), body.half_width(x)
@@ -104,28 +115,8 @@ def cells_of(body: Body, count: int, density: float = 1000.0, viscosity: float =
     }
 
 
-def curvatures(law, duration: float, step: float, count: int, length: float = 1.0) -> np.ndarray:
+def curvatures(law: Law, duration: float, step: float, count: int, length: float = 1.0) -> np.ndarray:
     """Pitch and yaw curvature, rate, acceleration (stages, 2 n + 1, 6) at each half step in time."""
     x = np.linspace(0.0, length, 2 * count + 1)
     times = np.arange(2 * round(duration / step) + 1) * 0.5 * step
     return np.array([np.concatenate([field[:, 1:] for field in law.curvature(t, x)], axis=1) for t in times])
-
-
-def _errors(position, torque, finest) -> tuple[float, ...]:
-    error = float(np.linalg.norm(position - finest.position[-1]) / _path(finest))
-    if torque is None:
-        return (error,)
-    return error, float(np.max(np.abs(torque - finest.torque)) / np.max(np.linalg.norm(finest.torque, axis=2)))
-
-
-def _path(run) -> float:
-    """Length [m] of the head's path, or of a run at the same scene sampled often enough to tell."""
-    if len(run.time) > 100:
-        return run.path_length
-    return simulate(
-        run.law, run.time[-1], body=run.body, scene=run.scene, accuracy=1e-6, sample_period=0.01
-    ).path_length
-
-
-def _text(errors) -> str:
-    return " and ".join(f"{error:.1e}" for error in errors)
