@@ -15,9 +15,9 @@ from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.batch import Batch, simulate_batch
 from eel_dynamics.runs.run import Run, simulate
 from eel_dynamics.simulation.energy import EnergyLedger
+from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.prescribed import HydrodynamicWrench, hydrodynamic_wrench
 from eel_dynamics.simulation.simulation import Simulation
-from eel_dynamics.simulation.snapshot import Snapshot
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 __all__ = [

@@ -28,7 +28,7 @@ def said_of(words, capsys) -> str:
     ],
 )
 def test_bad_input_is_refused_before_the_swim(words, named, monkeypatch, capsys):
-    monkeypatch.setattr("eel_dynamics.runs.run.SwimmerArguments.of", lambda *_: pytest.fail("it swims"))
+    monkeypatch.setattr("eel_dynamics.runs.run.SwimRequest.swim", lambda *_: pytest.fail("it swims"))
     assert named in said_of(words, capsys)
 
 

@@ -82,7 +82,7 @@ def test_what_is_not_finite_is_found_with_its_sample():
     arrays = {"energies": np.ones((5, 2)), "position": np.zeros((5, 3))}
     arrays["position"][3, 1] = np.nan
     whole = np.concatenate([array.ravel() for array in arrays.values()])
-    out, works = SimpleNamespace(_asdict=lambda: arrays | {"whole": whole}, whole=whole, **arrays), np.zeros((5, 4))
+    out, works = SimpleNamespace(arrays=lambda: arrays, whole=whole, **arrays), np.zeros((5, 4))
     sample, quantity, value = first_bad_sample(out, works, 5, 2.0, np.inf)
     assert (sample, quantity) == (3, "position is not finite") and np.isnan(value)
     assert first_bad_sample(out, works, 3, 2.0, 0.0) is None

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from eel_dynamics.runs.run import Run
 from eel_dynamics.simulation.energy import EnergyLedger
+from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.simulation import Simulation
-from eel_dynamics.simulation.snapshot import Snapshot
 from eel_gaits.laws.law import Law
 
 STACKED = (

@@ -26,64 +26,64 @@ from eel_dynamics.accuracy.error_estimate import ErrorEstimate
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.measures import MEASURES, measures_of
 from eel_dynamics.analysis.settling import tell_unsettled
-from eel_dynamics.model.arguments import checked_stations
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.equality import same_fields
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.broadcast import swimmers_of
 from eel_dynamics.runs.companion import with_error_estimate
 from eel_dynamics.runs.motions import check_duration
-from eel_dynamics.runs.observed_run import fields_of_observations
-from eel_dynamics.runs.run import Run, SwimRequest
+from eel_dynamics.runs.run import Run, SwimRequest, run_of
 from eel_dynamics.runs.sampling import check_memory, checked_times, default_sample_period
 from eel_dynamics.runs.settled_duration import duration_of
 from eel_dynamics.runs.storage import plain
 from eel_dynamics.runs.storage.netcdf import loaded, write
 from eel_dynamics.runs.storage.run_contents import contents_of_batch, observed_of_batch, with_warnings
 from eel_dynamics.runs.storage.tables import dataset_of, frame_of_all, needed
-from eel_dynamics.runs.storage.variables import Contents
+from eel_dynamics.runs.variables import COUNTS, Contents, documented_arrays
 from eel_dynamics.simulation.energy import EnergyLedger
-from eel_dynamics.simulation.observations import Observations, empty_observations
+from eel_dynamics.simulation.observations import LOAD, Observations
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 ALONG = "backbone", "section_orientation", "curvature", "curvature_rate", "torque", "force", "fluid_force"
 MOST_THREADS = 1000
 
 
+@documented_arrays("batch")
 @dataclass(frozen=True, eq=False, repr=False)
 class Batch:
     """B swimmers, T samples, M stations, in the axes and units of `Run`.
 
     Values after the last valid sample of a swimmer that stopped are 0, see `valid`. Profiles are None without stations;
-    wrench and energy are None unless every scene has them. Two batches are equal where all their fields are.
+    wrench and energy are None unless every scene has them, and fluid_force without `load`. `energy` has one (B, T)
+    array per field. Two batches are equal where all their fields are. Arrays:
     """
 
     laws: tuple[Law | SampledLaw, ...]
     bodies: tuple[Body, ...]
     scenes: tuple[Scene, ...]
     accuracies: tuple[Accuracy, ...]
-    time: np.ndarray  #: (T,) s
-    samples: np.ndarray  #: (B,) int, number of valid samples
+    time: np.ndarray
+    samples: np.ndarray
     error: tuple[SimulationStopped | None, ...]  #: why each swimmer stopped: time, quantity, value, hint
-    steps: np.ndarray  #: (B,) int, accepted steps in time
-    evaluations: np.ndarray  #: (B,) int, of the head's dynamics, for the motion alone
-    nodes: np.ndarray  #: (B,) int, along the body
+    steps: np.ndarray
+    evaluations: np.ndarray
+    nodes: np.ndarray
     error_estimates: tuple[ErrorEstimate | None, ...]  #: None where none was wanted, or the swimmer stopped
-    position: np.ndarray  #: (B, T, 3) m, head, world
-    orientation: np.ndarray  #: (B, T, 4) x y z w, world from head
-    twist: np.ndarray  #: (B, T, 6) (Omega, V) rad/s, m/s, head's axes
-    head_acceleration: np.ndarray  #: (B, T, 6) rad/s^2, m/s^2, head's axes
-    center_of_mass: np.ndarray  #: (B, T, 3) m, world
-    x: np.ndarray  #: (B, M) m, stations
-    backbone: np.ndarray | None  #: (B, T, M, 3) m, world
-    section_orientation: np.ndarray | None  #: (B, T, M, 4) x y z w, world from section
-    curvature: np.ndarray | None  #: (B, T, M, 3) rad/m
-    curvature_rate: np.ndarray | None  #: (B, T, M, 3) rad/m/s
-    torque: np.ndarray | None  #: (B, T, M, 3) N m, section axes
-    force: np.ndarray | None  #: (B, T, M, 3) N, section axes
-    fluid_force: np.ndarray | None  #: (B, T, M, 3) N/m, section axes; with `load` only
-    energy: EnergyLedger | None  #: one (B, T) array per field
-    _out: tuple = ()  # profiles, works, energy at the start, of all, for `__getitem__`
+    position: np.ndarray
+    orientation: np.ndarray
+    twist: np.ndarray
+    head_acceleration: np.ndarray
+    center_of_mass: np.ndarray
+    x: np.ndarray
+    backbone: np.ndarray | None
+    section_orientation: np.ndarray | None
+    curvature: np.ndarray | None
+    curvature_rate: np.ndarray | None
+    torque: np.ndarray | None
+    force: np.ndarray | None
+    fluid_force: np.ndarray | None
+    energy: EnergyLedger | None
+    _out: tuple = ()  # observations, works, energy at the start, of all, for `__getitem__`
 
     def __len__(self) -> int:
         return len(self.laws)
@@ -123,28 +123,21 @@ class Batch:
         """Swimmer `index` as a `Run`, with the samples that it has."""
         index = range(len(self))[index]
         out, works, start = self._out
-        scene, done = self.scenes[index], self.samples[index]
-        has_stations = self.backbone is not None
-        observed = fields_of_observations(
-            _of_one(out, index),
-            times=self.time[:done],
+        scene, done = self.scenes[index], int(self.samples[index])
+        return run_of(
+            Swimmer(self.laws[index], self.bodies[index], scene, self.x[index]),
+            out[index],
             works=works[index, :done],
-            energy_at_start=start[index],
-            scene=scene,
-            wrench=scene.internal_wrench and has_stations,
+            start=start[index],
+            time=self.time[:done],
+            wrench=scene.internal_wrench and self.backbone is not None,
             load=self.fluid_force is not None,
-        )
-        return Run(
             law=self.laws[index],
-            body=self.bodies[index],
-            scene=scene,
             accuracy=self.accuracies[index],
-            x=self.x[index],
             steps=int(self.steps[index]),
             evaluations=int(self.evaluations[index]),
             nodes=int(self.nodes[index]),
             error_estimate=self.error_estimates[index],
-            **observed,
         )
 
     def save(self, path) -> None:
@@ -210,55 +203,63 @@ def simulate_batch(
     `ValueError` names an argument that does not fit, with the number of the swimmer.
     """
     accuracy = accuracy.tolist() if isinstance(accuracy, np.ndarray) else accuracy
-    swimmers = swimmers_of(laws, bodies, scenes, accuracy, positions, orientations, twists, most_evaluations)
+    along = [0.0] if stations is None else stations
+    swimmers = swimmers_of(laws, bodies, scenes, accuracy, along, positions, orientations, twists, most_evaluations)
     seconds = duration_of(duration, swimmers)
     if sample_period is None:
-        sample_period = default_sample_period({each.law for each in swimmers}, seconds)
+        sample_period = default_sample_period({law for law, _ in swimmers}, seconds)
     times = checked_times(seconds, sample_period)
-    for each in swimmers:
-        check_duration(each.law, seconds)
-    along = [0.0] if stations is None else stations
-    x_of = {length: checked_stations(along, length) for length in dict.fromkeys(each.body.length for each in swimmers)}
-    x = [x_of[each.body.length] for each in swimmers]
-    wrench = [each.scene.internal_wrench and stations is not None for each in swimmers]
-    count, load = len(x), bool(load) and stations is not None
-    out = _space(count, len(times), len(x[0]), any(wrench), load)
+    for law, _ in swimmers:
+        check_duration(law, seconds)
+    wrench = [setup.scene.internal_wrench and stations is not None for _, setup in swimmers]
+    count, load, points = len(swimmers), bool(load) and stations is not None, len(swimmers[0][1].x)
+    check_memory(count, len(times), points, any(wrench), load)
+    out = Observations.empty(len(times), points, any(wrench), load, (count,))
     works, start = np.zeros((count, len(times), 4)), np.zeros(count)
     samples, *_ = counts = np.zeros((4, count), dtype=int)
-    settings = [each.accuracy for each in swimmers]
+    settings = [setup.accuracy for _, setup in swimmers]
     errors: list[SimulationStopped | None] = [None] * count
     estimates: list[ErrorEstimate | None] = [None] * count
 
     def swim(index: int):
-        request = SwimRequest(swimmers[index], x[index], times, wrench[index], load)
+        request = SwimRequest(*swimmers[index], times, wrench[index], load)
         try:
-            settings_to_try = Accuracy.to_refine(request.swimmer.accuracy) if estimate else None
+            settings_to_try = Accuracy.to_refine(request.setup.accuracy) if estimate else None
             found = request.swim(request.simulation(settings_to_try))
             found = with_error_estimate(found, request) if estimate else found
         except (SimulationStopped, ValueError) as error:
             errors[index] = _stopped_at_start(error)
             return
         run = found.run
-        _copy(found.out, out, index)
+        for name, array in found.out.arrays().items():
+            getattr(out, name)[index, : len(array)] = array  # which may be fewer than others have
         works[index], start[index], errors[index] = found.works, found.energy_at_start, found.stopped
         settings[index], estimates[index] = run.accuracy, run.error_estimate
         counts[:, index] = len(run.time), run.steps, run.evaluations, run.nodes
 
     _for_each(swim, count, threads, progress)
     for index in np.flatnonzero(samples < len(times)).tolist():
-        for array in (*_of_one(out, index)[:-1], works[index]):
+        for array in (*out[index].arrays().values(), works[index]):
             array[samples[index] :] = 0.0
+    swum = [Swimmer(law, setup.body, setup.scene, setup.x) for law, setup in swimmers]
     found = settings, errors, estimates, counts
-    return _batch_of(swimmers, found, times, x, out, works, start, wrench, load, stations)
+    return _batch_of(swum, found, times, out, works, start, wrench, load, stations)
 
 
-def _batch_of(swimmers, found, times, x, out, works, start, wrench, load, stations):
+class Swimmer(NamedTuple):
+    """A swimmer of a batch: its law, its body in a scene, its stations (M,) [m]."""
+
+    law: Law | SampledLaw
+    body: Body
+    scene: Scene
+    x: np.ndarray
+
+
+def _batch_of(swimmers: list[Swimmer], found, times, out: Observations, works, start, wrench, load, stations) -> Batch:
     settings, errors, estimates, (samples, steps, evaluations, nodes) = found
-    along = {name: getattr(out, name) if stations is not None else None for name in ALONG}
-    if not all(wrench):
-        along |= {"torque": None, "force": None}
-    if not load:
-        along["fluid_force"] = None
+    absent = {"energies", "powers", "closure", *LOAD} - ({"fluid_force"} if load else set())
+    observed = {name: array for name, array in out.arrays().items() if name not in absent}
+    none = [*(ALONG if stations is None else ()), *(() if all(wrench) else ("torque", "force"))]
     ledger = all(each.scene.ledger for each in swimmers)
     return Batch(
         laws=tuple(each.law for each in swimmers),
@@ -272,22 +273,11 @@ def _batch_of(swimmers, found, times, x, out, works, start, wrench, load, statio
         evaluations=evaluations,
         nodes=nodes,
         error_estimates=tuple(estimates),
-        position=out.position,
-        orientation=out.orientation,
-        twist=out.twist,
-        head_acceleration=out.head_acceleration,
-        center_of_mass=out.center_of_mass,
-        x=np.array(x),
+        x=np.array([each.x for each in swimmers]),
         energy=EnergyLedger.of(out.energies, out.powers, works, start[:, None]) if ledger else None,
         _out=(out, works, start),
-        **along,
+        **{"fluid_force": None} | observed | dict.fromkeys(none),
     )
-
-
-class _Swum(NamedTuple):
-    law: Law
-    body: Body
-    scene: Scene
 
 
 def _batch_from(contents: Contents, laws=None, bodies=None, scenes=None) -> Batch:
@@ -295,29 +285,20 @@ def _batch_from(contents: Contents, laws=None, bodies=None, scenes=None) -> Batc
     values, arrays = contents.values, contents.arrays
     laws = laws or plain.row_of(values["laws"], plain.law_of)
     bodies = bodies or plain.row_of(values["bodies"], plain.body_of)
-    scenes = scenes or plain.row_of(values["scenes"], plain.scene_of)
+    scenes = scenes or plain.row_of(values["scenes"], lambda each: Scene(**each))
     settings = plain.row_of(values["accuracies"], plain.accuracy_of)
     errors = [plain.stop_of(each) for each in values["errors"]]
-    estimates = [plain.error_estimate_of(each) for each in values["error_estimates"]]
-    counts = [arrays[name].astype(int) for name in ("samples", "steps", "evaluations", "nodes")]
+    estimates = [each and ErrorEstimate(**each) for each in values["error_estimates"]]
+    counts = [arrays[name].astype(int) for name in ("samples", *COUNTS)]
     count = len(arrays["samples"])
     if any(len(each) != count for each in (laws, bodies, scenes, settings, errors, estimates)):
         raise ValueError(f"there must be a law, a body, a scene and settings for each of {count} swimmers")
     out, works = observed_of_batch(contents)
-    stations = values["stations"] or None
+    stations, start = values["stations"] or None, arrays["energy_at_start"]
     wrench = [scene.internal_wrench and stations is not None for scene in scenes]
-    return _batch_of(
-        list(map(_Swum, laws, bodies, scenes)),
-        (settings, errors, estimates, counts),
-        arrays["time"],
-        list(arrays["x"]),
-        out,
-        works,
-        arrays["energy_at_start"],
-        wrench,
-        "fluid_force" in arrays,
-        stations,
-    )
+    swum = list(map(Swimmer, laws, bodies, scenes, arrays["x"]))
+    found = settings, errors, estimates, counts
+    return _batch_of(swum, found, arrays["time"], out, works, start, wrench, "fluid_force" in arrays, stations)
 
 
 def available_cores() -> int:
@@ -344,19 +325,3 @@ def _stopped_at_start(error: Exception) -> SimulationStopped:
     if isinstance(error, SimulationStopped):
         return error
     return SimulationStopped(0.0, str(error), np.nan, "take a gentler law, or start slower")
-
-
-def _space(count: int, samples: int, stations: int, wrench: bool, load: bool) -> Observations:
-    """Empty observations whose first axis is the swimmers'. `ValueError` if they do not fit into memory."""
-    check_memory(count, samples, stations, wrench, load)
-    return empty_observations(samples, stations, wrench, load, (count,))
-
-
-def _of_one(out: Observations, index: int) -> Observations:
-    return Observations(*(array[index] for array in out))
-
-
-def _copy(one: Observations, out: Observations, index: int):
-    """Copy the observations of `one` swimmer, which may have fewer profiles, into those of the batch."""
-    for there, here in zip(one[:-1], out[:-1], strict=True):
-        here[index, : len(there)] = there

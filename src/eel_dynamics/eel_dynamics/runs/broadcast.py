@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks the arguments of `simulate` and `simulate_batch`, and broadcasts those of a batch to its swimmers."""
-
-from typing import NamedTuple
+"""Checks the arguments of `simulate_batch`, and broadcasts them to its swimmers."""
 
 import numpy as np
 from eel_base.quantity import numbers
@@ -18,59 +16,24 @@ from eel_dynamics.model.arguments import (
     checked_number,
     checked_quaternion,
     checked_row,
+    checked_stations,
 )
-from eel_dynamics.model.body import Body, checked_body
+from eel_dynamics.model.body import Body
 from eel_dynamics.model.initial_state import InitialState
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.motions import LAWS
-
-
-class SwimmerArguments(NamedTuple):
-    """The arguments of one swimmer: law, body, scene, accuracy and initial state."""
-
-    law: Law | SampledLaw
-    body: Body
-    scene: Scene
-    accuracy: Accuracy
-    position: np.ndarray  # (3,) m, head, world
-    orientation: np.ndarray  # (4,) x y z w, world from head
-    twist: np.ndarray  # (6,) (Omega, V) rad/s, m/s, head's axes
-    most_evaluations: float = MOST_EVALUATIONS  # per simulated second
-
-    @staticmethod
-    def of(
-        law, body, scene, accuracy, position, orientation, twist, most_evaluations=MOST_EVALUATIONS
-    ) -> "SwimmerArguments":
-        """Check the arguments of `simulate`. `ValueError` names what does not fit."""
-        swimmer = SwimmerArguments(
-            checked_instance("law", law, LAWS),
-            checked_body(body),
-            Scene() if scene is None else checked_instance("scene", scene, Scene),
-            Accuracy.of(accuracy),
-            checked_row("position", position, 3),
-            checked_quaternion("orientation", orientation),
-            checked_row("twist", twist, 6),
-            checked_number("most_evaluations", most_evaluations, "per simulated second"),
-        )
-        if swimmer.scene.planar:
-            check_planar(*swimmer.initial_state)
-        return swimmer
-
-    @property
-    def initial_state(self) -> InitialState:
-        """The head at t = 0."""
-        return InitialState(self.position, self.orientation, self.twist)
+from eel_dynamics.simulation.simulation_setup import SimulationSetup
 
 
 def swimmers_of(
-    laws, bodies, scenes, accuracy, positions, orientations, twists, most_evaluations=MOST_EVALUATIONS
-) -> list[SwimmerArguments]:
-    """The arguments of B swimmers, with `most_evaluations` per simulated second.
+    laws, bodies, scenes, accuracy, stations, positions, orientations, twists, most_evaluations=MOST_EVALUATIONS
+) -> list[tuple[Law | SampledLaw, SimulationSetup]]:
+    """Laws and set-ups of B swimmers, with `stations` on each body, and `most_evaluations` per simulated second.
 
     Each other argument is one for all, or a sequence of B (for the last three the rows of an array (B, .)); a sequence
     of length 1 counts as one for all. `ValueError` names what does not fit, and the swimmer's number.
     """
-    columns = _broadcast(
+    laws, bodies, scenes, settings, *states = _broadcast(
         laws=_several("laws", laws, LAWS),
         bodies=_several("bodies", Body.boyer2010() if bodies is None else bodies, Body),
         scenes=_several("scenes", Scene() if scenes is None else scenes, Scene),
@@ -79,11 +42,16 @@ def swimmers_of(
         orientations=_rows("orientations", orientations, checked_quaternion),
         twists=_rows("twists", twists, lambda name, row: checked_row(name, row, 6)),
     )
-    most_evaluations = checked_number("most_evaluations", most_evaluations, "per simulated second")
-    swimmers = [SwimmerArguments(*(*row, most_evaluations)) for row in zip(*columns, strict=True)]
-    for index, swimmer in enumerate(swimmers):
-        if swimmer.scene.planar:
-            _check_planar(index, swimmer)
+    most = checked_number("most_evaluations", most_evaluations, "per simulated second")
+    x = {length: checked_stations(stations, length) for length in dict.fromkeys(body.length for body in bodies)}
+    swimmers = []
+    for index, (law, body, scene, accuracy, *state) in enumerate(
+        zip(laws, bodies, scenes, settings, *states, strict=True)
+    ):
+        initial = InitialState(*state)
+        if scene.planar:
+            _check_planar(index, law, initial)
+        swimmers.append((law, SimulationSetup(body, scene, accuracy, x[body.length], initial, most_evaluations=most)))
     return swimmers
 
 
@@ -115,9 +83,9 @@ def _rows(name: str, values, check) -> list[np.ndarray]:
     return [check(f"{name}[{index}]", row) for index, row in enumerate(np.atleast_1d(array))]
 
 
-def _check_planar(index: int, swimmer: SwimmerArguments):
+def _check_planar(index: int, law: Law | SampledLaw, initial: InitialState):
     try:
-        check_planar(*swimmer.initial_state)
-        check_planar_law(swimmer.law)
+        check_planar(*initial)
+        check_planar_law(law)
     except ValueError as error:
         raise ValueError(f"swimmer {index}: {error}") from None

@@ -45,7 +45,7 @@ def with_error_estimate(swim, request):
     Nothing is estimated for a run that stopped before its end. Without a target nothing is made finer.
     """
     others = []
-    target = getattr(request.swimmer.accuracy, "target", None)  # a budget of time has none
+    target = getattr(request.setup.accuracy, "target", None)  # a budget of time has none
     if swim.stopped is not None or len(request.times) < 2:
         return swim
     marching = _without_ledger(request)
@@ -54,7 +54,7 @@ def with_error_estimate(swim, request):
         error = ErrorEstimate(np.inf, None) if companion is None else relative_errors(swim.run, companion.run)
         if refinement and companion is not None:  # it falls no faster than this: else the two agree by chance
             share = swim.run.accuracy.tolerance / companion.run.accuracy.tolerance
-            if request.swimmer.scene.friction == "blended":
+            if request.setup.scene.friction == "blended":
                 share = max(share, (companion.run.nodes / swim.run.nodes) ** BLENDED_ORDER)
             error = error.at_least(share, companion.run.error_estimate)
         others += [] if companion is None else [companion.run]
@@ -83,8 +83,7 @@ def _with_resampling(run, request, others: list):
     if not isinstance(law, SampledLaw) or error is None or not others:
         return run
     settings = others[0].accuracy
-    swimmer = request.swimmer._replace(law=law.coarser())
-    coarse = _finished(request._replace(swimmer=swimmer), settings)
+    coarse = _finished(request._replace(law=law.coarser()), settings)
     if coarse is None:
         return replace(run, error_estimate=replace(error, position=np.inf, resampling=np.inf))
     apart = relative_errors(others[0], coarse.run)
@@ -102,8 +101,7 @@ def _with_resampling(run, request, others: list):
 
 def _without_ledger(request):
     """The `request` for a motion and its torque alone: Adams' method is the cheaper one without a ledger."""
-    swimmer = request.swimmer
-    return request._replace(swimmer=swimmer._replace(scene=replace(swimmer.scene, ledger=False)), load=False)
+    return request.changed(scene=replace(request.setup.scene, ledger=False))._replace(load=False)
 
 
 def _for_target(swim, target: float | None):

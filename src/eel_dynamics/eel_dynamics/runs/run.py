@@ -3,7 +3,7 @@
 
 import warnings
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -20,67 +20,69 @@ from eel_dynamics.analysis.model_limits import warnings_of
 from eel_dynamics.analysis.peaks import FINER, MOST_SAMPLES, greatest_torque_of
 from eel_dynamics.analysis.run_summary import describe
 from eel_dynamics.analysis.settling import Unsettled
-from eel_dynamics.model.arguments import checked_stations
-from eel_dynamics.model.body import Body, checked_body
+from eel_dynamics.model.arguments import check_planar_law
+from eel_dynamics.model.body import Body
 from eel_dynamics.model.equality import same_fields
 from eel_dynamics.model.scene import Scene
-from eel_dynamics.runs.broadcast import SwimmerArguments
 from eel_dynamics.runs.companion import stable_step, with_error_estimate
 from eel_dynamics.runs.exchange.eel_viz_functions import recorder_of_runs
 from eel_dynamics.runs.exchange.recorded_run import fields_of_bag
 from eel_dynamics.runs.exchange.records import records
 from eel_dynamics.runs.motions import Motion, SmoothingEffect, effect_of_smoothing, law_from
-from eel_dynamics.runs.observed_run import fields_of_observations
 from eel_dynamics.runs.progress_monitor import ProgressMonitor
 from eel_dynamics.runs.sampling import check_memory, checked_times, default_sample_period
 from eel_dynamics.runs.settled_duration import period_of, settling_time, until_settled
 from eel_dynamics.runs.storage.netcdf import loaded, write
 from eel_dynamics.runs.storage.run_contents import contents_of_run, fields_of_run
 from eel_dynamics.runs.storage.tables import dataset_of, frame_of
+from eel_dynamics.runs.variables import documented_arrays
 from eel_dynamics.simulation.energy import EnergyLedger
-from eel_dynamics.simulation.observations import Observations
+from eel_dynamics.simulation.observations import LOAD, WRENCH, Observations
 from eel_dynamics.simulation.simulation import Simulation
+from eel_dynamics.simulation.simulation_setup import SimulationSetup
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 MOST_UNSMOOTHED = 5_000.0  # evaluations per simulated second of a motion without smoothing
 
 
+@documented_arrays("run")
 @dataclass(frozen=True, eq=False, repr=False)
 class Run:
     """A run: T samples at M stations, in SI units. The body lies along +x from the head and swims towards -x.
 
-    Two runs are equal where all their fields are, to the last bit.
+    Two runs are equal where all their fields are, to the last bit. `energy` has one (T,) array per field; it is None
+    without a ledger. `torque`, `force` and the closures are None without the internal wrench. `fluid_force` to
+    `wake_momentum_rate` are None without `load=True`. Arrays:
     """
 
     law: Law | SampledLaw
     body: Body
     scene: Scene
     accuracy: Accuracy
-    time: np.ndarray  #: (T,) s
-    position: np.ndarray  #: (T, 3) m, head, world
-    orientation: np.ndarray  #: (T, 4) x y z w, world from head
-    twist: np.ndarray  #: (T, 6) (Omega, V) rad/s, m/s, head's axes
-    head_acceleration: np.ndarray  #: (T, 6) angular and true acceleration of the head, rad/s^2, m/s^2, head's axes
-    center_of_mass: np.ndarray  #: (T, 3) m, world
-    x: np.ndarray  #: (M,) m, stations of the profiles
-    backbone: np.ndarray  #: (T, M, 3) m, world
-    section_orientation: np.ndarray  #: (T, M, 4) x y z w, world from section
-    curvature: np.ndarray  #: (T, M, 3) rad/m
-    curvature_rate: np.ndarray  #: (T, M, 3) rad/m/s
-    torque: np.ndarray | None  #: (T, M, 3) N m, section axes: of the part behind a section on the part ahead
-    force: np.ndarray | None  #: (T, M, 3) N, section axes; force[..., 0] > 0 is tension
-    # The next five are None without `load=True`.
-    fluid_force: np.ndarray | None  #: (T, M, 3) N/m, of the water on the body, section axes
-    resistive_force: np.ndarray | None  #: (T, M, 3) N/m, its resistive part
-    tail_force: np.ndarray | None  #: (T, 3) N, section axes at the tail
-    nose_force: np.ndarray | None  #: (T, 3) N, section axes at the nose
-    wake_momentum_rate: np.ndarray | None  #: (T, 3) N, T_f E1 - V1 M_f V of eq. (60), section axes at the tail
-    energy: EnergyLedger | None  #: one (T,) array per field
-    closure_torque: np.ndarray | None  #: (T,) N m, magnitude of the internal torque left over at the nose
-    closure_force: np.ndarray | None  #: (T,) N, of the internal force left over there, less the load on the nose
-    steps: int  #: accepted steps in time
-    evaluations: int  #: of the head's dynamics, for the motion alone
-    nodes: int  #: along the body
+    time: np.ndarray
+    position: np.ndarray
+    orientation: np.ndarray
+    twist: np.ndarray
+    head_acceleration: np.ndarray
+    center_of_mass: np.ndarray
+    x: np.ndarray
+    backbone: np.ndarray
+    section_orientation: np.ndarray
+    curvature: np.ndarray
+    curvature_rate: np.ndarray
+    torque: np.ndarray | None
+    force: np.ndarray | None
+    fluid_force: np.ndarray | None
+    resistive_force: np.ndarray | None
+    tail_force: np.ndarray | None
+    nose_force: np.ndarray | None
+    wake_momentum_rate: np.ndarray | None
+    energy: EnergyLedger | None
+    closure_torque: np.ndarray | None
+    closure_force: np.ndarray | None
+    steps: int
+    evaluations: int
+    nodes: int
     error_estimate: ErrorEstimate | None = None  #: None where none was wanted, or for fewer than two samples
 
     def __eq__(self, other) -> bool:
@@ -294,20 +296,27 @@ def simulate(
     than a minute gives a warning. `ValueError` names what does not fit; `SimulationStopped` carries the samples so far
     as `run`.
     """
-    length = checked_body(body).length
-    given = body, scene, accuracy, position, orientation, twist, most_evaluations
+    setup = SimulationSetup.of(
+        body=body,
+        scene=scene,
+        accuracy=accuracy,
+        stations=stations,
+        initial_state=(position, orientation, twist),
+        most_evaluations=most_evaluations,
+    )
+    length, wrench = setup.body.length, setup.scene.internal_wrench
     if until_settled(duration):
         period_of(law, length)
-        duration = settling_time(SwimmerArguments.of(law, *given))
+        duration = settling_time(law, setup)
     seconds: Any = duration  # a text is refused below
     law = law_from(law, seconds, length)
-    sample_period = default_sample_period([law], duration) if sample_period is None else sample_period
-    times = checked_times(duration, sample_period)
-    given = body, scene, Accuracy.to_refine(accuracy) if estimate else accuracy, *given[3:]
-    swimmer = SwimmerArguments.of(law, *given)
-    x, wrench = checked_stations(stations, swimmer.body.length), swimmer.scene.internal_wrench
-    check_memory(1, len(times), len(x), wrench, bool(load), runs=2 if estimate else 1)
-    request = SwimRequest(swimmer, x, times, wrench, bool(load))
+    if setup.scene.planar:
+        check_planar_law(law)
+    times = checked_times(duration, default_sample_period([law], duration) if sample_period is None else sample_period)
+    check_memory(1, len(times), len(setup.x), wrench, bool(load), runs=2 if estimate else 1)
+    if estimate:
+        setup = replace(setup, accuracy=Accuracy.to_refine(setup.accuracy))
+    request = SwimRequest(law, setup, times, wrench, bool(load))
     look = ProgressMonitor(float(duration), progress).update
     swim = request.swim(request.simulation(), look)
     if swim.stopped is not None:
@@ -358,44 +367,65 @@ class Swim(NamedTuple):
 
 
 class SwimRequest(NamedTuple):
-    """A swimmer, its stations x (M,) [m], the times (T,) [s] of its samples, and whether to record wrench and load."""
+    """A swimmer that swims by `law`, the times (T,) [s] of its samples, and whether to record wrench and load."""
 
-    swimmer: SwimmerArguments
-    x: np.ndarray
+    law: Law | SampledLaw
+    setup: SimulationSetup
     times: np.ndarray
     wrench: bool
     load: bool
 
+    def changed(self, **changes) -> "SwimRequest":
+        """The same with other fields of its `setup`."""
+        return self._replace(setup=replace(self.setup, **changes))
+
     def simulation(self, accuracy: Accuracy | None = None) -> Simulation:
         """A simulation at its start, with other settings if `accuracy` is given."""
-        swimmer = self.swimmer if accuracy is None else self.swimmer._replace(accuracy=accuracy)
-        return Simulation(stations=self.x, **swimmer._asdict())
+        setup = self.setup if accuracy is None else replace(self.setup, accuracy=accuracy)
+        return Simulation(**setup.arguments, law=self.law)
 
     def swim(self, simulation: Simulation, look=None) -> Swim:
         """Swim it with a `simulation` of its own, at its start. look(time [s]) is called every few milliseconds."""
         out, works, done, stopped = simulation.record(self.times, self.wrench, self.load, look)
-        steps, _, evaluations = simulation.evaluations
-        observed = fields_of_observations(
+        start, (steps, _, evaluations) = simulation.energy_at_start, simulation.evaluations
+        run = run_of(
+            self.setup,
             out,
-            times=self.times[:done],
             works=works[:done],
-            energy_at_start=simulation.energy_at_start,
-            scene=self.swimmer.scene,
+            start=start,
+            time=self.times[:done],
             wrench=self.wrench,
             load=self.load,
-        )
-        run = Run(
-            law=self.swimmer.law,
-            body=self.swimmer.body,
-            scene=self.swimmer.scene,
+            law=self.law,
             accuracy=simulation.accuracy,
-            x=self.x,
             steps=steps,
             evaluations=evaluations,
             nodes=len(simulation.grid.x),
-            **observed,
         )
-        return Swim(run, out, works, simulation.energy_at_start, stopped)
+        return Swim(run, out, works, start, stopped)
+
+
+def run_of(setup, out: Observations, *, works, start: float, time, wrench: bool, load: bool, **others) -> Run:
+    """The run of the samples in `out` that were reached.
+
+    setup: has the body, the scene and the stations x. works (T, 4) [J], and time (T,) [s]: of those samples. start [J]:
+    the energy at the start. wrench, load: whether the internal wrench and the water's load were observed. others: the
+    other fields of the run.
+    """
+    absent = {*(() if wrench else WRENCH), *(() if load else LOAD)}
+    observed = {name: None if name in absent else array[: len(time)] for name, array in out.arrays().items()}
+    energies, powers, closure = (observed.pop(name) for name in ("energies", "powers", "closure"))
+    return Run(
+        body=setup.body,
+        scene=setup.scene,
+        x=setup.x,
+        time=time,
+        energy=EnergyLedger.of(energies, powers, works, start) if setup.scene.ledger else None,
+        closure_torque=None if closure is None else closure[:, 0],
+        closure_force=None if closure is None else closure[:, 1],
+        **observed,
+        **others,
+    )
 
 
 def _with_stable_step(stopped: SimulationStopped, request: SwimRequest, accuracy: Accuracy) -> SimulationStopped:

@@ -12,6 +12,7 @@ from eel_dynamics.analysis.analysis import AT_REST
 from eel_dynamics.analysis.averaging_window import PLACES, common_period
 from eel_dynamics.analysis.settling import FEWEST, SETTLED, change_of
 from eel_dynamics.simulation.simulation import Simulation
+from eel_dynamics.simulation.simulation_setup import SimulationSetup
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 UNTIL_SETTLED = "settled"  # as a duration
@@ -26,12 +27,15 @@ def until_settled(duration) -> bool:
 
 
 def duration_of(duration: Any, swimmers) -> Any:
-    """The `duration`, or where that is "settled" the time [s] until the slowest of the `swimmers` has settled."""
-    return max(map(settling_time, swimmers)) if until_settled(duration) else duration
+    """The `duration`, or where that is "settled" the time [s] until the slowest of the `swimmers` has settled.
+
+    swimmers: (law, set-up) of each.
+    """
+    return max(settling_time(*each) for each in swimmers) if until_settled(duration) else duration
 
 
-def settling_time(swimmer) -> float:
-    """Time [s], in whole periods, after which the gait of `swimmer` (`SwimmerArguments`) has settled.
+def settling_time(law, setup: SimulationSetup) -> float:
+    """Time [s], in whole periods, after which the gait of a swimmer by `law` has settled.
 
     The later half of that time lies after the law's last ramp. Over its periods the mean speed and the mean power of
     the actuators change by `SETTLED` at most, and as much at most is left to come (`analysis.settling.change_of`).
@@ -39,9 +43,9 @@ def settling_time(swimmer) -> float:
     A body at rest has settled. `MOST_PERIODS` where the gait does not settle within them, or the swim stops.
     `ValueError` for a law without a period.
     """
-    law = swimmer.law
-    period, last_ramp = period_of(law, swimmer.body.length), _last_ramp(law)
-    simulation = Simulation(stations=2, **swimmer._replace(accuracy=_coarse(swimmer.accuracy))._asdict())
+    period, last_ramp = period_of(law, setup.body.length), _last_ramp(law)
+    others = {"accuracy": _coarse(setup.accuracy), "stations": 2}
+    simulation = Simulation(**setup.arguments | others, law=law)
     current, centre, energy, work = np.array(simulation.scene.current), [], 0.0, []
     for count in range(MOST_PERIODS + 1):
         try:
@@ -58,7 +62,7 @@ def settling_time(swimmer) -> float:
         if window < FEWEST or (count - window) * period < last_ramp * (1.0 - 1e-9):
             continue
         speeds = np.linalg.norm(np.diff(centre[-window - 1 :], axis=0), axis=1)
-        moves = np.max(speeds) > AT_REST * swimmer.body.length
+        moves = np.max(speeds) > AT_REST * setup.body.length
         if moves and change_of(speeds) > MARGIN * SETTLED:
             continue
         works = np.diff(work[-window - 1 :])

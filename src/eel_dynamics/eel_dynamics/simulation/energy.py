@@ -10,7 +10,7 @@ the righting moment (`Scene.metacentric_height`), 0 where every section stands u
 """
 
 from dataclasses import dataclass, fields
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -24,18 +24,18 @@ class EnergyLedger:
     Energies, works and the residual are in J, powers in W. A power > 0 brings energy into body and water.
     """
 
-    kinetic_body: np.ndarray  #: J
-    kinetic_fluid: np.ndarray  #: J
-    potential: np.ndarray  #: J, of weight and buoyancy
-    actuator_power: np.ndarray  #: W
-    wake_power: np.ndarray  #: W
-    nose_power: np.ndarray  #: W
-    drag_power: np.ndarray  #: W
-    residual: np.ndarray  #: J, change of all energy since the start less the integral of the powers
-    actuator_work: np.ndarray  #: J, integrals of the powers since the start
-    wake_work: np.ndarray  #: J
-    nose_work: np.ndarray  #: J
-    drag_work: np.ndarray  #: J
+    kinetic_body: Annotated[np.ndarray, "J", "kinetic energy of the body"]
+    kinetic_fluid: Annotated[np.ndarray, "J", "kinetic energy of the water, without the nose's added mass"]
+    potential: Annotated[np.ndarray, "J", "potential energy of weight and buoyancy"]
+    actuator_power: Annotated[np.ndarray, "W", "power of the actuators"]
+    wake_power: Annotated[np.ndarray, "W", "power of the wake"]
+    nose_power: Annotated[np.ndarray, "W", "power of the load on the nose"]
+    drag_power: Annotated[np.ndarray, "W", "power of the drag along the body"]
+    residual: Annotated[np.ndarray, "J", "change of all energy since the start less the works"]
+    actuator_work: Annotated[np.ndarray, "J", "work of the actuators since the start"]
+    wake_work: Annotated[np.ndarray, "J", "work of the wake since the start"]
+    nose_work: Annotated[np.ndarray, "J", "work of the load on the nose since the start"]
+    drag_work: Annotated[np.ndarray, "J", "work of the drag along the body since the start"]
 
     def __eq__(self, other) -> bool:
         return same_fields(self, other)

@@ -26,8 +26,8 @@ from eel_dynamics.accuracy.error_estimate import (
 from eel_dynamics.accuracy.grid_settings import ShapeNeeds
 from eel_dynamics.curvature.curvature_samples import CurvatureSample
 from eel_dynamics.simulation.march import March
+from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.simulation_setup import SimulationSetup
-from eel_dynamics.simulation.snapshot import Snapshot
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 COMPARED_EVERY = 0.1  # s of simulated time between two comparisons

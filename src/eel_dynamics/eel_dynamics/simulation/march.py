@@ -15,10 +15,9 @@ from eel_dynamics.curvature.curvature_samples import CurvatureSample
 from eel_dynamics.curvature.law_follower import LawFollower
 from eel_dynamics.model.initial_state import InitialState, time_scale
 from eel_dynamics.simulation.discretisation import discretise
-from eel_dynamics.simulation.observations import Observations, places_of_instant
+from eel_dynamics.simulation.observations import Observations, Snapshot
 from eel_dynamics.simulation.sample_check import first_bad_sample
 from eel_dynamics.simulation.simulation_setup import SimulationSetup
-from eel_dynamics.simulation.snapshot import Snapshot
 from eel_dynamics.simulation.stopping import SimulationStopped, not_begun, remedy, stopped_by
 
 MARCHED, SINGULAR, UNFINISHED = (eel_core.STATUSES.index(name) for name in ("marched", "singular", "unfinished"))
@@ -202,14 +201,14 @@ class March:
 
     def observe(self, wrench: bool = True, load: bool = True) -> Snapshot:
         """As `Simulation.observe`."""
-        x, scene = self.setup.x, self.setup.scene
+        scene = self.setup.scene
         wrench, load = bool(wrench and scene.internal_wrench), bool(load)
-        places, size = places_of_instant(len(x), wrench, load)
-        whole = np.zeros(size)
-        if not self.core.observe(whole, wrench, load):
+        snapshot = Snapshot(self.time, self.setup.x, wrench, load)
+        if not self.core.observe(snapshot.whole, wrench, load):
             raise self._stopped(SINGULAR)
-        works = np.array(self.core.works) if scene.ledger else None
-        return Snapshot(self.time, x, whole, places, works, self.energy_at_start)
+        if scene.ledger:
+            snapshot.keep_ledger(np.array(self.core.works), self.energy_at_start)
+        return snapshot
 
     @property
     def twist(self) -> np.ndarray:

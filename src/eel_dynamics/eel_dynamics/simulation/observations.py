@@ -1,76 +1,182 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Arrays of a run's samples: poses, velocities, energies, and profiles along the body at the stations."""
+"""What is observed of a swimmer: poses, velocities, energies, and profiles along the body at the stations.
+
+`Observations` is the one description of these quantities, with dimensions, unit and meaning. Runs, files, labelled
+arrays and tables take it from `OBSERVED`.
+"""
 
 from functools import lru_cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 import eel_core
+from eel_dynamics.model.equality import same
+from eel_dynamics.simulation.energy import EnergyLedger
 
 
-class Observations(NamedTuple):
-    """Samples: T instants, M stations. Library axes, SI units. All are views of `whole`."""
+class Variable(NamedTuple):
+    """An array of a run: names of its dimensions, unit and meaning."""
 
-    position: np.ndarray  # (T, 3) m, head, world
-    orientation: np.ndarray  # (T, 4) x y z w, world from head
-    twist: np.ndarray  # (T, 6) rad/s, m/s, head's axes
-    head_acceleration: np.ndarray  # (T, 6) rad/s^2, m/s^2, true acceleration of the head, head's axes
-    center_of_mass: np.ndarray  # (T, 3) m, world
-    energies: np.ndarray  # (T, 3) J, kinetic of body and of water, potential
-    powers: np.ndarray  # (T, 4) W, actuators, wake, nose, drag
-    closure: np.ndarray  # (T, 2) N m, N: what is left at the nose of the internal wrench
-    backbone: np.ndarray  # (T, M, 3) m, world
-    section_orientation: np.ndarray  # (T, M, 4) x y z w, world from section
-    curvature: np.ndarray  # (T, M, 3) rad/m
-    curvature_rate: np.ndarray  # (T, M, 3) rad/m/s
-    torque: np.ndarray  # (T, M, 3) N m, section axes
-    force: np.ndarray  # (T, M, 3) N, section axes
-    fluid_force: np.ndarray  # (T, M, 3) N/m, of the water on the body, section axes
-    resistive_force: np.ndarray  # (T, M, 3) N/m, its resistive part
-    tail_force: np.ndarray  # (T, 3) N, section axes at the tail
-    nose_force: np.ndarray  # (T, 3) N, section axes at the nose
-    wake_momentum_rate: np.ndarray  # (T, 3) N, section axes at the tail
-    whole: np.ndarray  # (.,) all of these, one behind the other
+    dimensions: tuple[str, ...]
+    unit: str
+    description: str
 
 
-def empty_observations(
-    samples: int, stations: int, wrench: bool = True, load: bool = True, swimmers: tuple[int, ...] = ()
-) -> Observations:
-    """Space for `samples` instants at `stations` stations.
+class Observed:
+    """A quantity of `Observations`: a view of their numbers, made when it is asked for."""
 
-    The profiles that are not asked for have no instants. swimmers: (B,) adds a first axis for B swimmers.
+    def __init__(self, dimensions: str, unit: str, description: str):
+        self.variable = Variable(tuple(dimensions.split()), unit, description)
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self._name = name
+
+    def __get__(self, samples: "Observations | None", owner: type | None = None) -> Any:
+        if samples is None:
+            return self
+        where, shape = samples.places[self._name]
+        return None if shape is None else samples.whole[..., where].reshape(*samples.whole.shape[:-1], *shape)
+
+
+Places = dict[str, tuple[slice, tuple[int, ...] | None]]  # of each quantity: where, and its shape
+
+
+class Observations:
+    """Samples of a swimmer: T instants ("time"), M stations ("station"). World and head in REP-103 axes, SI units.
+
+    Section axes are the paper's. All quantities are views of `whole` (..., n), where they lie one behind the other at
+    their `places`; further dimensions, such as those of several swimmers, come first. A quantity that was not asked for
+    has no instants.
     """
-    places = _places(samples, stations, bool(wrench), bool(load))
-    whole = np.zeros((*swimmers, places[-1][1]))
-    parts = (whole[..., begin:end].reshape(*swimmers, *shape) for begin, end, shape in places)
-    return Observations(*(*parts, whole))
+
+    __slots__ = ("places", "whole")
+
+    position = Observed("time world", "m", "head, world")
+    orientation = Observed("time quaternion", "1", "world from head, x y z w")
+    twist = Observed("time component", "rad/s, m/s", "(Omega, V) of the head, its axes")
+    head_acceleration = Observed(
+        "time component", "rad/s^2, m/s^2", "angular and true acceleration of the head, its axes"
+    )
+    center_of_mass = Observed("time world", "m", "centre of mass, world")
+    energies = Observed("time energy", "J", "kinetic of body and of water, potential")
+    powers = Observed("time power", "W", "of actuators, wake, nose and drag")
+    closure = Observed("time closure", "N m, N", "what is left at the nose of the internal torque and force")
+    backbone = Observed("time station world", "m", "backbone, world")
+    section_orientation = Observed("time station quaternion", "1", "world from section, x y z w")
+    curvature = Observed("time station section", "rad/m", "curvature of the backbone, section axes")
+    curvature_rate = Observed("time station section", "rad/m/s", "rate of the curvature, section axes")
+    torque = Observed(
+        "time station section", "N m", "internal torque of the part behind a section on the part ahead, section axes"
+    )
+    force = Observed("time station section", "N", "internal force likewise; along axis 1 tension is positive")
+    fluid_force = Observed("time station section", "N/m", "force of the water on the body, section axes")
+    resistive_force = Observed("time station section", "N/m", "resistive part of fluid_force")
+    tail_force = Observed("time section", "N", "force of the water on the tail, section axes")
+    nose_force = Observed("time section", "N", "force of the water on the nose, section axes")
+    wake_momentum_rate = Observed(
+        "time section", "N", "momentum given to the wake per time, T_f E1 - V1 M_f V of eq. (60), section axes"
+    )
+
+    def __init__(self, whole: np.ndarray, places: Places):
+        self.whole, self.places = whole, places
+
+    @staticmethod
+    def empty(
+        samples: int, stations: int, wrench: bool = True, load: bool = True, swimmers: tuple[int, ...] = ()
+    ) -> "Observations":
+        """Space for `samples` instants at `stations` stations.
+
+        wrench, load: whether there is space for the internal wrench and for the water's load. swimmers: (B,) adds a
+        first dimension for B swimmers.
+        """
+        places, size = _places(samples, stations, bool(wrench), bool(load))
+        return Observations(np.zeros((*swimmers, size)), places)
+
+    def __getitem__(self, swimmer: int) -> "Observations":
+        """Those of one of several swimmers."""
+        return Observations(self.whole[swimmer], self.places)
+
+    def __eq__(self, other) -> bool:
+        return type(self) is type(other) and self.places == other.places and same(self.whole, other.whole)
+
+    __hash__ = object.__hash__
+
+    def arrays(self) -> dict[str, np.ndarray]:
+        """All quantities by name."""
+        return {name: getattr(self, name) for name in self.places}
 
 
-Places = dict[str, tuple[slice, tuple[int, ...] | None]]
+OBSERVED = {name: each.variable for name, each in vars(Observations).items() if isinstance(each, Observed)}
+WRENCH = ("torque", "force", "closure")  # quantities of the internal wrench
+LOAD = ("fluid_force", "resistive_force", "tail_force", "nose_force", "wake_momentum_rate")  # of the water's load
 
 
-@lru_cache(maxsize=64)
-def places_of_instant(stations: int, wrench: bool, load: bool) -> tuple[Places, int]:
-    """Place and shape of each quantity of one instant, None where it is not asked for; how many numbers they hold."""
-    places = _places(1, stations, wrench, load)
-    named = zip(Observations._fields[:-1], places, strict=True)
-    found = {name: (slice(begin, end), shape[1:] if shape[0] else None) for name, (begin, end, shape) in named}
-    return found, places[-1][1]
+class Snapshot(Observations):
+    """One instant: the quantities have no dimension "time", and are None where they were not asked for.
+
+    The arrays are views: copy what is to be kept.
+
+    Attributes:
+        time: [s].
+        x: (M,) [m], the stations.
+    """
+
+    __slots__ = ("_energy", "_energy_at_start", "_works", "time", "x")
+
+    def __init__(self, time: float, x: np.ndarray, wrench: bool, load: bool):
+        places, size = _places_of_instant(len(x), wrench, load)
+        super().__init__(np.zeros(size), places)
+        self.time, self.x = time, x
+        self._works: np.ndarray | None = None
+        self._energy_at_start = 0.0
+        self._energy: EnergyLedger | None = None
+
+    def keep_ledger(self, works: np.ndarray, energy_at_start: float):
+        """Have a ledger, from the `works` (4,) [J] since the start and the energy [J] there."""
+        self._works, self._energy_at_start = works, energy_at_start
+
+    @property
+    def energy(self) -> EnergyLedger | None:
+        """One float per field; None without a ledger."""
+        if self._energy is None and self._works is not None:
+            self._energy = EnergyLedger.of(self.energies, self.powers, self._works, self._energy_at_start)
+        return self._energy
+
+    @property
+    def actuator_work(self) -> float | None:
+        """[J] since the start; None without a ledger."""
+        return None if self._works is None else float(self._works[0])
+
+    @property
+    def closure_torque(self) -> float | None:
+        """[N m], what is left of the internal torque at the nose; None without the wrench."""
+        return None if self.torque is None else float(self.closure[0])
+
+    @property
+    def closure_force(self) -> float | None:
+        """[N], what is left of the internal force there, less the load on the nose; None without the wrench."""
+        return None if self.torque is None else float(self.closure[1])
 
 
 def size_of(samples: int, stations: int, wrench: bool, load: bool) -> int:
     """How many numbers the profiles of so many samples and stations hold."""
-    return _places(samples, stations, bool(wrench), bool(load))[-1][1]
+    return _places(samples, stations, bool(wrench), bool(load))[1]
 
 
 @lru_cache(maxsize=64)
-def _places(samples: int, stations: int, wrench: bool, load: bool) -> tuple[tuple[int, int, tuple[int, ...]], ...]:
-    """Begin, end and shape of each of the profiles in the whole."""
-    layout = eel_core.layout(samples, stations, wrench, load)
-    places = []
-    for name in Observations._fields[:-1]:
-        begin, instants, numbers, along_body = layout[name]
+def _places(samples: int, stations: int, wrench: bool, load: bool) -> tuple[Places, int]:
+    """The places of all quantities, and how many numbers these hold."""
+    places: Places = {}
+    end = 0
+    for name, (begin, instants, numbers, along_body) in eel_core.layout(samples, stations, wrench, load).items():
         shape = (instants, stations, numbers) if along_body else (instants, numbers)
-        places.append((begin, begin + int(np.prod(shape)), shape))
-    return tuple(places)
+        end = begin + int(np.prod(shape))
+        places[name] = slice(begin, end), shape
+    return places, end
+
+
+@lru_cache(maxsize=64)
+def _places_of_instant(stations: int, wrench: bool, load: bool) -> tuple[Places, int]:
+    places, size = _places(1, stations, wrench, load)
+    return {name: (where, shape[1:] if shape and shape[0] else None) for name, (where, shape) in places.items()}, size

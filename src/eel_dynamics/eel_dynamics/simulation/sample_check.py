@@ -23,8 +23,7 @@ def first_bad_sample(out, works: np.ndarray, done: int, start: float, floor: flo
     with np.errstate(over="ignore", invalid="ignore"):
         failures = []
         if not math.isfinite(np.add.reduce(out.whole) + np.add.reduce(works, axis=None)):
-            arrays = {**out._asdict(), "works": works}
-            del arrays["whole"]
+            arrays = out.arrays() | {"works": works}
             failures = [_not_finite(name, array[:done]) for name, array in arrays.items()]
         failures += [_open(out.energies[:done], works[:done], start, floor)] if done and np.isfinite(floor) else []
     return min((each for each in failures if each), default=None, key=lambda each: each[0])
@@ -50,6 +49,3 @@ def _open(energies: np.ndarray, works: np.ndarray, start: float, floor: float):
         return None
     sample = int(np.argmax(bad))
     return sample, "energy from nowhere, as a share of all that passed", float(residual[sample] / passed[sample])
-
-
-__all__ = ["first_bad_sample"]

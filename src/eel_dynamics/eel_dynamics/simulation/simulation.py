@@ -28,9 +28,8 @@ from eel_dynamics.model.scene import Scene
 from eel_dynamics.simulation.discretisation import Discretisation
 from eel_dynamics.simulation.error_meter import ErrorMeter
 from eel_dynamics.simulation.march import March
-from eel_dynamics.simulation.observations import Observations, empty_observations
+from eel_dynamics.simulation.observations import Observations, Snapshot
 from eel_dynamics.simulation.simulation_setup import SimulationSetup, checked_state
-from eel_dynamics.simulation.snapshot import Snapshot
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 
@@ -264,7 +263,7 @@ class Simulation:
         and what stopped the march, or None. look(time [s]) is called every few milliseconds. After a bad instant the
         simulation must be reset.
         """
-        out, works = empty_observations(len(times), len(self.x), wrench, load), np.zeros((len(times), 4))
+        out, works = Observations.empty(len(times), len(self.x), wrench, load), np.zeros((len(times), 4))
         self._started = True
         recorded = self._march.record(np.array(times, dtype=float), out, works, wrench, load, look)
         if self._meter is not None:

@@ -14,8 +14,9 @@ from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.budget import Budget
 from eel_dynamics.accuracy.grid_settings import ShapeNeeds
 from eel_dynamics.accuracy.law_waves import check_law, knots_of_law, waves_of_rows
-from eel_dynamics.accuracy.step_bounds import check_cost
+from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS, check_cost
 from eel_dynamics.curvature.curvature_samples import check_points
+from eel_dynamics.curvature.law_follower import DEFAULT_TRANSITION
 from eel_dynamics.model.arguments import (
     check_planar,
     check_planar_law,
@@ -53,8 +54,8 @@ class SimulationSetup:
     accuracy: Accuracy | Budget  # as it was asked for
     x: np.ndarray  # (M,) m, stations
     initial_state: InitialState
-    default_transition: float  # s
-    most_evaluations: float  # by simulated second
+    default_transition: float = DEFAULT_TRANSITION  # s
+    most_evaluations: float = MOST_EVALUATIONS  # by simulated second
 
     @staticmethod
     def of(
@@ -64,8 +65,8 @@ class SimulationSetup:
         accuracy,
         stations,
         initial_state: tuple,
-        default_transition: float,
-        most_evaluations: float,
+        default_transition: float = DEFAULT_TRANSITION,
+        most_evaluations: float = MOST_EVALUATIONS,
     ) -> "SimulationSetup":
         """The set-up from the arguments of `Simulation`. `ValueError` names the one that does not fit.
 

@@ -10,7 +10,7 @@ import numpy as np
 from eel_base.wording import shown
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.shapes import NamedHalfAxis
-from eel_dynamics.runs.storage.plain import plain_law
+from eel_dynamics.runs.storage.plain import plain_of
 from eel_dynamics.runs.storage.tables import needed
 
 import eel_core
@@ -37,7 +37,7 @@ def key_of(points, how) -> str:
         if id(point.body) not in bodies:
             bodies[id(point.body)] = _content_of_body(point.body)
         content.update(bodies[id(point.body)])
-        content.update(repr((plain_law(point.law), point.scene, point.accuracy)).encode())
+        content.update(repr((plain_of(point.law), point.scene, point.accuracy)).encode())
         content.update(np.concatenate(point.start).tobytes())
     return content.hexdigest()[:32]
 

@@ -17,7 +17,7 @@ from eel_base.files.output_file import check_output, replacing
 from eel_base.wording import shown
 
 from eel_dynamics.runs.storage.digest import add_digest, check_digest
-from eel_dynamics.runs.storage.variables import LABELS, OF_SWIMMERS, VARIABLES, Contents
+from eel_dynamics.runs.variables import LABELS, OF_SWIMMERS, VARIABLES, Contents
 
 FORMAT = 1  # of the files; another number cannot be read
 MOST_BYTES = 2**31 - 4  # of an array in a file

@@ -19,38 +19,48 @@ from eel_gaits.sources.sampled_law import SampledLaw
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.budget import Budget
-from eel_dynamics.accuracy.error_estimate import ErrorEstimate
 from eel_dynamics.model.body import Body
-from eel_dynamics.model.scene import Scene
 from eel_dynamics.model.shapes import NamedHalfAxis, PolynomialHalfAxis, polynomials_through
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 HALF_AXES = ("half_width", "half_height")
 FUNCTIONS = {"named": NamedHalfAxis, "polynomial": PolynomialHalfAxis}
-ROWS = "time", "x", "values"  # arrays of a `SampledLaw`
+ROWS, OF_ROWS = ("time", "x", "values"), ("name", "transition", "about")  # arrays of a `SampledLaw`; its other values
+OF_STOP = "time", "quantity", "value", "hint"  # arguments of `SimulationStopped`
 AS_EXACT = 1e-9  # of the body's length, by which a polynomial may miss a half-axis without a warning
 
 
-def plain_law(law: Law | SampledLaw) -> dict:
-    """A law as plain values. The rows of a `SampledLaw` become text: numbers of 8 bytes in base 64."""
-    if isinstance(law, SampledLaw):
-        rows = {name: b64encode(getattr(law, name).astype("<f8").tobytes()).decode() for name in ROWS}
-        return {"rows": rows, "points": len(law.x), "name": law.name, "transition": law.transition, "about": law.about}
-    return asdict(law)
+def plain_of(value: Any) -> Any:
+    """A law, body, scene, settings or budget, error or its estimate as plain values; None as it is.
+
+    The rows of a `SampledLaw` become text: numbers of 8 bytes in base 64. A half-axis of a body that no polynomial
+    meets to `AS_EXACT` gives a warning.
+    """
+    if value is None:
+        return None
+    if isinstance(value, SampledLaw):
+        rows = {name: b64encode(getattr(value, name).astype("<f8").tobytes()).decode() for name in ROWS}
+        return {"rows": rows, "points": len(value.x)} | {name: getattr(value, name) for name in OF_ROWS}
+    if isinstance(value, Body):
+        return _plain_body(value)
+    if isinstance(value, Budget):
+        return {"budget": value.name}
+    if isinstance(value, SimulationStopped):
+        return {name: getattr(value, name) for name in (*OF_STOP, "diverged")}
+    return asdict(value)
 
 
 def law_of(plain: dict) -> Law | SampledLaw:
-    """The law of `plain_law`."""
+    """The law that has become plain values."""
     if "rows" in plain:
         rows: dict[str, Any] = {name: np.frombuffer(b64decode(text), "<f8") for name, text in plain["rows"].items()}
         rows["values"] = rows["values"].reshape(-1, 2, 3, plain["points"])
-        return SampledLaw(**rows, **{name: plain[name] for name in ("name", "transition", "about")})
+        return SampledLaw(**rows, **{name: plain[name] for name in OF_ROWS})
     terms = [Term(**term | {"envelope": tuple(Ramp(**ramp) for ramp in term["envelope"])}) for term in plain["terms"]]
     return Law(*terms, name=plain["name"], transition=plain["transition"])
 
 
-def plain_body(body: Body) -> dict:
-    """A body as plain values. A half-axis that no polynomial meets to `AS_EXACT` gives a warning."""
+def _plain_body(body: Body) -> dict:
     plain = body.arguments
     for name in HALF_AXES:
         value = plain[name]
@@ -67,7 +77,7 @@ def plain_body(body: Body) -> dict:
 
 
 def body_of(plain: dict) -> Body:
-    """The body of `plain_body`."""
+    """The body that has become plain values."""
     arguments = dict(plain)
     for name in HALF_AXES:
         if isinstance(plain[name], dict):
@@ -77,64 +87,30 @@ def body_of(plain: dict) -> Body:
     return Body(**arguments)
 
 
-def plain_scene(scene: Scene) -> dict:
-    """A scene as plain values."""
-    return asdict(scene)
-
-
-def scene_of(plain: dict) -> Scene:
-    """The scene of `plain_scene`."""
-    return Scene(**plain)
-
-
-def plain_accuracy(accuracy: Accuracy | Budget) -> dict:
-    """Settings, or a budget of time, as plain values."""
-    return {"budget": accuracy.name} if isinstance(accuracy, Budget) else asdict(accuracy)
-
-
 def accuracy_of(plain: dict) -> Accuracy | Budget:
-    """The settings of `plain_accuracy`."""
+    """The settings, or the budget of time, that have become plain values."""
     return Budget.of(plain["budget"]) if "budget" in plain else Accuracy(**plain)
 
 
-def plain_error_estimate(estimate: ErrorEstimate | None) -> dict | None:
-    """An error estimate as plain values."""
-    return None if estimate is None else asdict(estimate)
-
-
-def error_estimate_of(plain: dict | None) -> ErrorEstimate | None:
-    """The estimate of `plain_error_estimate`."""
-    return None if plain is None else ErrorEstimate(**plain)
-
-
-def plain_stop(error: SimulationStopped | None) -> dict | None:
-    """Why a swimmer stopped, as plain values."""
-    return (
-        None
-        if error is None
-        else {name: vars(error)[name] for name in ("time", "quantity", "value", "hint", "diverged")}
-    )
-
-
 def stop_of(plain: dict | None) -> SimulationStopped | None:
-    """The error of `plain_stop`."""
+    """The error that has become plain values."""
     if plain is None:
         return None
-    error = SimulationStopped(plain["time"], plain["quantity"], plain["value"], plain["hint"])
+    error = SimulationStopped(*(plain[name] for name in OF_STOP))
     error.diverged = plain["diverged"]
     return error
 
 
-def told_once(values: tuple, plain: Callable) -> dict:
+def each_once(values: tuple) -> dict:
     """A row of values, of which many may be equal, as plain values."""
     places = {value: place for place, value in enumerate(dict.fromkeys(values))}
-    return {"values": [plain(value) for value in places], "places": [places[value] for value in values]}
+    return {"values": [plain_of(value) for value in places], "places": [places[value] for value in values]}
 
 
-def row_of(told: dict, made: Callable) -> tuple:
-    """The row of `told_once`."""
-    values = [made(value) for value in told["values"]]
-    return tuple(values[place] for place in told["places"])
+def row_of(plain: dict, made: Callable) -> tuple:
+    """The row of `each_once`."""
+    values = [made(value) for value in plain["values"]]
+    return tuple(values[place] for place in plain["places"])
 
 
 def _polynomial(body: Body, name: str) -> PolynomialHalfAxis:

@@ -4,14 +4,12 @@
 import numpy as np
 from eel_base.wording import shown
 
+from eel_dynamics.accuracy.error_estimate import ErrorEstimate
+from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.storage import plain
-from eel_dynamics.runs.storage.variables import ENERGY, LEDGER, VARIABLES, Contents
+from eel_dynamics.runs.variables import COUNTS, ENERGY, LEDGER, OWN, Contents
 from eel_dynamics.simulation.energy import EnergyLedger
-from eel_dynamics.simulation.observations import Observations, empty_observations
-
-COUNTS = ("steps", "evaluations", "nodes")
-OWN = tuple(name for name in VARIABLES if not name.startswith(ENERGY))  # arrays of a run, the ledger's apart
-OBSERVED = tuple(name for name in OWN if name in Observations._fields)
+from eel_dynamics.simulation.observations import OBSERVED, Observations
 
 
 def contents_of_run(run) -> Contents:
@@ -19,11 +17,7 @@ def contents_of_run(run) -> Contents:
     if not len(run.time):
         raise ValueError("a run without samples holds no data")
     values = {
-        "law": plain.plain_law(run.law),
-        "body": plain.plain_body(run.body),
-        "scene": plain.plain_scene(run.scene),
-        "accuracy": plain.plain_accuracy(run.accuracy),
-        "error_estimate": plain.plain_error_estimate(run.error_estimate),
+        **{name: plain.plain_of(getattr(run, name)) for name in ("law", "body", "scene", "accuracy", "error_estimate")},
         "warnings": list(run.warnings),
         **{name: int(getattr(run, name)) for name in COUNTS},
     }
@@ -40,9 +34,9 @@ def fields_of_run(contents: Contents) -> dict:
     return {
         "law": plain.law_of(values["law"]),
         "body": plain.body_of(values["body"]),
-        "scene": plain.scene_of(values["scene"]),
+        "scene": Scene(**values["scene"]),
         "accuracy": plain.accuracy_of(values["accuracy"]),
-        "error_estimate": plain.error_estimate_of(values["error_estimate"]),
+        "error_estimate": values["error_estimate"] and ErrorEstimate(**values["error_estimate"]),
         "energy": energy,
         **{name: arrays.get(name) for name in OWN},
         **{name: _count(name, values[name]) for name in COUNTS},
@@ -52,17 +46,14 @@ def fields_of_run(contents: Contents) -> dict:
 def contents_of_batch(batch, out: Observations, works: np.ndarray, energy_at_start: np.ndarray) -> Contents:
     """The contents of a `Batch`, with all that was observed of its swimmers; without their warnings."""
     values = {
-        "laws": plain.told_once(batch.laws, plain.plain_law),
-        "bodies": plain.told_once(batch.bodies, plain.plain_body),
-        "scenes": plain.told_once(batch.scenes, plain.plain_scene),
-        "accuracies": plain.told_once(batch.accuracies, plain.plain_accuracy),
-        "error_estimates": [plain.plain_error_estimate(each) for each in batch.error_estimates],
-        "errors": [plain.plain_stop(each) for each in batch.error],
+        **{name: plain.each_once(getattr(batch, name)) for name in ("laws", "bodies", "scenes", "accuracies")},
+        "error_estimates": [plain.plain_of(each) for each in batch.error_estimates],
+        "errors": [plain.plain_of(each) for each in batch.error],
         "stations": batch.backbone is not None,
     }
     arrays = {"time": batch.time, "x": batch.x, "samples": batch.samples, "energy_at_start": energy_at_start}
     arrays |= {name: getattr(batch, name) for name in COUNTS}
-    arrays |= {name: getattr(out, name) for name in OBSERVED}
+    arrays |= {name: array for name, array in out.arrays().items() if name in OWN}
     arrays |= {"closure_torque": out.closure[..., 0], "closure_force": out.closure[..., 1]}
     arrays |= _of_ledger(EnergyLedger.of(out.energies, out.powers, works, energy_at_start[:, None]))
     return Contents("batch", values, {name: each for name, each in arrays.items() if each.size})
@@ -78,10 +69,9 @@ def observed_of_batch(contents: Contents) -> tuple[Observations, np.ndarray]:
     """The observations of a batch, and its works (B, T, 4) [J]."""
     arrays = contents.arrays
     count, samples, stations = arrays["backbone"].shape[:3]
-    out = empty_observations(samples, stations, "torque" in arrays, "fluid_force" in arrays, (count,))
-    for name in OBSERVED:
-        if name in arrays:
-            getattr(out, name)[...] = arrays[name]
+    out = Observations.empty(samples, stations, "torque" in arrays, "fluid_force" in arrays, (count,))
+    for name in OBSERVED.keys() & arrays.keys():
+        getattr(out, name)[...] = arrays[name]
     if out.closure.size:
         out.closure[..., 0], out.closure[..., 1] = arrays["closure_torque"], arrays["closure_force"]
     ledger = {name: arrays[ENERGY + name] for name in LEDGER}
