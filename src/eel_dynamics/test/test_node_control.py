@@ -120,7 +120,7 @@ def test_parameters_at_run_time(start, client):
         ("real_time_factor", 0.0, ("real_time_factor", "> 0", "got 0")),
         ("real_time_factor", -1.0, ("real_time_factor", "-1")),
         ("subscriber_timeout", "long", ("subscriber_timeout must be a number", "'long'")),
-        ("rate", -10.0, ("rate", "out of range")),
+        ("rate", -10.0, ("rate must be > 0 Hz, got -10",)),
         ("duration", 10.0, ("read-only", "duration")),
     ):
         (result,) = swim.set(**{name: value})

@@ -16,6 +16,7 @@ from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescri
 from rclpy.node import Node
 
 from eel_ros.parameter_files import shared_names
+from eel_ros.parameter_node import ParameterNode, as_parameter
 
 ROS_PREFIXES = (
     "use_sim_time",
@@ -29,8 +30,8 @@ MAXIMUM_INTEGER = 2**63 - 1  # of a ROS parameter
 def take_overrides(node: Node) -> dict[str, Any]:
     """The user's parameter overrides, by name.
 
-    `node` must be made with automatically_declare_parameters_from_overrides. All but ROS's own parameters are
-    undeclared, so that `declare` can declare them with type and range.
+    `node` has declared them. All but ROS's own parameters are undeclared, so that `declare` can declare them with type
+    and range.
     """
     given: dict[str, Any] = node.get_parameters_by_prefix("")  # of `Parameter`s, not of values as rclpy says
     overrides = {name: parameter.value for name, parameter in given.items()}
@@ -40,7 +41,7 @@ def take_overrides(node: Node) -> dict[str, Any]:
     return overrides
 
 
-def declare_all(node: Node, *kinds: type[Quantities]) -> list[Any]:
+def declare_all(node: ParameterNode, *kinds: type[Quantities]) -> list[Any]:
     """Declare the fields of these classes of `Quantities` as parameters, with the user's overrides, and return them.
 
     `ValueError` names an override that does not fit. A warning names those that no field has.
@@ -67,7 +68,7 @@ def warn_of_unknown(node: Node, overrides: Iterable[str], known: Collection[str]
         node.get_logger().warning(f"not parameters of this node, ignored: {', '.join(told)}")
 
 
-def declare(node: Node, values: Any, prefix: str = "", changeable: bool | str | None = None) -> None:
+def declare(node: ParameterNode, values: Any, prefix: str = "", changeable: bool | str | None = None) -> None:
     """Declare a parameter, named `prefix` and field, for each field of the dataclass instance `values`.
 
     changeable: replaces the metadata's.
@@ -75,6 +76,7 @@ def declare(node: Node, values: Any, prefix: str = "", changeable: bool | str | 
     for item in fields(values):
         descriptor = _descriptor(item, changeable)
         value = as_parameter(getattr(values, item.name))
+        node.parameter_fields[prefix + item.name] = item
         node.declare_parameter(prefix + item.name, value, descriptor, ignore_override=True)
 
 
@@ -94,13 +96,6 @@ def default_of(item: Field[Any]) -> Any:
     """The default of a field as a ROS parameter holds it: a list for a tuple, 0.0 for None."""
     assert item.default is not MISSING, item.name
     return as_parameter(item.default)
-
-
-def as_parameter(value: Any) -> Any:
-    """`value` as a ROS parameter holds it: a list for a tuple, 0.0 for None."""
-    if value is None:
-        return 0.0
-    return list(value) if isinstance(value, tuple) else value
 
 
 def _descriptor(item: Field[Any], changeable: bool | str | None) -> ParameterDescriptor:

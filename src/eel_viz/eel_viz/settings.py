@@ -2,10 +2,9 @@
 """The nodes' settings with unit, default, bounds and description; the nodes declare their parameters from them."""
 
 import ipaddress
-from dataclasses import dataclass, field, fields
-from typing import Self
+from dataclasses import dataclass, field
 
-from eel_base.quantity import checked
+from eel_base.quantity import Quantities
 from eel_base.wording import shown
 from eel_gaits.pilot.settings import PilotSettings
 
@@ -23,22 +22,13 @@ BLUEPRINTS = ("overview", "torques", "motion", "swimmer", "compare")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Drawing:
+class Drawing(Quantities):
     """What every node that draws has."""
 
     load_scale: float = setting(0.06, "length of the arrow of a load of 1 N/m", unit="m^2/N", minimum=0.0)
     end_force_scale: float = setting(
         0.8, "length of the arrow of a force of 1 N at nose or tail", unit="m/N", minimum=0.0
     )
-
-    @classmethod
-    def from_values(cls, values: dict) -> Self:
-        """Settings from a user's values by name; floats may be integers, lists may be one text with commas.
-
-        `ValueError` names the setting, what it must be, and what it got.
-        """
-        given = [item for item in fields(cls) if item.name in values]
-        return cls(**{item.name: checked(item, values[item.name], item.name) for item in given})
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -126,6 +116,7 @@ class Settings(Drawing):
     )
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         if not self.sink:
             raise ValueError(f"sink must name at least one of {', '.join(SINKS)}, got none")
         for name in self.sink:

@@ -32,7 +32,7 @@ def test_every_setting_is_described_and_its_default_lies_within_its_bounds():
     ],
 )
 def test_what_is_taken(given, field, taken):
-    value = getattr(Settings.from_values(given), field)
+    value = getattr(Settings.among(given), field)
     assert value == taken
     assert type(value) is type(taken)
 
@@ -57,7 +57,7 @@ def test_what_is_taken(given, field, taken):
 )
 def test_what_is_refused(given, words):
     with pytest.raises(ValueError) as refused:
-        Settings.from_values(given)
+        Settings.among(given)
     assert words in str(refused.value)
 
 

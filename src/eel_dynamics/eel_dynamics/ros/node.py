@@ -82,7 +82,7 @@ class DynamicsNode(ParameterNode):
     run_loop: RunLoop
 
     def __init__(self):
-        super().__init__(NAME, automatically_declare_parameters_from_overrides=True)
+        super().__init__(NAME)
         report = Report(self.get_logger())
         self.parameters = Declaration(self, lambda values: self.run_loop.requests.change(values))
         values, scene = self.parameters.values, self.parameters.scene

@@ -59,7 +59,7 @@ class HeadingController(ParameterNode):
     """A node with the topics `odom` (in) and `curvature_samples` (out)."""
 
     def __init__(self):
-        super().__init__(NAME, automatically_declare_parameters_from_overrides=True)
+        super().__init__(NAME)
         (given,) = declare_all(self, HeadingParameters)
         self.gait, self.x = straight(), np.linspace(0.0, given.length, 21)
         self.period, self.lead = given.period, Lead(given.period, given.lead)

@@ -50,7 +50,7 @@ class GaitGenerator(ParameterNode):
 
     def __init__(self):
         self._ticks = PolledGroup()
-        super().__init__(NAME, automatically_declare_parameters_from_overrides=True)
+        super().__init__(NAME)
         overrides = take_overrides(self)
         self._settings = Settings.start(overrides)
         warn_of_unknown(self, overrides, Settings.known_names())

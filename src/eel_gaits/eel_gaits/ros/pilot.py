@@ -40,7 +40,7 @@ class PilotNode(ParameterNode):
     """A node with the topics `odom`, `goal_path`, `goal_pose`, `swim_state` (in), `curvature_samples`, `goal` (out)."""
 
     def __init__(self):
-        super().__init__(NAME, automatically_declare_parameters_from_overrides=True)
+        super().__init__(NAME)
         self._numbers: GoalParameters
         self._timing: TimingParameters
         self._numbers, self._timing, settings = declare_all(self, *GROUPS)

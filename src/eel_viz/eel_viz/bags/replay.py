@@ -213,7 +213,7 @@ def _replay(chosen) -> int:
     sink = ("save", "connect") if chosen.connect else ("save",)
     told = replay(
         chosen.bag,
-        Settings.from_values({**values, "sink": sink, "recording": output}),
+        Settings.among({**values, "sink": sink, "recording": output}),
         other=other,
         namespace=chosen.namespace,
         log_info=print,

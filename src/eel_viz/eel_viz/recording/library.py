@@ -67,9 +67,9 @@ def to_rerun(
     if len(runs) > 1:
         settings["compare"] = names[1]
     if isinstance(target, rr.RecordingStream):
-        destination: Destination = CallerStream(target, Settings.from_values(settings), log_warning)
+        destination: Destination = CallerStream(target, Settings.among(settings), log_warning)
     else:
-        chosen = Settings.from_values({**settings, "recording": os.fspath(target)})
+        chosen = Settings.among({**settings, "recording": os.fspath(target)})
         destination = FileDestination(
             chosen, lambda text: None, lambda text: None
         )  # no warning that the file is replaced

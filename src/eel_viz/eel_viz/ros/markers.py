@@ -11,7 +11,7 @@ from collections import OrderedDict
 from typing import Any
 
 from eel_ros.parameter_node import ParameterNode
-from eel_ros.parameters import help_rows
+from eel_ros.parameters import declare_all, help_rows
 from eel_ros.qos import latched
 from eel_ros.run_node import run_node
 from nav_msgs.msg import Path
@@ -19,7 +19,6 @@ from visualization_msgs.msg import MarkerArray
 
 from eel_msgs.msg import Backbone, BodyGeometry, HydrodynamicLoad, InternalWrench
 from eel_viz.messages import BadMessage, read_backbone, read_body, read_load, read_wrench, stamp_of
-from eel_viz.ros.declared_settings import declared_settings
 from eel_viz.ros.marker_messages import ForceMarkers, SkinMarker, midline
 from eel_viz.settings import MarkerSettings
 
@@ -39,8 +38,8 @@ class Markers(ParameterNode):
     always published, so that a run that pauses is shown where it stands."""
 
     def __init__(self) -> None:
-        super().__init__(NAME, automatically_declare_parameters_from_overrides=True)
-        self._settings = declared_settings(self, MarkerSettings)
+        super().__init__(NAME)
+        (self._settings,) = declare_all(self, MarkerSettings)
         self._skin: SkinMarker | None = None
         self._forces = ForceMarkers(self._settings)
         self._waiting: OrderedDict[int, dict] = OrderedDict()  # stamp [ns]: messages by topic

@@ -13,7 +13,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 from eel_base.wording import shown
 from eel_ros.command_line import handle_arguments
 from eel_ros.parameter_node import ParameterNode
-from eel_ros.parameters import help_rows
+from eel_ros.parameters import declare_all, help_rows
 from eel_ros.process_end import leave_at_once
 from eel_ros.qos import keep_all
 from eel_ros.run_node import run_node
@@ -25,7 +25,6 @@ from eel_msgs.msg import Backbone, BodyGeometry, Curvature, CurvatureLaw, Energy
 from eel_viz.recording.dispatcher import Dispatcher
 from eel_viz.recording.recordings import ComparedRecordings, Recordings
 from eel_viz.recording.sinks import destinations
-from eel_viz.ros.declared_settings import declared_settings
 from eel_viz.ros.polled_subscriptions import PolledSubscriptions
 from eel_viz.settings import Settings
 from eel_viz.topics import SWIMMER
@@ -55,8 +54,8 @@ class Visualiser(ParameterNode):
     """Subscribes to the topics of one swimmer, or two that are compared, and passes the messages to dispatchers."""
 
     def __init__(self):
-        super().__init__(NAME, automatically_declare_parameters_from_overrides=True)
-        self.settings = declared_settings(self, Settings)
+        super().__init__(NAME)
+        (self.settings,) = declare_all(self, Settings)
         own = self.get_namespace().rstrip("/")
         other = f"/{self.settings.compare.strip('/')}".rstrip("/")  # empty: the swimmer without a namespace
         told = other or "/"
