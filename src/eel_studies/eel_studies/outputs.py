@@ -32,13 +32,13 @@ class Outputs:
 
     def __init__(self, command: str, options: argparse.Namespace, parts: Iterable[str] = ()):
         needed("matplotlib", command, "eel_studies[pictures]")
-        self._command, self.folder = command, Path(options.out)
+        self._command, self._parts, self.folder = command, tuple(parts), Path(options.out)
         self.page = Path(options.page) if options.page else None
         if self.page:
             check_output("--page", self.page)
             if self.page.exists():
                 text = self.page.read_text(encoding="utf-8")
-                for name in parts:
+                for name in self._parts:
                     with_part(text, name, "")
         self.folder.mkdir(exist_ok=True)
 
@@ -66,14 +66,14 @@ class Outputs:
         A new page has the parts alone. page: another one, in place of that of the options; without both, nothing is
         written. `NotWritten`: it cannot be completed.
         """
-        page = page or self.page
+        names, page = (self._parts, self.page) if page is None else (tuple(parts), page)
         if page is None:
             return
         if page.exists():
-            text, filled = page.read_text(encoding="utf-8"), parts | (values or {})
+            text = page.read_text(encoding="utf-8")
         else:
-            text, filled = "".join(NEW.format(name=name, command=self._command) for name in parts), parts
-        for name, value in filled.items():
+            text, values = "".join(NEW.format(name=name, command=self._command) for name in names), None
+        for name, value in (parts | (values or {})).items():
             text = with_part(text, name, value)
         write_page(page, text)
         print(f"written to {written_as(page)}")

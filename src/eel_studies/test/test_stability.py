@@ -9,14 +9,17 @@ from eel_dynamics.model.inertia import condition_of, straight_inertia
 from eel_dynamics.model.section_data import nose_of
 from eel_studies.stability import command, condition, drift, plane
 from eel_studies.stability.explicit import inertias, treat
-from eel_studies.stability.maps import ACCURATE, INACCURATE, STOPPED, Axis, maps_of, measure
-from eel_studies.stability.report import report
-from eel_studies.stability.studies import STUDIES, Study
+from eel_studies.stability.extremes import maps_of
+from eel_studies.stability.maps import ACCURATE, INACCURATE, STOPPED, Axis, measure
+from eel_studies.stability.report import STUDIES, report
 
 from eel_dynamics import Body, Scene, Simulation
 from eel_gaits import falling
 
 PART = "<!-- {0}: written by `stability` -->\n{1}<!-- end of {0} -->"  # of a page
+
+
+EMPTY = "stability_gait", "a map", lambda figure: figure.subplots(), (2.0, 2.0), ("svg",)
 
 
 def test_maps_keep_the_target_and_tell_what_stops():
@@ -31,20 +34,38 @@ def test_maps_keep_the_target_and_tell_what_stops():
     assert set(step.outcome[:, 1]) <= {STOPPED, INACCURATE} and STOPPED in step.outcome[:, 1]  # a whole period
     method = measured["method"] = measure(coarse)
     poor = method.outcome == INACCURATE
-    assert poor.any() and ((method.estimate[poor] > 1.0) | method.warned[poor]).all()  # none of them silently
-    assert measured["water"].limits[1].all()  # Reynolds numbers below 1000
+    assert (
+        poor.any() and ((method.cells["estimate"][poor] > 1.0) | method.cells["warned"][poor]).all()
+    )  # none of them silently
+    assert measured["water"].cells["limits"][1].all()  # Reynolds numbers below 1000
     text = report(list(measured.values()))
     assert "energy from nowhere" in text
 
 
-def test_a_page_keeps_what_is_not_the_studys():
-    study = Study("| new |", {"gait": ("a map", None)})
-    page = "a\n" + PART.format("maps", "old\n") + "\nb"
-    page = command.with_study(page, "maps", study, "../images")
-    assert "| new |" in page and "![a map](../images/stability_gait.svg)" in page and "old" not in page
-    assert page.endswith("\nb") and page.startswith("a\n")
-    with pytest.raises(ValueError, match="the page must have the lines"):
-        command.with_study(page, "drift", study, "images")
+@pytest.fixture
+def one_picture(monkeypatch):
+    """In place of the maps a study that draws an empty picture."""
+    monkeypatch.setitem(STUDIES, "maps", lambda points, outputs: "| new |\n" + outputs.draw(*EMPTY))
+
+
+def test_a_page_keeps_what_is_not_the_studys(tmp_path, one_picture):
+    page = tmp_path / "page.md"
+    page.write_text("a\n" + PART.format("maps", "old\n") + "\nb")
+    words = ["--study", "maps", "--page", str(page), "--out", str(tmp_path / "images")]
+    assert command.main(words) == 0
+    text = page.read_text()
+    assert "| new |\n![a map](images/stability_gait.svg)\n" in text and "old" not in text
+    assert text.endswith("\nb") and text.startswith("a\n")
+
+
+def test_a_new_page_has_the_parts_alone(tmp_path, one_picture, monkeypatch):
+    monkeypatch.setitem(STUDIES, "drift", lambda points, outputs: "no drift")
+    page = tmp_path / "page.md"
+    assert command.main(["--study", "maps", "--study", "drift", "--page", str(page), "--out", str(tmp_path)]) == 0
+    assert page.read_text().startswith(
+        "<!-- maps: written by `eel stability` -->\n| new |\n![a map](stability_gait.svg)"
+    )
+    assert "<!-- drift: written by `eel stability` -->\nno drift\n<!-- end of drift -->" in page.read_text()
 
 
 def test_a_long_run_gathers_nothing():
@@ -77,8 +98,8 @@ def test_the_condition_of_the_matrix_is_that_of_the_inertia_that_is_solved():
     thin, thick = (condition.of_body(condition.needle(size), 1.0) for size in (1e-4, 1e-2))
     assert thin == pytest.approx(1e4 * thick, rel=0.1)  # inertia in roll goes like the mass by the square of the radius
     maps = condition.maps_of(2)
-    assert all(np.isfinite(each.value).all() and each.value.min() >= 1.0 for each in maps)
-    assert "refused: body has no inertia in roll" in condition.table(maps)
+    assert all(np.isfinite(each.values()).all() and each.values().min() >= 1.0 for each in maps)
+    assert "refused: body has no inertia in roll" in condition.needles()
 
 
 def test_an_explicit_added_mass_blows_up_where_water_outweighs_the_body():
@@ -103,14 +124,14 @@ def test_inertias_of_a_body_from_data_are_those_of_its_spline():
 
 def test_bad_input_is_one_line(tmp_path, capsys):
     assert command.main(["--points", "1", "--out", str(tmp_path)]) == 2
-    assert capsys.readouterr().err == "eel stability: points must be >= 2, got 1\n"
+    assert capsys.readouterr().err == "eel stability: --points must be 2 or more, got 1\n"
 
 
 def test_a_page_that_cannot_be_is_refused_before_the_studies(tmp_path, monkeypatch, capsys):
-    monkeypatch.setitem(STUDIES, "condition", lambda points: pytest.fail("it has begun"))
+    monkeypatch.setitem(STUDIES, "condition", lambda points, outputs: pytest.fail("it has begun"))
     bare, folder = tmp_path / "bare.md", tmp_path / "pictures"
     bare.write_text(PART.format("drift", ""))
-    for page, word in ((tmp_path / "nosuch.md", "nosuch.md"), (tmp_path, "it is a folder"), (bare, "condition")):
+    for page, word in ((tmp_path / "no" / "page.md", "no/page.md"), (tmp_path, "it is a folder"), (bare, "condition")):
         assert command.main(["--study", "condition", "--page", str(page), "--out", str(folder)]) == 2
         said = capsys.readouterr().err
         assert word in said and said.startswith("eel stability: ") and said.count("\n") == 1 and not folder.exists()

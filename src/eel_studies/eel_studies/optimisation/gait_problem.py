@@ -7,18 +7,17 @@ above 0. Speed and cost go nearly like powers of a period or a length.
 
 import warnings
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 
 import numpy as np
 from eel_dynamics.analysis.measures import measures_of
-from eel_dynamics.runs.batch import available_cores
 from eel_dynamics.runs.run import Run
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 from eel_studies.gradients.gradient import gradient
 from eel_studies.points import Point, point_at
 from eel_studies.steady_swim import at_speed, swim_times
+from eel_studies.workers import in_threads
 
 STEP = 1e-5  # of the bounds' distance: differences of the derivatives to either side
 SPEED, CHANGE = "mean_speed", "speed_change"
@@ -65,8 +64,7 @@ class GaitProblem:
 
         None: they begin at half a body length per period.
         """
-        with ThreadPoolExecutor(self.threads or available_cores(), thread_name_prefix="swimmer") as pool:
-            return np.array(list(pool.map(lambda place: self._measured(place, speed), places)))
+        return np.array(in_threads(lambda place: self._measured(place, speed), places, self.threads))
 
     def derivatives(self, place: np.ndarray, speed: float) -> tuple[np.ndarray, np.ndarray]:
         """Speed and cost (2,) at a `place` (P,), and their derivatives (2, P) by the place. `NoSteadySwim`: none."""

@@ -15,7 +15,7 @@ from eel_studies.pilot.closed_loop import Voyage, swim_with
 POINTS = 5  # way points of a course
 LEG, TURN, SLOPE, SPEED = (4.0, 8.0), 1.6, 0.2, (0.3, 0.8)  # m, rad, rad, m/s: ranges of a course
 STRAIGHT = 90.0  # s, swim of a held course, of which the last part counts
-SETTLED = 30.0  # s, that part
+LAST_PART = 30.0  # s
 STATION = 120.0  # s, swim to a station and stay there
 SHARE_OF_SPEED = 0.5  # of the current at a station, of the swimmer's cruising speed
 
@@ -71,7 +71,7 @@ def figures_of(seed: int, **scene) -> Figures:
     pilot.follow(course(rng.uniform(-1.5, 1.5), rng.uniform(-1.0, 1.0), rng.uniform(*SPEED), settings.limits))
     pilot.news.clear()
     held = swim_with(pilot, STRAIGHT, scene=motion_alone(**scene))
-    last = held.time >= held.time[-1] - SETTLED
+    last = held.time >= held.time[-1] - LAST_PART
     off = np.abs(np.remainder(held.heading - held.wanted_heading + math.pi, 2.0 * math.pi) - math.pi)
     speed, towards = SHARE_OF_SPEED * settings.cruise_speed, rng.uniform(-math.pi, math.pi)
     current = (speed * math.cos(towards), speed * math.sin(towards), 0.0)
@@ -79,7 +79,7 @@ def figures_of(seed: int, **scene) -> Figures:
     pilot = pilot_for(**scene)
     pilot.follow(station(spot, rng.uniform(*SPEED), settings.limits))
     stayed = swim_with(pilot, STATION, scene=motion_alone(current=current, **scene))
-    at_end = stayed.time >= stayed.time[-1] - SETTLED
+    at_end = stayed.time >= stayed.time[-1] - LAST_PART
     return Figures(
         misses=tuple(misses),
         course_roll=float(np.max(np.abs(swum.roll))),

@@ -6,40 +6,30 @@ is of the paper's robot, over its density and the amplitude of its wave, with th
 Singular bodies are refused beforehand (`inertia.py`).
 """
 
-from dataclasses import dataclass
-
 import numpy as np
-from eel_base.files.markdown import table as table_of
+from eel_base.files.markdown import table
 from eel_dynamics.model.body import Body
-from eel_dynamics.model.inertia import MOST, condition_of, straight_inertia
+from eel_dynamics.model.inertia import condition_of, straight_inertia
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.model.section_data import nose_of
-from eel_dynamics.runs.run import simulate
+from eel_dynamics.runs.run import Run, simulate
 from eel_dynamics.simulation.simulation import Simulation, SimulationStopped
 
 import eel_core
 from eel_gaits import falling, straight
-from eel_studies.stability.maps import DENSITY, SLENDERNESS, Map, sized
+from eel_studies.stability.extremes import DENSITY, SLENDERNESS, sized
+from eel_studies.stability.maps import Map
 
 INSTANTS = 8  # per period, after the ramps of the gait
 NEEDLES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7)  # greatest half-axes [m] of a round needle of 1 m
 
 
-@dataclass(frozen=True)
-class Conditions:
-    """The condition numbers (len(y), len(x)) of a map, whose `swimmer` gives one of them."""
-
-    map: Map
-    value: np.ndarray
-
-
-def maps_of(points: int = 13) -> tuple[Conditions, ...]:
+def maps_of(points: int = 13) -> tuple[Map, Map]:
     """Two maps of `points` by `points` matrices each: of straight bodies, and of the swimming robot."""
-    found = (
+    return (
         Map("condition", "condition of the 6 x 6 matrix: straight bodies", DENSITY, SLENDERNESS, points, of_straight),
         Map("bent", "condition of the 6 x 6 matrix: the robot as it swims", DENSITY, sized(1e-3, 4.0), points, of_bent),
     )
-    return tuple(Conditions(each, np.array([[each.swimmer(x, y) for x in each.x] for y in each.y])) for each in found)
 
 
 def of_straight(ratio: float, slenderness: float) -> float:
@@ -78,7 +68,7 @@ def needles() -> str:
         except ValueError as error:
             outcome = f"refused: {error}"
         rows.append((f"{thickness:g}", outcome))
-    return table_of(("half-axes of a needle of 1 m (m)", "what happens to it in the falling gait"), rows)
+    return table(("half-axes of a needle of 1 m (m)", "what happens to it in the falling gait"), rows)
 
 
 def needle(thickness: float) -> Body:
@@ -90,19 +80,13 @@ def needle(thickness: float) -> Body:
     return Body(length=1.0, half_width=half_axis, half_height=half_axis)
 
 
-def table(maps: tuple[Conditions, ...]) -> str:
-    """The least and greatest values of the maps, then the needles, as Markdown tables."""
-    rows = [(each.map.title, f"{each.value.min():.3g}", f"{each.value.max():.3g}") for each in maps]
-    refused = f"Bodies of a condition above {MOST:g} are refused as singular:"
-    return "\n".join([table_of(("map", "least", "greatest"), rows), "", refused, "", needles()])
-
-
 def _water(ratio: float) -> Scene:
     return Scene(density=1000.0 * ratio, internal_wrench=False, ledger=False)
 
 
-def _open(run) -> float:
+def _open(run: Run) -> float:
     energy = run.energy
+    assert energy is not None
     works = energy.actuator_work, energy.wake_work, energy.nose_work, energy.drag_work
     passed = energy.kinetic_body + energy.kinetic_fluid + sum(np.abs(work) for work in works)
     return float(np.abs(energy.residual).max() / passed.max())

@@ -5,42 +5,38 @@ Colour is the error relative to the target. A cross marks a stop with a message.
 model. A plus marks a warning of an open energy ledger.
 """
 
+from typing import Any
+
 import numpy as np
 
 from eel_studies.pictures.style import BLACK
-from eel_studies.stability.condition import Conditions
 from eel_studies.stability.maps import STOPPED, Map, Measured
 
 DECADES = 3.0  # range of the colours, above and below the target
 
 
-def draw(figure, measured: Measured):
+def draw(figure: Any, measured: Measured) -> None:
     """Draw one map into an empty matplotlib figure."""
-    item, stopped = measured.map, measured.outcome == STOPPED
+    item, cells, stopped = measured.map, measured.cells, measured.outcome == STOPPED
     colours = {"cmap": "PuOr_r", "vmin": -DECADES, "vmax": DECADES}
-    axes = _draw_map(figure, item, measured.size, "error / target, log10: accurate below 0", "both", **colours)
+    axes = draw_map(figure, item, cells["size"], "error / target, log10: accurate below 0", "both", **colours)
     for marked, mark, size, label in (
         (stopped, "x", 5, "stopped with a message"),
-        (measured.limits & ~stopped, ".", 2.5, "warned: a limit of the model"),
-        (measured.warned, "+", 5, "warned: energy ledger open"),
+        (cells["limits"] & ~stopped, ".", 2.5, "warned: a limit of the model"),
+        (cells["warned"], "+", 5, "warned: energy ledger open"),
     ):
         row, column = np.nonzero(marked)
         if len(row):
             axes.plot(item.x[column], item.y[row], mark, color=BLACK, markersize=size, label=label)
     if axes.lines:
         figure.legend(loc="outside lower center", frameon=False, ncols=3)
-    if item.y_names:
-        axes.set_yticks(item.y, item.y_names)
+    if item.names:
+        axes.set_yticks(item.y, item.names)
         axes.set_yticks([], minor=True)
 
 
-def draw_condition(figure, conditions: Conditions):
-    """Draw one map of condition numbers into an empty matplotlib figure."""
-    _draw_map(figure, conditions.map, conditions.value, "condition, log10", cmap="cividis")
-
-
-def _draw_map(figure, item: Map, values: np.ndarray, label: str, extend: str = "neither", **colours):
-    """The axes with the decadic logarithms of `values` (len(y), len(x)), and a bar of their colours."""
+def draw_map(figure: Any, item: Map, values: np.ndarray, label: str, extend: str = "neither", **colours: Any) -> Any:
+    """Draw the decadic logarithms of `values` (len(y), len(x)), and a bar of their colours; returns the axes."""
     axes = figure.subplots()
     size = np.log10(np.maximum(values, 1e-300))
     mesh = axes.pcolormesh(_edges(item.x), _edges(item.y), size, edgecolors="none", **colours)

@@ -22,7 +22,7 @@ from eel_gaits import helix, straight
 
 PERIOD = 0.7  # s, whose multiples are not exact in binary
 DECADES = 5
-SETTLED = 2  # decade from which on the motion is periodic
+PERIODIC_FROM = 2  # decade from which on the motion is periodic
 COMPARED = 3  # decades over which a finer run is simulated as well
 ACCURACY = "draft"
 FIGURES = (  # columns
@@ -66,8 +66,8 @@ def drift_of(name: str, law: Law, scene: Scene, decades: int = DECADES, compared
     residual = out.energies.sum(axis=1) - swimmer.energy_at_start - works.sum(axis=1)
     bend, speed = out.curvature[1:], out.twist[1:, 3:]
     beat = np.full(len(periods), np.nan)
-    beat[SETTLED:] = np.linalg.norm(speed[SETTLED:] - speed[SETTLED : SETTLED + 1], axis=1)
-    beat[SETTLED:] /= np.linalg.norm(speed[SETTLED : SETTLED + 1])
+    beat[PERIODIC_FROM:] = np.linalg.norm(speed[PERIODIC_FROM:] - speed[PERIODIC_FROM : PERIODIC_FROM + 1], axis=1)
+    beat[PERIODIC_FROM:] /= np.linalg.norm(speed[PERIODIC_FROM : PERIODIC_FROM + 1])
     way = np.linalg.norm(out.position[1:], axis=1)
     _, finer, _ = _swum(law, scene, swimmer.accuracy.tightened(0.1), times[: compared + 2])
     apart = np.linalg.norm(out.position[: compared + 2] - finer.position, axis=1)[1:]

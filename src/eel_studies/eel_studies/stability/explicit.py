@@ -6,20 +6,21 @@ separate solver for the water, iterates I_b a[n+1] = w - I_f a[n] with the accel
 grows in each step by the greatest eigenvalue of I_b^-1 I_f, however short the step is.
 """
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.grid import Grid
+from eel_dynamics.model.inertia import straight_inertia
 from eel_dynamics.model.panels import panels_of
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.model.section_data import sections_on
 
 STEPS = 20
+WRENCH = np.array([1e-3, -1e-2, -1e-2, 1.0, 1.0, 1.0])  # N m, N
 
 
-@dataclass(frozen=True)
-class Treated:
+class Treated(NamedTuple):
     """Result for one body.
 
     ratio: density relative to water. growth: factor of the explicit error per step. explicit: magnitude of the explicit
@@ -40,15 +41,13 @@ def treat(ratio: float, body: Body | None = None, fluid_density: float = 1000.0)
     """
     of_body, of_fluid = inertias(body or Body.boyer2010(), ratio * fluid_density, fluid_density)
     both = of_body + of_fluid
-    wrench = np.array([1e-3, 1e-2, 1e-2, 1.0, 1.0, 1.0])
-    right = np.linalg.solve(both, wrench)
+    right = np.linalg.solve(both, WRENCH)
     present = np.zeros(6)
     for _ in range(STEPS):
-        present = np.linalg.solve(of_body, wrench - of_fluid @ present)
+        present = np.linalg.solve(of_body, WRENCH - of_fluid @ present)
     growth = np.abs(np.linalg.eigvals(np.linalg.solve(of_body, of_fluid))).max()
-    return Treated(
-        ratio, float(growth), float(np.linalg.norm(present) / np.linalg.norm(right)), float(np.linalg.cond(both))
-    )
+    explicit = np.linalg.norm(present) / np.linalg.norm(right)
+    return Treated(ratio, float(growth), float(explicit), float(np.linalg.cond(both)))
 
 
 def inertias(body: Body, density: float, fluid_density: float) -> tuple[np.ndarray, np.ndarray]:
@@ -58,20 +57,6 @@ def inertias(body: Body, density: float, fluid_density: float) -> tuple[np.ndarr
     """
     grid = Grid.of(panels_of(body, 40.0))
     sections = sections_on(body, Scene(density=density, fluid_density=fluid_density), grid)
-    mass, zero, roll = sections.mass, np.zeros_like(sections.mass), sections.added_roll
-    turning = np.array([sections.inertia1 - roll, sections.inertia2, sections.inertia3])
-    own = _assemble(grid, body.length, np.array([mass, mass, mass]), turning)
-    added = np.array([zero, sections.added2, sections.added3])
-    water = _assemble(grid, body.length, added, np.array([roll, zero, zero]))
-    return own, water
-
-
-def _assemble(grid, length, linear, angular):
-    matrix = np.zeros((6, 6))
-    for x, weight, m, j in zip(grid.x / length, grid.weight, linear.T, angular.T / length**2, strict=True):
-        moved = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, -x], [0.0, x, 0.0]])  # velocity at X due to rotation of the head
-        matrix[:3, :3] += weight * (np.diag(j) + moved.T @ np.diag(m) @ moved)
-        matrix[:3, 3:] += weight * moved.T @ np.diag(m)
-        matrix[3:, :3] += weight * np.diag(m) @ moved
-        matrix[3:, 3:] += weight * np.diag(m)
-    return matrix
+    none = np.zeros_like(sections.mass)
+    dry = sections._replace(added2=none, added3=none, inertia1=sections.inertia1 - sections.added_roll)
+    return tuple(straight_inertia(grid, each, 0.0, body.length) for each in (dry, sections.of_water()))

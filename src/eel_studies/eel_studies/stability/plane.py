@@ -24,11 +24,11 @@ PUSHES = (1e-15, 1e-12)  # rad/s, or m/s
 AXES = {"roll": 0, "pitch": 1, "vertical": 5}  # of the head's twist
 LONGEST = 40  # periods over which a perturbation is followed
 LINEAR = 1e-6  # m/s: below it, growth is linear in the perturbation
-HEAD = (
+COLUMNS = (
     *("accuracy", "pushed in roll", "in pitch", "along axis 3"),
     "by round-off alone, head turned across all axes",
 )
-SETTLED = 6  # periods after which the fastest mode dominates
+DOMINANT_AFTER = 6  # periods after which the fastest mode dominates
 TURNED = np.array([0.15, 0.30, -0.08, np.sqrt(1.0 - 0.1189)])  # quaternion of a head turned about all axes
 
 
@@ -70,7 +70,7 @@ def growth(**swimmer) -> Growth:
     size = np.linalg.norm(found, axis=1)
     above = np.flatnonzero(size > LINEAR)
     end = above[0] if len(above) else len(size)
-    first = min(SETTLED, end - 2)
+    first = min(DOMINANT_AFTER, end - 2)
     rate = np.polyfit(np.arange(first, end), np.log(size[first:end]), 1)[0]
     return Growth(float(rate), found[end - 1] / size[end - 1])
 
@@ -100,7 +100,7 @@ def table(long: int = LONG) -> str:
             f"within {spread:.2g} in the exponent whatever its",
             "axis, its size and the accuracy; so does round-off, once the plane is not one of the axes':",
             "",
-            table_of(HEAD, rows),
+            table_of(COLUMNS, rows),
             "",
             table_of(("swimmer", "growth", "mode: roll, pitch, vertical"), swimmers),
         ]

@@ -1,55 +1,99 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The results of the maps, and the explicit treatment of the added mass, as Markdown tables."""
+"""The studies by name. Each returns its part of the page, and draws its pictures."""
+
+from collections.abc import Callable
 
 import numpy as np
 from eel_base.files.markdown import table
+from eel_dynamics.model.inertia import MOST
 
+from eel_studies.outputs import Outputs
+from eel_studies.stability import condition, drift, plane
+from eel_studies.stability.drawing import draw, draw_map
 from eel_studies.stability.explicit import STEPS, treat
-from eel_studies.stability.maps import ACCURATE, INACCURATE, STOPPED, TARGET
+from eel_studies.stability.extremes import maps_of
+from eel_studies.stability.maps import ACCURATE, INACCURATE, STOPPED, TARGET, Measured, measure
 
-HEAD = (
+SIZE = 5.6, 4.2  # inches
+COLUMNS = (
     *("map", "accurate", "inaccurate", "of them warned of", "of them shown by the estimate", "by neither", "stopped"),
     *("beyond a limit of the model, and warned of", "worst error by target", "most steps"),
 )
-EXPLICIT_HEAD = (
+EXPLICIT_COLUMNS = (
     *("density of the body, by water's", "growth per step", "explicit acceleration, by the right one"),
     "condition of the 6 x 6 matrix",
 )
 RATIOS = (1e-3, 1e-2, 1e-1, 0.5, 1.0, 10.0, 1e3)
 
 
-def report(maps) -> str:
+def maps(points: int, outputs: Outputs) -> str:
+    """Maps of runs over two parameters, with `points` values of each: accurate, inaccurate, or stopped."""
+    found = [measure(item) for item in maps_of(points)]
+    pictures = [_picture(outputs, each.map, lambda figure, each=each: draw(figure, each)) for each in found]
+    return "\n".join([report(found), "", *pictures])
+
+
+def conditions(points: int, outputs: Outputs) -> str:
+    """Maps of the condition number of the 6 x 6 matrix, with `points` values of each parameter; singular bodies."""
+    rows, pictures = [], []
+    for item in condition.maps_of(points):
+        values = item.values()
+        rows.append((item.title, f"{values.min():.3g}", f"{values.max():.3g}"))
+        fill = lambda figure, *known: draw_map(figure, *known, "condition, log10", cmap="cividis")  # noqa: E731
+        pictures.append(_picture(outputs, item, lambda figure, known=(item, values), fill=fill: fill(figure, *known)))
+    refused = f"Bodies of a condition above {MOST:g} are refused as singular:"
+    return "\n".join([table(("map", "least", "greatest"), rows), "", refused, "", condition.needles(), "", *pictures])
+
+
+def drifts(points: int, outputs: Outputs) -> str:
+    """Drift over 100,000 periods; `points` has no effect."""
+    return drift.table([drift.drift_of(name, *each) for name, each in drift.swimmers().items()])
+
+
+def planes(points: int, outputs: Outputs) -> str:
+    """Growth of round-off out of the plane of a planar law; `points` has no effect."""
+    return plane.table()
+
+
+STUDIES: dict[str, Callable[[int, Outputs], str]] = {
+    "maps": maps,
+    "condition": conditions,
+    "drift": drifts,
+    "plane": planes,
+}
+
+
+def report(found: list[Measured]) -> str:
     """Counts and greatest errors of the maps, then the explicit treatment of the added mass, as Markdown."""
     rows = []
-    for each in maps:
+    for each in found:
         accurate, inaccurate, stopped = (each.outcome == kind for kind in (ACCURATE, INACCURATE, STOPPED))
-        estimated, warned = each.estimate > 1.0, inaccurate & (each.warned | each.limits)
+        cells = each.cells
+        estimated, warned = cells["estimate"] > 1.0, inaccurate & (cells["warned"] | cells["limits"])
         neither = inaccurate & ~warned & ~estimated
-        counts = accurate, inaccurate, warned, estimated, neither, stopped, each.limits
-        cells = [str(np.sum(kind)) for kind in counts]
-        rows.append([each.map.title, *cells, f"{each.worst:.2g}", str(each.steps.max())])
-    reasons = sorted({_reason(text) for each in maps for text in each.reason.ravel() if text})
+        counts = accurate, inaccurate, warned, estimated, neither, stopped, cells["limits"]
+        texts = [str(np.sum(kind)) for kind in counts]
+        rows.append([each.map.title, *texts, f"{each.worst:.2g}", str(cells["steps"].max())])
+    reasons = sorted({_reason(text) for each in found for text in each.cells["reason"].ravel() if text})
     explicit = [
         (f"{each.ratio:g}", f"{each.growth:.3g}", f"{each.explicit:.3g}", f"{each.condition:.3g}")
         for each in map(treat, RATIOS)
     ]
-    return "\n".join(
-        [
-            table(HEAD, rows),
-            "",
-            f"Accurate: the head within {TARGET:g} (a preset: its target) of its path, or of the body if longer, of a "
-            "finer run's.",
-            f"Reasons of the stops: {'; '.join(reasons) or 'none'}.",
-            "",
-            "The added mass is implicit in the 6 x 6 matrix. Treated explicitly, with the acceleration of the step "
-            "before, it is unstable",
-            f"wherever the growth per step exceeds 1, whatever the step; after {STEPS} steps:",
-            "",
-            table(EXPLICIT_HEAD, explicit),
-        ]
-    )
+    return f"""{table(COLUMNS, rows)}
+
+Accurate: the head within {TARGET:g} (a preset: its target) of its path, or of the body if longer, of a finer run's.
+Reasons of the stops: {"; ".join(reasons) or "none"}.
+
+The added mass is implicit in the 6 x 6 matrix. Treated explicitly, with the acceleration of the step before, it is
+unstable wherever the growth per step exceeds 1, whatever the step; after {STEPS} steps:
+
+{table(EXPLICIT_COLUMNS, explicit)}"""
 
 
 def _reason(text: str) -> str:
     """The reason in a stop's message, without time and value."""
     return text.partition("s: ")[2].partition(" (")[0]
+
+
+def _picture(outputs: Outputs, item, fill: Callable) -> str:
+    return outputs.draw(f"stability_{item.name}", item.title, fill, SIZE, ("svg",))

@@ -13,6 +13,7 @@ sweep resumes when it is called again. It needs `pip install './src/eel_dynamics
 import itertools
 import math
 from collections.abc import Callable, Sized
+from functools import partial
 
 import numpy as np
 from eel_base.command.progress import progress_of
@@ -32,9 +33,9 @@ from eel_dynamics.runs.storage.tables import needed
 from eel_gaits.laws.law import Law
 
 from eel_studies.points import Point, SwimSettings, base_point, batch_of_points, label_of, point_at
-from eel_studies.sweeps.cluster import workers_of
 from eel_studies.sweeps.sweep_key import key_of
 from eel_studies.sweeps.sweep_parts import Parts
+from eel_studies.workers import workers_of
 
 LONGEST_CHUNK = 64  # points
 MOST_POINTS = 1_000_000  # of a grid, which is built as a whole before the first run
@@ -67,20 +68,32 @@ def sweep(
     overwrite: bool = False,
     most_evaluations: float = MOST_EVALUATIONS,
 ):
-    """Simulate every combination of the values in `grid` and return an `xarray.Dataset` over its parameters.
+    """Simulate every combination of the values in `grid`.
 
-    grid: name: values, with the names of `studies.points`: numbers of the gait ("period"), of scene, body or initial
-    state ("scene.friction", "body.lateral_drag", "initial.v_1"), "body" and "accuracy". gait: its name, or a function
-    of `numbers` and the grid's that returns a law. numbers: of the gait, the same for all points. duration: [s], or
-    "settled": each point swims until its gait has settled, as in `simulate`. body, scene, accuracy, sample_period [s],
-    stations, estimate, most_evaluations: as in `simulate`. measure: names of `analysis.measures.MEASURES` (None: all),
-    to which "settled" is added, or a function run -> {name: number}. An `Unsettled` warning tells how many points had
-    not settled. out: .nc file for the result; its
-    parts are stored in `out`.parts until it is complete. scheduler: None for `workers` threads (None: one per core);
-    "processes" for as many processes of this machine; the address of a Dask scheduler, a client or a cluster. A script
-    that uses "processes" calls `sweep` below `if __name__ == "__main__":`. chunk: points per task. progress(done,
-    points): called after each chunk; True: a bar; None: a bar on a terminal. overwrite: replace another sweep in `out`
-    and its parts. A point that stops has NaN for its measures, `stopped` is true, and `error` is its message.
+    Returns an `xarray.Dataset` over the parameters of the grid. A point that stops has NaN for its measures, `stopped`
+    is true, and `error` is its message. An `Unsettled` warning tells how many points had not settled.
+
+    Args:
+        grid: values by name, with the names of `studies.points`: numbers of the gait ("period"), of scene, body or
+            initial state ("scene.friction", "body.lateral_drag", "initial.v_1"), "body" and "accuracy".
+        gait: its name, or a function of `numbers` and the grid's that returns a law.
+        numbers: of the gait, the same for all points.
+        duration: [s], or "settled": each point swims until its gait has settled, as in `simulate`.
+        body, scene, accuracy: as in `simulate`, for all points.
+        sample_period: [s], as in `simulate`.
+        stations: as in `simulate`.
+        estimate: measure each run's error, as in `simulate`.
+        measure: names of `analysis.measures.MEASURES` (None: all), to which "settled" is added, or a function
+            run -> {name: number}.
+        out: .nc file for the result; its parts are stored in `out`.parts until it is complete.
+        scheduler: None for `workers` threads; "processes" for as many processes of this machine; the address of a Dask
+            scheduler, a client or a cluster. A script that uses "processes" calls `sweep` below
+            `if __name__ == "__main__":`.
+        workers: threads, or processes; None: one per core.
+        chunk: points per task.
+        progress: progress(done, points) is called after each chunk; True: a bar; None: a bar on a terminal.
+        overwrite: replace another sweep in `out` and its parts.
+        most_evaluations: of each point, as in `simulate`.
 
     `ValueError` names the point or the measure that is invalid. `ImportError`: a package is missing. `OSError`: the
     output cannot be written to its end. `PointsMissing`: points could not be computed; the others are kept.
@@ -109,18 +122,18 @@ def sweep(
     parts = Parts(out, key, len(points), overwrite)
     complete = parts.complete()
     if complete is not None:
-        return _told(complete)
+        return _warned(complete)
     done = parts.load()
     left = [(index, point) for index, point in enumerate(points) if index not in done]
     tell = progress_of(progress)
     tell(len(done), len(points))
     failures = []
     if left:
-        with workers_of(scheduler, workers or available_cores()) as crew:
-            size = chunk or min(LONGEST_CHUNK, max(1, math.ceil(len(left) / (8 * max(1, crew.count)))))
+        with workers_of(scheduler, workers or available_cores()) as found:
+            size = chunk or min(LONGEST_CHUNK, max(1, math.ceil(len(left) / (8 * max(1, found.parallel)))))
             chunks = [left[start : start + size] for start in range(0, len(left), size)]
-            for swum, result, failure in crew.spread(swim_points, chunks, how):
-                if failure is not None:
+            for swum, result, failure in found.results(partial(swim_points, how=how), chunks):
+                if result is None:
                     failures.append((swum[0][0], failure))
                     continue
                 result = {index: checked_point(point) for index, point in result.items()}
@@ -137,10 +150,10 @@ def sweep(
     if key:
         data.attrs["sweep"] = key
     parts.finish(data)
-    return _told(data)
+    return _warned(data)
 
 
-def _told(data):
+def _warned(data):
     """The result `data`; an `Unsettled` warning tells how many of its points have not settled."""
     if "settled" in data:
         tell_unsettled(data.settled, "points", stacklevel=4)

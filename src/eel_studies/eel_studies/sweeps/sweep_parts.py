@@ -72,8 +72,8 @@ class Parts:
                 try:
                     done |= self._part(path)
                 except ValueError as error:
-                    told = f"{shown(str(path))} is damaged ({error}): its points are done again"
-                    warnings.warn(one_line(told), stacklevel=3)
+                    damage = f"{shown(str(path))} is damaged ({error}): its points are done again"
+                    warnings.warn(one_line(damage), stacklevel=3)
                     path.unlink()
         return done
 
@@ -81,12 +81,12 @@ class Parts:
         """Write one task's results to a part, atomically."""
         if self.folder is None:
             return
-        told = {
+        points = {
             index: {name: None if _undefined(value) else value for name, value in point.items()}
             for index, point in result.items()
         }
         with replacing(self.folder / f"part-{min(result)}-{os.getpid()}-{next(self._number)}.json") as draft:
-            draft.write_text(json.dumps({ATTRIBUTE: digest_of_text(json.dumps(told)), "points": told}))
+            draft.write_text(json.dumps({ATTRIBUTE: digest_of_text(json.dumps(points)), "points": points}))
 
     def finish(self, data):
         """Write the complete sweep, and remove the parts."""

@@ -7,10 +7,8 @@ reference: two methods on two grids that agree to a tenth of the target, and of 
 as well as they agree.
 """
 
-import os
 import warnings
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Any
 
@@ -27,6 +25,7 @@ from eel_gaits.laws.ramp import Ramp
 from eel_gaits.laws.term import Term
 
 from eel_studies.table import Table
+from eel_studies.workers import in_threads
 
 TARGETS = 1e-2, 1e-3, 1e-4, 1e-5, 1e-6
 # Two methods on two grids, which are trusted where they agree; finer ones where the first do not. Two grids may have
@@ -151,9 +150,9 @@ def _reference(swim: dict[str, Any], estimate: float) -> tuple[Run | None, float
 def deliver(count: int = COUNT, seed: int = SEED, say: Callable[[str], object] = lambda text: None) -> list[Trial]:
     """The trials of `count` swims that `seed` draws. say(text): called with progress."""
     say(f"what the targets deliver: {count} swims of seed {seed}")
-    with warnings.catch_warnings(), ThreadPoolExecutor(os.cpu_count()) as pool:
+    with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # a trial keeps whether its run reported that it misses its target
-        return [each for each in pool.map(trial_of, swims_of(count, seed)) if each is not None]
+        return [each for each in in_threads(trial_of, swims_of(count, seed)) if each is not None]
 
 
 def swims_of(count: int, seed: int) -> list[dict[str, Any]]:

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Distributes tasks over threads, or with Dask over processes of this machine or of others.
+
+Threads are enough on one machine: the mechanics run without the GIL. The tasks of a process that dies are reassigned to
+the others.
+"""
+
+import multiprocessing
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import Executor, ThreadPoolExecutor, as_completed
+from contextlib import contextmanager
+from typing import Any, NamedTuple, TypeVar
+
+from eel_base.wording import shown
+from eel_dynamics.runs.batch import available_cores
+from eel_dynamics.runs.storage.tables import needed
+
+PROCESSES = "processes"  # as a scheduler: of this machine
+Item = TypeVar("Item")
+Result = TypeVar("Result")
+
+
+class Workers(NamedTuple):
+    """An executor, and how many tasks it does at a time."""
+
+    pool: Executor
+    parallel: int
+
+    def results(
+        self, task: Callable[[Item], Result], items: Iterable[Item]
+    ) -> Iterator[tuple[Item, Result | None, BaseException | None]]:
+        """Do `task(item)` for every one of the `items`.
+
+        Yields (item, result, None) in order of completion, or (item, None, error) for one that failed. The error is
+        that of the task, or reports that the item killed several workers. What has not begun when the caller ends is
+        not begun any more.
+        """
+        futures = {self.pool.submit(task, item): item for item in items}
+        try:
+            for future in as_completed(list(futures)):
+                error = future.exception()
+                yield futures.pop(future), None if error else future.result(), error
+        finally:
+            for future in futures:
+                future.cancel()
+
+
+def in_threads(task: Callable[[Item], Result], items: Iterable[Item], threads: int | None = None) -> list[Result]:
+    """`task(item)` of each of the `items`, in their order. threads: None for one per core. An error ends it."""
+    with ThreadPoolExecutor(threads or available_cores(), thread_name_prefix="swimmer") as pool:
+        return list(pool.map(task, items))
+
+
+@contextmanager
+def workers_of(scheduler: Any, count: int) -> Iterator[Workers]:
+    """The workers that a `scheduler` gives.
+
+    None: `count` threads of this process. Else those of Dask: an address ("tcp://host:8786"), a client or a cluster.
+    "processes": a cluster of `count` processes of this machine, which ends with the context. `ValueError` where the
+    scheduler cannot be reached. `OSError` where processes of this machine have no semaphores: a container without
+    /dev/shm. `ImportError` without Dask.
+    """
+    if scheduler is None:
+        with ThreadPoolExecutor(count, thread_name_prefix="sweep") as pool:
+            yield Workers(pool, count)
+        return
+    needed("distributed", "a sweep with a scheduler", "eel_studies[cluster]")
+    with _client_of(scheduler, count) as client:
+        yield Workers(client.get_executor(pure=False), sum(client.nthreads().values()))
+
+
+@contextmanager
+def _client_of(scheduler: Any, workers: int) -> Iterator[Any]:
+    from distributed import Client, LocalCluster
+
+    if isinstance(scheduler, Client):
+        yield scheduler
+        return
+    if isinstance(scheduler, str) and scheduler == PROCESSES:
+        _check_semaphores()
+        with (
+            LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address="127.0.0.1:0") as cluster,
+            Client(cluster) as client,
+        ):
+            yield client
+        return
+    try:
+        client = Client(scheduler, timeout=10)
+    except (OSError, TimeoutError, ValueError) as error:
+        raise ValueError(f"scheduler cannot be reached at {shown(scheduler)}: {error}") from None
+    with client:
+        yield client
+
+
+def _check_semaphores() -> None:
+    try:
+        multiprocessing.Lock()
+    except OSError as error:
+        raise OSError(
+            f"the processes of a sweep need semaphores in /dev/shm ({error}); mount it, or name a scheduler"
+        ) from None
