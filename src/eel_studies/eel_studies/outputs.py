@@ -49,13 +49,14 @@ class Outputs:
         draw: Callable[[Any], object],
         size: tuple[float, float],
         suffixes: tuple[str, ...] = ("png", "svg"),
+        settings: dict[str, Any] | None = None,
     ) -> str:
         """Draw with `draw(figure)` of `size` [inches] into the folder; returns the picture as the page links it.
 
-        name: of the file, which ends in each of the `suffixes`; the page links the last one.
+        name: of the file, which ends in each of the `suffixes`; the page links the last one. settings: of matplotlib.
         """
         paths = [self.folder / f"{name}.{suffix}" for suffix in suffixes]
-        write_picture(draw, size, *paths)
+        write_picture(draw, size, *paths, settings=settings)
         for path in paths:
             print(f"written to {written_as(path)}")
         return f"![{title}]({os.path.relpath(paths[-1], self.page.parent if self.page else '.')})"
@@ -66,9 +67,10 @@ class Outputs:
         A new page has the parts alone. page: another one, in place of that of the options; without both, nothing is
         written. `NotWritten`: it cannot be completed.
         """
-        names, page = (self._parts, self.page) if page is None else (tuple(parts), page)
+        names, page = ([*self._parts], self.page) if page is None else ([], page)
         if page is None:
             return
+        names += [name for name in parts if name not in names]
         if page.exists():
             text = page.read_text(encoding="utf-8")
         else:

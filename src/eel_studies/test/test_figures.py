@@ -3,10 +3,12 @@
 
 import os
 import re
+import shutil
 import subprocess
 import sys
 from itertools import pairwise
 from pathlib import Path
+from types import SimpleNamespace
 
 import matplotlib
 import numpy as np
@@ -20,6 +22,7 @@ from eel_studies.figures import (
     orders,
     paper_drawings,
 )
+from eel_studies.outputs import Outputs
 from eel_studies.pictures.style import SETTINGS, letter_panels
 from matplotlib.figure import Figure
 
@@ -186,21 +189,28 @@ def test_kern_body_and_gaits(comparison):
     assert all(line.count("|") == 5 for line in table.splitlines())
 
 
-def test_page_names_every_figure_and_takes_its_numbers_from_the_runs(readings, comparison, errors, runs):
+@in_repository
+def test_page_names_every_figure_and_takes_its_numbers_from_the_runs(readings, comparison, errors, runs, tmp_path):
     control = simulate(straight())
-    page = notes.page(readings, control, comparison, errors)
-    assert all(len(line) <= 120 for line in page.splitlines() if not line.startswith("|"))
-    assert set(re.findall(r"\]\((\w+)\.svg\)", page)) == set(command.SIZES)
+    shutil.copy(FOLDER / "README.md", tmp_path)
+    outputs = outputs_in(tmp_path)
+    outputs.page = tmp_path / "README.md"
+    said = []
+    for other in (control, runs[0]):
+        outputs.write(notes.parts_of(readings, comparison), notes.values_of(readings, other, comparison, errors))
+        said.append(outputs.page.read_text())
+    page, other = (re.sub("<!-- [a-z_]+ -->|<!-- / -->", "", each) for each in said)
+    assert set(re.findall(r"\]\((\w+)\.svg\)", page)) == set(command.FIGURES)
     x, y, z = runs[0].position[-1]
-    assert f"({x:+.2f}, {y:+.2f}, {z:+.2f}) m" in page
+    assert f"({x:+.2f}, {y:+.2f}, {z:+.2f}) m" in " ".join(page.split())
     assert "nan" not in page and "None" not in page
-    said, other = (" ".join(notes.page(readings, each, comparison, errors).split()) for each in (control, runs[0]))
-    assert f"ends at y = {control.position[-1, 1]:+.2f} m" in said and f"ends at y = {y:+.2f} m" in other
+    assert f"ends at y = {control.position[-1, 1]:+.2f} m" in " ".join(page.split())
+    assert f"ends at y = {y:+.2f} m" in " ".join(other.split())
 
 
 @in_repository
 def test_kept_figures_are_small_and_complete():
-    names = {f"{name}.{suffix}" for name in command.SIZES for suffix in command.FORMATS}
+    names = {f"{name}.{suffix}" for name in command.FIGURES for suffix in command.FORMATS}
     assert {path.name for path in FOLDER.iterdir()} == names | {"README.md"}
     for name in names:
         assert (FOLDER / name).stat().st_size < (300e3 if name.endswith("svg") else 160e3), name
@@ -218,22 +228,30 @@ def test_kept_page_tells_of_these_runs(readings):
 
 
 def test_files_are_written(readings, errors, tmp_path):
-    drawings = command.drawings_of(readings, errors)
-    assert list(drawings) == list(command.SIZES)
-    some = {name: drawings[name] for name in ("figure5_body", "figure9_head_velocity", "head_path")}
-    paths = list(command.draw(some, tmp_path, ["png"]))
-    assert [path.name for path in paths] == [f"{name}.png" for name in some]
-    assert all(path.read_bytes().startswith(b"\x89PNG") for path in paths)
+    outputs = outputs_in(tmp_path)
+    some = ("figure5_body", "figure9_head_velocity", "head_path")
+    links = command.draw(outputs, some, readings, errors, ["png"])
+    assert len(links) == 3 and links[0].endswith("figure5_body.png)")
+    assert all((tmp_path / f"{name}.png").read_bytes().startswith(b"\x89PNG") for name in some)
     for columns, suffix in ((None, "svg"), (1, "pdf")):
-        first, second = (next(iter(command.draw(drawings, tmp_path, [suffix], columns))).read_bytes() for _ in "ab")
+        first, second = (drawing_of(outputs, readings, errors, suffix, columns) for _ in "ab")
         assert first == second  # the same drawing is the same file
+
+
+def outputs_in(folder):
+    return Outputs("eel figures", SimpleNamespace(out=folder, page=None))
+
+
+def drawing_of(outputs, readings, errors, suffix, columns):
+    command.draw(outputs, ["figure5_body"], readings, errors, [suffix], columns)
+    return (outputs.folder / f"figure5_body.{suffix}").read_bytes()
 
 
 def test_a_figure_is_as_wide_as_a_journal_s_column_or_page():
     assert command.size_of("figure8_wrench_in_time", 1)[0] == 3.4
     assert command.size_of("figure8_wrench_in_time", 2)[0] == 7.0
     assert command.size_of("torque_surface", 1)[0] == 7.0  # panels side by side
-    assert command.size_of("head_path", None) == command.SIZES["head_path"]
+    assert command.size_of("head_path", None) == command.FIGURES["head_path"][0]
 
 
 def test_panels_have_letters_and_colour_bars_none():
@@ -249,8 +267,8 @@ def test_panels_have_letters_and_colour_bars_none():
 
 
 @pytest.mark.parametrize("columns", [None, 1])
-def test_every_letter_of_a_panel_lies_within_its_figure(columns, readings, errors, monkeypatch):
-    def check(draw, size, *paths, settings):
+def test_every_letter_of_a_panel_lies_within_its_figure(columns, readings, errors):
+    def check(name, title, draw, size, suffixes, settings):
         figure = Figure(figsize=size, layout="constrained")
         with matplotlib.rc_context(SETTINGS | (settings or {})):
             draw(figure)
@@ -260,13 +278,12 @@ def test_every_letter_of_a_panel_lies_within_its_figure(columns, readings, error
         page = figure.bbox
         for text in letters:
             box = text.get_window_extent()
-            assert page.x0 <= box.x0 and page.y0 <= box.y0 and box.x1 <= page.x1 and box.y1 <= page.y1, (paths, text)
+            assert page.x0 <= box.x0 and page.y0 <= box.y0 and box.x1 <= page.x1 and box.y1 <= page.y1, (name, text)
         seen.append(len(letters))
 
     seen = []
-    monkeypatch.setattr(command, "write_picture", check)
-    list(command.draw(command.drawings_of(readings, errors), Path("nowhere"), ["png"], columns))
-    assert len(seen) == len(command.SIZES) and max(seen) >= 3
+    command.draw(SimpleNamespace(draw=check), command.FIGURES, readings, errors, ["png"], columns)
+    assert len(seen) == len(command.FIGURES) and max(seen) >= 3
 
 
 def test_bad_input(tmp_path, capsys):

@@ -27,7 +27,7 @@ READINGS: dict[str, dict[str, Any]] = {  # label: what differs from the library'
         "added_mass": "printed",
     },
 }
-HEAD = (
+COLUMNS = (
     *("reading of the formulae", "head at the end, x, y, z [m]", "apart [m]", "mean speed U [m/s]"),
     *("peak torque [N m]", "in the later half [N m]"),
 )
@@ -82,4 +82,4 @@ def table_of(rows: list[Correction]) -> str:
         peak = f"{torque:.3f} at X = {place:.2f} m, t = {time:.2f} s"
         figures = f"{row.apart:.3f}", f"{row.mean_speed:.3f}", peak, f"{row.later_torque:.3f}"
         cells.append((row.label, f"({x:+.3f}, {y:+.3f}, {z:+.3f})", *figures))
-    return table(HEAD, cells)
+    return table(COLUMNS, cells)

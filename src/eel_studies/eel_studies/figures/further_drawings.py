@@ -2,6 +2,7 @@
 """Figures beyond the paper's. Each function draws runs of the falling gait into an empty matplotlib figure."""
 
 from itertools import product
+from typing import Any
 
 import numpy as np
 
@@ -117,10 +118,12 @@ def draw_ledger(figure, run):
     mark_pitch((power, work))
 
 
-def draw_convergence(figure, space: dict[bool, ConvergenceErrors], time: dict[bool, ConvergenceErrors]):
+def draw_convergence(
+    figure: Any, in_space: dict[bool, ConvergenceErrors], in_time: dict[bool, ConvergenceErrors]
+) -> None:
     """Draw errors against nodes and against the step, without (False) and with (True) drag of cross flow and roll."""
     by_nodes, by_step = figure.subplots(1, 2)
-    for axes, errors in ((by_nodes, space), (by_step, time)):
+    for axes, errors in ((by_nodes, in_space), (by_step, in_time)):
         for (drag, colour), (name, mark) in product(
             ((False, BLUE), (True, ORANGE)), (("motion", "o"), ("torque", "s"))
         ):

@@ -22,7 +22,7 @@ FINEST_NODES = 400.0
 STEPS = (0.05, 0.04, 0.025, 0.02, 0.0125, 0.01, 0.005)  # s, of the classical Runge-Kutta method
 FINEST_STEP = 0.001
 TWIST = (0.4, 0.1, -0.15, -0.5, 0.1, 0.05)  # rad/s, m/s: head twist of a swimmer at speed
-AHEAD = (0.0, 0.0, 0.0, -0.3, 0.0, 0.0)  # m/s: initial velocity ahead
+VELOCITY_AHEAD = (0.0, 0.0, 0.0, -0.3, 0.0, 0.0)  # m/s: initial velocity ahead
 INSTANT = 7.3  # s, both waves and bend are on
 STATIONS = (0.1, 0.3, 0.5, 0.75, 0.9)
 ROUND_OFF = 1e-12  # error below which round-off dominates: its value then depends on the processor
@@ -46,16 +46,7 @@ class ConvergenceErrors:
 def body_of(cross_flow: bool) -> Body:
     """The paper's robot, with or without its drag of cross flow and roll."""
     robot = Body.boyer2010()
-    drag = {} if cross_flow else {"lateral_drag": 0.0, "vertical_drag": 0.0, "roll_drag": 0.0}
-    return Body(
-        length=robot.length,
-        half_width=robot.half_width,
-        half_height=robot.half_height,
-        kinks=robot.kinks,
-        nose=robot.nose,
-        name=robot.name,
-        **drag,
-    )
+    return robot if cross_flow else robot.changed(lateral_drag=0.0, vertical_drag=0.0, roll_drag=0.0)
 
 
 def in_space(cross_flow: bool) -> ConvergenceErrors:
@@ -95,7 +86,7 @@ def in_time(cross_flow: bool, duration: float = 2.5) -> ConvergenceErrors:
             accuracy=Accuracy(name="trial", resolution=60.0, step=step),
             sample_period=duration,
             stations=STATIONS,
-            twist=AHEAD,
+            twist=VELOCITY_AHEAD,
         )
         assert run.torque is not None
         return run.position[-1], run.torque[-1]
