@@ -11,6 +11,7 @@ import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 import pytest
+from eel_viz.topics import GLOBAL, OWN
 
 ROOT = Path(__file__).resolve().parents[1]
 PYTHON_PACKAGES = ("eel_base", "eel_ros", "eel_gaits", "eel_dynamics", "eel_studies", "eel_gym", "eel_viz")
@@ -85,6 +86,8 @@ def test_manifest_names_what_the_sources_import(package):
     needed = {ROSDEP_KEY.get(name, name) for name in imported_modules(package) - FROM_REQUIREMENTS - OPTIONAL} - {
         package
     }
+    if package == "eel_viz":  # it finds the types of topics by their names
+        needed |= {kind.partition("/")[0] for kind in (*OWN.values(), *GLOBAL.values())}
     assert needed <= declared, f"package.xml of {package} lacks {sorted(needed - declared)}"
     unused = declared - needed
     assert not unused, f"package.xml of {package} names {sorted(unused)}, which nothing imports"
@@ -152,3 +155,10 @@ def test_library_imports_without_ros(package):
     code = f"import sys\nfor name in {blocked!r}: sys.modules[name] = None\nimport {', '.join(sorted(modules))}"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
     assert done.returncode == 0, done.stderr
+
+
+def test_way_points_are_drawn_as_wide_as_the_pilot_takes_them_as_reached():
+    from eel_gaits.pilot.settings import PilotSettings
+    from eel_viz.settings import Settings
+
+    assert Settings().reach == PilotSettings.reach

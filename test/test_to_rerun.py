@@ -13,7 +13,7 @@ from eel_dynamics.ros.messages import Sample, body_message, diagnostic_array
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.runs.command import main
 from eel_dynamics.runs.exchange.records import records
-from eel_viz.recording.dispatcher import SAMPLES
+from eel_viz.recording.dispatcher import READERS
 from eel_viz.recording.reading import read
 from rclpy.serialization import deserialize_message
 
@@ -42,7 +42,7 @@ def node_messages(run, statuses):
         energy = SimpleNamespace(**{name: run.energy[name][k] for name in run.energy.keys()})  # noqa: SIM118
         snapshot = SimpleNamespace(energy=energy, **{name: getattr(run, name)[k] for name in PROFILES})
         for topic, kind in sample.kinds.items():
-            if topic in SAMPLES:  # those that the visualiser shows
+            if topic in READERS:  # those that the visualiser shows
                 yield topic, deserialize_message(sample.fill(topic, snapshot), kind)
     yield "diagnostics", statuses[1]
 

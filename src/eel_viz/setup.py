@@ -21,18 +21,18 @@ setup(
         "console_scripts": [
             "visualiser = eel_command:main_of.eel_viz.ros.node",
             "markers = eel_command:main_of.eel_viz.ros.markers",
-            "record = eel_command:main_of.eel_viz.bags.record",
-            "eel_echo = eel_command:main_of.eel_viz.bags.echo",
+            "record = eel_command:main_of.eel_viz.ros.record",
+            "eel_echo = eel_command:main_of.eel_viz.ros.echo",
             "replay = eel_command:main_of.eel_viz.bags.replay",
             "render = eel_command:main_of.eel_viz.pictures.render",
         ],
         "eel.commands.look": [
-            "record = eel_viz.bags.record",
-            "echo = eel_viz.bags.echo",
+            "record = eel_viz.ros.record",
+            "echo = eel_viz.ros.echo",
             "replay = eel_viz.bags.replay",
             "render = eel_viz.pictures.render",
         ],
         "eel_dynamics.drawing": ["rerun = eel_viz.recording.library:to_rerun"],
-        "eel_dynamics.bags": ["messages = eel_viz.bags.run_messages:run_messages"],
+        "eel_dynamics.bags": ["messages = eel_viz.bags.swimmer_messages:swimmer_messages"],
     },
 )

@@ -3,18 +3,24 @@
 
 import ipaddress
 from dataclasses import dataclass, field
+from typing import Any
 
 from eel_base.quantity import Quantities
 from eel_base.wording import shown
-from eel_gaits.pilot.settings import PilotSettings
 
 
-def setting(default, description: str, *, unit: str = "", minimum: float | None = None, maximum: float | None = None):
+def setting(
+    default: Any,
+    description: str,
+    *,
+    unit: str = "",
+    minimum: float | None = None,
+    maximum: float | None = None,
+    **more: Any,
+) -> Any:
     """A dataclass field with the metadata that `ros2 param describe` shows. Bounds are inclusive."""
-    return field(
-        default=default,
-        metadata={"description": description, "unit": unit, "minimum": minimum, "maximum": maximum},
-    )
+    metadata = {"description": description, "unit": unit, "minimum": minimum, "maximum": maximum}
+    return field(default=default, metadata=metadata | more)
 
 
 SINKS = ("spawn", "connect", "serve", "save")
@@ -63,7 +69,7 @@ class Settings(Drawing):
     )
     port: int = setting(9877, "port of the served data (gRPC)", minimum=1024, maximum=65535)
     web_port: int = setting(9090, "port of the served web viewer", minimum=1024, maximum=65535)
-    blueprint: str = setting("overview", "arrangement shown first: overview, torques, motion, swimmer or compare")
+    blueprint: str = setting("overview", "arrangement shown first", choices=BLUEPRINTS)
     compare: str = setting(
         "",
         "namespace of another swimmer (/: the one without), laid over this one in the arrangement compare; empty: none",
@@ -77,7 +83,7 @@ class Settings(Drawing):
         0.4, "length that shows 1 N, which is 1 N s of momentum left in the wake per second", unit="m/N", minimum=0.0
     )
     reach: float = setting(
-        PilotSettings.reach,
+        0.25,
         "distance to draw about way points: give it here too where the pilot's parameter reach has another value",
         unit="lengths",
         minimum=0.0,
@@ -124,8 +130,6 @@ class Settings(Drawing):
                 raise ValueError(f"sink must be some of {', '.join(SINKS)} or auto, got {shown(name)}")
         if self.recording and not self.recording.endswith(".rrd"):
             raise ValueError(f"recording must end in .rrd, got {shown(self.recording)}")
-        if self.blueprint not in BLUEPRINTS:
-            raise ValueError(f"blueprint must be one of {', '.join(BLUEPRINTS)}, got {shown(self.blueprint)}")
         if self.blueprint == "compare" and not self.compare:
             raise ValueError("compare must be the other swimmer's namespace for the blueprint compare, got none")
 

@@ -17,7 +17,8 @@ OWN = {  # relative: below the swimmer's namespace
     "curvature_samples": "eel_msgs/msg/CurvatureSamples",
     "goal": "nav_msgs/msg/Path",
 }
-GLOBAL = {"/clock": "rosgraph_msgs/msg/Clock", "/diagnostics": "diagnostic_msgs/msg/DiagnosticArray"}
+DIAGNOSTICS = "/diagnostics"
+GLOBAL = {"/clock": "rosgraph_msgs/msg/Clock", DIAGNOSTICS: "diagnostic_msgs/msg/DiagnosticArray"}
 LATCHED = ("body", "curvature_law", "goal")  # transient local
 SAMPLED = tuple(name for name in OWN if name not in (*LATCHED, "curvature_samples"))  # once a sample
 SWIMMER = "head_pose"  # without publishers of this topic the swimmer has gone

@@ -21,7 +21,7 @@ class NotFound:
     """A finder of modules, to which pandas is not installed."""
 
     @staticmethod
-    def find_spec(name: str, path=None, target=None) -> None:
+    def find_spec(name: str, path: object = None, target: object = None) -> None:
         """Leave all other modules to the next finder."""
         if name == "pandas":
             raise ModuleNotFoundError("pandas is left out")

@@ -11,12 +11,15 @@ import made_up
 import rclpy
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
-from eel_viz.ros.node import SAMPLED as TOPICS
+from eel_viz.bags.definitions import message_class
+from eel_viz.recording.dispatcher import READERS
+from eel_viz.topics import OWN, SAMPLED
 from geometry_msgs.msg import Vector3
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 
 from eel_msgs.msg import BodyGeometry, CurvatureLaw
 
+TOPICS = {topic: message_class(OWN[topic]) for topic in READERS if topic in SAMPLED}
 EVERY = QoSProfile(history=HistoryPolicy.KEEP_ALL, depth=1, reliability=ReliabilityPolicy.RELIABLE)
 LATCHED = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 

@@ -52,20 +52,18 @@ def record(path: Path, seconds: float, rate: float, *, stations: int = 51, **set
     destination = FileDestination(chosen, said.append, said.append)
     stream = destination.open(1, "made up")
     loggers = Loggers(stream, chosen, Rates(numbers=0.0, drawings=chosen.skin_rate))
-    loggers.body(body())
-    loggers.law(0, "made up")
-    sides = [loggers]
-    if chosen.compare:  # the same again
-        sides.append(loggers.other)
-        loggers.other.body(body())
+    loggers.log("curvature_law", 0, "made up")
+    sides = [False, True] if chosen.compare else [False]  # the same again, as the compared run
+    for compared in sides:
+        loggers.log("body", 0, body(), compared=compared)
     swimmer = made_up.Swimmer(stations)
     logged = {}
     for k in range(round(seconds * rate) + 1):
         stamp = round(k * 1e9 / rate)
         logged[stamp] = sample(swimmer, stamp)
         for method, arguments in logged[stamp].items():
-            for side in sides:
-                getattr(side, method)(stamp, *arguments)
+            for compared in sides:
+                loggers.log(method, stamp, *arguments, compared=compared)
     loggers.flush()
     destination.close_recording(stream)
     return logged

@@ -40,7 +40,7 @@ def main() -> None:
     )  # fmt: skip
     said: list[str] = []
     made = Recordings(destinations(settings, said.append, said.append, live=True), "eel", said.append)
-    made.body(body())
+    made.log_lasting("body", body())
     print("ready", flush=True)
     sys.stdin.readline()  # until the viewer is stuck
     samples = [sample(made_up.Swimmer(51), k * STEP) for k in range(100)]
@@ -56,8 +56,7 @@ def main() -> None:
     while not done():
         stamp = k * STEP
         for topic, arguments in samples[k % len(samples)].items():
-            for loggers in made.loggers_for(topic, stamp):
-                getattr(loggers, topic)(stamp, *arguments)
+            made.log_sample(topic, stamp, arguments)
         k += 1
         if k % 10 == 0:
             made.poll()

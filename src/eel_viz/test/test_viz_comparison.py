@@ -25,10 +25,9 @@ def record(path, *, other_first=False):
     file = FileDestination(settings, print, print)
     stream = file.open(1, "made up")
     loggers = Loggers(stream, settings, Rates(), "standard")
-    loggers.body(body())
-    loggers.law(0, "made up")
-    loggers.other.body(body())
-    loggers.other.law(0, "another")
+    for compared, law in ((False, "made up"), (True, "another")):
+        loggers.log("body", 0, body(), compared=compared)
+        loggers.log("curvature_law", 0, law, compared=compared)
     these, others = made_up.Swimmer(51), made_up.Swimmer(26, offset=SHIFT)
     calls = []
     logged = {}
@@ -37,11 +36,11 @@ def record(path, *, other_first=False):
         logged[stamp] = sample(these, stamp), sample(others, stamp)
         for values in logged[stamp][1]["internal_wrench"][0].values.values():
             values *= 0.5
-        pair = [(loggers, stamp, logged[stamp][0]), (loggers.other, stamp, logged[stamp][1])]
+        pair = [(False, stamp, logged[stamp][0]), (True, stamp, logged[stamp][1])]
         calls += pair[::-1] if other_first else pair
-    for target, stamp, messages in calls:
+    for compared, stamp, messages in calls:
         for method, arguments in messages.items():
-            getattr(target, method)(stamp, *arguments)
+            loggers.log(method, stamp, *arguments, compared=compared)
     loggers.flush()
     file.close_recording(stream)
     return logged
@@ -132,12 +131,6 @@ def test_the_order_of_the_two_does_not_matter(made, tmp_path):
         np.testing.assert_array_equal(one[component], two[component])
 
 
-def test_without_another_run_there_is_no_other(record_made_up, tmp_path):
-    settings = Settings(recording=str(tmp_path / "alone.rrd"))
-    file = FileDestination(settings, print, print)
-    stream = file.open(1, "alone")
-    with pytest.raises(ValueError, match=r"settings\.compare is empty"):
-        _ = Loggers(stream, settings, Rates()).other
-    file.close_recording(stream)
+def test_the_arrangement_of_a_comparison_needs_another_run():
     with pytest.raises(ValueError, match="compare must be the other swimmer's namespace"):
         Settings(blueprint="compare")

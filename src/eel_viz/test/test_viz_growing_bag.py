@@ -12,9 +12,9 @@ import pytest
 import yaml
 import zstandard
 from eel_viz.bags.bag import Bag, DamagedBag
-from eel_viz.bags.chunk_sizes import check_chunks
 from eel_viz.bags.definitions import definition, type_hash
 from eel_viz.bags.growing_bag import GrowingBag
+from eel_viz.bags.mcap_file import damage_of
 from mcap.reader import make_reader
 from rosbags.rosbag2 import Reader
 
@@ -154,7 +154,7 @@ def test_a_chunk_that_inflates_is_refused_before_it_does(tmp_path, compression, 
     path = tmp_path / "bag.mcap"
     path.write_bytes(b"\x89MCAP0\r\n\x06" + struct.pack("<Q", len(chunk)) + chunk)
     with pytest.raises(ValueError, match="a chunk must have"):
-        check_chunks(path)
+        damage_of(path)
     with pytest.raises(ValueError, match=r"no bag|cannot be read"):
         Bag(path)
 

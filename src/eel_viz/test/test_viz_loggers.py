@@ -102,8 +102,8 @@ def test_way_points_that_come_before_the_body_get_its_size(given, reach, tmp_pat
     destination = FileDestination(settings, said.append, said.append)
     stream = destination.open(1, "goal")
     loggers = Loggers(stream, settings, Rates())
-    loggers.course(np.array([(4.0, 1.0, -0.5), (8.0, -1.0, 0.25)]))
-    loggers.body(replace(body(), length=0.4))
+    loggers.goal(0, np.array([(4.0, 1.0, -0.5), (8.0, -1.0, 0.25)]))
+    loggers.body(0, replace(body(), length=0.4))
     loggers.flush()
     destination.close_recording(stream)
     spheres = read(path, entities.WAY_POINTS, static=True)
@@ -398,7 +398,7 @@ def test_stations_may_change_in_mid_run(record_made_up, tmp_path):
     file = FileDestination(settings, print, print)
     stream = file.open(1, "changing")
     loggers = Loggers(stream, settings, Rates())
-    loggers.body(body())
+    loggers.body(0, body())
     for k, stations in enumerate((51, 51, 21, 101)):
         for method, arguments in sample(made_up.Swimmer(stations), k * 10**9).items():
             getattr(loggers, method)(k * 10**9, *arguments)
@@ -421,7 +421,7 @@ def test_the_order_of_topics_does_not_matter(tmp_path):
         file = FileDestination(settings, print, print)
         stream = file.open(1, name)
         loggers = Loggers(stream, settings, Rates())
-        loggers.body(body())
+        loggers.body(0, body())
         for k in range(10):
             for method, arguments in list(sample(made_up.Swimmer(), k * 10**8).items())[::turn]:
                 getattr(loggers, method)(k * 10**8, *arguments)

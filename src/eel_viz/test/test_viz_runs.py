@@ -58,8 +58,7 @@ def file(tmp_path, console):
 def send(made, stamp, topics=None):
     for topic, arguments in sample(made_up.Swimmer(11), stamp).items():
         if topics is None or topic in topics:
-            for loggers in made.loggers_for(topic, stamp):
-                getattr(loggers, topic)(stamp, *arguments)
+            made.log_sample(topic, stamp, arguments)
 
 
 @pytest.mark.fault(
@@ -96,8 +95,8 @@ def test_recordings_are_few_however_often_time_jumps_back(console, tmp_path, mon
 )
 def test_a_stamp_that_goes_back_begins_a_new_recording(file, console, tmp_path):
     made = Recordings([file], "eel", console.warned.append)
-    made.body(body())
-    made.law("falling")
+    made.log_lasting("body", body())
+    made.log_lasting("curvature_law", "falling")
     for stamp in (0, SECOND, 2 * SECOND, 0, SECOND):
         send(made, stamp)
     made.close()
@@ -160,7 +159,7 @@ def test_diagnostics_at_their_own_time_or_at_the_newest_if_that_is_wall_time(fil
     for stamp in (0, 3 * SECOND):
         send(made, stamp, ("head_pose",))
     for stamp, state in ((2 * SECOND, "swimming"), (1_795_234_285 * SECOND, "elsewhere")):
-        made.diagnostics(stamp, [Status(name="/dynamics", level=1, message=state, values={})])
+        made.log_lasting("diagnostics", [Status(name="/dynamics", level=1, message=state, values={})], stamp=stamp)
     made.close()
     log = read(tmp_path / "run.rrd", entities.LOG)
     assert log.stamps.tolist() == [2 * SECOND, 3 * SECOND]
@@ -273,7 +272,7 @@ def test_a_file_that_cannot_be_written_is_said_again_and_again_and_tried_again(t
     place.write_text("where the folder should be")
     file = FileDestination(Settings(recording=str(path)), console.said.append, console.warned.append, retry_from=1)
     made = Recordings([file], "eel", console.warned.append)
-    made.body(body())
+    made.log_lasting("body", body())
     monkeypatch.setattr(recordings, "RETRY", 0.0)
     now = time.monotonic()
     for later in (0.0, 0.4 * REMINDER, 0.8 * REMINDER, 1.2 * REMINDER):
@@ -330,12 +329,11 @@ def test_the_only_sink_must_be_writable_at_the_start(sink, allowed, tmp_path, co
 )
 def test_a_successor_begins_a_new_recording_whatever_its_stamps(file, console, tmp_path):
     made = Recordings([file], "eel", console.warned.append)
-    made.body(body())
+    made.log_lasting("body", body())
     send(made, SECOND)
     for stamp in (2 * SECOND, 3 * SECOND):
         for topic, arguments in sample(made_up.Swimmer(11), stamp).items():
-            for loggers in made.loggers_for(topic, stamp, new_publisher=stamp == 2 * SECOND):
-                getattr(loggers, topic)(stamp, *arguments)
+            made.log_sample(topic, stamp, arguments, new_publisher=stamp == 2 * SECOND)
     made.close()
     np.testing.assert_array_equal(read(tmp_path / "run.rrd", entities.POSITION).stamps, [SECOND])
     for entity in (entities.POSITION, entities.WRENCH_NUMBERS, entities.POWER):

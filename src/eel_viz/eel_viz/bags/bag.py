@@ -14,17 +14,15 @@ import sqlite3
 import tempfile
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Self
 
 from eel_base.files.input_file import InputFile, reading
 from eel_base.wording import one_line, shown
-from rosbags.interfaces import MessageDefinitionFormat
+from rosbags.interfaces import Connection, MessageDefinitionFormat
 from rosbags.rosbag2 import Reader
 from rosbags.typesys import Stores, TypesysError, get_types_from_idl, get_types_from_msg, get_typestore
 
-from eel_viz.bags.chunk_sizes import check_chunks
-from eel_viz.bags.damaged_mcap import DamagedMcapReader
-from eel_viz.bags.mcap_checksums import check_index, damage_of_data
+from eel_viz.bags.mcap_file import RecordReader, damage_of
 from eel_viz.bags.metadata import NAME, check_metadata
 
 SUFFIXES = (".mcap", ".db3")
@@ -55,7 +53,7 @@ class Bag:
     def __init__(self, path: str | os.PathLike[str]) -> None:
         self._path = pathlib.Path(path)
         self._stack = contextlib.ExitStack()
-        self._readers: list[Reader | DamagedMcapReader] = []
+        self._readers: list[Reader | RecordReader] = []
         self._store = get_typestore(Stores.EMPTY)
         self.damage = ""
         self.topics: dict[str, Topic] = {}
@@ -75,10 +73,10 @@ class Bag:
         """Close the files."""
         self._stack.close()
 
-    def __enter__(self) -> "Bag":
+    def __enter__(self) -> Self:
         return self
 
-    def __exit__(self, *_) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
     def messages(
@@ -113,8 +111,8 @@ class Bag:
     def _open(self) -> None:
         if self._path.is_file() or (self._path / NAME).exists():
             try:
+                self.damage = "; ".join(filter(None, map(damage_of, _mcap_files(self._path))))
                 self._readers = [self._stack.enter_context(_checked_reader(self._path))]
-                self.damage = next(filter(None, map(damage_of_data, _mcap_files(self._path))), "")
                 return
             except Exception as error:  # on damaged files rosbags raises struct.error, KeyError, sqlite's and others
                 self.damage = _line(error)
@@ -130,7 +128,8 @@ class Bag:
             )
         for each in files:
             try:
-                self._readers.append(self._stack.enter_context(_reader(each, self._stack)))
+                reader: Reader | RecordReader = self._stack.enter_context(_reader(each, self._stack))
+                self._readers.append(reader)
             except Exception as error:
                 self.damage = f"{each.name}: {_line(error)}"
         if not any(reader.connections for reader in self._readers):
@@ -165,7 +164,7 @@ class Bag:
         try:
             if topic.idl:
                 separator = "=" * 80 + "\n"
-                found: dict = {}
+                found: dict[str, Any] = {}
                 for part in text.split(f"{separator}IDL: "):
                     found.update(get_types_from_idl(part.split("\n", 1)[-1] if separator in text else part))
             else:
@@ -179,15 +178,10 @@ class Bag:
 
 @contextlib.contextmanager
 def _checked_reader(path: pathlib.Path) -> Iterator[Reader]:
-    """A reader of a bag or one of its files. `ValueError` where its index or its metadata do not fit."""
+    """A reader of a bag or one of its files. `ValueError` where the metadata have no bounds or do not fit the files."""
     if path.is_dir():
         check_metadata(path)
-    for each in _mcap_files(path):
-        with reading(each.name):
-            check_chunks(each)
     with Reader(path) as reader:
-        for each in _mcap_files(path):
-            check_index(each)
         if path.is_dir():
             storage: Any = reader.storage  # of a folder: it has files
             files, known = storage.storages, {_identity(each) for each in reader.connections}
@@ -197,7 +191,7 @@ def _checked_reader(path: pathlib.Path) -> Iterator[Reader]:
         yield reader
 
 
-def _identity(connection) -> tuple:
+def _identity(connection: Connection) -> tuple[str, str, str]:
     """What a topic in metadata.yaml must have in common with one in a file."""
     return connection.topic, connection.msgtype, str(connection.ext)
 
@@ -207,12 +201,14 @@ def _mcap_files(path: pathlib.Path) -> list[pathlib.Path]:
     return [each for each in found if each.suffix == ".mcap" and each.is_file()]
 
 
-def _reader(path: pathlib.Path, stack: contextlib.ExitStack):
+def _reader(path: pathlib.Path, stack: contextlib.ExitStack) -> Reader | RecordReader:
     """A reader of one file, which may be incomplete."""
     if path.suffix == ".mcap":
-        with contextlib.suppress(Exception), _checked_reader(path):
-            return Reader(path)
-        return DamagedMcapReader(path)
+        with contextlib.suppress(Exception):
+            damage_of(path)
+            with Reader(path):
+                return Reader(path)
+        return RecordReader(path)
     journal = [path.with_name(path.name + suffix) for suffix in ("-wal", "-journal")]
     if any(each.exists() and each.stat().st_size for each in journal):  # let sqlite recover a copy
         folder = pathlib.Path(stack.enter_context(tempfile.TemporaryDirectory()))

@@ -1,72 +1,99 @@
 # SPDX-License-Identifier: Apache-2.0
 """Writes a rosbag2 folder in MCAP storage that can be opened at all times, not only once it is closed.
 
-rosbags' writer writes the index, the end of the file and metadata.yaml when it is closed; before, there is no bag. Here
+The index, the end of the file and metadata.yaml are usually written when a bag is closed; before, there is no bag. Here
 `save` writes them whenever it is called: the new messages and a new end overwrite the old end in one write. So a
 recorder that is killed leaves a complete bag of all saved messages. If the disk is full, the old end is restored. (A
-process killed within that write leaves a file without its end; `damaged_mcap` reads it.) Chunks, data and index have
-their checksums.
+process killed within that write leaves a file without its end; `mcap_file` reads it.) Chunks, data and index have their
+checksums.
 """
 
+import copy
 import os
 import pathlib
-import struct
-from io import BytesIO
-from typing import Any, Literal
-from zlib import crc32
+from typing import IO, Any, Literal, cast
 
+import mcap.writer
 from eel_base.wording import shown
+from rosbags.interfaces import Connection
 from rosbags.rosbag2 import StoragePlugin, Writer, WriterError
 from rosbags.rosbag2.enums import CompressionMode
-from rosbags.rosbag2.storage_mcap import McapWriter
-
-from eel_viz.bags.mcap_checksums import CHUNK_CHECKSUM, with_checksums
 
 VERSION: Literal[9] = 9  # of metadata.yaml, as ROS 2 Jazzy writes it
 
 
-class GrowingFile(McapWriter):
-    """rosbags' writer of one MCAP file that writes to memory; each call of `close` writes the memory to the file."""
+class PendingBytes:
+    """The bytes behind the first `start` bytes of a file, with the interface of a file that mcap's writer needs."""
+
+    def __init__(self) -> None:
+        self.start = 0
+        self.data = bytearray()
+
+    def tell(self) -> int:
+        return self.start + len(self.data)
+
+    def write(self, data: bytes) -> int:
+        self.data += data
+        return len(data)
+
+    def flush(self) -> None:
+        """Do nothing: `GrowingFile` writes."""
+
+
+class GrowingFile:
+    """rosbags' storage of one MCAP file; each call of `close` makes the file whole, and more may follow."""
 
     def __init__(self, path: pathlib.Path, compression: CompressionMode) -> None:
-        super().__init__(path, compression)
-        self._file = self.bio
-        self._kept = self._file.tell()  # bytes of the file that no `close` touches again
-        self._end = b""  # the file's end, behind them
-        self._file.flush()
-        self._checksum = crc32(self.path.read_bytes())  # of the bytes that are kept
-        self.bio: Any = _PendingData(self._kept)
+        self.path = path / f"{path.name}.mcap"
+        self._file = self.path.open("xb", buffering=0)
+        self._pending = PendingBytes()
+        self._end = b""  # the file's end, behind the bytes that no `close` touches again
+        self._schemas: dict[str, int] = {}
+        self._channels: dict[int, int] = {}
+        self._writer = mcap.writer.Writer(
+            cast(IO[bytes], self._pending),
+            compression=mcap.writer.CompressionType.NONE,
+            use_summary_offsets=False,  # its list of them would grow with each end
+            enable_data_crcs=True,
+        )
+        self._writer.start("ros2")
 
-    def close_chunk(self) -> None:
-        """Complete the chunk, with its checksum."""
-        place, checksum = self.bio.tell() + CHUNK_CHECKSUM, crc32(self.chunk.bio.getbuffer())
-        super().close_chunk()
-        self.bio.replace(place, struct.pack("<I", checksum))
+    def add_msgtype(self, connection: Connection) -> None:
+        """Add the definition of a message type."""
+        text = connection.msgdef.data.encode()
+        self._schemas[connection.msgtype] = self._writer.register_schema(connection.msgtype, "ros2msg", text)
+
+    def add_connection(self, connection: Connection, offered_qos_profiles: str) -> None:
+        """Add a topic."""
+        about = {"offered_qos_profiles": offered_qos_profiles, "topic_type_hash": connection.digest}
+        schema = self._schemas[connection.msgtype]
+        self._channels[connection.id] = self._writer.register_channel(connection.topic, "cdr", schema, about)
+
+    def write(self, connection: Connection, timestamp: int, data: bytes | memoryview) -> None:
+        """Add a message, received at `timestamp` [ns]."""
+        self._writer.add_message(self._channels[connection.id], timestamp, bytes(data), timestamp)
 
     def close(self, version: int, metadata: str) -> None:
         """Complete the file. `OSError` if there is no room: the file then is as after the last call."""
-        if self.chunk.bio.tell():
-            self.close_chunk()
-        kept = self.bio.tell()
-        super().close(version, metadata)
-        data = with_checksums(self.bio.getvalue(), self._kept, self._checksum)
+        self._writer.flush()
+        done = len(self._pending.data)
+        copy.copy(self._writer).finish()  # the copy alone has the end in its checksum of the data
         try:
-            self._write(data)
+            self._write(self._pending.data)
         except OSError:
             self._write(self._end)
-            os.ftruncate(self._file.fileno(), self._kept + len(self._end))
+            os.ftruncate(self._file.fileno(), self._pending.start + len(self._end))
             raise
-        done = kept - self._kept
-        self._checksum, self._end = crc32(data[:done], self._checksum), data[done:]
-        self._kept = kept
-        self.bio = _PendingData(kept)
+        self._end = bytes(self._pending.data[done:])
+        self._pending.start += done
+        self._pending.data.clear()
 
     def abort(self) -> None:
         """Close the file descriptor; the file stays as it is."""
         self._file.close()
 
-    def _write(self, data: bytes) -> None:
-        place, view = self._kept, memoryview(data)
+    def _write(self, data: bytes | bytearray) -> None:
+        place, view = self._pending.start, memoryview(bytes(data))
         while view:
             done = os.pwrite(self._file.fileno(), view, place)
             place, view = place + done, view[done:]
@@ -103,27 +130,3 @@ class GrowingBag(Writer):
             self.save()
         finally:
             self.abort()
-
-
-class _PendingData:
-    """The data after the first `place` bytes of a file, in memory, with the interface of a file."""
-
-    def __init__(self, place: int) -> None:
-        self._place, self._data = place, BytesIO()
-
-    def tell(self) -> int:
-        return self._place + self._data.tell()
-
-    def write(self, data: bytes) -> int:
-        return self._data.write(data)
-
-    def replace(self, place: int, data: bytes) -> None:
-        """Put `data` to the byte `place` of the file."""
-        start = place - self._place
-        self._data.getbuffer()[start : start + len(data)] = data
-
-    def getvalue(self) -> bytes:
-        return self._data.getvalue()
-
-    def close(self) -> None:
-        """Do nothing: there is no file yet."""

@@ -7,118 +7,28 @@ Messages pass through the visualiser's `dispatcher`, in the order in which they 
 reset in the bag begins a second file, as in the visualiser.
 """
 
+import argparse
 import contextlib
 import os
 import time
-from collections.abc import Callable, Iterator
 from dataclasses import fields
-from types import SimpleNamespace
 
 from eel_base.command.command_line import Parser, print_to_stderr
 from eel_base.command.run_command import run_command
 from eel_base.quantity import limits
-from eel_base.wording import shown
 
-from eel_viz.bags.bag import Bag, DamagedBag
+from eel_viz.bags.bag import Bag
+from eel_viz.bags.swimmer_messages import SwimmerMessages
 from eel_viz.recording.destination import LogFunction
-from eel_viz.recording.dispatcher import SAMPLES
 from eel_viz.recording.merged_messages import record_messages
 from eel_viz.recording.sinks import destinations
 from eel_viz.settings import Settings
-from eel_viz.topics import GLOBAL, OWN
 from eel_viz.viewer import display, open_window
 from eel_viz.without_pandas import keep_pandas_out
 
 NAME = "eel replay"
-DIAGNOSTICS = "/diagnostics"
 OPTIONS: tuple[str, ...] = ("blueprint", "rate", "skin_rate", "colour_limit", "torque_limit", "force_limit")
 OPTIONS += ("curvature_limit", "load_scale", "end_force_scale", "reach", "viewer")
-
-
-def _named_law(message, place: int) -> SimpleNamespace:
-    """A law for the visualiser: its arrays cannot be compared, so each message counts as a new law."""
-    return SimpleNamespace(name=message.name, place=place)
-
-
-class Source:
-    """The messages of one swimmer in `bag`, as pairs of topic and message.
-
-    namespace: the swimmer's; None: that of the only swimmer. law_message(message, place): what is yielded for a law.
-    `ValueError` if there is no swimmer, or several.
-    """
-
-    def __init__(
-        self,
-        bag: Bag,
-        namespace: str | None,
-        log_warning: LogFunction,
-        law_message: Callable[[object, int], object] = _named_law,
-    ) -> None:
-        self._bag, self._log_warning, self._law_message = bag, log_warning, law_message
-        self._told: set[str] = set()
-        self.namespace = self._found(namespace)
-        self._topics = {f"{self.namespace}/{name}": name for name in (*SAMPLES, "body", "curvature_law")}
-        self._topics[DIAGNOSTICS] = "diagnostics"
-        for topic, name in list(self._topics.items()):
-            there, kind = bag.topics.get(topic), OWN.get(name) or GLOBAL.get(topic)
-            if there is None or there.type != kind:
-                del self._topics[topic]
-            if there is not None and there.type != kind:
-                log_warning(f"{topic} is left out: it is {there.type}, not {kind}")
-
-    def has_several_publishers(self, name: str) -> bool:
-        """Whether the topic `name` has several publishers in the bag."""
-        return any(
-            self._bag.topics[topic].publishers > 1 for topic, relative in self._topics.items() if relative == name
-        )
-
-    def __iter__(self) -> Iterator[tuple[str, object]]:
-        """Yield topic and message in the recorded order; the body first, as it is valid at all times."""
-        body = f"{self.namespace}/body"
-        first = next((message for _, _, message in self._bag.messages(body)), None) if body in self._topics else None
-        if first is not None:
-            yield "body", first
-        count = 0
-        try:
-            for topic, _, message in self._bag.messages(*self._topics, unreadable=self._leave_out):
-                name, count = self._topics[topic], count + 1
-                if name == "body" and first is not None:
-                    first = None
-                elif name == "curvature_law":
-                    yield name, self._law_message(message, count)
-                else:
-                    yield name, message
-        except DamagedBag as error:
-            if not count:
-                raise
-            self._log_warning(f"{error}: shown as far as it goes")
-
-    def _leave_out(self, topic: str, why: str) -> None:
-        if topic not in self._told:
-            self._told.add(topic)
-            self._log_warning(f"{topic}: {why}: left out, and those like it")
-
-    def _found(self, namespace: str | None) -> str:
-        spaces = sorted(
-            {
-                topic[: -len(name) - 1]
-                for topic, about in self._bag.topics.items()
-                for name, kind in OWN.items()
-                if topic.endswith(f"/{name}") and about.type == kind and name in SAMPLES
-            }
-        )
-        named = ", ".join(space or "/" for space in spaces)
-        if namespace is not None:
-            wanted = "/" + namespace.strip("/") if namespace.strip("/") else ""
-            if wanted not in spaces:
-                raise ValueError(f"no swimmer in namespace {shown(namespace)} of the bag; there is: {named or 'none'}")
-            return wanted
-        if len(spaces) > 1:
-            raise ValueError(f"the bag has swimmers in several namespaces, choose one with --namespace: {named}")
-        if not spaces:
-            topics = ", ".join(sorted(self._bag.topics)) or "none at all"
-            raise ValueError(f"the bag has no topic of a swimmer; its topics: {topics}")
-        return spaces[0]
 
 
 def replay(
@@ -138,10 +48,11 @@ def replay(
     with contextlib.ExitStack() as stack:
         paths = [path, *([other] if other else [path] if settings.compare else [])]
         spaces = [namespace, *([None] if other else [settings.compare])]
-        sources, names = [], []
+        sources: list[SwimmerMessages] = []
+        names: list[str] = []
         for where, space in zip(paths, spaces, strict=False):
             bag = stack.enter_context(Bag(where))
-            sources.append(Source(bag, space, log_warning))
+            sources.append(SwimmerMessages(bag, space, log_warning))
             names.append(name_of(where, other, path) if other else sources[-1].namespace.strip("/") or "eel")
             if bag.damage:
                 log_warning(f"{where} is unfinished or damaged ({bag.damage}): shown as far as it goes")
@@ -202,7 +113,7 @@ def main(arguments: list[str] | None = None) -> int:
     return run_command(parser(), _replay, arguments, interrupted=": the recording ends there")
 
 
-def _replay(chosen) -> int:
+def _replay(chosen: argparse.Namespace) -> int:
     output = chosen.output or f"{name_of(chosen.bag)}.rrd"
     other = chosen.compare if chosen.compare.strip("/") and os.path.exists(chosen.compare) else None
     began = time.monotonic()
@@ -211,7 +122,7 @@ def _replay(chosen) -> int:
     values = {name: getattr(chosen, name) for name in OPTIONS}
     values["compare"] = name_of(other, chosen.bag) if other else chosen.compare
     sink = ("save", "connect") if chosen.connect else ("save",)
-    told = replay(
+    counts = replay(
         chosen.bag,
         Settings.among({**values, "sink": sink, "recording": output}),
         other=other,
@@ -219,7 +130,7 @@ def _replay(chosen) -> int:
         log_info=print,
         log_warning=lambda text: print_to_stderr(NAME, text),
     )
-    print(f"replayed in {time.monotonic() - began:.1f} s: {told}")
+    print(f"replayed in {time.monotonic() - began:.1f} s: {counts}")
     if chosen.spawn:
         open_window(output)
     return 0

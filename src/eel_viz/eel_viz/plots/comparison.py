@@ -127,7 +127,11 @@ class Side(ABC):
         self.summary = Summary()
         self.line: Backbone | None = None  # the last backbone
 
-    def law(self, stamp: int, name: str) -> None:
+    def body(self, stamp: int, body: Body) -> None:
+        """Take the body."""
+        self.summary.body = body
+
+    def curvature_law(self, stamp: int, name: str) -> None:
         """Take the law's name."""
         self.summary.law = name
 
@@ -182,9 +186,9 @@ class OtherSide(Side):
     def _pair(self, pairs: Pairs, *sample) -> list[tuple]:
         return pairs.add_other(*sample)
 
-    def body(self, body: Body) -> None:
+    def body(self, stamp: int, body: Body) -> None:
         """Take the sections, for the hoops."""
-        self.summary.body = body
+        super().body(stamp, body)
         self._skin = Skin(body.x, body.half_width, body.half_height, rings=HOOPS, sides=SIDES)
 
     def head_twist(self, stamp: int, twist: Twist) -> None:
@@ -204,15 +208,3 @@ class OtherSide(Side):
             self._stream.add_row(
                 stamp, entities.OTHER_HOOPS, rr.LineStrips3D, strips=np.concatenate([rings, rings[:, :1]], axis=1)
             )
-
-    def odom(self, stamp: int, pose: Pose, twist: Twist) -> None:
-        """Do nothing: the same data as head_pose and head_twist."""
-
-    def curvature(self, stamp: int, curvature: Profiles) -> None:
-        """Do nothing: curvatures are not compared."""
-
-    def hydrodynamic_load(self, stamp: int, load) -> None:
-        """Do nothing: loads are not compared."""
-
-    def energy(self, stamp: int, energy: dict[str, float]) -> None:
-        """Do nothing: the summary shows the residual."""

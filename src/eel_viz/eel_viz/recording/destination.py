@@ -17,6 +17,7 @@ from eel_viz.views.views import USUAL, Look
 
 APPLICATION = "eel"  # Rerun's application id
 CLOSE_TIMEOUT = 3.0  # s for the last flush of a stream
+LONG = 1.2  # of the usual duration: recordings that are longer get legends of their own
 
 LogFunction = Callable[[str], None]
 
@@ -26,46 +27,50 @@ class Destination(ABC):
 
     rates: how often numbers and drawings are logged. log_info, log_warning: write one line to the user.
     live: a viewer shows the data as they come.
+
+    Attributes:
+        incomplete: part of a recording is missing here.
     """
 
     def __init__(
-        self,
-        settings: Settings,
-        rates: Rates,
-        log_info: LogFunction,
-        log_warning: LogFunction,
-        *,
-        live: bool,
+        self, settings: Settings, rates: Rates, log_info: LogFunction, log_warning: LogFunction, *, live: bool
     ) -> None:
         self.settings, self.rates, self.log_info, self.log_warning = settings, rates, log_info, log_warning
         self.live = live
+        self.incomplete = False
         self._blueprint_sent = False  # sent once: later recordings keep the user's changes in the viewer
+
+    @abstractmethod
+    def open(self, number: int, name: str) -> rr.RecordingStream | None:
+        """The stream of recording `number` (1, 2, ...), called `name`; None if it cannot be opened now."""
 
     def file(self, number: int) -> pathlib.Path | None:
         """The file that recording `number` is written to; None if it is not a file."""
         return None
 
-    def open(self, number: int, name: str) -> rr.RecordingStream | None:
-        """The stream of recording `number` (1, 2, ...), called `name`; None if it cannot be opened now."""
-        sink = self._sink(number)
-        if sink is None:
-            return None
-        return self._make_stream(sink, name)
-
-    def _make_stream(self, sink: rr.FileSink | rr.GrpcSink, name: str) -> rr.RecordingStream | None:
-        stream = rr.RecordingStream(APPLICATION, batcher_config=self._batcher_config())
+    def make_stream(
+        self, sink: rr.FileSink | rr.GrpcSink, name: str, batches: rr.ChunkBatcherConfig | None = None
+    ) -> rr.RecordingStream:
+        """A stream to `sink` for a recording called `name`. batches: how Rerun collects data before it sends them."""
+        stream = rr.RecordingStream(APPLICATION, batcher_config=batches or rr.ChunkBatcherConfig.DEFAULT())
         stream.set_log_time_enabled(False)
-        stream.set_sinks(sink, default_blueprint=self._blueprint())
+        stream.set_sinks(sink, default_blueprint=self.blueprint())
         if self.live and not self._blueprint_sent:  # viewers ignore a default blueprint that comes after the first data
-            stream.send_blueprint(self._blueprint(), make_active=True, make_default=True)
+            stream.send_blueprint(self.blueprint(), make_active=True, make_default=True)
             self._blueprint_sent = True
         stream.send_recording_name(name)
         return stream
 
+    def blueprint(self, duration: float = USUAL) -> rrb.Blueprint:
+        """The arrangements of a recording of `duration` [s]."""
+        chosen = self.settings
+        look = Look(frames=chosen.frames, wake=chosen.wake, duration=duration)
+        return arrangement(chosen.blueprint, live=self.live, compare=bool(chosen.compare), look=look)
+
     def fit(self, stream: rr.RecordingStream, duration: float) -> None:
         """Fit the legends of a recording that ends to its `duration` [s], where that is longer than usual."""
-        if not self.live and duration > 1.2 * USUAL:
-            stream.send_blueprint(self._blueprint(duration), make_active=False, make_default=True)
+        if not self.live and duration > LONG * USUAL:
+            stream.send_blueprint(self.blueprint(duration), make_active=False, make_default=True)
 
     def close_recording(self, stream: rr.RecordingStream) -> None:
         """Close a recording's stream."""
@@ -83,27 +88,9 @@ class Destination(ABC):
         """Whether the receiver of open streams has gone, so that they must be given up."""
         return False
 
-    @property
-    def incomplete(self) -> bool:
-        """Whether part of a recording is missing at this destination."""
-        return False
-
     def close(self) -> None:
         """Close what outlives the recordings, such as a server."""
         return
-
-    def _batcher_config(self) -> rr.ChunkBatcherConfig:
-        """How Rerun batches data before it sends them."""
-        return rr.ChunkBatcherConfig.DEFAULT()
-
-    def _blueprint(self, duration: float = USUAL) -> rrb.Blueprint:
-        chosen = self.settings
-        look = Look(frames=chosen.frames, wake=chosen.wake, duration=duration)
-        return arrangement(chosen.blueprint, live=self.live, compare=bool(chosen.compare), look=look)
-
-    @abstractmethod
-    def _sink(self, number: int) -> rr.FileSink | rr.GrpcSink | None:
-        """The sink of recording `number`; None if it cannot be opened now."""
 
 
 def close_stream(stream: rr.RecordingStream) -> None:

@@ -8,25 +8,32 @@ A message is any object with the fields of its type. A message that cannot be sh
 
 import time
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
+from typing import Any
 
 from eel_viz import messages
 from eel_viz.messages import BadMessage, stamp_of
 from eel_viz.recording.destination import LogFunction
-from eel_viz.recording.recordings import ComparedRecordings, Recordings
+from eel_viz.recording.recordings import Recordings
+from eel_viz.topics import SAMPLED
 
 COARSE = 4  # stations, below which a backbone says little about the shape
 BODY_LIMIT = 2.0  # s after the first backbone within which the body is expected
 
-SAMPLES: dict[str, Callable] = {  # topic, also the method of `Loggers`: its arguments after the stamp
-    "head_pose": lambda message: [messages.read_pose(message.pose)],
-    "head_twist": lambda message: [messages.read_twist(message.twist)],
-    "odom": lambda message: [messages.read_pose(message.pose.pose), messages.read_twist(message.twist.twist)],
-    "backbone": lambda message: [messages.read_backbone(message)],
-    "curvature": lambda message: [messages.read_curvature(message)],
-    "internal_wrench": lambda message: [messages.read_wrench(message)],
-    "hydrodynamic_load": lambda message: [messages.read_load(message)],
-    "energy": lambda message: [messages.read_energy(message)],
+# What is shown: each topic is also the method of `Loggers` that draws it; here are its arguments after the stamp.
+READERS: dict[str, Callable[[Any], tuple[Any, ...]]] = {
+    "body": lambda message: (messages.read_body(message),),
+    "curvature_law": lambda message: (message.name,),
+    "goal": lambda message: (messages.read_path(message),),
+    "head_pose": lambda message: (messages.read_pose(message.pose),),
+    "head_twist": lambda message: (messages.read_twist(message.twist),),
+    "odom": lambda message: (messages.read_pose(message.pose.pose), messages.read_twist(message.twist.twist)),
+    "backbone": lambda message: (messages.read_backbone(message),),
+    "curvature": lambda message: (messages.read_curvature(message),),
+    "internal_wrench": lambda message: (messages.read_wrench(message),),
+    "hydrodynamic_load": lambda message: (messages.read_load(message),),
+    "energy": lambda message: (messages.read_energy(message),),
+    "diagnostics": lambda message: (messages.read_diagnostics(message),),
 }
 
 
@@ -34,53 +41,31 @@ class Dispatcher:
     """Checks each message and passes it to the loggers of its recording.
 
     namespace: the swimmer's; diagnostics of other namespaces are ignored. log_warning: writes one line to the user.
+    compared: what the topics of a swimmer begin with that is compared; None for the swimmer that the recording shows.
 
     Attributes:
         received: number of messages by topic; a repeated sample 0 counts once.
     """
 
     def __init__(
-        self, recordings: Recordings | ComparedRecordings, *, namespace: str, log_warning: LogFunction
+        self, recordings: Recordings, *, namespace: str, log_warning: LogFunction, compared: str | None = None
     ) -> None:
         self._recordings, self._log_warning = recordings, log_warning
-        self._namespace = namespace.rstrip("/")
+        self._namespace, self._compared = namespace.rstrip("/"), compared
         self.received: Counter[str] = Counter()
-        self._reported: set = set()  # faults
-        self._start: dict[str, tuple[object, bool]] = {}  # topic: sample 0, and whether from another publisher
+        self._reported: set[Hashable] = set()  # faults
+        self._start: dict[str, tuple[Any, bool]] = {}  # topic: sample 0, and whether from another publisher
         self._stations: dict[str, int] = {}  # number of stations by topic
         self._first_backbone: float | None = None  # s
-        self._last_law = None
-        self._others = {"body": self._body, "curvature_law": self._law, "diagnostics": self._diagnostics}
-        self._others |= {"goal": self._goal}
 
-    @property
-    def topics(self) -> tuple[str, ...]:
-        """All topics that `dispatch` accepts."""
-        return (*SAMPLES, *self._others)
-
-    def dispatch(self, topic: str, message, *, new_publisher: bool = False) -> None:
-        """Log one message of `topic`, a name in `topics`; `new_publisher`: the first one from another publisher."""
-        if topic in SAMPLES and messages.is_at_start(message):
+    def dispatch(self, topic: str, message: Any, *, new_publisher: bool = False) -> None:
+        """Log one message of `topic`, a name in `READERS`; `new_publisher`: the first one from another publisher."""
+        if topic in SAMPLED and messages.is_at_start(message):
             _, before = self._start.get(topic, (None, False))
             self._start[topic] = message, new_publisher or before
             return
         self._log_start(topic)
         self._log(topic, message, new_publisher)
-
-    def _log_start(self, topic: str) -> None:
-        """Log the sample 0 of `topic` that is held back."""
-        if topic in self._start:
-            self._log(topic, *self._start.pop(topic))
-
-    def _log(self, topic: str, message, new_publisher: bool) -> None:
-        self.received[topic] += 1
-        try:
-            if topic in SAMPLES:
-                self._sample(topic, message, new_publisher)
-            else:
-                self._others[topic](message)
-        except BadMessage as problem:
-            self._warn_once((topic, problem.field), f"{topic}: {problem}: left out, and those like it")
 
     def poll(self) -> None:
         """Poll the recordings, and warn if the body has not come in time."""
@@ -97,21 +82,36 @@ class Dispatcher:
         self._recordings.close()
         return ", ".join(f"{topic} {count}" for topic, count in self.received.items()) or "nothing"
 
-    def _sample(self, topic: str, message, new_publisher: bool) -> None:
+    def _log_start(self, topic: str) -> None:
+        """Log the sample 0 of `topic` that is held back."""
+        if topic in self._start:
+            self._log(topic, *self._start.pop(topic))
+
+    def _log(self, topic: str, message: Any, new_publisher: bool) -> None:
+        self.received[topic] += 1
         try:
-            stamp, values = stamp_of(message), SAMPLES[topic](message)
-        except AttributeError as error:  # from a bag of an older version
-            raise BadMessage("type", f"is another version's: {error}") from error
-        if hasattr(message, "x"):
-            self._check_stations(topic, len(message.x))
-        for loggers in self._recordings.loggers_for(topic, stamp, new_publisher=new_publisher):
-            getattr(loggers, topic)(stamp, *values)
+            try:
+                stamp = stamp_of(message) if topic in SAMPLED or topic == "diagnostics" else None
+                values = READERS[topic](message)
+            except AttributeError as error:  # from a bag of an older version
+                raise BadMessage("type", f"is another version's: {error}") from error
+            if topic in SAMPLED and stamp is not None:
+                if hasattr(message, "x"):
+                    self._check_stations(topic, len(message.x))
+                self._recordings.log_sample(topic, stamp, values, compared=self._compared, new_publisher=new_publisher)
+            else:
+                if topic == "diagnostics":
+                    values = ([each for each in values[0] if each.name.rpartition("/")[0] == self._namespace],)
+                    if not values[0]:
+                        return
+                self._recordings.log_lasting(topic, *values, stamp=stamp, compared=self._compared is not None)
+        except BadMessage as problem:
+            self._warn_once((topic, problem.field), f"{topic}: {problem}: left out, and those like it")
 
     def _check_stations(self, topic: str, count: int) -> None:
-        if self._stations.setdefault(topic, count) != count:
-            text = (
-                f"{topic} has {count} stations and had {self._stations[topic]}: it is drawn, its envelope begins anew"
-            )
+        before = self._stations.setdefault(topic, count)
+        if before != count:
+            text = f"{topic} has {count} stations and had {before}: it is drawn, its envelope begins anew"
             self._warn_once((topic, "stations"), text)
             self._stations[topic] = count
         if topic == "backbone":
@@ -119,29 +119,11 @@ class Dispatcher:
             if count < COARSE:
                 self._warn_once("coarse", f"backbone has {count} stations: the shape between them is a guess")
 
-    def _body(self, message) -> None:
-        self._recordings.body(messages.read_body(message))
-
-    def _law(self, message) -> None:
-        if message != self._last_law:  # a law that is published again is not logged again
-            self._last_law = message
-            self._recordings.law(message.name)
-
-    def _goal(self, message) -> None:
-        self._recordings.course(messages.read_path(message))
-
-    def _diagnostics(self, message) -> None:
-        statuses = [
-            each for each in messages.read_diagnostics(message) if each.name.rpartition("/")[0] == self._namespace
-        ]
-        if statuses:
-            self._recordings.diagnostics(stamp_of(message), statuses)
-
     def _check_body(self) -> None:
         if not self.received["body"]:
             self._warn_once("no body", "no body has come: the backbone is drawn as a line, without skin")
 
-    def _warn_once(self, fault, text: str) -> None:
+    def _warn_once(self, fault: Hashable, text: str) -> None:
         if fault not in self._reported:
             self._reported.add(fault)
             self._log_warning(text)

@@ -31,16 +31,13 @@ class CallerStream(Destination):
 
     def open(self, number: int, name: str) -> rr.RecordingStream:
         """Send blueprint and name, and return the stream."""
-        self._stream.send_blueprint(self._blueprint())
+        self._stream.send_blueprint(self.blueprint())
         self._stream.send_recording_name(name)
         return self._stream
 
     def close_recording(self, stream: rr.RecordingStream) -> None:
         """Flush the stream."""
         stream.flush()
-
-    def _sink(self, number: int) -> None:
-        """None: the caller has set the sinks of the stream."""
 
 
 def to_rerun(

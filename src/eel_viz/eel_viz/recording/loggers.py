@@ -6,6 +6,8 @@ Geometry is drawn in single precision at one rate. Scalars and profiles are logg
 order. Rows are sent in batches (see `batched_stream`): call `send_due` regularly, and `flush` at the end.
 """
 
+from typing import Any
+
 import numpy as np
 import rerun as rr
 from eel_base.attitude import attitude
@@ -34,7 +36,7 @@ SUMMARY_PERIOD = 200_000_000
 class Loggers:
     """Logs one run to one `recording`; `name` is the run's.
 
-    With `settings.compare`, `other` logs the messages of the compared run by the same methods.
+    With `settings.compare`, `log` draws the compared run too, over this one.
     """
 
     def __init__(self, recording: rr.RecordingStream, settings: Settings, rates: Rates, name: str = "eel") -> None:
@@ -64,22 +66,24 @@ class Loggers:
         self._colour_limit = Limit(settings.colour_limit, grows=not settings.colour_limit)
         self._heat_map = HeatMap(stream, limit=self._colour_limit)
         log_styles(stream)
-        self._comparison: Comparison | None = None
+        self._targets: tuple[list[object], list[object]] = [self], []  # what draws this run, and the compared one
         if settings.compare:
-            self._comparison = Comparison(
+            comparison = Comparison(
                 stream,
                 names=(name, settings.compare.strip("/") or "eel"),
                 limit=settings.torque_limit,
                 due=self._due,
                 drawings=self._drawing_period,
             )
+            self._targets[0].append(comparison.this)
+            self._targets[1].append(comparison.other)
 
-    @property
-    def other(self):
-        """The loggers of the compared run."""
-        if self._comparison is None:
-            raise ValueError("there is no other run: settings.compare is empty")
-        return self._comparison.other
+    def log(self, topic: str, stamp: int, *values: Any, compared: bool = False) -> None:
+        """Log the `values` of `topic` at `stamp` [ns] by the method of that name; compared: of the compared run."""
+        for target in self._targets[compared]:
+            draw = getattr(target, topic, None)
+            if draw is not None:
+                draw(stamp, *values)
 
     def send_due(self) -> None:
         """Send the rows that have waited for a tick."""
@@ -90,24 +94,20 @@ class Loggers:
         self._stream.flush()
 
     # --- the swimmer ---------------------------------------------------------------------------------------------
-    def body(self, body: Body) -> None:
+    def body(self, stamp: int, body: Body) -> None:
         """Log the geometry, valid at all times."""
         self._scene.body(body)
         self.summary.body = body
-        if self._comparison:
-            self._comparison.this.summary.body = body
         values = {name: getattr(body, name) for name in ("length", "mass", "x", "half_width", "half_height")}
         self._stream.log_static(entities.BODY_NUMBERS, rr.DynamicArchetype("BodyGeometry", components=values))
 
-    def course(self, points: np.ndarray) -> None:
+    def goal(self, stamp: int, points: np.ndarray) -> None:
         """Log the way points (n, 3) [m] of a goal, valid at all times."""
         self._scene.course(points)
 
     def head_pose(self, stamp: int, pose: Pose) -> None:
         """Log path, attitude and depth of the head."""
         self.summary.add_position(stamp, pose.position)
-        if self._comparison:
-            self._comparison.this.head_pose(stamp, pose)
         if self._due("head_pose", stamp, self._number_period):
             scalars = self._stream.add_scalars
             scalars(stamp, entities.POSITION, pose.position)
@@ -135,8 +135,6 @@ class Loggers:
 
     def backbone(self, stamp: int, backbone: Backbone) -> None:
         """Log line, skin, water and cameras."""
-        if self._comparison:
-            self._comparison.this.backbone(stamp, backbone)
         if self._due("backbone", stamp, self._number_period):
             self._scene.line(stamp, backbone)
         if self._due("skin", stamp, self._drawing_period):
@@ -147,8 +145,6 @@ class Loggers:
         torque = wrench.together("torque_1", "torque_2", "torque_3")
         force = wrench.together("force_1", "force_2", "force_3")
         self.summary.add_torque(stamp, wrench.x, torque[:, 2])
-        if self._comparison:
-            self._comparison.this.internal_wrench(stamp, wrench)
         self._torque.include(wrench.x, torque)
         self._force.include(wrench.x, force)
         if self._due("wrench", stamp, self._number_period):
@@ -195,17 +191,13 @@ class Loggers:
             self._stream.add_scalars(stamp, entities.RESIDUAL, [energy["residual"]])
 
     # --- the run -------------------------------------------------------------------------------------------------
-    def law(self, stamp: int, name: str) -> None:
+    def curvature_law(self, stamp: int, name: str) -> None:
         """Log the name of the published law."""
         self.summary.law = name
-        if self._comparison:
-            self._comparison.this.law(stamp, name)
         self._events.law(stamp, name)
 
     def diagnostics(self, stamp: int, statuses: list[Status]) -> None:
         """Log each status whose level or message has changed; the values go into the summary."""
-        if self._comparison:
-            self._comparison.this.diagnostics(stamp, statuses)
         for status in statuses:
             if self.summary.add_status(stamp, status.message, status.values):
                 self._summarise(self.summary.stamp)

@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """Records messages that do not come from the network: of one swimmer, or of two that are compared."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import Any
 
 from eel_viz.messages import stamp_of
 from eel_viz.recording.destination import Destination, LogFunction
-from eel_viz.recording.dispatcher import SAMPLES, Dispatcher
-from eel_viz.recording.recordings import ComparedRecordings, Recordings
+from eel_viz.recording.dispatcher import Dispatcher
+from eel_viz.recording.recordings import Recordings
+from eel_viz.topics import SAMPLED
 
-Messages = Iterable[tuple[str, object]]  # topic, a name of `Dispatcher.topics`, and message
+Messages = Iterable[tuple[str, Any]]  # topic, a name of `Dispatcher.topics`, and message
 MESSAGES_PER_POLL = 100
 
 
@@ -19,7 +21,7 @@ def record_messages(
     names: Sequence[str],
     namespaces: Sequence[str],
     log_warning: LogFunction,
-    has_several_publishers=lambda topic: False,
+    has_several_publishers: Callable[[str], bool] = lambda topic: False,
 ) -> str:
     """Record the messages of `sources`, one swimmer or two, to `destinations`.
 
@@ -31,9 +33,13 @@ def record_messages(
     )
     dispatchers = [Dispatcher(recordings, namespace=namespaces[0], log_warning=log_warning)]
     if len(sources) > 1:
-        other = ComparedRecordings(recordings, "/" + names[1])
         dispatchers.append(
-            Dispatcher(other, namespace=namespaces[1], log_warning=lambda text: log_warning(f"{names[1]}: {text}"))
+            Dispatcher(
+                recordings,
+                namespace=namespaces[1],
+                log_warning=lambda text: log_warning(f"{names[1]}: {text}"),
+                compared=f"/{names[1]}",
+            )
         )
     try:  # a signal completes the recordings, an error discards them
         for k, (index, topic, message) in enumerate(merged_by_time(sources)):
@@ -49,11 +55,11 @@ def record_messages(
     return received
 
 
-def merged_by_time(sources: Sequence[Messages]) -> Iterator[tuple[int, str, object]]:
+def merged_by_time(sources: Sequence[Messages]) -> Iterator[tuple[int, str, Any]]:
     """All messages, merged by simulation time; each source keeps its order. Yields source index, topic, message."""
     waiting = {index: iter(source) for index, source in enumerate(sources)}
     times = dict.fromkeys(waiting, -1)  # ns
-    heads = {}
+    heads: dict[int, tuple[str, Any]] = {}
     while waiting:
         for index in list(waiting):
             if index in heads:
@@ -63,7 +69,7 @@ def merged_by_time(sources: Sequence[Messages]) -> Iterator[tuple[int, str, obje
                 del waiting[index]
                 continue
             heads[index] = head
-            if head[0] in SAMPLES:
+            if head[0] in SAMPLED:
                 times[index] = stamp_of(head[1])
         if heads:
             index = min(heads, key=lambda each: (times[each], each))

@@ -44,13 +44,8 @@ class FileDestination(Destination):
         self._keeps_partial = retry_from is not None
         self._drafts: dict[int, Draft] = {}  # by number of the recording
         self._streams: dict[int, rr.RecordingStream] = {}
-        self._incomplete = self._discarded = False
+        self._discarded = False
         self._reminded = (0, 0.0)  # number of the recording, and when [s] the last warning was logged
-
-    @property
-    def incomplete(self) -> bool:
-        """Whether part of a recording is missing."""
-        return self._incomplete
 
     def path(self, number: int) -> pathlib.Path:
         """The final path of recording `number`."""
@@ -63,14 +58,30 @@ class FileDestination(Destination):
 
     def open(self, number: int, name: str) -> rr.RecordingStream | None:
         """The stream of recording `number`; None if it cannot be written now."""
+        path = self.path(number)
         try:
-            stream = super().open(number, name)
-        except RuntimeError:  # no room for the sink's first bytes
-            self._give_up(number, write_error(self._drafts[number].path))
+            draft = Draft(path, self._began)
+        except OSError as error:
+            self._refuse(number, path, error.strerror or str(error))
             return None
-        if stream is not None:
-            self._streams[number] = stream
-        return stream
+        reason = space_error(draft.path, ROOM)
+        if not reason:
+            if draft.replaces:
+                self.log_warning(f"{path} is there already and is replaced by the new recording when that is complete")
+            self.log_info(f"saving to {path}; until it is complete, to {draft.path.name}")
+            sink = rr.FileSink(str(draft.path), write_footer=self.settings.index)
+            try:
+                stream = self.make_stream(sink, name, rr.ChunkBatcherConfig(flush_tick=FILE_TICK))
+            except RuntimeError:  # no room for the sink's first bytes
+                reason = write_error(draft.path)
+            else:
+                self._drafts[number], self._streams[number] = draft, stream
+                return stream
+        draft.discard()
+        if not self._keeps_partial:
+            raise NotWritten(_problem(draft.name, reason))
+        self._refuse(number, draft.name, reason)
+        return None
 
     def close_recording(self, stream: rr.RecordingStream) -> None:
         """Close the stream and rename its file. A write error of the sink at the end shows only now."""
@@ -101,7 +112,7 @@ class FileDestination(Destination):
             draft.discard()
             self.discard()
             raise NotWritten(_problem(draft.name, reason))
-        self._incomplete = True
+        self.incomplete = True
         size = cut_to_whole_messages(path) if path.exists() else 0
         self.log_warning(
             f"recording {shown(str(path))} cannot be written any more: {reason}; it ends here, and what there is "
@@ -121,40 +132,12 @@ class FileDestination(Destination):
         del self._streams[number]
         return self._drafts.pop(number)
 
-    def _batcher_config(self) -> rr.ChunkBatcherConfig:
-        return rr.ChunkBatcherConfig(flush_tick=FILE_TICK)
-
-    def _sink(self, number: int) -> rr.FileSink | None:
-        path = self.path(number)
-        try:
-            draft = Draft(path, self._began)
-        except OSError as error:
-            self._refuse(number, path, error.strerror or str(error))
-            return None
-        self._drafts[number] = draft
-        problem = space_error(draft.path, ROOM)
-        if problem:
-            self._give_up(number, problem)
-            return None
-        if draft.replaces:
-            self.log_warning(f"{path} is there already and is replaced by the new recording when that is complete")
-        self.log_info(f"saving to {path}; until it is complete, to {draft.path.name}")
-        return rr.FileSink(str(draft.path), write_footer=self.settings.index)
-
-    def _give_up(self, number: int, reason: str) -> None:
-        """Remove the draft, for which there is no room; raise or log why."""
-        draft = self._drafts.pop(number)
-        draft.discard()
-        if not self._keeps_partial:
-            raise NotWritten(_problem(draft.name, reason))
-        self._refuse(number, draft.name, reason)
-
     def _refuse(self, number: int, path: pathlib.Path, reason: str) -> None:
         """Raise, or warn that nothing is saved: once per recording, then every `REMINDER` seconds."""
         problem = _problem(path, reason)
         if self._retry_from is None or number < self._retry_from:
             raise ValueError(problem)
-        self._incomplete = True
+        self.incomplete = True
         last, when = self._reminded
         if number != last or time.monotonic() - when > REMINDER:
             self._reminded = number, time.monotonic()

@@ -2,17 +2,15 @@
 """The recordings of one visualiser: a stamp that goes back begins the next recording.
 
 A reset reaches the topics one by one, in any order. So each topic has its own current recording, and a recording is
-closed once no topic uses it any more. Each new recording gets the body, the law and the last diagnostics.
+closed once no topic uses it any more. Each new recording gets the body, the law, the goal and the last diagnostics.
 """
 
 import threading
 import time
 from collections import deque
 from collections.abc import Callable
+from typing import Any
 
-import numpy as np
-
-from eel_viz.messages import Body, Status
 from eel_viz.recording.delivery import DeliveryMonitor
 from eel_viz.recording.destination import Destination, LogFunction
 from eel_viz.recording.loggers import Loggers
@@ -28,34 +26,40 @@ class Recording:
 
     def __init__(self, number: int) -> None:
         self.number = number
-        self.loggers: dict[int, Loggers] = {}
-        self.deliveries: dict[int, DeliveryMonitor] = {}
+        self.opened: dict[int, tuple[Loggers, DeliveryMonitor]] = {}
         self.latest = 0  # ns: newest stamp
+
+    @property
+    def loggers(self) -> list[Loggers]:
+        """The loggers that accept data now."""
+        return [loggers for loggers, delivery in self.opened.values() if delivery.accepts_data]
+
+    @property
+    def failed(self) -> bool:
+        """Whether a file can no longer be written."""
+        return any(delivery.failed for _, delivery in self.opened.values())
 
     def drop(self, index: int) -> None:
         """Drop the stream of destination `index`, whose receiver has gone. Closing it can take seconds: in a thread."""
-        self.loggers.pop(index, None)
-        delivery = self.deliveries.pop(index, None)
-        if delivery is not None:
+        if index in self.opened:
+            _, delivery = self.opened.pop(index)
             threading.Thread(target=delivery.close, daemon=True).start()
 
-    def poll(self) -> bool:
-        """Send rows that are due, check their delivery, and drop viewers that have gone. Whether a file failed."""
-        for index, delivery in list(self.deliveries.items()):
+    def poll(self) -> None:
+        """Send rows that are due, check their delivery, and drop viewers that have gone."""
+        for index, (loggers, delivery) in list(self.opened.items()):
             if delivery.accepts_data:
-                self.loggers[index].send_due()
+                loggers.send_due()
             delivery.check()
             if delivery.disconnected:
                 self.drop(index)
-        return any(delivery.failed for delivery in self.deliveries.values())
 
     def close(self) -> None:
         """Send all rows and close the streams."""
-        for index, delivery in self.deliveries.items():
+        for loggers, delivery in self.opened.values():
             if delivery.accepts_data:
-                self.loggers[index].flush()
+                loggers.flush()
             delivery.close(self.latest * 1e-9)
-        self.loggers.clear()
 
 
 class Recordings:
@@ -77,26 +81,63 @@ class Recordings:
         self._destinations, self._name, self._log_warning = destinations, name, log_warning
         self._has_several_publishers = has_several_publishers
         self._position: dict[str, tuple[int, int]] = {}  # topic: number of its recording, last stamp [ns]
-        self._body: Body | None = None
-        self._law: str | None = None
-        self._course: np.ndarray | None = None  # (n, 3) m, way points
-        self._compared: dict[str, tuple] = {}  # method of the compared run's loggers: its last arguments
-        self._statuses: tuple[int, list[Status]] = (0, [])
+        self._lasting: dict[tuple[str, bool], tuple[Any, ...]] = {}  # topic, whether of the compared run: last values
         self._resets: deque[float] = deque(maxlen=RESETS)
         self._begun: deque[float] = deque(maxlen=MAXIMUM_RECORDINGS)  # s: when each of the last recordings began
-        self._limit_reported = False
+        self._limit_reported = self._disorder_reported = False
         self._last_retry = time.monotonic()
-        self._disorder_reported = False
         self.incomplete = False
         self._recordings: dict[int, Recording] = {}
         self._begin(1)
 
-    @property
-    def latest(self) -> int:
-        """Newest stamp of the newest recording [ns]."""
-        return self._newest.latest
+    def log_sample(
+        self,
+        topic: str,
+        stamp: int,
+        values: tuple[Any, ...],
+        *,
+        compared: str | None = None,
+        new_publisher: bool = False,
+    ) -> None:
+        """Log the `values` of `topic` at `stamp` [ns], of this run or of one whose topics begin with `compared`."""
+        known_as = topic if compared is None else f"{compared}/{topic}"
+        for loggers in self._loggers_for(known_as, stamp, new_publisher):
+            loggers.log(topic, stamp, *values, compared=compared is not None)
 
-    def loggers_for(self, topic: str, stamp: int, *, new_publisher: bool = False) -> list[Loggers]:
+    def log_lasting(self, topic: str, *values: Any, stamp: int | None = None, compared: bool = False) -> None:
+        """Log what is valid until it comes again, now and in later recordings.
+
+        stamp: its own [ns]; None, or one of wall time: the newest of the recording.
+        """
+        self._lasting[topic, compared] = values
+        at = self._newest.latest if stamp is None or stamp >= WALL_TIME else stamp
+        for loggers in self._newest.loggers:
+            loggers.log(topic, at, *values, compared=compared)
+
+    def poll(self) -> None:
+        """Send rows that are due, check their delivery, and retry destinations that were not open."""
+        for recording in self._recordings.values():
+            recording.poll()
+            self.incomplete |= recording.failed
+        if time.monotonic() - self._last_retry > RETRY:
+            self._last_retry = time.monotonic()
+            for index, destination in enumerate(self._destinations):
+                if destination.disconnected():
+                    for recording in self._recordings.values():
+                        recording.drop(index)
+            self._open_missing(self._newest)
+
+    def close(self) -> None:
+        """Close all recordings, then the destinations."""
+        for recording in self._recordings.values():
+            recording.close()
+            self.incomplete |= recording.failed
+        self._recordings.clear()
+        for destination in self._destinations:
+            self.incomplete |= destination.incomplete
+            destination.close()
+
+    def _loggers_for(self, topic: str, stamp: int, new_publisher: bool) -> list[Loggers]:
         """The loggers for a message of `topic` with `stamp` [ns]; `new_publisher`: its first from another publisher."""
         number, last = self._position.get(topic, (self._newest.number, stamp))
         continues = stamp >= last and not new_publisher
@@ -112,59 +153,7 @@ class Recordings:
             self._close_before(min(oldest for oldest, _ in self._position.values()))
         recording = self._recordings[number]
         recording.latest = max(recording.latest, stamp)
-        return [loggers for index, loggers in recording.loggers.items() if recording.deliveries[index].accepts_data]
-
-    def body(self, body: Body) -> None:
-        """Log the body, now and in later recordings."""
-        self._body = body
-        for loggers in self._newest.loggers.values():
-            loggers.body(body)
-
-    def law(self, name: str) -> None:
-        """Log the name of the newest law, now and in later recordings."""
-        self._law = name
-        for loggers in self._newest.loggers.values():
-            loggers.law(self.latest, name)
-
-    def course(self, points: np.ndarray) -> None:
-        """Log the way points (n, 3) [m] of a goal, now and in later recordings; it may have none."""
-        self._course = points
-        for loggers in self._newest.loggers.values():
-            loggers.course(points)
-
-    def diagnostics(self, stamp: int, statuses: list[Status]) -> None:
-        """Log statuses at `stamp` [ns], or at the newest stamp if theirs is wall time."""
-        self._statuses = (stamp if stamp < WALL_TIME else self.latest, statuses)
-        for loggers in self._newest.loggers.values():
-            loggers.diagnostics(*self._statuses)
-
-    def log_compared(self, method: str, *values) -> None:
-        """Call `method` of the compared run's loggers with `values`, now and in later recordings."""
-        self._compared[method] = values
-        for loggers in self._newest.loggers.values():
-            getattr(loggers.other, method)(*values)
-
-    def poll(self) -> None:
-        """Send rows that are due, check their delivery, and retry destinations that were not open."""
-        for recording in self._recordings.values():
-            self.incomplete |= recording.poll()
-        if time.monotonic() - self._last_retry > RETRY:
-            self._last_retry = time.monotonic()
-            for index, destination in enumerate(self._destinations):
-                if destination.disconnected():
-                    for recording in self._recordings.values():
-                        recording.drop(index)
-            self._open_missing(self._newest)
-
-    def close(self) -> None:
-        """Close all recordings, then the destinations."""
-        for recording in self._recordings.values():
-            recording.close()
-            self.incomplete |= any(delivery.failed for delivery in recording.deliveries.values())
-        self._recordings.clear()
-        for destination in self._destinations:
-            self.incomplete |= destination.incomplete
-            destination.close()
+        return recording.loggers
 
     @property
     def _newest(self) -> Recording:
@@ -195,24 +184,16 @@ class Recordings:
     def _open_missing(self, recording: Recording) -> None:
         """Open the destinations that are not open, and log what is valid at all times."""
         for index, destination in enumerate(self._destinations):
-            if index in recording.loggers:
+            if index in recording.opened:
                 continue
             number = recording.number
             stream = destination.open(number, self._name if number == 1 else f"{self._name} {number}")
             if stream is None:
                 continue
             loggers = Loggers(stream, destination.settings, destination.rates, self._name)
-            recording.deliveries[index] = DeliveryMonitor(stream, destination, destination.file(number))
-            recording.loggers[index] = loggers
-            if self._body is not None:
-                loggers.body(self._body)
-            if self._law is not None:
-                loggers.law(recording.latest, self._law)
-            if self._course is not None:
-                loggers.course(self._course)
-            loggers.diagnostics(recording.latest, self._statuses[1])
-            for method, values in self._compared.items():
-                getattr(loggers.other, method)(*values)
+            recording.opened[index] = loggers, DeliveryMonitor(stream, destination, destination.file(number))
+            for (topic, compared), values in self._lasting.items():
+                loggers.log(topic, recording.latest, *values, compared=compared)
 
     def _close_before(self, number: int) -> None:
         for each in [each for each in self._recordings if each < number]:
@@ -240,36 +221,3 @@ def _reason(topic: str, last: int, stamp: int) -> str:
     if stamp < last:
         return f"stamps of {topic} went back from {last / 1e9:g} s to {stamp / 1e9:g} s"
     return f"another node publishes {topic} from {stamp / 1e9:g} s on"
-
-
-class ComparedRecordings:
-    """The same `recordings`, for messages of the compared swimmer in `namespace`."""
-
-    def __init__(self, recordings: Recordings, namespace: str) -> None:
-        self._recordings, self._namespace = recordings, namespace
-
-    def loggers_for(self, topic: str, stamp: int, *, new_publisher: bool = False) -> list:
-        """As `Recordings.loggers_for`, but those of the compared run."""
-        name = f"{self._namespace}/{topic}"
-        return [loggers.other for loggers in self._recordings.loggers_for(name, stamp, new_publisher=new_publisher)]
-
-    def body(self, body: Body) -> None:
-        """As `Recordings.body`."""
-        self._recordings.log_compared("body", body)
-
-    def law(self, name: str) -> None:
-        """As `Recordings.law`."""
-        self._recordings.log_compared("law", 0, name)
-
-    def course(self, points: np.ndarray) -> None:
-        """Do nothing: the course of the first swimmer is shown."""
-
-    def diagnostics(self, stamp: int, statuses: list[Status]) -> None:
-        """As `Recordings.diagnostics`."""
-        self._recordings.log_compared("diagnostics", stamp if stamp < WALL_TIME else self._recordings.latest, statuses)
-
-    def poll(self) -> None:
-        """Do nothing: `Recordings` polls."""
-
-    def close(self) -> None:
-        """Do nothing: `Recordings` closes."""

@@ -10,6 +10,7 @@ import ipaddress
 import socket
 import subprocess
 import threading
+from functools import partial
 from urllib.parse import urlsplit
 
 import rerun as rr
@@ -39,14 +40,11 @@ class ServerDestination(LiveDestination):
 
     def __init__(self, settings: Settings, log_info: LogFunction, log_warning: LogFunction) -> None:
         super().__init__(settings, log_info, log_warning)
-        port = settings.port
-        self._web_viewer: subprocess.Popen | None = None
+        port = self._free(settings.port)  # of one that is in use the server would only log
+        self._web_viewer: subprocess.Popen[bytes] | None = None
         address = ipaddress.IPv4Address(settings.address)
         self._here = "127.0.0.1" if address.is_unspecified else settings.address
         self._name = socket.gethostname() if address.is_unspecified else settings.address
-        if listening(port):  # the server would only log it
-            port = free_port()
-            log_warning(f"port {settings.port} is in use, taking {port}")
         # The web viewer's page requests the data: on this machine the server allows it by default.
         pages = None if address.is_loopback else [f"http://*:{settings.web_port}"]
         server = rr.GrpcServerSink(
@@ -66,8 +64,9 @@ class ServerDestination(LiveDestination):
                 f"anybody who reaches {self._name} can read what is served, and add to it (address is {address})"
             )
 
-    def _sink(self, number: int) -> rr.GrpcSink:
-        return rr.GrpcSink(self.uri)
+    def open(self, number: int, name: str) -> rr.RecordingStream:
+        """A stream to the server."""
+        return self.make_stream(rr.GrpcSink(self.uri), name)
 
     def close(self) -> None:
         """Close the servers, after the streams of the recordings."""
@@ -84,12 +83,17 @@ class ServerDestination(LiveDestination):
 
     def show_in_browser(self) -> None:
         """Serve the web viewer too, and log its address."""
-        port = self.settings.web_port
-        if listening(port):
-            port = free_port()
-            self.log_warning(f"port {self.settings.web_port} is in use, taking {port}")
+        port = self._free(self.settings.web_port)
         self._web_viewer = serve_to_browsers(self.settings.address, self._here, port, self.uri)
         self.log_info(f"look at it in a browser: http://{self._name}:{port}/?url={self._shown_uri}")
+
+    def _free(self, port: int) -> int:
+        """`port`, or another one where that is in use."""
+        if not listening(port):
+            return port
+        other = free_port()
+        self.log_warning(f"port {port} is in use, taking {other}")
+        return other
 
 
 class ViewerDestination(LiveDestination):
@@ -104,30 +108,18 @@ class ViewerDestination(LiveDestination):
         self._missing_reported = False
         self._attempts: list[threading.Thread] = []  # to connect, without an answer so far
 
-    def _sink(self, number: int) -> rr.GrpcSink | None:
+    def open(self, number: int, name: str) -> rr.RecordingStream | None:
+        """A stream to the viewer. Connects in a thread: one that listens but does not answer would block for ever."""
         host, port = self._address
         self._attempts = [attempt for attempt in self._attempts if attempt.is_alive()]
         if self._attempts:
             return None
-        if listening(port, host):
-            return rr.GrpcSink(self.settings.viewer)
-        self._report_missing(f"no viewer listens at {self.settings.viewer}: start one with `rerun`")
-        return None
-
-    def disconnected(self) -> bool:
-        """Whether the viewer has been closed: a stream does not reconnect to one that is opened again."""
-        host, port = self._address
-        if self._missing_reported or listening(port, host):
-            return False
-        self._blueprint_sent = False
-        self._report_missing(f"the viewer at {self.settings.viewer} has gone")
-        return True
-
-    def _make_stream(self, sink: rr.FileSink | rr.GrpcSink, name: str) -> rr.RecordingStream | None:
-        """Connect in a thread: a viewer that listens but does not answer would block for ever."""
-        made: list[rr.RecordingStream | None] = []
-        connect = super()._make_stream
-        attempt = threading.Thread(target=lambda: made.append(connect(sink, name)), daemon=True)
+        if not listening(port, host):
+            self._report_missing(f"no viewer listens at {self.settings.viewer}: start one with `rerun`")
+            return None
+        made: list[rr.RecordingStream] = []
+        connect = partial(self.make_stream, rr.GrpcSink(self.settings.viewer), name)
+        attempt = threading.Thread(target=lambda: made.append(connect()), daemon=True)
         attempt.start()
         attempt.join(ANSWER_LIMIT)
         if not made:
@@ -138,6 +130,15 @@ class ViewerDestination(LiveDestination):
         self.log_info(f"connected to the viewer at {self.settings.viewer}")
         self._missing_reported = False
         return made[0]
+
+    def disconnected(self) -> bool:
+        """Whether the viewer has been closed: a stream does not reconnect to one that is opened again."""
+        host, port = self._address
+        if self._missing_reported or listening(port, host):
+            return False
+        self._blueprint_sent = False
+        self._report_missing(f"the viewer at {self.settings.viewer} has gone")
+        return True
 
     def _report_missing(self, text: str) -> None:
         """Log once that the viewer is missing."""

@@ -8,8 +8,8 @@ publishers have gone.
 
 import sys
 import time
+from typing import Any
 
-from diagnostic_msgs.msg import DiagnosticArray
 from eel_base.wording import shown
 from eel_ros.command_line import handle_arguments
 from eel_ros.parameter_node import ParameterNode
@@ -17,35 +17,20 @@ from eel_ros.parameters import declare_all, help_rows
 from eel_ros.process_end import leave_at_once
 from eel_ros.qos import keep_all
 from eel_ros.run_node import run_node
-from geometry_msgs.msg import PoseStamped, TwistStamped
-from nav_msgs.msg import Odometry, Path
-from rclpy.qos import QoSProfile
 
-from eel_msgs.msg import Backbone, BodyGeometry, Curvature, CurvatureLaw, EnergyLedger, HydrodynamicLoad, InternalWrench
-from eel_viz.recording.dispatcher import Dispatcher
-from eel_viz.recording.recordings import ComparedRecordings, Recordings
+from eel_viz.bags.definitions import message_class
+from eel_viz.recording.dispatcher import READERS, Dispatcher
+from eel_viz.recording.recordings import Recordings
 from eel_viz.recording.sinks import destinations
-from eel_viz.ros.polled_subscriptions import PolledSubscriptions
+from eel_viz.ros.polled_subscriptions import PolledSubscriptions, SwimmerPresence
 from eel_viz.settings import Settings
-from eel_viz.topics import SWIMMER
+from eel_viz.topics import DIAGNOSTICS, GLOBAL, LATCHED, OWN
 from eel_viz.without_pandas import keep_pandas_out
 
 NAME = "visualiser"
 ABOUT = "Shows and records every topic of a swimmer in Rerun."
-LATCHED, LIVE = keep_all(latched=True), keep_all()  # the first gets earlier messages, the second matches any publisher
+EARLIER, LIVE = keep_all(latched=True), keep_all()  # the first gets earlier messages, the second matches any publisher
 LOOK = 0.5  # s between two look-ups of the publishers
-GONE = 0.5  # s without publishers and messages, after which `stop_with_publisher` ends the node
-
-SAMPLED = {
-    "head_pose": PoseStamped,
-    "head_twist": TwistStamped,
-    "odom": Odometry,
-    "backbone": Backbone,
-    "curvature": Curvature,
-    "internal_wrench": InternalWrench,
-    "hydrodynamic_load": HydrodynamicLoad,
-    "energy": EnergyLedger,
-}
 
 CANNOT_START = 2  # exit status
 
@@ -53,32 +38,32 @@ CANNOT_START = 2  # exit status
 class Visualiser(ParameterNode):
     """Subscribes to the topics of one swimmer, or two that are compared, and passes the messages to dispatchers."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         super().__init__(NAME)
         (self.settings,) = declare_all(self, Settings)
         own = self.get_namespace().rstrip("/")
         other = f"/{self.settings.compare.strip('/')}".rstrip("/")  # empty: the swimmer without a namespace
-        told = other or "/"
         if self.settings.compare and other == own:
-            raise ValueError(f"compare must be another namespace than the swimmer's own, got {shown(told)}")
+            raise ValueError(f"compare must be another namespace than the swimmer's own, got {shown(other or '/')}")
         self._recordings = recordings = Recordings(
             destinations(self.settings, self._log_info, self._log_warning, live=True),
             name=own.strip("/") or "eel",
             log_warning=self._log_warning,
             has_several_publishers=lambda topic: self.count_publishers(topic) > 1,
         )
-        self._polled = PolledSubscriptions(self)
+        self._polled, self._presence = PolledSubscriptions(self), SwimmerPresence(self)
         self._dispatcher = Dispatcher(recordings, namespace=own, log_warning=self._log_warning)
-        self._last_message = self._looked = time.monotonic()
-        self._present = False
-        self._subscribe_swimmer(own, self._dispatcher)
+        self._looked = time.monotonic()
+        self._laws: dict[str, Any] = {}  # topic: the last law
+        self._subscribe(own, self._dispatcher)
         if self.settings.compare:
             dispatcher = Dispatcher(
-                ComparedRecordings(recordings, other),
+                recordings,
                 namespace=other,
-                log_warning=lambda text: self._log_warning(f"{told}: {text}"),
+                log_warning=lambda text: self._log_warning(f"{other or '/'}: {text}"),
+                compared=other,
             )
-            self._subscribe_swimmer(other, dispatcher)
+            self._subscribe(other, dispatcher)
 
     def poll(self) -> bool:
         """Poll the recordings; False once the swimmer has gone, with `stop_with_publisher`."""
@@ -87,11 +72,7 @@ class Visualiser(ParameterNode):
         if now - self._looked > LOOK:
             self._looked = now
             self._polled.note_publishers()
-        if not self.settings.stop_with_publisher:
-            return True
-        if self.count_publishers(SWIMMER):
-            self._present, self._last_message = True, now
-        return not self._present or now - self._last_message < GONE
+        return not (self.settings.stop_with_publisher and self._presence.has_gone())
 
     def close(self) -> None:
         """Close the recordings, and log what was received."""
@@ -106,22 +87,22 @@ class Visualiser(ParameterNode):
         """Log messages that have come; the number of those from `before` [ns]; 0: all."""
         return self._polled.take(before)
 
-    def _subscribe_swimmer(self, space: str, dispatcher: Dispatcher) -> None:
-        """Subscribe to the topics of the swimmer in the namespace `space`."""
-        self._subscribe(space, dispatcher, "body", BodyGeometry, LATCHED)  # first: the others need it
-        self._subscribe(space, dispatcher, "curvature_law", CurvatureLaw, LATCHED, LIVE)
-        self._subscribe(space, dispatcher, "goal", Path, LATCHED, LIVE)
-        for topic, kind in SAMPLED.items():
-            self._subscribe(space, dispatcher, topic, kind, LIVE)
-        self._subscribe("", dispatcher, "diagnostics", DiagnosticArray, LIVE)
+    def _subscribe(self, space: str, dispatcher: Dispatcher) -> None:
+        """Subscribe to the topics of the swimmer in the namespace `space`; the body first, as the others need it."""
+        for name in READERS:
+            topic = DIAGNOSTICS if name == "diagnostics" else f"{space}/{name}"
+            kind = message_class(OWN.get(name) or GLOBAL[topic])
+            qualities = (EARLIER,) if name == "body" else (EARLIER, LIVE) if name in LATCHED else (LIVE,)
 
-    def _subscribe(self, space: str, dispatcher: Dispatcher, topic: str, kind: type, *qualities: QoSProfile) -> None:
-        def receive(message, new_publisher):
-            self._last_message = time.monotonic()
-            self._present |= topic == SWIMMER  # a law alone is not a swimmer
-            dispatcher.dispatch(topic, message, new_publisher=new_publisher)
+            def show(message: Any, new_publisher: bool, name: str = name, topic: str = topic) -> None:
+                self._presence.heard(topic)
+                if name == "curvature_law":
+                    before, self._laws[topic] = self._laws.get(topic), message
+                    if message == before:  # published again
+                        return
+                dispatcher.dispatch(name, message, new_publisher=new_publisher)
 
-        self._polled.subscribe(kind, f"{space}/{topic}", receive, *qualities)
+            self._polled.subscribe(kind, topic, show, *qualities)
 
     def _log_info(self, text: str) -> None:
         self.get_logger().info(text)

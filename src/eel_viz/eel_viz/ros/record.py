@@ -12,27 +12,29 @@ import argparse
 import sys
 import time
 from collections import Counter
+from collections.abc import Mapping
 from typing import Any
 
 from eel_base.command.command_line import Parser, check_seconds
 from eel_ros.qos import fitting, keep_all, matches
-from eel_ros.run_node import is_from_before, run_node
-from eel_ros.serving import PolledGroup, log_dropped
+from eel_ros.run_node import run_node
+from eel_ros.serving import PolledGroup
+from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
+from rclpy.subscription import Subscription
 from rclpy.utilities import remove_ros_args
-from rosbags.interfaces import Qos, QosDurability, QosHistory, QosLiveliness, QosReliability, QosTime
+from rosbags.interfaces import Connection, Qos, QosDurability, QosHistory, QosLiveliness, QosReliability, QosTime
 
 from eel_viz.bags.definitions import definition, message_class, type_hash
 from eel_viz.bags.growing_bag import GrowingBag
-from eel_viz.topics import GLOBAL, LATCHED, OWN, SAMPLED, SWIMMER
+from eel_viz.ros.polled_subscriptions import Receive, SwimmerPresence, take_waiting, unused
+from eel_viz.topics import GLOBAL, LATCHED, OWN, SAMPLED
 
 NAME, COMMAND = "record", "eel record"
-GONE = 1.0  # s without publishers and messages, after which --stop-with-publisher ends it
 LOOK = 0.2  # s between two look-ups of the topics
 SAVE = 0.5  # s between two saves of the bag, at least
 SHARE = 15.0  # the least ratio of that period to the CPU time of a save
-BATCH = 64  # messages taken from one subscription before the next one
 STAMP = slice(4, 12)  # of a serialised message that begins with a header
 NOT_BY_DEFAULT = ("/rosout", "/parameter_events")  # recorded only by name
 
@@ -55,13 +57,14 @@ class Recorder(Node):
         self.counts: Counter[str] = Counter()
         self._saved_messages = 0
         self._group = PolledGroup()
-        self._subscribed: dict[str, tuple[Any, QoSProfile, Any]] = {}
+        self._subscribed: dict[str, tuple[Subscription, QoSProfile, Receive]] = {}
         self._offers: dict[str, list[QoSProfile]] = {}
-        self._connections: dict[str, Any] = {}
+        self._connections: dict[str, Connection] = {}
         self._start: dict[str, bytes] = {}  # topic: the last sample 0 of a run that stands at it
         self._refused: set[str] = set()
-        self._began = self._looked = self._last_message = time.monotonic()
-        self._present = False
+        self._began = self._looked = time.monotonic()
+        self._presence = SwimmerPresence(self)
+        self._sampled = {self.resolve_topic_name(name) for name in SAMPLED}
         for topic, kind in {**{self.resolve_topic_name(name): kind for name, kind in OWN.items()}, **GLOBAL}.items():
             if self._wanted(topic):
                 self._subscribe(topic, kind, keep_all(latched=topic.rsplit("/", 1)[-1] in LATCHED))
@@ -77,11 +80,7 @@ class Recorder(Node):
             return False
         if self._options.duration is not None and now - self._began >= self._options.duration:
             return False
-        if self._options.stop_with_publisher:
-            if self.count_publishers(SWIMMER):
-                self._present, self._last_message = True, now
-            return not self._present or now - self._last_message < GONE
-        return True
+        return not (self._options.stop_with_publisher and self._presence.has_gone())
 
     def close(self) -> None:
         """Complete the bag, and log its contents."""
@@ -90,29 +89,15 @@ class Recorder(Node):
         self._bag.abort()
         counts = ", ".join(f"{topic} {count}" for topic, count in sorted(self.counts.items())) or "no message"
         self.get_logger().info(f"recorded in {self._options.output}: {counts}")
-        samples = {topic: self.counts[topic] for topic in map(self.resolve_topic_name, SAMPLED) if self.counts[topic]}
-        if len(set(samples.values())) > 1:
-            least, most = min(samples, key=samples.__getitem__), max(samples, key=samples.__getitem__)
-            self.get_logger().warning(
-                f"topics of unequal length: {least} has {samples[least]} samples, {most} has {samples[most]}"
-            )
+        samples = sorted((self.counts[topic], topic) for topic in self._sampled if self.counts[topic])
+        if samples and samples[0][0] != samples[-1][0]:
+            (least, short), (most, long) = samples[0], samples[-1]
+            self.get_logger().warning(f"topics of unequal length: {short} has {least} samples, {long} has {most}")
 
     def take_messages(self, before: int) -> int:
-        """Record the messages that have come, at most `BATCH` a topic; the number of those from `before` [ns]; 0: all.
-        The bag is saved where it is time."""
-        count = 0
-        for topic, (subscription, _, receive) in list(self._subscribed.items()):
-            with subscription.handle:  # keeps it from being destroyed meanwhile
-                for _ in range(BATCH):
-                    taken = subscription.handle.take_message(subscription.msg_type, True)
-                    if taken is None:
-                        break
-                    data, about = taken
-                    count += not before or is_from_before(about, before)
-                    try:
-                        receive(data, about)
-                    except Exception as error:
-                        log_dropped(self, error, f"a message of {topic}")
+        """Record messages that have come; the number of those from `before` [ns]; 0: all. Save where it is time."""
+        waiting = list(self._subscribed.values())
+        count = sum(take_waiting(self, subscription, receive, before) for subscription, _, receive in waiting)
         self._save_if_due(time.monotonic())
         return count
 
@@ -156,16 +141,13 @@ class Recorder(Node):
         return (topic.startswith(space) or topic in GLOBAL or topic == "/tf") and topic not in NOT_BY_DEFAULT
 
     def _subscribe(self, topic: str, kind: str, quality: QoSProfile) -> None:
-        sampled = topic in [self.resolve_topic_name(name) for name in SAMPLED]
-
-        def receive(data: bytes, about: dict) -> None:
+        def receive(data: bytes, about: Mapping[str, Any]) -> None:
             if topic not in self._connections:
                 self._connect(topic, kind)
-            self._last_message = time.monotonic()
-            self._present |= topic == self.resolve_topic_name(SWIMMER)  # a law alone is not a swimmer
-            if sampled and any(data[STAMP]):
+            self._presence.heard(topic)
+            if topic in self._sampled and any(data[STAMP]):
                 self._start.pop(topic, None)  # the run goes on: the next sample 0 is that of another run
-            elif sampled:
+            elif topic in self._sampled:
                 if data == self._start.get(topic):
                     return
                 self._start[topic] = data
@@ -173,9 +155,8 @@ class Recorder(Node):
             self._bag.write(self._connections[topic], about.get("received_timestamp") or time.time_ns(), data)
 
         try:
-            taken: Any = receive  # with the message's times, which rclpy's types leave out for raw messages
             subscription = self.create_subscription(
-                message_class(kind), topic, taken, quality, raw=True, callback_group=self._group
+                message_class(kind), topic, unused, quality, raw=True, callback_group=self._group
             )
         except ValueError as error:
             self._refused.add(topic)
@@ -197,7 +178,7 @@ class Recorder(Node):
 def _stored(offer: QoSProfile) -> Qos:
     """A publisher's quality of service as rosbag2 writes it."""
 
-    def seconds(duration) -> QosTime:
+    def seconds(duration: Duration) -> QosTime:
         return QosTime(*divmod(duration.nanoseconds, 1_000_000_000))
 
     return Qos(

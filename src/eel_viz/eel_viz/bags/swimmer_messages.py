@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The messages of one swimmer in a bag; also for `Run.from_bag` of the library."""
+
+import os
+import warnings
+from collections.abc import Iterator
+from typing import Any
+
+from eel_base.wording import shown
+
+from eel_viz.bags.bag import Bag, DamagedBag
+from eel_viz.recording.destination import LogFunction
+from eel_viz.recording.dispatcher import READERS
+from eel_viz.topics import DIAGNOSTICS, GLOBAL, OWN, SAMPLED
+
+
+class SwimmerMessages:
+    """The messages of one swimmer in `bag`, as pairs of topic (without namespace) and message.
+
+    namespace: the swimmer's; None: that of the only swimmer. `ValueError` if there is no swimmer, or several.
+    """
+
+    def __init__(self, bag: Bag, namespace: str | None, log_warning: LogFunction) -> None:
+        self._bag, self._log_warning = bag, log_warning
+        self._reported: set[str] = set()  # topics with messages that cannot be read
+        self.namespace = self._found(namespace)
+        self._topics: dict[str, str] = {}
+        for name in READERS:
+            topic = DIAGNOSTICS if name == "diagnostics" else f"{self.namespace}/{name}"
+            there, kind = bag.topics.get(topic), OWN.get(name) or GLOBAL[topic]
+            if there is not None and there.type == kind:
+                self._topics[topic] = name
+            elif there is not None:
+                log_warning(f"{topic} is left out: it is {there.type}, not {kind}")
+
+    def has_several_publishers(self, name: str) -> bool:
+        """Whether the topic `name` has several publishers in the bag."""
+        return any(self._bag.topics[topic].publishers > 1 for topic, each in self._topics.items() if each == name)
+
+    def __iter__(self) -> Iterator[tuple[str, Any]]:
+        """Yield topic and message in the recorded order; the body first, as it is valid at all times."""
+        body = f"{self.namespace}/body"
+        first = next((message for _, _, message in self._bag.messages(body)), None) if body in self._topics else None
+        if first is not None:
+            yield "body", first
+        count = 0
+        try:
+            for topic, _, message in self._bag.messages(*self._topics, unreadable=self._leave_out):
+                count += 1
+                if topic == body and first is not None:
+                    first = None
+                else:
+                    yield self._topics[topic], message
+        except DamagedBag as error:
+            if not count:
+                raise
+            self._log_warning(f"{error}: shown as far as it goes")
+
+    def _leave_out(self, topic: str, why: str) -> None:
+        if topic not in self._reported:
+            self._reported.add(topic)
+            self._log_warning(f"{topic}: {why}: left out, and those like it")
+
+    def _found(self, namespace: str | None) -> str:
+        spaces = sorted(
+            {
+                topic[: -len(name) - 1]
+                for topic, about in self._bag.topics.items()
+                for name in SAMPLED
+                if name in READERS and topic.endswith(f"/{name}") and about.type == OWN[name]
+            }
+        )
+        named = ", ".join(space or "/" for space in spaces)
+        if namespace is not None:
+            wanted = f"/{namespace.strip('/')}".rstrip("/")
+            if wanted not in spaces:
+                raise ValueError(f"no swimmer in namespace {shown(namespace)} of the bag; there is: {named or 'none'}")
+            return wanted
+        if len(spaces) > 1:
+            raise ValueError(f"the bag has swimmers in several namespaces, choose one with --namespace: {named}")
+        if not spaces:
+            topics = ", ".join(sorted(self._bag.topics)) or "none at all"
+            raise ValueError(f"the bag has no topic of a swimmer; its topics: {topics}")
+        return spaces[0]
+
+
+def swimmer_messages(path: str | os.PathLike[str], namespace: str | None = None) -> Iterator[tuple[str, Any]]:
+    """Yield topic and message of the swimmer in the bag at `path`, as of `SwimmerMessages`.
+
+    A damaged bag is read as far as it goes, with a warning. `ValueError` in one line if it cannot be read.
+    """
+
+    def log_warning(text: str) -> None:
+        warnings.warn(text, stacklevel=3)
+
+    with Bag(path) as bag:
+        if bag.damage:
+            log_warning(f"{path} is unfinished or damaged ({bag.damage}): read as far as it goes")
+        yield from SwimmerMessages(bag, namespace, log_warning)
