@@ -24,6 +24,7 @@ Value = TypeVar("Value")
 Kind = TypeVar("Kind", bound=type)
 
 AT_RESET = "at the next reset"  # when a change acts
+FEW = 8  # numbers of a row that a message shows
 
 
 def quantity(
@@ -124,6 +125,28 @@ def numbers(name: str, values: Any) -> np.ndarray:
         raise ValueError(f"{name} must be real numbers, got {shown(values)}") from None
 
 
+def checked_row(name: str, values: Any, size: int | None) -> np.ndarray:
+    """`values` as an array (size,) of finite floats. Any size fits where `size` is None."""
+    array = numbers(name, values)
+    if array.ndim != 1 or (size is not None and len(array) != size):
+        got = shown(values)
+        if array.ndim == 1:
+            got = f"{len(array)}: {got}" if 0 < len(array) <= FEW else f"{len(array)}"
+        raise ValueError(f"{name} must be {'a row of' if size is None else size} numbers, got {got}")
+    if not np.isfinite(array).all():
+        index = np.flatnonzero(~np.isfinite(array))[0]
+        raise ValueError(f"{name} must be finite, got {array[index]} at index {index}")
+    return array
+
+
+def checked_instance(name: str, value: Any, kind: type | tuple[type, ...]) -> Any:
+    """`value`, if it is a `kind`, or one of several kinds."""
+    if not isinstance(value, kind):
+        kinds = kind if isinstance(kind, tuple) else (kind,)
+        raise ValueError(f"{name} must be a {' or a '.join(each.__name__ for each in kinds)}, got {shown(value)}")
+    return value
+
+
 def is_finite(value: Any) -> bool:
     """Whether `value` is one finite number. A text is not a number."""
     try:
@@ -139,7 +162,7 @@ def checked(item: Field[Any], value: Any, name: str) -> Any:
     """
     default, about = item.default, item.metadata
     if isinstance(default, bool):
-        return _of_kind(isinstance(value, bool), value, f"{name} must be true or false")
+        return bool(_of_kind(isinstance(value, (bool, np.bool_)), value, f"{name} must be true or false"))
     if isinstance(default, str):
         if about.get("number") and not isinstance(value, (bool, str)) and is_finite(value):
             return float(value)
@@ -164,7 +187,7 @@ def _of_kind(good: bool, value: Any, rule: str) -> Any:
 
 
 def _checked_row(default: tuple[Any, ...], value: Any, name: str) -> tuple[Any, ...]:
-    row = isinstance(value, (list, tuple)) or hasattr(value, "typecode")  # of rclpy: an array.array
+    row = isinstance(value, (list, tuple, np.ndarray)) or hasattr(value, "typecode")  # of rclpy: an array.array
     if isinstance(default[0], str):
         words: Any = value.split(",") if isinstance(value, str) else value if row else (None,)
         _of_kind(all(isinstance(word, str) for word in words), value, f"{name} must be a list of texts")

@@ -6,8 +6,8 @@ its acceleration never jump.
 """
 
 import numpy as np
+from eel_base.quantity import checked_row, positive
 from eel_base.wording import shown
-from eel_dynamics.model.arguments import checked_number, checked_row
 
 
 class KnotAction:
@@ -35,8 +35,8 @@ class KnotAction:
         if not axes or set(axes) - {"pitch", "yaw"}:
             raise ValueError(f"axes must be pitch, yaw or both, got {shown(axes)}")
         self.axes = tuple(name for name in ("pitch", "yaw") if name in axes)
-        self.greatest_rate = checked_number("greatest_rate", greatest_rate, "rad/m/s")
-        self.greatest_bend = checked_number("greatest_bend", greatest_bend, "rad/m")
+        self.greatest_rate = positive("greatest_rate", greatest_rate, "rad/m/s")
+        self.greatest_bend = positive("greatest_bend", greatest_bend, "rad/m")
         self._value = self._rate = np.zeros(self.size)
 
     @property

@@ -8,9 +8,9 @@ import math
 from dataclasses import replace
 
 import numpy as np
+from eel_base.quantity import checked_instance, checked_row, positive
 from eel_base.wording import shown
 from eel_dynamics.accuracy.law_waves import check_law
-from eel_dynamics.model.arguments import checked_instance, checked_number, checked_row
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.steered_law import BENDS, NUMBERS, SteeredLaw
 from eel_gaits.laws.term import Term
@@ -46,7 +46,7 @@ class LawAction:
                 raise ValueError(f"bounds of {name} must rise, got {shown(bounds)}")
         if not numbers:
             raise ValueError("numbers must hold one or more, got none")
-        checked_number("response", response, "s")
+        positive("response", response, "s")
         self.law, self.names, self._rate = law, tuple(numbers), 1.0 / response
         low, high = np.array(list(numbers.values()), dtype=float).T
         self._middle, self._half = 0.5 * (low + high), 0.5 * (high - low)

@@ -7,10 +7,9 @@ from typing import Any, ClassVar, NamedTuple
 
 import gymnasium
 import numpy as np
-from eel_base.quantity import Quantities, described_fields, quantity
+from eel_base.quantity import Quantities, checked_instance, described_fields, quantity
 from eel_base.wording import one_line, shown
 from eel_dynamics.accuracy.accuracy import Accuracy
-from eel_dynamics.model.arguments import checked_instance
 from eel_dynamics.model.axes import turn_vector
 from eel_dynamics.model.body import Body, checked_body
 from eel_dynamics.model.scene import Scene

@@ -7,8 +7,8 @@ from typing import Any, ClassVar
 
 import gymnasium
 import numpy as np
+from eel_base.quantity import positive
 from eel_base.wording import shown
-from eel_dynamics.model.arguments import checked_number
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
@@ -48,7 +48,7 @@ class ThreadedVectorEnv(VectorEnv):
         **settings,
     ):
         for name, count in (("num_envs", num_envs), ("threads", threads)):
-            if checked_number(name, count, "") != int(count):
+            if positive(name, count) != int(count):
                 raise ValueError(f"{name} must be a whole number, got {shown(count)}")
         try:
             self._mode = AutoresetMode(autoreset_mode)

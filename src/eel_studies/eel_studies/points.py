@@ -17,12 +17,11 @@ from dataclasses import fields, replace
 from typing import Any, NamedTuple
 
 import numpy as np
-from eel_base.quantity import number
+from eel_base.quantity import checked_instance, number
 from eel_base.wording import did_you_mean, shown
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.measures import measures_of
-from eel_dynamics.model.arguments import checked_instance
 from eel_dynamics.model.body import NUMBERS, Body, checked_body
 from eel_dynamics.model.initial_state import InitialState
 from eel_dynamics.model.scene import Scene

@@ -73,4 +73,6 @@ def _across(apart: np.ndarray, way: np.ndarray, moves: bool) -> np.ndarray:
 
 def _width(points: np.ndarray) -> float:
     """Greatest distance [m] between two of the `points` (n, 3)."""
-    return float(np.max(np.linalg.norm(points[:, None] - points[None], axis=2)))
+    from scipy.spatial.distance import pdist
+
+    return float(np.max(pdist(points)))

@@ -9,12 +9,11 @@ from operator import attrgetter
 from typing import NamedTuple
 
 import numpy as np
-from eel_base.quantity import is_finite
+from eel_base.quantity import checked_row, is_finite
 from eel_base.wording import shown
 from eel_gaits.sources.sampled_law import SampledLaw
 
 from eel_dynamics.accuracy.law_waves import MOST_WAVES, waves_of_rows
-from eel_dynamics.model.arguments import checked_row
 
 POINTS_PER_WAVE = 8
 MOST_POINTS = int(POINTS_PER_WAVE * MOST_WAVES) + 1  # of one sample

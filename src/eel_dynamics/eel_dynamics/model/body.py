@@ -13,9 +13,9 @@ from typing import Any
 
 import numpy as np
 from eel_base.files.input_file import reading
+from eel_base.quantity import checked_instance, checked_row, number, positive
 from eel_base.wording import shown
 
-from eel_dynamics.model.arguments import checked_instance, checked_number, checked_row
 from eel_dynamics.model.body_file import WHAT, columns_of
 from eel_dynamics.model.equality import same
 from eel_dynamics.model.grid import Grid
@@ -75,12 +75,12 @@ class Body:
                 ends += f", {x[falls[0] + 1]:g} after {x[falls[0]]:g}" if len(falls) else ""
                 raise ValueError(f"body x must rise from 0 over 4 points or more, got {len(x)} points{ends}")
             length = x[-1] if length is None else length
-            if abs(x[-1] - checked_number("body length", length, "m")) > 1e-9 * x[-1]:
+            if abs(x[-1] - positive("body length", length, "m")) > 1e-9 * x[-1]:
                 raise ValueError(f"body x must end at the length {length} m, got {x[-1]}")
         elif length is None:
             raise ValueError("body length must be given, in m, where half_width and half_height are functions")
-        self.length = float(x[-1]) if x is not None else checked_number("body length", length, "m")
-        self.density = checked_number("body density", density, "kg/m^3")
+        self.length = float(x[-1]) if x is not None else positive("body length", length, "m")
+        self.density = positive("body density", density, "kg/m^3")
         self.name = checked_instance("body name", name, str)
         self.kinks = self._checked_kinks(kinks)
         self.panel_ends = (*(self.kinks or (PANEL_OF_NOSE * self.length,)), self.length)
@@ -95,11 +95,11 @@ class Body:
         self._half_width = kind("half_width", half_width, bounds)
         self._half_height = kind("half_height", half_height, bounds)
         self.nose = self._checked_nose(nose)
-        self.nose_added_mass = checked_number("body nose_added_mass", nose_added_mass, "", zero=True)
-        self.nose_drag = checked_number("body nose_drag", nose_drag, "", zero=True)
-        self.roll_drag = checked_number("body roll_drag", roll_drag, "", zero=True)
-        self.lateral_drag = checked_number("body lateral_drag", lateral_drag, "", zero=True)
-        self.vertical_drag = checked_number("body vertical_drag", vertical_drag, "", zero=True)
+        self.nose_added_mass = number("body nose_added_mass", nose_added_mass, minimum=0.0)
+        self.nose_drag = number("body nose_drag", nose_drag, minimum=0.0)
+        self.roll_drag = number("body roll_drag", roll_drag, minimum=0.0)
+        self.lateral_drag = number("body lateral_drag", lateral_drag, minimum=0.0)
+        self.vertical_drag = number("body vertical_drag", vertical_drag, minimum=0.0)
         numbers = tuple(getattr(self, name) for name in NUMBERS)
         self._hash = hash((self.name, self.length, self.kinks, self.nose, numbers))
 
@@ -188,7 +188,7 @@ class Body:
     @staticmethod
     def kern2006(length: float = 1.0) -> "Body":
         """The anguilliform swimmer of Kern and Koumoutsakos, J. Exp. Biol. 209 (2006): volume 0.0059326 length^3."""
-        return Body._kern2006(checked_number("body length", length, "m"))
+        return Body._kern2006(positive("body length", length, "m"))
 
     @staticmethod
     @lru_cache(maxsize=64)
@@ -201,8 +201,8 @@ class Body:
 
         length: [m]. slenderness: length / (2 x greatest half-height).
         """
-        length = checked_number("body length", length, "m")
-        half = length / (2.0 * checked_number("body slenderness", slenderness, ""))
+        length = positive("body length", length, "m")
+        half = length / (2.0 * positive("body slenderness", slenderness))
 
         def half_height(x):
             s = np.asarray(x, dtype=float) / length

@@ -5,7 +5,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from eel_base.attitude import world_from_body
+from eel_base.attitude import unit_quaternion, world_from_body
+from eel_base.quantity import checked_row
+from eel_base.wording import shown
 
 
 class InitialState(NamedTuple):
@@ -36,3 +38,20 @@ def time_scale(twist: np.ndarray, length: float) -> float:
     a, b, c, u, v, w = twist.tolist()
     speed, spin = math.hypot(u, v, w), math.hypot(a, b, c)
     return min(length / speed if speed else np.inf, 1.0 / spin if spin else np.inf)
+
+
+def checked_quaternion(name: str, quaternion) -> np.ndarray:
+    """`quaternion` (x, y, z, w) as an array (4,), normalised (`unit_quaternion`)."""
+    return np.array(unit_quaternion(name, checked_row(name, quaternion, 4).tolist()))
+
+
+def check_planar(position, orientation, twist):
+    """`ValueError` unless the initial state lies in the plane z = const and stays there."""
+    x, y, _, _ = orientation.tolist()
+    if abs(x) > 1e-12 or abs(y) > 1e-12:
+        raise ValueError(f"orientation must be a turn about z in a planar scene, got {shown(orientation.tolist())}")
+    roll, pitch, _, _, _, heave = twist.tolist()
+    if roll or pitch or heave:
+        raise ValueError(
+            f"twist must lie in the plane of a planar scene (Omega_1 = Omega_2 = V_3 = 0), got {shown(twist.tolist())}"
+        )

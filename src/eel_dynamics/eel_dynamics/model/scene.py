@@ -17,13 +17,10 @@ the printed load of the nose, change the momentum of body and water, and the thr
 a run shows how much of a motion is due to the wake. It is no model of a fish.
 """
 
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, fields
 
-import numpy as np
-from eel_base.quantity import documented, number
+from eel_base.quantity import Quantities, checked, documented, positive, quantity
 from eel_base.wording import shown
-
-from eel_dynamics.model.arguments import checked_number, checked_row
 
 FRICTION = ("printed", "laminar", "blended", "none")
 PERIMETER = ("ellipse", "printed")
@@ -31,73 +28,57 @@ ADDED_MASS = ("corrected", "printed")
 TAIL_PRESSURE = ("lumped", "distributed")
 
 
-def _switch(default, description):
-    return field(default=default, metadata={"unit": "", "description": description})
-
-
-def _choice(default, choices, description):
-    return field(default=default, metadata={"unit": "", "description": description, "choices": choices})
-
-
 @documented
 @dataclass(frozen=True, kw_only=True, repr=False)
-class Scene:
+class Scene(Quantities):
     """Physics of a run. Immutable; every field has a default. `ValueError` names a field that does not fit.
 
     Fields, with default, meaning, unit, and bounds or choices:"""
 
-    planar: bool = _switch(
-        False, "motion in the plane z = 0 only: one angle in place of a rotation; a pitch term is refused"
+    planar: bool = quantity(
+        False, "", "motion in the plane z = 0 only: one angle in place of a rotation; a pitch term is refused"
     )
-    reactive: bool = _switch(True, "inertia of the water: added mass M_f, J_f, wake, nose's added mass m_o")
-    wake: bool = _switch(
-        True, "momentum that the water carries along the body and off at the tail; off: every section keeps its water"
+    reactive: bool = quantity(True, "", "inertia of the water: added mass M_f, J_f, wake, nose's added mass m_o")
+    wake: bool = quantity(
+        True, "", "momentum that the water carries along the body and off at the tail; off: a section keeps its water"
     )
-    resistive: bool = _switch(True, "drag of the water: k_o, k1 (friction), k2, k3 (cross flow), k4 (roll)")
-    friction: str = _choice("printed", FRICTION, "law of the axial friction c_f(Re)")
-    nose: bool = _switch(True, "loads on the rounded nose: added mass m_o and drag k_o")
-    perimeter: str = _choice("ellipse", PERIMETER, "perimeter of a section: the ellipse's, or half of it as printed")
-    added_mass: str = _choice(
-        "corrected", ADDED_MASS, "added mass across each half-axis: the ellipse's, or swapped as printed in eq. (37)"
+    resistive: bool = quantity(True, "", "drag of the water: k_o, k1 (friction), k2, k3 (cross flow), k4 (roll)")
+    friction: str = quantity("printed", "", "law of the axial friction c_f(Re)", choices=FRICTION)
+    nose: bool = quantity(True, "", "loads on the rounded nose: added mass m_o and drag k_o")
+    perimeter: str = quantity(
+        "ellipse", "", "perimeter of a section: the ellipse's, or half of it as printed", choices=PERIMETER
     )
-    metacentric_height: float = field(
-        default=0.0,
-        metadata={
-            "unit": "m",
-            "description": "height of each section's buoyancy above its weight, along its axis 3: a moment that rights "
-            "roll and pitch; below 0: top-heavy; 0: none",
-        },
+    added_mass: str = quantity(
+        "corrected",
+        "",
+        "added mass across each half-axis: the ellipse's, or swapped as printed in eq. (37)",
+        choices=ADDED_MASS,
     )
-    internal_wrench: bool = _switch(True, "internal force and torque along the body at output instants")
-    ledger: bool = _switch(True, "energy ledger, integrated along with the motion")
-    tail_pressure: str = _choice(
+    metacentric_height: float = quantity(
+        0.0,
+        "m",
+        "height of each section's buoyancy above its weight, along its axis 3: a moment that rights roll and pitch; "
+        "below 0: top-heavy; 0: none",
+    )
+    internal_wrench: bool = quantity(True, "", "internal force and torque along the body at output instants")
+    ledger: bool = quantity(True, "", "energy ledger, integrated along with the motion")
+    tail_pressure: str = quantity(
         "lumped",
-        TAIL_PRESSURE,
+        "",
         "pressure force of the water behind: -T_f t1 at the tail, or -d/dX(T_f t1) along the body",
+        choices=TAIL_PRESSURE,
     )
-    current: tuple[float, float, float] = field(
-        default=(0.0, 0.0, 0.0),
-        metadata={
-            "unit": "m/s",
-            "description": "uniform velocity (x, y, z) of the water, world frame; against the eel: x > 0 in the "
-            "library and its commands, x < 0 for the node (REP-103)",
-        },
+    current: tuple[float, float, float] = quantity(
+        (0.0, 0.0, 0.0),
+        "m/s",
+        "uniform velocity (x, y, z) of the water, world frame; against the eel: x > 0 in the library and its commands, "
+        "x < 0 for the node (REP-103)",
     )
-    density: float | None = field(
-        default=None,
-        metadata={
-            "unit": "kg/m^3",
-            "description": "density of the body, overrides the body's own",
-            "minimum": 0.0,
-            "exclusive": True,
-        },
+    density: float | None = quantity(
+        None, "kg/m^3", "density of the body, overrides the body's own", 0.0, exclusive=True
     )
-    fluid_density: float = field(
-        default=1000.0, metadata={"unit": "kg/m^3", "description": "density of the water", "minimum": 0.0}
-    )
-    viscosity: float = field(
-        default=1e-6, metadata={"unit": "m^2/s", "description": "kinematic viscosity of the water", "minimum": 0.0}
-    )
+    fluid_density: float = quantity(1000.0, "kg/m^3", "density of the water", 0.0)
+    viscosity: float = quantity(1e-6, "m^2/s", "kinematic viscosity of the water", 0.0)
 
     def __repr__(self) -> str:
         others = [item for item in fields(self) if getattr(self, item.name) != item.default]
@@ -105,22 +86,10 @@ class Scene:
 
     def __post_init__(self):
         for item in fields(self):
-            value = getattr(self, item.name)
-            if item.type is bool or item.type == "bool":
-                if not isinstance(value, (bool, np.bool_)):
-                    raise ValueError(f"scene {item.name} must be True or False, got {shown(value)}")
-            elif "choices" in item.metadata:
-                if not isinstance(value, str) or value not in item.metadata["choices"]:
-                    raise ValueError(
-                        f"scene {item.name} must be one of {', '.join(item.metadata['choices'])}, got {shown(value)}"
-                    )
-            elif item.name == "current":
-                object.__setattr__(self, "current", tuple(checked_row("scene current", value, 3).tolist()))
-            elif item.name == "metacentric_height":
-                object.__setattr__(self, item.name, number("scene metacentric_height", value))
-            elif not (item.name == "density" and value is None):
-                zero = not item.metadata.get("exclusive")
-                checked = checked_number(f"scene {item.name}", value, item.metadata["unit"], zero=zero)
-                object.__setattr__(self, item.name, checked)
+            value, name = getattr(self, item.name), f"scene {item.name}"
+            if item.default is not None:
+                object.__setattr__(self, item.name, checked(item, value, name))
+            elif value is not None:
+                object.__setattr__(self, item.name, positive(name, value, item.metadata["unit"]))
         if self.planar and self.current[2] != 0.0:
             raise ValueError(f"scene current must lie in the plane z = 0 of a planar scene, got {shown(self.current)}")

@@ -225,14 +225,16 @@ def simulate_batch(
         request = SwimRequest(*swimmers[index], times, wrench[index], load)
         try:
             settings_to_try = Accuracy.to_refine(request.setup.accuracy) if estimate else None
-            found = request.swim(request.simulation(settings_to_try))
+            space = out[index] if wrench[index] == any(wrench) else None
+            found = request.swim(request.simulation(settings_to_try), out=space)
             found = with_error_estimate(found, request) if estimate else found
         except (SimulationStopped, ValueError) as error:
             errors[index] = _stopped_at_start(error)
             return
         run = found.run
-        for name, array in found.out.arrays().items():
-            getattr(out, name)[index, : len(array)] = array  # which may be fewer than others have
+        if found.out is not space:  # other profiles than others have, or a finer run
+            for name, array in found.out.arrays().items():
+                getattr(out, name)[index, : len(array)] = array
         works[index], start[index], errors[index] = found.works, found.energy_at_start, found.stopped
         settings[index], estimates[index] = run.accuracy, run.error_estimate
         counts[:, index] = len(run.time), run.steps, run.evaluations, run.nodes
@@ -313,7 +315,8 @@ def _for_each(swim, count: int, threads: int | None, progress):
         raise ValueError(f"threads must be a whole number from 1 to {MOST_THREADS}, got {shown(threads)}")
     with ThreadPoolExecutor(threads, thread_name_prefix="swimmer") as pool:
         try:
-            for done, _ in enumerate(pool.map(swim, range(count)), start=1):
+            swims = map(swim, range(count)) if threads == 1 else pool.map(swim, range(count))
+            for done, _ in enumerate(swims, start=1):
                 if progress is not None:
                     progress(done, count)
         except BaseException:

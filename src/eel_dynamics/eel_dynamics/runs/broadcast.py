@@ -2,27 +2,18 @@
 """Checks the arguments of `simulate_batch`, and broadcasts them to its swimmers."""
 
 import numpy as np
-from eel_base.quantity import numbers
+from eel_base.quantity import checked_instance, checked_row, numbers, positive
 from eel_base.wording import shown
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
-from eel_dynamics.model.arguments import (
-    check_planar,
-    check_planar_law,
-    checked_instance,
-    checked_number,
-    checked_quaternion,
-    checked_row,
-    checked_stations,
-)
 from eel_dynamics.model.body import Body
-from eel_dynamics.model.initial_state import InitialState
+from eel_dynamics.model.initial_state import InitialState, check_planar, checked_quaternion
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.motions import LAWS
-from eel_dynamics.simulation.simulation_setup import SimulationSetup
+from eel_dynamics.simulation.simulation_setup import SimulationSetup, check_planar_law, checked_stations
 
 
 def swimmers_of(
@@ -42,7 +33,7 @@ def swimmers_of(
         orientations=_rows("orientations", orientations, checked_quaternion),
         twists=_rows("twists", twists, lambda name, row: checked_row(name, row, 6)),
     )
-    most = checked_number("most_evaluations", most_evaluations, "per simulated second")
+    most = positive("most_evaluations", most_evaluations, "per simulated second")
     x = {length: checked_stations(stations, length) for length in dict.fromkeys(body.length for body in bodies)}
     swimmers = []
     for index, (law, body, scene, accuracy, *state) in enumerate(

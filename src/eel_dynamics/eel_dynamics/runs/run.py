@@ -20,7 +20,6 @@ from eel_dynamics.analysis.model_limits import warnings_of
 from eel_dynamics.analysis.peaks import FINER, MOST_SAMPLES, greatest_torque_of
 from eel_dynamics.analysis.run_summary import describe
 from eel_dynamics.analysis.settling import Unsettled
-from eel_dynamics.model.arguments import check_planar_law
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.equality import same_fields
 from eel_dynamics.model.scene import Scene
@@ -39,7 +38,7 @@ from eel_dynamics.runs.variables import documented_arrays
 from eel_dynamics.simulation.energy import EnergyLedger
 from eel_dynamics.simulation.observations import LOAD, WRENCH, Observations
 from eel_dynamics.simulation.simulation import Simulation
-from eel_dynamics.simulation.simulation_setup import SimulationSetup
+from eel_dynamics.simulation.simulation_setup import SimulationSetup, check_planar_law
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 MOST_UNSMOOTHED = 5_000.0  # evaluations per simulated second of a motion without smoothing
@@ -384,9 +383,9 @@ class SwimRequest(NamedTuple):
         setup = self.setup if accuracy is None else replace(self.setup, accuracy=accuracy)
         return Simulation(**setup.arguments, law=self.law)
 
-    def swim(self, simulation: Simulation, look=None) -> Swim:
-        """Swim it with a `simulation` of its own, at its start. look(time [s]) is called every few milliseconds."""
-        out, works, done, stopped = simulation.record(self.times, self.wrench, self.load, look)
+    def swim(self, simulation: Simulation, look=None, out: Observations | None = None) -> Swim:
+        """Swim it with a `simulation` of its own, at its start. look, out: as in `Simulation.record`."""
+        out, works, done, stopped = simulation.record(self.times, self.wrench, self.load, look, out)
         start, (steps, _, evaluations) = simulation.energy_at_start, simulation.evaluations
         run = run_of(
             self.setup,

@@ -5,9 +5,8 @@ import math
 import os
 
 import numpy as np
-from eel_base.quantity import is_finite
+from eel_base.quantity import is_finite, number, positive
 
-from eel_dynamics.model.arguments import checked_number
 from eel_dynamics.simulation.observations import size_of
 
 MOST_SAMPLES = 10_000_000  # of a run: the motion alone takes gigabytes
@@ -36,8 +35,8 @@ def checked_times(duration, sample_period) -> np.ndarray:
 
     `ValueError` for a bad duration or period, for a period above the duration, or for more than `MOST_SAMPLES`.
     """
-    duration = checked_number("duration", duration, "s", zero=True)
-    sample_period = checked_number("sample_period", sample_period, "s")
+    duration = number("duration", duration, "s", minimum=0.0)
+    sample_period = positive("sample_period", sample_period, "s")
     steps = duration / sample_period + 1e-9
     if duration > 0.0 and steps < 1.0:
         raise ValueError(f"sample_period must be at most the duration of {duration:g} s, got {sample_period:g} s")

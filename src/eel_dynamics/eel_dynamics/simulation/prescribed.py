@@ -4,13 +4,12 @@
 from dataclasses import dataclass
 
 import numpy as np
-from eel_base.quantity import is_finite
+from eel_base.quantity import checked_instance, checked_row, is_finite
 from eel_base.wording import shown
 from eel_gaits.laws.law import Law
 
 import eel_core
 from eel_dynamics.accuracy.accuracy import Accuracy
-from eel_dynamics.model.arguments import checked_instance, checked_row
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.model.section_data import core_swimmer, nose_of

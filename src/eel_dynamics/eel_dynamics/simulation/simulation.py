@@ -255,15 +255,21 @@ class Simulation:
         return self._march.head
 
     def record(
-        self, times: np.ndarray, wrench: bool, load: bool, look: Callable[[float], None] | None = None
+        self,
+        times: np.ndarray,
+        wrench: bool,
+        load: bool,
+        look: Callable[[float], None] | None = None,
+        out: Observations | None = None,
     ) -> tuple[Observations, np.ndarray, int, SimulationStopped | None]:
         """March through `times` (T,) [s] under the law in force, and observe each.
 
         Returns the observations, the works (T, 4) [J] of actuators, wake, nose and drag, the number of good instants,
-        and what stopped the march, or None. look(time [s]) is called every few milliseconds. After a bad instant the
-        simulation must be reset.
+        and what stopped the march, or None. look(time [s]) is called every few milliseconds. out: space for the
+        observations (`Observations.empty`). After a bad instant the simulation must be reset.
         """
-        out, works = Observations.empty(len(times), len(self.x), wrench, load), np.zeros((len(times), 4))
+        out = Observations.empty(len(times), len(self.x), wrench, load) if out is None else out
+        works = np.zeros((len(times), 4))
         self._started = True
         recorded = self._march.record(np.array(times, dtype=float), out, works, wrench, load, look)
         if self._meter is not None:

@@ -2,10 +2,10 @@
 """The set-up of a simulation: its checked arguments, and the accuracy and grid that follow from them."""
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
-from eel_base.quantity import is_finite
+from eel_base.quantity import checked_instance, checked_row, is_finite, positive
 from eel_base.wording import shown
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
@@ -17,17 +17,8 @@ from eel_dynamics.accuracy.law_waves import check_law, knots_of_law, waves_of_ro
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS, check_cost
 from eel_dynamics.curvature.curvature_samples import check_points
 from eel_dynamics.curvature.law_follower import DEFAULT_TRANSITION
-from eel_dynamics.model.arguments import (
-    check_planar,
-    check_planar_law,
-    checked_instance,
-    checked_number,
-    checked_quaternion,
-    checked_row,
-    checked_stations,
-)
 from eel_dynamics.model.body import Body, checked_body
-from eel_dynamics.model.initial_state import InitialState, time_scale
+from eel_dynamics.model.initial_state import InitialState, check_planar, checked_quaternion, time_scale
 from eel_dynamics.model.scene import Scene
 
 FITTING = 1e-6  # part of the body's length by which the rows of a law may be shorter or longer
@@ -78,7 +69,7 @@ class SimulationSetup:
         start = checked_state(scene, *initial_state)
         if not (is_finite(default_transition) and default_transition > 0.0):
             raise ValueError(f"default_transition must be finite and > 0 s, got {shown(default_transition)}")
-        most_evaluations = checked_number("most_evaluations", most_evaluations, "per simulated second")
+        most_evaluations = positive("most_evaluations", most_evaluations, "per simulated second")
         transition = float(default_transition)
         return SimulationSetup(body, scene, accuracy, x, start, transition, most_evaluations)
 
@@ -150,3 +141,27 @@ class SimulationSetup:
         """The settings of the accuracy in this scene."""
         assert not isinstance(self.accuracy, Budget)  # `Simulation` has replaced it
         return self.accuracy.in_scene(self.scene)
+
+
+@lru_cache(maxsize=64)
+def equidistant(length: float, count: int) -> np.ndarray:
+    """X (count,) [m] of `count` equidistant stations from the nose to the tail."""
+    return np.linspace(0.0, length, count)
+
+
+def checked_stations(stations, length: float) -> np.ndarray:
+    """X (M,) [m] of the stations: a number of equidistant ones, or X that rise within 0 to `length` [m]."""
+    if isinstance(stations, (int, np.integer)) and not isinstance(stations, bool):
+        if not 2 <= stations <= 100_000:
+            raise ValueError(f"stations must be 2 or more, or their X in m, got {shown(stations)}")
+        return equidistant(length, int(stations)).copy()
+    x = checked_row("stations", stations, None)
+    if len(x) < 1 or np.any(np.diff(x) <= 0.0) or x[0] < 0.0 or x[-1] > length * (1 + 1e-12):
+        raise ValueError(f"stations must rise within 0 to {length} m, got {shown(stations)}")
+    return np.minimum(x, length)
+
+
+def check_planar_law(law):
+    """`ValueError` unless `law` bends the body in the plane."""
+    if not law.in_plane:
+        raise ValueError(f"law {shown(law.name)} has a pitch term: a planar scene cannot bend out of its plane")

@@ -21,13 +21,12 @@ from typing import NamedTuple
 
 import numpy as np
 from eel_base.command.progress import progress_of
-from eel_base.quantity import number
+from eel_base.quantity import checked_instance, number, positive
 from eel_base.wording import shown
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.analysis import Analysis
 from eel_dynamics.analysis.measures import checked_measures
-from eel_dynamics.model.arguments import checked_instance, checked_number
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.equality import same_fields
 from eel_dynamics.model.scene import Scene
@@ -199,7 +198,7 @@ def _steps_of(at: dict, steps: dict | None) -> np.ndarray:
         if name not in at:
             raise ValueError(f"steps must be of the parameters {', '.join(at)}, got {shown(name)}")
     own = {name: RELATIVE_STEP * (abs(value) or 1.0) for name, value in at.items()}
-    return np.array([checked_number(f"steps {name}", steps.get(name, own[name]), "") for name in at])
+    return np.array([positive(f"steps {name}", steps.get(name, own[name])) for name in at])
 
 
 def _jumps(runs: list[Run], names: tuple[str, ...]) -> tuple[str, ...]:

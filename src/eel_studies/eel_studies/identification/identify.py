@@ -17,9 +17,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from eel_base.command.progress import progress_of
-from eel_base.quantity import number
+from eel_base.quantity import number, positive
 from eel_base.wording import shown
-from eel_dynamics.model.arguments import checked_number
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.equality import same_fields
 from eel_dynamics.model.scene import Scene
@@ -113,8 +112,8 @@ def identify(
         raise ValueError(f"parameters must be a dict of names and first guesses, got {shown(parameters)}")
     first = {name: number(f"parameter {name}", value) for name, value in parameters.items()}
     measured = _checked_measurements(measured)
-    noise = None if noise is None else checked_number("noise", noise, "m or m/s")
-    level = checked_number("level", level, "")
+    noise = None if noise is None else positive("noise", noise, "m or m/s")
+    level = positive("level", level)
     if level >= 1.0:
         raise ValueError(f"level must be below 1, got {level:g}")
     base = base_point(body, scene, fixed_steps(accuracy), friction="blended")

@@ -4,9 +4,9 @@
 from dataclasses import dataclass, field
 
 import numpy as np
+from eel_base.quantity import checked_instance, checked_row, number, positive
 from eel_base.quantity import numbers as real_numbers
 from eel_base.wording import shown
-from eel_dynamics.model.arguments import checked_instance, checked_number, checked_row
 
 FEWEST_SAMPLES = 8  # of a path
 
@@ -48,7 +48,7 @@ class MeasuredPath:
             raise ValueError(f"path time must rise from 0 s or later, got {shown(time[:8].tolist())}")
         object.__setattr__(self, "time", time)
         object.__setattr__(self, "position", position)
-        object.__setattr__(self, "station", checked_number("path station", self.station, "m", zero=True))
+        object.__setattr__(self, "station", number("path station", self.station, "m", minimum=0.0))
         checked_instance("path numbers", self.numbers, dict)
 
     @property
@@ -65,7 +65,7 @@ class MeasuredSpeed:
     numbers: dict = field(default_factory=dict)
 
     def __post_init__(self):
-        object.__setattr__(self, "speed", checked_number("measured speed", self.speed, "m/s"))
+        object.__setattr__(self, "speed", positive("measured speed", self.speed, "m/s"))
         checked_instance("measured speed numbers", self.numbers, dict)
 
     @property

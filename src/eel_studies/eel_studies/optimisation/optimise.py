@@ -17,10 +17,9 @@ from typing import Any
 
 import numpy as np
 from eel_base.command.progress import progress_of
-from eel_base.quantity import number
+from eel_base.quantity import checked_instance, checked_row, number
 from eel_base.wording import shown
 from eel_dynamics.analysis.measures import checked_measures, measures_of
-from eel_dynamics.model.arguments import checked_instance, checked_row
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
 

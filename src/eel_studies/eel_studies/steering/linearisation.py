@@ -13,9 +13,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from eel_base.quantity import number
+from eel_base.quantity import checked_instance, checked_row, number, positive
 from eel_base.wording import shown
-from eel_dynamics.model.arguments import checked_instance, checked_number, checked_row
 from eel_dynamics.model.body import Body, checked_body
 from eel_dynamics.model.scene import Scene
 from eel_gaits.laws.law import Law
@@ -138,7 +137,7 @@ class PeriodicLinearisation:
         """
         from scipy.linalg import solve_discrete_are
 
-        bend = checked_number("bend", bend, "rad/m")
+        bend = positive("bend", bend, "rad/m")
         a, b, cost = self.monodromy, self.input_matrix, np.eye(len(INPUTS)) / bend**2
         try:
             ahead = solve_discrete_are(a, b, np.diag(self._scale**2), cost)

@@ -17,13 +17,13 @@ from functools import partial
 
 import numpy as np
 from eel_base.command.progress import progress_of
+from eel_base.quantity import positive
 from eel_base.wording import one_line, shown
 from eel_base.work_stopped import WorkStopped
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.measures import checked_measures, checked_point, described
 from eel_dynamics.analysis.settling import tell_unsettled
-from eel_dynamics.model.arguments import checked_number
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.batch import available_cores
@@ -104,7 +104,7 @@ def sweep(
         checked_times(duration, default_sample_period([], duration) if sample_period is None else sample_period)
     if not callable(measure):
         measure = tuple(dict.fromkeys([*checked_measures("measure", measure, bool(estimate)), "settled"]))
-    limit = checked_number("most_evaluations", most_evaluations, "per simulated second")
+    limit = positive("most_evaluations", most_evaluations, "per simulated second")
     _check_count("workers", workers)
     _check_count("chunk", chunk)
     base = base_point(body, scene, Accuracy.of(accuracy))

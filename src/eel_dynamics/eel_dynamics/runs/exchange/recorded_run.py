@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 from eel_base.files.input_file import reading
-from eel_base.quantity import is_finite
+from eel_base.quantity import checked_instance, is_finite
 from eel_base.wording import one_line, shown
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.ramp import Ramp
@@ -21,7 +21,6 @@ from eel_gaits.laws.term import AXES, Term
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.budget import Budget
-from eel_dynamics.model.arguments import checked_instance
 from eel_dynamics.model.axes import turn_quaternion, turn_vector
 from eel_dynamics.model.body import Body, checked_body
 from eel_dynamics.model.grid import Grid
