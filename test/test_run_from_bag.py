@@ -42,13 +42,13 @@ def write_bag(folder, run, *, left_out=(), space="", runs=1, laws=1, origin=0, f
                 connections[topic] = writer.add_connection(topic, kind, msgdef=definition(kind), rihs01=type_hash(kind))
             writer.write(connections[topic], 1_800_000_000 * 10**9, data)
 
-        add(f"{space}/body", OWN["body"], serialize_message(body_message(run.body, run.scene, run.x, "section")))
+        add(f"{space}/body", OWN["body"], serialize_message(body_message(run, "section")))
         for _ in range(laws):
             message = law_to_message(run.law, stamp=Time(sec=origin))
             add(f"{space}/curvature_law", OWN["curvature_law"], serialize_message(message))
         told = diagnostic_array(0.0, "/dynamics", 0, "swimming", {"law": run.law.name, "accuracy": run.accuracy.name})
         add("/diagnostics", GLOBAL["/diagnostics"], serialize_message(told))
-        sample = Sample(run.x, run.scene, DynamicsParameters())
+        sample = Sample(SimpleNamespace(x=run.x, scene=run.scene, head_errors=None), DynamicsParameters())
         whole = [*[(0, 7)] * waiting, *((k, k) for k in range(first, len(run.time)))]
         for stamp, k in whole * runs:
             sample.set_time(round(run.time[stamp] * 1e9))

@@ -33,10 +33,10 @@ def run():
 
 def node_messages(run, statuses):
     """Topics and ROS messages, as the node fills and sends them."""
-    yield "body", body_message(run.body, run.scene, run.x, "section")
+    yield "body", body_message(run, "section")
     yield "curvature_law", CurvatureLaw(name=run.law.name)
     yield "diagnostics", statuses[0]
-    sample = Sample(run.x, run.scene, DynamicsParameters())
+    sample = Sample(SimpleNamespace(x=run.x, scene=run.scene, head_errors=None), DynamicsParameters())
     for k, time in enumerate(run.time):
         sample.set_time(round(time * 1e9))
         energy = SimpleNamespace(**{name: run.energy[name][k] for name in run.energy.keys()})  # noqa: SIM118

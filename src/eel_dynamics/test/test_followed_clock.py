@@ -7,11 +7,9 @@ import time
 import pytest
 from eel_dynamics.ros.diagnostics import Report
 from eel_dynamics.ros.loop.followed_clock import FollowedClock
-from eel_dynamics.ros.loop.run_loop import RunLoop
-from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_gaits.ros.messages import law_to_message
 from fake_log import Log
-from fake_publishers import fake_publishers
+from fake_publishers import fake_publishers, run_loop
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rosgraph_msgs.msg import Clock
 from swim_client import LIMIT, nanoseconds
@@ -28,9 +26,8 @@ class FollowingRun:
     def __init__(self, **parameters):
         self.stamps, self.log = [], Log()
         self._published = threading.Condition()
-        values = DynamicsParameters(rate=100.0, **parameters)
         simulation, publishers = Simulation(accuracy=1e-2, law=falling()), fake_publishers(self._keep)
-        self.run = RunLoop(simulation, values, publishers, Report(self.log), pace=FollowedClock)
+        self.run = run_loop(simulation, publishers, Report(self.log), follow_clock=True, rate=100.0, **parameters)
         self.thread = threading.Thread(target=self.run.run)
         self.thread.start()
 
@@ -41,7 +38,7 @@ class FollowingRun:
 
     def show(self, seconds):
         """Show this time on /clock."""
-        self.run.requests.show_clock(seconds, time.monotonic())
+        self.run.requests.put(self.run.show_clock, seconds, time.monotonic())
 
     def wait_for(self, stamp):
         """Until the sample of `stamp` [ns] has been published."""
@@ -86,7 +83,7 @@ def test_a_run_stands_where_the_clock_goes_back_until_it_is_reset_too():
         swim.look()
         assert swim.stamps[-1] == 500_000_000
         assert swim.run.standing == "waiting for /clock, which went back to t = 0.1 s: reset starts this run again too"
-        assert swim.run.requests.reset().done.wait(LIMIT)
+        assert swim.run.requests.put(swim.run.reset, urgent=True).done.wait(LIMIT)
         swim.wait_for(100_000_000)
         swim.show(0.6)
         swim.wait_for(600_000_000)

@@ -151,7 +151,8 @@ def test_the_node_says_each_once_and_keeps_it_until_a_reset():
         monitor.add(swimmer.observe(), check=sample % 5 == 4)
     assert report.logged == ["contact"]
     assert set(report.lasting) == {"contact"}
-    monitor.restart()
+    monitor.end()
+    monitor = LimitsMonitor(swimmer, report)
     assert not report.lasting
 
 

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Snapshots as messages: REP-103 axes where a message is in a ROS frame, section axes where it is not."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from eel_dynamics.accuracy.error_estimate import HeadErrors
@@ -45,6 +47,11 @@ def filled(sample, name, snapshot):
     return deserialize_message(sample.fill(name, snapshot), sample.kinds[name])
 
 
+def with_errors(simulation, errors):
+    """What `Sample` reads of a simulation whose errors are estimated."""
+    return SimpleNamespace(x=simulation.x, scene=simulation.scene, head_errors=errors)
+
+
 @pytest.fixture(scope="module")
 def swum():
     """A snapshot in the middle of a turn in three dimensions, and the messages filled from it."""
@@ -52,9 +59,9 @@ def swum():
     simulation.adopt(falling())
     simulation.advance(2.3)
     snapshot = simulation.observe()
-    sample = Sample(simulation.x, simulation.scene, DynamicsParameters())
+    sample = Sample(simulation, DynamicsParameters())
     assert np.isnan(filled(sample, "swim_state", snapshot).estimated_error)
-    sample = Sample(simulation.x, simulation.scene, DynamicsParameters(), lambda: ERRORS)
+    sample = Sample(with_errors(simulation, ERRORS), DynamicsParameters())
     sample.set_time(2_300_000_000)
     return snapshot, {name: filled(sample, name, snapshot) for name in sample.kinds}
 
@@ -144,10 +151,11 @@ def test_the_covariance_of_odom_is_the_square_of_the_estimated_errors_on_its_dia
 
 @pytest.mark.parametrize("unknown", [None, ERRORS._replace(position=np.inf)], ids=["off", "not known"])
 def test_the_covariance_of_odom_begins_with_minus_1_where_the_errors_are_not_known(unknown):
-    simulation, found = Simulation(law=falling()), [ERRORS, unknown, ERRORS]
-    sample = Sample(simulation.x, simulation.scene, DynamicsParameters(), lambda: found.pop(0))
+    simulation = Simulation(law=falling())
+    swimmer = with_errors(simulation, None)
+    sample = Sample(swimmer, DynamicsParameters())
     firsts = []
-    while found:
+    for swimmer.head_errors in (ERRORS, unknown, ERRORS):
         odom = filled(sample, "odom", simulation.observe())
         firsts.append((odom.pose.covariance[0], odom.twist.covariance[0]))
         assert not np.any(np.tril(odom.pose.covariance.reshape(6, 6), -1))
@@ -161,16 +169,16 @@ def test_joint_states_are_the_actuators_of_the_library():
     simulation.adopt(law)
     simulation.advance(duration)
     snapshot = simulation.observe()
-    sample = Sample(simulation.x, simulation.scene, DynamicsParameters(yaw_joints=5, pitch_joints=3))
+    sample = Sample(simulation, DynamicsParameters(yaw_joints=5, pitch_joints=3))
     message = filled(sample, "joint_states", snapshot)
     assert message.name == [*(f"yaw_{k}" for k in range(1, 6)), *(f"pitch_{k}" for k in range(1, 4))]
     yaw, pitch = run.actuators(5).yaw, run.actuators(3).pitch
     for field, name in (("position", "angle"), ("velocity", "speed"), ("effort", "torque")):
         expected = np.concatenate((getattr(yaw, name)[-1], getattr(pitch, name)[-1]))
         assert np.allclose(getattr(message, field), expected, rtol=1e-6, atol=1e-9) and np.any(expected), field
-    without = Sample(simulation.x, Scene(internal_wrench=False), DynamicsParameters(yaw_joints=1))
+    without = Sample(Simulation(scene=Scene(internal_wrench=False)), DynamicsParameters(yaw_joints=1))
     assert not filled(without, "joint_states", snapshot).effort
-    assert "joint_states" not in Sample(simulation.x, Scene(), DynamicsParameters()).kinds
+    assert "joint_states" not in Sample(simulation, DynamicsParameters()).kinds
 
 
 def test_energy_has_every_field(swum):
@@ -191,7 +199,7 @@ def test_refilling_replaces_all_that_was_there(swum):
     snapshot, messages = swum
     simulation = Simulation(stations=17)
     simulation.adopt(falling())
-    sample = Sample(simulation.x, simulation.scene, DynamicsParameters(), lambda: ERRORS)
+    sample = Sample(with_errors(simulation, ERRORS), DynamicsParameters())
     for name in sample.kinds:
         sample.fill(name, simulation.observe())
     sample.set_time(2_300_000_000)
@@ -200,7 +208,7 @@ def test_refilling_replaces_all_that_was_there(swum):
 
 
 def test_what_the_scene_leaves_out_is_not_offered():
-    kinds = Sample(np.linspace(0, 1, 5), Scene(internal_wrench=False, ledger=False), DynamicsParameters()).kinds
+    kinds = Sample(Simulation(scene=Scene(internal_wrench=False, ledger=False)), DynamicsParameters()).kinds
     assert "internal_wrench" not in kinds and "energy" not in kinds and "curvature" in kinds
 
 
@@ -217,7 +225,7 @@ def test_start_is_given_in_ros_frames_and_published_back():
     assert simulation.scene.current == (-0.5, -0.25, 0.0)
     snapshot = simulation.observe()
     assert snapshot.twist[3] == pytest.approx(-0.4)  # library: forward is V1 < 0
-    sample = Sample(simulation.x, simulation.scene, DynamicsParameters())
+    sample = Sample(simulation, DynamicsParameters())
     pose = filled(sample, "head_pose", snapshot).pose
     twist = filled(sample, "head_twist", snapshot).twist
     assert np.allclose(xyz(pose.position), (1.0, 2.0, 3.0), rtol=0, atol=1e-15)
@@ -228,7 +236,7 @@ def test_start_is_given_in_ros_frames_and_published_back():
 
 def test_body_has_its_outline_and_mass():
     body = Body.boyer2010()
-    message = body_message(body, Scene(), np.linspace(0.0, 1.0, 11), "section")
+    message = body_message(Simulation(body, stations=11), "section")
     x = np.array(message.x)
     assert x[0] == 0.0 and x[-1] == body.length and np.all(np.diff(x) > 0.0)
     assert set(np.linspace(0.0, 1.0, 11)) <= set(x)
@@ -236,14 +244,14 @@ def test_body_has_its_outline_and_mass():
     assert np.array_equal(message.half_width, body.half_width(x)) and np.array_equal(
         message.half_height, body.half_height(x)
     )
-    assert body_message(body, Scene(density=500.0), x, "section").mass == pytest.approx(0.5 * message.mass)
+    assert body_message(Simulation(body, Scene(density=500.0)), "section").mass == pytest.approx(0.5 * message.mass)
 
 
 def test_samples_keep_their_names():
     message = CurvatureSamples(x=[0.0, 1.0], pitch=[1.0, 2.0], pitch_rate=[3.0, 4.0], pitch_accel=[5.0, 6.0])
     message.yaw, message.yaw_rate, message.yaw_accel = [7.0, 8.0], [9.0, 10.0], [11.0, 12.0]
     message.header.stamp.sec, message.header.stamp.nanosec = 3, 250_000_000
-    values = samples_from_message(message)
+    values = samples_from_message(message, 0.0)
     assert values["time"] == 3.25
     for name in ("x", "pitch", "pitch_rate", "pitch_accel", "yaw", "yaw_rate", "yaw_accel"):
         assert list(values[name]) == list(getattr(message, name))
@@ -266,7 +274,7 @@ def test_diagnostics_are_text():
 def test_zero_is_never_minus_zero():
     simulation = Simulation(stations=5)
     simulation.adopt(Law(name="still"))
-    sample = Sample(simulation.x, simulation.scene, DynamicsParameters())
+    sample = Sample(simulation, DynamicsParameters())
     for name in ("head_pose", "head_twist", "odom"):
         assert "-0.0" not in repr(filled(sample, name, simulation.observe()))
     assert "-0.0" not in repr(list(filled(sample, "backbone", simulation.observe()).orientation))
@@ -305,7 +313,7 @@ def test_transforms_of_the_stations_turn_section_axes_into_the_world(swum):
     assert [each.child_frame_id for each in messages["/tf"].transforms] == ["base_link"]
     x = snapshot.x
     parameters = DynamicsParameters(publish_tf_stations=True, section_frame="eel1/section", world_frame="eel1/odom")
-    sample = Sample(x, Scene(), parameters)
+    sample = Sample(SimpleNamespace(x=x, scene=Scene(), head_errors=None), parameters)
     sample.set_time(2_300_000_000)
     head, *stations = filled(sample, "/tf", snapshot).transforms
     assert head.child_frame_id == "base_link" and head.transform == messages["/tf"].transforms[0].transform
@@ -324,6 +332,6 @@ def test_a_left_bend_of_the_gait_generator_swims_to_the_left():
     simulation = Simulation(accuracy="draft", stations=2)
     simulation.adopt(law)
     simulation.advance(4.0)
-    sample = Sample(simulation.x, simulation.scene, DynamicsParameters())
+    sample = Sample(simulation, DynamicsParameters())
     position = filled(sample, "head_pose", simulation.observe()).pose.position
     assert position.x > 0.5 and position.y > 0.2

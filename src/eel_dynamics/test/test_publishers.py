@@ -6,8 +6,38 @@ from types import SimpleNamespace
 import pytest
 from eel_dynamics.ros.diagnostics import Report
 from eel_dynamics.ros.parameters import DynamicsParameters
-from eel_dynamics.ros.publishers import Publishers, WaitBudget
+from eel_dynamics.ros.publishers import END_TIMEOUT, Publishers, WaitBudget
 from fake_log import Log
+
+
+class FakeNode:
+    """A node whose topics have the `audience`; subscribers of those in `late` have not received everything."""
+
+    def __init__(self, audience, published=None, late=()):
+        self.audience, self.published, self.late = audience, published, late
+
+    def create_publisher(self, kind, topic, quality):
+        return SimpleNamespace(
+            get_subscription_count=lambda: self.audience[topic],
+            wait_for_all_acked=lambda longest: topic not in self.late,
+            publish=self.published,
+        )
+
+    def destroy_publisher(self, publisher):
+        pass
+
+
+def publishers_of(monkeypatch, node, factor, log=None):
+    """The node's publishers, with tuples in place of messages."""
+    sample = SimpleNamespace(
+        kinds=dict.fromkeys(node.audience, str),
+        set_time=lambda nanoseconds: None,
+        fill=lambda name, snapshot: (name, snapshot.torque, snapshot.fluid_force),
+    )
+    monkeypatch.setattr("eel_dynamics.ros.publishers.Sample", lambda simulation, values: sample)
+    monkeypatch.setattr("eel_dynamics.ros.publishers.Publishers.publish_body", lambda self, simulation: None)
+    parameters = SimpleNamespace(values=DynamicsParameters(real_time_factor=factor))
+    return Publishers(node, None, parameters, Report(log or Log()))
 
 
 def test_patience_is_one_account_for_all_topics():
@@ -30,19 +60,8 @@ def test_a_subscriber_that_comes_after_the_snapshot_was_taken(monkeypatch):
     """Nobody subscribes when it is asked what to compute; somebody does when it is published."""
     monkeypatch.setattr("eel_dynamics.ros.publishers.COUNT_PERIOD", 0.0)
     received, audience = [], {"internal_wrench": 0, "hydrodynamic_load": 0, "energy": 0}
-    sample = SimpleNamespace(
-        kinds=dict.fromkeys(audience, str),
-        set_time=lambda nanoseconds: None,
-        fill=lambda name, snapshot: (name, snapshot.torque, snapshot.fluid_force),
-    )
-
-    def create(kind, topic, depth):
-        return SimpleNamespace(get_subscription_count=lambda: audience[topic], publish=received.append)
-
-    publishers = Publishers(
-        sample, create=create, destroy=None, known=None, received=None, publish_error=RuntimeError,
-        values=DynamicsParameters, stopped=lambda: False, report=Report(Log()),
-    )  # fmt: skip
+    node = FakeNode(audience, published=received.append)
+    publishers = publishers_of(monkeypatch, node, 1.0)
     assert publishers.wanted_parts() == {"wrench": False, "load": False}
     audience.update(dict.fromkeys(audience, 1))
     publishers.publish(SimpleNamespace(torque=None, fluid_force=None), 0)
@@ -53,15 +72,10 @@ def test_a_subscriber_that_comes_after_the_snapshot_was_taken(monkeypatch):
 
 
 @pytest.mark.parametrize("factor", [0.0, 1.0])
-def test_subscribers_that_are_waited_for_are_counted_on_each_topic(factor):
+def test_subscribers_that_are_waited_for_are_counted_on_each_topic(monkeypatch, factor):
     """At real time too. Those of some topics alone are complete when none has come for a while."""
     audience = dict.fromkeys(("head_pose", "backbone", "swim_state"), 0)
-    publishers = Publishers(
-        SimpleNamespace(kinds=dict.fromkeys(audience, str)), destroy=None, known=None, received=None,
-        create=lambda kind, topic, depth: SimpleNamespace(get_subscription_count=lambda: audience[topic]),
-        publish_error=RuntimeError, values=lambda: DynamicsParameters(real_time_factor=factor),
-        stopped=lambda: False, report=Report(Log()),
-    )  # fmt: skip
+    publishers = publishers_of(monkeypatch, FakeNode(audience), factor)
     assert not publishers.subscribers_complete(2, 10.0)
     audience["head_pose"] = 5
     assert not publishers.subscribers_complete(2, 11.0)  # five of one topic are not two of each
@@ -75,18 +89,12 @@ def test_subscribers_that_are_waited_for_are_counted_on_each_topic(factor):
 
 def test_who_was_given_up_does_not_cost_the_others_the_end_of_a_run(monkeypatch):
     """Its topic gets a short farewell; on the others a backlog is waited for as long as without it."""
-    monkeypatch.setattr("eel_dynamics.ros.publishers.END_TIMEOUT", 0.0)
-    asked = []
-
-    def received(publisher, seconds):
-        asked.append(publisher)
-        return publisher == "head_pose" and asked.count(publisher) == 20
-
-    publishers = Publishers(
-        SimpleNamespace(kinds=dict.fromkeys(("backbone", "head_pose"), str)), create=lambda kind, topic, depth: topic,
-        destroy=lambda publisher: None, known=None, received=received, publish_error=RuntimeError,
-        values=lambda: DynamicsParameters(real_time_factor=0.0), stopped=lambda: False, report=Report(Log()),
-    )  # fmt: skip
+    log, late = Log(), {"backbone", "head_pose"}
+    node = FakeNode(dict.fromkeys(("backbone", "head_pose"), 1), late=late)
+    publishers = publishers_of(monkeypatch, node, 0.0, log)
     publishers._give_up(publishers._channels["backbone"])
-    assert not publishers.wait_until_received([], lambda: False)
-    assert asked == ["head_pose"] * 20 + ["backbone"]
+    assert not publishers.all_received([], END_TIMEOUT + 1.0)
+    late.discard("head_pose")
+    assert not publishers.all_received([], END_TIMEOUT - 1.0) and "received everything" not in str(log.lines)
+    assert publishers.all_received([], END_TIMEOUT + 1.0)
+    assert log.lines[-1] == ("warning", "some subscriber has not received everything within 6 s")

@@ -9,17 +9,17 @@ import pytest
 from eel_dynamics.ros.diagnostics import ERROR, OK, WARN, Report
 from eel_dynamics.ros.loop.clock_ticks import ClockTicks
 from eel_dynamics.ros.loop.limits_monitor import LimitsMonitor
-from eel_dynamics.ros.loop.run_loop import RunLoop
-from eel_dynamics.ros.parameters import DynamicsParameters
+from eel_dynamics.ros.loop.requests import Answer
 from fake_log import Log
-from fake_publishers import fake_publishers
+from fake_publishers import FakeInbox, fake_publishers, run_loop
 
 from eel_dynamics import Simulation
 from eel_gaits import falling, straight
 
 
 @pytest.mark.parametrize(
-    ("wanted", "done_at"), [(lambda run: run.requests.reset(), 0.0), (lambda run: run.requests.put(int), 0.25)]
+    ("wanted", "done_at"),
+    [(lambda run: run.requests.put(run.reset, urgent=True), 0.0), (lambda run: run.requests.put(int), 0.25)],
 )
 def test_a_request_knows_when_it_was_carried_out(wanted, done_at):
     """However many samples the run has published before the other thread looks: it may be thousands."""
@@ -32,7 +32,7 @@ def test_a_request_knows_when_it_was_carried_out(wanted, done_at):
 
     publishers = fake_publishers(publish)
     simulation = Simulation(law=falling(), accuracy=1e-2)
-    run = RunLoop(simulation, DynamicsParameters(real_time_factor=0.0, duration=1.0), publishers, Report(Log()))
+    run = run_loop(simulation, publishers, Report(Log()), real_time_factor=0.0, duration=1.0)
     run.run()
     assert stamps[-1] == 10**9 and run.time == 1.0
     assert requests[0].done.is_set() and requests[0].time == done_at
@@ -49,11 +49,11 @@ def test_a_reset_that_the_law_refuses_leaves_the_run_as_it_is(monkeypatch):
         stamps.append(nanoseconds)
         if nanoseconds == 250_000_000:
             monkeypatch.setattr("eel_dynamics.simulation.simulation.march_from_start", refuse)
-            run.requests.reset()
+            run.requests.put(run.reset, urgent=True)
 
     publishers = fake_publishers(publish)
     simulation = Simulation(law=falling(), accuracy=1e-2)
-    run = RunLoop(simulation, DynamicsParameters(real_time_factor=0.0, duration=1.0), publishers, Report(log))
+    run = run_loop(simulation, publishers, Report(log), real_time_factor=0.0, duration=1.0)
     run.run()
     assert stamps == sorted(set(stamps)) and stamps[-1] == 10**9 and not run.given_up
     assert ("error", "reset refused: law 'x' cannot be begun: kinetic energy") in log.lines
@@ -68,14 +68,10 @@ def test_a_run_that_stands_at_its_start_repeats_sample_0_and_goes_on_with_sample
         stamps.append(nanoseconds)
         if len(stamps) == 3:
             rows = {f"{axis}{of}": [0.0, 0.0] for axis in ("pitch", "yaw") for of in ("", "_rate", "_accel")}
-            run.requests.take_samples({"time": 0.01, "x": x, **rows})
+            run.laws.add_samples({"time": 0.01, "x": x, **rows})
 
-    run = RunLoop(
-        Simulation(accuracy=1e-2),
-        DynamicsParameters(real_time_factor=1000.0, duration=0.05),
-        fake_publishers(publish),
-        Report(Log()),
-    )
+    publishers = fake_publishers(publish)
+    run = run_loop(Simulation(accuracy=1e-2), publishers, Report(Log()), real_time_factor=1000.0, duration=0.05)
     run.run()
     assert stamps == [0, 0, 0, *(10_000_000 * k for k in range(1, 6))] and run.samples_published == 6
 
@@ -85,8 +81,8 @@ def clock_of(run_for, **parameters):
     told = []
     publishers = fake_publishers(lambda snapshot, stamp: told.append(("sample", stamp)))
     publishers.tick = lambda stamp: told.append(("tick", stamp))
-    values = DynamicsParameters(duration=run_for, **parameters)
-    RunLoop(Simulation(accuracy=1e-2, law=falling()), values, publishers, Report(Log())).run()
+    simulation = Simulation(accuracy=1e-2, law=falling())
+    run_loop(simulation, publishers, Report(Log()), duration=run_for, **parameters).run()
     return told
 
 
@@ -113,7 +109,8 @@ def test_without_a_rate_of_its_own_the_clock_comes_with_each_sample():
 
 def test_a_clock_that_stands_does_not_go_back_to_the_last_sample():
     told, now = [], 0.0
-    clock = ClockTicks(100.0, SimpleNamespace(tick=told.append))
+    parameters = SimpleNamespace(values=SimpleNamespace(clock_rate=100.0))
+    clock = ClockTicks(parameters, SimpleNamespace(tick=told.append))
     clock.reach(0)
     clock.go_on(30_000_000, 0, now)
     for _ in range(3):
@@ -131,23 +128,21 @@ def test_steps_of_a_paused_run_end_with_the_last_of_them_or_say_why():
     def publish(snapshot, nanoseconds):
         stamps.append(nanoseconds)
 
-    run = RunLoop(
-        Simulation(accuracy=1e-2, law=falling()),
-        DynamicsParameters(real_time_factor=0.0, duration=1.0),
-        fake_publishers(publish),
-        Report(Log()),
-    )
+    simulation = Simulation(accuracy=1e-2, law=falling())
+    run = run_loop(simulation, fake_publishers(publish), Report(Log()), real_time_factor=0.0, duration=1.0)
     thread = threading.Thread(target=run.run)
-    run.requests.pause(True)
+    run.requests.put(run.pause, True)
     thread.start()
     for count in (3, 2):
-        steps.append(run.requests.step(count))
+        steps.append(Answer(FakeInbox()))
+        run.requests.put(run.step, count, steps[-1])
         assert steps[-1].done.wait(60.0) and not steps[-1].failure
     assert [each.time for each in steps] == [0.03, 0.05]
     assert [stamp for stamp in stamps if stamp] == [10_000_000 * k for k in range(1, 6)]
-    run.requests.pause(False)
+    run.requests.put(run.pause, False)
     thread.join()
-    late = run.requests.step(1)
+    late = Answer(FakeInbox())
+    run.requests.put(run.step, 1, late)
     run.requests.put(run.requests.stop)
     run.run()
     assert "refused at t = 1 s: the run is not paused" in late.failure or not late.done.is_set()
@@ -157,9 +152,9 @@ def test_the_greatest_torque_above_the_limit_is_in_the_log(monkeypatch):
     """The first excess at once, and of all later ones the greatest, at the end of the run, which takes no second."""
     log, torques = Log(), []
     publishers = fake_publishers(lambda snapshot, stamp: torques.append(float(abs(snapshot.torque).max())))
-    values = DynamicsParameters(real_time_factor=0.0, duration=1.0, torque_limit=0.1)
+    values = {"real_time_factor": 0.0, "duration": 1.0, "torque_limit": 0.1}
     monkeypatch.setattr("eel_dynamics.ros.loop.limits_monitor.REPEAT", 1000.0)
-    RunLoop(Simulation(accuracy=1e-2, law=straight()), values, publishers, Report(log)).run()
+    run_loop(Simulation(accuracy=1e-2, law=straight()), publishers, Report(log), **values).run()
     above = [torque for torque in torques if torque > 0.1]
     assert len(above) > 2 and max(above) > 2.0 * above[0]
     first, last = (text for level, text in log.lines if level == "warning")
@@ -191,10 +186,10 @@ def test_a_controller_that_answers_less_than_a_sample_ahead_is_told_so():
     def publish(snapshot, nanoseconds):
         instant = 1e-9 * nanoseconds + 0.01 if nanoseconds < 100_000_000 else 0.03
         rows = {f"{axis}{of}": np.zeros(2) for axis in ("pitch", "yaw") for of in ("", "_rate", "_accel")}
-        run.requests.take_samples({"time": instant, "x": x, **rows})
+        run.laws.add_samples({"time": instant, "x": x, **rows})
 
-    values = DynamicsParameters(real_time_factor=0.0, rate=50.0, duration=0.2, subscriber_timeout=0.2)
-    run = RunLoop(Simulation(accuracy=1e-2), values, fake_publishers(publish), Report(log))
+    values = {"real_time_factor": 0.0, "rate": 50.0, "duration": 0.2, "subscriber_timeout": 0.2}
+    run = run_loop(Simulation(accuracy=1e-2), fake_publishers(publish), Report(log), **values)
     run.run()
     missing, refused = (text for level, text in log.lines if level != "info" and "run out" not in text)
     assert missing == (
@@ -219,16 +214,16 @@ def test_one_late_sample_is_a_warning_and_lost_control_is_an_error_until_it_is_b
     def publish(snapshot, nanoseconds):
         k = nanoseconds // 10_000_000
         if not 30 <= k < 60:
-            run.requests.take_samples(samples_at(0.01 * (k + 2)))
+            run.laws.add_samples(samples_at(0.01 * (k + 2)))
         if k == 10:
-            run.requests.take_samples(samples_at(0.05, bend=1.0))
+            run.laws.add_samples(samples_at(0.05, bend=1.0))
         states[k] = report.state()
 
     report = Report(log)
-    values = DynamicsParameters(real_time_factor=0.0, duration=1.0, subscriber_timeout=0.1)
-    run = RunLoop(Simulation(accuracy=1e-2), values, fake_publishers(publish), report)
-    run.requests.take_samples(samples_at(0.0))
-    run.requests.take_samples(samples_at(0.01))
+    values = {"real_time_factor": 0.0, "duration": 1.0, "subscriber_timeout": 0.1}
+    run = run_loop(Simulation(accuracy=1e-2), fake_publishers(publish), report, **values)
+    run.laws.add_samples(samples_at(0.0))
+    run.laws.add_samples(samples_at(0.01))
     run.run()
     assert states[9] == (OK, [])
     level, (text,) = states[12]
@@ -243,22 +238,18 @@ def test_one_late_sample_is_a_warning_and_lost_control_is_an_error_until_it_is_b
     ]
 
 
-class MadeUpTime:
+class MadeUpTime(FakeInbox):
     """A steady clock that goes on while the run loop waits on it; it is the loop's inbox, too, without samples."""
 
     def __init__(self, monkeypatch):
+        super().__init__()
         self.now = 100.0
-        for module in ("run_loop", "clock_ticks", "request_queue"):
+        for module in ("run_loop", "clock_ticks", "requests"):
             monkeypatch.setattr(f"eel_dynamics.ros.loop.{module}.time", SimpleNamespace(monotonic=lambda: self.now))
 
     def wait(self, seconds):
         self.now += seconds
         return False
-
-    def poll(self):
-        pass
-
-    set = clear = poll
 
 
 def test_a_run_that_stood_still_for_half_a_second_regains_it_within_five_and_a_half(monkeypatch):
@@ -269,8 +260,8 @@ def test_a_run_that_stood_still_for_half_a_second_regains_it_within_five_and_a_h
             time.now += 0.5
         shown.append(time.now - 100.0)
 
-    report, values = Report(log), DynamicsParameters(duration=8.0)
-    run = RunLoop(Simulation(accuracy=1e-2, law=falling()), values, fake_publishers(publish), report, inbox=time)
+    simulation = Simulation(accuracy=1e-2, law=falling())
+    run = run_loop(simulation, fake_publishers(publish), Report(log), time, duration=8.0)
     run.run()
     punctual = 0.01 * np.arange(801)
     late = np.array(shown) - punctual
@@ -287,16 +278,16 @@ def test_repeated_answers_to_sample_0_change_nothing_though_they_come_late():
 
     def publish(snapshot, nanoseconds):
         k = nanoseconds // 10_000_000
-        run.requests.take_samples(samples_at(0.01 * (k + 6)))
+        run.laws.add_samples(samples_at(0.01 * (k + 6)))
         if k == 3:
             for each in range(6):
-                run.requests.take_samples(samples_at(0.01 * each))
-            run.requests.take_samples(samples_at(0.01, bend=1.0))
+                run.laws.add_samples(samples_at(0.01 * each))
+            run.laws.add_samples(samples_at(0.01, bend=1.0))
 
-    values = DynamicsParameters(real_time_factor=0.0, duration=0.2)
-    run = RunLoop(Simulation(accuracy=1e-2), values, fake_publishers(publish), Report(log))
+    values = {"real_time_factor": 0.0, "duration": 0.2}
+    run = run_loop(Simulation(accuracy=1e-2), fake_publishers(publish), Report(log), **values)
     for each in range(6):
-        run.requests.take_samples(samples_at(0.01 * each))
+        run.laws.add_samples(samples_at(0.01 * each))
     run.run()
     refused = [text for level, text in log.lines if level != "info"]
     assert len(refused) == 1 and "got 0.01 s" in refused[0], "only the one with other values"

@@ -7,6 +7,7 @@ from eel_base.quantity import checked
 from eel_ros.frames import frame_in
 from eel_ros.parameters import AT_RESET, as_parameter, declare, default_of, take_overrides, warn_of_unknown
 from rcl_interfaces.msg import SetParametersResult
+from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from eel_dynamics.accuracy.accuracy import Accuracy
@@ -20,8 +21,8 @@ SCENE, USE_SIM_TIME = "scene.", "use_sim_time"
 class Declaration:
     """Declares all parameters of `node`; `ValueError` names one that does not fit.
 
-    Changes during the run are checked; an integer is accepted for a float. Some act at once, and `changed(values)` is
-    called. The others, and all of the scene, act at the next reset: `begin` makes them the present ones.
+    Changes during the run are checked; an integer is accepted for a float. Some act at once. The others, and all of
+    the scene, act at the next reset: `begin` makes them the present ones.
 
     Attributes:
         values: the present DynamicsParameters.
@@ -29,8 +30,7 @@ class Declaration:
         next_values, next_scene: those of the next reset.
     """
 
-    def __init__(self, node, changed):
-        self._changed = changed
+    def __init__(self, node: Node) -> None:
         overrides = take_overrides(node)
         space = node.get_namespace()
         frames = {name: frame_in(space, getattr(DynamicsParameters, name)) for name in FRAMES}
@@ -74,13 +74,11 @@ class Declaration:
     def _converted(self, parameter):
         item = self._fields.get(parameter.name)
         try:
-            return (
-                parameter
-                if item is None
-                else Parameter(parameter.name, value=as_parameter(checked(item, parameter.value, parameter.name)))
-            )
+            if item is not None:
+                return Parameter(parameter.name, value=as_parameter(checked(item, parameter.value, parameter.name)))
         except ValueError:
-            return parameter
+            pass
+        return parameter
 
     def _check(self, parameters) -> SetParametersResult:
         try:
@@ -124,7 +122,6 @@ class Declaration:
         if given:
             self.next_values, self.next_scene = self._changed_by(given)
             self.values = replace(self.values, **{name: given[name] for name in given if self._acts_at_once(name)})
-            self._changed(self.values)
 
 
 def _declared(node, kind: type, overrides: dict, prefix: str, changeable: str | None = None):

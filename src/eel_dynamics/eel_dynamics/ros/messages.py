@@ -7,7 +7,7 @@ Fields in section axes (1 = -x, 2 = -y, 3 = +z of base_link when straight) stay 
 
 import array
 import math
-from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from builtin_interfaces.msg import Time
@@ -15,6 +15,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from eel_base.attitude import heading
 from eel_base.wording import shown
 from eel_gaits.laws.law import MAXIMUM_TERMS
+from eel_gaits.ros.messages import ROWS
 from eel_ros.serialised import Beginning
 from eel_ros.serving import read_message
 from eel_ros.stamps import seconds_of
@@ -27,10 +28,10 @@ from eel_dynamics.accuracy.error_estimate import HeadErrors
 from eel_dynamics.analysis.actuators import Joints
 from eel_dynamics.curvature.curvature_samples import check_points
 from eel_dynamics.model.axes import QUATERNION, VECTOR, turn_quaternion, turn_vector, turn_world
-from eel_dynamics.model.scene import Scene
 from eel_dynamics.ros.parameters import DynamicsParameters, unit_quaternion
 from eel_dynamics.ros.serialised_message import SerialisedMessage
 from eel_dynamics.runs.exchange.records import outline
+from eel_dynamics.simulation.simulation import Simulation
 from eel_msgs.msg import (
     Backbone,
     BodyGeometry,
@@ -45,29 +46,20 @@ from eel_msgs.msg import (
 from eel_msgs.srv import SetState
 
 SECOND = 1_000_000_000  # ns
+FAR_AHEAD = 3600.0  # s: a stamp further ahead of the simulation is wall time by mistake
 LARGEST_LAW = 2**19  # bytes, without the name: 1,000 terms of 30 knots, which are adopted in half a second
 
 
 class Sample:
-    """The serialised messages of one sample: `fill` returns that of a topic, `tick` that of /clock.
-
-    head_errors: returns the present errors of the head's motion, or None where they are not estimated.
+    """The serialised messages of one sample of a `simulation`: `fill` returns that of a topic, `tick` that of /clock.
 
     Attributes:
         kinds: message type by topic.
-        clock: message type of /clock.
     """
 
-    clock = Clock
-
-    def __init__(
-        self,
-        x: np.ndarray,
-        scene: Scene,
-        parameters: DynamicsParameters,
-        head_errors: Callable[[], HeadErrors | None] = lambda: None,
-    ):
-        self._nanoseconds, self._head_errors = (0, 0), head_errors
+    def __init__(self, simulation: Simulation, parameters: DynamicsParameters) -> None:
+        self._nanoseconds, self._simulation = (0, 0), simulation
+        x, scene = simulation.x, simulation.scene
         self._errors: HeadErrors | None = None  # those in the covariances of odom
         messages = {
             "head_pose": PoseStamped(),
@@ -154,7 +146,7 @@ class Sample:
             self._head[ORIENTATION],
         )
         numbers["twist.twist.angular"][:], numbers["twist.twist.linear"][:] = self._head[ANGULAR], self._head[LINEAR]
-        errors = self._head_errors() or NO_ERRORS
+        errors = self._simulation.head_errors or NO_ERRORS
         if errors != self._errors:  # they change ten times a second
             self._errors, known = errors, math.isfinite(errors.position)
             pose, twist = np.square((errors[1:3], errors[3:5]))
@@ -195,7 +187,7 @@ class Sample:
         numbers[""][:] = [getattr(snapshot.energy, name) for name in ENERGY_FIELDS]
 
     def _fill_state(self, numbers, snapshot):
-        errors = self._head_errors()
+        errors = self._simulation.head_errors
         numbers[""][:] = (  # in the order of the fields
             np.linalg.norm(self._head[LINEAR]),
             -self._head[POSITION][2],
@@ -240,41 +232,56 @@ def root_message(parameters: DynamicsParameters) -> TFMessage:
     return TFMessage(transforms=[transform])
 
 
-def body_message(body, scene: Scene, x: np.ndarray, section_frame: str) -> BodyGeometry:
-    """The body's outline at the stations `x` (M,) [m] and at points in between, which are denser at the nose."""
-    message = BodyGeometry(length=float(body.length), mass=float((scene.density or body.density) * body.volume))
+def body_message(simulation: Simulation, section_frame: str) -> BodyGeometry:
+    """The body's outline at the stations and at points in between, which are denser at the nose."""
+    body, density = simulation.body, simulation.scene.density or simulation.body.density
+    message = BodyGeometry(length=float(body.length), mass=float(density * body.volume))
     message.header.frame_id = section_frame
-    for name, values in outline(body, x).items():
+    for name, values in outline(body, simulation.x).items():
         setattr(message, name, array.array("d", values.tolist()))
     return message
 
 
-def parse_law(data: bytes) -> tuple[str, Callable[[], CurvatureLaw]]:
-    """Parse a serialised CurvatureLaw: its name, and a function that deserialises it.
+def law_name(data: bytes) -> str:
+    """The name in a serialised CurvatureLaw. `EOFError` if the message ends before its terms."""
+    beginning = Beginning(data)
+    beginning.text()  # frame_id
+    return beginning.text()
 
-    Deserialising 10^5 terms would block the process for a second, so the terms are counted first: the function raises
-    `ValueError` if there are too many. `ValueError` if the message ends before its terms.
+
+def read_law(data: bytes) -> CurvatureLaw:
+    """The CurvatureLaw in a serialised message. `ValueError` for too many terms, or too many numbers in them.
+
+    They are counted before it is deserialised: 10^5 terms would block the process for a second.
     """
     beginning = Beginning(data)
     beginning.text()  # frame_id
     name, terms = beginning.text(), beginning.number()
-
-    def make() -> CurvatureLaw:
-        if terms > MAXIMUM_TERMS:
-            raise ValueError(f"terms must be at most {MAXIMUM_TERMS}, got {terms}")
-        if len(data) - len(name) > LARGEST_LAW:
-            raise ValueError(f"its terms must have at most {LARGEST_LAW} bytes, got {len(data) - len(name)}")
-        return read_message(data, CurvatureLaw)
-
-    return name, make
+    if terms > MAXIMUM_TERMS:
+        raise ValueError(f"terms must be at most {MAXIMUM_TERMS}, got {terms}")
+    if len(data) - len(name) > LARGEST_LAW:
+        raise ValueError(f"its terms must have at most {LARGEST_LAW} bytes, got {len(data) - len(name)}")
+    return read_message(data, CurvatureLaw)
 
 
-def samples_from_message(message: CurvatureSamples) -> dict[str, np.ndarray | float]:
+def stamped(message: CurvatureLaw | CurvatureSamples, now: float) -> float:
+    """The stamp [s] of a `message` that comes at simulation time `now` [s]. `ValueError` for one that is not valid."""
+    stamp = seconds_of(message.header.stamp)
+    if stamp > now + FAR_AHEAD:
+        raise ValueError(
+            f"header.stamp must be simulation time, at most {FAR_AHEAD:g} s ahead of {now:g} s, got {stamp:.3f} s: "
+            "that looks like wall time, does its publisher have use_sim_time set?"
+        )
+    return stamp
+
+
+def samples_from_message(message: CurvatureSamples, now: float) -> dict[str, Any]:
     """The arguments of `Simulation.add_samples`: time [s], x [m], curvatures and two time derivatives, section axes.
-    `ValueError` for too many points."""
-    check_points(len(message.x))  # before the request is queued
-    names = ("x", "pitch", "pitch_rate", "pitch_accel", "yaw", "yaw_rate", "yaw_accel")
-    return {"time": seconds_of(message.header.stamp)} | {name: np.array(getattr(message, name)) for name in names}
+
+    now: simulation time [s]. `ValueError` for a stamp that does not fit, or too many points.
+    """
+    check_points(len(message.x))
+    return {"time": stamped(message, now)} | {name: np.array(getattr(message, name)) for name in ("x", *ROWS)}
 
 
 def state_from_message(request: SetState.Request) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

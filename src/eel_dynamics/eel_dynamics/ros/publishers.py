@@ -9,13 +9,28 @@ other subscribers go on.
 
 import math
 import time
+from typing import Any
+
+from eel_ros.qos import keep_all, latched, matches
+from eel_ros.serving import ServedNode
+from rclpy.duration import Duration
+from rclpy.impl.implementation_singleton import rclpy_implementation
+from rosgraph_msgs.msg import Clock
+
+from eel_dynamics.ros.declaration import Declaration
+from eel_dynamics.ros.diagnostics import Report
+from eel_dynamics.ros.messages import Sample, body_message
+from eel_dynamics.simulation.simulation import Simulation
+from eel_dynamics.simulation.snapshot import Snapshot
+from eel_msgs.msg import BodyGeometry
 
 LIVE_DEPTH = 100  # samples: history of a paced run
 LONG_DEPTH = 5000  # samples: history after a subscriber got stuck, as long as the one that keeps all
 RETRY = 0.002  # s between two attempts to publish, in which other threads can run
+BODY_TIMEOUT = 1.0  # s: longest wait for the present subscribers to have the body before the first sample
 END_TIMEOUT = 5.0  # s: longest wait for acknowledgements at the end of a paced run
 LOSSLESS_END_TIMEOUT = 30.0  # s: where no sample may be lost: time for a slow subscriber to read a full history
-SLICE = 0.2  # s between two checks whether such a wait is interrupted
+SLICE = 0.02  # s: longest wait for one topic before signals and callbacks are looked at
 QUIET_TIME = 1.0  # s without a change, after which the subscribers that some topics have are considered complete
 MATCH_LIMIT = 5.0  # s: longest wait for the subscribers that exist to be matched
 COUNT_PERIOD = 0.1  # s of wall time between two counts of subscribers: a count costs as much as a short message
@@ -25,62 +40,75 @@ NOT_AWAITED = ("/tf", "joint_states", "swim_state")  # topics that the run does 
 
 
 class Channel:
-    """One topic with its publisher, made by `create(message_type, topic, depth)`; depth None: KEEP_ALL."""
+    """One topic of `node` with its publisher."""
 
-    def __init__(self, create, message_type, topic: str, lossless: bool):
-        self.topic, self.message_type = topic, message_type
-        self._create = create
-        self.lossless = lossless
-        self.publisher = create(message_type, topic, None if lossless else LIVE_DEPTH)
+    def __init__(self, node: ServedNode, kind: type, topic: str, lossless: bool) -> None:
+        self._node, self._kind, self.topic, self.lossless = node, kind, topic, lossless
+        self.publisher: Any = node.create_publisher(kind, topic, keep_all() if lossless else LIVE_DEPTH)
 
-    def drop_oldest(self, destroy):
+    def close(self) -> None:
+        """End the topic."""
+        self._node.destroy_publisher(self.publisher)
+
+    def drop_oldest(self) -> None:
         """Change to a KEEP_LAST history, long enough for the subscribers that are not stuck."""
-        destroy(self.publisher)
+        self.close()
         self.lossless = False
-        self.publisher = self._create(self.message_type, self.topic, LONG_DEPTH)
+        self.publisher = self._node.create_publisher(self._kind, self.topic, LONG_DEPTH)
+
+    def count_known(self) -> int:
+        """The number of subscribers on the network that the publisher can match."""
+        wanted = self._node.get_subscriptions_info_by_topic(self.publisher.topic_name)
+        return sum(matches(each.qos_profile, self.publisher.qos_profile) for each in wanted)
 
 
 class Publishers:
-    """All topics of samples, and /clock.
-
-    sample: makes the messages (messages.Sample). create: see Channel; destroy(publisher).
-    known(publisher): number of subscribers on the network that the publisher can match.
-    received(publisher, seconds): waits until all messages are acknowledged; whether they are. publish_error: the
-    exception of a failed publish. values(): the present DynamicsParameters. stopped(): whether the run is over.
+    """All topics of samples of a `simulation`, its body, and /clock.
 
     Attributes:
         lossless: the run is as fast as possible, and no sample may be lost.
+        stopped: the run is over, and nobody is waited for.
     """
 
-    def __init__(self, sample, *, create, destroy, known, received, publish_error, values, stopped, report):
-        self._sample, self._create, self._destroy, self._publish_error = sample, create, destroy, publish_error
-        self._known, self._received = known, received
-        self._values, self._stopped, self._report = values, stopped, report
-        self.lossless = values().real_time_factor == 0.0
-        self._channels = {}
-        self.change(sample)
+    def __init__(self, node: ServedNode, simulation: Simulation, parameters: Declaration, report: Report) -> None:
+        self._node, self._parameters, self._report = node, parameters, report
+        self.lossless, self.stopped = parameters.values.real_time_factor == 0.0, False
+        self._channels: dict[str, Channel] = {}
+        self._clock: Channel | None = None
+        self._body: Any = node.create_publisher(BodyGeometry, "body", latched(1))
+        self._last_count = -math.inf  # s, steady clock: when subscribers were counted
+        self._counts: dict[str, int] = {}  # of subscribers by topic, at that time
         self._subscribed: tuple[str, ...] = ()  # topics with subscribers
-        self._last_count = -math.inf  # s: when that was found
-        self._counts = {}  # of subscribers by topic, at that time
-        self._clock = None
         self._wait_budget = WaitBudget()
-        self._subscriber_counts, self._counts_since, self._waiting_since = None, 0.0, None
+        self._audience: tuple[list[int], list[int]] | None = None  # of each topic: subscribers matched, and known
+        self._audience_since, self._waiting_since = 0.0, math.inf  # s, steady clock
         self._samples = 0  # published since the start of the run
+        self.begin(simulation)
 
-    def change(self, sample):
-        """Change to another maker of messages, and to its topics."""
-        self._sample = sample
-        for name in [name for name in self._channels if name not in sample.kinds]:
-            self._destroy(self._channels.pop(name).publisher)
-        for name, kind in sample.kinds.items():
+    def begin(self, simulation: Simulation) -> None:
+        """Change to the topics of another `simulation`, and publish its body."""
+        values = self._parameters.values
+        self._sample = Sample(simulation, values)
+        for name in [name for name in self._channels if name not in self._sample.kinds]:
+            self._channels.pop(name).close()
+        for name, kind in self._sample.kinds.items():
             if name not in self._channels:
-                self._channels[name] = Channel(self._create, kind, name, self.lossless)
+                self._channels[name] = Channel(self._node, kind, name, self.lossless)
         self._subscribed, self._last_count = (), -math.inf
+        self.publish_body(simulation)
 
-    def _count_subscribers(self):
+    def publish_body(self, simulation: Simulation) -> None:
+        """Publish the geometry of the body of a `simulation`; later subscribers get it too."""
+        self._body.publish(body_message(simulation, self._parameters.values.section_frame))
+
+    def wait_until_body_received(self) -> None:
+        """Wait until the present subscribers have received the body: they need it for the samples."""
+        self._body.wait_for_all_acked(Duration(seconds=BODY_TIMEOUT))
+
+    def _count_subscribers(self) -> None:
         """Find the topics that have subscribers. In a run as fast as possible, tell what a new one has missed."""
         self._last_count = time.monotonic()
-        hidden = () if self._values().publish_tf else ("/tf",)
+        hidden = () if self._parameters.values.publish_tf else ("/tf",)
         before, self._counts = self._counts, dict(zip(self._channels, self.audience(), strict=True))
         self._subscribed = tuple(name for name, count in self._counts.items() if name not in hidden and count > 0)
         if self.lossless and self._samples > 1:
@@ -100,7 +128,7 @@ class Publishers:
         """The number of subscribers of each topic."""
         return tuple(channel.publisher.get_subscription_count() for channel in self._channels.values())
 
-    def publish(self, snapshot, nanoseconds: int):
+    def publish(self, snapshot: Snapshot, nanoseconds: int) -> None:
         """Publish one sample at simulation time `nanoseconds` [ns].
 
         Only topics that had subscribers at the last call of `wanted_parts` are published.
@@ -110,18 +138,18 @@ class Publishers:
         for name in self._subscribed:
             self._send(self._channels[name], self._sample.fill(name, snapshot))
 
-    def tick(self, nanoseconds: int):
+    def tick(self, nanoseconds: int) -> None:
         """Publish /clock, with simulation time `nanoseconds` [ns]."""
         self._sample.set_time(nanoseconds)
         if self._clock is not None:
             self._send(self._clock, self._sample.tick())
 
-    def enable_clock(self, offered: bool):
+    def enable_clock(self, offered: bool) -> None:
         """Begin or stop publishing /clock."""
         if offered and self._clock is None:
-            self._clock = Channel(self._create, self._sample.clock, "/clock", self.lossless)
+            self._clock = Channel(self._node, Clock, "/clock", self.lossless)
         elif not offered and self._clock is not None:
-            self._destroy(self._clock.publisher)
+            self._clock.close()
             self._clock = None
 
     def subscribers_complete(self, wanted: int, now: float) -> bool:
@@ -131,48 +159,41 @@ class Publishers:
         `MATCH_LIMIT`. now: time [s, steady clock].
         """
         left_out = NOT_AWAITED if wanted else ()
-        own = [channel.publisher for name, channel in self._channels.items() if name not in left_out]
+        own = [channel for name, channel in self._channels.items() if name not in left_out]
         if not wanted and self._clock is not None:
-            own.append(self._clock.publisher)  # who follows it needs it from the start
-        counts = [publisher.get_subscription_count() for publisher in own]
-        known = [] if wanted else [self._known(publisher) for publisher in own]
-        if [counts, known] != self._subscriber_counts:
-            self._subscriber_counts, self._counts_since = [counts, known], now
-        quiet = now - self._counts_since > QUIET_TIME
+            own.append(self._clock)  # who follows it needs it from the start
+        counts = [channel.publisher.get_subscription_count() for channel in own]
+        known = [] if wanted else [channel.count_known() for channel in own]
+        if (counts, known) != self._audience:
+            self._audience, self._audience_since = (counts, known), now
+        quiet = now - self._audience_since > QUIET_TIME
         if wanted:
             return min(counts) >= wanted or (max(counts) >= wanted and quiet)
-        self._waiting_since = self._waiting_since or now
+        self._waiting_since = min(self._waiting_since, now)
         matched = all(count >= there for count, there in zip(counts, known, strict=True))
         return (quiet and matched) or now - self._waiting_since > MATCH_LIMIT
 
-    def wait_until_received(self, others: list, interrupted, longest: float = math.inf) -> bool:
-        """Wait until all messages are acknowledged, also those of the publishers `others`; whether they were.
+    def all_received(self, others: list[Any], waited: float) -> bool:
+        """Whether all messages are acknowledged, also those of the publishers `others`, `waited` [s] after the end.
 
-        Waits for `END_TIMEOUT`, or for `LOSSLESS_END_TIMEOUT` where no sample may be lost and no subscriber was stuck;
-        in any case at most `longest` [s], and until `interrupted()`.
+        Also true, with a warning, where that is no longer waited for: after `END_TIMEOUT`, or `LOSSLESS_END_TIMEOUT`
+        where no sample may be lost and no subscriber was stuck.
         """
-        clock = [self._clock] if self._clock is not None else []
-        samples = [*self._channels.values(), *clock] if self.lossless else []
-        whole = [channel.publisher for channel in samples if channel.lossless]
-        rest = [channel.publisher for channel in samples if not channel.lossless] + others
-        backlog = max(LOSSLESS_END_TIMEOUT, self._values().subscriber_timeout)
-        all_samples = self._wait_for(whole, min(backlog, longest), interrupted)
-        return self._wait_for(rest, min(END_TIMEOUT, longest), interrupted) and all_samples
+        samples = [*self._channels.values(), *([self._clock] if self._clock is not None else [])]
+        backlog = max(LOSSLESS_END_TIMEOUT, self._parameters.values.subscriber_timeout)
+        waits = [(each.publisher, backlog if each.lossless else END_TIMEOUT) for each in samples if self.lossless]
+        waits += [(publisher, END_TIMEOUT) for publisher in (self._body, *others)]
+        late = [longest for publisher, longest in waits if not publisher.wait_for_all_acked(Duration(seconds=SLICE))]
+        if late and waited >= max(late):
+            self._report.event("end", f"some subscriber has not received everything within {waited:.2g} s")
+        return not late or waited >= max(late)
 
-    def _wait_for(self, publishers: list, seconds: float, interrupted) -> bool:
-        end = time.monotonic() + seconds
-        for publisher in publishers:
-            while not self._received(publisher, min(SLICE, max(0.0, end - time.monotonic()))):
-                if time.monotonic() >= end or interrupted():
-                    return False
-        return True
-
-    def _send(self, channel: Channel, message: bytes):
+    def _send(self, channel: Channel, message: bytes) -> None:
         start = None  # s: when the first attempt failed
-        while not self._stopped():
+        while not self.stopped:
             try:
                 channel.publisher.publish(message)
-            except self._publish_error as error:
+            except rclpy_implementation.RCLError as error:
                 if not channel.lossless:
                     self._report.event("publish " + channel.topic, f"{channel.topic} could not be published: {error}")
                     return
@@ -180,7 +201,7 @@ class Publishers:
                 if start is None:
                     start = now
                     self._wait_budget.begin(now)
-                if self._wait_budget.over(now, self._values().subscriber_timeout):
+                if self._wait_budget.over(now, self._parameters.values.subscriber_timeout):
                     self._give_up(channel)
                     continue
                 self._report.event(
@@ -192,23 +213,23 @@ class Publishers:
                     self._wait_budget.renew()
                 return
 
-    def _give_up(self, channel: Channel):
+    def _give_up(self, channel: Channel) -> None:
         self._report.begin(
             "stuck " + channel.topic,
-            f"a subscriber of {channel.topic} has been stuck for {self._values().subscriber_timeout:g} s: "
+            f"a subscriber of {channel.topic} has been stuck for {self._parameters.values.subscriber_timeout:g} s: "
             "going on without it, it will miss samples",
         )
-        channel.drop_oldest(self._destroy)
+        channel.drop_oldest()
 
 
 class WaitBudget:
     """The time spent waiting for subscribers: one for all topics, as a stuck subscriber is stuck on all of them."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         self._since: float | None = None  # s, steady clock
         self._last = 0.0
 
-    def begin(self, now: float):
+    def begin(self, now: float) -> None:
         """Note a failed publish; a wait that ended more than `QUIET_TIME` ago does not count."""
         if self._since is None or now - self._last > QUIET_TIME:
             self._since = now
@@ -219,6 +240,6 @@ class WaitBudget:
         self._last = now
         return self._since is not None and now - self._since >= timeout
 
-    def renew(self):
+    def renew(self) -> None:
         """Start over: a subscriber has caught up."""
         self._since = None

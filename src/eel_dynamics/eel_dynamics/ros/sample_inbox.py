@@ -1,17 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Takes a controller's samples in the thread of the run loop: a turn of the executor would cost as much as a tick.
+"""Takes a controller's samples in the thread of the run loop: a turn of the executor would cost as much as a sample.
 
 The loop waits for samples and requests together, in a wait set of its own, as `rclpy.wait_for_message` does.
 """
 
-from collections.abc import Callable
+from collections.abc import Iterator
 from typing import Any
 
+from eel_ros.deliveries import Deliveries
 from eel_ros.qos import keep_all
-from eel_ros.serving import PolledGroup, log_dropped, read_message
+from eel_ros.serving import PolledGroup, ServedNode, log_dropped, read_message
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.qos import ReliabilityPolicy
 
+from eel_dynamics.ros.diagnostics import ERROR, Report
+from eel_dynamics.ros.loop.law_adopter import refused
+from eel_dynamics.ros.messages import samples_from_message
 from eel_msgs.msg import CurvatureSamples
 
 TOPIC = "curvature_samples"
@@ -19,27 +23,28 @@ BATCH = 1000  # samples taken from one subscription at once
 
 
 class SampleInbox:
-    """The subscriptions of `node` to samples, and what wakes the run loop, in place of `requests.WakeUp`.
+    """The subscriptions of `node` to samples, and what wakes the run loop.
 
-    There is one without loss, and from `look` on a second one, if some publisher is best-effort.
-    receive(message, info): takes a message. Where there are two subscriptions, it may come twice.
+    There is one without loss, and from `look` on a second one, if some publisher is best-effort. That one takes the
+    samples of reliable publishers a second time; they are passed on once.
     """
 
-    def __init__(self, node, receive: Callable[[CurvatureSamples, dict], None]):
-        self._node, self._receive, self._group = node, receive, PolledGroup()
+    def __init__(self, node: ServedNode, report: Report) -> None:
+        self._node, self._report, self._group = node, report, PolledGroup()
+        self._deliveries = Deliveries()
         self._guard = node.create_guard_condition(lambda: None, self._group)
         self._subscriptions: tuple[Any, ...] = ()
         self._wait_set: Any = None
         self._subscribe(reliable=True)
 
-    def look(self):
+    def look(self) -> None:
         """Look the publishers up, and subscribe a second time where one is best-effort; call this now and then."""
         offers = self._node.get_publishers_info_by_topic(self._node.resolve_topic_name(TOPIC))
         unreliable = any(each.qos_profile.reliability == ReliabilityPolicy.BEST_EFFORT for each in offers)
         if unreliable and len(self._subscriptions) == 1:
             self._subscribe(reliable=False)
 
-    def _subscribe(self, reliable: bool):
+    def _subscribe(self, reliable: bool) -> None:
         quality = keep_all(reliable=reliable)
         made = self._node.create_subscription(CurvatureSamples, TOPIC, print, quality, callback_group=self._group)
         self._subscriptions, self._wait_set = (*self._subscriptions, made), None
@@ -47,18 +52,30 @@ class SampleInbox:
 
     # In the run loop's thread.
 
-    def poll(self):
-        """Take the samples that have come. One that cannot be read is logged and left out."""
+    def take(self, now: float) -> Iterator[dict[str, Any]]:
+        """The samples that have come at simulation time `now` [s], as the arguments of `Simulation.add_samples`.
+
+        One that cannot be read, or does not fit, is logged and left out.
+        """
         for subscription in self._subscriptions:
             for _ in range(BATCH):
                 with subscription.handle:
                     taken = subscription.handle.take_message(subscription.msg_type, True)
                 if taken is None:
                     break
+                if self._deliveries.repeats(taken[1]):
+                    continue
                 try:
-                    self._receive(read_message(taken[0], CurvatureSamples), taken[1])
+                    message = read_message(taken[0], CurvatureSamples)
                 except Exception as error:
                     log_dropped(self._node, error, f"a message of {subscription.topic_name}")
+                    continue
+                try:
+                    samples = samples_from_message(message, now)
+                except ValueError as error:
+                    self._report.event("samples", refused(error), ERROR)
+                    continue
+                yield samples
 
     def wait(self, seconds: float) -> bool:
         """Sleep until samples have come or `set` was called, at most `seconds`; whether one of them was the reason."""
@@ -74,11 +91,13 @@ class SampleInbox:
         waiting.wait(max(0, round(seconds * 1e9)))
         return bool(waiting.get_ready_entities("subscription") or waiting.get_ready_entities("guard_condition"))
 
-    def clear(self):
-        """Do nothing: a wait that returns resets the guard condition."""
-
     # For any thread.
 
-    def set(self):
+    def set(self) -> None:
         """Wake the run loop, or let its next `wait` return at once."""
         self._guard.trigger()
+
+    def wake_callers(self) -> None:
+        """Let the executor look whether the requests that callbacks await are done."""
+        if self._node.executor is not None:
+            self._node.executor.wake()

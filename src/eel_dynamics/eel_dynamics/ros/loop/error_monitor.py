@@ -1,32 +1,29 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tells when the error of a run exceeds its target: each time once in the log, and in /diagnostics until a reset."""
 
+from eel_dynamics.ros.diagnostics import Report
+from eel_dynamics.simulation.simulation import Simulation
+
 OFF = "off"  # where no error is estimated
 TARGET, LOST = "accuracy target", "lost accuracy"  # kinds of conditions
 
 
 class ErrorMonitor:
-    """Watches the error estimate of a `simulation`, if it has one.
+    """Watches the error estimate of a `simulation` from its start on, if it has one.
 
     Attributes:
         values: the figures for /diagnostics, by name, at the last check; "off" where no error is estimated.
     """
 
-    def __init__(self, simulation, report):
+    def __init__(self, simulation: Simulation, report: Report) -> None:
         self._simulation, self._report = simulation, report
-        self.values: dict[str, float | str] = {}
-        self.restart()
+        self.values: dict[str, float | str] = {"error_position": OFF} if simulation.error_estimate is None else {}
+        report.end(TARGET)
+        report.end(LOST)
 
-    def restart(self):
-        """Forget what has been told."""
-        self.values = {"error_position": OFF} if self._simulation.error_estimate is None else {}
-        for kind in (TARGET, LOST):
-            self._report.end(kind)
-
-    def check(self):
+    def check(self) -> None:
         """Tell of a missed target, and of a motion whose errors have grown beyond all bounds."""
-        simulation = self._simulation
-        error = simulation.error_estimate
+        simulation, error = self._simulation, self._simulation.error_estimate
         if error is None:
             return
         missed = error.missed(simulation.accuracy.target, simulation.time - simulation.measured_since)

@@ -9,9 +9,13 @@ import math
 from time import monotonic
 
 import numpy as np
+from eel_gaits.laws.law import Law
+from eel_gaits.sources.sampled_law import SampledLaw
 
 from eel_dynamics.analysis.model_limits import ModelLimits
-from eel_dynamics.ros.diagnostics import REPEAT
+from eel_dynamics.ros.diagnostics import REPEAT, Report
+from eel_dynamics.simulation.simulation import Simulation
+from eel_dynamics.simulation.snapshot import Snapshot
 
 SETTLING = 5.0  # s after the start in which speed and tail are not checked: a swimmer starts from rest
 WINDOW = 5.0  # s
@@ -20,54 +24,52 @@ WINDOW = 5.0  # s
 class LimitsMonitor:
     """Checks snapshots of a `simulation` against the model's limits, and reports violations to `report`."""
 
-    def __init__(self, simulation, report):
+    def __init__(self, simulation: Simulation, report: Report) -> None:
         self._simulation = simulation
         self._limits = ModelLimits(simulation.body, simulation.scene, simulation.x)
         self._current = np.array(simulation.scene.current)
-        self._report, self._reported = report, set()
-        self._excess, self._above, self._told = (0.0, ""), 0, -math.inf  # see check_torque; s, steady clock
-        self.restart()
-
-    def restart(self):
-        """Forget all snapshots and reported violations, and check the body."""
-        self._wake_power, self._window, self._law = [], (math.inf, math.inf), None
-        self._since = None
-        self.end()
+        self._report = report
+        self._reported: set[str] = set()  # kinds of violations
+        self._excess, self._above = (0.0, ""), 0  # of the torque since it was last reported: the greatest; samples
+        self._torque_reported = -math.inf  # s, steady clock
+        self._law, self._window = simulation.law, (math.inf, math.inf)  # s: begin and end, for the tail
+        self._wake_power: list[float] = []  # W, in the window
+        self._since: tuple[float, np.ndarray] | None = None  # time [s] and centre of mass [m], for the speed
         self._warn("slenderness", self._limits.of_body())
 
-    def end(self):
+    def end(self) -> None:
         """End the reported violations, and report the torque."""
         self.report_torque()
         for kind in self._reported:
             self._report.end(kind)
         self._reported = set()
 
-    def add(self, snapshot, check: bool):
+    def add(self, snapshot: Snapshot, check: bool) -> None:
         """Add a snapshot; with `check`, compare all since the last check with the limits."""
         if snapshot.energy is not None:
             self._check_tail(snapshot.time, float(snapshot.energy.wake_power))
         if check:
             self._check(snapshot)
 
-    def check_torque(self, snapshot, limit: float):
+    def check_torque(self, snapshot: Snapshot, limit: float) -> None:
         """Report once a second of wall time the greatest internal torque above the `limit` [N m]; 0: there is none."""
         if limit > 0.0:
             if snapshot.torque is None:
                 self._warn("torque", "torque_limit does nothing without scene.internal_wrench")
             else:
                 self._compare_torque(snapshot, limit)
-        if monotonic() - self._told >= REPEAT:
+        if monotonic() - self._torque_reported >= REPEAT:
             self.report_torque()
 
-    def report_torque(self):
+    def report_torque(self) -> None:
         """Report the greatest torque above the limit since the last report."""
         if not self._above:
             return
         many = f" (the greatest of {self._above} samples above it)" if self._above > 1 else ""
         self._report.event("torque limit", self._excess[1] + many, differing=True)
-        self._excess, self._above, self._told = (0.0, ""), 0, monotonic()
+        self._excess, self._above, self._torque_reported = (0.0, ""), 0, monotonic()
 
-    def _compare_torque(self, snapshot, limit: float):
+    def _compare_torque(self, snapshot: Snapshot, limit: float) -> None:
         size = np.abs(snapshot.torque)
         station, axis = np.unravel_index(np.argmax(size), size.shape)
         if size[station, axis] > limit:
@@ -79,7 +81,7 @@ class LimitsMonitor:
                 f"X = {snapshot.x[station]:.3g} m, t = {snapshot.time:.4g} s",
             )
 
-    def _check_tail(self, time: float, wake_power: float):
+    def _check_tail(self, time: float, wake_power: float) -> None:
         law, (begin, end) = self._simulation.law, self._window
         if law is not self._law or begin == math.inf:
             self._law, self._wake_power = law, []
@@ -95,7 +97,7 @@ class LimitsMonitor:
                     self._report.end("tail", f"the tail no longer leads at t = {time:.4g} s")
                 self._wake_power, self._window = [], (time, time + window_of(law))
 
-    def _check(self, snapshot):
+    def _check(self, snapshot: Snapshot) -> None:
         limits, time = self._limits, np.array([snapshot.time])
         bend = snapshot.curvature[None]
         self._warn("bending", limits.of_bending(time, bend))
@@ -111,13 +113,13 @@ class LimitsMonitor:
                 self._warn("speed", limits.of_speed(float(np.linalg.norm(centre - before)) / (snapshot.time - start)))
             self._since = snapshot.time, centre.copy()
 
-    def _warn(self, kind: str, text: str):
+    def _warn(self, kind: str, text: str) -> None:
         if text and kind not in self._reported:
             self._reported.add(kind)
             self._report.begin(kind, text)
 
 
-def window_of(law) -> float:
+def window_of(law: Law | SampledLaw | None) -> float:
     """Length [s] of the windows in which the tail is checked, for a swimmer that follows `law`."""
     period = max((term.period for term in getattr(law, "terms", ())), default=0.0)
     return period * math.ceil(WINDOW / period) if period > 0.0 else WINDOW

@@ -9,7 +9,6 @@ hours is not faster for days. The run keeps its accuracy, not its pace.
 
 import math
 import time
-from collections.abc import Callable
 
 SHORTEST_DELAY = 0.02  # s: shorter delays come from the operating system's scheduling
 CATCH_UP = 0.1  # of the pace, by which a late run is faster until it has regained the lost time
@@ -23,13 +22,13 @@ class Pace:
         given_up: lost time [s] that will not be regained.
     """
 
-    def __init__(self, period: float, factor: float):
+    def __init__(self, period: float, factor: float) -> None:
         self.period = period
         self.factor = factor
         self._first, self._start, self._lost = 0, -math.inf, 0.0  # _lost: s, by which the first one was late
         self.given_up = 0.0
 
-    def restart(self, sample: int, now: float, factor: float | None = None):
+    def restart(self, sample: int, now: float, factor: float | None = None) -> None:
         """Make `sample` due `now` [s, steady clock], and later samples relative to it. Nothing is late any more."""
         if factor is not None:
             self.factor = factor
@@ -66,6 +65,9 @@ class Pace:
         """Why `sample` is not due, as text, where that is not only a matter of time: never."""
         return ""
 
+    def show(self, shown: float, now: float) -> None:
+        """Do nothing: the run does not follow the /clock of another node."""
+
     def _steps(self, sample: int) -> float:
         return (sample - self._first) * self.period / self.factor if self.factor > 0.0 else 0.0
 
@@ -73,26 +75,22 @@ class Pace:
 class ControllerWait:
     """Decides whether to wait for a controller that sends samples of a law: once per gap, up to a time-out.
 
-    time_out(seconds): called when that long a wait [s] was in vain.
+    Attributes:
+        timed_out: whether the last call of `waits` ended a wait in vain.
     """
 
-    def __init__(self, time_out: Callable[[float], None]):
-        self._time_out = time_out
+    def __init__(self) -> None:
         self._since: float | None = None  # s, steady clock: since when its samples are missing
+        self.timed_out = False
 
     def waits(self, missing: bool, now: float, timeout: float) -> bool:
         """Whether to wait for samples that are `missing` at `now` [s, steady clock], for `timeout` [s] at most."""
-        if not missing:
-            self._since = None
-            return False
-        if self._since is None:
-            self._since = now
-        if now - self._since < timeout:
-            return True
-        if self._since > -math.inf:
+        self._since = (now if self._since is None else self._since) if missing else None
+        waiting = self._since is not None and now - self._since < timeout
+        self.timed_out = self._since is not None and not waiting and self._since > -math.inf
+        if self.timed_out:
             self._since = -math.inf
-            self._time_out(timeout)
-        return False
+        return waiting
 
 
 class Stopwatch:
@@ -102,17 +100,17 @@ class Stopwatch:
         seconds: the sum of the laps.
     """
 
-    def __init__(self):
+    def __init__(self) -> None:
         self.seconds, self._since = 0.0, time.monotonic()
 
-    def lap(self, now: float):
+    def lap(self, now: float) -> None:
         """Add the time since the last lap."""
         self.seconds, self._since = self.seconds + now - self._since, now
 
-    def resume(self, now: float):
+    def resume(self, now: float) -> None:
         """Leave out the time since the last lap."""
         self._since = now
 
-    def restart(self, now: float):
+    def restart(self, now: float) -> None:
         """Begin again at 0."""
         self.seconds, self._since = 0.0, now

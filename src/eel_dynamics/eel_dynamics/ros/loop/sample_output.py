@@ -6,68 +6,60 @@ While a run stands at its start, sample 0 is repeated. It is not published once 
 
 import math
 
-from eel_dynamics.accuracy.error_estimate import HeadErrors
+from eel_dynamics.ros.declaration import Declaration
+from eel_dynamics.ros.diagnostics import Report
 from eel_dynamics.ros.loop.clock_ticks import ClockTicks
 from eel_dynamics.ros.loop.error_monitor import ErrorMonitor
 from eel_dynamics.ros.loop.limits_monitor import LimitsMonitor
 from eel_dynamics.ros.loop.run_totals import RunTotals
+from eel_dynamics.ros.publishers import Publishers
+from eel_dynamics.simulation.simulation import Simulation
 
 START_PERIOD = 0.1  # s of wall time between two messages of sample 0 while the run stands at its start
 
 
 class SampleOutput:
-    """Publishes the samples of a `simulation`, `rate` [Hz] of them per simulated second, through `publishers`.
+    """Publishes the samples of a `simulation` through `publishers`.
 
     Attributes:
-        rate: may be replaced at a reset.
-        torque_limit: [N m], above which the greatest torque is reported; 0: none.
         clock: ClockTicks.
         totals: RunTotals since the start.
+        errors: ErrorMonitor.
     """
 
-    def __init__(self, simulation, rate: float, clock_rate: float, publishers, report):
-        self._simulation, self.rate, self._publishers, self._report = simulation, rate, publishers, report
-        self._limits, self._errors = LimitsMonitor(simulation, report), ErrorMonitor(simulation, report)
-        self.clock = ClockTicks(clock_rate, publishers)
-        self.torque_limit = 0.0
+    def __init__(self, simulation: Simulation, parameters: Declaration, publishers: Publishers, report: Report) -> None:
+        self._simulation, self._parameters = simulation, parameters
+        self._publishers, self._report = publishers, report
+        self.clock, self.totals = ClockTicks(parameters, publishers), RunTotals()
+        self.errors, self._limits = ErrorMonitor(simulation, report), LimitsMonitor(simulation, report)
         self._whole_snapshot_due = True
-        self._start_shown, self._start_audience = -math.inf, None  # s, steady clock: last sample 0, and who had it
-        self.totals = RunTotals()
+        self._start_shown = -math.inf  # s, steady clock: last sample 0
+        self._start_audience: tuple[int, ...] | None = None  # who had it
 
-    @property
-    def errors(self) -> dict[str, float | str]:
-        """Figures of the error estimate, by name; "off" where none is wanted."""
-        return self._errors.values
-
-    @property
-    def head_errors(self) -> HeadErrors | None:
-        """The errors of the head's motion; None where none are estimated."""
-        return self._simulation.head_errors
-
-    def request_whole_snapshot(self):
+    def request_whole_snapshot(self) -> None:
         """Let the next snapshot hold everything that the totals use, even without subscribers."""
         self._whole_snapshot_due = True
 
-    def publish(self, sample: int, last: bool):
+    def publish(self, sample: int, last: bool) -> None:
         """Publish `sample` of the simulation's present time; `last`: of the run. `SimulationStopped` for a bad one."""
         whole, self._whole_snapshot_due = self._whole_snapshot_due or last, False
         self._publish(sample, whole)
 
-    def _publish(self, sample: int, whole: bool):
+    def _publish(self, sample: int, whole: bool) -> None:
         """With `whole`, check everything that the totals use."""
-        parts = self._publishers.wanted_parts()
-        parts["wrench"] |= self.torque_limit > 0.0
+        parts, limit = self._publishers.wanted_parts(), self._parameters.values.torque_limit
+        parts["wrench"] |= limit > 0.0
         snapshot = self._simulation.observe(**{part: wanted or whole for part, wanted in parts.items()})
         self.totals.add(snapshot)
         self._limits.add(snapshot, check=whole)
-        self._limits.check_torque(snapshot, self.torque_limit)
+        self._limits.check_torque(snapshot, limit)
         if whole:
-            self._errors.check()
-        stamp = nanoseconds(sample, self.rate)
+            self.errors.check()
+        stamp = nanoseconds(sample, self._parameters.values.rate)
         self.clock.reach(stamp)
         self._publishers.publish(snapshot, stamp)
 
-    def end(self):
+    def end(self) -> None:
         """Report what is left to report at the end of the run."""
         self._limits.report_torque()
 
@@ -77,7 +69,7 @@ class SampleOutput:
         """Whether sample 0 may be repeated at `now` [s, steady clock]."""
         return now - self._start_shown >= START_PERIOD
 
-    def show_start(self, now: float):
+    def show_start(self, now: float) -> None:
         """Publish sample 0, at `now` [s, steady clock]."""
         self._publish(0, whole=True)
         self._start_shown, self._start_audience = now, self._publishers.audience()
@@ -87,27 +79,24 @@ class SampleOutput:
         """Whether all subscribers have had sample 0 as it is."""
         return self._start_audience is not None and self._start_audience == self._publishers.audience()
 
-    def forget_start(self):
+    def forget_start(self) -> None:
         """Sample 0 may be another one than what was published."""
         self._start_audience = None
 
     # -- another state
 
-    def change_state(self):
-        """Begin to check anew: the head is elsewhere."""
+    def change_state(self) -> None:
+        """Begin to check the limits anew: the head is elsewhere."""
         self.forget_start()
-        self._limits.restart()
+        self._limits.end()
+        self._limits = LimitsMonitor(self._simulation, self._report)
 
-    def restart(self, simulation):
+    def restart(self, simulation: Simulation) -> None:
         """Begin again with the start of a `simulation`, which may be another one."""
-        if simulation is not self._simulation:
-            self._limits.end()
-            self._simulation, report = simulation, self._report
-            self._limits, self._errors = LimitsMonitor(simulation, report), ErrorMonitor(simulation, report)
-        self.totals = RunTotals()
+        self._simulation = simulation
+        self.totals, self.errors = RunTotals(), ErrorMonitor(simulation, self._report)
         self.clock.restart()
         self.change_state()
-        self._errors.restart()
 
 
 def nanoseconds(sample: int, rate: float) -> int:

@@ -4,31 +4,41 @@
 from types import SimpleNamespace
 
 import pytest
+from builtin_interfaces.msg import Time
 from eel_dynamics.ros.diagnostics import Report
-from eel_dynamics.ros.loop.law_feed import LawAdopter, LawFeed
+from eel_dynamics.ros.law_subscription import LawSubscription
+from eel_dynamics.ros.loop.law_adopter import LawAdopter
+from eel_gaits.ros.messages import law_to_message
 from fake_log import Log
+from rclpy.serialization import serialize_message
 
 from eel_dynamics import Scene, Simulation
-from eel_gaits import Law, falling
+from eel_gaits import Law, Term, falling
 
 
 class FakeRun:
-    def __init__(self, time=0.0):
-        self.time, self.laws = time, []
+    """A run loop that is asked to adopt laws at once."""
 
-    def take_law(self, law, origin):
+    def __init__(self, time=0.0):
+        self.time, self.laws, self.requests = time, [], self
+
+    def put(self, action, *arguments, newest):
+        action(*arguments)
+
+    def adopt(self, law, origin):
         self.laws.append((law, origin))
 
 
-def message(name="wave", sec=0, nanosec=0):
-    return SimpleNamespace(name=name, header=SimpleNamespace(stamp=SimpleNamespace(sec=sec, nanosec=nanosec)))
+def message(name="wave", sec=0, nanosec=0, period=1.0):
+    """A serialised law."""
+    law = law_to_message(Law(Term(amplitude=(1.0,), period=1.0), name=name), stamp=Time(sec=sec, nanosec=nanosec))
+    law.terms[0].period = period
+    return serialize_message(law)
 
 
-def feed(run, log, law_of=lambda message: Law(name=message.name)):
-    def opened(message):
-        return message.name, lambda: message
-
-    return LawFeed(run, Report(log), parse=opened, law_of=law_of, samples_of=None)
+def feed(run, log):
+    node = SimpleNamespace(create_subscription=lambda *arguments, **options: None)
+    return LawSubscription(node, run, Report(log))
 
 
 def info(number):
@@ -73,12 +83,8 @@ def test_stamp_up_to_an_hour_ahead_is_taken():
 
 
 def test_bad_law_is_one_error_that_names_the_field():
-    def refuse(message):
-        raise ValueError("terms[0].period must be >= 0 s, got -1.0")
-
     run, log = FakeRun(), Log()
-    law_feed = feed(run, log, refuse)
-    law_feed.receive_law(message("jump"), info(1))
+    feed(run, log).receive_law(message("jump", period=-1.0), info(1))
     assert not run.laws
     assert log.lines == [("error", "law 'jump' refused: terms[0].period must be >= 0 s, got -1.0")]
 

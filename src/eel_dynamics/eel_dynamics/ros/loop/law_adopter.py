@@ -1,91 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks laws and samples of laws as they arrive, drops duplicates, and passes them to the simulation.
+"""Passes laws, and a controller's samples of laws, to the simulation; logs refusals, and when samples run out."""
 
-A subscription that takes samples from best-effort publishers takes those of reliable publishers a second time.
-
-There are two subscriptions to laws: one also gets earlier messages (transient local), the other matches any publisher
-(volatile). So most laws arrive twice. If laws come faster than they are read, each subscription drops different ones:
-an old law that the other subscription has dropped is not adopted.
-"""
-
-import reprlib
 import time
+from typing import Any
 
 import numpy as np
 from eel_base.wording import shown
-from eel_ros.deliveries import Deliveries
-from eel_ros.stamps import seconds_of
+from eel_gaits.laws.law import Law
 
 from eel_dynamics.curvature.curvature_samples import LateSample
-from eel_dynamics.ros.diagnostics import ERROR, WARN
+from eel_dynamics.ros.diagnostics import ERROR, WARN, Report
+from eel_dynamics.simulation.simulation import Simulation
 
-FAR_AHEAD = 3600.0  # s: a stamp further ahead of the simulation is wall time by mistake
-DROPPED = 1_000_000_000  # ns: a publisher's law that arrives after a later one is at most this much older
 JOIN = "a controller that joins a running simulation begins 1/rate or more after the stamp of the last odom"
 LONGEST_WAY = 5.0  # s from the last sample, or from the simulation, to the next one: it is not on the same way
 ECHO = 2.0  # s after a reset, within which samples that were sent before it may come
-SHOWN = reprlib.Repr()
-SHOWN.maxstring = 60  # characters of a refused law's name
 REFUSALS = ValueError, ArithmeticError, MemoryError  # errors with which the simulation refuses laws and samples
-
-
-class LawFeed:
-    """Passes laws and samples from messages to `run` (time, take_law, take_samples), in the thread of callbacks.
-
-    parse(data): name of a serialised CurvatureLaw, and a function that deserialises it. law_of(message): the `Law`.
-    samples_of(message): the arguments of `Simulation.add_samples`. All raise `ValueError` for bad content.
-    """
-
-    def __init__(self, run, report, *, parse, law_of, samples_of):
-        self._run, self._report = run, report
-        self._parse, self._law_of, self._samples_of = parse, law_of, samples_of
-        self._laws, self._samples = Deliveries(), Deliveries()
-        self._newest = {}  # subscription: time of sending [ns] and count of its last law
-
-    def receive_law(self, data, info: dict, subscription: int = 0):
-        """Pass on the law in the serialised message `data`; `info`: message info, to recognise a second delivery."""
-        if self._is_outdated(info, subscription) or self._laws.repeats(info):
-            return
-        name = ""
-        try:
-            name, message_of = self._parse(data)
-            message = message_of()
-            origin = self._checked_stamp(message.header.stamp)
-            law = self._law_of(message)
-        except ValueError as error:
-            self._report.event("law", f"law {SHOWN.repr(name)} refused: {error}", ERROR, differing=True)
-        else:
-            self._run.take_law(law, origin)
-
-    def _is_outdated(self, info: dict, subscription: int) -> bool:
-        """Whether the other subscription has received a later law of the same publisher."""
-        sent, count = delivery = info.get("source_timestamp"), info.get("publication_sequence_number")
-        if not sent or count is None:  # the middleware does not tell
-            return False
-        self._newest[subscription] = delivery
-        others = (newest for other, newest in self._newest.items() if other != subscription)
-        return any(later > sent > later - DROPPED and further > count for later, further in others)
-
-    def receive_samples(self, message, info: dict):
-        """Pass on one instant of a law from a controller; `info` as in `receive_law`."""
-        if self._samples.repeats(info):
-            return
-        try:
-            self._checked_stamp(message.header.stamp)
-            samples = self._samples_of(message)
-        except ValueError as error:
-            self._report.event("samples", refused(error), ERROR)
-        else:
-            self._run.take_samples(samples)
-
-    def _checked_stamp(self, stamp) -> float:
-        stamped = seconds_of(stamp)
-        if stamped > self._run.time + FAR_AHEAD:
-            raise ValueError(
-                f"header.stamp must be simulation time, at most {FAR_AHEAD:g} s ahead of {self._run.time:g} s, "
-                f"got {stamped:.3f} s: that looks like wall time, does its publisher have use_sim_time set?"
-            )
-        return stamped
 
 
 def refused(error: Exception, driven: bool = False) -> str:
@@ -100,7 +30,7 @@ def refused(error: Exception, driven: bool = False) -> str:
 
 
 class LawAdopter:
-    """Passes laws and samples to the `simulation`, in the thread of the run loop.
+    """Passes laws and samples to the `simulation`. For the run loop's thread.
 
     `SimulationStopped` if the simulation cannot continue with a law.
 
@@ -108,10 +38,12 @@ class LawAdopter:
         simulation: may be replaced at a reset.
     """
 
-    def __init__(self, simulation, report):
+    def __init__(self, simulation: Simulation, report: Report) -> None:
         self.simulation, self._report = simulation, report
         self._origin = 0.0  # s: simulation time of the law's t = 0
-        self._first = {}  # time [s] of the instants that were added at the start, and a hash of the values
+        self._first: dict[
+            float, int
+        ] = {}  # time [s] of the instants that were added at the start, and a hash of the values
         self._driven = False  # whether a controller's samples drove the swimmer when it was last looked at
         self._farthest = 0.0  # s: the greatest time by which a sample lay ahead of the simulation
         self._echo_until = 0.0  # s, steady clock: until when samples from before the last reset may come
@@ -124,7 +56,7 @@ class LawAdopter:
             return "curvature_samples"
         return simulation.law.name if simulation.law is not None else ""
 
-    def adopt(self, law, origin: float):
+    def adopt(self, law: Law, origin: float) -> None:
         """Adopt a law whose own t = 0 lies at simulation time `origin` [s]; log a refusal."""
         simulation = self.simulation
         driven = simulation.law is not None and simulation.samples_until is None and not simulation.resting
@@ -145,7 +77,7 @@ class LawAdopter:
                 f"curvature samples up to t = {until:g} s are dropped: law {shown(law.name)} is newer",
             )
 
-    def add_samples(self, samples: dict, period: float = 0.0):
+    def add_samples(self, samples: dict[str, Any], period: float = 0.0) -> None:
         """Add one instant of a law: the arguments of `Simulation.add_samples`, in a run of one every `period` [s].
 
         An instant that is the same as one from before the start is an answer to a repeated sample 0, and changes
@@ -172,7 +104,7 @@ class LawAdopter:
             if self.simulation.time == 0.0:
                 self._first[samples["time"]] = values
 
-    def _check_way(self, time: float, longest: float):
+    def _check_way(self, time: float, longest: float) -> None:
         """`ValueError` for a sample of `time` [s] more than `longest` [s] after the last one, or the simulation."""
         last = max(self.simulation.time, self.simulation.samples_until or 0.0)
         if time > last + longest:
@@ -186,7 +118,7 @@ class LawAdopter:
         until = self.simulation.samples_until
         return until is not None and until < instant and not self.simulation.resting
 
-    def report_missing(self, instant: float, period: float, waited: float):
+    def report_missing(self, instant: float, period: float, waited: float) -> None:
         """Log that samples up to `instant` [s], a `period` [s] ahead, were `waited` [s] for in vain."""
         self._report.event(
             "missing samples",
@@ -195,7 +127,7 @@ class LawAdopter:
             f"1/rate = {period:.9g} s ahead of the simulation",
         )
 
-    def reset(self):
+    def reset(self) -> None:
         """Set the law's own t = 0 back to simulation time 0."""
         self._origin, self._driven = 0.0, False
         self._first.clear()
@@ -203,12 +135,12 @@ class LawAdopter:
             self._echo_until = time.monotonic() + ECHO
         self._report.end("resting")
 
-    def report_samples(self, instant: float):
+    def report_samples(self, instant: float) -> None:
         """Log when samples are adopted, have run out, or are back, at simulation time `instant` [s]."""
-        lost, told = self.simulation.resting, self._report.lasts("resting")
-        if lost and not told:
+        lost, reported = self.simulation.resting, self._report.lasts("resting")
+        if lost and not reported:
             self._report.begin("resting", f"curvature samples have run out at t = {instant:g} s: coming to rest", ERROR)
-        elif told and not lost:
+        elif reported and not lost:
             self._report.end("resting", f"curvature samples are back at t = {instant:g} s")
         elif self.simulation.sampled and not self._driven:
             self._report.note("law adopted", f"curvature samples adopted at t = {instant:g} s")
