@@ -26,7 +26,7 @@ from tf2_msgs.msg import TFMessage
 
 from eel_dynamics.accuracy.error_estimate import HeadErrors
 from eel_dynamics.analysis.actuators import Joints
-from eel_dynamics.curvature.curvature_samples import check_points
+from eel_dynamics.curvature.curvature_samples import LateSample, check_points
 from eel_dynamics.model.axes import QUATERNION, VECTOR, turn_quaternion, turn_vector, turn_world
 from eel_dynamics.ros.parameters import DynamicsParameters, unit_quaternion
 from eel_dynamics.ros.serialised_message import SerialisedMessage
@@ -45,6 +45,7 @@ from eel_msgs.msg import (
 )
 from eel_msgs.srv import SetState
 
+JOIN = "a controller that joins a running simulation begins 1/rate or more after the stamp of the last odom"
 SECOND = 1_000_000_000  # ns
 FAR_AHEAD = 3600.0  # s: a stamp further ahead of the simulation is wall time by mistake
 LARGEST_LAW = 2**19  # bytes, without the name: 1,000 terms of 30 knots, which are adopted in half a second
@@ -282,6 +283,17 @@ def samples_from_message(message: CurvatureSamples, now: float) -> dict[str, Any
     """
     check_points(len(message.x))
     return {"time": stamped(message, now)} | {name: np.array(getattr(message, name)) for name in ("x", *ROWS)}
+
+
+def refused(error: Exception, driven: bool = False) -> str:
+    """The log line for curvature samples that are refused with `error`. driven: whether others drive the swimmer, or
+    have run out."""
+    reason = str(error).removeprefix("curvature samples ")
+    if reason.startswith("time "):
+        reason = f"header.stamp{reason.removeprefix('time')}"
+    if isinstance(error, LateSample):
+        reason += f": {'send them further ahead' if driven else JOIN}"
+    return f"curvature samples refused: {reason}"
 
 
 def state_from_message(request: SetState.Request) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

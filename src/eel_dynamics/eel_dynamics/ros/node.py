@@ -237,9 +237,7 @@ def main(args: list[str] | None = None) -> int:
     """Run the node. Exit status: 0 after its duration, SIGINT or SIGTERM; 1 if it fails, or if an unattended simulation
     (with a duration, as fast as possible) stops; 2 if it cannot start."""
     words, look = sys.argv if args is None else args, DynamicsNode.look
-    status = run_node(
-        NAME, words, DynamicsNode, look, about=ABOUT, parameters=parameter_rows(), period=LOOK_PERIOD
-    )
+    status = run_node(NAME, words, DynamicsNode, look, about=ABOUT, parameters=parameter_rows(), period=LOOK_PERIOD)
     if status == CANNOT_START:
         return status
     rclpy.get_default_context().destroy()  # leaves the network: others would wait 20 s for this node

@@ -14,8 +14,7 @@ from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.qos import ReliabilityPolicy
 
 from eel_dynamics.ros.diagnostics import ERROR, Report
-from eel_dynamics.ros.loop.law_adopter import refused
-from eel_dynamics.ros.messages import samples_from_message
+from eel_dynamics.ros.messages import refused, samples_from_message
 from eel_msgs.msg import CurvatureSamples
 
 TOPIC = "curvature_samples"

@@ -10,23 +10,12 @@ from eel_gaits.laws.law import Law
 
 from eel_dynamics.curvature.curvature_samples import LateSample
 from eel_dynamics.ros.diagnostics import ERROR, WARN, Report
+from eel_dynamics.ros.messages import refused
 from eel_dynamics.simulation.simulation import Simulation
 
-JOIN = "a controller that joins a running simulation begins 1/rate or more after the stamp of the last odom"
 LONGEST_WAY = 5.0  # s from the last sample, or from the simulation, to the next one: it is not on the same way
 ECHO = 2.0  # s after a reset, within which samples that were sent before it may come
 REFUSALS = ValueError, ArithmeticError, MemoryError  # errors with which the simulation refuses laws and samples
-
-
-def refused(error: Exception, driven: bool = False) -> str:
-    """The log line for curvature samples that are refused with `error`. driven: whether others drive the swimmer, or
-    have run out."""
-    reason = str(error).removeprefix("curvature samples ")
-    if reason.startswith("time "):
-        reason = f"header.stamp{reason.removeprefix('time')}"
-    if isinstance(error, LateSample):
-        reason += f": {'send them further ahead' if driven else JOIN}"
-    return f"curvature samples refused: {reason}"
 
 
 class LawAdopter:
