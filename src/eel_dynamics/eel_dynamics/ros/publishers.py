@@ -20,8 +20,8 @@ from rosgraph_msgs.msg import Clock
 from eel_dynamics.ros.declaration import Declaration
 from eel_dynamics.ros.diagnostics import Report
 from eel_dynamics.ros.messages import Sample, body_message
+from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.simulation import Simulation
-from eel_dynamics.simulation.snapshot import Snapshot
 from eel_msgs.msg import BodyGeometry
 
 LIVE_DEPTH = 100  # samples: history of a paced run

@@ -14,8 +14,8 @@ from eel_gaits.sources.sampled_law import SampledLaw
 
 from eel_dynamics.analysis.model_limits import ModelLimits
 from eel_dynamics.ros.diagnostics import REPEAT, Report
+from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.simulation import Simulation
-from eel_dynamics.simulation.snapshot import Snapshot
 
 SETTLING = 5.0  # s after the start in which speed and tail are not checked: a swimmer starts from rest
 WINDOW = 5.0  # s

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 
-from eel_dynamics.simulation.snapshot import Snapshot
+from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 CHECKED = (
