@@ -36,7 +36,6 @@ notebook: build   ## run docs/tutorials/swim.ipynb anew, with its outputs in out
 	@$(RUN) tools/docs.sh notebook
 
 pictures: build   ## draw the pictures of the visualiser in docs/images
-	@$(RUN) python tools/marker_picture.py
 	@$(RUN) python tools/pictures.py
 
 manoeuvres: build   ## swim every gait, and write docs/reference/manoeuvres.md with its pictures

@@ -98,6 +98,9 @@ def _runge_kutta(rate: Rate, y: np.ndarray, start: float, h: float, count: int, 
             trial = y + h * (weights[i, :i] @ k[:i])
             if group:
                 w = h * (weights[i, :i] @ turn[:i])
+                if not np.all(np.abs(w) < 1e3):  # rad: it has blown up
+                    y[:] = np.nan
+                    return
                 trial[TURN] = (Rotation.from_quat(y[TURN]) * Rotation.from_rotvec(w)).as_quat()
             if i == stages:
                 break

@@ -25,7 +25,9 @@ def test_page_has_the_gait_its_numbers_and_a_small_picture(name):
 
 def test_the_figures_of_the_page_are_those_of_a_swim():
     swim = manoeuvres.Swim("c_start")
-    assert swim.row() in PAGE and manoeuvres.NOTES["c_start"](swim, {"straight": swim}).split(";")[0] in PAGE
+    assert (
+        " | ".join(swim.row()) in PAGE and manoeuvres.NOTES["c_start"](swim, {"straight": swim}).split(";")[0] in PAGE
+    )
 
 
 def test_the_sequence_of_the_page_is_read(tmp_path):

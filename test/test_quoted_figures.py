@@ -3,7 +3,6 @@
 
 import pytest
 import quoted_figures
-import reports as reports_module
 
 REPORT = """# A day
 ```
@@ -19,8 +18,7 @@ other: Something else.
 def reports(tmp_path, monkeypatch):
     """A folder of two reports, of which the newer lacks one of the figures."""
     monkeypatch.setattr(quoted_figures, "ROOT", tmp_path)
-    monkeypatch.setattr(reports_module, "ROOT", tmp_path)
-    monkeypatch.setattr(reports_module, "REPORTS", tmp_path)
+    monkeypatch.setattr(quoted_figures, "REPORTS", tmp_path)
     (tmp_path / "2026-01-01.md").write_text(REPORT.format(speed="2e+04", count=350))
     (tmp_path / "2026-02-01.md").write_text(REPORT.format(speed="3e+04", count=340).partition("other")[0])
     return tmp_path

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from fault_table import soak_table
 from soak import NODES, RATE, soak
-from soak_table import soak_table
 
 OUT = Path(__file__).parents[1] / "out"
 HOUR, SHORT = 3600.0, 10.0  # s of simulation

@@ -1,28 +1,29 @@
 # SPDX-License-Identifier: Apache-2.0
 """Swim the paper's eel for 10 s through the three nodes, as three processes, into Rerun; then say what happened.
 
-With a display the viewer opens and the run keeps pace with the clock; without one it goes as fast as possible, and a
-picture is drawn where the machine can draw one.
+A fourth process records every message, from which the figures come. With a display the viewer opens and the run keeps
+pace with the clock; without one it goes as fast as possible, and a picture is drawn where the machine can draw one.
 """
 
 import os
 import statistics
 import subprocess
 import sys
+import tempfile
 import time
 from collections import Counter
 from pathlib import Path
 
+from eel_dynamics.runs.exchange.eel_viz_functions import messages_of_bag
 from eel_ros.testing.node_process import NodeProcess
 from eel_ros.testing.ros_domain import reserve_domain
-from reception import Reception
 from run_summary import describe, summarise
 
 OUT = Path("out")
 RECORDING = OUT / "falling.rrd"
 PICTURE = OUT / "falling.png"
 DURATION, RATE = 10.0, 100.0  # s, Hz
-LISTENERS = 2  # the visualiser and this program
+LISTENERS = 2  # the visualiser and the recorder
 
 
 class DemoError(Exception):
@@ -30,19 +31,16 @@ class DemoError(Exception):
 
 
 def main() -> int:
+    """Exit status 1, with one line of reason, where a node or a figure fails."""
     began = time.monotonic()
     try:
-        messages = swim()
-        summary = summarise(messages)
-        expected = round(DURATION * RATE) + 1
+        summary = summarise(swim())
         shown = count_recorded(RECORDING)
         print(describe(summary))
-        counts = (summary.published, summary.received, shown)
+        counts = summary.published, len(summary.run.time), shown
         print("  samples            {} published, {} received here, {} in {}".format(*counts, RECORDING))
-        if set(counts) != {expected}:
-            raise DemoError(
-                "of {} samples, {} were published, {} came here and {} reached the recording".format(expected, *counts)
-            )
+        if set(counts) != {round(DURATION * RATE) + 1}:
+            raise DemoError(f"of {DURATION * RATE + 1:g} samples not all were published, came here, and were recorded")
         if summary.failures:
             raise DemoError("; ".join(summary.failures))
         say(f"the library alone runs it {library_speed():,.0f} times faster than real time")
@@ -54,48 +52,41 @@ def main() -> int:
     return 0
 
 
-def swim() -> dict[str, list]:
-    """Run the three nodes to the end of the gait; all messages that came."""
+def swim() -> list[tuple[str, object]]:
+    """Run the three nodes to the end of the gait; topic and message of all that came."""
     display = bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
     domain = reserve_domain()
-    environment = domain.environment()
-    os.environ.update(environment)  # for this program's own subscriber
     for stale in (RECORDING, PICTURE):
         stale.unlink(missing_ok=True)
-    sink = "[spawn, save]" if display else "[save]"
-    say(
-        f"three nodes on ROS domain {domain.number}, "
-        + ("at real time, in the viewer" if display else "as fast as possible (no display)")
-    )
-    reception = Reception(domain.number)
+    pace = "at real time, in the viewer" if display else "as fast as possible (no display)"
+    say(f"three nodes on ROS domain {domain.number}, {pace}")
     nodes: list[NodeProcess] = []
 
-    def start(executable: str, *settings: str) -> NodeProcess:
-        arguments = [word for setting in settings for word in ("-p", setting)]
-        node = NodeProcess(
-            executable, "--ros-args", *arguments, environment=environment, log=OUT / f"log/{executable}.txt"
-        )
-        nodes.append(node)
-        return node
+    def start(executable: str, *words: str) -> NodeProcess:
+        log = OUT / f"log/{executable}.txt"
+        nodes.append(NodeProcess(executable, *words, environment=domain.environment(), log=log))
+        return nodes[-1]
 
-    try:
-        visualiser = start("visualiser", f"sink:={sink}", f"recording:={RECORDING}", "stop_with_publisher:=true")
-        start("gait_generator", "gait:=falling")
-        dynamics = start(
-            "dynamics",
-            f"duration:={DURATION}",
-            f"rate:={RATE}",
-            f"real_time_factor:={1.0 if display else 0.0}",
-            f"wait_for_subscribers:={LISTENERS}",
-        )
-        await_end(dynamics, nodes, limit=60.0)
-        await_end(visualiser, nodes, limit=30.0, finished=(dynamics,))
-        time.sleep(0.2)  # what this program's own thread has received and not yet read
-        return reception.messages
-    finally:
-        for node in reversed(nodes):
-            node.end(descendants=not display)  # a viewer that was opened stays
-        reception.close()
+    def start_node(executable: str, **parameters: object) -> NodeProcess:
+        words = (word for name, value in parameters.items() for word in ("-p", f"{name}:={value}"))
+        return start(executable, "--ros-args", *words)
+
+    sink = "[spawn, save]" if display else "[save]"
+    with tempfile.TemporaryDirectory() as folder:
+        bag = Path(folder) / "bag"
+        try:
+            recorder = start("record", "--output", str(bag), "--stop-with-publisher")
+            visualiser = start_node("visualiser", sink=sink, recording=RECORDING, stop_with_publisher="true")
+            start_node("gait_generator", gait="falling")
+            settings = {"duration": DURATION, "rate": RATE, "wait_for_subscribers": LISTENERS}
+            dynamics = start_node("dynamics", real_time_factor=1.0 if display else 0.0, **settings)
+            await_end(dynamics, nodes, limit=60.0)
+            await_end(visualiser, nodes, limit=30.0, finished=(dynamics, recorder))
+            await_end(recorder, nodes, limit=30.0, finished=(dynamics, visualiser))
+            return list(messages_of_bag()(bag, None))
+        finally:
+            for node in reversed(nodes):
+                node.end(descendants=not display)  # a viewer that was opened stays
 
 
 def await_end(
@@ -122,21 +113,12 @@ def count_recorded(path: Path) -> int:
 
     from eel_viz import entities
 
-    topics = (
-        entities.POSITION,
-        entities.SPEED,
-        entities.POWER,
-        entities.BACKBONE,
-        entities.WRENCH_NUMBERS,
-        entities.CURVATURE_NUMBERS,
-        entities.LOAD_NUMBERS,
-        entities.ODOMETRY_NUMBERS,
-    )
-    rows = Counter()
+    names = ("POSITION", "SPEED", "POWER", "BACKBONE", "WRENCH_NUMBERS", "CURVATURE_NUMBERS", "LOAD_NUMBERS")
+    rows: Counter[str] = Counter()
     for chunk in RrdReader(str(path)).stream():
         if not chunk.is_static:
             rows[chunk.entity_path] += chunk.num_rows
-    return min(rows[topic] for topic in topics)
+    return min(rows[getattr(entities, name)] for name in (*names, "ODOMETRY_NUMBERS"))
 
 
 def library_speed() -> float:

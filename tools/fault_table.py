@@ -6,19 +6,22 @@ A test that shows what happens at a fault says so by a decorator, once for each 
     @pytest.mark.fault("laws", "a law with NaN or infinity", "refused with one error that names the field")
 
 The table is what stands between two marker lines of the page; test/test_fault_table.py fails where it is stale.
-What `make soak` has left goes there too.
+What `make soak` has left goes there too: the memory of the nodes over an hour.
 """
 
 import ast
+import csv
+import shutil
 import sys
 from dataclasses import dataclass
 from pathlib import Path
 
 from eel_base.files import markdown
-from soak_table import with_soak
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "appendix" / "robustness.md"
+SOAK = ROOT / "out" / "soak.csv"  # columns simulation_time_s and NODE_MB, one row a look
+SOAK_EVERY = 10  # min
 GROUPS = {  # key in the decorator: heading, in the order of the page
     "laws": "Laws",
     "samples": "Curvature samples of a controller",
@@ -83,6 +86,25 @@ def table() -> str:
 def with_table(page: str) -> str:
     """The page's text with the present table between its marker lines."""
     return markdown.with_part(page, "faults", table())
+
+
+def soak_table(path: Path = SOAK) -> str:
+    """Markdown: the look nearest to each ten minutes, [MB]."""
+    with path.open(newline="") as file:
+        rows = [{name: float(value) for name, value in row.items()} for row in csv.DictReader(file)]
+    nodes = [name for name in rows[0] if name.endswith("_MB")]
+    minutes = range(0, round(rows[-1]["simulation_time_s"] / 60.0) + 1, SOAK_EVERY)
+    looks = [min(rows, key=lambda row: abs(row["simulation_time_s"] - 60.0 * minute)) for minute in minutes]
+    head = ["simulation time [min]", *(str(minute) for minute in minutes)]
+    return markdown.table(head, [[f"`{name[:-3]}` [MB]", *(f"{look[name]:.1f}" for look in looks)] for name in nodes])
+
+
+def with_soak(page: str) -> str:
+    """The page's text with the newest table between its marker lines; as it is where no soak was run here."""
+    if not SOAK.exists():
+        return page
+    shutil.copy(SOAK.with_suffix(".png"), ROOT / "docs" / "images" / "soak.png")
+    return markdown.with_part(page, "soak", soak_table())
 
 
 def main() -> int:

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The page docs/reference/manoeuvres.md and its pictures in docs/images/manoeuvres: `make manoeuvres`.
 
-Every gait swims with its own numbers on the robot of the paper. Figures and pictures are those of that swim.
+Every gait swims with its own numbers on the robot of the paper. Figures and pictures are those of that swim. The page's
+text outside the marker lines is written by hand.
 """
 
 import inspect
@@ -13,6 +14,7 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 from eel_base.attitude import heading
+from eel_base.files import markdown
 from eel_base.quantity import described_fields
 from eel_dynamics.model.axes import turn_vector
 from eel_gaits.gaits.registry import GAITS
@@ -34,62 +36,6 @@ FAMILIES = {  # heading: gaits
     "In depth": ("falling", "rising", "diving", "spiral"),
     "About the backbone": ("rolling", "roll_over", "helix"),
 }
-HEAD = """\
-# Manoeuvres
-`make manoeuvres` writes this page. Each gait runs for 20 s with its default numbers, from rest, on the robot of the
-paper (1 m). Speed, Strouhal number and cost of transport are means over the later half. Displacement, heading and roll
-are those of the whole run, in the axes of REP-103: x ahead, y to the left, z up. A positive heading is to the left; a
-positive roll lifts the left side. The roll is the integral of the head's rotation about its own axis. The pictures show
-the shape over a period, the path of the centre of mass, the internal torque along the body, and the speed.
-```
-eel simulate c_start --set yaw_bend=-4.0 --duration 4                    # to the left: the library has the paper's sign
-gait_generator --ros-args -p gait:=c_start -p left_bend:=4.0         # to the left: the node has that of REP-103
-gait_generator --ros-args -p gait:=sequence -p file:=patrol.yaml     # gaits that follow one another
-```
-`eel simulate --sequence patrol.yaml` simulates a sequence offline. The node streams `cpg` as samples on
-`curvature_samples`. New numbers act half a second later, without a jump.
-
-## Laws made of laws
-Each operation gives a law again: one message, the same live and offline. All are twice differentiable in time.
-
-| in Python | in a sequence | what |
-|---|---|---|
-| `straight() + 0.2 * rolling()` | `together:`, `scale: 0.2` | sum and scale |
-| `law.delayed(2.0)` | `delay: 2.0` | later by 2 s |
-| `law.mirrored()`, `law.mirrored("pitch")` | `mirror: yaw` | left and right, or up and down, change places |
-| `law.ramped_in(0.0, 1.0)`, `law.ramped_out(8.0, 9.0)` | | straight before, or after |
-| `law.followed_by(other, at=8.0, blend=0.5)` | | `other` begins at 8 s |
-| `sequence([(straight(), 8.0), (turning(), 4.0), (still(), None)])` | `steps:` | one after another |
-
-```yaml
-name: patrol              # of the law; the file's name where it is left out
-blend: 0.5                # s, from one step to the next (0.5)
-steps:
-  - gait: straight
-    set: {period: 0.8}    # as --set; left_bend and left_angle too, positive to the left
-    duration: 8.0         # s; the last step may leave it out, and then lasts
-  - gait: turning
-    set: {left_bend: 0.5}
-    duration: 4.0
-    blend: 1.0            # into this step
-  - together:             # the sum of several
-      - gait: straight
-      - gait: rolling
-        scale: 0.2
-    duration: 3.0
-  - repeat: 2
-    steps:
-      - {gait: straight, duration: 2.0}
-      - {gait: still, duration: 1.0}
-```
-`ramped_in`, `ramped_out` and `followed_by` multiply the envelope of a term by ramps. If a ramp of the term overlaps,
-the envelope becomes a product of sums of ramps (`factor` in [Ramp.msg](../../src/eel_msgs/msg/Ramp.msg)). A law that
-starts from rest needs no such ramp.
-
-## All gaits
-| gait | displacement [m] | heading | roll | speed [m/s] | Strouhal | cost of transport [J/m/kg] |
-|---|---|---|---|---|---|---|
-"""
 
 
 class Swim:
@@ -124,11 +70,11 @@ class Swim:
         return round(time / SAMPLE)
 
     def row(self):
-        """The row of the table."""
+        """The cells of its row in the table."""
         moved = ", ".join(f"{value:+.2f}" for value in self.path[-1] - self.path[0])
-        figures = " | ".join("-" if value is None else f"{round(value, 9):.3g}" for value in self.figures)
-        turned = " | ".join(f"{self.change(angle) + 0.0:+.0f}°" for angle in (self.heading, self.roll))
-        return f"| [{self.name}](#{self.name}) | {moved} | {turned} | {figures} |\n"
+        figures = ("-" if value is None else f"{round(value, 9):.3g}" for value in self.figures)
+        turned = (f"{self.change(angle) + 0.0:+.0f}°" for angle in (self.heading, self.roll))
+        return [f"[{self.name}](#{self.name})", moved, *turned, *figures]
 
     def picture(self):
         """Shape, path, torque surface and speed, as the bytes of a PNG."""
@@ -296,7 +242,7 @@ def section(swim, swims):
 def formulas():
     """The docstring of each file of gaits: formulas and sources."""
     modules = dict.fromkeys(inspect.getmodule(inspect.unwrap(GAITS[name])) for row in FAMILIES.values() for name in row)
-    return "".join(f"```text\n{inspect.getdoc(module).strip()}\n```\n" for module in modules)
+    return "".join(f"```text\n{inspect.getdoc(module).strip()}\n```\n" for module in modules).rstrip()
 
 
 def main() -> int:
@@ -306,14 +252,19 @@ def main() -> int:
     swims = {name: Swim(name) for row in FAMILIES.values() for name in row}
     for name, swim in swims.items():
         (PICTURES / f"{name}.png").write_bytes(swim.picture())
-    text = HEAD + "".join(swim.row() for swim in swims.values()) + "\n"
+    gaits = ""
     for family, names in FAMILIES.items():
-        text += f"## {family}\n" + "".join(section(swims[name], swims) for name in names)
-    text += (
-        "## Formulas and sources\nAs the files of [eel_gaits/gaits](../../src/eel_gaits/eel_gaits/gaits) have them.\n\n"
-        + formulas()
-    )
-    PAGE.write_text(text)
+        gaits += f"## {family}\n" + "".join(section(swims[name], swims) for name in names)
+    head = ("gait", "displacement [m]", "heading", "roll", "speed [m/s]", "Strouhal", "cost of transport [J/m/kg]")
+    parts = {
+        "table": markdown.table(head, [swim.row() for swim in swims.values()]),
+        "gaits": gaits.rstrip(),
+        "formulas": formulas(),
+    }
+    page = PAGE.read_text()
+    for name, text in parts.items():
+        page = markdown.with_part(page, name, text)
+    PAGE.write_text(page)
     print(f"{PAGE.relative_to(ROOT)}: {len(swims)} gaits")
     return 0
 

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The pictures of the visualiser in docs/images, one for each arrangement, and a film of the swimmer: `make pictures`.
+"""The pictures of the visualiser in docs/images, and a film of the swimmer: `make pictures`.
 
-The falling gait at the standard accuracy, with the run at draft accuracy laid over it where two are compared, drawn by
-Rerun's viewer without a display at one moment; few colours keep them small.
+What the node `markers` publishes is drawn as RViz would draw it: the skin is shaded, arrows keep their colours, the
+midline is black; one square of the grid is 0.1 m. Then come one picture for each arrangement, and the film: the falling
+gait at the standard accuracy, with the run at draft accuracy laid over it where two are compared, drawn by Rerun's
+viewer without a display at one moment; few colours keep them small.
 """
 
 import io
@@ -10,12 +12,21 @@ import sys
 import tempfile
 from pathlib import Path
 
+import numpy as np
+from eel_dynamics.runs.exchange.records import records
+from eel_viz.messages import read_backbone, read_body, read_load, read_wrench
 from eel_viz.pictures.drawing import drawn
 from eel_viz.pictures.film import film
 from eel_viz.pictures.render import frames, times
-from eel_viz.settings import BLUEPRINTS
+from eel_viz.ros.marker_messages import ForceMarkers, SkinMarker, midline
+from eel_viz.settings import BLUEPRINTS, MarkerSettings
 from eel_viz.viewer import CannotRender
+from matplotlib.colors import LightSource
+from matplotlib.figure import Figure
+from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 from PIL import Image
+from std_msgs.msg import Header
+from visualization_msgs.msg import Marker
 
 from eel_dynamics import simulate
 from eel_gaits import falling
@@ -26,13 +37,17 @@ SIZE, BAR = (1280, 720), 36  # pixels: window, and the empty bar at its top
 COLOURS = 256
 FILM, FILM_SIZE, FPS, QUALITY = "falling.webp", (800, 450), 10.0, 36
 FILMED = (0.4, 8.3)  # s: start and end
+SQUARE, BACKGROUND = 0.1, "#303030"  # m; RViz's own colour
+SIDES, PARTS, HEAD = 8, 8, 0.23  # of an arrow: sides, parts of its shaft, RViz's length of its head by its own
 
 
 def main() -> int:
     """Draw them all; status 3 where the viewer cannot draw."""
+    draw_markers(FOLDER / "markers.png")
     fine, draft = (
         simulate(falling(), accuracy=accuracy, sample_period=0.02, load=True) for accuracy in ("standard", "draft")
     )
+    tell(FOLDER / "markers.png")
     with tempfile.TemporaryDirectory() as folder:
         recording = Path(folder) / "falling.rrd"
         fine.to_rerun(recording, compare=draft)
@@ -64,6 +79,58 @@ def keep(png: bytes, name: str) -> Path:
     path = FOLDER / f"{name}.png"
     picture.quantize(COLOURS, method=Image.Quantize.MEDIANCUT, kmeans=3).save(path, optimize=True)
     return path
+
+
+def draw_markers(file: Path) -> None:
+    """What the node `markers` makes of the falling gait at the moment. All triangles are one collection, so that near
+    ones hide those behind."""
+    topics = dict(records(simulate(falling(), MOMENT, sample_period=MOMENT, load=True)))
+    backbone, settings = read_backbone(topics["backbone"]), MarkerSettings()
+    skin = SkinMarker(read_body(topics["body"]), settings.colour_limit)
+    shown = skin.marker(Header(), backbone, read_wrench(topics["internal_wrench"]))
+    shapes = [triples(shown.points).reshape(-1, 3, 3)]
+    colours = [np.array([(each.r, each.g, each.b) for each in shown.colors]).reshape(-1, 3, 3).mean(axis=1)]
+    for arrow in ForceMarkers(settings).markers(Header(), backbone, read_load(topics["hydrodynamic_load"])):
+        if arrow.action == Marker.ADD:
+            shapes.append(corners_of(*triples(arrow.points), arrow.scale.x, arrow.scale.y))
+            colours.append(np.tile((arrow.color.r, arrow.color.g, arrow.color.b), (len(shapes[-1]), 1)))
+    corners = np.concatenate(shapes)
+    light = {"shade": True, "lightsource": LightSource(azdeg=300.0, altdeg=60.0), "zorder": 3, "clip_on": False}
+    figure = Figure(figsize=(9.6, 5.4), facecolor=BACKGROUND)
+    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0), projection="3d", facecolor=BACKGROUND, computed_zorder=False)
+    axes.add_collection3d(Poly3DCollection(corners, facecolors=np.concatenate(colours), **light))
+    line = triples(pose.pose.position for pose in midline(Header(), backbone).poses)
+    axes.plot(*line.T, color="black", linewidth=1.0, zorder=4, clip_on=False)
+    low = SQUARE * np.floor(corners.min(axis=(0, 1)) / SQUARE)
+    high = SQUARE * np.ceil(corners.max(axis=(0, 1)) / SQUARE)
+    x, y = np.meshgrid(*(np.arange(low[k], high[k] + 0.5 * SQUARE, SQUARE) for k in (0, 1)))
+    below = np.full_like(x, low[2])  # the grid
+    axes.plot_wireframe(x, y, below, color="#707070", linewidth=0.6, zorder=1, clip_on=False)
+    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
+    axes.set_box_aspect(high - low, zoom=1.45)
+    axes.view_init(elev=62.0, azim=-70.0)
+    axes.set_axis_off()
+    figure.savefig(file, dpi=100, facecolor=BACKGROUND)
+
+
+def corners_of(start: np.ndarray, end: np.ndarray, shaft: float, head: float) -> np.ndarray:
+    """Corners (n, 3, 3) [m] of an arrow as RViz draws it; `shaft` and `head` are diameters [m]."""
+    along = end - start
+    side = np.cross(along, (0.0, 0.0, 1.0) if abs(along[2]) < 0.9 * np.linalg.norm(along) else (1.0, 0.0, 0.0))
+    side /= max(np.linalg.norm(side), 1e-12)
+    up = np.cross(along, side) / max(np.linalg.norm(along), 1e-12)
+    angles = np.linspace(0.0, 2.0 * np.pi, SIDES + 1)
+    circle = 0.5 * (np.outer(np.cos(angles), side) + np.outer(np.sin(angles), up))
+    neck = 1.0 - HEAD
+    radii = [*((neck * k / PARTS, shaft) for k in range(PARTS + 1)), (neck, head), (1.0, 0.0)]
+    rings = np.array([start + place * along + diameter * circle for place, diameter in radii])
+    a, b, c, d = rings[:-1, :-1], rings[:-1, 1:], rings[1:, 1:], rings[1:, :-1]
+    return np.stack((a, b, c, a, c, d), axis=2).reshape(-1, 3, 3)
+
+
+def triples(points) -> np.ndarray:
+    """Points as rows (n, 3)."""
+    return np.array([(point.x, point.y, point.z) for point in points])
 
 
 if __name__ == "__main__":

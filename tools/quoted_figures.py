@@ -9,10 +9,12 @@ but what another command writes between markers of its own.
 import re
 import sys
 from collections.abc import Callable, Sequence
+from pathlib import Path
 
 from eel_base.files.markdown import table, with_part
-from reports import ROOT, Report
 
+ROOT = Path(__file__).resolve().parent.parent
+REPORTS = ROOT / "benchmarks" / "reports"
 VALIDATION = ROOT / "docs" / "appendix" / "validation.md"
 WRITTEN_WHOLE = (
     "docs/appendix/validation.md",
@@ -27,6 +29,43 @@ MEASURED = re.compile(  # what looks like a figure that somebody has measured
     r"\d (?:[un]s|evaluations|times (?:real time|more|cheaper|as fast))\b|\d\.\d+e-\d|[2-9]e-\d|factor of \d"
     r"|% of (?:a|one) core",
 )
+
+
+class Report:
+    """The newest report that has a figure: its lines, by label."""
+
+    def __init__(self, figure: str):
+        self.figure, self.command = figure, f"make bench ARGS={figure}"
+        for self.path in sorted(REPORTS.glob("*.md"), reverse=True):
+            found = re.search(rf"^{figure}: .*\n((?:  .*\n)+)", self.path.read_text(encoding="utf-8"), re.MULTILINE)
+            if found:
+                self.lines = [line.strip() for line in found[1].splitlines()]
+                return
+        raise ValueError(f"no report in {REPORTS.relative_to(ROOT)} has the figure {figure}: {self.command}")
+
+    def rest(self, label: str) -> str:
+        """What stands behind a label: value and unit."""
+        for line in self.lines:
+            if re.match(rf"{re.escape(label)}\s{{2,}}", line):
+                return line.removeprefix(label).strip()
+        raise ValueError(f"{self.path.name} has no line {label!r} under {self.figure}: {self.command}")
+
+    def value(self, label: str) -> float:
+        """The number behind a label."""
+        return float(self.rest(label).split()[0])
+
+    def ratios(self, case: str) -> list[float]:
+        """How many times cheaper we are in the cases whose heading matches, and in the sizes listed under it."""
+        found, inside = [], False
+        for line in self.lines:
+            if re.match(r"\d|with |motion alone$|[A-Z]", line):
+                size = line[0].isdigit() and not re.match(r"\d+ (links|elements)", line)  # of the case above it
+                inside = bool(re.match(case, line)) or (inside and size)
+            elif inside and (ratio := re.match(r"ours is cheaper +(\S+) times", line)):
+                found.append(float(ratio[1]))
+        if not found:
+            raise ValueError(f"{self.path.name} has no case {case!r} under {self.figure}: {self.command}")
+        return found
 
 
 def link(report: Report, folder: str = "") -> str:
