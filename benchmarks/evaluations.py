@@ -73,7 +73,7 @@ def plane() -> Lines:
 def switches() -> Lines:
     """What a switch of the scene costs: time of 10 s of a straight gait relative to that with everything on, at equal
     steps and points; and what one evaluation costs without each load, relative to that with all of them."""
-    loads = {  # the scene beside the motion alone, and which kinks of the drag are located
+    loads: dict[str, tuple[dict, str]] = {  # the scene beside the motion alone, and which kinks of the drag are located
         "no ledger, no wrench": ({}, "all"),
         "  and kinks: jumps": ({}, "jumps"),
         "  and kinks: none": ({}, "none"),

@@ -13,7 +13,7 @@ TR R-287 (1968), 7; Prince and Dormand's DOP853 (Hairer, Norsett and Wanner, sec
 from collections.abc import Callable, Iterable, Iterator
 from fractions import Fraction
 from functools import partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from measuring import MOTION, Lines
@@ -188,14 +188,14 @@ def integrators() -> Lines:
     def row(name: str, swims: Iterable[tuple[np.ndarray, int]]) -> tuple[str, None, str]:
         points = []
         for position, evaluations in swims:
-            error = np.linalg.norm(position[:3] - exact.position[-1]) / exact.path_length
+            error = float(np.linalg.norm(position[:3] - exact.position[-1])) / exact.path_length
             points.append((error if np.isfinite(error) else np.inf, evaluations))
         return f"{name:42s}" + "".join(" " + _fewest(points, target) for target in TARGETS), None, ""
 
     for name, cost, fixed in _fixed_steps(scene):
         yield row(name, (fixed(n) for n in STEPS if n * cost * DURATION <= MOST))
     for method, order in (*(("adams", order) for order in (3, 4, 5, 6)), ("dormand_prince", 5)):
-        settings = {"name": "study", "resolution": RESOLUTION, "method": method, "order": order}
+        settings: dict[str, Any] = {"name": "study", "resolution": RESOLUTION, "method": method, "order": order}
         targets = [Accuracy(tolerance=each, **settings) for each in np.logspace(-3, -10, 22)]
         runs = (swim(accuracy=accuracy, sample_period=DURATION) for accuracy in targets)
         yield row(f"adaptive: {method} {order}", ((run.position[-1], run.evaluations) for run in runs))

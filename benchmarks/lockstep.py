@@ -120,7 +120,7 @@ def echo():
         publisher.publish(message)
 
     node.create_subscription(CurvatureSamples, "curvature_samples", answer, keep_all())
-    start = node.create_timer(0.1, lambda: message.header.stamp.nanosec or publisher.publish(message))
+    start = node.create_timer(0.1, lambda: None if message.header.stamp.nanosec else publisher.publish(message))
     executor = rclpy.executors.SingleThreadedExecutor()
     executor.add_node(node)
     while not message.header.stamp.nanosec:

@@ -93,7 +93,18 @@ def environment(name: str) -> Path | None:
     try:
         subprocess.run([sys.executable, "-m", "venv", folder], check=True, capture_output=True)
         (folder.parent / "COLCON_IGNORE").touch()
-        install = [python, "-m", "pip", "install", "--quiet", "--require-hashes", "--only-binary", ":all:", "-r", pins]
+        install = [
+            str(python),
+            "-m",
+            "pip",
+            "install",
+            "--quiet",
+            "--require-hashes",
+            "--only-binary",
+            ":all:",
+            "-r",
+            str(pins),
+        ]
         subprocess.run(install, check=True, capture_output=True)
     except (OSError, subprocess.CalledProcessError):
         return None

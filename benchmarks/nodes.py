@@ -90,7 +90,7 @@ def _while_it_swims(client: SwimClient, start: Any) -> Lines:
     def receive(message: PoseStamped, about: dict) -> None:
         published.append((about["source_timestamp"], nanoseconds(message.header.stamp)))
 
-    client.node.create_subscription(PoseStamped, "head_pose", receive, LOSSLESS)
+    client.node.create_subscription(PoseStamped, "head_pose", receive, LOSSLESS)  # type: ignore[arg-type]
     swimming = start("dynamics", "rate:=100.0", "wait_for_subscribers:=1"), start("gait_generator", "gait:=falling")
     client.until_time(SETTLED)
 

@@ -93,7 +93,7 @@ def _apart(what: str, ends: Iterable[np.ndarray], duration: float) -> Lines:
 
 
 def _mujoco(python: Path) -> Lines:
-    ends = {}
+    ends: dict[int, np.ndarray] = {}
     for links in LINKS:
 
         def task(step: float, links: int = links) -> dict[str, Any]:
@@ -157,7 +157,7 @@ def _joint_angles(links: int, step: float, rate: int = 0) -> np.ndarray:
 
 
 def _elastica(python: Path) -> Lines:
-    ends = []
+    ends: list[np.ndarray] = []
     for elements in ELEMENTS:
         x, middle = (BODY.length * (np.arange(elements) + part) / elements for part in (0.0, 0.5))
         rod = {

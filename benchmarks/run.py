@@ -9,6 +9,7 @@ import platform
 import subprocess
 import sys
 
+from against_paper_scheme import paper_scheme
 from eel_base.wording import did_you_mean
 from evaluations import evaluation, growth, plane, switches, wrench
 from integrators import integrators
@@ -16,7 +17,6 @@ from lockstep import lockstep
 from measuring import REPEATS
 from nodes import nodes, visualiser
 from other_simulators import peers
-from paper_scheme import paper_scheme
 from swims import batch, falling_gait, gym, start, ticks
 
 FIGURES = {

@@ -7,6 +7,7 @@ import subprocess
 import sys
 import time
 from functools import partial
+from typing import Any
 
 import gymnasium
 import numpy as np
@@ -104,7 +105,7 @@ def _one_by_one(laws: list[Law]) -> None:
 
 
 def _together(laws: list[Law], threads: int) -> None:
-    settings = {"scenes": LEAN, "accuracy": 1e-3, "sample_period": DURATION, "estimate": False}
+    settings: dict[str, Any] = {"scenes": LEAN, "accuracy": 1e-3, "sample_period": DURATION, "estimate": False}
     if simulate_batch(laws, DURATION, threads=threads, **settings).stopped.any():
         raise RuntimeError("a swimmer of the batch stopped")
 
@@ -121,7 +122,7 @@ def gym() -> Lines:
     the same, then steps of the environments with a new action each; and what threads gain in wall time."""
     cases, names = {}, ("Heading", "Depth")
     for name in names:
-        env = gymnasium.make(f"Eel/{name}-v0", disable_env_checker=True, duration=1e4).unwrapped
+        env: Any = gymnasium.make(f"Eel/{name}-v0", disable_env_checker=True, duration=1e4).unwrapped
         actions = np.random.default_rng(1).uniform(-0.2, 0.2, (STEPS, *env.action_space.shape))
         cases[f"bare, scene of {name}"] = partial(_bare, env.scene)
         cases[f"Eel/{name}-v0"] = partial(_steps, env, actions)
@@ -135,7 +136,9 @@ def gym() -> Lines:
     _steps(env, actions, first=0)
     steps, rejected, evaluations = (count / STEPS for count in env._simulation.evaluations)
     yield "a control step of Eel/Depth-v0", evaluations, f"evaluations, {steps:.1f} steps and {rejected:.1f} rejected"
-    envs = {threads: gymnasium.make_vec("Eel/Heading-v0", num_envs=16, threads=threads) for threads in (1, 2)}
+    envs: dict[int, Any] = {
+        threads: gymnasium.make_vec("Eel/Heading-v0", num_envs=16, threads=threads) for threads in (1, 2)
+    }
     still = {threads: np.zeros((STEPS // 5, *each.action_space.shape)) for threads, each in envs.items()}
     wall = times_in_turn({n: partial(_steps, envs[n], still[n], first=0) for n in envs}, 5, time.perf_counter)
     yield "2 threads", median_ratio(wall[1], wall[2]), "times as fast as 1 thread, wall time"
@@ -148,7 +151,7 @@ def _bare(scene: Scene) -> None:
         swimmer.observe(wrench=False, load=False)
 
 
-def _steps(env: gymnasium.Env, actions: np.ndarray, first: int = FIRST) -> None:
+def _steps(env: Any, actions: np.ndarray, first: int = FIRST) -> None:
     env.reset(seed=1)
     for action in (*(actions[:1].repeat(first, axis=0)), *actions):
         env.step(action)

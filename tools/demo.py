@@ -13,6 +13,7 @@ import tempfile
 import time
 from collections import Counter
 from pathlib import Path
+from typing import Any
 
 from eel_dynamics.runs.exchange.eel_viz_functions import messages_of_bag
 from eel_ros.testing.node_process import NodeProcess
@@ -52,7 +53,7 @@ def main() -> int:
     return 0
 
 
-def swim() -> list[tuple[str, object]]:
+def swim() -> list[tuple[str, Any]]:
     """Run the three nodes to the end of the gait; topic and message of all that came."""
     display = bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
     domain = reserve_domain()

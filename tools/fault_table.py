@@ -61,7 +61,8 @@ def faults_of(path: Path) -> list[Fault]:
             texts = [ast.literal_eval(argument) for argument in decorator.args]
             if len(texts) != 3 or texts[0] not in GROUPS:
                 raise ValueError(f"{place}: fault must have a group of {', '.join(GROUPS)}, a fault and an outcome")
-            found.append(Fault(*texts, place))
+            group, fault, outcome = texts
+            found.append(Fault(group, fault, outcome, place))
     return found
 
 

@@ -78,7 +78,7 @@ class Swim:
 
     def picture(self):
         """Shape, path, torque surface and speed, as the bytes of a PNG."""
-        with plt.rc_context(SETTINGS):
+        with plt.rc_context(dict(SETTINGS)):  # type: ignore[arg-type]
             figure, panels = plt.subplots(1, 4, figsize=(11.0, 2.6), layout="constrained")
             self._shape(panels[0])
             self._path(panels[1])
@@ -121,9 +121,10 @@ class Swim:
 
     def _torque(self, figure, axes):
         steps = round(2.0 * self.period / SAMPLE) + 1
-        component = 2 if np.max(np.abs(self.run.torque[..., 2])) >= np.max(np.abs(self.run.torque[..., 1])) else 1
+        whole = np.asarray(self.run.torque)
+        component = 2 if np.max(np.abs(whole[..., 2])) >= np.max(np.abs(whole[..., 1])) else 1
         shown = slice(-steps, None) if self.name not in ONCE else slice(0, round(ONCE[self.name] / SAMPLE) + 1)
-        torque = self.run.torque[shown, :, component]
+        torque = whole[shown, :, component]
         bound = np.max(np.abs(torque)) or 1.0
         mesh = axes.pcolormesh(
             self.run.time[shown], self.run.x, torque.T, cmap="PuOr", vmin=-bound, vmax=bound, shading="gouraud"
@@ -231,7 +232,7 @@ NOTES = {  # what was measured, beside the table
 def section(swim, swims):
     """What the page says of one gait."""
     function = GAITS[swim.name]
-    about = inspect.getdoc(function).split("\n\nNumbers")[0]
+    about = (inspect.getdoc(function) or "").split("\n\nNumbers")[0]
     numbers = described_fields(function.numbers)
     listed = f"```text\n{inspect.cleandoc(numbers)}\n```\n" if numbers else "It has no numbers.\n"
     picture = f"![{swim.name}](../images/manoeuvres/{swim.name}.png)\n"
@@ -242,7 +243,7 @@ def section(swim, swims):
 def formulas():
     """The docstring of each file of gaits: formulas and sources."""
     modules = dict.fromkeys(inspect.getmodule(inspect.unwrap(GAITS[name])) for row in FAMILIES.values() for name in row)
-    return "".join(f"```text\n{inspect.getdoc(module).strip()}\n```\n" for module in modules).rstrip()
+    return "".join(f"```text\n{(inspect.getdoc(module) or '').strip()}\n```\n" for module in modules).rstrip()
 
 
 def main() -> int:

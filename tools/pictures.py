@@ -11,6 +11,7 @@ import io
 import sys
 import tempfile
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from eel_dynamics.runs.exchange.records import records
@@ -92,12 +93,18 @@ def draw_markers(file: Path) -> None:
     colours = [np.array([(each.r, each.g, each.b) for each in shown.colors]).reshape(-1, 3, 3).mean(axis=1)]
     for arrow in ForceMarkers(settings).markers(Header(), backbone, read_load(topics["hydrodynamic_load"])):
         if arrow.action == Marker.ADD:
-            shapes.append(corners_of(*triples(arrow.points), arrow.scale.x, arrow.scale.y))
+            start, end = triples(arrow.points)
+            shapes.append(corners_of(start, end, arrow.scale.x, arrow.scale.y))
             colours.append(np.tile((arrow.color.r, arrow.color.g, arrow.color.b), (len(shapes[-1]), 1)))
     corners = np.concatenate(shapes)
-    light = {"shade": True, "lightsource": LightSource(azdeg=300.0, altdeg=60.0), "zorder": 3, "clip_on": False}
+    light: dict[str, Any] = {
+        "shade": True,
+        "lightsource": LightSource(azdeg=300.0, altdeg=60.0),
+        "zorder": 3,
+        "clip_on": False,
+    }
     figure = Figure(figsize=(9.6, 5.4), facecolor=BACKGROUND)
-    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0), projection="3d", facecolor=BACKGROUND, computed_zorder=False)
+    axes: Any = figure.add_axes((0.0, 0.0, 1.0, 1.0), projection="3d", facecolor=BACKGROUND, computed_zorder=False)
     axes.add_collection3d(Poly3DCollection(corners, facecolors=np.concatenate(colours), **light))
     line = triples(pose.pose.position for pose in midline(Header(), backbone).poses)
     axes.plot(*line.T, color="black", linewidth=1.0, zorder=4, clip_on=False)

@@ -3,9 +3,11 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from eel_dynamics.runs.exchange.recorded_run import fields_of_messages
+from eel_dynamics.simulation.energy import EnergyLedger
 
 from eel_dynamics import Run
 
@@ -19,8 +21,14 @@ class RunSummary:
     """The run that the messages tell of, and what the run itself does not hold."""
 
     run: Run
-    pose: object  # geometry_msgs/Pose of the head at the end, world frame
+    pose: Any  # geometry_msgs/Pose of the head at the end, world frame
     told: dict[str, list[float]]  # the numbers of the diagnostics, by their keys, in order
+
+    @property
+    def energy(self) -> EnergyLedger:
+        """The run's ledger."""
+        assert self.run.energy is not None
+        return self.run.energy
 
     @cached_property
     def published(self) -> int:
@@ -30,7 +38,7 @@ class RunSummary:
     @cached_property
     def residual(self) -> float:
         """Greatest imbalance of the ledger [J]."""
-        return float(np.abs(self.run.energy["residual"]).max())
+        return float(np.abs(self.energy.residual).max())
 
     @cached_property
     def work(self) -> float:
@@ -56,7 +64,7 @@ class RunSummary:
         return found
 
 
-def summarise(messages: list[tuple[str, object]]) -> RunSummary:
+def summarise(messages: list[tuple[str, Any]]) -> RunSummary:
     """Read a run's `messages` (topic and message); `ValueError` where a topic is missing, or says nothing."""
     for topic in NEEDED:
         if not any(name == topic for name, _ in messages):
@@ -76,7 +84,7 @@ def summarise(messages: list[tuple[str, object]]) -> RunSummary:
 def describe(summary: RunSummary) -> str:
     """The summary for a terminal, one fact a line."""
     run, place, turn = summary.run, summary.pose.position, summary.pose.orientation
-    (torque, x, time), energy = run.greatest_torque(), run.energy
+    (torque, x, time), energy = run.greatest_torque(), summary.energy
     duration, drag = run.time[-1] - run.time[0], energy.drag_work[-1] + energy.nose_work[-1]
     kinetic = energy.kinetic_body[-1] + energy.kinetic_fluid[-1]
     facts = {

@@ -30,7 +30,7 @@ NO = ("", "0", "false", "no", "off")
 
 def pip_settings(listed: str) -> dict[str, str]:
     """Settings that hold for `pip install`, from the output of `pip config list`."""
-    settings = {section: {} for section in SECTIONS}
+    settings: dict[str, dict[str, str]] = {section: {} for section in SECTIONS}
     for line in listed.splitlines():
         name, _, value = line.partition("=")
         section, _, setting = name.rpartition(".")
@@ -47,7 +47,7 @@ def main() -> None:
         for setting, (variable, between) in VARIABLES.items()
         if settings.get(setting)
     }
-    uv = Path(sys.executable).parent / "uv"
+    uv = str(Path(sys.executable).parent / "uv")
     offline = [] if settings.get("no-index", "").lower() in NO else ["--no-index"]
     os.execve(uv, [uv, *sys.argv[1:], *offline], {**variables, **os.environ})
 

@@ -10,7 +10,7 @@ equal cells, of section twists and their rates in section axes,
 and of the head's inertia I_o and wrench F_o, which give the rate of the head's twist (G_ext). Once a step a second
 sweep with the true rates integrates the balance (50) for the internal wrench (G_int). Written plainly, with the same
 corrections of the formulae as the library, and compiled by numba. Cells and the curvature at all instants come
-tabulated in the task (`benchmarks/paper_scheme.py`), which is not counted. No code of the library takes part.
+tabulated in the task (`against_paper_scheme.py`), which is not counted. No code of the library takes part.
 """
 
 from typing import NamedTuple

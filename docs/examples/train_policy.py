@@ -13,7 +13,7 @@ import json
 import sys
 import time
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import gymnasium
 import numpy as np
@@ -76,12 +76,13 @@ TASKS = {
 def size_of(task: Task) -> tuple[int, int]:
     """The shape of a policy's weights: values of the action, numbers of the observation and 1."""
     env = gymnasium.make(**task.settings, scene=task.scene)
-    return env.action_space.shape[0], env.observation_space.shape[0] + 1
+    (actions,), (observations,) = env.action_space.shape or (), env.observation_space.shape or ()
+    return actions, observations + 1
 
 
 def swim(task: Task, weights: np.ndarray, seeds: list[int]) -> Swum:
     """Swim an episode with each policy `weights` (n, A, O + 1), from the n `seeds`."""
-    envs = gymnasium.make_vec(num_envs=len(seeds), scene=task.scene, **task.settings)
+    envs: Any = gymnasium.make_vec(num_envs=len(seeds), scene=task.scene, **task.settings)
     observations, _ = envs.reset(seed=seeds)
     going, total = np.ones(len(seeds), dtype=bool), np.zeros(len(seeds))
     length, reached = np.zeros((2, len(seeds)), dtype=int)

@@ -164,7 +164,7 @@ class SwimClient:
         """Pauses the run, and waits until the last sample before it has come; its time [s]."""
         while not (answer := self.pause(True)).success:
             assert "soon" in answer.message, answer.message
-        time_of = float(re.search(r"t = (\S+) s", answer.message)[1])  # of six digits
+        time_of = float(re.findall(r"t = (\S+) s", answer.message)[0])  # of six digits
         self.until(
             lambda: (
                 self.received[topic] and nanoseconds(self.received[topic][-1].header.stamp) >= (time_of - 1e-5) * 1e9
