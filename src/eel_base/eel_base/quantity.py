@@ -6,6 +6,8 @@ ROS node declares its parameters from the same fields. Metadata of a field:
 
     unit, description, minimum, maximum (inclusive; either may be None)
     exclusive       the minimum itself is refused
+    whole           a whole number, though a float
+    after           the name of another field, than which this one must be greater
     choices         of a text
     number          a text or a number
     changeable      of a ROS parameter: while the node runs (True), or with effect at the next reset (`AT_RESET`)
@@ -47,6 +49,10 @@ class Quantities:
     def __post_init__(self) -> None:
         for item in fields(self):
             object.__setattr__(self, item.name, checked(item, getattr(self, item.name), item.name))
+        for later, before in ((item, item.metadata.get("after")) for item in fields(self)):
+            if before and not getattr(self, later.name) > (least := getattr(self, before)):
+                unit, got = later.metadata["unit"], getattr(self, later.name)
+                raise ValueError(f"{later.name} must be > {before} ({least:g} {unit}), got {got}")
 
     @classmethod
     def among(cls, values: Mapping[str, Any]) -> Self:
@@ -148,9 +154,9 @@ def checked_instance(name: str, value: Any, kind: type | tuple[type, ...]) -> An
 
 
 def is_finite(value: Any) -> bool:
-    """Whether `value` is one finite number. A text is not a number."""
+    """Whether `value` is one finite number. A bool or a text is not a number."""
     try:
-        return math.isfinite(value) and not getattr(value, "ndim", 0)
+        return math.isfinite(value) and not isinstance(value, bool) and not getattr(value, "ndim", 0)
     except (TypeError, ValueError, OverflowError):
         return False
 
@@ -164,7 +170,7 @@ def checked(item: Field[Any], value: Any, name: str) -> Any:
     if isinstance(default, bool):
         return bool(_of_kind(isinstance(value, (bool, np.bool_)), value, f"{name} must be true or false"))
     if isinstance(default, str):
-        if about.get("number") and not isinstance(value, (bool, str)) and is_finite(value):
+        if about.get("number") and is_finite(value):
             return float(value)
         _of_kind(isinstance(value, str), value, f"{name} must be a text{' or a number' if about.get('number') else ''}")
         choices = about.get("choices", (value,))
@@ -177,6 +183,8 @@ def checked(item: Field[Any], value: Any, name: str) -> Any:
     if default is None and number(name, value) == 0.0:
         return None
     result = number(name, value, about.get("unit", ""), **bounds)
+    if about.get("whole") and result != int(result):
+        raise ValueError(f"{name} must be a whole number, got {result:g}")
     return int(value) if isinstance(default, int) else result
 
 
@@ -192,6 +200,6 @@ def _checked_row(default: tuple[Any, ...], value: Any, name: str) -> tuple[Any, 
         words: Any = value.split(",") if isinstance(value, str) else value if row else (None,)
         _of_kind(all(isinstance(word, str) for word in words), value, f"{name} must be a list of texts")
         return tuple(word.strip() for word in words)
-    good = row and len(value) == len(default) and all(not isinstance(each, str) and is_finite(each) for each in value)
+    good = row and len(value) == len(default) and all(map(is_finite, value))
     _of_kind(good, value, f"{name} must be {len(default)} finite numbers")
     return tuple(float(number) for number in value)

@@ -9,8 +9,7 @@ from eel_gaits.gaits.cpg import cpg
 from eel_gaits.gaits.diving import diving, falling, rising, spiral
 from eel_gaits.gaits.fish import anguilliform, carangiform
 from eel_gaits.gaits.kern import kern_efficient, kern_fast
-from eel_gaits.gaits.plugins import load_gaits
-from eel_gaits.gaits.registry import GAITS, gait, register
+from eel_gaits.gaits.registry import GAITS, gait, load_gaits, register
 from eel_gaits.gaits.rolling import helix, roll_over, rolling
 from eel_gaits.gaits.sequence_file import sequence_from_file
 from eel_gaits.gaits.snakes import joint_wave, serpenoid

@@ -4,7 +4,7 @@
 import sys
 
 import pytest
-from eel_gaits.gaits.plugins import load_gaits
+from eel_gaits.gaits.registry import load_gaits
 from eel_gaits.gaits.settings import Settings
 
 from eel_gaits import GAITS, gait

@@ -36,14 +36,9 @@ class Start(Wave):
 class Bursts(Wave):
     """The forward wave in bursts. Each begins and ends over `start_periods`."""
 
-    bursts: float = quantity(20.0, "", "number of bursts", 1.0, 400.0)
+    bursts: float = quantity(20.0, "", "number of bursts", 1.0, 400.0, whole=True)
     burst_periods: float = quantity(1.0, "periods", "time at full amplitude in a burst", 0.0, 1e4)
     coast_time: float = _duration(3.0, "time of the straight body between two bursts")
-
-    def __post_init__(self):
-        super().__post_init__()
-        if self.bursts != int(self.bursts):
-            raise ValueError(f"bursts must be a whole number, got {self.bursts:g}")
 
     @property
     def cycle(self):

@@ -20,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 from eel_base.quantity import quantity
 
-from eel_gaits.gaits.numbers import bend_quantity, constant_bend, length_quantity
+from eel_gaits.gaits.numbers import bend_quantity, constant_bend
 from eel_gaits.gaits.registry import register
 from eel_gaits.gaits.swimming import Wave
 
@@ -38,7 +38,7 @@ class Oscillation(Wave):
     yaw_bend: float = bend_quantity(0.0, "yaw curvature of a turn; positive: to the right, negative: to the left")
     convergence: float = quantity(8.0, "1/s", "rate at which amplitudes settle, a", 0.01, 1e3)
     following: float = quantity(4.0, "1/s", "rate at which new numbers are followed, g", 0.01, 1e3)
-    length: float = length_quantity()
+    length: float = quantity(1.0, "m", "body length L", 1e-4, 1e3)
 
     @property
     def sample_period(self):

@@ -10,11 +10,10 @@ from dataclasses import dataclass
 
 from eel_base.quantity import quantity
 
-from eel_gaits.gaits.numbers import bend_quantity, check_order, constant_bend, instant_quantity
+from eel_gaits.gaits.numbers import bend_quantity, constant_bend, instant_quantity
 from eel_gaits.gaits.registry import register
 from eel_gaits.gaits.swimming import Wave
 from eel_gaits.laws.ramp import Ramp
-from eel_gaits.laws.term import Term
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -23,35 +22,21 @@ class Dive(Wave):
 
     pitch_bend: float = bend_quantity(0.5, "pitch curvature of the dive, K_c2")
     bend_start: float = instant_quantity(1.0, "the bend begins, t1")
-    bend_full: float = instant_quantity(2.0, "the bend is complete, t2")
-    bend_end: float = instant_quantity(3.0, "the body is straight in pitch again, t3")
+    bend_full: float = instant_quantity(2.0, "the bend is complete, t2", "bend_start")
+    bend_end: float = instant_quantity(3.0, "the body is straight in pitch again, t3", "bend_full")
     counter_start: float = instant_quantity(6.0, "the opposite bend begins, t4")
-    counter_full: float = instant_quantity(7.0, "the opposite bend is complete, t5")
-    counter_end: float = instant_quantity(8.0, "the body is straight in pitch for good, t6")
+    counter_full: float = instant_quantity(7.0, "the opposite bend is complete, t5", "counter_start")
+    counter_end: float = instant_quantity(8.0, "the body is straight in pitch for good, t6", "counter_full")
 
-    def __post_init__(self):
-        super().__post_init__()
-        for earlier, later in (
-            ("bend_start", "bend_full"),
-            ("bend_full", "bend_end"),
-            ("counter_start", "counter_full"),
-            ("counter_full", "counter_end"),
-        ):
-            check_order(self, earlier, later)
-
-    def bend(self, direction):
-        """The pitch term. It first bends the tail down (direction 1) or up (-1)."""
-        return Term(
-            axis="pitch",
-            amplitude=(direction * self.pitch_bend,),
-            phase=math.pi / 2.0,
-            envelope=(
-                Ramp(self.bend_start, self.bend_full, 1.0),
-                Ramp(self.bend_full, self.bend_end, -1.0),
-                Ramp(self.counter_start, self.counter_full, -1.0),
-                Ramp(self.counter_full, self.counter_end, 1.0),
-            ),
+    def terms(self, direction):
+        """The wave, and the pitch term, which first bends the tail down (direction 1) or up (-1)."""
+        ramps = (
+            Ramp(self.bend_start, self.bend_full, 1.0),
+            Ramp(self.bend_full, self.bend_end, -1.0),
+            Ramp(self.counter_start, self.counter_full, -1.0),
+            Ramp(self.counter_full, self.counter_end, 1.0),
         )
+        return (self.term(), *constant_bend("pitch", direction * self.pitch_bend, ramps))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,19 +45,9 @@ class Slope(Wave):
 
     pitch_bend: float = bend_quantity(0.4, "pitch curvature of the dive; positive: down, negative: up")
     bend_start: float = instant_quantity(1.0, "the bend begins")
-    bend_full: float = instant_quantity(2.5, "the bend is complete")
+    bend_full: float = instant_quantity(2.5, "the bend is complete", "bend_start")
     unbend_start: float = instant_quantity(3.0, "the body begins to straighten in pitch")
-    bend_end: float = instant_quantity(4.5, "the body is straight in pitch again")
-
-    def __post_init__(self):
-        super().__post_init__()
-        check_order(self, "bend_start", "bend_full")
-        check_order(self, "unbend_start", "bend_end")
-
-    def bend(self):
-        """The pitch term."""
-        ramps = Ramp(self.bend_start, self.bend_full, 1.0), Ramp(self.unbend_start, self.bend_end, -1.0)
-        return constant_bend("pitch", self.pitch_bend, ramps)
+    bend_end: float = instant_quantity(4.5, "the body is straight in pitch again", "unbend_start")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -89,19 +64,20 @@ class Spiral(Wave):
 @register(Dive)
 def falling(numbers):
     """The gait of section 7.2.2, eqs. (62) to (66): forward swimming and a dive to a greater depth."""
-    return (numbers.term(), numbers.bend(1.0))
+    return numbers.terms(1.0)
 
 
 @register(Dive)
 def rising(numbers):
     """The falling gait upside down: forward swimming and a climb."""
-    return (numbers.term(), numbers.bend(-1.0))
+    return numbers.terms(-1.0)
 
 
 @register(Slope)
 def diving(numbers):
     """Forward swimming and one bend in pitch: the body then swims straight on down a slope."""
-    return (numbers.term(), *numbers.bend())
+    ramps = Ramp(numbers.bend_start, numbers.bend_full, 1.0), Ramp(numbers.unbend_start, numbers.bend_end, -1.0)
+    return (numbers.term(), *constant_bend("pitch", numbers.pitch_bend, ramps))
 
 
 @register(Spiral)

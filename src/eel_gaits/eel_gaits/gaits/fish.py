@@ -13,9 +13,9 @@ anguilliform: a / L = a_tail exp(growth (X / L - 1)), of a lamprey; Borazjani an
 from dataclasses import dataclass
 
 import numpy as np
-from eel_base.quantity import Quantities, quantity
+from eel_base.quantity import quantity
 
-from eel_gaits.gaits.numbers import length_quantity, period_quantity, start_periods_quantity, start_ramp, waves_quantity
+from eel_gaits.gaits.numbers import PeriodicBody, waves_quantity
 from eel_gaits.gaits.registry import register
 from eel_gaits.laws.midline import lateral_wave
 
@@ -25,13 +25,10 @@ def _lateral(default, description):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Fish(Quantities):
+class Fish(PeriodicBody):
     """A wave of the midline, in body lengths."""
 
-    length: float = length_quantity()
-    period: float = period_quantity(1.0)
     waves: float = waves_quantity(1.0)
-    start_periods: float = start_periods_quantity()
 
     def terms(self, amplitude):
         """The terms of a midline. amplitude: function of X / L that returns a / L and its first two derivatives."""
@@ -45,7 +42,7 @@ class Fish(Quantities):
             length=self.length,
             wavelength=self.length / self.waves,
             period=self.period,
-            envelope=start_ramp(self),
+            envelope=self.start,
         )
 
 

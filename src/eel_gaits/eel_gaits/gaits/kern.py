@@ -7,9 +7,9 @@ Source: Kern and Koumoutsakos, J. Exp. Biol. 209 (2006), 4841-4857, doi:10.1242/
 import math
 from dataclasses import dataclass
 
-from eel_base.quantity import Quantities, quantity
+from eel_base.quantity import quantity
 
-from eel_gaits.gaits.numbers import period_quantity, start_periods_quantity, start_ramp
+from eel_gaits.gaits.numbers import PeriodicBody
 from eel_gaits.gaits.registry import register
 from eel_gaits.laws.term import Term
 
@@ -20,17 +20,14 @@ def _scaled_bend(default, place):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Kern(Quantities):
+class Kern(PeriodicBody):
     """A wave whose amplitude is a natural cubic spline through four values of K L, at X = 0, L/3, 2L/3 and L."""
 
-    length: float = quantity(1.0, "m", "body length L", 1e-4, 1e3)
-    period: float = period_quantity(1.0)
     waves: float = quantity(1.44, "", "waves on the body, tau", 0.0, 100.0)
     bend_nose: float = _scaled_bend(1.51, "the nose")
     bend_third: float = _scaled_bend(0.48, "one third of the body")
     bend_two_thirds: float = _scaled_bend(5.74, "two thirds of the body")
     bend_tail: float = _scaled_bend(2.73, "the tail")
-    start_periods: float = start_periods_quantity()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -67,5 +64,5 @@ def _kern_term(numbers):
         wavelength=length / numbers.waves if numbers.waves else 0.0,
         period=numbers.period,
         phase=math.pi,
-        envelope=start_ramp(numbers),
+        envelope=numbers.start,
     )

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Numbers that several gaits have, and their smooth start from rest."""
+"""Numbers that several gaits have, their smooth start from rest, and bends of the whole body."""
 
 import math
+from dataclasses import dataclass
 
-from eel_base.quantity import quantity
+from eel_base.quantity import Quantities, quantity
 
 from eel_gaits.laws.ramp import Ramp
 from eel_gaits.laws.term import Term
@@ -12,54 +13,48 @@ from eel_gaits.laws.term import Term
 TURNS = {"left_bend": "yaw_bend", "left_angle": "yaw_angle"}
 
 
-def period_quantity(default):
-    """The period of a wave [s]."""
-    return quantity(default, "s", "period T of the wave", 1e-3, 1e4)
+@dataclass(frozen=True, kw_only=True)
+class Periodic(Quantities):
+    """A motion with a period, which starts smoothly from rest."""
+
+    period: float = quantity(1.0, "s", "period T of the wave", 1e-3, 1e4)
+    start_periods: float = quantity(
+        1.0, "periods", "length of the smooth start from rest, in periods of the wave", 0.01, 1e3
+    )
+
+    @property
+    def start(self) -> tuple[Ramp, ...]:
+        """The envelope of the start from rest (eq. 63)."""
+        return (Ramp(0.0, self.start_periods * self.period, 1.0),)
 
 
-def wavelength_quantity(default, description="wavelength of the wave"):
+@dataclass(frozen=True, kw_only=True)
+class PeriodicBody(Periodic):
+    """A motion whose numbers are parts of the body's length."""
+
+    length: float = quantity(1.0, "m", "body length L", 1e-4, 1e3)
+
+
+def wavelength_quantity(default: float, description: str = "wavelength of the wave") -> float:
     """The wavelength of a wave [m]."""
     return quantity(default, "m", description, 1e-4, 1e4)
 
 
-def start_periods_quantity():
-    """The duration of the start from rest, in periods."""
-    description = "length of the smooth start from rest, in periods of the wave"
-    return quantity(1.0, "periods", description, 0.01, 1e3)
-
-
-def bend_quantity(default, description):
+def bend_quantity(default: float, description: str) -> float:
     """A curvature [rad/m]."""
     return quantity(default, "rad/m", description, -1e5, 1e5)
 
 
-def instant_quantity(default, description):
-    """A time of the law [s]."""
-    return quantity(default, "s", description + ", in the law's own time", 0.0, 1e6)
+def instant_quantity(default: float, description: str, after: str = "") -> float:
+    """A time of the law [s], which may have to lie after another one."""
+    return quantity(default, "s", f"{description}, in the law's own time", 0.0, 1e6, after=after)
 
 
-def length_quantity():
-    """The length of the body [m]."""
-    return quantity(1.0, "m", "body length L", 1e-4, 1e3)
-
-
-def waves_quantity(default):
+def waves_quantity(default: float) -> float:
     """The number of waves on the body."""
     return quantity(default, "", "waves on the body, L / wavelength", 1e-3, 100.0)
 
 
-def constant_bend(axis, bend, envelope):
+def constant_bend(axis: str, bend: float, envelope: tuple[Ramp, ...]) -> tuple[Term, ...]:
     """The terms of a `bend` [rad/m] of the whole body about an `axis`, with an `envelope`. None where it is 0."""
     return (Term(axis=axis, amplitude=(bend,), phase=0.5 * math.pi, envelope=envelope),) if bend else ()
-
-
-def start_ramp(numbers):
-    """The envelope of a start from rest, of `numbers` that have `period` and `start_periods`."""
-    return (Ramp(0.0, numbers.start_periods * numbers.period, 1.0),)
-
-
-def check_order(numbers, earlier, later):
-    """`ValueError` unless the instant `later` lies after the instant `earlier`. Both are names in `numbers`."""
-    before, after = getattr(numbers, earlier), getattr(numbers, later)
-    if not after > before:
-        raise ValueError(f"{later} must be > {earlier} ({before:g} s), got {after}")

@@ -1,17 +1,23 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Gaits by name.
+"""Gaits by name, and those of other packages.
 
 A gait is written as a function that makes terms from its numbers. `register` lists it, and turns it into a function
-that takes the numbers as keywords and returns a `Law`. The gaits are in the other files of this folder.
+that takes the numbers as keywords and returns a `Law`. The gaits are in the other files of this folder. A package that
+is installed adds its own by an entry point, whose value is a function with the decorator `eel_gaits.register`:
+
+    [project.entry-points."eel_gaits.gaits"]
+    wiggle = "my_package.gaits:wiggle"
 """
 
 import functools
 import inspect
+import warnings
 from dataclasses import dataclass
+from importlib.metadata import entry_points
 from typing import Any
 
 from eel_base.quantity import Quantities, described_fields, quantity
-from eel_base.wording import did_you_mean, shown
+from eel_base.wording import did_you_mean, one_line, shown
 
 from eel_gaits.laws.law import Law
 
@@ -23,6 +29,7 @@ class Transition(Quantities):
     transition: float = quantity(0.0, "s", "duration of the blend into the law; 0: the receiver's default", 0.0, 1e4)
 
 
+GROUP = "eel_gaits.gaits"  # of entry points
 GAITS: dict[str, Any] = {}  # name of the gait: its function, whose attribute `numbers` is the class of its numbers
 
 
@@ -76,3 +83,14 @@ def register(numbers_class):
         return make
 
     return decorate
+
+
+def load_gaits():
+    """Load the gaits of other packages, each of which lists itself. One that cannot be loaded gives a warning."""
+    for entry in entry_points(group=GROUP):
+        try:
+            function = entry.load()
+            if GAITS.get(entry.name) is not function:
+                raise ValueError(f"{entry.value} is no function of that name with the decorator eel_gaits.register")
+        except Exception as error:  # it is the code of others
+            warnings.warn(f"gait {entry.name!r} is left out: {one_line(error)}", stacklevel=2)

@@ -4,46 +4,35 @@
 import math
 from dataclasses import dataclass
 
-from eel_base.quantity import Quantities, quantity
+from eel_base.quantity import quantity
 
-from eel_gaits.gaits.numbers import (
-    bend_quantity,
-    period_quantity,
-    start_periods_quantity,
-    start_ramp,
-    wavelength_quantity,
-)
+from eel_gaits.gaits.numbers import Periodic, bend_quantity, wavelength_quantity
 from eel_gaits.gaits.registry import register
 from eel_gaits.laws.ramp import Ramp
 from eel_gaits.laws.term import Term
 
 
 @dataclass(frozen=True, kw_only=True)
-class Roll(Quantities):
+class Roll(Periodic):
     """A bend of the whole body whose direction turns about the backbone."""
 
-    period: float = period_quantity(1.0)
     pitch_amplitude: float = bend_quantity(1.0, "amplitude in pitch")
     yaw_amplitude: float = bend_quantity(1.0, "amplitude in yaw")
-    start_periods: float = start_periods_quantity()
 
 
 @dataclass(frozen=True, kw_only=True)
-class Helix(Quantities):
+class Helix(Periodic):
     """Equal waves in pitch and yaw, a quarter of a period apart: a corkscrew that runs to the tail."""
 
-    period: float = period_quantity(1.0)
     wavelength: float = wavelength_quantity(1.0, "wavelength of the helix")
     pitch_amplitude: float = bend_quantity(1.5, "amplitude in pitch")
     yaw_amplitude: float = bend_quantity(1.5, "amplitude in yaw")
-    start_periods: float = start_periods_quantity()
 
 
 @dataclass(frozen=True, kw_only=True)
-class RollOver(Quantities):
+class RollOver(Periodic):
     """A bend whose direction turns about the backbone for some periods."""
 
-    period: float = period_quantity(1.0)
     bend: float = bend_quantity(0.3, "amplitude of the bend; positive: the left side goes up, negative: the right side")
     start_periods: float = quantity(3.0, "periods", "length of the start and of the end", 0.01, 1e3)
     hold_periods: float = quantity(1.1, "periods", "time between start and end", 0.0, 1e3)
@@ -75,7 +64,7 @@ def helix(numbers):
 
 
 def _pair(numbers, *, wavelength):
-    shared = {"wavelength": wavelength, "period": numbers.period, "envelope": start_ramp(numbers)}
+    shared = {"wavelength": wavelength, "period": numbers.period, "envelope": numbers.start}
     return (
         Term(axis="pitch", amplitude=(numbers.pitch_amplitude,), phase=math.pi / 2.0, **shared),
         Term(axis="yaw", amplitude=(numbers.yaw_amplitude,), **shared),

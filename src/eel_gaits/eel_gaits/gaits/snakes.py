@@ -19,40 +19,27 @@ angle of each joint is the integral of the curvature over its segment, exactly.
 import math
 from dataclasses import dataclass
 
-from eel_base.quantity import Quantities, quantity
+from eel_base.quantity import quantity
 
-from eel_gaits.gaits.numbers import (
-    bend_quantity,
-    constant_bend,
-    length_quantity,
-    period_quantity,
-    start_periods_quantity,
-    start_ramp,
-    waves_quantity,
-)
+from eel_gaits.gaits.numbers import PeriodicBody, bend_quantity, constant_bend, waves_quantity
 from eel_gaits.gaits.registry import register
 from eel_gaits.laws.term import Term
 
 
 @dataclass(frozen=True, kw_only=True)
-class Serpenoid(Quantities):
+class Serpenoid(PeriodicBody):
     """A serpenoid curve that travels along itself, with a lasting bend."""
 
-    length: float = length_quantity()
-    period: float = period_quantity(1.0)
     waves: float = waves_quantity(1.0)
     winding_angle: float = quantity(0.5, "rad", "greatest angle of the backbone to its mean direction", -1e3, 1e3)
     yaw_bend: float = bend_quantity(0.0, "yaw curvature of a turn; positive: to the right, negative: to the left")
-    start_periods: float = start_periods_quantity()
 
 
 @dataclass(frozen=True, kw_only=True)
-class JointWave(Quantities):
+class JointWave(PeriodicBody):
     """A wave of the angles of n joints."""
 
-    length: float = length_quantity()
-    joints: float = quantity(10.0, "", "number of joints, n", 1.0, 1000.0)
-    period: float = period_quantity(1.0)
+    joints: float = quantity(10.0, "", "number of joints, n", 1.0, 1000.0, whole=True)
     joint_amplitude: float = quantity(0.35, "rad", "amplitude of the joint angles, alpha", -math.pi, math.pi)
     joint_phase: float = quantity(0.6, "rad", "phase from joint to joint, delta", -math.pi, math.pi)
     yaw_angle: float = quantity(
@@ -63,12 +50,6 @@ class JointWave(Quantities):
         math.pi,
     )
     eel_like: float = quantity(1.0, "", "amplitude along the body: 1: (n - i) / (n + 1), 0: g = 1", 0.0, 1.0)
-    start_periods: float = start_periods_quantity()
-
-    def __post_init__(self):
-        super().__post_init__()
-        if self.joints != int(self.joints):
-            raise ValueError(f"joints must be a whole number, got {self.joints:g}")
 
 
 @register(Serpenoid)
@@ -80,9 +61,9 @@ def serpenoid(numbers):
         wavelength=numbers.length / numbers.waves,
         period=numbers.period,
         phase=0.5 * math.pi,
-        envelope=start_ramp(numbers),
+        envelope=numbers.start,
     )
-    return (wave, *constant_bend("yaw", numbers.yaw_bend, start_ramp(numbers)))
+    return (wave, *constant_bend("yaw", numbers.yaw_bend, numbers.start))
 
 
 @register(JointWave)
@@ -101,9 +82,9 @@ def joint_wave(numbers):
             wave_number=wave_number,
             phase=phase,
             period=numbers.period,
-            envelope=start_ramp(numbers),
+            envelope=numbers.start,
         ),
-        *constant_bend("yaw", numbers.yaw_angle / segment, start_ramp(numbers)),
+        *constant_bend("yaw", numbers.yaw_angle / segment, numbers.start),
     )
 
 

@@ -5,35 +5,24 @@ Source: Boyer, Porez and Leroyer, J. Nonlinear Sci. 20 (2010), section 7.2.2,
 doi:10.1007/s00332-009-9050-5.
 """
 
-import math
 from dataclasses import dataclass
 
 from eel_base.quantity import Quantities, quantity
 
-from eel_gaits.gaits.numbers import (
-    bend_quantity,
-    check_order,
-    instant_quantity,
-    period_quantity,
-    start_periods_quantity,
-    start_ramp,
-    wavelength_quantity,
-)
+from eel_gaits.gaits.numbers import Periodic, bend_quantity, constant_bend, instant_quantity, wavelength_quantity
 from eel_gaits.gaits.registry import register
 from eel_gaits.laws.ramp import Ramp
 from eel_gaits.laws.term import Term
 
 
 @dataclass(frozen=True, kw_only=True)
-class Wave(Quantities):
+class Wave(Periodic):
     """A travelling wave of the amplitude a2 X^2 + a1 X + a0 (eq. 65). It starts smoothly over some periods (eq. 63)."""
 
-    period: float = period_quantity(1.0)
     wavelength: float = wavelength_quantity(1.0)
     amplitude_0: float = bend_quantity(1.0, "amplitude of the wave at the nose, a0")
     amplitude_1: float = quantity(0.5, "rad/m^2", "growth of the amplitude with X, a1", -1e8, 1e8)
     amplitude_2: float = quantity(2.0, "rad/m^3", "growth of the amplitude with X^2, a2", -1e11, 1e11)
-    start_periods: float = start_periods_quantity()
 
     def term(self, direction=1.0):
         """The yaw wave. It runs to the tail (direction 1) or to the head (-1)."""
@@ -42,7 +31,7 @@ class Wave(Quantities):
             amplitude=(self.amplitude_0, self.amplitude_1, self.amplitude_2),
             wavelength=direction * self.wavelength,
             period=self.period,
-            envelope=start_ramp(self),
+            envelope=self.start,
         )
 
 
@@ -52,11 +41,7 @@ class Turn(Wave):
 
     yaw_bend: float = bend_quantity(0.5, "yaw curvature of the turn; positive: to the right, negative: to the left")
     bend_start: float = instant_quantity(1.0, "the turn begins")
-    bend_full: float = instant_quantity(2.0, "the bend of the turn is complete")
-
-    def __post_init__(self):
-        super().__post_init__()
-        check_order(self, "bend_start", "bend_full")
+    bend_full: float = instant_quantity(2.0, "the bend of the turn is complete", after="bend_start")
 
 
 @register(Quantities)
@@ -81,5 +66,4 @@ def backward(numbers):
 def turning(numbers):
     """Forward swimming with a lasting bend in yaw."""
     ramp = Ramp(numbers.bend_start, numbers.bend_full, 1.0)
-    bend = Term(axis="yaw", amplitude=(numbers.yaw_bend,), phase=math.pi / 2.0, envelope=(ramp,))
-    return (numbers.term(), bend)
+    return (numbers.term(), *constant_bend("yaw", numbers.yaw_bend, (ramp,)))
