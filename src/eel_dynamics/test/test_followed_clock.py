@@ -38,7 +38,7 @@ class FollowingRun:
 
     def show(self, seconds):
         """Show this time on /clock."""
-        self.run.requests.put(self.run.show_clock, seconds, time.monotonic())
+        self.run.requests.put(self.run.pace.show, seconds, time.monotonic())
 
     def wait_for(self, stamp):
         """Until the sample of `stamp` [ns] has been published."""

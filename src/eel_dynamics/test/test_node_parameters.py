@@ -5,7 +5,8 @@ import math
 from dataclasses import fields
 
 import pytest
-from eel_dynamics.ros.parameters import DynamicsParameters, checked, from_values
+from eel_base.quantity import checked
+from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_ros.parameters import default_of
 
 from eel_dynamics import Scene
@@ -14,7 +15,7 @@ from eel_dynamics import Scene
 @pytest.mark.parametrize("kind", [DynamicsParameters, Scene])
 def test_defaults_pass_their_own_checks(kind):
     values = {item.name: default_of(item) for item in fields(kind)}
-    assert from_values(kind, values) == kind()
+    assert kind(**{item.name: checked(item, values[item.name], item.name) for item in fields(kind)}) == kind()
 
 
 @pytest.mark.parametrize("kind", [DynamicsParameters, Scene])
@@ -59,9 +60,8 @@ def test_every_float_takes_an_integer(kind):
     ],
 )
 def test_bad_parameter_is_named_with_its_value(name, value, expected):
-    values = {item.name: default_of(item) for item in fields(DynamicsParameters)} | {name: value}
     with pytest.raises(ValueError) as caught:
-        from_values(DynamicsParameters, values)
+        DynamicsParameters(**{name: value})
     assert str(caught.value) == expected
 
 

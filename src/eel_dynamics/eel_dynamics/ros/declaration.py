@@ -1,22 +1,22 @@
 # SPDX-License-Identifier: Apache-2.0
 """The node's ROS parameters, declared from the dataclasses `DynamicsParameters` and `Scene` (as `scene.*`)."""
 
-from dataclasses import fields, replace
-from typing import Any, TypeVar
+from collections.abc import Mapping
+from dataclasses import Field, fields, replace
+from typing import Any
 
 from eel_base.quantity import checked
 from eel_ros.frames import frame_in
 from eel_ros.parameter_node import ParameterNode
-from eel_ros.parameters import AT_RESET, declare, default_of, take_overrides, warn_of_unknown
+from eel_ros.parameters import AT_RESET, declare, take_overrides, warn_of_unknown
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.parameter import Parameter
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.model.scene import Scene
-from eel_dynamics.ros.parameters import FRAMES, ROOT, DynamicsParameters, from_values
+from eel_dynamics.ros.parameters import FRAMES, ROOT, DynamicsParameters
 from eel_dynamics.ros.simulation_from_parameters import body_of
 
-Kind = TypeVar("Kind")
 SCENE, USE_SIM_TIME = "scene.", "use_sim_time"
 
 
@@ -37,8 +37,10 @@ class Declaration:
         frames = {name: frame_in(space, getattr(DynamicsParameters, name)) for name in FRAMES}
         if space.strip("/") and overrides.get("world_frame") != ROOT:
             frames["root_frame"] = ROOT
-        self.values = _declared(node, DynamicsParameters, frames | overrides)
-        self.scene = _declared(node, Scene, overrides, SCENE, AT_RESET)
+        self.values = DynamicsParameters.among(frames | overrides)
+        self.scene = replace(Scene(), **_checked({SCENE + item.name: item for item in fields(Scene)}, overrides))
+        declare(node, self.values)
+        declare(node, self.scene, SCENE, AT_RESET)
         self.next_values, self.next_scene = self._planned = self.values, self.scene
         self._fields = node.parameter_fields
         warn_of_unknown(node, overrides, self._fields)
@@ -69,9 +71,9 @@ class Declaration:
         """Whether the `parameters` fit each other and the present ones; plans the change."""
         given = {each.name: each.value for each in parameters}
         try:
-            ours = given.keys() & self._fields.keys()
-            found = {name: checked(self._fields[name], given[name], name) for name in ours}
-            of_scene = {name.removeprefix(SCENE): found.pop(name) for name in ours if name.startswith(SCENE)}
+            of_scene = {name: item for name, item in self._fields.items() if name.startswith(SCENE)}
+            scene = replace(self.next_scene, **_checked(of_scene, given))
+            found = {name: given[name] for name in self._fields.keys() & given.keys() - of_scene.keys()}
             values = replace(self.next_values, **found)
             if (values.real_time_factor > 0.0) != self._paced:
                 now = "> 0" if self._paced else "0 (as fast as possible)"
@@ -82,7 +84,7 @@ class Declaration:
                 body_of(values.body)
             if "accuracy" in found:
                 Accuracy.of(values.accuracy)
-            self._planned = values, replace(self.next_scene, **of_scene)
+            self._planned = values, scene
         except (ValueError, OSError) as error:
             return SetParametersResult(successful=False, reason=str(error))
         return SetParametersResult(successful=True)
@@ -101,11 +103,6 @@ class Declaration:
         self.values = replace(self.values, **{name: getattr(self.next_values, name) for name in names})
 
 
-def _declared(
-    node: ParameterNode, kind: type[Kind], overrides: dict[str, Any], prefix: str = "", changeable: str | None = None
-) -> Kind:
-    """An instance of the dataclass `kind` from the user's `overrides` and the defaults, declared as parameters."""
-    given = {item.name: overrides.get(prefix + item.name, default_of(item)) for item in fields(kind)}
-    values = from_values(kind, given, prefix)
-    declare(node, values, prefix, changeable)
-    return values
+def _checked(of_scene: Mapping[str, Field[Any]], given: Mapping[str, Any]) -> dict[str, Any]:
+    """Those of the `given` values by parameter that are fields `of_scene`, by the name of the field."""
+    return {item.name: checked(item, given[name], name) for name, item in of_scene.items() if name in given}

@@ -4,6 +4,7 @@
 import math
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Protocol
 
 OK, WARN, ERROR = 0, 1, 2  # levels of diagnostic_msgs/DiagnosticStatus
@@ -22,14 +23,26 @@ class Logger(Protocol):
     def error(self, message: str) -> object: ...
 
 
+@dataclass
+class Event:
+    """The last event of a kind, and how many lines were logged of the kind since `begin`. Times on the steady clock."""
+
+    level: int = OK
+    text: str = ""
+    logged: float = -math.inf  # s
+    seen: float = -math.inf  # s
+    begin: float = -math.inf  # s
+    lines: int = 0
+    left_out: int = 0  # lines that were not logged, and not told of yet
+
+
 class Report:
     """Logs conditions and events to `logger`. Safe to use from several threads."""
 
     def __init__(self, logger: Logger, now: Callable[[], float] = time.monotonic) -> None:
         self._logger, self._now = logger, now
         self._lasting: dict[str, tuple[int, str]] = {}  # level and text by kind
-        self._events: dict[str, tuple[int, str, float, float]] = {}  # likewise, time last logged, time last seen
-        self._quotas: dict[str, Quota] = {}  # by kind
+        self._events: dict[str, Event] = {}  # by kind
 
     def info(self, text: str) -> None:
         """Log a normal event."""
@@ -37,8 +50,7 @@ class Report:
 
     def note(self, kind: str, text: str) -> None:
         """Log a normal event; at most `BURST` lines a second of one kind."""
-        if self._quota(kind).allows(self._now()):
-            self.info(text + self._quota(kind).left_out())
+        self._record(self._events.setdefault(f"note {kind}", Event()), OK, text, BURST)
 
     def begin(self, kind: str, text: str, level: int = WARN) -> None:
         """Begin the condition `kind`, which lasts until `end`; it is logged when it begins."""
@@ -57,53 +69,37 @@ class Report:
 
     def event(self, kind: str, text: str, level: int = WARN, differing: bool = False) -> None:
         """Log an event; at most one a second of one kind, or with `differing` up to `BURST` different texts."""
-        now = self._now()
-        _, last, logged, _ = self._events.get(kind, (OK, "", -math.inf, 0.0))
-        if differing:
-            repeated = text == last and now - logged < REPEAT
-            if not repeated and self._quota(kind).allows(now):
-                self._log(level, text + self._quota(kind).left_out())
-                logged = now
-        elif now - logged >= REPEAT:
-            self._log(level, text)
-            logged = now
-        self._events[kind] = (level, text, logged, now)
+        event, now = self._events.setdefault(kind, Event()), self._now()
+        if not differing:
+            self._record(event, level, text, 1)
+        elif text != event.text or now - event.logged >= REPEAT:
+            self._record(event, level, text, BURST)
+        event.level, event.text, event.seen = level, text, now
 
     def state(self) -> tuple[int, list[str]]:
         """Present level and texts, the most severe first."""
-        now = self._now()
-        recent = [(level, text) for level, text, _, seen in list(self._events.values()) if now - seen < RECENT]
+        since = self._now() - RECENT
+        recent = [(each.level, each.text) for each in list(self._events.values()) if each.level and each.seen > since]
         present = sorted([*list(self._lasting.values()), *recent], key=lambda entry: -entry[0])
         return max((level for level, _ in present), default=OK), [text for _, text in present]
 
-    def _quota(self, kind: str) -> "Quota":
-        return self._quotas.setdefault(kind, Quota())
+    def _record(self, event: Event, level: int, text: str, most: int) -> None:
+        """Log `text`, unless `most` lines of its kind have been logged within `REPEAT`."""
+        now = self._now()
+        if now - event.begin >= REPEAT:
+            event.begin, event.lines = now, 0
+        if event.lines >= most:
+            event.left_out += 1
+            return
+        more = f" (and {event.left_out} more before, not shown)" if event.left_out and most > 1 else ""
+        event.logged, event.lines, event.left_out = now, event.lines + 1, 0
+        self._log(level, text + more)
 
     def _log(self, level: int, text: str) -> None:
-        # Two statements: rclpy's loggers tell calls apart by their line.
+        # Statements apart: rclpy's loggers tell calls apart by their line.
         if level == ERROR:
             self._logger.error(text)
-        else:
+        elif level == WARN:
             self._logger.warning(text)
-
-
-class Quota:
-    """Rate limit: `BURST` lines in `REPEAT` seconds."""
-
-    def __init__(self) -> None:
-        self._begin = -math.inf  # s
-        self._lines = self._refused = 0
-
-    def allows(self, now: float) -> bool:
-        """Whether one more line may be logged `now` [s]."""
-        if now - self._begin >= REPEAT:
-            self._begin, self._lines = now, 0
-        allowed = self._lines < BURST
-        self._lines += allowed
-        self._refused += not allowed
-        return allowed
-
-    def left_out(self) -> str:
-        """Text with the number of lines left out since the last call; empty if there were none."""
-        count, self._refused = self._refused, 0
-        return f" (and {count} more before, not shown)" if count else ""
+        else:
+            self._logger.info(text)

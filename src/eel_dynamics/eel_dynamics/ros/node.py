@@ -27,10 +27,10 @@ from std_srvs.srv import SetBool, Trigger
 from tf2_msgs.msg import TFMessage
 
 from eel_dynamics.model.scene import Scene
-from eel_dynamics.ros.clock_subscription import ClockSubscription
 from eel_dynamics.ros.declaration import Declaration
 from eel_dynamics.ros.diagnostics import Report
 from eel_dynamics.ros.law_subscription import LawSubscription
+from eel_dynamics.ros.loop.followed_clock import ClockSubscription, FollowedClock
 from eel_dynamics.ros.loop.requests import Answer
 from eel_dynamics.ros.loop.run_loop import RunLoop
 from eel_dynamics.ros.messages import (
@@ -79,8 +79,8 @@ class DynamicsNode(ParameterNode):
         self._root: Any = None  # publisher of /tf_static
         self._ended: float | None = None  # s, steady clock: when the end of the run was seen
         self._laws = LawSubscription(self, self.run_loop, self._report)
-        follows = self.parameters.values.follow_clock
-        self._followed_clock = ClockSubscription(self, self.run_loop) if follows else None
+        pace, requests = self.run_loop.pace, self.run_loop.requests
+        self._followed_clock = ClockSubscription(self, pace, requests) if isinstance(pace, FollowedClock) else None
         self._neighbours = Neighbours(self, self.resolve_topic_name("head_pose"), Identity.own(), self._report)
         self._holding, self._offers_clock = "", False  # what the run loop knows of the neighbours
         self.create_subscription(DiagnosticArray, "/diagnostics", self._receive_diagnostics, 10)

@@ -9,6 +9,7 @@ import array
 from collections.abc import Iterator
 from copy import deepcopy
 from itertools import count, islice
+from typing import Any
 
 import numpy as np
 from builtin_interfaces.msg import Time
@@ -28,7 +29,7 @@ class SerialisedMessage:
         stamps: views (2,) of the seconds and nanoseconds of its times.
     """
 
-    def __init__(self, message):
+    def __init__(self, message: Any) -> None:
         self.kind, data, marked = type(message), serialize_message(message), deepcopy(message)
         times = count(MARKED_TIME[0])
         blocks = dict(_marked(marked, (MARK * k for k in count(1)), times))
@@ -52,7 +53,9 @@ class SerialisedMessage:
         return self._data.tobytes()
 
 
-def _marked(message, marks: Iterator[float], times: Iterator[int], path: str = "") -> Iterator[tuple[str, list[float]]]:
+def _marked(
+    message: Any, marks: Iterator[float], times: Iterator[int], path: str = ""
+) -> Iterator[tuple[str, list[float]]]:
     """Put `marks` into the numbers and `times` [s] into the times; yields path and marks of each contiguous block."""
     if isinstance(message, Time):
         message.sec, message.nanosec = next(times), MARKED_TIME[1]

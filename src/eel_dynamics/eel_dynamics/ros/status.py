@@ -46,7 +46,7 @@ class Status:
             )
         else:
             self._report.end("overdue")
-        before, self._seen = (0.0, 0.0) if final else self._seen, (run.time, run.wall_time.seconds)
+        before, self._seen = (0.0, 0.0) if final else self._seen, (run.time, run.wall_time)
         simulated, wall = self._seen[0] - before[0], self._seen[1] - before[1]
         level, warnings = state = self._report.state()
         self._last_published = (time.monotonic(), run.time, (run.standing, state))

@@ -81,8 +81,11 @@ class LawAdopter:
         values = hash(tuple(np.asarray(row).tobytes() for name, row in samples.items() if name != "time"))
         if self._first.get(samples["time"]) == values:
             return
+        last, longest = max(self.simulation.time, self.simulation.samples_until or 0.0), max(LONGEST_WAY, 2.0 * period)
         try:
-            self._check_way(samples["time"], max(LONGEST_WAY, 2.0 * period))
+            if samples["time"] > last + longest:
+                way = f"{longest:g} s after the last sample or the simulation ({last:.9g} s)"
+                raise ValueError(f"time must be at most {way}, got {samples['time']:.9g} s")
             self.simulation.add_samples(**samples)
         except REFUSALS as error:
             level = WARN if isinstance(error, LateSample) else ERROR
@@ -92,15 +95,6 @@ class LawAdopter:
             self._farthest = max(self._farthest, ahead)
             if self.simulation.time == 0.0:
                 self._first[samples["time"]] = values
-
-    def _check_way(self, time: float, longest: float) -> None:
-        """`ValueError` for a sample of `time` [s] more than `longest` [s] after the last one, or the simulation."""
-        last = max(self.simulation.time, self.simulation.samples_until or 0.0)
-        if time > last + longest:
-            raise ValueError(
-                f"time must be at most {longest:g} s after the last sample or the simulation ({last:.9g} s), "
-                f"got {time:.9g} s"
-            )
 
     def lacks_samples(self, instant: float) -> bool:
         """Whether a controller's samples drive the swimmer and do not reach simulation time `instant` [s] yet."""

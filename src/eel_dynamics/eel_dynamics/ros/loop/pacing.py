@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pacing on the steady clock: due times of samples, the wait for a controller, and the wall time spent.
+"""Pacing on the steady clock: due times of samples, and the wait for a controller.
 
 Sample k is due at start + (k - first) * period / factor. A run that is late by more than a period and `SHORTEST_DELAY`
 does not hurry: it regains the lost time at `CATCH_UP` above its pace, so that a controller can follow. Until then later
@@ -8,7 +8,6 @@ hours is not faster for days. The run keeps its accuracy, not its pace.
 """
 
 import math
-import time
 
 SHORTEST_DELAY = 0.02  # s: shorter delays come from the operating system's scheduling
 CATCH_UP = 0.1  # of the pace, by which a late run is faster until it has regained the lost time
@@ -65,9 +64,6 @@ class Pace:
         """Why `sample` is not due, as text, where that is not only a matter of time: never."""
         return ""
 
-    def show(self, shown: float, now: float) -> None:
-        """Do nothing: the run does not follow the /clock of another node."""
-
     def _steps(self, sample: int) -> float:
         return (sample - self._first) * self.period / self.factor if self.factor > 0.0 else 0.0
 
@@ -91,26 +87,3 @@ class ControllerWait:
         if self.timed_out:
             self._since = -math.inf
         return waiting
-
-
-class Stopwatch:
-    """Wall time [s] spent on samples; times are those of the steady clock.
-
-    Attributes:
-        seconds: the sum of the laps.
-    """
-
-    def __init__(self) -> None:
-        self.seconds, self._since = 0.0, time.monotonic()
-
-    def lap(self, now: float) -> None:
-        """Add the time since the last lap."""
-        self.seconds, self._since = self.seconds + now - self._since, now
-
-    def resume(self, now: float) -> None:
-        """Leave out the time since the last lap."""
-        self._since = now
-
-    def restart(self, now: float) -> None:
-        """Begin again at 0."""
-        self.seconds, self._since = 0.0, now

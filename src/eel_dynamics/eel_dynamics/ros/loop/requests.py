@@ -5,22 +5,11 @@ import math
 import threading
 import time
 from collections.abc import Callable, Generator
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
+
+from eel_dynamics.ros.sample_inbox import SampleInbox
 
 INTERRUPT_AFTER = 1.0  # s of wall time for one sample, after which any request interrupts its computation
-
-
-class Inbox(Protocol):
-    """What the run loop sleeps on: a SampleInbox."""
-
-    def set(self) -> None:
-        """Wake the run loop, or let its next `wait` return at once."""
-
-    def wait(self, seconds: float) -> bool:
-        """Sleep at most `seconds`; whether `set` or a message was the reason to wake."""
-
-    def wake_callers(self) -> None:
-        """Let the executor look whether the answers that callbacks await are there."""
 
 
 class Answer:
@@ -33,7 +22,7 @@ class Answer:
         deadline: [s, steady clock] until when it is awaited.
     """
 
-    def __init__(self, inbox: Inbox) -> None:
+    def __init__(self, inbox: SampleInbox) -> None:
         self._inbox, self._awaited, self.done = inbox, False, threading.Event()
         self.time, self.failure, self.deadline = math.nan, "", math.inf
 
@@ -66,7 +55,7 @@ class RequestQueue:
         stopped: the run is to end.
     """
 
-    def __init__(self, inbox: Inbox) -> None:
+    def __init__(self, inbox: SampleInbox) -> None:
         self._guard, self._inbox = threading.Lock(), inbox
         self._waiting: list[Request] = []
         self._urgent = self.stopped = False

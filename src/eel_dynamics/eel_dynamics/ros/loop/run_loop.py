@@ -24,7 +24,7 @@ from eel_dynamics.ros.loop.clock_ticks import TICK
 from eel_dynamics.ros.loop.followed_clock import FollowedClock
 from eel_dynamics.ros.loop.law_adopter import LawAdopter
 from eel_dynamics.ros.loop.obstacles import Obstacles
-from eel_dynamics.ros.loop.pacing import ControllerWait, Pace, Stopwatch
+from eel_dynamics.ros.loop.pacing import ControllerWait, Pace
 from eel_dynamics.ros.loop.requests import Answer, RequestQueue
 from eel_dynamics.ros.loop.sample_output import SampleOutput, nanoseconds
 from eel_dynamics.ros.parameters import DynamicsParameters
@@ -48,7 +48,8 @@ class RunLoop:
         samples_published: number of samples, which is the index of the next one.
         standing: what the simulation waits for, as text; empty while it runs.
         requests: RequestQueue, for other threads.
-        obstacles: Obstacles. laws: LawAdopter. output: SampleOutput. pace: Pace. wall_time: Stopwatch.
+        wall_time: [s] spent on samples.
+        obstacles: Obstacles. laws: LawAdopter. output: SampleOutput. pace: Pace.
     """
 
     def __init__(
@@ -65,11 +66,12 @@ class RunLoop:
         self.requests = RequestQueue(inbox)
         self.obstacles = Obstacles(simulation, publishers, values.wait_for_subscribers)
         self.pace = (FollowedClock if values.follow_clock else Pace)(1.0 / values.rate, values.real_time_factor)
-        self.laws, self.wall_time = LawAdopter(simulation, report), Stopwatch()
+        self.laws = LawAdopter(simulation, report)
         self._controller = ControllerWait()
         self.output = SampleOutput(simulation, parameters, publishers, report)
         self._sample_begun: float | None = None  # s, steady clock: when the computation of the next sample began
         self.time, self.samples_published, self.standing = 0.0, 0, ""
+        self.wall_time, self._lap = 0.0, time.monotonic()  # _lap: s, steady clock: up to when wall_time counts
 
     @property
     def overdue(self) -> float:
@@ -135,7 +137,7 @@ class RunLoop:
         """Wait until the next sample is due; False if a request or a tick comes first."""
         now, values = time.monotonic(), self._parameters.values
         if self.standing:
-            self.wall_time.resume(now)
+            self._lap = now
         if self.standing or values.real_time_factor != self.pace.factor:
             self.standing = ""
             self.pace.restart(self.samples_published, now, values.real_time_factor)
@@ -168,7 +170,7 @@ class RunLoop:
             self._fail(error)
             return
         self.time, now = self._next_time, time.monotonic()
-        self.wall_time.lap(now)
+        self.wall_time, self._lap = self.wall_time + now - self._lap, now
         self.laws.report_samples(self.time)
         delay = self.pace.give_up_delay(self.samples_published, now)
         if delay > 0.0:
@@ -229,10 +231,6 @@ class RunLoop:
         """Publish so many `samples` of a paused run; `steps` is answered with the last. Sample 0 is none of them."""
         self.obstacles.begin_steps(samples, steps, self.time)
 
-    def show_clock(self, shown: float, now: float) -> None:
-        """Take the time `shown` [s] on the /clock that the run follows, received at `now` [s, steady clock]."""
-        self.pace.show(shown, now)
-
     def set_state(self, position: np.ndarray, orientation: np.ndarray, twist: np.ndarray) -> None:
         """Put the head elsewhere, as `Simulation.set_state` does."""
         self._simulation.set_state(position, orientation, twist)
@@ -261,7 +259,7 @@ class RunLoop:
         self.time, self.samples_published = 0.0, 0
         self.obstacles.failed, self._sample_begun = False, None
         self.output.restart(self._simulation)
-        self.wall_time.restart(now)
+        self.wall_time, self._lap = 0.0, now
         self._report.end("stopped")
         self.pace.restart(0, now)
         self.laws.reset()

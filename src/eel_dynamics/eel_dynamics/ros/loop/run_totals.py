@@ -8,11 +8,6 @@ import numpy as np
 from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.stopping import SimulationStopped
 
-CHECKED = (
-    *("position", "orientation", "twist", "backbone", "section_orientation", "curvature", "curvature_rate"),
-    *("torque", "force", "fluid_force", "resistive_force", "tail_force", "nose_force", "wake_momentum_rate"),
-)
-
 
 class RunTotals:
     """Accumulates the figures of successive snapshots."""
@@ -24,18 +19,17 @@ class RunTotals:
     def add(self, snapshot: Snapshot) -> None:
         """Add a snapshot's figures; `SimulationStopped` if one of its values is not finite."""
         if not math.isfinite(np.add.reduce(snapshot.whole)):
-            for name in CHECKED:
-                values = getattr(snapshot, name)
-                if values is not None and not np.isfinite(values).all():
-                    raise _not_finite(snapshot, name, values)
+            for name, array in snapshot.arrays().items():
+                if not np.isfinite(array).all():
+                    raise _not_finite(snapshot, name, array)
         values = self._values
-        if snapshot.energy is not None:
+        if snapshot.energy is not None and snapshot.actuator_work is not None:
             residual = float(snapshot.energy.residual)
             if not math.isfinite(residual):
                 raise _not_finite(snapshot, "energy residual", residual)
             values["energy_residual"] = residual
             values["energy_residual_worst"] = max(values.get("energy_residual_worst", 0.0), abs(residual))
-            values["actuator_work"] = float(snapshot.actuator_work)
+            values["actuator_work"] = snapshot.actuator_work
         for name in self._greatest if snapshot.closure_torque is not None else ():
             key, size = f"closure_{name}", float(np.maximum.reduce(np.abs(getattr(snapshot, name)), axis=None))
             values[key] = max(values.get(key, 0.0), float(getattr(snapshot, key)))
