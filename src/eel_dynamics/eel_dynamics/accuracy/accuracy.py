@@ -25,6 +25,7 @@ from eel_base.quantity import is_finite
 from eel_base.wording import shown
 
 from eel_dynamics.accuracy.budget import Budget
+from eel_dynamics.model.scene import Scene
 from eel_dynamics.model.section_data import WATCHED
 
 PRESETS = {"draft": 1e-2, "standard": 1e-4, "fine": 1e-6, "reference": 1e-8}
@@ -97,7 +98,7 @@ class Accuracy:
     longest_step: float = LONGEST_STEP
     refinable: bool = False
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if self.step is not None or self.fixed is not None:
             object.__setattr__(self, "method", "classical")
         if (
@@ -144,9 +145,9 @@ class Accuracy:
 
     def points_per_length(self, waves: float) -> float:
         """Points per body length for `waves` waves on the body. One wave or less needs `resolution`."""
-        return min(1000.0, (self.resolution + SPARED) * max(1.0, waves) ** WAVES_POWER - SPARED)
+        return float(min(1000.0, (self.resolution + SPARED) * max(1.0, waves) ** WAVES_POWER - SPARED))
 
-    def in_scene(self, scene) -> "Accuracy":
+    def in_scene(self, scene: Scene) -> "Accuracy":
         """The settings for the target in `scene`. Settings that were given one by one stay the same."""
         if self.target is None:
             return self
@@ -203,13 +204,13 @@ class Accuracy:
         )
 
     @staticmethod
-    def to_refine(value: "str | float | Accuracy") -> "Accuracy":
+    def to_refine(value: "str | float | Accuracy | Budget") -> "Accuracy":
         """As `of`, for a run that is made finer where it misses its target."""
         accuracy = Accuracy.of(value)
         return replace(accuracy, refinable=True) if getattr(accuracy, "target", None) else accuracy
 
     @staticmethod
-    def of(value: "str | float | Accuracy") -> "Accuracy":
+    def of(value: "str | float | Accuracy | Budget") -> "Accuracy":
         """The settings, or the `Budget`, that `value` asks for.
 
         value: a preset's name or a target relative error, either with ", fixed steps" behind it; or a budget of time
@@ -218,7 +219,8 @@ class Accuracy:
         """
         if isinstance(value, Accuracy):
             return value
-        return _of_number(value) if type(value) is float else Accuracy._of(value)
+        made: Accuracy = _of_number(value) if type(value) is float else Accuracy._of(value)
+        return made
 
     @staticmethod
     def _of(value: Any) -> Any:  # a Budget too
@@ -253,7 +255,7 @@ class Accuracy:
 _of_number = lru_cache(maxsize=64)(Accuracy._of)
 
 
-def within_budget(budget: Budget, scene, swim_time: Callable[[float], float]) -> Accuracy:
+def within_budget(budget: Budget, scene: Scene, swim_time: Callable[[float], float]) -> Accuracy:
     """The finest settings of the `BUDGET_TARGETS` that keep within the `budget` in `scene`. `ValueError` if none do.
 
     They have no target: the error of such a run is measured, and not compared with one.

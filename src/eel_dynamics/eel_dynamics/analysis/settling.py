@@ -4,6 +4,7 @@
 import warnings
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 SETTLED = 0.01  # relative: the most that a settled mean changes within the window, and the most that it goes on to
 STEADY = 1e-4  # relative: a mean that changes by less within the window is as steady as its own error
@@ -14,11 +15,11 @@ class Unsettled(UserWarning):
     """A mean was read of a run whose gait has not settled."""
 
 
-def tell_unsettled(settled, what: str, stacklevel: int = 3):
+def tell_unsettled(settled: ArrayLike, what: str, stacklevel: int = 3) -> None:
     """An `Unsettled` warning with how many of `settled` (n,) are 0, not 1 or NaN; `what` they are."""
-    settled = np.asarray(settled, dtype=float)
-    if many := int(np.sum(settled == 0.0)):
-        warnings.warn(f"{many} of {settled.size} {what} have not settled", Unsettled, stacklevel=stacklevel)
+    array = np.asarray(settled, dtype=float)
+    if many := int(np.sum(array == 0.0)):
+        warnings.warn(f"{many} of {array.size} {what} have not settled", Unsettled, stacklevel=stacklevel)
 
 
 def change_of(means: np.ndarray, scale: float | None = None) -> float:
@@ -40,4 +41,4 @@ def change_of(means: np.ndarray, scale: float | None = None) -> float:
         left = abs(last)
     else:
         left = last**2 / (abs(before) - abs(last)) if abs(last) < abs(before) else np.inf
-    return max(spread, left)
+    return float(max(spread, left))

@@ -15,6 +15,7 @@ import numpy as np
 from eel_base.files.input_file import reading
 from eel_base.quantity import checked_instance, checked_row, number, positive
 from eel_base.wording import shown
+from numpy.typing import ArrayLike
 
 from eel_dynamics.model.body_file import WHAT, columns_of
 from eel_dynamics.model.equality import same
@@ -53,11 +54,11 @@ class Body:
     def __init__(
         self,
         *,
-        half_width,
-        half_height,
+        half_width: Any,
+        half_height: Any,
         length: float | None = None,
-        x=None,
-        kinks=(),
+        x: ArrayLike | None = None,
+        kinks: ArrayLike = (),
         nose: tuple[float, float, float] | None = None,
         density: float = 1000.0,
         nose_added_mass: float = 0.32,
@@ -66,7 +67,7 @@ class Body:
         lateral_drag: float = 1.98,
         vertical_drag: float = 1.0,
         name: str = "body",
-    ):
+    ) -> None:
         if x is not None:
             x = checked_row("body x", x, None)
             falls = np.flatnonzero(np.diff(x) <= 0.0)
@@ -103,16 +104,16 @@ class Body:
         numbers = tuple(getattr(self, name) for name in NUMBERS)
         self._hash = hash((self.name, self.length, self.kinks, self.nose, numbers))
 
-    def half_width(self, x) -> np.ndarray:
+    def half_width(self, x: ArrayLike) -> np.ndarray:
         """b(X) [m] along E2 at `x` [m]."""
-        return np.sqrt(self._half_width.square(np.asarray(x, dtype=float)))
+        return np.asarray(np.sqrt(self._half_width.square(np.asarray(x, dtype=float))))
 
-    def half_height(self, x) -> np.ndarray:
+    def half_height(self, x: ArrayLike) -> np.ndarray:
         """a(X) [m] along E3 at `x` [m]."""
-        return np.sqrt(self._half_height.square(np.asarray(x, dtype=float)))
+        return np.asarray(np.sqrt(self._half_height.square(np.asarray(x, dtype=float))))
 
     @property
-    def half_axes(self) -> dict:
+    def half_axes(self) -> dict[str, Any]:
         """The half-axes as they were given: functions of X, or arrays (2, M) of X and half-axis [m]."""
         return {"half_width": self._half_width.given, "half_height": self._half_height.given}
 
@@ -121,7 +122,7 @@ class Body:
         """X [m] inside the body where a derivative of a half-axis from data may jump: its data points."""
         return self._half_width.breaks
 
-    def squares(self, x) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    def squares(self, x: ArrayLike) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """a^2, b^2 [m^2] and their derivatives by X [m] at `x` (M,) [m]. A kink has the derivative ahead of it."""
         x = np.asarray(x, dtype=float)
         return (
@@ -152,7 +153,7 @@ class Body:
         return self.density * self.volume
 
     @property
-    def arguments(self) -> dict:
+    def arguments(self) -> dict[str, Any]:
         """The arguments of an equal body."""
         shape = self.half_axes
         if isinstance(self._half_width, ArrayHalfAxis):
@@ -160,17 +161,17 @@ class Body:
         names = ("length", "kinks", "nose", *NUMBERS, "name")
         return shape | {name: getattr(self, name) for name in names}
 
-    def changed(self, **changes) -> "Body":
+    def changed(self, **changes: Any) -> "Body":
         """The same body with other `arguments`."""
         unknown = [name for name in changes if name not in self.arguments]
         if unknown:
             raise ValueError(f"body has no {shown(unknown[0])}, it has: {', '.join(self.arguments)}")
         return Body(**self.arguments | changes)
 
-    def __reduce__(self):
+    def __reduce__(self) -> tuple[Any, ...]:
         return _body_of, (self.arguments,)
 
-    def __eq__(self, other) -> bool:
+    def __eq__(self, other: object) -> bool:
         return self is other or (isinstance(other, Body) and same(self.arguments, other.arguments))
 
     def __hash__(self) -> int:
@@ -204,7 +205,7 @@ class Body:
         length = positive("body length", length, "m")
         half = length / (2.0 * positive("body slenderness", slenderness))
 
-        def half_height(x):
+        def half_height(x: np.ndarray) -> np.ndarray:
             s = np.asarray(x, dtype=float) / length
             return half * np.sqrt(np.clip(1.0 - np.clip(1.0 - s / 0.05, 0.0, None) ** 2, 0.0, None)) * (1.0 - 0.5 * s)
 
@@ -217,10 +218,11 @@ class Body:
         """The body called `name`: boyer2010 or kern2006. `ValueError` for another name."""
         if name not in NAMED:
             raise ValueError(f"body must be one of {', '.join(NAMED)} or a file, got {shown(name)}")
-        return getattr(Body, name)()
+        made: Body = getattr(Body, name)()
+        return made
 
     @staticmethod
-    def from_file(path) -> "Body":
+    def from_file(path: str | os.PathLike[str]) -> "Body":
         """A body from columns x, half_width, half_height [m] of a .csv (with a header line) or .npz file."""
         if not isinstance(path, (str, os.PathLike)):
             raise ValueError(f"body file must be a path, got {shown(path)}")
@@ -232,13 +234,13 @@ class Body:
             warnings.warn(f"body file {path} is {body.length:g} m long: are its columns in m?", stacklevel=2)
         return body
 
-    def _checked_kinks(self, kinks) -> tuple[float, ...]:
+    def _checked_kinks(self, kinks: ArrayLike) -> tuple[float, ...]:
         values = checked_row("body kinks", kinks, None)
         if np.any(np.diff(values) <= 0.0) or np.any(values <= 0.0) or np.any(values >= self.length):
             raise ValueError(f"body kinks must rise inside (0, {self.length}) m, got {shown(values.tolist())}")
         return tuple(values.tolist())
 
-    def _checked_nose(self, nose) -> tuple[float, float, float]:
+    def _checked_nose(self, nose: ArrayLike | None) -> tuple[float, float, float]:
         if nose is None:
             end = self.panel_ends[0]
             return float(self.half_height(end)), float(self.half_width(end)), float(end)
@@ -248,7 +250,7 @@ class Body:
         return tuple(values.tolist())
 
 
-def checked_body(body) -> Body:
+def checked_body(body: Any) -> Body:
     """`body`, if it is a `Body`; for None that of Boyer, Porez and Leroyer 2010. `ValueError` for anything else."""
     if isinstance(body, (str, os.PathLike)):
         raise ValueError(
@@ -258,12 +260,12 @@ def checked_body(body) -> Body:
     return Body.boyer2010() if body is None else checked_instance("body", body, Body)
 
 
-def _named_shape(name: str, length: float) -> dict:
+def _named_shape(name: str, length: float) -> dict[str, Any]:
     half_axes = {axis: NamedHalfAxis(name, axis, length) for axis in ("half_width", "half_height")}
     return {"name": name, "length": length, "kinks": tuple(kink * length for kink in KINKS[name]), **half_axes}
 
 
-def _body_of(arguments: dict) -> Body:
+def _body_of(arguments: dict[str, Any]) -> Body:
     return Body(**arguments)
 
 

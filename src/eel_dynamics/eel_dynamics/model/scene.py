@@ -84,7 +84,7 @@ class Scene(Quantities):
         others = [item for item in fields(self) if getattr(self, item.name) != item.default]
         return f"Scene({', '.join(f'{item.name}={getattr(self, item.name)!r}' for item in others)})"
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         for item in fields(self):
             value, name = getattr(self, item.name), f"scene {item.name}"
             if item.default is not None:

@@ -14,12 +14,13 @@ import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from eel_base.wording import shown
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
+from numpy.typing import ArrayLike
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.error_estimate import ErrorEstimate
@@ -83,18 +84,18 @@ class Batch:
     force: np.ndarray | None
     fluid_force: np.ndarray | None
     energy: EnergyLedger | None
-    _out: tuple = ()  # observations, works, energy at the start, of all, for `__getitem__`
+    _out: tuple[Any, ...] = ()  # observations, works, energy at the start, of all, for `__getitem__`
 
     def __len__(self) -> int:
         return len(self.laws)
 
-    def __eq__(self, other) -> bool:
+    def __eq__(self, other: object) -> bool:
         return self is other or same_fields(self, other)
 
     def __hash__(self) -> int:
         return hash((self.laws, self.bodies, self.scenes))
 
-    def __reduce__(self):  # each array once
+    def __reduce__(self) -> tuple[Any, ...]:  # each array once
         return _batch_from, (contents_of_batch(self, *self._out), self.laws, self.bodies, self.scenes)
 
     def __repr__(self) -> str:
@@ -140,24 +141,25 @@ class Batch:
             error_estimate=self.error_estimates[index],
         )
 
-    def save(self, path) -> None:
+    def save(self, path: str | os.PathLike[str]) -> None:
         """Write the whole batch to a netCDF file (.nc), as `Run.save` does a run."""
         write(with_warnings(self, contents_of_batch(self, *self._out)), path)
 
     @staticmethod
-    def load(path) -> "Batch":
+    def load(path: str | os.PathLike[str]) -> "Batch":
         """The batch that `save` wrote. `ValueError` in one line as in `Run.load`."""
-        return loaded(path, "batch", _batch_from)
+        batch: Batch = loaded(path, "batch", _batch_from)
+        return batch
 
-    def to_xarray(self):
+    def to_xarray(self) -> Any:
         """An `xarray.Dataset` as `Run.to_xarray` gives it, with a first dimension `swimmer`."""
         return dataset_of(with_warnings(self, contents_of_batch(self, *self._out)))
 
-    def to_dataframe(self):
+    def to_dataframe(self) -> Any:
         """A `pandas.DataFrame` as `Run.to_dataframe` gives it, by swimmer and time; valid samples alone."""
         return frame_of_all(self[index] for index in range(len(self)))
 
-    def analysis(self):
+    def analysis(self) -> Any:
         """A `pandas.DataFrame` with a row for each swimmer: its measures, and the `error` that stopped it, or "".
 
         The measures are those of a sweep (`eel_dynamics.analysis.measures`): NaN where one is undefined, and for a
@@ -171,17 +173,17 @@ class Batch:
 
 
 def simulate_batch(
-    laws,
+    laws: Any,
     duration: float | str = 10.0,
     *,
-    bodies=None,
-    scenes=None,
-    accuracy="standard",
+    bodies: Any = None,
+    scenes: Any = None,
+    accuracy: Any = "standard",
     sample_period: float | None = None,
-    stations: "int | np.ndarray | None" = None,
-    positions=(0.0, 0.0, 0.0),
-    orientations=(0.0, 0.0, 0.0, 1.0),
-    twists=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+    stations: int | ArrayLike | None = None,
+    positions: ArrayLike = (0.0, 0.0, 0.0),
+    orientations: ArrayLike = (0.0, 0.0, 0.0, 1.0),
+    twists: ArrayLike = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
     load: bool = False,
     estimate: bool = True,
     threads: int | None = None,
@@ -190,17 +192,23 @@ def simulate_batch(
 ) -> Batch:
     """Simulate B swimmers for `duration` [s] each, with samples every `sample_period` [s] from t = 0 on.
 
-    duration: "settled" for the time until the slowest of them has settled.
-    sample_period: None for the default of `simulate` for the fastest of the laws. laws, bodies, scenes, accuracy: one
-    for all, or a sequence of B. positions (3,) [m], orientations (4,), twists (6,): one row for all, or (B, .). All
-    sequences have the same length B; one of length 1 counts as one for all. stations: number per body, or their X [m],
-    for the profiles along the body; None: no profiles, only motion and energies. estimate: measure each swimmer's
-    error, as in `simulate`; `Batch.above_target` tells those that stay above their target. threads: None for one per
-    available core. progress(done, B): called after each swimmer. most_evaluations: of each, as in `simulate`.
-
     Each swimmer's result equals that of `simulate` with the same stations to the last bit. A swimmer that stops, or
     cannot start, keeps its samples until then, with a `SimulationStopped` in `error`; the others are not affected.
     `ValueError` names an argument that does not fit, with the number of the swimmer.
+
+    Args:
+        laws, bodies, scenes, accuracy: one for all, or a sequence of B. One of length 1 counts as one for all.
+        duration: [s], or "settled" for the time until the slowest of them has settled.
+        sample_period: [s]; None for the default of `simulate` for the fastest of the laws.
+        stations: number per body, or their X [m], for the profiles along the body; None: no profiles, only motion and
+            energies.
+        positions, orientations, twists: (3,) [m], (4,), (6,) as in `simulate`, for all; or (B, .), a row for each.
+        load: whether to compute the water's load along the body too.
+        estimate: whether to measure each swimmer's error, as in `simulate`; `Batch.above_target` tells those that stay
+            above their target.
+        threads: None for one per available core.
+        progress: progress(done, B) is called after each swimmer.
+        most_evaluations: of each, as in `simulate`.
     """
     accuracy = accuracy.tolist() if isinstance(accuracy, np.ndarray) else accuracy
     along = [0.0] if stations is None else stations
@@ -221,7 +229,7 @@ def simulate_batch(
     errors: list[SimulationStopped | None] = [None] * count
     estimates: list[ErrorEstimate | None] = [None] * count
 
-    def swim(index: int):
+    def swim(index: int) -> None:
         request = SwimRequest(*swimmers[index], times, wrench[index], load)
         try:
             settings_to_try = Accuracy.to_refine(request.setup.accuracy) if estimate else None
@@ -257,10 +265,20 @@ class Swimmer(NamedTuple):
     x: np.ndarray
 
 
-def _batch_of(swimmers: list[Swimmer], found, times, out: Observations, works, start, wrench, load, stations) -> Batch:
+def _batch_of(
+    swimmers: list[Swimmer],
+    found: tuple[Any, ...],
+    times: np.ndarray,
+    out: Observations,
+    works: np.ndarray,
+    start: np.ndarray,
+    wrench: list[bool],
+    load: bool,
+    stations: Any,
+) -> Batch:
     settings, errors, estimates, (samples, steps, evaluations, nodes) = found
     absent = {"energies", "powers", "closure", *LOAD} - ({"fluid_force"} if load else set())
-    observed = {name: array for name, array in out.arrays().items() if name not in absent}
+    observed: dict[str, Any] = {name: array for name, array in out.arrays().items() if name not in absent}
     none = [*(ALONG if stations is None else ()), *(() if all(wrench) else ("torque", "force"))]
     ledger = all(each.scene.ledger for each in swimmers)
     return Batch(
@@ -282,7 +300,7 @@ def _batch_of(swimmers: list[Swimmer], found, times, out: Observations, works, s
     )
 
 
-def _batch_from(contents: Contents, laws=None, bodies=None, scenes=None) -> Batch:
+def _batch_from(contents: Contents, laws: Any = None, bodies: Any = None, scenes: Any = None) -> Batch:
     """The batch of these contents; laws, bodies and scenes too, where they are at hand."""
     values, arrays = contents.values, contents.arrays
     laws = laws or plain.row_of(values["laws"], plain.law_of)
@@ -308,7 +326,9 @@ def available_cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def _for_each(swim, count: int, threads: int | None, progress):
+def _for_each(
+    swim: Callable[[int], None], count: int, threads: int | None, progress: Callable[[int, int], None] | None
+) -> None:
     """Call `swim(index)` for all indices below `count`, in `threads` threads."""
     threads = available_cores() if threads is None else threads
     if isinstance(threads, bool) or not isinstance(threads, (int, np.integer)) or not 1 <= threads <= MOST_THREADS:

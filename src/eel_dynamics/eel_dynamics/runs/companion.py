@@ -6,6 +6,7 @@ times. A warning names what is then still above the target.
 """
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from eel_gaits.sources.sampled_law import SampledLaw
@@ -39,7 +40,7 @@ def relative_errors(run, reference) -> ErrorEstimate:
     return ErrorEstimate(position, float(np.linalg.norm(run.torque - reference.torque, axis=2).max() / size), rate)
 
 
-def with_error_estimate(swim, request):
+def with_error_estimate(swim: Any, request: Any) -> Any:
     """The `swim` of a `request` (`SwimRequest`) with the `error_estimate` of its run; or a finer one, for the target.
 
     Nothing is estimated for a run that stopped before its end. Without a target nothing is made finer.

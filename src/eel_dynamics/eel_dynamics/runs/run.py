@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Simulates one run of a law: `simulate`, and the `Run` that it returns."""
 
+import os
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
@@ -10,6 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
+from numpy.typing import ArrayLike
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.error_estimate import ErrorEstimate
@@ -84,13 +86,13 @@ class Run:
     nodes: int
     error_estimate: ErrorEstimate | None = None  #: None where none was wanted, or for fewer than two samples
 
-    def __eq__(self, other) -> bool:
+    def __eq__(self, other: object) -> bool:
         return self is other or same_fields(self, other)
 
     def __hash__(self) -> int:
         return hash((self.law, self.body, self.scene, self.steps, self.evaluations, self.nodes))
 
-    def __getstate__(self) -> dict:  # without what can be computed again
+    def __getstate__(self) -> dict[str, Any]:  # without what can be computed again
         return {item.name: getattr(self, item.name) for item in fields(self)}
 
     def __repr__(self) -> str:
@@ -100,7 +102,7 @@ class Run:
             f"accuracy {self.accuracy.name!r})"
         )
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if not (self.time[1:] > self.time[:-1]).all():
             falls = np.flatnonzero(np.diff(self.time) <= 0.0)
             before, after = self.time[falls[0]], self.time[falls[0] + 1]
@@ -178,7 +180,7 @@ class Run:
         missed = self.error_estimate and self.error_estimate.missed(self.accuracy.target, float(self.time[-1]))
         return (missed, *warnings_of(self)) if missed else warnings_of(self)
 
-    def save(self, path) -> None:
+    def save(self, path: str | os.PathLike[str]) -> None:
         """Write the whole run to a netCDF file (.nc), which `load` reads, as do xarray and others.
 
         It holds all fields, the warnings and the software's version. A body given by functions of your own is kept as
@@ -187,12 +189,19 @@ class Run:
         write(contents_of_run(self), path)
 
     @staticmethod
-    def load(path) -> "Run":
+    def load(path: str | os.PathLike[str]) -> "Run":
         """The run that `save` wrote. `ValueError` in one line for a damaged or foreign file, or another version's."""
-        return loaded(path, "run", lambda contents: Run(**fields_of_run(contents)))
+        run: Run = loaded(path, "run", lambda contents: Run(**fields_of_run(contents)))
+        return run
 
     @staticmethod
-    def from_bag(path, namespace: str | None = None, *, body: Body | None = None, scene: Scene | None = None) -> "Run":
+    def from_bag(
+        path: str | os.PathLike[str],
+        namespace: str | None = None,
+        *,
+        body: Body | None = None,
+        scene: Scene | None = None,
+    ) -> "Run":
         """The run of the swimmer that a bag holds, from the topics of the dynamics node.
 
         namespace: the swimmer's; None: that of the only one. body, scene: those of the node; by default the body of the
@@ -202,21 +211,21 @@ class Run:
         """
         return Run(**fields_of_bag(path, namespace, body, scene))
 
-    def to_xarray(self):
+    def to_xarray(self) -> Any:
         """An `xarray.Dataset` of all arrays with dimensions and units. Its attributes are those of a file of `save`.
 
         `ImportError` without xarray.
         """
         return dataset_of(contents_of_run(self))
 
-    def to_dataframe(self):
+    def to_dataframe(self) -> Any:
         """A `pandas.DataFrame` by time: head, centre of mass, twist, and energies where there is a ledger.
 
         `ImportError` without pandas.
         """
         return frame_of(self)
 
-    def to_rerun(self, target, compare: "Run | None" = None, **settings) -> None:
+    def to_rerun(self, target: Any, compare: "Run | None" = None, **settings: Any) -> None:
         """Record the run to Rerun, as the visualiser shows a swimmer.
 
         target: a file (.rrd) or a `rerun.RecordingStream`. compare: another run, drawn over this one. settings: of the
@@ -271,10 +280,10 @@ def simulate(
     scene: Scene | None = None,
     accuracy: "str | float | Accuracy" = "standard",
     sample_period: float | None = None,
-    stations=51,
-    position=(0.0, 0.0, 0.0),
-    orientation=(0.0, 0.0, 0.0, 1.0),
-    twist=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+    stations: int | ArrayLike = 51,
+    position: ArrayLike = (0.0, 0.0, 0.0),
+    orientation: ArrayLike = (0.0, 0.0, 0.0, 1.0),
+    twist: ArrayLike = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
     load: bool = False,
     estimate: bool = True,
     most_evaluations: float = MOST_EVALUATIONS,
@@ -282,18 +291,26 @@ def simulate(
 ) -> Run:
     """Simulate `law` for `duration` [s], with samples every `sample_period` [s] from t = 0 on.
 
-    duration: "settled" for a whole number of periods until the gait has settled (`runs.settled_duration`), at most 100.
-    law: a `Law`, a `SampledLaw`, a function K(t, X) (`eel_gaits.sampled`), or a file (`eel_gaits.read_motion`).
-    sample_period: None for 0.05 s, or a 20th of the law's shortest period where that is less. The last
-    sample is at the last whole multiple of it: at 0.9 s for a duration of 1 s and a sample period of 0.3 s. stations:
-    number of equidistant stations, or their X (M,) [m]. position (3,) [m], orientation (4,) (x y z w), twist (6,)
-    ((Omega, V) in the head's axes): the head's initial state. load: compute the water's load along the body too.
-    The steps in time do not depend on the sampling. estimate: measure the error (`Run.error_estimate`); where it
-    exceeds the target, return a finer run, or warn if none is fine enough. False: the bare run. most_evaluations:
-    of the head's dynamics per simulated second; a law that needs more is refused, or stopped. progress(time, left):
-    called once a second with the simulation time reached [s] and the remaining wall time [s]; without it, a run longer
-    than a minute gives a warning. `ValueError` names what does not fit; `SimulationStopped` carries the samples so far
-    as `run`.
+    The steps in time do not depend on the sampling. `ValueError` names what does not fit. `SimulationStopped` carries
+    the samples so far as `run`.
+
+    Args:
+        law: a `Law`, a `SampledLaw`, a function K(t, X) (`eel_gaits.sampled`), or a file (`eel_gaits.read_motion`).
+        duration: [s], or "settled": a whole number of periods until the gait has settled (`runs.settled_duration`), at
+            most 100.
+        body, scene, accuracy: as in `Simulation`.
+        sample_period: [s]; None for 0.05 s, or a 20th of the law's shortest period where that is less. The last sample
+            is at the last whole multiple of it: at 0.9 s for a duration of 1 s and a sample period of 0.3 s.
+        stations: number of equidistant stations, or their X (M,) [m].
+        position: (3,) [m], of the head at the start.
+        orientation: (4,) x y z w, at the start.
+        twist: (6,) (Omega, V) [rad/s, m/s], in the head's axes, at the start.
+        load: whether to compute the water's load along the body too.
+        estimate: whether to measure the error (`Run.error_estimate`). Where it exceeds the target, a finer run is
+            returned, or a warning given if none is fine enough.
+        most_evaluations: of the head's dynamics per simulated second. A law that needs more is refused, or stopped.
+        progress: progress(time, left) is called once a second with the simulation time reached [s] and the remaining
+            wall time [s]. Without it, a run longer than a minute gives a warning.
     """
     setup = SimulationSetup.of(
         body=body,
@@ -374,7 +391,7 @@ class SwimRequest(NamedTuple):
     wrench: bool
     load: bool
 
-    def changed(self, **changes) -> "SwimRequest":
+    def changed(self, **changes: Any) -> "SwimRequest":
         """The same with other fields of its `setup`."""
         return self._replace(setup=replace(self.setup, **changes))
 
@@ -383,7 +400,12 @@ class SwimRequest(NamedTuple):
         setup = self.setup if accuracy is None else replace(self.setup, accuracy=accuracy)
         return Simulation(**setup.arguments, law=self.law)
 
-    def swim(self, simulation: Simulation, look=None, out: Observations | None = None) -> Swim:
+    def swim(
+        self,
+        simulation: Simulation,
+        look: Callable[[float], None] | None = None,
+        out: Observations | None = None,
+    ) -> Swim:
         """Swim it with a `simulation` of its own, at its start. look, out: as in `Simulation.record`."""
         out, works, done, stopped = simulation.record(self.times, self.wrench, self.load, look, out)
         start, (steps, _, evaluations) = simulation.energy_at_start, simulation.evaluations
@@ -404,7 +426,17 @@ class SwimRequest(NamedTuple):
         return Swim(run, out, works, start, stopped)
 
 
-def run_of(setup, out: Observations, *, works, start: float, time, wrench: bool, load: bool, **others) -> Run:
+def run_of(
+    setup: Any,
+    out: Observations,
+    *,
+    works: np.ndarray,
+    start: float,
+    time: np.ndarray,
+    wrench: bool,
+    load: bool,
+    **others: Any,
+) -> Run:
     """The run of the samples in `out` that were reached.
 
     setup: has the body, the scene and the stations x. works (T, 4) [J], and time (T,) [s]: of those samples. start [J]:
@@ -412,7 +444,9 @@ def run_of(setup, out: Observations, *, works, start: float, time, wrench: bool,
     other fields of the run.
     """
     absent = {*(() if wrench else WRENCH), *(() if load else LOAD)}
-    observed = {name: None if name in absent else array[: len(time)] for name, array in out.arrays().items()}
+    observed: dict[str, Any] = {
+        name: None if name in absent else array[: len(time)] for name, array in out.arrays().items()
+    }
     energies, powers, closure = (observed.pop(name) for name in ("energies", "powers", "closure"))
     return Run(
         body=setup.body,

@@ -37,7 +37,7 @@ class EnergyLedger:
     nose_work: Annotated[np.ndarray, "J", "work of the load on the nose since the start"]
     drag_work: Annotated[np.ndarray, "J", "work of the drag along the body since the start"]
 
-    def __eq__(self, other) -> bool:
+    def __eq__(self, other: object) -> bool:
         return same_fields(self, other)
 
     __hash__ = None  # type: ignore[assignment]  # typeshed has `object` hashable; this holds arrays
@@ -46,7 +46,7 @@ class EnergyLedger:
         shape = np.shape(self.residual)
         return f"EnergyLedger({'an instant' if not shape else ' x '.join(map(str, shape)) + ' samples'})"
 
-    def __getitem__(self, name: str):
+    def __getitem__(self, name: str) -> Any:
         if name not in self.keys():
             raise KeyError(name)
         return getattr(self, name)

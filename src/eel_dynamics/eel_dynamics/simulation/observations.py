@@ -97,8 +97,10 @@ class Observations:
         """Those of one of several swimmers."""
         return Observations(self.whole[swimmer], self.places)
 
-    def __eq__(self, other) -> bool:
-        return type(self) is type(other) and self.places == other.places and same(self.whole, other.whole)
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Observations) or type(self) is not type(other):
+            return False
+        return self.places == other.places and same(self.whole, other.whole)
 
     __hash__ = object.__hash__
 
@@ -132,7 +134,7 @@ class Snapshot(Observations):
         self._energy_at_start = 0.0
         self._energy: EnergyLedger | None = None
 
-    def keep_ledger(self, works: np.ndarray, energy_at_start: float):
+    def keep_ledger(self, works: np.ndarray, energy_at_start: float) -> None:
         """Have a ledger, from the `works` (4,) [J] since the start and the energy [J] there."""
         self._works, self._energy_at_start = works, energy_at_start
 

@@ -2,11 +2,13 @@
 """The water's wrench on the body for a prescribed motion of the head: eq. (61) with the resistive and nose loads."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from eel_base.quantity import checked_instance, checked_row, is_finite
 from eel_base.wording import shown
 from eel_gaits.laws.law import Law
+from numpy.typing import ArrayLike
 
 import eel_core
 from eel_dynamics.accuracy.accuracy import Accuracy
@@ -33,7 +35,7 @@ class HydrodynamicWrench:
     @property
     def total(self) -> np.ndarray:
         """(6,) sum of the parts."""
-        return self.inertia + self.wake + self.resistive + self.nose
+        return np.asarray(self.inertia + self.wake + self.resistive + self.nose)
 
     @property
     def torque(self) -> np.ndarray:
@@ -45,12 +47,12 @@ class HydrodynamicWrench:
         """(3,) N, of the sum."""
         return self.total[3:]
 
-    def __array__(self, dtype=None, copy=None):
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray:
         return np.array(self.total, dtype=dtype)
 
 
 def hydrodynamic_wrench(
-    body: Body, law: Law, time: float, twist, twist_rate, scene: Scene | None = None
+    body: Body, law: Law, time: float, twist: ArrayLike, twist_rate: ArrayLike, scene: Scene | None = None
 ) -> HydrodynamicWrench:
     """The water's wrench on `body`, bent by `law` at `time` [s] (eq. 61 with the resistive and nose loads).
 

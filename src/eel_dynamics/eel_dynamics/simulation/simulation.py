@@ -14,6 +14,7 @@ from eel_gaits.gaits.diving import falling
 from eel_gaits.gaits.swimming import straight
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
+from numpy.typing import ArrayLike
 
 import eel_core
 from eel_dynamics.accuracy.accuracy import Accuracy, within_budget
@@ -23,6 +24,7 @@ from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.curvature.curvature_samples import CurvatureSample, check_points
 from eel_dynamics.curvature.law_follower import DEFAULT_TRANSITION
 from eel_dynamics.model.body import Body
+from eel_dynamics.model.grid import Grid
 from eel_dynamics.model.initial_state import InitialState
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.simulation.discretisation import Discretisation
@@ -58,15 +60,15 @@ class Simulation:
         body: Body | None = None,
         scene: Scene | None = None,
         accuracy: "str | float | Accuracy" = "standard",
-        stations=51,
-        position=(0.0, 0.0, 0.0),
-        orientation=(0.0, 0.0, 0.0, 1.0),
-        twist=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+        stations: int | ArrayLike = 51,
+        position: ArrayLike = (0.0, 0.0, 0.0),
+        orientation: ArrayLike = (0.0, 0.0, 0.0, 1.0),
+        twist: ArrayLike = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
         default_transition: float = DEFAULT_TRANSITION,
         law: Law | SampledLaw | None = None,
         most_evaluations: float = MOST_EVALUATIONS,
         measure_error: bool = False,
-    ):
+    ) -> None:
         setup = SimulationSetup.of(
             body=body,
             scene=scene,
@@ -101,8 +103,8 @@ class Simulation:
         return self._setup.settings
 
     @property
-    def grid(self):
-        """The nodes along the body (`model.grid.Grid`)."""
+    def grid(self) -> Grid:
+        """The nodes along the body."""
         return self.discretisation.grid
 
     @property
@@ -137,7 +139,7 @@ class Simulation:
         """Whether a controller's samples have run out, so that the shape comes to rest."""
         return self._march.follower.resting
 
-    def adopt(self, law: Law | SampledLaw, origin: float = 0.0, transition: float | None = None):
+    def adopt(self, law: Law | SampledLaw, origin: float = 0.0, transition: float | None = None) -> None:
         """Follow `law` from the present time on. `origin` [s] is the simulation time of its own t = 0.
 
         The first law, before the start, needs no blend. A later law takes over during `transition` [s], or during its
@@ -160,7 +162,18 @@ class Simulation:
                 meter.begin_with(march, law, origin)
         self.ready = True
 
-    def add_samples(self, time, x, pitch, pitch_rate, pitch_accel, yaw, yaw_rate, yaw_accel, waves=None):
+    def add_samples(
+        self,
+        time: float,
+        x: np.ndarray,
+        pitch: ArrayLike,
+        pitch_rate: ArrayLike,
+        pitch_accel: ArrayLike,
+        yaw: ArrayLike,
+        yaw_rate: ArrayLike,
+        yaw_accel: ArrayLike,
+        waves: float | None = None,
+    ) -> None:
         """Add a controller's curvature at the instant `time` [s], which lies ahead; before the start it may be 0.
 
         The rows hold the curvature [rad/m], its rate [rad/m/s] and its acceleration [rad/m/s^2] at the points `x` (n,)
@@ -217,7 +230,7 @@ class Simulation:
             self._meter.advanced(self._march, interrupted)
         return reached
 
-    def set_state(self, position, orientation, twist):
+    def set_state(self, position: ArrayLike, orientation: ArrayLike, twist: ArrayLike) -> None:
         """Put the head elsewhere, with another twist, at the present time. The arguments are those of `Simulation`.
 
         The shape and its motion go on. The momentum becomes that of the twist. The ledger leaves out the jump of the
@@ -227,7 +240,7 @@ class Simulation:
         if self._meter is not None:
             self._meter.begin_again(self._march)
 
-    def reset(self):
+    def reset(self) -> None:
         """Reset state and time to the start. The last law stays, with its own t = 0 at 0.
 
         `ValueError` for a law that cannot begin from the initial state; the simulation then stays as it is.

@@ -161,7 +161,7 @@ def checked_stations(stations, length: float) -> np.ndarray:
     return np.minimum(x, length)
 
 
-def check_planar_law(law):
+def check_planar_law(law: Law | SampledLaw) -> None:
     """`ValueError` unless `law` bends the body in the plane."""
     if not law.in_plane:
         raise ValueError(f"law {shown(law.name)} has a pitch term: a planar scene cannot bend out of its plane")

@@ -22,7 +22,7 @@ class SimulationStopped(WorkStopped):
         self.diverged = False  # the steps were too long
         self.run: Any  # the Run up to there, where one was asked for
 
-    def __reduce__(self):
+    def __reduce__(self) -> tuple[Any, ...]:
         return SimulationStopped, (self.time, self.quantity, self.value, self.hint), self.__dict__
 
 

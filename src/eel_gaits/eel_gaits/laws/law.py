@@ -15,6 +15,7 @@ K3 > 0 bends it towards +2. X runs from 0 at the nose to the body's length at th
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from eel_base.quantity import number, numbers
@@ -42,7 +43,7 @@ class Law:
     name: str
     transition: float
 
-    def __init__(self, *terms, name="law", transition=0.0):
+    def __init__(self, *terms: Any, name: str = "law", transition: float = 0.0) -> None:
         if len(terms) == 1 and isinstance(terms[0], (list, tuple)):
             (terms,) = terms
         if len(terms) > MAXIMUM_TERMS:

@@ -59,4 +59,5 @@ def inertias(body: Body, density: float, fluid_density: float) -> tuple[np.ndarr
     sections = sections_on(body, Scene(density=density, fluid_density=fluid_density), grid)
     none = np.zeros_like(sections.mass)
     dry = sections._replace(added2=none, added3=none, inertia1=sections.inertia1 - sections.added_roll)
-    return tuple(straight_inertia(grid, each, 0.0, body.length) for each in (dry, sections.of_water()))
+    body_alone, added = (straight_inertia(grid, each, 0.0, body.length) for each in (dry, sections.of_water()))
+    return body_alone, added

@@ -5,6 +5,7 @@ xarray and pandas are needed for theirs alone.
 """
 
 import csv
+from collections.abc import Iterable
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -57,12 +58,12 @@ def write_columns(columns: dict, path: Path):
         writer.writerows(zip(*(np.asarray(values).tolist() for values in columns.values()), strict=True))
 
 
-def frame_of(run):
+def frame_of(run: Any) -> Any:
     """A `pandas.DataFrame` of `columns_of` a run, by time."""
     return needed("pandas", "to_dataframe").DataFrame(columns_of(run)).set_index("time")
 
 
-def frame_of_all(runs):
+def frame_of_all(runs: Iterable[Any]) -> Any:
     """The frames of several runs, one below the other, by swimmer and time."""
     pandas = needed("pandas", "to_dataframe")
     return pandas.concat({index: frame_of(run) for index, run in enumerate(runs)}, names=["swimmer"])
