@@ -6,6 +6,7 @@ sends all, and must be called at the end. Every row has its own time, so the ord
 """
 
 import time
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
@@ -23,7 +24,7 @@ class BatchedStream:
 
     def __init__(self, stream: rr.RecordingStream, *, tick: float) -> None:
         self._stream, self._tick = stream, tick
-        self._rows: dict[tuple, tuple[list[int], list[tuple]]] = {}
+        self._rows: dict[tuple[Any, ...], tuple[list[int], list[tuple[np.ndarray, ...]]]] = {}
         self._sent = time.monotonic()
         self._ticks = 0
 
@@ -36,7 +37,21 @@ class BatchedStream:
         self._stream.set_time(TIMELINE, duration=np.timedelta64(stamp, "ns"))
         self._stream.log(path, archetype)
 
-    def add_row(self, stamp: int, path: str, kind: type, **components: np.ndarray) -> None:
+    def log_line_style(self, path: str, colour: Any, width: ArrayLike) -> None:
+        """Log colour (or colours) and width (or widths) [pixels] of the lines at `path`, valid at all times."""
+        widths: Any = [rr.Radius.ui_points(each) for each in np.atleast_1d(width)]
+        shades = [colour] if isinstance(colour, tuple) else colour
+        self.log_static(path, rr.LineStrips3D.from_fields(colors=shades, radii=widths))
+
+    def add_lines(self, stamp: int, path: str, strips: np.ndarray) -> None:
+        """Add a row of lines `strips` (n, points, 3) [m] at `stamp` [ns], in single precision."""
+        self.add_row(stamp, path, rr.LineStrips3D, strips=strips.astype(np.float32))
+
+    def add_pose(self, stamp: int, path: str, position: np.ndarray, orientation: np.ndarray) -> None:
+        """Add a row with the frame at `position` (3,) [m], `orientation` (4,), at `stamp` [ns]."""
+        self.add_row(stamp, path, rr.Transform3D, translation=position[None], quaternion=orientation[None])
+
+    def add_row(self, stamp: int, path: str, kind: Any, **components: np.ndarray) -> None:
         """Add a row of the archetype `kind` at `stamp` [ns]; the first axis of each component counts its instances."""
         self._add(stamp, (path, kind, *components), components)
 
@@ -62,14 +77,14 @@ class BatchedStream:
         for key in self._rows:
             self._send(key)
 
-    def _add(self, stamp: int, key: tuple, components: dict[str, np.ndarray]) -> None:
+    def _add(self, stamp: int, key: tuple[Any, ...], components: dict[str, np.ndarray]) -> None:
         stamps, rows = self._rows.setdefault(key, ([], []))
         stamps.append(stamp)
         rows.append(tuple(components.values()))
         if len(stamps) >= MAXIMUM_ROWS:
             self._send(key)
 
-    def _send(self, key: tuple) -> None:
+    def _send(self, key: tuple[Any, ...]) -> None:
         stamps, rows = self._rows[key]
         if not stamps:
             return
@@ -93,7 +108,7 @@ def _listed(arrays: tuple[np.ndarray, ...], lengths: list[int]) -> pa.ListArray:
     return pa.ListArray.from_arrays(np.cumsum([0, *lengths], dtype=np.int32), np.concatenate(arrays))
 
 
-def _joined(arrays: tuple[np.ndarray, ...]):
+def _joined(arrays: tuple[np.ndarray, ...]) -> np.ndarray | list[np.ndarray]:
     """The arrays concatenated; strips of different lengths as a list."""
     if len({array.shape[1:] for array in arrays}) == 1:
         return np.concatenate(arrays)

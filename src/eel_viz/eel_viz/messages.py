@@ -8,6 +8,7 @@ field. Frames and units are those of the message.
 from dataclasses import dataclass
 from functools import lru_cache
 from math import isfinite
+from typing import Any
 
 import numpy as np
 from eel_base.wording import shown
@@ -110,21 +111,26 @@ CURVATURE_FIELDS = ("pitch", "pitch_rate", "yaw", "yaw_rate")
 LOAD_FIELDS = ("force_1", "force_2", "force_3", "resistive_1", "resistive_2", "resistive_3")
 
 
-def stamp_of(message) -> int:
+def same(x: np.ndarray, other: np.ndarray) -> bool:
+    """Whether two arrays of stations, (M,) [m], are equal; fast if they are the same object."""
+    return x is other or np.array_equal(x, other)
+
+
+def stamp_of(message: Any) -> int:
     """header.stamp [ns], 0 or more."""
     stamp = message.header.stamp
     if stamp.sec < 0 or stamp.nanosec >= 1_000_000_000:
         raise BadMessage("header.stamp", f"must be >= 0 s with nanosec < 1e9, got {stamp.sec} s and {stamp.nanosec} ns")
-    return stamp.sec * 1_000_000_000 + stamp.nanosec
+    return int(stamp.sec) * 1_000_000_000 + int(stamp.nanosec)
 
 
-def is_at_start(message) -> bool:
+def is_at_start(message: Any) -> bool:
     """Whether header.stamp is 0; False for a message without it."""
     stamp = getattr(getattr(message, "header", None), "stamp", None)
     return stamp is not None and stamp.sec == 0 and stamp.nanosec == 0
 
 
-def read_pose(pose) -> Pose:
+def read_pose(pose: Any) -> Pose:
     """From geometry_msgs/Pose."""
     p, q = pose.position, pose.orientation
     orientation = np.array([q.x, q.y, q.z, q.w])
@@ -132,12 +138,12 @@ def read_pose(pose) -> Pose:
     return Pose(position=_vector("position", p), orientation=orientation)
 
 
-def read_twist(twist) -> Twist:
+def read_twist(twist: Any) -> Twist:
     """From geometry_msgs/Twist."""
     return Twist(linear=_vector("linear", twist.linear), angular=_vector("angular", twist.angular))
 
 
-def read_backbone(message) -> Backbone:
+def read_backbone(message: Any) -> Backbone:
     """From eel_msgs/Backbone."""
     x = _stations(message.x)
     position = _finite("position", _sized("position", message.position, 3 * len(x))).reshape(-1, 3)
@@ -146,7 +152,7 @@ def read_backbone(message) -> Backbone:
     return Backbone(x=x, position=position, orientation=orientation)
 
 
-def read_body(message) -> Body:
+def read_body(message: Any) -> Body:
     """From eel_msgs/BodyGeometry."""
     x = _stations(message.x)
     half_width, half_height = (
@@ -161,23 +167,23 @@ def read_body(message) -> Body:
     return Body(length=message.length, mass=message.mass, x=x, half_width=half_width, half_height=half_height)
 
 
-def read_path(message) -> np.ndarray:
+def read_path(message: Any) -> np.ndarray:
     """From nav_msgs/Path: the positions (n, 3) [m]."""
     points = [(each.pose.position.x, each.pose.position.y, each.pose.position.z) for each in message.poses]
     return _finite("poses", np.array(points, dtype=float).reshape(-1, 3))
 
 
-def read_wrench(message) -> Profiles:
+def read_wrench(message: Any) -> Profiles:
     """From eel_msgs/InternalWrench: torques [N m], forces [N]."""
     return _profiles(message, WRENCH_FIELDS)
 
 
-def read_curvature(message) -> Profiles:
+def read_curvature(message: Any) -> Profiles:
     """From eel_msgs/Curvature [rad/m], [rad/(m s)]."""
     return _profiles(message, CURVATURE_FIELDS)
 
 
-def read_load(message) -> Load:
+def read_load(message: Any) -> Load:
     """From eel_msgs/HydrodynamicLoad."""
     wake = getattr(message, "wake_momentum_rate", None)
     return Load(
@@ -188,7 +194,7 @@ def read_load(message) -> Load:
     )
 
 
-def read_energy(message) -> dict[str, float]:
+def read_energy(message: Any) -> dict[str, float]:
     """From eel_msgs/EnergyLedger: one number per field [J], [W]."""
     values = {name: getattr(message, name) for name in ENERGY_FIELDS}
     for name, value in values.items():
@@ -197,7 +203,7 @@ def read_energy(message) -> dict[str, float]:
     return values
 
 
-def read_diagnostics(message) -> list[Status]:
+def read_diagnostics(message: Any) -> list[Status]:
     """From diagnostic_msgs/DiagnosticArray."""
     return [
         Status(
@@ -210,7 +216,7 @@ def read_diagnostics(message) -> list[Status]:
     ]
 
 
-def _profiles(message, names: tuple[str, ...]) -> Profiles:
+def _profiles(message: Any, names: tuple[str, ...]) -> Profiles:
     x = _stations(message.x)
     values = {name: _sized(name, getattr(message, name), len(x)) for name in names}
     if not np.isfinite(np.array([*values.values()])).all():
@@ -219,7 +225,7 @@ def _profiles(message, names: tuple[str, ...]) -> Profiles:
     return Profiles(x=x, values=values)
 
 
-def _stations(values) -> np.ndarray:
+def _stations(values: Any) -> np.ndarray:
     if len(values) > MOST_STATIONS:
         raise BadMessage("x", f"must have at most {MOST_STATIONS} stations, got {len(values)}")
     return _checked_stations(np.asarray(values, dtype=float).tobytes())
@@ -235,7 +241,7 @@ def _checked_stations(content: bytes) -> np.ndarray:
     return x
 
 
-def _sized(name: str, values, size: int) -> np.ndarray:
+def _sized(name: str, values: Any, size: int) -> np.ndarray:
     array = np.asarray(values, dtype=float)
     if array.shape != (size,):
         raise BadMessage(name, f"must have {size} numbers to fit x, got {array.size}")
@@ -248,7 +254,7 @@ def _finite(name: str, array: np.ndarray) -> np.ndarray:
     return array
 
 
-def _vector(name: str, vector) -> np.ndarray:
+def _vector(name: str, vector: Any) -> np.ndarray:
     values = vector.x, vector.y, vector.z
     array = np.array(values)
     return array if all(map(isfinite, values)) else _finite(name, array)

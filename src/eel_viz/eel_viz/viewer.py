@@ -15,9 +15,12 @@ import tempfile
 import threading
 import time
 from collections.abc import Iterator
-from typing import IO
+from typing import IO, TYPE_CHECKING
 
 from eel_base.work_stopped import WorkStopped
+
+if TYPE_CHECKING:
+    from rerun.experimental import ViewerClient
 
 # Makes Linux end the process when the thread that started it ends, even by SIGKILL (PR_SET_PDEATHSIG, SIGTERM).
 DIE_WITH_PARENT = "import ctypes, os, sys; ctypes.CDLL(None).prctl(1, 15); os.execv(sys.argv[1], sys.argv[1:])"
@@ -31,7 +34,7 @@ class CannotRender(WorkStopped):
 
 
 @contextlib.contextmanager
-def viewer(size: tuple[int, int] = (1920, 1080)) -> Iterator:
+def viewer(size: tuple[int, int] = (1920, 1080)) -> Iterator["ViewerClient"]:
     """A `rerun.experimental.ViewerClient` of a headless viewer of `size` [pixels], which ends with the context.
 
     `CannotRender` if it does not start.
@@ -70,7 +73,7 @@ def open_window(what: str) -> None:
     threading.Thread(target=process.wait, daemon=True).start()  # leaves no zombie
 
 
-def serve_to_browsers(address: str, here: str, port: int, uri: str) -> subprocess.Popen:
+def serve_to_browsers(address: str, here: str, port: int, uri: str) -> subprocess.Popen[bytes]:
     """Serve the web viewer on `port` of `address`, for the data at `uri`; the process ends with this one.
 
     `here`: the address that this machine reaches it at. `rerun.serve_web_viewer` would listen on every network.
@@ -90,7 +93,7 @@ def serve_to_browsers(address: str, here: str, port: int, uri: str) -> subproces
     return process
 
 
-def end_process(process: subprocess.Popen) -> None:
+def end_process(process: subprocess.Popen[bytes]) -> None:
     """End a viewer, and wait until it has ended."""
     process.terminate()
     try:
@@ -117,7 +120,7 @@ def free_port() -> int:
     """A port of this machine that no process listens on."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
+        return int(probe.getsockname()[1])
 
 
 def listening(port: int, host: str = "127.0.0.1") -> bool:
@@ -128,7 +131,7 @@ def listening(port: int, host: str = "127.0.0.1") -> bool:
 
 
 def _await_listening(
-    process: subprocess.Popen, port: int, output: IO[bytes], *, host: str = "127.0.0.1", remedy: str = DRIVER
+    process: subprocess.Popen[bytes], port: int, output: IO[bytes], *, host: str = "127.0.0.1", remedy: str = DRIVER
 ) -> None:
     limit = time.monotonic() + START_LIMIT
     while not listening(port, host):
@@ -139,7 +142,7 @@ def _await_listening(
         time.sleep(0.05)
 
 
-def _ended(process: subprocess.Popen, output: IO[bytes], remedy: str = DRIVER) -> CannotRender:
+def _ended(process: subprocess.Popen[bytes], output: IO[bytes], remedy: str = DRIVER) -> CannotRender:
     """The error for a viewer that has ended by itself, with the remedy."""
     output.seek(0)
     lines = output.read().decode(errors="replace").splitlines()

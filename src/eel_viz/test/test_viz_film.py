@@ -7,10 +7,9 @@ import stat
 
 import numpy as np
 import pytest
-from eel_viz.pictures.drawing import drawn
+from eel_viz.pictures.drawing import SideBySide, drawn
 from eel_viz.pictures.film import film
 from eel_viz.pictures.render import main, times
-from eel_viz.pictures.side_by_side import SideBySide
 from made_up_recording import record
 from PIL import Image
 

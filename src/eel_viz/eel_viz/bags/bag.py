@@ -128,7 +128,9 @@ class Bag:
             )
         for each in files:
             try:
-                reader: Reader | RecordReader = self._stack.enter_context(_reader(each, self._stack))
+                reader = _reader(each, self._stack)
+                reader.__enter__()
+                self._stack.callback(reader.__exit__, None, None, None)
                 self._readers.append(reader)
             except Exception as error:
                 self.damage = f"{each.name}: {_line(error)}"

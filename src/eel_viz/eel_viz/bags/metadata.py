@@ -2,6 +2,7 @@
 """Checks the metadata.yaml of a bag before rosbags reads it, whose parser has no bounds."""
 
 import pathlib
+from typing import Any
 
 from eel_base.files.input_file import InputFile, reading
 from eel_base.files.yaml_tree import MOST_BYTES, from_yaml, read_yaml
@@ -31,7 +32,7 @@ def check_metadata(folder: pathlib.Path) -> None:
             InputFile(folder / name).close()
 
 
-def _count(tree) -> int:
+def _count(tree: Any) -> int:
     """The number of values in a tree of mappings and lists."""
     inner = tree.values() if isinstance(tree, dict) else tree if isinstance(tree, list) else ()
     return 1 + sum(map(_count, inner))

@@ -15,12 +15,16 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
+from typing import TYPE_CHECKING, Any
 
 from eel_base.wording import shown
 from PIL import Image
 
 from eel_viz.entities import TIMELINE
 from eel_viz.viewer import CannotRender, native_viewer, viewer
+
+if TYPE_CHECKING:
+    from rerun.experimental import ViewerClient
 
 LOADING_LIMIT = 60.0  # s until the recording must be open
 LOADED_CHECKS = 5  # checks in a row of a loaded recording, after which no more timelines are expected
@@ -39,7 +43,7 @@ class View:
 
     name: str
     kind: str
-    complaints: list
+    complaints: list[Any]
     png: Callable[[], bytes]
 
 
@@ -49,7 +53,7 @@ class Drawing:
     size: of bare pictures [pixels].
     """
 
-    def __init__(self, client, path: pathlib.Path, size: tuple[int, int]) -> None:
+    def __init__(self, client: "ViewerClient", path: pathlib.Path, size: tuple[int, int]) -> None:
         self._client, self._path, self._size = client, path, size
         self._started = time.monotonic()
         self.start, self.end = self._load()
@@ -111,7 +115,8 @@ class Drawing:
         return sorted(found, key=lambda view: view.kind != "3D")
 
     def _screenshot(self) -> bytes:
-        return self._client.take_screenshot(self._view)
+        png: bytes = self._client.take_screenshot(self._view)
+        return png
 
     def _load(self) -> tuple[float, float]:
         self._client.open([str(self._path)])
@@ -120,7 +125,9 @@ class Drawing:
             state = self._client.get_state()
             times = [line for one in state.recordings for line in one.timelines if line.name == TIMELINE]
             if times and not state.loading:
-                return times[0].start / 1e9, times[0].end / 1e9
+                start, end = times[0].start, times[0].end
+                if start is not None and end is not None:
+                    return start / 1e9, end / 1e9
             loaded = (
                 bool(state.recordings) and not state.loading
             )  # at first there is no recording, and nothing is loading
@@ -153,7 +160,7 @@ def _cropped(png: bytes, size: tuple[int, int]) -> bytes:
     return kept.getvalue()
 
 
-def _views_in(boxes: dict[str, dict], path: str) -> list[str]:
+def _views_in(boxes: dict[str, dict[str, Any]], path: str) -> list[str]:
     """The ids of the views in the container at `path`; of tabs within it, those of the first."""
     kind, _, identifier = path.strip("/").partition("/")
     if kind == "view":
@@ -163,6 +170,31 @@ def _views_in(boxes: dict[str, dict], path: str) -> list[str]:
     if box["container_kind"] == "Tabs":
         contents = contents[:1]
     return [view for each in contents for view in _views_in(boxes, each)]
+
+
+class SideBySide:
+    """Two drawings as one; `start` and `end` [s] bound the simulation times that both have.
+
+    `ValueError` where they have none in common.
+    """
+
+    def __init__(self, left: Drawing, right: Drawing) -> None:
+        self._both = left, right
+        self.start, self.end = max(left.start, right.start), min(left.end, right.end)
+        if self.start > self.end:
+            raise ValueError(
+                "recordings beside one another must have times in common, got "
+                f"{left.start:g} to {left.end:g} s and {right.start:g} to {right.end:g} s"
+            )
+
+    def png(self, at: float) -> bytes:
+        """Both pictures at simulation time `at` [s] as one PNG, twice as wide as either."""
+        left, right = (Image.open(io.BytesIO(each.png(at))).convert("RGB") for each in self._both)
+        joined, file = Image.new("RGB", (left.width + right.width, left.height)), io.BytesIO()
+        joined.paste(left, (0, 0))
+        joined.paste(right, (left.width, 0))
+        joined.save(file, format="PNG")
+        return file.getvalue()
 
 
 @contextlib.contextmanager
@@ -183,6 +215,16 @@ def drawn(
         if blueprint or bare:
             drawing.arrange(blueprint or ALONE, bare=bare)
         yield drawing
+
+
+@contextlib.contextmanager
+def drawn_beside(
+    recording: str | os.PathLike[str], beside: str | os.PathLike[str] | None, **settings: Any
+) -> Iterator[Drawing | SideBySide]:
+    """Open a `Drawing` of `recording`, with that of `beside` to its right; None: alone. settings: those of `drawn`."""
+    with contextlib.ExitStack() as stack:
+        drawing = stack.enter_context(drawn(recording, **settings))
+        yield drawing if beside is None else SideBySide(drawing, stack.enter_context(drawn(beside, **settings)))
 
 
 def check_recording(path: pathlib.Path) -> None:

@@ -10,6 +10,7 @@ from typing import Any
 
 from eel_base.files.output_file import replacing
 from eel_base.wording import shown
+from PIL import Image
 
 ANIMATIONS = (".gif", ".webp")
 FRAME = "frame_%05d.png"
@@ -67,9 +68,7 @@ def _encode(program: str, pictures: pathlib.Path, count: int, path: pathlib.Path
 
 
 def _animate(pictures: list[pathlib.Path], path: pathlib.Path, fps: float, quality: int) -> None:
-    from PIL import Image
-
-    def picture(name):
+    def picture(name: pathlib.Path) -> Image.Image:
         with Image.open(name) as image:
             return image.convert("RGB")
 

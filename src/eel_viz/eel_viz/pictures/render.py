@@ -22,9 +22,8 @@ from eel_base.command.run_command import run_command
 from eel_base.files.output_file import NotWritten, check_output, replacing, written_as
 from eel_base.wording import shown
 
-from eel_viz.pictures.drawing import SIZE, Drawing, check_recording
+from eel_viz.pictures.drawing import SIZE, Drawing, SideBySide, check_recording, drawn_beside
 from eel_viz.pictures.film import ANIMATIONS, FILMS, FRAME, QUALITY, check_quality, ffmpeg, film
-from eel_viz.pictures.side_by_side import SideBySide, drawn_beside
 from eel_viz.viewer import CannotRender
 from eel_viz.without_pandas import keep_pandas_out
 

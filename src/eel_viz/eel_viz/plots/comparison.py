@@ -5,9 +5,7 @@ The other swimmer is drawn as hoops around this one, so that both can be seen wh
 run's value minus the other's, at this run's stamps and stations (see `pairs`).
 """
 
-from abc import ABC, abstractmethod
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 import rerun as rr
@@ -15,7 +13,7 @@ import rerun as rr
 from eel_viz import entities
 from eel_viz.batched_stream import BatchedStream
 from eel_viz.messages import Backbone, Body, Pose, Profiles, Status, Twist
-from eel_viz.plots.pairs import Pairs
+from eel_viz.plots.pairs import Pairs, Sample
 from eel_viz.plots.profile_plot import ProfilePlot
 from eel_viz.plots.readable import number, quantity
 from eel_viz.plots.state_text import Summary
@@ -26,23 +24,23 @@ from eel_viz.scene3d.swimmer_scene import log_frame
 from eel_viz.scene3d.water import WaterBox
 
 HOOPS, SIDES = 24, 16
+FIRST_HOOP = 3  # those before it, at the nose, are too dense
 SUMMARY_PERIOD = 200_000_000  # ns
 
 Due = Callable[[str, int, int], bool]
 
 
 class Comparison:
-    """`this` and `other` log the messages of the two runs, by the methods of `Loggers`.
+    """`this` and `other` take the messages of the two runs, by the methods of `Loggers`.
 
     names: of this run and the other. limit: of the torque plot [N m]. due(what, stamp, period): whether `what` is to be
     logged at `stamp` [ns]. drawings: the period of drawings [ns].
     """
 
-    def __init__(self, stream: BatchedStream, *, names: tuple[str, str], limit: float, due: Due, drawings: int):
-        self._stream, self._due, self._drawings, self.names = stream, due, drawings, names
+    def __init__(self, stream: BatchedStream, *, names: tuple[str, str], limit: float, due: Due, drawings: int) -> None:
+        self._stream, self._due, self._drawings, self._names = stream, due, drawings, names
         self._heads, self._torques = Pairs(), Pairs()
-        self.this = ThisSide(self, lambda stamp: due("both", stamp, drawings))
-        self.other = OtherSide(self, stream, lambda stamp: due("other", stamp, drawings))
+        self.this, self.other = Side(self), OtherSide(self, stream)
         self._both = ProfilePlot(
             stream,
             entities.COMPARED_TORQUE,
@@ -53,13 +51,9 @@ class Comparison:
             widths=(2.6, 1.2),
         )
         self._difference = ProfilePlot(
-            stream,
-            entities.TORQUE_DIFFERENCE,
-            names=("C1", "C2", "C3"),
-            unit="N m",
-            limit=0.0,
+            stream, entities.TORQUE_DIFFERENCE, names=("C1", "C2", "C3"), unit="N m", limit=0.0
         )
-        self._farthest = self._worst = self._greatest = 0.0
+        self._farthest = self._worst = self._greatest = 0.0  # m, N m, N m
         self._frame, self._water = FollowFrame(), WaterBox(stream, entities.BOTH_WATER)
         for path, name, colour in (
             (entities.OTHER_SPEED, f"{names[1]} [m/s]", colours.AMBER),
@@ -68,31 +62,29 @@ class Comparison:
         ):
             stream.log_static(path, rr.SeriesLines(names=[name], colors=[colour], widths=[1.5]))
 
-    def heads(self, pairs: list[tuple]) -> None:
-        """Log the distance between the two heads for each complete pair of positions, (3,) [m]."""
-        for stamp, _, this, other in pairs:
-            self.this.summary.add_position(stamp, this)
-            self.other.summary.add_position(stamp, other)
-            if self._due("compared", stamp, SUMMARY_PERIOD):
-                self._stream.log(stamp, entities.COMPARE_TEXT, rr.TextDocument(self.text(), media_type="text/markdown"))
-            distance = float(np.linalg.norm(this - other))
+    def is_due(self, what: str, stamp: int) -> bool:
+        """Whether the drawing `what` is due at `stamp` [ns]."""
+        return self._due(what, stamp, self._drawings)
+
+    def add_head(self, side: "Side", stamp: int, position: np.ndarray) -> None:
+        """Take a head's position (3,) [m]; log the distance between the two heads for each complete pair."""
+        for pair in self._heads.add(Sample(stamp, position), of_other=side is self.other):
+            self.this.summary.add_position(pair.stamp, pair.this)
+            self.other.summary.add_position(pair.stamp, pair.other)
+            if self._due("compared", pair.stamp, SUMMARY_PERIOD):
+                text = rr.TextDocument(self._text(), media_type="text/markdown")
+                self._stream.log(pair.stamp, entities.COMPARE_TEXT, text)
+            distance = float(np.linalg.norm(pair.this - pair.other))
             self._farthest = max(self._farthest, distance)
-            self._stream.add_scalars(stamp, entities.DISTANCE, [distance])
+            self._stream.add_scalars(pair.stamp, entities.DISTANCE, [distance])
 
-    def move_camera(self, stamp: int) -> None:
-        """Keep both swimmers in the picture, at `stamp` [ns]; the other at its last place."""
-        last = [side.line for side in (self.this, self.other) if side.line is not None]
-        positions = np.concatenate([backbone.position for backbone in last])
-        body_length = max(float(backbone.x[-1] - backbone.x[0]) for backbone in last)
-        frame = self._frame.follow(stamp, positions, body_length)
-        log_frame(self._stream, stamp, entities.BOTH, *frame)
-        self._water.draw(stamp, *frame, positions)
-
-    def torques(self, pairs: list[tuple]) -> None:
-        """Log C3 of both runs and the differences of C1, C2, C3 for each complete pair of torques, (M, 3) [N m]."""
-        for stamp, x, this, other in pairs:
-            self.this.summary.add_torque(stamp, x, this[:, 2])
-            self.other.summary.add_torque(stamp, x, other[:, 2])
+    def add_torque(self, side: "Side", stamp: int, wrench: Profiles) -> None:
+        """Take torques; log C3 of both runs and the differences of C1, C2, C3 [N m] for each complete pair."""
+        torque = wrench.together("torque_1", "torque_2", "torque_3")
+        for at, x, this, other in self._torques.add(Sample(stamp, torque, wrench.x), of_other=side is self.other):
+            assert x is not None  # torques have stations
+            self.this.summary.add_torque(at, x, this[:, 2])
+            self.other.summary.add_torque(at, x, other[:, 2])
             difference = this - other
             both = np.stack([other[:, 2], this[:, 2]], axis=1)
             self._both.include(x, both)
@@ -100,27 +92,36 @@ class Comparison:
             most = float(np.abs(difference).max())
             self._worst = max(self._worst, most)
             self._greatest = max(self._greatest, float(np.abs(this).max()))
-            self._stream.add_scalars(stamp, entities.TORQUE_DIFFERENCE_MOST, [most])
-            if self._due("compared torque", stamp, self._drawings):
-                self._both.draw(stamp, x, both)
-                self._difference.draw(stamp, x, difference)
-                self._difference.draw_envelope(stamp)
+            self._stream.add_scalars(at, entities.TORQUE_DIFFERENCE_MOST, [most])
+            if self.is_due("compared torque", at):
+                self._both.draw(at, x, both)
+                self._difference.draw(at, x, difference)
+                self._difference.draw_envelope(at)
 
-    def text(self) -> str:
+    def move_camera(self, stamp: int) -> None:
+        """Keep both swimmers in the picture, at `stamp` [ns]; the other at its last place."""
+        last = [side.line for side in (self.this, self.other) if side.line is not None]
+        positions = np.concatenate([backbone.position for backbone in last])
+        body_length = max(float(backbone.x[-1] - backbone.x[0]) for backbone in last)
+        centre, radius = self._frame.follow(stamp, positions, body_length)
+        log_frame(self._stream, stamp, entities.BOTH, centre, radius)
+        self._water.draw(stamp, centre, radius, positions)
+
+    def _text(self) -> str:
         """Markdown: the greatest differences, and the figures of both runs side by side."""
         columns = [side.summary.figures() for side in (self.this, self.other)]
         lines = [f"heads apart by at most **{quantity(self._farthest, 'm')}** so far  "]
         if self._greatest:
             share = number(100.0 * self._worst / self._greatest)
             lines.append(f"torques by at most **{quantity(self._worst, 'N m')}**, {share} % of the greatest")
-        lines += ["", f"| | {self.names[0]} | {self.names[1]} |", "|---|---|---|"]
+        lines += ["", f"| | {self._names[0]} | {self._names[1]} |", "|---|---|---|"]
         for key in columns[1] | columns[0]:
             lines.append(f"| {key} | " + " | ".join(column.get(key, "") for column in columns) + " |")
         return "\n".join(lines)
 
 
-class Side(ABC):
-    """The messages that are logged alike for both runs."""
+class Side:
+    """Takes the messages of one run: of the one that the rest of the recording shows."""
 
     def __init__(self, comparison: Comparison) -> None:
         self._comparison = comparison
@@ -142,49 +143,28 @@ class Side(ABC):
 
     def head_pose(self, stamp: int, pose: Pose) -> None:
         """Take the head's position."""
-        self._comparison.heads(self._pair(self._comparison._heads, stamp, pose.position))
+        self._comparison.add_head(self, stamp, pose.position)
 
     def internal_wrench(self, stamp: int, wrench: Profiles) -> None:
         """Take the torques."""
-        torque = wrench.together("torque_1", "torque_2", "torque_3")
-        self._comparison.torques(self._pair(self._comparison._torques, stamp, torque, wrench.x))
-
-    @abstractmethod
-    def _pair(self, pairs: Pairs, *sample) -> list[tuple]:
-        """Add a sample of this side; returns the complete pairs."""
-
-
-class ThisSide(Side):
-    """The run that the rest of the recording shows."""
-
-    def __init__(self, comparison: Comparison, due: Callable[[int], bool]) -> None:
-        super().__init__(comparison)
-        self._due = due
+        self._comparison.add_torque(self, stamp, wrench)
 
     def backbone(self, stamp: int, backbone: Backbone) -> None:
         """Take the line, and move the camera."""
         self.line = backbone
-        if self._due(stamp):
+        if self._comparison.is_due("both", stamp):
             self._comparison.move_camera(stamp)
-
-    def _pair(self, pairs: Pairs, *sample) -> list[tuple]:
-        return pairs.add_this(*sample)
 
 
 class OtherSide(Side):
-    """The other run, which is drawn here."""
+    """Takes the messages of the other run, which is drawn here."""
 
-    def __init__(self, comparison: Comparison, stream: BatchedStream, due: Callable[[int], bool]) -> None:
+    def __init__(self, comparison: Comparison, stream: BatchedStream) -> None:
         super().__init__(comparison)
-        self._stream, self._due = stream, due
+        self._stream = stream
         self._skin: Skin | None = None
-        shade = [colours.AMBER]
-        thin: Any = [rr.Radius.ui_points(0.8)]
         for path in (entities.OTHER_HOOPS, entities.OTHER_BACKBONE):
-            stream.log_static(path, rr.LineStrips3D.from_fields(colors=shade, radii=thin))
-
-    def _pair(self, pairs: Pairs, *sample) -> list[tuple]:
-        return pairs.add_other(*sample)
+            stream.log_line_style(path, colours.AMBER, width=0.8)
 
     def body(self, stamp: int, body: Body) -> None:
         """Take the sections, for the hoops."""
@@ -198,13 +178,10 @@ class OtherSide(Side):
     def backbone(self, stamp: int, backbone: Backbone) -> None:
         """Log line and hoops."""
         self.line = backbone
-        if not self._due(stamp):
+        if not self._comparison.is_due("other", stamp):
             return
-        line = backbone.position[None].astype(np.float32)
-        self._stream.add_row(stamp, entities.OTHER_BACKBONE, rr.LineStrips3D, strips=line)
+        self._stream.add_lines(stamp, entities.OTHER_BACKBONE, backbone.position[None])
         if self._skin is not None:
             vertices, _ = self._skin.place(backbone.x, backbone.position, backbone.orientation)
-            rings = vertices.reshape(HOOPS, SIDES, 3)[3:]  # those at the nose are too dense
-            self._stream.add_row(
-                stamp, entities.OTHER_HOOPS, rr.LineStrips3D, strips=np.concatenate([rings, rings[:, :1]], axis=1)
-            )
+            rings = vertices.reshape(HOOPS, SIDES, 3)[FIRST_HOOP:]
+            self._stream.add_lines(stamp, entities.OTHER_HOOPS, np.concatenate([rings, rings[:, :1]], axis=1))

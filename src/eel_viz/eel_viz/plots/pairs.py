@@ -5,53 +5,64 @@ Samples with equal stamps are not interpolated. Samples of the run that is ahead
 """
 
 from collections import deque
+from typing import NamedTuple
 
 import numpy as np
 
-from eel_viz.stations import same
+from eel_viz.messages import same
 
 MAXIMUM_WAITING = 1024  # samples of either run; older ones are dropped
 
 
+class Sample(NamedTuple):
+    """Values (n,) at a stamp [ns], or (M, n) at stations `x` (M,) [m] and a stamp."""
+
+    stamp: int
+    values: np.ndarray
+    x: np.ndarray | None = None
+
+
+class Pair(NamedTuple):
+    """The values of this run and of the other one, at this run's stamp [ns] and stations [m]."""
+
+    stamp: int
+    x: np.ndarray | None
+    this: np.ndarray
+    other: np.ndarray
+
+
 class Pairs:
-    """Pairs of one kind of sample: an array (n,) at a stamp [ns], or (M, n) at stations `x` (M,) [m] and a stamp."""
+    """Pairs of one kind of sample."""
 
     def __init__(self) -> None:
-        self._these: deque[tuple] = deque(maxlen=MAXIMUM_WAITING)
-        self._others: deque[tuple] = deque(maxlen=MAXIMUM_WAITING)
+        self._these: deque[Sample] = deque(maxlen=MAXIMUM_WAITING)
+        self._others: deque[Sample] = deque(maxlen=MAXIMUM_WAITING)
 
-    def add_this(self, stamp: int, values: np.ndarray, x: np.ndarray | None = None) -> list[tuple]:
-        """Add a sample of this run; returns the complete pairs: (stamp, x, this run's values, the other's)."""
-        self._these.append((stamp, x, values))
-        return self._complete()
-
-    def add_other(self, stamp: int, values: np.ndarray, x: np.ndarray | None = None) -> list[tuple]:
-        """Add a sample of the other run; returns as `add_this`."""
-        self._others.append((stamp, x, values))
-        return self._complete()
-
-    def _complete(self) -> list[tuple]:
+    def add(self, sample: Sample, *, of_other: bool) -> list[Pair]:
+        """Add a sample of this run or of the other one; returns the pairs that are complete now."""
+        (self._others if of_other else self._these).append(sample)
         found, others = [], self._others
-        while self._these and others and others[-1][0] >= self._these[0][0]:
-            stamp, x, values = self._these.popleft()
-            while len(others) > 1 and others[1][0] <= stamp:
+        while self._these and others and others[-1].stamp >= self._these[0].stamp:
+            this = self._these.popleft()
+            while len(others) > 1 and others[1].stamp <= this.stamp:
                 others.popleft()
-            if others[0][0] > stamp:
-                continue  # before the other's first
-            found.append((stamp, x, values, self._other_at(stamp, x)))
+            if others[0].stamp <= this.stamp:  # not before the other's first
+                found.append(Pair(this.stamp, this.x, this.values, self._other_at(this)))
         return found
 
-    def _other_at(self, stamp: int, x: np.ndarray | None) -> np.ndarray:
-        before, _, values = self._others[0]
-        values = _on(x, *self._others[0][1:])
-        if before == stamp:
+    def _other_at(self, this: Sample) -> np.ndarray:
+        before = self._others[0]
+        values = _on(this.x, before)
+        if before.stamp == this.stamp:
             return values
-        share = (stamp - before) / (self._others[1][0] - before)
-        return (1.0 - share) * values + share * _on(x, *self._others[1][1:])
+        after = self._others[1]
+        share = (this.stamp - before.stamp) / (after.stamp - before.stamp)
+        return (1.0 - share) * values + share * _on(this.x, after)
 
 
-def _on(x: np.ndarray | None, own: np.ndarray | None, values: np.ndarray) -> np.ndarray:
-    """`values` interpolated from their `own` stations to `x`."""
-    if x is None or own is None or same(x, own):
-        return values
-    return np.stack([np.interp(x, own, column) for column in values.T], axis=1)
+def _on(x: np.ndarray | None, sample: Sample) -> np.ndarray:
+    """The values of `sample`, interpolated from its stations to `x`."""
+    if x is None or sample.x is None or same(x, sample.x):
+        return sample.values
+    own = sample.x
+    return np.stack([np.interp(x, own, column) for column in sample.values.T], axis=1)

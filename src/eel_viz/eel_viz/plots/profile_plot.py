@@ -6,6 +6,7 @@ whose y points down: drawn x = WIDTH * X / length, drawn y = -value / (2 limit).
 grows to the next round number, and the ticks with it.
 """
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -13,9 +14,10 @@ import rerun as rr
 
 from eel_viz import entities
 from eel_viz.batched_stream import BatchedStream
+from eel_viz.messages import same
 from eel_viz.plots.limit import Limit
 from eel_viz.scene3d import colours
-from eel_viz.stations import same
+from eel_viz.scene3d.colours import Colour
 
 WIDTH = 5.2
 LABEL_RISE = 0.085  # a label hangs below its point
@@ -38,9 +40,9 @@ class ProfilePlot:
         names: tuple[str, ...],
         unit: str,
         limit: float,
-        palette: tuple[tuple[int, int, int], ...] = colours.AXIS,
+        palette: tuple[Colour, ...] = colours.AXIS,
         widths: tuple[float, ...] = (1.4,),
-    ):
+    ) -> None:
         self._stream, self._root, self._names, self._unit = stream, root, names, unit
         self._limit = Limit(limit)
         self._palette, self._widths = palette, widths
@@ -119,7 +121,7 @@ class ProfilePlot:
         self._stream.log(stamp, f"{self._root}/{entities.TICKS}", _labels(places, texts, [colours.LABEL] * len(texts)))
 
 
-def _labels(places: list, texts: list[str], palette: list | tuple) -> rr.Points2D:
+def _labels(places: list[tuple[float, float]], texts: list[str], palette: Sequence[Colour]) -> rr.Points2D:
     return rr.Points2D(
         places, labels=texts, colors=palette, show_labels=True, radii=rr.Radius.ui_points(0.1), draw_order=40.0
     )

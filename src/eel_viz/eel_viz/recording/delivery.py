@@ -14,12 +14,14 @@ from typing import Any
 
 import rerun as rr
 
+from eel_viz.recording.destination import Destination
+
 CHECK_PERIOD = 0.5  # s between two checks; a process that is killed loses no more of its file
 FILE_FLUSH_TIMEOUT = 1.0  # s for one flush to a file during a run
 VIEWER_FLUSH_TIMEOUT = 0.1  # s for one flush to a viewer
 STALL_TIMEOUT = 2.0  # s without progress, after which a viewer is reported and a file is given up
 
-_detached: list = []
+_detached: list[rr.RecordingStream | threading.Thread] = []
 
 
 class DeliveryMonitor:
@@ -32,7 +34,7 @@ class DeliveryMonitor:
         disconnected: the viewer has ended.
     """
 
-    def __init__(self, stream: rr.RecordingStream, destination, path: pathlib.Path | None) -> None:
+    def __init__(self, stream: rr.RecordingStream, destination: Destination, path: pathlib.Path | None) -> None:
         self._stream, self._destination = stream, destination
         self._path: Any = path  # None where there is no file
         self._log_info, self._log_warning = destination.log_info, destination.log_warning

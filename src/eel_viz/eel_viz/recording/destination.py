@@ -65,7 +65,7 @@ class Destination(ABC):
         """The arrangements of a recording of `duration` [s]."""
         chosen = self.settings
         look = Look(frames=chosen.frames, wake=chosen.wake, duration=duration)
-        return arrangement(chosen.blueprint, live=self.live, compare=bool(chosen.compare), look=look)
+        return arrangement(chosen.blueprint, live=self.live, comparison=bool(chosen.compare), look=look)
 
     def fit(self, stream: rr.RecordingStream, duration: float) -> None:
         """Fit the legends of a recording that ends to its `duration` [s], where that is longer than usual."""

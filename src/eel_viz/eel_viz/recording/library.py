@@ -8,6 +8,7 @@ import os
 import warnings
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import rerun as rr
 from eel_base.files.output_file import appeared, written_as
@@ -44,7 +45,7 @@ def to_rerun(
     target: str | os.PathLike[str] | rr.RecordingStream,
     runs: Sequence[Messages],
     names: Sequence[str],
-    **settings,
+    **settings: Any,
 ) -> None:
     """Record one run, or two that are compared, to `target`: a stream, or a file, which is replaced if it exists.
 

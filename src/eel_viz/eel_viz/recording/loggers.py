@@ -14,7 +14,7 @@ from eel_base.attitude import attitude
 
 from eel_viz import entities
 from eel_viz.batched_stream import BatchedStream
-from eel_viz.messages import Backbone, Body, Load, Pose, Profiles, Status, Twist
+from eel_viz.messages import Backbone, Body, Load, Pose, Profiles, Status, Twist, same
 from eel_viz.plots.comparison import Comparison
 from eel_viz.plots.event_log import EventLog
 from eel_viz.plots.heat_map import HeatMap
@@ -26,7 +26,6 @@ from eel_viz.recording.rates import Rates, Slots, period_of
 from eel_viz.scene3d import colours
 from eel_viz.scene3d.swimmer_scene import SwimmerScene
 from eel_viz.settings import Settings
-from eel_viz.stations import same
 
 ENVELOPE_PERIOD = 500_000_000  # ns
 HEAT_MAP_PERIOD = 200_000_000

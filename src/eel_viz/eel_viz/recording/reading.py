@@ -27,7 +27,7 @@ class Columns:
     """The rows of one entity: all `stamps` (T,) [ns], and the values of each component with their stamps [ns]."""
 
     stamps: np.ndarray
-    values: dict[str, list]
+    values: dict[str, list[Any]]
     stamps_of: dict[str, np.ndarray]
 
     @property

@@ -14,6 +14,7 @@ from eel_base.wording import shown
 from eel_ros.qos import fitting
 from eel_ros.run_node import run_node
 from eel_ros.serving import ServedNode
+from rclpy.topic_endpoint_info import TopicEndpointInfo
 from rclpy.utilities import remove_ros_args
 
 from eel_viz.bags.definitions import message_class
@@ -49,7 +50,7 @@ class Echo(ServedNode):
                 self._subscribe(found)
         return True
 
-    def _subscribe(self, found: list) -> None:
+    def _subscribe(self, found: list[TopicEndpointInfo]) -> None:
         try:
             kind = message_class(found[0].topic_type)
         except ValueError as error:
@@ -58,7 +59,7 @@ class Echo(ServedNode):
         quality = fitting([info.qos_profile for info in found])
         self._subscription = self.create_subscription(kind, self._topic, self._print, quality)
 
-    def _print(self, message) -> None:
+    def _print(self, message: Any) -> None:
         if self.failure or (self._options.once and self.printed):
             return
         try:
@@ -73,7 +74,7 @@ class Echo(ServedNode):
         self.printed += 1
 
 
-def picked(message, field: str | None):
+def picked(message: Any, field: str | None) -> Any:
     """`message`, or its value at `field`, such as pose.position.x or status.0.name. `ValueError` if it has none."""
     value, path = message, []
     for name in field.split(".") if field else ():
@@ -85,14 +86,14 @@ def picked(message, field: str | None):
     return value
 
 
-def as_yaml(value, *, short: int | None = None) -> str:
+def as_yaml(value: Any, *, short: int | None = None) -> str:
     """YAML of a message or a part of one; arrays are cut after `short` elements."""
-    return yaml.safe_dump(
-        _plain(value, short), sort_keys=False, allow_unicode=True, default_flow_style=False, width=10**6
-    ).replace("\n...\n", "\n")
+    plain = _plain(value, short)
+    text: str = yaml.safe_dump(plain, sort_keys=False, allow_unicode=True, default_flow_style=False, width=10**6)
+    return text.replace("\n...\n", "\n")
 
 
-def _plain(value, short: int | None):
+def _plain(value: Any, short: int | None) -> Any:
     """The value with dictionaries, lists and numbers in place of messages and arrays."""
     if hasattr(value, "get_fields_and_field_types"):
         return {name: _plain(getattr(value, name), short) for name in value.get_fields_and_field_types()}

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Makes markers and a path, which RViz and Foxglove show, of the swimmer's messages."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from geometry_msgs.msg import Point, PoseStamped, Vector3
 from nav_msgs.msg import Path
@@ -64,7 +66,9 @@ def midline(header: Header, backbone: Backbone) -> Path:
     return path
 
 
-def _arrows(header: Header, space: str, arrows: tuple[np.ndarray, np.ndarray], colour, size) -> list[Marker]:
+def _arrows(
+    header: Header, space: str, arrows: tuple[np.ndarray, np.ndarray], colour: colours.Colour, size: tuple[float, float]
+) -> list[Marker]:
     origins, vectors = arrows
     shaft, head = size
     markers = []
@@ -80,6 +84,6 @@ def _point(values: list[float]) -> Point:
     return Point(x=values[0], y=values[1], z=values[2])
 
 
-def _colour(values) -> ColorRGBA:
+def _colour(values: Sequence[int] | np.ndarray) -> ColorRGBA:
     red, green, blue = (float(value) / 255.0 for value in values)
     return ColorRGBA(r=red, g=green, b=blue, a=1.0)

@@ -42,9 +42,9 @@ class Markers(ParameterNode):
         (self._settings,) = declare_all(self, MarkerSettings)
         self._skin: SkinMarker | None = None
         self._forces = ForceMarkers(self._settings)
-        self._waiting: OrderedDict[int, dict] = OrderedDict()  # stamp [ns]: messages by topic
+        self._waiting: OrderedDict[int, dict[str, Any]] = OrderedDict()  # stamp [ns]: messages by topic
         self._expected: set[str] = set(TOPICS)
-        self._newest: dict | None = None  # the last complete sample that has not been drawn
+        self._newest: dict[str, Any] | None = None  # the last complete sample that has not been drawn
         self._drawn = self._looked = 0.0  # s, steady clock
         self._reported: set[tuple[str, str]] = set()  # topic and field of messages that cannot be shown
         self._markers = self.create_publisher(MarkerArray, "markers", 10)
@@ -67,7 +67,7 @@ class Markers(ParameterNode):
         except BadMessage as problem:
             self._warn_once("body", problem)
 
-    def _receive(self, topic: str, message) -> None:
+    def _receive(self, topic: str, message: Any) -> None:
         try:
             stamp = stamp_of(message)
         except BadMessage as problem:
@@ -88,7 +88,7 @@ class Markers(ParameterNode):
             self._drawn, sample, self._newest = now, self._newest, None
             self._draw(sample)
 
-    def _draw(self, sample: dict) -> None:
+    def _draw(self, sample: dict[str, Any]) -> None:
         """Publish the `sample`, messages by topic, without those that cannot be shown."""
         values: dict[str, Any] = {}
         for topic, message in sample.items():

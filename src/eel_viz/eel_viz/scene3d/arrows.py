@@ -5,6 +5,7 @@ A load is in section axes, so it needs the backbone of the same stamp; the one t
 """
 
 from collections import OrderedDict
+from typing import TypeVar
 
 import numpy as np
 import rerun as rr
@@ -17,6 +18,7 @@ from eel_viz.scene3d.load_vectors import LoadVectors
 from eel_viz.scene3d.orientation import world_from_section
 from eel_viz.scene3d.track import Wake
 
+Waiting = TypeVar("Waiting")
 MAXIMUM_WAITING = 512  # backbones, or loads; the oldest is dropped
 
 
@@ -60,7 +62,7 @@ class Arrows:
         )
 
 
-def _keep(waiting: OrderedDict, stamp: int, value) -> None:
+def _keep(waiting: OrderedDict[int, Waiting], stamp: int, value: Waiting) -> None:
     waiting[stamp] = value
     if len(waiting) > MAXIMUM_WAITING:
         waiting.popitem(last=False)

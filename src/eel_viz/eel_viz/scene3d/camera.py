@@ -17,27 +17,27 @@ RELEASE = 2.5  # s: time constant with which a frame becomes smaller
 
 
 def _unit(vector: np.ndarray) -> np.ndarray:
-    return vector / np.linalg.norm(vector)
+    return np.asarray(vector / np.linalg.norm(vector))
 
 
 EYE = _unit(EYE_FROM) / np.sin(FIELD_OF_VIEW / 2)  # radii: the unit sphere touches the picture's upper and lower edge
-AHEAD = _unit(-EYE)
-RIGHT = _unit(np.cross(AHEAD, (0.0, 0.0, 1.0)))
-UP = np.cross(RIGHT, AHEAD)
-SEEN = np.stack([RIGHT, UP, AHEAD], axis=1)  # vector @ SEEN: its components to the right, up and ahead
+FORWARD = _unit(-EYE)
+RIGHT = _unit(np.cross(FORWARD, (0.0, 0.0, 1.0)))
+UP = np.cross(RIGHT, FORWARD)
+SEEN = np.stack([RIGHT, UP, FORWARD], axis=1)  # vector @ SEEN: its components to the right, up and ahead
 EDGE = np.tan(FIELD_OF_VIEW / 2)  # tangent of the picture's upper edge
 CLEAR = {"right": 0.88 * LEAST_ASPECT * EDGE, "up": 0.86 * EDGE, "down": 0.70 * EDGE}  # tangents; left as right
 
 
 def before_eye(ahead: float, right: float, up: float) -> np.ndarray:
     """The point, (3,) [radii], at the given distances [radii] ahead of the eye, to its right and up."""
-    return EYE + ahead * AHEAD + right * RIGHT + up * UP
+    return np.asarray(EYE + ahead * FORWARD + right * RIGHT + up * UP)
 
 
 def in_picture(points: np.ndarray) -> np.ndarray:
     """Projection of `points` (..., 3) [radii]: (..., 2), tangents to the right and up from the picture's centre."""
     seen = (np.asarray(points) - EYE) @ SEEN
-    return seen[..., :2] / seen[..., 2:]
+    return np.asarray(seen[..., :2] / seen[..., 2:])
 
 
 def least_radius(points: np.ndarray) -> float:

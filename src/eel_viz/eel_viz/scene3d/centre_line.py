@@ -7,7 +7,7 @@ So the skin has its own abscissae, finer at the nose, and keeps its mesh when th
 import numpy as np
 from eel_base.attitude import world_from_body
 
-from eel_viz.stations import same
+from eel_viz.messages import same
 
 
 class Resampling:
@@ -27,7 +27,7 @@ class Resampling:
         """Linear interpolation of `values`, shape (M,) or (M, n); returns (R,) or (R, n)."""
         values = np.asarray(values, dtype=float)
         weight = self.fraction if values.ndim == 1 else self.fraction[:, None]
-        return values[self.left] * (1.0 - weight) + values[self.left + 1] * weight
+        return np.asarray(values[self.left] * (1.0 - weight) + values[self.left + 1] * weight)
 
     def centre_line(self, position: np.ndarray, orientation: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Position [m], (R, 3), and section axes, (R, 3, 3) with columns t1, t2, t3, both in the world frame.
@@ -50,4 +50,4 @@ class Resampling:
 
 
 def _unit(vectors: np.ndarray) -> np.ndarray:
-    return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return np.asarray(vectors / np.linalg.norm(vectors, axis=-1, keepdims=True))

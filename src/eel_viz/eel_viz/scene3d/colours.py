@@ -7,6 +7,8 @@ a light grey to red (after Moreland's "cool to warm"), so that both signs differ
 
 import numpy as np
 
+Colour = tuple[int, int, int]  # red, green, blue: 0 to 255
+
 AXIS = ((230, 134, 40), (0, 170, 130), (86, 180, 233))  # section axes 1, 2, 3
 TEAL = (38, 190, 170)
 AMBER = (236, 178, 50)
@@ -20,6 +22,7 @@ WATER_LINE = (38, 70, 96)
 WATER_LINE_MAJOR = (62, 104, 138)
 WATER_LABEL = (120, 152, 178)
 WATER_BACKGROUND = (9, 20, 33)
+PLOT_BACKGROUND = (13, 16, 17)
 WATER_DEEP, WATER_SHALLOW = (8, 20, 32), (17, 46, 68)
 BACK, BELLY = (58, 74, 62), (226, 222, 200)  # of the skin
 
@@ -44,20 +47,21 @@ DIVERGING = (
 )
 
 
-def dim(colour: tuple[int, int, int], factor: float = 0.45) -> tuple[int, int, int]:
+def dim(colour: Colour, factor: float = 0.45) -> Colour:
     """The same hue, darker: for drawings in the background, such as an envelope."""
     red, green, blue = (int(channel * factor) for channel in colour)
     return red, green, blue
 
 
-def faded(colour: tuple[int, int, int], left: np.ndarray) -> np.ndarray:
+def faded(colour: Colour, left: np.ndarray) -> np.ndarray:
     """`colour` with the shares `left` (n,) of it, the rest that of the water: uint8 (n, 3)."""
-    return (np.outer(left, colour) + np.outer(1.0 - left, WATER_BACKGROUND)).astype(np.uint8)
+    mixed = np.outer(left, colour) + np.outer(1.0 - left, WATER_BACKGROUND)
+    return np.asarray(mixed, dtype=np.uint8)
 
 
 def diverging(values: np.ndarray, limit: float) -> np.ndarray:
     """Colours of signed `values`: -limit and below the bluest, 0 grey, +limit and above the reddest; uint8 (..., 3)."""
-    return DIVERGING[diverging_index(values, limit)]
+    return np.asarray(DIVERGING[diverging_index(values, limit)])
 
 
 def diverging_index(values: np.ndarray, limit: float) -> np.ndarray:

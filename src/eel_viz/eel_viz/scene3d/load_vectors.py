@@ -3,10 +3,9 @@
 
 import numpy as np
 
-from eel_viz.messages import Backbone, Load
+from eel_viz.messages import Backbone, Load, same
 from eel_viz.scene3d.centre_line import Resampling
 from eel_viz.scene3d.orientation import world_from_section
-from eel_viz.stations import same
 
 ALONG = 24  # vectors between nose and tail
 

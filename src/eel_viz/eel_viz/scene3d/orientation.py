@@ -10,7 +10,8 @@ from eel_base.attitude import world_from_body
 
 def world_from_section(orientation: np.ndarray, vectors: np.ndarray) -> np.ndarray:
     """Rotate `vectors`, shape (..., 3), from section axes to the world; `orientation` (..., 4): of the REP-103 axes."""
-    return np.einsum("...ij,...j->...i", world_from_body(orientation), np.asarray(vectors) * (-1.0, -1.0, 1.0))
+    body_axes = np.asarray(vectors) * (-1.0, -1.0, 1.0)
+    return np.asarray(np.einsum("...ij,...j->...i", world_from_body(orientation), body_axes))
 
 
 def turns_of_up_into(directions: np.ndarray) -> np.ndarray:
@@ -18,4 +19,4 @@ def turns_of_up_into(directions: np.ndarray) -> np.ndarray:
     x, y, z = directions.T
     turns = np.stack((-y, x, np.zeros_like(x), 1.0 + z), axis=1)
     turns[z < -1.0 + 1e-9] = (1.0, 0.0, 0.0, 0.0)  # straight down, every way is as short
-    return turns / np.linalg.norm(turns, axis=1)[:, None]
+    return np.asarray(turns / np.linalg.norm(turns, axis=1)[:, None])

@@ -58,13 +58,12 @@ class SwimmerScene:
     def head(self, stamp: int, pose: Pose) -> None:
         """Draw the path of the head, and its axes."""
         self._track.draw(stamp, pose.position)
-        self._place(stamp, entities.HEAD, pose.position, pose.orientation)
+        self._stream.add_pose(stamp, entities.HEAD, pose.position, pose.orientation)
 
     def line(self, stamp: int, backbone: Backbone) -> None:
         """Draw the backbone, and its strobes."""
         self._strobes.draw(stamp, backbone.position)
-        strips = backbone.position[None].astype(np.float32)
-        self._stream.add_row(stamp, entities.BACKBONE, rr.LineStrips3D, strips=strips)
+        self._stream.add_lines(stamp, entities.BACKBONE, backbone.position[None])
 
     def backbone(self, stamp: int, backbone: Backbone) -> None:
         """Draw skin, tail, water and arrows, and move the cameras' frames."""
@@ -79,8 +78,8 @@ class SwimmerScene:
         log_frame(self._stream, stamp, entities.WHOLE_PATH, *frame)
         shadow = np.array(position[:: max(1, len(position) // SHADOW_POINTS)], dtype=np.float32)
         shadow[:, 2] = self._water.floor + 0.002
-        self._stream.add_row(stamp, entities.SHADOW, rr.LineStrips3D, strips=shadow[None])
-        self._place(stamp, entities.TAIL, position[-1], backbone.orientation[-1])
+        self._stream.add_lines(stamp, entities.SHADOW, shadow[None])
+        self._stream.add_pose(stamp, entities.TAIL, position[-1], backbone.orientation[-1])
         if self._skin is not None and self._flanks is not None:
             rings = self._skin.resampling(backbone.x).centre_line(position, backbone.orientation)
             for path, surface in ((entities.SKIN, self._skin), (entities.TORQUE_LAYER, self._flanks)):
@@ -103,9 +102,6 @@ class SwimmerScene:
             self._loaded = True
             legend.log_arrow_scale(self._stream, stamp, **self._scales)
         self._arrows.load(stamp, load)
-
-    def _place(self, stamp: int, path: str, position: np.ndarray, orientation: np.ndarray) -> None:
-        self._stream.add_row(stamp, path, rr.Transform3D, translation=position[None], quaternion=orientation[None])
 
 
 def log_frame(stream: BatchedStream, stamp: int, path: str, centre: np.ndarray, radius: float) -> None:

@@ -3,10 +3,7 @@
 cursor; and the last seconds of two things, which fade out: the path of the head, and what the tail left in the wake.
 """
 
-from typing import Any
-
 import numpy as np
-import rerun as rr
 
 from eel_viz import entities
 from eel_viz.batched_stream import BatchedStream
@@ -56,22 +53,16 @@ class Track:
         self._stream = stream
         self._places = RecentRows(3)  # m
         self._ages = _ages() * 1e9  # ns, (PIECES, POINTS), from the present backwards
-        thin: Any = rr.Radius.ui_points(0.8)
-        stream.log_static(
-            entities.TRACK, rr.LineStrips3D.from_fields(colors=[colours.dim(colours.AMBER)], radii=[thin])
-        )
+        stream.log_line_style(entities.TRACK, colours.dim(colours.AMBER), width=0.8)
         left = 1.0 - np.arange(PIECES) / PIECES  # of the colour
-        radii: Any = [rr.Radius.ui_points(0.5 + 1.1 * share) for share in left]
-        stream.log_static(
-            entities.TRAIL, rr.LineStrips3D.from_fields(colors=colours.faded(colours.AMBER, left), radii=radii)
-        )
+        stream.log_line_style(entities.TRAIL, colours.faded(colours.AMBER, left), width=0.5 + 1.1 * left)
 
     def draw(self, stamp: int, position: np.ndarray) -> None:
         """Continue to `position`, (3,) [m] in the world, at `stamp` [ns]."""
         previous = self._places.add(stamp, position)
         if previous is not None:
-            self._stream.add_row(stamp, entities.TRACK, rr.LineStrips3D, strips=np.array([previous, position])[None])
-        self._stream.add_row(stamp, entities.TRAIL, rr.LineStrips3D, strips=self._places.at(stamp - self._ages))
+            self._stream.add_lines(stamp, entities.TRACK, np.array([[previous, position]]))
+        self._stream.add_lines(stamp, entities.TRAIL, self._places.at(stamp - self._ages))
 
 
 class Wake:
@@ -85,14 +76,12 @@ class Wake:
         self._ends = RecentRows(6)  # m: the tail's place, and the thread's tip
         self._ages = np.linspace(0.0, LENGTH * 1e9, THREADS)  # ns
         shades = colours.faded(colours.WAKE, np.linspace(1.0, 0.0, THREADS))
-        thin: Any = [rr.Radius.ui_points(0.8)]
-        stream.log_static(entities.WAKE, rr.LineStrips3D.from_fields(colors=shades, radii=thin))
+        stream.log_line_style(entities.WAKE, shades, width=0.8)
 
     def draw(self, stamp: int, tail: np.ndarray, momentum_rate: np.ndarray) -> None:
         """Continue to the `tail`, (3,) [m], and the `momentum_rate`, (3,) [N], in the world, at `stamp` [ns]."""
         self._ends.add(stamp, np.concatenate([tail, tail + self._scale * momentum_rate]))
-        strips = self._ends.at(stamp - self._ages).reshape(THREADS, 2, 3)
-        self._stream.add_row(stamp, entities.WAKE, rr.LineStrips3D, strips=strips)
+        self._stream.add_lines(stamp, entities.WAKE, self._ends.at(stamp - self._ages).reshape(THREADS, 2, 3))
 
 
 class Strobes:
@@ -101,18 +90,14 @@ class Strobes:
     def __init__(self, stream: BatchedStream) -> None:
         self._stream = stream
         self._last: int | None = None  # number of the last strobe
-        thin: Any = rr.Radius.ui_points(0.6)
-        stream.log_static(
-            entities.STROBES,
-            rr.LineStrips3D.from_fields(colors=[colours.dim(colours.LABEL)], radii=[thin]),
-        )
+        stream.log_line_style(entities.STROBES, colours.dim(colours.LABEL), width=0.6)
 
     def draw(self, stamp: int, midline: np.ndarray) -> None:
         """Draw `midline`, (M, 3) [m] in the world, if it is the first at or after a strobe's time; stamp [ns]."""
         number = stamp // STROBE_PERIOD
         if number != self._last:
             self._last = number
-            self._stream.add_row(stamp, entities.STROBES, rr.LineStrips3D, strips=midline[None].astype(np.float32))
+            self._stream.add_lines(stamp, entities.STROBES, midline[None])
 
 
 def _ages() -> np.ndarray:

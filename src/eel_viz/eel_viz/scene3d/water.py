@@ -23,6 +23,8 @@ APART = (0.20, 0.065)  # labels nearer than this would overlap, as tangents in t
 LABELLED = (1.3 * camera.EDGE, 0.93 * camera.EDGE)  # the part of the picture that has labels, as tangents
 GRID, LABELS, WALLS = "grid", "labels", "walls"
 
+Labels = dict[tuple[float, float, float], str]  # texts by their places [m]
+
 
 class WaterBox:
     """Draws the box of one frame into the entities below `root`."""
@@ -31,9 +33,9 @@ class WaterBox:
         self._stream, self._root = stream, root
         self._mesh = 0.0  # m
         self._anchor = np.zeros(3)  # the middle of the box, in meshes
-        self._box: tuple | None = None
-        self._all_labels: dict[tuple[float, float, float], str] = {}  # of the box, by their places [m]
-        self._labels: dict[tuple[float, float, float], str] = {}  # those that are drawn
+        self._box: tuple[tuple[float, ...], ...] | None = None
+        self._all_labels: Labels = {}  # of the box
+        self._labels: Labels = {}  # those that are drawn
         stream.log_static(f"{root}/{GRID}", rr.LineStrips3D.from_fields(radii=rr.Radius.ui_points(0.5)))
 
     @property
@@ -98,7 +100,7 @@ class WaterBox:
         )
         self._stream.log(stamp, f"{self._root}/{WALLS}", mesh)
 
-    def _clear_labels(self, centre: np.ndarray, radius: float, swimmer: np.ndarray) -> dict:
+    def _clear_labels(self, centre: np.ndarray, radius: float, swimmer: np.ndarray) -> Labels:
         """The labels that lie in the picture, and cover neither the swimmer nor one another, by their places [m]."""
         labels = self._all_labels
         if not labels:
@@ -107,15 +109,15 @@ class WaterBox:
         apart = np.abs(places[:, None] - camera.in_picture((swimmer - centre) / radius))
         above_legend = places[:, 1] >= -camera.CLEAR["down"]
         shown = above_legend & (np.abs(places) <= LABELLED).all(axis=1) & ~(apart <= LABEL_SIZE).all(axis=2).any(axis=1)
-        clear: dict[Any, Any] = {}
-        kept: list[Any] = []
+        clear: Labels = {}
+        kept: list[np.ndarray] = []
         for (place, text), seen, free in zip(labels.items(), places, shown.tolist(), strict=True):
             if free and not any((np.abs(seen - other) <= APART).all() for other in kept):
                 clear[place] = text
                 kept.append(seen)
         return clear
 
-    def _labels_of(self, low: np.ndarray, high: np.ndarray, centre: np.ndarray, radius: float) -> dict:
+    def _labels_of(self, low: np.ndarray, high: np.ndarray, centre: np.ndarray, radius: float) -> Labels:
         """All labels of the box between `low` and `high`, each (3,) [meshes]."""
         mesh, floor = self._mesh, low[2]
         x_marks, y_marks, z_marks = (

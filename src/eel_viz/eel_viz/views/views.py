@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Single views, as functions without data."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import rerun as rr
 import rerun.blueprint as rrb
 from rerun.blueprint.archetypes import EntityBehavior
+from rerun.encodings import EntityPath
 
 from eel_viz import entities
 from eel_viz.plots import heat_map, profile_plot
@@ -31,39 +34,44 @@ class Look:
         """The entities that are not shown."""
         return (*(() if self.frames else FRAMES), *(() if self.wake else WAKE))
 
+    def room(self, share: float) -> float:
+        """The time [s] before the run's start that a legend takes, which has this `share` of the duration."""
+        return share * self.duration
+
 
 PLAIN = Look()
 
 
-def following_view(name: str = "Swimmer", *, both: bool = False, look: Look = PLAIN) -> rrb.Spatial3DView:
+def following_view(look: Look, *, both: bool = False) -> rrb.Spatial3DView:
     """Three dimensions; the camera moves with the swimmer without turning; with `both`, with two swimmers."""
-    other_water = entities.WATER if both else entities.BOTH_WATER
-    left_out = [
-        entities.TRACK,
-        entities.STROBES,
-        entities.PATH_WATER,
-        other_water,
-        *([entities.LEGEND] if both else [entities.OTHER]),
-    ]
-    hidden = _hidden(*look.hidden, *((*LOADS, *WAKE) if both else ()))
-    return _three_dimensions(name, entities.BOTH if both else entities.FOLLOW, left_out, hidden)
+    not_here = (entities.WATER, entities.LEGEND) if both else (entities.BOTH_WATER, entities.OTHER)
+    return _three_dimensions(
+        "Both swimmers, the other as hoops" if both else "Swimmer",
+        entities.BOTH if both else entities.FOLLOW,
+        left_out=(entities.TRACK, entities.STROBES, entities.PATH_WATER, *not_here),
+        hidden=(*look.hidden, *((*LOADS, *WAKE) if both else ())),
+    )
 
 
-def path_view(*, look: Look = PLAIN) -> rrb.Spatial3DView:
+def path_view(look: Look) -> rrb.Spatial3DView:
     """Three dimensions; the camera keeps all places so far in the picture."""
-    left_out = [entities.WATER, entities.BOTH_WATER, entities.LEGEND, entities.OTHER]
-    hidden = _hidden(*LOADS, *WAKE, *look.hidden)
-    overrides = {path: [_past()] for path in (entities.TRACK, entities.STROBES)}
-    return _three_dimensions("Path so far", entities.WHOLE_PATH, left_out, overrides | hidden)
+    return _three_dimensions(
+        "Path so far",
+        entities.WHOLE_PATH,
+        left_out=(entities.WATER, entities.BOTH_WATER, entities.LEGEND, entities.OTHER),
+        hidden=(*LOADS, *WAKE, *look.hidden),
+        with_past=(entities.TRACK, entities.STROBES),
+    )
 
 
-def _past() -> rrb.VisibleTimeRanges:
-    """All that lies before the cursor."""
+def _three_dimensions(
+    name: str, origin: str, *, left_out: Sequence[str], hidden: Sequence[str], with_past: Sequence[str] = ()
+) -> rrb.Spatial3DView:
+    """A view from the frame `origin`. with_past: entities of which all is shown that lies before the time cursor."""
     start, end = rrb.TimeRangeBoundary.infinite(), rrb.TimeRangeBoundary.cursor_relative()
-    return rrb.VisibleTimeRanges([rrb.VisibleTimeRange(entities.TIMELINE, start=start, end=end)])
-
-
-def _three_dimensions(name: str, origin: str, left_out: list[str], overrides: dict) -> rrb.Spatial3DView:
+    past = rrb.VisibleTimeRanges([rrb.VisibleTimeRange(entities.TIMELINE, start=start, end=end)])
+    overrides: dict[str | EntityPath, Any] = {path: [past] for path in with_past}
+    overrides |= {path: [EntityBehavior(visible=False)] for path in hidden}
     return rrb.Spatial3DView(
         name=name,
         origin=origin,
@@ -77,37 +85,17 @@ def _three_dimensions(name: str, origin: str, left_out: list[str], overrides: di
 
 def profile_view(root: str, name: str) -> rrb.Spatial2DView:
     """One drawing against X."""
-    return rrb.Spatial2DView(
-        name=name,
-        origin=root,
-        background=(13, 16, 17),
-        visual_bounds=rrb.VisualBounds2D(x_range=profile_plot.BOUNDS_X, y_range=profile_plot.BOUNDS_Y),
-    )
+    return _drawing(root, name, profile_plot.BOUNDS_X, profile_plot.BOUNDS_Y)
 
 
 def heat_map_view() -> rrb.Spatial2DView:
     """C3 over X and time."""
-    return rrb.Spatial2DView(
-        name="Torque C3(X, t) [N m]",
-        origin=entities.HEAT_MAP,
-        background=(13, 16, 17),
-        visual_bounds=rrb.VisualBounds2D(x_range=heat_map.BOUNDS_X, y_range=heat_map.BOUNDS_Y),
-    )
+    return _drawing(entities.HEAT_MAP, "Torque C3(X, t) [N m]", heat_map.BOUNDS_X, heat_map.BOUNDS_Y)
 
 
-def speed_view(look: Look) -> rrb.TimeSeriesView:
-    """Speed and depth of the head."""
-    return series_view("Speed and depth of the head", entities.SPEED, entities.DEPTH, legend=NARROW * look.duration)
-
-
-def power_view(look: Look) -> rrb.TimeSeriesView:
-    """The powers of the ledger."""
-    return series_view("Power into body and fluid [W]", entities.POWER, legend=NARROW * look.duration)
-
-
-def residual_view() -> rrb.TimeSeriesView:
-    """The ledger's residual."""
-    return series_view("Energy residual [J]", entities.RESIDUAL, legend=0.0)
+def _drawing(root: str, name: str, x: tuple[float, float], y: tuple[float, float]) -> rrb.Spatial2DView:
+    bounds = rrb.VisualBounds2D(x_range=x, y_range=y)
+    return rrb.Spatial2DView(name=name, origin=root, background=colours.PLOT_BACKGROUND, visual_bounds=bounds)
 
 
 def run_tabs() -> rrb.Tabs:
@@ -118,7 +106,7 @@ def run_tabs() -> rrb.Tabs:
     )
 
 
-def series_view(name: str, *paths: str, legend: float) -> rrb.TimeSeriesView:
+def series_view(name: str, *paths: str, legend: float = 0.0) -> rrb.TimeSeriesView:
     """Values over time. `legend` [s]: the time before the start, which the legend fills; 0: no legend."""
     start = rrb.TimeRangeBoundary.absolute(seconds=-legend)
     return rrb.TimeSeriesView(
@@ -128,7 +116,3 @@ def series_view(name: str, *paths: str, legend: float) -> rrb.TimeSeriesView:
         plot_legend=rrb.PlotLegend(corner="LeftTop", visible=legend > 0.0),
         axis_x=rrb.TimeAxis(view_range=rr.TimeRange(start=start, end=rrb.TimeRangeBoundary.infinite())),
     )
-
-
-def _hidden(*paths: str) -> dict[str, list]:
-    return {path: [EntityBehavior(visible=False)] for path in paths}
