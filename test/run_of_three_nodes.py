@@ -84,7 +84,7 @@ def swim(start, folder: Path, *, remap: tuple[str, ...] = ()) -> Results:
 
 def _swim(start, folder: Path, remap: tuple[str, ...]) -> Results:
     recording, bag = folder / "swim.rrd", folder / "bag"
-    recorder = start("record", "--output", str(bag), "--stop-with-publisher", *remap)
+    recorder = start("record", "--out", str(bag), "--stop-with-publisher", *remap)
     visualiser = start(
         "visualiser",
         "--ros-args",

@@ -76,7 +76,7 @@ def swim() -> list[tuple[str, Any]]:
     with tempfile.TemporaryDirectory() as folder:
         bag = Path(folder) / "bag"
         try:
-            recorder = start("record", "--output", str(bag), "--stop-with-publisher")
+            recorder = start("record", "--out", str(bag), "--stop-with-publisher")
             visualiser = start_node("visualiser", sink=sink, recording=RECORDING, stop_with_publisher="true")
             start_node("gait_generator", gait="falling")
             settings = {"duration": DURATION, "rate": RATE, "wait_for_subscribers": LISTENERS}

@@ -20,7 +20,7 @@ from typing import Any, Self, TypeVar
 
 import numpy as np
 
-from eel_base.wording import shown
+from eel_base.wording import not_one_of, shown
 
 Value = TypeVar("Value")
 Kind = TypeVar("Kind", bound=type)
@@ -173,8 +173,9 @@ def checked(item: Field[Any], value: Any, name: str) -> Any:
         if about.get("number") and is_finite(value):
             return float(value)
         _of_kind(isinstance(value, str), value, f"{name} must be a text{' or a number' if about.get('number') else ''}")
-        choices = about.get("choices", (value,))
-        return _of_kind(value in choices, value, f"{name} must be one of {', '.join(choices)}")
+        if value not in about.get("choices", (value,)):
+            raise ValueError(not_one_of(name, value, about["choices"]))
+        return value
     if isinstance(default, tuple):
         return _checked_row(default, value, name)
     if isinstance(default, int):

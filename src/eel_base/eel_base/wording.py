@@ -49,6 +49,13 @@ def did_you_mean(name: str, known: Iterable[str], alike: float = 0.6) -> str:
     return f" (did you mean {found[0]!r}?)" if found else ""
 
 
+def not_one_of(name: str, value: Any, known: Iterable[str]) -> str:
+    """The text of an error: the `value` of what bears the `name` is none of those `known`."""
+    names = list(known)
+    hint = did_you_mean(value, names) if isinstance(value, str) else ""
+    return f"{name} must be one of {', '.join(names)}, got {shown(value)}{hint}"
+
+
 def _shortened(text: str, longest: int = LONGEST) -> str:
     if len(text) <= longest:
         return text

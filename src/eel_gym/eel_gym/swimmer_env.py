@@ -8,7 +8,7 @@ from typing import Any, ClassVar, NamedTuple
 import gymnasium
 import numpy as np
 from eel_base.quantity import Quantities, checked_instance, described_fields, quantity
-from eel_base.wording import one_line, shown
+from eel_base.wording import not_one_of, one_line, shown
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.model.axes import turn_vector
 from eel_dynamics.model.body import Body, checked_body
@@ -99,9 +99,7 @@ class SwimmerEnv(gymnasium.Env):
     ):
         self.numbers = checked_numbers(self.name, self.Numbers, numbers)
         if render_mode is not None and render_mode not in self.metadata["render_modes"]:
-            raise ValueError(
-                f"render_mode must be one of {', '.join(self.metadata['render_modes'])}, got {shown(render_mode)}"
-            )
+            raise ValueError(not_one_of("render_mode", render_mode, self.metadata["render_modes"]))
         self.render_mode = render_mode
         self.metadata = self.metadata | {"render_fps": round(1.0 / self.numbers.control_period)}
         self.scene = self.default_scene() if scene is None else checked_instance("scene", scene, Scene)

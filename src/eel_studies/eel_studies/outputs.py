@@ -19,7 +19,7 @@ NEW = "<!-- {name}: written by `{command}` -->\n<!-- end of {name} -->\n\n"  # a
 
 def add_output_options(parser: Parser, folder: str = "out") -> None:
     """Add the options of `Outputs` to the `parser` of a command. folder: where pictures go by default."""
-    parser.add_argument("--out", default=folder, metavar="FOLDER", help=f"where pictures go ({folder})")
+    parser.add_argument("-o", "--out", default=folder, metavar="FOLDER", help=f"where pictures go ({folder})")
     parser.add_argument("--page", metavar="FILE.md", help="page whose parts are written anew, or a new one")
 
 

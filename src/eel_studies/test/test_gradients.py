@@ -129,14 +129,14 @@ def test_functions_of_the_user_and_two_swims_per_parameter():
 @pytest.mark.parametrize(
     "given, words",
     [
-        ({"of": "speed"}, "of must be of head_x,.* got 'speed'"),
+        ({"of": "speed"}, "of must be one of head_x,.* got 'speed'"),
         ({"of": "error_position"}, "of error_position needs the error estimate, which is off"),
         ({"parameters": {}}, "parameters must be a dict of names and values, got {}"),
         ({"parameters": {"period": "long"}}, "parameter period must be a number, got 'long'"),
         ({"parameters": {"colour": 1.0}}, "gradient at colour=1.0: gait 'straight' has no number 'colour'"),
         ({"parameters": {"scene.planar": 1.0}}, "scene planar must be true or false"),
         ({"parameters": {"body.lateral_drag": 0.0}}, "gradient at body.lateral_drag=-1e-05: body lateral_drag must be"),
-        ({"steps": {"wavelength": 1.0}}, "steps must be of the parameters period, got 'wavelength'"),
+        ({"steps": {"wavelength": 1.0}}, "steps must be one of period, got 'wavelength'"),
         ({"steps": {"period": 0.0}}, "steps period must be > 0, got 0.0"),
         (
             {"accuracy": Accuracy(name="mine", resolution=20.0)},

@@ -92,7 +92,7 @@ def test_a_speed_out_of_reach_is_told():
         ({"speeds": [float("nan")]}, "speeds must be finite, got nan at index 0"),
         ({"method": "simplex"}, "method must be one of gradient, cma, got 'simplex'"),
         ({"periods": 2}, "periods must be a whole number >= 4, got 2"),
-        ({"cost": "price"}, "cost must be of head_x, .* got 'price'"),
+        ({"cost": "price"}, "cost must be one of head_x, .* got 'price'"),
         ({"gait": "still", "bounds": {"scene.density": (900.0, 1000.0)}}, "law 'still' has no periodic term"),
         (
             {"gait": lambda period: sampled(straight(period=period).curvature, 3.0)},

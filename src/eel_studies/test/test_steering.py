@@ -114,7 +114,7 @@ def test_what_does_not_fit_is_named(given, words):
 
 
 def test_unknown_inputs_are_named(free):
-    with pytest.raises(ValueError, match=r"inputs must be of yaw, .* got 'roll'"):
+    with pytest.raises(ValueError, match=r"inputs must be one of yaw, .* got 'roll'"):
         free.controllability(("roll",))
     with pytest.raises(ValueError, match="bend must be > 0 rad/m, got -1"):
         free.feedback(-1.0)

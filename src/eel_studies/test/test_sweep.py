@@ -434,7 +434,7 @@ def test_runs_without_an_error_estimate(tmp_path, capsys):
     assert main([*words, "--measures", "head_x,error_torque"]) == 2
     assert "measure error_torque needs the error estimate" in capsys.readouterr().err
     assert main([*words, "--measures", "head_x,tail"]) == 2
-    assert "measure must be of head_x," in capsys.readouterr().err
+    assert "measure must be one of head_x," in capsys.readouterr().err
     assert main([*words, "--measures", "head_x"]) == 0
     assert "head_x" in capsys.readouterr().out
 

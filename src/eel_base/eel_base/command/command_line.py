@@ -12,7 +12,7 @@ import warnings
 from collections.abc import Iterable, Iterator
 from typing import Any, NoReturn
 
-from eel_base.wording import did_you_mean, one_line, shown
+from eel_base.wording import did_you_mean, not_one_of, one_line, shown
 
 COMPLETING = "_ARGCOMPLETE"  # in the environment where a shell asks for completions
 
@@ -51,6 +51,13 @@ class Parser(argparse.ArgumentParser):
                 and not any(known.startswith(name) for known in self._option_string_actions)
             ):
                 self.error(f"no option {shown(name)}{did_you_mean(name, self._option_string_actions)}")
+
+    def _check_value(self, action: argparse.Action, value: Any) -> None:
+        """Refuse a choice that there is not, in the words of all commands."""
+        if action.choices is not None and value not in action.choices:
+            raise argparse.ArgumentError(
+                None, not_one_of("/".join(action.option_strings) or action.dest, value, map(str, action.choices))
+            )
 
     def error(self, message: str) -> NoReturn:
         print_to_stderr(self.prog, f"{message} (see {self.prog} --help)")

@@ -22,7 +22,7 @@ from typing import Any
 
 import numpy as np
 from eel_base.quantity import is_finite
-from eel_base.wording import shown
+from eel_base.wording import did_you_mean, not_one_of, shown
 
 from eel_dynamics.accuracy.budget import Budget
 from eel_dynamics.model.scene import Scene
@@ -121,7 +121,7 @@ class Accuracy:
                 f"accuracy resolution must lie in 1 to 1000 points per body length, got {shown(self.resolution)}"
             )
         if not isinstance(self.kinks, str) or self.kinks not in KINKS:
-            raise ValueError(f"accuracy kinks must be one of {', '.join(KINKS)}, got {shown(self.kinks)}")
+            raise ValueError(not_one_of("accuracy kinks", self.kinks, KINKS))
         if self.target is not None and not (is_finite(self.target) and FINEST <= self.target <= COARSEST):
             raise ValueError(f"accuracy target must be {FINEST:g} to {COARSEST:g}, or None, got {shown(self.target)}")
         if self.target is not None and self.step is not None:
@@ -243,6 +243,7 @@ class Accuracy:
             raise ValueError(
                 f"accuracy must be one of {', '.join(PRESETS)}, a target relative error, or a budget such as 'fastest "
                 f"within 5 ms per second' (a name or number may have ', {FIXED}' behind it), got {shown(value)}"
+                f"{did_you_mean(value, PRESETS) if isinstance(value, str) else ''}"
             )
         if not FINEST <= target <= COARSEST:
             raise ValueError(

@@ -4,7 +4,7 @@
 from functools import cache
 
 import numpy as np
-from eel_base.wording import shown
+from eel_base.wording import not_one_of, shown
 
 from eel_dynamics.analysis.analysis import Analysis
 
@@ -108,7 +108,7 @@ def checked_measures(argument: str, names, estimate: bool = True) -> tuple[str, 
     names = (names,) if isinstance(names, str) else tuple(names)
     for name in names:
         if not isinstance(name, str) or name not in MEASURES:
-            raise ValueError(f"{argument} must be of {', '.join(MEASURES)}, got {shown(name)}")
+            raise ValueError(not_one_of(argument, name, MEASURES))
         if name in OF_ESTIMATE and not estimate:
             raise ValueError(f"{argument} {name} needs the error estimate, which is off")
     return names

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from eel_base.files.input_file import reading
 from eel_base.quantity import checked_instance, checked_row, number, positive
-from eel_base.wording import shown
+from eel_base.wording import not_one_of, shown
 from numpy.typing import ArrayLike
 
 from eel_dynamics.model.body_file import WHAT, columns_of
@@ -217,7 +217,7 @@ class Body:
     def named(name: str) -> "Body":
         """The body called `name`: boyer2010 or kern2006. `ValueError` for another name."""
         if name not in NAMED:
-            raise ValueError(f"body must be one of {', '.join(NAMED)} or a file, got {shown(name)}")
+            raise ValueError(not_one_of("body", name, (*NAMED, "a file")))
         made: Body = getattr(Body, name)()
         return made
 

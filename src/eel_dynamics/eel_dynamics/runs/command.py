@@ -156,6 +156,7 @@ def _parser() -> Parser:
         "--actuators", type=int, metavar="N", help="print the demand on a robot of N motors in pitch and N in yaw"
     )
     parser.add_argument(
+        "-o",
         "--out",
         metavar="FILE",
         help=".nc: the whole run, for Run.load; .npz: its arrays; .csv: head, energies, one line "

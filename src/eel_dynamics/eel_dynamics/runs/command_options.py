@@ -8,6 +8,7 @@ import argparse
 import inspect
 from collections.abc import Callable
 from dataclasses import fields
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -34,7 +35,8 @@ def add_options(parser: Parser, *options: str, **defaults) -> None:
         default = defaults.get(option.strip("-").replace("-", "_"), about.get("default"))
         default, told = default if isinstance(default, tuple) else (default, default)
         text = f"{about['help']} ({told})" if told else about["help"]
-        added: Any = parser.add_argument(option, **{**about, "default": default, "help": text.replace("%", "%%")})
+        names = ("-o", option) if option == "--out" else (option,)
+        added: Any = parser.add_argument(*names, **{**about, "default": default, "help": text.replace("%", "%%")})
         if "gait" in option:
             added.completer = lambda **_: GAITS  # for argcomplete
     if "gait" in options:
@@ -103,7 +105,7 @@ def duration_option(text: str) -> float | str:
 
 def body_of(text: str) -> Body:
     """The body that --body gives: a name, or a file. `ValueError` where it does not fit; `OSError`: not readable."""
-    return Body.named(text) if text in NAMED else Body.from_file(text)
+    return Body.from_file(text) if Path(text).suffix else Body.named(text)
 
 
 def scene_of(texts: list[str], **defaults) -> Scene:
@@ -157,16 +159,25 @@ def value_of(text: str):
 OPTIONS = {  # what argparse takes
     "gait": {"nargs": "?", "help": f"one of {', '.join(sorted(GAITS))}"},
     "gaits": {"nargs": "*", "metavar": "GAIT", "help": f"of {', '.join(sorted(GAITS))}"},
-    "--gait": {"help": f"one of {', '.join(sorted(GAITS))}"},
+    "--gait": {"metavar": "GAIT", "help": f"one of {', '.join(sorted(GAITS))}"},
     "--set": _repeated("NAME=VALUE", "a number of the gait, listed by --help GAIT"),
     "--scene": _repeated("NAME=VALUE", "physics, a field of the list that eel simulate --help ends with"),
     "--body": {"default": "boyer2010", "help": f"{', '.join(NAMED)}, or a .csv or .npz file of half-axes"},
-    "--accuracy": {"default": "standard", "help": f"{', '.join(PRESETS)}, or a target relative error"},
-    "--duration": {"type": duration_option, "help": f"s, or {UNTIL_SETTLED}: until the gait has settled"},
+    "--accuracy": {
+        "default": "standard",
+        "metavar": "TARGET",
+        "help": f"{', '.join(PRESETS)}, or a target relative error",
+    },
+    "--duration": {
+        "type": duration_option,
+        "metavar": "SECONDS",
+        "help": f"s, or {UNTIL_SETTLED}: until the gait has settled",
+    },
     "--bare": {"action": "store_true", "help": "do not measure a run's own error; --accuracy is not kept"},
     "--sample-period": {
         "type": float,
         "default": (None, "0.05, or a 20th of the gait's period where that is less"),
+        "metavar": "SECONDS",
         "help": "s; the last sample is at its last whole multiple within the duration",
     },
     "--scale": {"type": float, "default": 1.0, "metavar": "M", "help": "metres in the file's unit of length"},

@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 from eel_base.quantity import number, numbers
-from eel_base.wording import shown
+from eel_base.wording import not_one_of, shown
 
 from eel_gaits.laws.term import AXES, Term
 
@@ -128,7 +128,7 @@ class Law:
     def mirrored(self, axis="yaw"):
         """The law with the opposite curvature about one `axis`: left and right ("yaw") or up and down ("pitch")."""
         if not isinstance(axis, str) or axis not in AXES:
-            raise ValueError(f"axis must be one of {', '.join(AXES)}, got {shown(axis)}")
+            raise ValueError(not_one_of("axis", axis, AXES))
         return self._of(term.scaled(-1.0) if term.axis == axis else term for term in self.terms)
 
     def ramped_in(self, start, end):

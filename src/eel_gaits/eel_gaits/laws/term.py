@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from eel_base.quantity import number
-from eel_base.wording import shown
+from eel_base.wording import not_one_of, shown
 
 from eel_gaits.laws.ramp import Ramp, begun, ended, envelope_at
 from eel_gaits.laws.spline import natural_spline
@@ -44,7 +44,7 @@ class Term:
 
     def __post_init__(self):
         if not isinstance(self.axis, str) or self.axis not in AXES:
-            raise ValueError(f"axis must be one of {', '.join(AXES)}, got {shown(self.axis)}")
+            raise ValueError(not_one_of("axis", self.axis, AXES))
         for field in ("amplitude", "knots"):
             object.__setattr__(self, field, _numbers(field, getattr(self, field)))
         for field in ("wavelength", "period", "phase"):

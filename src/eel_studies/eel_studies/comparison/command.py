@@ -120,5 +120,7 @@ def _parser() -> Parser:
         parser, "--set", "--duration", "--accuracy", "--bare", "--body", "--scene",
         duration=(None, f"of a file, or {DURATION:g}"), body=(None, "of a file, or boyer2010"),
     )  # fmt: skip
-    parser.add_argument("--out", metavar="FILE", help=".rrd: for Rerun's viewer (needs eel_viz); .png, .svg, .pdf")
+    parser.add_argument(
+        "-o", "--out", metavar="FILE", help=".rrd: for Rerun's viewer (needs eel_viz); .png, .svg, .pdf"
+    )
     return parser

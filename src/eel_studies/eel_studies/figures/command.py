@@ -117,7 +117,7 @@ def _parser() -> Parser:
         description="Draw the paper's figures and more from runs of the falling gait, and write the numbers of the "
         "page that explains them, README.md beside them; half a minute.",
     )
-    parser.add_argument("--out", default="docs/figures", metavar="FOLDER", help="where to (docs/figures)")
+    parser.add_argument("-o", "--out", default="docs/figures", metavar="FOLDER", help="where to (docs/figures)")
     parser.add_argument("--format", nargs="+", choices=KNOWN_FORMATS, default=FORMATS, help="file formats (svg png)")
     parser.add_argument(
         "--columns",

@@ -22,7 +22,7 @@ from typing import NamedTuple
 import numpy as np
 from eel_base.command.progress import progress_of
 from eel_base.quantity import checked_instance, number, positive
-from eel_base.wording import shown
+from eel_base.wording import not_one_of, shown
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.analysis import Analysis
@@ -196,7 +196,7 @@ def _steps_of(at: dict, steps: dict | None) -> np.ndarray:
     steps = {} if steps is None else checked_instance("steps", steps, dict)
     for name in steps:
         if name not in at:
-            raise ValueError(f"steps must be of the parameters {', '.join(at)}, got {shown(name)}")
+            raise ValueError(not_one_of("steps", name, at))
     own = {name: RELATIVE_STEP * (abs(value) or 1.0) for name, value in at.items()}
     return np.array([positive(f"steps {name}", steps.get(name, own[name])) for name in at])
 

@@ -122,7 +122,7 @@ def _parser() -> Parser:
         accuracy=1e-4,
     )
     parser.add_argument("--station", type=float, default=0.0, metavar="X", help="m, of the point that was tracked (0)")
-    parser.add_argument("--namespace", help="of the swimmer in a bag; by default that of the only one")
+    parser.add_argument("--namespace", metavar="NS", help="of the swimmer in a bag; by default that of the only one")
     parser.add_argument("--noise", type=float, metavar="SIZE", help="standard deviation of the errors, m or m/s")
     parser.add_argument("--level", type=float, default=0.95, help="of the intervals (0.95)")
     return parser

@@ -89,5 +89,5 @@ def _parser() -> Parser:
     )
     parser.add_argument("file", help="a .csv or .npz file with the columns time, x, y: docs/howto/motions.md")
     add_options(parser, "--body", "--scale")
-    parser.add_argument("--out", metavar="FILE", help="a picture: .png, .svg or .pdf")
+    parser.add_argument("-o", "--out", metavar="FILE", help="a picture: .png, .svg or .pdf")
     return parser

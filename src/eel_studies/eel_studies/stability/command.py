@@ -45,6 +45,6 @@ def _parser() -> Parser:
     parser.add_argument(
         "--study", action="append", choices=STUDIES, metavar="NAME", help=f"one of {', '.join(STUDIES)} (all)"
     )
-    parser.add_argument("--points", type=int, default=13, help="swims along each side of a map (13)")
+    parser.add_argument("--points", type=int, default=13, metavar="N", help="swims along each side of a map (13)")
     add_output_options(parser)
     return parser

@@ -14,7 +14,7 @@ from functools import cached_property
 
 import numpy as np
 from eel_base.quantity import checked_instance, checked_row, number, positive
-from eel_base.wording import shown
+from eel_base.wording import not_one_of, shown
 from eel_dynamics.model.body import Body, checked_body
 from eel_dynamics.model.scene import Scene
 from eel_gaits.laws.law import Law
@@ -239,7 +239,7 @@ def _plus(law: Law, *terms: Term) -> Law:
 
 def _index(name: str) -> int:
     if name not in INPUTS:
-        raise ValueError(f"inputs must be of {', '.join(INPUTS)}, got {shown(name)}")
+        raise ValueError(not_one_of("inputs", name, INPUTS))
     return INPUTS.index(name)
 
 

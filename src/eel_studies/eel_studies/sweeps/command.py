@@ -81,7 +81,7 @@ def _parser() -> Parser:
         parser, "--set", "--duration", "--accuracy", "--body", "--bare", "--sample-period", duration=UNTIL_SETTLED
     )
     parser.add_argument("--measures", metavar="NAMES", help=f"what to keep, with commas: {', '.join(MEASURES)} (all)")
-    parser.add_argument("--out", required=True, metavar="FILE.nc", help="NetCDF file; parts lie in FILE.nc.parts")
+    parser.add_argument("-o", "--out", required=True, metavar="FILE.nc", help="NetCDF file; parts lie in FILE.nc.parts")
     parser.add_argument("--overwrite", action="store_true", help="replace what the output holds of another sweep")
     parser.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask scheduler, or processes; without: threads")
     parser.add_argument("--workers", type=int, metavar="N", help="threads, or processes (one per core)")

@@ -100,8 +100,10 @@ def _parser() -> Parser:
         "error of models that leave physics out. Takes about a minute per gait.",
     )
     add_options(parser, "gaits", "--set", "--body", gaits=([], "falling"))
-    parser.add_argument("--duration", type=float, default=10.0, help="s (10)")
-    parser.add_argument("--repeats", type=int, default=5, help="rounds of timing, of which the median counts (5)")
+    parser.add_argument("--duration", type=float, default=10.0, metavar="SECONDS", help="s (10)")
+    parser.add_argument(
+        "--repeats", type=int, default=5, metavar="N", help="rounds of timing, of which the median counts (5)"
+    )
     parser.add_argument("--quick", action="store_true", help="a ninth of the settings, for a look")
     parser.add_argument("--all", action="store_true", help="print every setting, not the fronts and presets alone")
     parser.add_argument("--csv", action="store_true", help="everything measured, as .csv beside the pictures")

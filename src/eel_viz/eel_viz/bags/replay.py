@@ -85,7 +85,7 @@ def parser() -> Parser:
         "says why.",
     )
     made.add_argument("bag", help="folder of the bag, or a file of one")
-    made.add_argument("-o", "--output", metavar="RRD", help="recording to write (default: BAG.rrd, in this folder)")
+    made.add_argument("-o", "--out", metavar="RRD", help="recording to write (default: BAG.rrd, in this folder)")
     made.add_argument("--namespace", metavar="NS", help="of the swimmer, where the bag has more than one")
     made.add_argument(
         "--compare",
@@ -114,7 +114,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _replay(chosen: argparse.Namespace) -> int:
-    output = chosen.output or f"{name_of(chosen.bag)}.rrd"
+    output = chosen.out or f"{name_of(chosen.bag)}.rrd"
     other = chosen.compare if chosen.compare.strip("/") and os.path.exists(chosen.compare) else None
     began = time.monotonic()
     if chosen.spawn and not display():

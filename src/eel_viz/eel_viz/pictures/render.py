@@ -107,7 +107,7 @@ def parser() -> Parser:
     made.add_argument("picture", nargs="?", help="as -o")
     made.add_argument(
         "-o",
-        "--output",
+        "--out",
         metavar="OUT",
         help="with --at a PNG; with --fps a folder, made in one that exists, for frame_00000.png ... and, where "
         f"ffmpeg is installed, {FILM}; or a film alone: {', '.join(FILMS)} (the last two do without ffmpeg)",
@@ -151,7 +151,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _render(chosen: argparse.Namespace) -> int:
-    output = chosen.output or chosen.picture
+    output = chosen.out or chosen.picture
     check_recording(pathlib.Path(chosen.recording))
     if output is None:
         raise ValueError("where to write is missing: -o PICTURE.png, or -o FOLDER with --fps")

@@ -51,7 +51,7 @@ class Recorder(Node):
         check_seconds("--duration", options.duration)
         super().__init__(NAME, namespace=options.namespace)
         self._options = options
-        self._bag = GrowingBag(options.output)
+        self._bag = GrowingBag(options.out)
         self._saved, self._saving = time.monotonic(), 0.0  # s: time of the last save, and its CPU time
         self.failure = ""
         self.counts: Counter[str] = Counter()
@@ -68,7 +68,7 @@ class Recorder(Node):
         for topic, kind in {**{self.resolve_topic_name(name): kind for name, kind in OWN.items()}, **GLOBAL}.items():
             if self._wanted(topic):
                 self._subscribe(topic, kind, keep_all(latched=topic.rsplit("/", 1)[-1] in LATCHED))
-        self.get_logger().info(f"recording to {options.output}, end with Ctrl-C")
+        self.get_logger().info(f"recording to {options.out}, end with Ctrl-C")
 
     def poll(self) -> bool:
         """Look for new topics and save the bag; False when the recording is to end."""
@@ -88,7 +88,7 @@ class Recorder(Node):
             self._save()
         self._bag.abort()
         counts = ", ".join(f"{topic} {count}" for topic, count in sorted(self.counts.items())) or "no message"
-        self.get_logger().info(f"recorded in {self._options.output}: {counts}")
+        self.get_logger().info(f"recorded in {self._options.out}: {counts}")
         samples = sorted((self.counts[topic], topic) for topic in self._sampled if self.counts[topic])
         if samples and samples[0][0] != samples[-1][0]:
             (least, short), (most, long) = samples[0], samples[-1]
@@ -112,7 +112,7 @@ class Recorder(Node):
             self._bag.save()
         except OSError as error:
             saved = self._saved_messages
-            self.failure = f"{self._options.output}: {error.strerror}: the bag ends with the {saved} messages before"
+            self.failure = f"{self._options.out}: {error.strerror}: the bag ends with the {saved} messages before"
             return False
         self._saved = time.monotonic()
         self._saving = time.process_time() - began
@@ -210,7 +210,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument(
         "topics", nargs="*", help="names; none: every topic of the namespace, /clock, /diagnostics and /tf"
     )
-    parser.add_argument("-o", "--output", required=True, metavar="FOLDER", help="new folder of the bag")
+    parser.add_argument("-o", "--out", required=True, metavar="FOLDER", help="new folder of the bag")
     parser.add_argument("--namespace", default="/", metavar="NS", help="of the swimmer (default /)")
     parser.add_argument("--duration", type=float, metavar="SECONDS", help="end after so much wall time")
     parser.add_argument("--stop-with-publisher", action="store_true", help="end when the swimmer has gone")
