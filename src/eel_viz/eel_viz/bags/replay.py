@@ -11,9 +11,13 @@ import argparse
 import contextlib
 import os
 import time
+from collections.abc import Callable, Iterator
 from dataclasses import fields
+from itertools import count
+from typing import Any
 
 from eel_base.command.command_line import Parser, print_to_stderr
+from eel_base.command.progress import Progress
 from eel_base.command.run_command import run_command
 from eel_base.quantity import limits
 
@@ -39,6 +43,7 @@ def replay(
     namespace: str | None = None,
     log_info: LogFunction = lambda text: None,
     log_warning: LogFunction = lambda text: None,
+    progress: Callable[[int, None], object] = lambda done, count: None,
 ) -> str:
     """Record the bag at `path` to `settings.sink`; returns its topics with their numbers of messages as text.
 
@@ -56,8 +61,15 @@ def replay(
             names.append(name_of(where, other, path) if other else sources[-1].namespace.strip("/") or "eel")
             if bag.damage:
                 log_warning(f"{where} is unfinished or damaged ({bag.damage}): shown as far as it goes")
+        numbers = count(1)
+
+        def counted(source: SwimmerMessages) -> Iterator[tuple[str, Any]]:
+            for message in source:
+                progress(next(numbers), None)
+                yield message
+
         return record_messages(
-            sources,
+            [counted(source) for source in sources],
             destinations(settings, log_info, log_warning),
             names=names,
             namespaces=[source.namespace for source in sources],
@@ -129,6 +141,7 @@ def _replay(chosen: argparse.Namespace) -> int:
         namespace=chosen.namespace,
         log_info=print,
         log_warning=lambda text: print_to_stderr(NAME, text),
+        progress=Progress(NAME, "messages"),
     )
     print(f"replayed in {time.monotonic() - began:.1f} s: {counts}")
     if chosen.spawn:
