@@ -114,6 +114,7 @@ def _laws(count: int) -> list[Law]:
     return [falling(period=period) for period in np.linspace(0.8, 1.4, count)]
 
 
+SWIMMERS = 64
 STEP, STEPS, FIRST = 0.02, 250, 60  # s; control steps of a turn; steps before it, beyond the blend from rest
 
 
@@ -134,14 +135,18 @@ def gym() -> Lines:
         ratio = median_ratio(times[f"Eel/{name}-v0"], times[f"bare, scene of {name}"])
         yield f"Eel/{name}-v0 by bare", ratio, "times as long"
     _steps(env, actions, first=0)
-    steps, rejected, evaluations = (count / STEPS for count in env._simulation.evaluations)
+    steps, rejected, evaluations = (count / STEPS for count in env.swimmers.evaluations(0))
     yield "a control step of Eel/Depth-v0", evaluations, f"evaluations, {steps:.1f} steps and {rejected:.1f} rejected"
-    envs: dict[int, Any] = {
-        threads: gymnasium.make_vec("Eel/Heading-v0", num_envs=16, threads=threads) for threads in (1, 2)
-    }
-    still = {threads: np.zeros((STEPS // 5, *each.action_space.shape)) for threads, each in envs.items()}
-    wall = times_in_turn({n: partial(_steps, envs[n], still[n], first=0) for n in envs}, 5, time.perf_counter)
-    yield "2 threads", median_ratio(wall[1], wall[2]), "times as fast as 1 thread, wall time"
+    envs = {threads: gymnasium.make_vec("Eel/Heading-v0", num_envs=SWIMMERS, threads=threads) for threads in (1, 2)}
+    for greatest in (0.0, 0.2):
+        actions = np.random.default_rng(1).uniform(-greatest, greatest, (STEPS, SWIMMERS, 1))
+        steps = {threads: partial(_steps, each, actions) for threads, each in envs.items()}
+        (seconds,) = times_in_turn({1: steps[1]}, 5).values()
+        rate = SWIMMERS * (STEPS + FIRST) / statistics.median(seconds)
+        yield f"{SWIMMERS} at once, actions up to {greatest:g}", rate, "control steps per CPU second, starts included"
+        wall = times_in_turn(steps, 5, time.perf_counter)
+        gain = median_ratio(wall[1], wall[2])
+        yield f"2 threads, actions up to {greatest:g}", gain, "times as fast as 1 thread, wall time"
 
 
 def _bare(scene: Scene) -> None:

@@ -2,11 +2,12 @@
 """An orientation as angles and as a matrix, in REP-103 axes: x forward, y left, z up.
 
 Heading, climb and roll are the Z-Y-X angles, but the climb has the sign of the pitch turned. They take a quaternion
-(4,) x y z w, world from head, of any norm but 0.
+(4,) x y z w, world from head, of any norm but 0; or the quaternions (4, N) of N heads, and give (N,).
 """
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -23,22 +24,35 @@ def unit_quaternion(name: str, values: Sequence[float]) -> tuple[float, ...]:
     return tuple(value / norm for value in values)
 
 
-def heading(orientation: Sequence[float] | np.ndarray) -> float:
+def heading(orientation: Sequence[float] | np.ndarray) -> Any:
     """Angle [rad] from the world's x to the horizontal direction of the head's x, positive to the left, -pi to pi."""
-    x, y, z, w = orientation
-    return math.atan2(2.0 * (w * z + x * y), w * w + x * x - y * y - z * z)
+    x, y, z, w = _components(orientation)
+    return _plain(np.arctan2(2.0 * (w * z + x * y), w * w + x * x - y * y - z * z))
 
 
-def climb(orientation: Sequence[float]) -> float:
+def climb(orientation: Sequence[float] | np.ndarray) -> Any:
     """Angle [rad] of the head's x above the horizontal, -pi/2 to pi/2."""
-    x, y, z, w = orientation
-    return math.asin(max(-1.0, min(1.0, 2.0 * (x * z - w * y) / (x * x + y * y + z * z + w * w))))
+    x, y, z, w = _components(orientation)
+    sine = 2.0 * (x * z - w * y) / (x * x + y * y + z * z + w * w)
+    return _plain(np.arcsin(np.maximum(-1.0, np.minimum(1.0, sine))))
 
 
-def roll(orientation: Sequence[float]) -> float:
+def roll(orientation: Sequence[float] | np.ndarray) -> Any:
     """Angle [rad] about the head's x, positive where the right side is down, -pi to pi."""
-    x, y, z, w = orientation
-    return math.atan2(2.0 * (y * z + w * x), w * w - x * x - y * y + z * z)
+    x, y, z, w = _components(orientation)
+    return _plain(np.arctan2(2.0 * (y * z + w * x), w * w - x * x - y * y + z * z))
+
+
+def _components(orientation: Sequence[float] | np.ndarray) -> Any:
+    """Of one quaternion as floats, which are faster."""
+    if isinstance(orientation, np.ndarray) and orientation.ndim == 1:
+        return orientation.tolist()
+    return orientation
+
+
+def _plain(angle: Any) -> Any:
+    """A float in place of a number of NumPy."""
+    return angle if isinstance(angle, np.ndarray) else float(angle)
 
 
 def attitude(orientation: Sequence[float]) -> tuple[float, float, float]:

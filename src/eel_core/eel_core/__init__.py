@@ -17,10 +17,12 @@ from eel_core._core import (  # noqa: E402
     LawTables,
     March,
     PlanarInstant,
+    SampledMarches,
     StepBounds,
     Swimmer,
     build_info,
     layout,
+    tabulate,
 )
 
 __all__ = [
@@ -30,8 +32,10 @@ __all__ = [
     "LawTables",
     "March",
     "PlanarInstant",
+    "SampledMarches",
     "StepBounds",
     "Swimmer",
     "build_info",
     "layout",
+    "tabulate",
 ]

@@ -281,6 +281,56 @@ class March:
     def counts(self) -> tuple[int, int, int]:
         """Steps, rejected steps and evaluations of the head's dynamics so far."""
 
+def tabulate(weights: Buffer, values: Buffer, rows: Buffer) -> None:
+    """Tabulates a controller's sample: rows (6, k) of its values (6, n) at n points, by the weights (n, k)."""
+
+class SampledMarches:
+    """N swimmers of one kind, each under a controller's samples of its own: values (6, n) at n points, pitch, its rate
+    and its acceleration, then yaw. One thread of Python at a time; `RuntimeError` for another.
+
+    weights (n, 4 (nodes + M)): take values at the points to the columns of a `LawTables`. transition: [s], in which the
+    difference between the straight body and the first sample dies out. threads: that march; they change no result.
+    The other arguments are those of `March`.
+    """
+
+    def __init__(
+        self,
+        swimmer: Swimmer,
+        *,
+        method: str,
+        order: int,
+        planar: bool,
+        ledger: bool,
+        current: Buffer,
+        weights: Buffer,
+        transition: float,
+        count: int,
+        threads: int,
+    ) -> None: ...
+    def start(
+        self, index: int, bounds: StepBounds, position: Buffer, orientation: Buffer, twist: Buffer, values: Buffer
+    ) -> float:
+        """Has a swimmer stand at its start, straight, at time 0, where its sample has the values (6, n). Kinetic and
+        potential energy [J]."""
+
+    def advance(self, times: Buffer, values: Buffer, status: Buffer, heads: Buffer) -> None:
+        """Marches each to its own of the times (N,) [s], where its sample has its values (N, 6, n).
+
+        status (N,), signed 64 bits: swimmers below 0 are left out; then how each came back, an index of `STATUSES`. One
+        that is unfinished goes on with the same time and values. heads (13, N): position [m], orientation, and twist
+        over ground [rad/s, m/s] of each that marched.
+        """
+
+    def put_head(self, index: int, heads: Buffer) -> bool:
+        """Writes the head of a swimmer into its column of the heads (13, N). False where the inertia is not positive
+        definite."""
+
+    def observe(self, index: int, whole: Buffer, wrench: bool, load: bool) -> bool:
+        """As `March.observe`."""
+
+    def present(self, index: int) -> tuple[float, list[float], tuple[int, int, int]]:
+        """Time [s], works and counts of a swimmer, as of `March`."""
+
 class PlanarInstant:
     """Single instants of a motion in the plane: three degrees of freedom (yaw, along, across)."""
 

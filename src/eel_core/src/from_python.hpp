@@ -187,58 +187,15 @@ inline std::shared_ptr<const Swimmer> swimmer_from(const py::object& grid, const
     return swimmer;
 }
 
-// One number, or three, at each of n points: of each of the rows, what begins at its number `first`.
-template <std::size_t Parts>
-RowTable<Parts> table_from(const Numbers& rows, std::size_t count, std::size_t first, std::size_t n)
-{
-    const std::size_t columns = count > 0 ? rows.size() / count : 0;
-    RowTable<Parts> table{blocks_of(n), {}};
-    table.lanes.resize(count * table.blocks);
-    for (std::size_t row = 0; row < count; ++row)
-        for (std::size_t block = 0; block < table.blocks; ++block)
-            for (std::size_t part = 0; part < Parts; ++part) {
-                const std::size_t point = std::min(width * block, n), here = std::min(width, n - point);
-                const double* const from = rows.data() + row * columns + first + part * n + point;
-                Lanes& to = table.lanes[row * table.blocks + block][part];
-                if (here == width) {
-                    to = Lanes::load(from);
-                    continue;
-                }
-                std::array<double, width> lanes{};
-                std::copy_n(from, here, lanes.begin());
-                to = Lanes::load(lanes.data());
-            }
-    return table;
-}
-
-// The first of three parts, summed up along each row: the integral of the row from the nose to the nodes.
-inline RowTable<1> summed(const RowTable<3>& moments)
-{
-    RowTable<1> table{moments.blocks, {}};
-    double sum = 0.0;
-    for (std::size_t k = 0; k < moments.lanes.size(); ++k) {
-        if (k % moments.blocks == 0) sum = 0.0;
-        std::array<double, width> lanes;
-        for (std::size_t lane = 0; lane < width; ++lane) lanes[lane] = sum += moments.lanes[k][0][lane];
-        table.lanes.push_back({Lanes::load(lanes.data())});
-    }
-    return table;
-}
-
-// rows (m, 4 (n + s)): at the n nodes, their moments (3, n), at the s stations, their moments (3, s).
+// rows (m, 4 (n + s)), as `LawTables::set` takes them.
 inline std::shared_ptr<const LawTables> tables_from(const std::vector<std::size_t>& axis, const py::object& rows,
                                                     std::size_t n, std::size_t s)
 {
     const Numbers numbers(rows, "rows");
     const std::size_t m = axis.size();
     numbers.check_size(4 * m * (n + s), "rows");
-    auto tables = std::make_shared<LawTables>();
-    for (std::size_t row = 0; row < m; ++row) tables->rows_of[axis[row] == 0 ? 0 : 1].push_back(row);
-    tables->node = table_from<1>(numbers, m, 0, n);
-    tables->moments = table_from<3>(numbers, m, n, n);
-    tables->angle = summed(tables->moments);
-    tables->station = table_from<1>(numbers, m, 4 * n, s);
-    tables->station_moments = table_from<3>(numbers, m, 4 * n + s, s);
+    auto tables = std::make_shared<LawTables>(axis, n, s);
+    for (std::size_t row = 0; row < m; ++row) tables->set(row, numbers.data() + row * tables->columns());
     return tables;
 }
 

@@ -5,6 +5,7 @@
 #include <atomic>
 
 #include "eel_core/build_info.hpp"
+#include "bind_sampled.hpp"
 #include "eel_core/march/instant.hpp"
 #include "from_python.hpp"
 
@@ -395,6 +396,8 @@ PYBIND11_MODULE(EEL_CORE_MODULE, module)
         .def_property_readonly("state", &PyMarch::state)
         .def_property_readonly("works", &PyMarch::works)
         .def_property_readonly("counts", &PyMarch::counts);
+
+    bind_sampled_marches(module);
 
     bind_instant<Plane>(module, "PlanarInstant", "Single instants in the plane.");
     bind_instant<Space>(module, "Instant", "Single instants in space.")

@@ -21,7 +21,8 @@ from eel_gym.depth import DepthEnv
 from eel_gym.heading import HeadingEnv
 from eel_gym.knot_action import KnotAction
 from eel_gym.law_action import LawAction
-from eel_gym.swimmer_env import Episode, Observed, Start, SwimmerEnv
+from eel_gym.swimmer_env import SwimmerEnv
+from eel_gym.task import Episode, Observed, Start
 from eel_gym.vector_env import ThreadedVectorEnv
 from eel_gym.way_points import WayPointsEnv
 

@@ -3,20 +3,14 @@
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
+import numpy as np
 from eel_base.quantity import quantity
 from eel_gaits.pilot.head_motion import wrapped
 
-from eel_gym.swimmer_env import (
-    FARTHEST,
-    FASTEST,
-    GREATEST_START_SPEED,
-    SPIN,
-    Episode,
-    Observed,
-    Start,
-    SwimmerEnv,
-)
+from eel_gym.swimmer_env import SwimmerEnv
+from eel_gym.task import FARTHEST, FASTEST, GREATEST_START_SPEED, SPIN, Episode, Observed, Start
 
 LEAST_CHANGE = 0.05  # body lengths: the reward of a task that holds its depth needs a scale too
 
@@ -65,44 +59,45 @@ class DepthEnv(SwimmerEnv):
         Observed("velocity of the head, up in its axes", "m/s", FASTEST),
     )
 
-    def __init__(self, **settings):
-        super().__init__(**settings)
-        self.target = 0.0  # m, height of the wanted depth
-
-    def begin(self, options: dict) -> Start:
+    def begin(self, options: dict[str, Any]) -> Start:
         """A random start, and a random depth."""
         draw = self.np_random.uniform
-        self.target = draw(-1.0, 1.0) * self.numbers.greatest_change
+        target = draw(-1.0, 1.0) * self.numbers.greatest_change
         return Start(
             speed=draw(0.0, GREATEST_START_SPEED),
             roll_rate=draw(-1.0, 1.0) * self.numbers.greatest_roll_rate,
             own_time=draw(0.0, self.action.period),
+            goal=(target,),
         )
 
-    def observe(self) -> list[float]:
+    @property
+    def target(self) -> Any:
+        """Height [m] of the wanted depth."""
+        return self.goal[0]
+
+    def observe(self) -> list[Any]:
         """Error of the depth, vertical speed, attitude, twist."""
         head = self.head
         climb, roll = head.climb, head.roll
-        forward, left, up = head.velocity.tolist()
-        rise = forward * math.sin(climb) + math.cos(climb) * (left * math.sin(roll) + up * math.cos(roll))
-        angles = [climb, roll, wrapped(self.heading)]
-        return [self.error, rise, *angles, *head.angular_velocity.tolist(), forward, left, up]
+        forward, left, up = head.velocity
+        rise = forward * np.sin(climb) + np.cos(climb) * (left * np.sin(roll) + up * np.cos(roll))
+        return [self.error, rise, climb, roll, wrapped(self.heading), *head.angular_velocity, forward, left, up]
 
     @property
-    def error(self) -> float:
+    def error(self) -> Any:
         """Error [m] of the head's depth; positive: the target is above."""
-        return self.target - float(self.head.position[2])
+        return self.target - self.head.position[2]
 
-    def reward(self) -> float:
+    def reward(self) -> Any:
         """See the class."""
         scale = 2.0 * max(self.numbers.greatest_change, LEAST_CHANGE * self.body.length)
-        return self.numbers.control_period * max(0.0, 1.0 - abs(self.error) / scale)
+        return self.numbers.control_period * np.maximum(0.0, 1.0 - abs(self.error) / scale)
 
-    def ended(self) -> bool:
+    def ended(self) -> Any:
         """Whether the swimmer has rolled too far."""
         return abs(self.head.roll) > self.numbers.roll_limit
 
     def marks(self) -> list[tuple[float, float, float]]:
         """A point one metre ahead, at the wanted depth."""
         x, y, _ = self.head.position.tolist()
-        return [(x + 1.0, y, self.target)]
+        return [(x + 1.0, y, float(self.target))]

@@ -10,7 +10,7 @@ import numpy as np
 from eel_dynamics.runs.run import Run
 from eel_dynamics.simulation.energy import EnergyLedger
 from eel_dynamics.simulation.observations import Snapshot
-from eel_dynamics.simulation.simulation import Simulation
+from eel_dynamics.simulation.sampled_swimmers import SampledSwimmers
 from eel_gaits.laws.law import Law
 
 STACKED = (
@@ -26,7 +26,7 @@ class EpisodeRecording:
     A file that is there already stays: other environments may record to the same folder.
     """
 
-    def __init__(self, folder, name: str):
+    def __init__(self, folder: Any, name: str):
         self._folder, self._name, self._number = Path(os.fspath(folder)), name, 0
         self._snapshots: list[Snapshot] = []
 
@@ -34,15 +34,15 @@ class EpisodeRecording:
         """Add the present instant."""
         self._snapshots.append(snapshot)
 
-    def finish(self, simulation: Simulation) -> None:
-        """Write the episode of the `simulation`, if it has more than its start. The next `add` begins another."""
+    def finish(self, swimmers: SampledSwimmers, index: int) -> None:
+        """Write the episode of swimmer `index`, if it has more than its start. The next `add` begins another."""
         snapshots, self._snapshots = self._snapshots, []
         if len(snapshots) < 2:
             return
         self._folder.mkdir(parents=True, exist_ok=True)
         path = self._new_file()
         try:
-            run_of(snapshots, simulation, self._name).to_rerun(path)
+            run_of(snapshots, swimmers, index, self._name).to_rerun(path)
         except BaseException:
             path.unlink(missing_ok=True)
             raise
@@ -57,8 +57,8 @@ class EpisodeRecording:
                 return path
 
 
-def run_of(snapshots: list[Snapshot], simulation: Simulation, name: str) -> Run:
-    """The run of a `simulation` from its `snapshots`. Its law has this `name` and no terms: a policy moved it."""
+def run_of(snapshots: list[Snapshot], swimmers: SampledSwimmers, index: int, name: str) -> Run:
+    """The run of swimmer `index` from its `snapshots`. Its law has this `name` and no terms: a policy moved it."""
     columns: dict[str, Any] = {}
     for field in STACKED:
         values = [getattr(snapshot, field) for snapshot in snapshots]
@@ -68,16 +68,16 @@ def run_of(snapshots: list[Snapshot], simulation: Simulation, name: str) -> Run:
         names = EnergyLedger.keys()
         ledgers: list[Any] = [snapshot.energy for snapshot in snapshots]
         energy = EnergyLedger(*(np.array([ledger[each] for ledger in ledgers]) for each in names))
-    steps, _, evaluations = simulation.evaluations
+    steps, _, evaluations = swimmers.evaluations(index)
     return Run(
         law=Law(name=name),
-        body=simulation.body,
-        scene=simulation.scene,
-        accuracy=simulation.accuracy,
-        x=simulation.x,
+        body=swimmers.body,
+        scene=swimmers.scene,
+        accuracy=swimmers.accuracy,
+        x=swimmers.x,
         energy=energy,
         steps=steps,
         evaluations=evaluations,
-        nodes=len(simulation.grid.x),
+        nodes=len(swimmers.grid.x),
         **columns,
     )

@@ -3,12 +3,14 @@
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 from eel_base.quantity import quantity
 from eel_dynamics.model.scene import Scene
 from eel_gaits.pilot.head_motion import wrapped
 
-from eel_gym.swimmer_env import FASTEST, GREATEST_START_SPEED, SPIN, Episode, Observed, Start, SwimmerEnv
+from eel_gym.swimmer_env import SwimmerEnv
+from eel_gym.task import FASTEST, GREATEST_START_SPEED, SPIN, Episode, Observed, Start
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,15 +52,15 @@ class HeadingEnv(SwimmerEnv):
         Observed("velocity of the head, to the left", "m/s", FASTEST),
     )
 
-    def __init__(self, **settings):
+    def __init__(self, **settings: Any):
         super().__init__(**settings)
-        self.target = self.numbers.target
+        self.target = self.numbers.target  #: rad
 
     def default_scene(self) -> Scene:
         """Motion in the plane."""
         return Scene(planar=True, internal_wrench=False, ledger=False)
 
-    def begin(self, options: dict) -> Start:
+    def begin(self, options: dict[str, Any]) -> Start:
         """A random start."""
         draw = self.np_random.uniform
         return Start(
@@ -68,23 +70,17 @@ class HeadingEnv(SwimmerEnv):
             left_trim=draw(-1.0, 1.0) * self.numbers.greatest_trim,
         )
 
-    def observe(self) -> list[float]:
+    def observe(self) -> list[Any]:
         """Errors of the heading, yaw rate, velocity in the plane."""
-        forward, left, _ = self.head.velocity.tolist()
-        return [
-            self.error,
-            wrapped(self.target - self.head.heading),
-            float(self.head.angular_velocity[2]),
-            forward,
-            left,
-        ]
+        forward, left, _ = self.head.velocity
+        return [self.error, wrapped(self.target - self.head.heading), self.head.angular_velocity[2], forward, left]
 
     @property
-    def error(self) -> float:
+    def error(self) -> Any:
         """Error [rad] of the heading, averaged over the gait's period."""
         return wrapped(self.target - self.heading)
 
-    def reward(self) -> float:
+    def reward(self) -> Any:
         """See the class."""
         return self.numbers.control_period * (1.0 - abs(self.error) / math.pi)
 

@@ -5,9 +5,12 @@ Over a control step the rate goes from the last action's to this one's as s^2 (3
 its acceleration never jump.
 """
 
+from typing import Any
+
 import numpy as np
 from eel_base.quantity import checked_row, positive
 from eel_base.wording import shown
+from eel_dynamics.simulation.sampled_swimmers import Array
 
 
 class KnotAction:
@@ -27,7 +30,15 @@ class KnotAction:
     period = 1.0  # s, over which a task averages: there is no wave
     waves = None  # on the body: as many as the knots can carry
 
-    def __init__(self, knots=5, axes=("yaw",), *, greatest_rate=10.0, greatest_bend=5.0, length: float = 1.0):
+    def __init__(
+        self,
+        knots: Any = 5,
+        axes: tuple[str, ...] = ("yaw",),
+        *,
+        greatest_rate: float = 10.0,
+        greatest_bend: float = 5.0,
+        length: float = 1.0,
+    ):
         count = isinstance(knots, int) and not isinstance(knots, bool)
         self.x = np.linspace(0.0, length, max(knots, 0)) if count else checked_row("knots", knots, None)
         if len(self.x) < 2:
@@ -52,15 +63,21 @@ class KnotAction:
             f"rate of the curvature in {name} at X = {where} m [rad/m/s], -{bound} to {bound}" for name in self.axes
         ]
 
-    def begin(self, own_time: float = 0.0) -> np.ndarray:
-        """Start anew with a straight body; the curvature as of `advance`."""
-        self._value = self._rate = np.zeros(self.size)
+    def begin(self, own_time: Any = 0.0) -> Array:
+        """Start anew with a straight body, or N where `own_time` is (N,); the curvature as of `advance`."""
+        self._value = self._rate = np.zeros((*np.shape(own_time), self.size))
         return self._curvature()
 
-    def advance(self, action: np.ndarray, step: float) -> np.ndarray:
-        """The curvature at the end of a control step of `step` [s] with this `action` (size,).
+    def begin_one(self, swimmer: int, own_time: float) -> Array:
+        """Start anew with one of N swimmers; its curvature (6, knots)."""
+        self._value[swimmer] = self._rate[swimmer] = 0.0
+        rows: Array = self._curvature()[swimmer]
+        return rows
 
-        Returns (6, knots): pitch, its rate and its acceleration, then yaw: rad/m, rad/m/s, rad/m/s^2.
+    def advance(self, action: Array, step: float) -> Array:
+        """The curvature at the end of a control step of `step` [s] with this `action` (size,), or (N, size).
+
+        Returns (6, knots), or (N, 6, knots): pitch, its rate and its acceleration, then yaw: rad/m, rad/m/s, rad/m/s^2.
         """
         up, down = (  # greatest rates that leave as much of the way to the bound as one step at that rate takes
             (2.0 * (self.greatest_bend - sign * self._value) / step - sign * self._rate) / 3.0 for sign in (1.0, -1.0)
@@ -79,13 +96,16 @@ class KnotAction:
         ]
 
     @property
-    def state(self) -> list[float]:
-        """Curvature, then its rate, at the knots of each axis."""
-        return [*self._value.tolist(), *self._rate.tolist()]
+    def state(self) -> list[Any]:
+        """Curvature, then its rate, at the knots of each axis; of N swimmers (N,) each."""
+        return [*self._value.T, *self._rate.T]
 
-    def _curvature(self) -> np.ndarray:
-        rows = np.zeros((2, 3, len(self.x)))
+    def _curvature(self) -> Array:
+        swimmers = self._value.shape[:-1]
+        rows: Array = np.zeros((*swimmers, 2, 3, len(self.x)))
         for k, name in enumerate(self.axes):
             part = slice(k * len(self.x), (k + 1) * len(self.x))
-            rows[("pitch", "yaw").index(name), :2] = self._value[part], self._rate[part]
-        return rows.reshape(6, -1)
+            for derivative, values in enumerate((self._value, self._rate)):
+                rows[..., ("pitch", "yaw").index(name), derivative, :] = values[..., part]
+        curvature: Array = rows.reshape(*swimmers, 6, -1)
+        return curvature

@@ -6,11 +6,13 @@ They move a `SteeredLaw`, so the curvature, its rate and its acceleration never 
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from eel_base.quantity import checked_instance, checked_row, positive
 from eel_base.wording import shown
 from eel_dynamics.accuracy.law_waves import check_law
+from eel_dynamics.simulation.sampled_swimmers import Array
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.steered_law import BENDS, NUMBERS, SteeredLaw
 from eel_gaits.laws.term import Term
@@ -36,7 +38,9 @@ class LawAction:
         waves: on the body, at the greatest size of all numbers.
     """
 
-    def __init__(self, law: Law, numbers: dict, *, response: float = 0.2, length: float = 1.0, points: int = 21):
+    def __init__(
+        self, law: Law, numbers: dict[str, Any], *, response: float = 0.2, length: float = 1.0, points: int = 21
+    ):
         checked_instance("law", law, Law)
         for name, bounds in checked_instance("numbers", numbers, dict).items():
             if name not in NUMBERS:
@@ -72,17 +76,24 @@ class LawAction:
             for name, (low, high) in zip(self.names, bounds, strict=True)
         ]
 
-    def begin(self, own_time: float = 0.0) -> np.ndarray:
-        """Start anew with all numbers at rest and the law at its `own_time` [s]; the curvature as of `advance`."""
+    def begin(self, own_time: Any = 0.0) -> Array:
+        """Start anew with all numbers at rest and the law at its `own_time` [s], or (N,) of N swimmers; the curvature
+        as of `advance`."""
         return self._steered.begin(own_time)
 
-    def advance(self, action: np.ndarray, step: float) -> np.ndarray:
-        """The curvature at the end of a control step of `step` [s] with this `action` (size,).
+    def begin_one(self, swimmer: int, own_time: float) -> Array:
+        """Start anew with one of N swimmers; its curvature (6, points)."""
+        return self._steered.begin_one(swimmer, own_time)
 
-        Returns (6, points): pitch, its rate and its acceleration, then yaw: rad/m, rad/m/s, rad/m/s^2.
+    def advance(self, action: Array, step: float) -> Array:
+        """The curvature at the end of a control step of `step` [s] with this `action` (size,), or (N, size).
+
+        Returns (6, points), or (N, 6, points): pitch, its rate and its acceleration, then yaw: rad/m, rad/m/s,
+        rad/m/s^2.
         """
-        targets = (self._middle + self._half * action).tolist()
-        return self._steered.advance(dict(zip(self.names, targets, strict=True)), step)
+        targets = self._middle + self._half * action
+        by_name = targets.tolist() if targets.ndim == 1 else targets.T
+        return self._steered.advance(dict(zip(self.names, by_name, strict=True)), step)
 
     @property
     def names_of_state(self) -> list[tuple[str, str, float]]:
@@ -98,14 +109,14 @@ class LawAction:
         return [*named, ("sine of the wave's phase", "", 1.0), ("cosine of the wave's phase", "", 1.0)]
 
     @property
-    def state(self) -> list[float]:
-        """Each number and its rate, then sine and cosine of the wave's phase."""
+    def state(self) -> list[Any]:
+        """Each number and its rate, then sine and cosine of the wave's phase; of N swimmers (N,) each."""
         found = [value for name in self.names for value in self._steered.values[name][:2]]
-        phase = 2.0 * math.pi * math.fmod(self._steered.own_time / self.period, 1.0)
-        return [*found, math.sin(phase), math.cos(phase)]
+        phase = 2.0 * math.pi * np.fmod(self._steered.own_time / self.period, 1.0)
+        return [*found, np.sin(phase), np.cos(phase)]
 
 
-def _largest(law: Law, numbers: dict) -> Law:
+def _largest(law: Law, numbers: dict[str, Any]) -> Law:
     """The law that bends the body most: all `numbers` at their greatest size."""
     size = {name: max(map(abs, bounds)) for name, bounds in numbers.items()}
     rolling = math.hypot(size.get("tilt", 0.0), size.get("swirl", 0.0))

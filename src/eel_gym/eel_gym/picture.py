@@ -4,13 +4,14 @@
 import numpy as np
 from eel_dynamics.model.axes import turn_vector
 from eel_dynamics.model.body import Body
+from eel_dynamics.simulation.observations import Snapshot
 
 SIZE, DPI = (8.0, 4.0), 100  # inches, dots per inch
 REACH = 1.5  # body lengths that each side of the head shows
 BODY, MARK = "#0072B2", "#D55E00"
 
 
-def picture(snapshot, body: Body, marks: list[tuple[float, float, float]]) -> np.ndarray:
+def picture(snapshot: Snapshot, body: Body, marks: list[tuple[float, float, float]]) -> np.ndarray:
     """The picture (400, 800, 3), uint8, of a `Snapshot`; `marks`: points [m] in REP-103 axes."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg  # here: it takes longer to import than all the rest
     from matplotlib.figure import Figure

@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Many swimmers at once, in threads: the mechanics run without Python's lock."""
+"""Many swimmers of one task at once: array expressions, and one call of the mechanics, over threads."""
 
-from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from typing import Any, ClassVar
 
 import gymnasium
 import numpy as np
 from eel_base.quantity import positive
 from eel_base.wording import shown
+from gymnasium.utils import seeding
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
@@ -18,7 +17,7 @@ from eel_gym.swimmer_env import SwimmerEnv
 from eel_gym.way_points import WayPointsEnv
 
 
-class ThreadedVectorEnv(VectorEnv):
+class ThreadedVectorEnv(VectorEnv[Any, Any, Any]):
     """`num_envs` environments of one task, stepped in `threads`. Each behaves as it would alone, to the last bit.
 
     Derive a class with a `task`, or give one. An environment whose episode has ended begins another at the next step
@@ -28,7 +27,7 @@ class ThreadedVectorEnv(VectorEnv):
     Args:
         num_envs: how many.
         task: class of the environments.
-        threads: how many. More than one gain only where a control step takes milliseconds of the mechanics.
+        threads: that march the swimmers.
         autoreset_mode: see above.
         max_episode_steps: control steps after which an episode is truncated; None: by the task's `duration` alone.
         settings: of each environment.
@@ -45,7 +44,7 @@ class ThreadedVectorEnv(VectorEnv):
         threads: int = 1,
         autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
         max_episode_steps: int | None = None,
-        **settings,
+        **settings: Any,
     ):
         for name, count in (("num_envs", num_envs), ("threads", threads)):
             if positive(name, count) != int(count):
@@ -55,22 +54,19 @@ class ThreadedVectorEnv(VectorEnv):
         except ValueError:
             known = ", ".join(mode.value for mode in AutoresetMode)
             raise ValueError(f"autoreset_mode must be one of {known}, got {shown(autoreset_mode)}") from None
-        self.num_envs, kind = int(num_envs), task or self.task
-        self.envs: list[gymnasium.Env] = [kind(**settings) for _ in range(self.num_envs)]
-        if max_episode_steps is not None:
-            self.envs = [gymnasium.wrappers.TimeLimit(env, max_episode_steps) for env in self.envs]
-        first = self.envs[0]
+        self.num_envs = int(num_envs)
+        self.swimmers = (task or self.task)(swimmers=self.num_envs, threads=int(threads), **settings)
+        first, self._limit = self.swimmers, max_episode_steps
         self.metadata = {**first.metadata, "autoreset_mode": self._mode}
         self.render_mode = first.render_mode
         self.single_observation_space, self.single_action_space = first.observation_space, first.action_space
         self.observation_space = batch_space(first.observation_space, self.num_envs)
         self.action_space = batch_space(first.action_space, self.num_envs)
-        self._threads = min(self.num_envs, int(threads))
-        self._pool = ThreadPoolExecutor(self._threads)
-        self._observations: np.ndarray = np.zeros(self.observation_space.shape or (), dtype=np.float32)
+        self._draws = [seeding.np_random()[0] for _ in range(self.num_envs)]
         self._over: np.ndarray = np.zeros(self.num_envs, dtype=bool)
+        self._begun = False
 
-    def reset(self, *, seed=None, options: dict | None = None) -> tuple[np.ndarray, dict]:
+    def reset(self, *, seed: Any = None, options: dict[str, Any] | None = None) -> tuple[np.ndarray, dict[str, Any]]:
         """Begin an episode in each environment, or in those of `options["reset_mask"]` (num_envs,) bool.
 
         seed: None, one for all (environment i gets seed + i), or one each. `ValueError` for another number of them.
@@ -85,74 +81,63 @@ class ThreadedVectorEnv(VectorEnv):
             seed = [None if seed is None else int(seed) + index for index in range(self.num_envs)]
         if len(seed) != self.num_envs:
             raise ValueError(f"seed must be one, or {self.num_envs}, got {len(seed)}")
-        chosen = np.flatnonzero(mask).tolist()
-        begun = self._each(lambda index: self.envs[index].reset(seed=seed[index], options=options), chosen)
-        infos: dict = {}
-        for index, (observation, info) in zip(chosen, begun, strict=True):
-            self._observations[index] = observation
-            infos = self._add_info(infos, info, index)
-        self._over[chosen] = False
-        return self._observations.copy(), infos
+        for index in np.flatnonzero(mask).tolist():
+            if seed[index] is not None:
+                self._draws[index] = seeding.np_random(seed[index])[0]
+            self._begin(index, options)
+        self._begun = True
+        return self.swimmers.observation(), {}
 
-    def step(self, actions) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, dict]:
+    def step(self, actions: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
         """One control step of each: observations, rewards, terminations, truncations, infos."""
-        if np.shape(actions) != self.action_space.shape or not np.isfinite(actions).all():
-            shape = " x ".join(map(str, self.action_space.shape or ()))
-            raise gymnasium.error.InvalidAction(f"actions must be {shape} finite numbers, got {shown(actions)}")
-        if self._mode is AutoresetMode.DISABLED and self._over.any():
+        values, over = self.swimmers.checked_action(actions), self._over
+        if not self._begun or (self._mode is AutoresetMode.DISABLED and over.any()):
             raise gymnasium.error.ResetNeeded("environments whose episode has ended must be reset before step")
-        rewards, over = np.zeros(self.num_envs), np.zeros((2, self.num_envs), dtype=bool)
-        infos: dict = {}
-        results = self._each(lambda index: self._step(index, actions[index]), range(self.num_envs))
-        for index, (observation, reward, terminated, truncated, info) in enumerate(results):
-            self._observations[index], rewards[index] = observation, reward
-            over[:, index] = terminated, truncated
-            infos = self._add_info(infos, info, index)
-        self._over = np.asarray(over.any(axis=0))
-        return self._observations.copy(), rewards, over[0], over[1], infos
+        self.swimmers.march(values)
+        observations = self.swimmers.observation()
+        rewards, terminated, truncated, stopped = self.swimmers.judge()
+        rewards, terminated, truncated = np.array(rewards), terminated | np.zeros_like(over), np.array(truncated)
+        if self._limit is not None:
+            truncated |= self.swimmers.ticks >= self._limit
+        infos: dict[str, Any] = {}
+        for index, reason in stopped.items():
+            if not (self._mode is AutoresetMode.NEXT_STEP and over[index]):
+                infos = self._add_info(infos, {"stopped": reason}, index)
+        begun = over
+        if self._mode is AutoresetMode.NEXT_STEP:
+            rewards[over], terminated[over], truncated[over] = 0.0, False, False
+        else:
+            begun = (terminated | truncated) & (self._mode is AutoresetMode.SAME_STEP)
+        if begun.any():
+            for index in np.flatnonzero(begun).tolist():
+                if self._mode is AutoresetMode.SAME_STEP:
+                    final = {"stopped": stopped[index]} if index in stopped else {}
+                    infos = self._add_info(infos, {"final_obs": observations[index], "final_info": final}, index)
+                self._begin(index, {})
+            observations = np.where(begun[:, None], self.swimmers.observation(), observations)
+        self._over = terminated | truncated
+        return observations, rewards, terminated, truncated, infos
 
-    def render(self) -> tuple:
+    def render(self) -> tuple[Any, ...]:
         """What each renders."""
-        return tuple(env.render() for env in self.envs)
+        return tuple(map(self.swimmers.picture_of, range(self.num_envs)))
 
-    def get_attr(self, name: str) -> tuple:
+    def get_attr(self, name: str) -> tuple[Any, ...]:
         """The attribute `name` of each."""
-        return tuple(env.get_wrapper_attr(name) for env in self.envs)
+        return tuple(getattr(self.swimmers.one(index), name) for index in range(self.num_envs))
 
-    def call(self, name: str, *arguments, **keywords) -> tuple:
+    def call(self, name: str, *arguments: Any, **keywords: Any) -> tuple[Any, ...]:
         """What the method `name` of each returns."""
         return tuple(method(*arguments, **keywords) for method in self.get_attr(name))
 
-    def close_extras(self, **keywords) -> None:
-        """Close the environments and end the threads."""
-        for env in self.envs:
-            env.close()
-        self._pool.shutdown()
+    def close_extras(self, **keywords: Any) -> None:
+        """Close the environments."""
+        self.swimmers.close()
 
-    def _step(self, index: int, action) -> tuple:
-        env = self.envs[index]
-        if self._mode is AutoresetMode.NEXT_STEP and self._over[index]:
-            observation, info = env.reset()
-            return observation, 0.0, False, False, info
-        observation, reward, terminated, truncated, info = env.step(action)
-        if self._mode is AutoresetMode.SAME_STEP and (terminated or truncated):
-            final = {"final_obs": observation, "final_info": info}
-            observation, info = env.reset()
-            info = {**info, **final}
-        return observation, reward, terminated, truncated, info
-
-    def _each(self, act: Callable[[int], tuple], indices) -> list:
-        """act(index) for each of the `indices`, in one run per thread."""
-        indices = list(indices)
-        if self._threads == 1:
-            return [act(index) for index in indices]
-        parts = [indices[start :: self._threads] for start in range(self._threads)]
-        found: dict = {}
-        for part, results in zip(
-            parts, self._pool.map(lambda part: [act(index) for index in part], parts), strict=True
-        ):
-            found |= dict(zip(part, results, strict=True))
-        return [found[index] for index in indices]
+    def _begin(self, index: int, options: dict[str, Any]) -> None:
+        self.swimmers.np_random = self._draws[index]
+        self.swimmers.begin_episode(index, options)
+        self._over[index] = False
 
 
 class HeadingVectorEnv(ThreadedVectorEnv):

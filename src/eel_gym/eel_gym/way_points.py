@@ -3,22 +3,15 @@
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from eel_base.quantity import quantity
 from eel_dynamics.model.scene import Scene
 from eel_gaits.pilot.head_motion import wrapped
 
-from eel_gym.swimmer_env import (
-    FARTHEST,
-    FASTEST,
-    GREATEST_START_SPEED,
-    SPIN,
-    Episode,
-    Observed,
-    Start,
-    SwimmerEnv,
-)
+from eel_gym.swimmer_env import SwimmerEnv
+from eel_gym.task import FARTHEST, FASTEST, GREATEST_START_SPEED, SPIN, Episode, Observed, Start
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -66,64 +59,58 @@ class WayPointsEnv(SwimmerEnv):
         Observed("velocity of the head, to the left", "m/s", FASTEST),
     )
 
-    def __init__(self, **settings):
-        super().__init__(**settings)
-        self.points: list[tuple[float, float]] = [(0.0, 0.0)]  # m, those to be reached
-        self._turns = [0.0]  # rad, at each of them
-        self._distance, self._reached = 0.0, False  # m, before the last step; whether it ended at the last point
-
     def default_scene(self) -> Scene:
         """Motion in the plane."""
         return Scene(planar=True, internal_wrench=False, ledger=False)
 
-    def begin(self, options: dict) -> Start:
-        """Random points."""
+    def begin(self, options: dict[str, Any]) -> Start:
+        """Random points. The goal: how many are reached, the distance [m] before a step, then x and y [m] of each point
+        and the turn [rad] there, 0 at the last."""
         numbers, draw = self.numbers, self.np_random.uniform
         turns: np.ndarray = np.asarray(draw(-numbers.greatest_turn, numbers.greatest_turn, round(numbers.points)))
-        x = y = bearing = 0.0
-        self.points, self._turns = [], [*turns[1:].tolist(), 0.0]
-        for turn in turns.tolist():
-            bearing += turn
-            x, y = x + numbers.distance * math.cos(bearing), y + numbers.distance * math.sin(bearing)
-            self.points.append((x, y))
-        self._distance, self._reached = numbers.distance, False
-        return Start(speed=draw(0.0, GREATEST_START_SPEED), own_time=draw(0.0, self.action.period))
+        bearings = np.cumsum(turns)
+        x, y = (numbers.distance * np.cumsum(part) for part in (np.cos(bearings), np.sin(bearings)))
+        goal = (0.0, numbers.distance, *x.tolist(), *y.tolist(), *turns[1:].tolist(), 0.0)
+        return Start(speed=draw(0.0, GREATEST_START_SPEED), own_time=draw(0.0, self.action.period), goal=goal)
 
-    def observe(self) -> list[float]:
+    def observe(self) -> list[Any]:
         """Bearing and distance of the point, turn to the next, yaw rate, velocity in the plane."""
-        forward, left, _ = self.head.velocity.tolist()
-        bearing, distance = self._way()
-        return [
-            wrapped(bearing - self.heading),
-            distance,
-            self._turns[0],
-            float(self.head.angular_velocity[2]),
-            forward,
-            left,
-        ]
+        forward, left, _ = self.head.velocity
+        bearing, distance, turn = self._way()
+        return [wrapped(bearing - self.heading), distance, turn, self.head.angular_velocity[2], forward, left]
 
-    def reward(self) -> float:
+    def reward(self) -> Any:
         """See the class."""
-        _, distance = self._way()
-        gain, self._distance = self._distance - distance, distance
-        if distance > self.numbers.reach:
-            return gain
-        self._reached = len(self.points) == 1
-        if not self._reached:
-            self.points, self._turns = self.points[1:], self._turns[1:]
-            self._distance = self._way()[1]
-        return gain + 1.0
+        _, distance, _ = self._way()
+        gain, reached = self.goal[1] - distance, distance <= self.numbers.reach
+        self.goal[0] += reached
+        self.goal[1] = np.where(reached & (self.goal[0] < self._count), self._way()[1], distance)
+        return gain + reached
 
-    def ended(self) -> bool:
+    def ended(self) -> Any:
         """Whether the last point is reached, or the present one is too far."""
-        return self._reached or self._distance > 2.0 * self.numbers.distance
+        return (self.goal[0] >= self._count) | (self.goal[1] > 2.0 * self.numbers.distance)
+
+    @property
+    def points(self) -> list[tuple[float, float]]:
+        """The points [m] of one swimmer that are left."""
+        _, _, *numbers = self.goal.tolist()
+        count = self._count
+        return list(zip(numbers[:count], numbers[count : 2 * count], strict=True))[int(self.goal[0]) :]
 
     def marks(self) -> list[tuple[float, float, float]]:
         """The points that are left."""
         return [(x, y, 0.0) for x, y in self.points]
 
-    def _way(self) -> tuple[float, float]:
-        """Bearing [rad] in the world and distance [m] of the present point."""
-        x, y, _ = self.head.position.tolist()
-        east, north = self.points[0][0] - x, self.points[0][1] - y
-        return math.atan2(north, east), math.hypot(east, north)
+    @property
+    def _count(self) -> int:
+        return round(self.numbers.points)
+
+    def _way(self) -> tuple[Any, Any, Any]:
+        """Bearing [rad] in the world and distance [m] of the present point, or of the last; the turn [rad] there."""
+        count = self._count
+        place = np.minimum(self.goal[0], count - 1)
+        here = np.arange(count).reshape(count, *(1 for _ in self.shape)) == place
+        x, y, turn = ((part * here).sum(axis=0) for part in np.split(self.goal[2:], 3))
+        east, north = x - self.head.position[0], y - self.head.position[1]
+        return np.arctan2(north, east), np.hypot(east, north), turn

@@ -22,14 +22,21 @@ void find_loads(const Swimmer& swimmer, Workspace<M>& work)
     integrate_resistive_load(swimmer, work);
 }
 
-// Shape, twist of the head and loads in state y at `time` [s]. False where the inertia is not positive definite.
+// Shape and twist of the head in state y at `time` [s]. False where the inertia is not positive definite.
 template <class M>
-bool find_motion(const Swimmer& swimmer, const Law& law, double time, const State& y, Workspace<M>& work)
+bool find_head_motion(const Swimmer& swimmer, const Law& law, double time, const State& y, Workspace<M>& work)
 {
     configure(swimmer, law, time, work);  // eq. (25)
     work.head = head_frame(y, M());
     work.momentum = momentum_in_head(y, work.head);
-    if (!find_twist(swimmer, work)) return false;  // section 6
+    return find_twist(swimmer, work);  // section 6
+}
+
+// The same, and the velocities and loads along the body.
+template <class M>
+bool find_motion(const Swimmer& swimmer, const Law& law, double time, const State& y, Workspace<M>& work)
+{
+    if (!find_head_motion(swimmer, law, time, y, work)) return false;
     add_head_motion(swimmer, work.twist, work.position, work.omega, work.velocity);
     find_loads(swimmer, work);
     if (swimmer.righting != 0.0) set_righting_torque(swimmer, work);

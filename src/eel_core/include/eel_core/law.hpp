@@ -120,7 +120,27 @@ struct RowTable {
     std::size_t blocks = 0;
     std::vector<std::array<Lanes, Parts>> lanes;  // [row][block]
 
+    RowTable() = default;
+    RowTable(std::size_t rows, std::size_t points) : blocks(blocks_of(points)), lanes(rows * blocks) {}
+
     const std::array<Lanes, Parts>& at(std::size_t row, std::size_t block) const { return lanes[row * blocks + block]; }
+
+    // Sets a row from the values of n points, one part behind the other.
+    void set(std::size_t row, const double* values, std::size_t n)
+    {
+        for (std::size_t block = 0; block < blocks; ++block)
+            for (std::size_t part = 0; part < Parts; ++part) {
+                const std::size_t point = std::min(width * block, n), here = std::min(width, n - point);
+                const double* const from = values + part * n + point;
+                std::array<double, width> filled_up{};
+                if (here < width) std::copy_n(from, here, filled_up.begin());
+                lanes[row * blocks + block][part] = Lanes::load(here < width ? filled_up.data() : from);
+            }
+    }
+    void copy(std::size_t from, std::size_t to)
+    {
+        std::copy_n(lanes.data() + from * blocks, blocks, lanes.data() + to * blocks);
+    }
 };
 
 // The rows of a law, tabulated on the nodes and the stations of a swimmer.
@@ -132,7 +152,39 @@ struct LawTables {
     RowTable<1> station;                  // as `node` and `moments`, at the stations, from the node before each
     RowTable<3> station_moments;
 
+    LawTables() = default;
+    // `axis` of each row: 0 pitch, 1 yaw; n nodes, s stations.
+    LawTables(const std::vector<std::size_t>& axis, std::size_t n, std::size_t s)
+        : node(axis.size(), n), angle(axis.size(), n), moments(axis.size(), n), station(axis.size(), s),
+          station_moments(axis.size(), s), nodes_(n), stations_(s)
+    {
+        for (std::size_t row = 0; row < axis.size(); ++row) rows_of[axis[row] == 0 ? 0 : 1].push_back(row);
+    }
+
     std::size_t rows() const { return rows_of[0].size() + rows_of[1].size(); }
+    std::size_t columns() const { return 4 * (nodes_ + stations_); }
+
+    // Sets a row from its columns: at the n nodes, their moments (3, n), at the s stations, their moments (3, s).
+    void set(std::size_t row, const double* columns)
+    {
+        const std::size_t n = nodes_, s = stations_;
+        node.set(row, columns, n), moments.set(row, columns + n, n);
+        station.set(row, columns + 4 * n, s), station_moments.set(row, columns + 4 * n + s, s);
+        double sum = 0.0;
+        for (std::size_t block = 0; block < angle.blocks; ++block) {
+            std::array<double, width> lanes;
+            for (std::size_t lane = 0; lane < width; ++lane) lanes[lane] = sum += moments.at(row, block)[0][lane];
+            angle.lanes[row * angle.blocks + block] = {Lanes::load(lanes.data())};
+        }
+    }
+    void copy(std::size_t from, std::size_t to)
+    {
+        node.copy(from, to), angle.copy(from, to), moments.copy(from, to);
+        station.copy(from, to), station_moments.copy(from, to);
+    }
+
+  private:
+    std::size_t nodes_ = 0, stations_ = 0;
 };
 
 struct Law {

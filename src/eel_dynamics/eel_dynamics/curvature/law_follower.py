@@ -11,7 +11,6 @@ from typing import NamedTuple
 
 import numpy as np
 from eel_gaits.laws.law import Law
-from eel_gaits.laws.spline import natural_spline
 from eel_gaits.sources.sampled_law import SampledLaw
 
 import eel_core
@@ -202,9 +201,10 @@ class LawFollower:
     def _tabulated(self, sample: CurvatureSample) -> np.ndarray:
         """Rows (2, 3, width) of a sample."""
         if self._spline is None or self._spline[0] is not sample.x:
-            matrix = natural_spline(sample.x, np.eye(len(sample.x)), self._tabulation.x)
-            self._spline = sample.x, self._tabulation.columns(matrix)
-        return (sample.values.reshape(6, -1) @ self._spline[1]).reshape(2, 3, -1)
+            self._spline = sample.x, self._tabulation.weights_of(sample.x)
+        rows = np.empty((2, 3, self._tabulation.width))
+        eel_core.tabulate(self._spline[1], np.ascontiguousarray(sample.values), rows)
+        return rows
 
     def _follow(self, source: TabulatedLaw):
         self._source = source

@@ -17,6 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from eel_gaits.laws.law import Law
 from eel_gaits.laws.ramp import factors_of
+from eel_gaits.laws.spline import natural_spline
 from eel_gaits.laws.term import amplitude_of
 
 import eel_core
@@ -61,6 +62,10 @@ class Tabulation:
             ),
             axis=-1,
         )
+
+    def weights_of(self, points: np.ndarray) -> np.ndarray:
+        """Tabulated rows (n, width) of the natural cubic splines that are 1 at one of the `points` (n,) [m] each."""
+        return np.ascontiguousarray(self.columns(natural_spline(points, np.eye(len(points)), self.x)))
 
     def __deepcopy__(self, memo: dict) -> "Tabulation":
         """The same object, because it never changes."""

@@ -98,6 +98,11 @@ class Simulation:
         return np.array(self._march.core.state)
 
     @property
+    def setup(self) -> SimulationSetup:
+        """What neither a march nor a reset changes."""
+        return self._setup
+
+    @property
     def accuracy(self) -> Accuracy:
         """The settings in force."""
         return self._setup.settings

@@ -11,7 +11,7 @@ critically damped oscillator, so the curvature, its rate and its acceleration ne
 
 import math
 from collections.abc import Mapping
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -43,6 +43,8 @@ ROLLING = {"tilt": (1.0, 0.0), "swirl": (0.0, 1.0)}  # cosine and sine of the de
 class SteeredLaw:
     """The curvature of a steered law, step by step. The ramps of the law's envelopes count as complete.
 
+    It steers one swimmer, or N side by side: its own time, its numbers and their targets are then (N,) each.
+
     Args:
         law: its waves; terms without a period are constant bends.
         response: [s], time constant with which a number follows its target.
@@ -56,23 +58,32 @@ class SteeredLaw:
         self._rows = np.concatenate([_rows(term, self.x) for term in law.terms] + [np.ones((1, points))])
         self._rest = {name: (number.rest, 0.0, 0.0) for name, number in NUMBERS.items()}
         self.period = min((term.period for term in law.terms if term.period), default=1.0)  # s, of the fastest wave
-        self.values = self._rest  # of each number: value, rate, acceleration
+        self.values: dict[str, Any] = dict(self._rest)  # of each number: value, rate, acceleration
         self.greatest_curvature = float(np.max(sum(np.hypot(*_rows(term, self.x)) for term in law.terms)))  # rad/m
-        self.own_time = 0.0  # s, tau
+        self.own_time: Any = 0.0  # s, tau
         self.begin()
 
-    def begin(self, own_time: float = 0.0, **values: float) -> np.ndarray:
-        """Start anew with the law at its `own_time` [s] and all numbers at rest, or at these `values`; the curvature
-        as of `advance`."""
+    def begin(self, own_time: Any = 0.0, **values: float) -> np.ndarray:
+        """Start anew with the law at its `own_time` [s], or (N,) of N swimmers, and all numbers at rest, or at these
+        `values`; the curvature as of `advance`."""
         self.own_time = own_time
         self.values = self._rest | {name: (value, 0.0, 0.0) for name, value in values.items()}
         return self._curvature()
 
-    def advance(self, targets: Mapping[str, float], step: float, response: float | None = None) -> np.ndarray:
+    def begin_one(self, swimmer: int, own_time: float) -> np.ndarray:
+        """Start anew with one of N swimmers, all its numbers at rest; its curvature (6, points)."""
+        self.own_time[swimmer] = own_time
+        for name, rest in self._rest.items():
+            if self.values[name] is not rest:
+                for value, begun in zip(self.values[name], rest, strict=True):
+                    value[swimmer] = begun
+        return self._curvature()[swimmer]
+
+    def advance(self, targets: Mapping[str, Any], step: float, response: float | None = None) -> np.ndarray:
         """The curvature at the end of a step of `step` [s] with these `targets` by name; other numbers stay.
 
-        response [s]: replaces that of the law in this step. Returns (6, points): pitch, its rate and its acceleration,
-        then yaw: rad/m, rad/m/s, rad/m/s^2.
+        response [s]: replaces that of the law in this step. Returns (6, points), or (N, 6, points): pitch, its rate and
+        its acceleration, then yaw: rad/m, rad/m/s, rad/m/s^2.
         """
         elapsed = step * self.values["tempo"][0]
         rate = 1.0 / response if response else self._rate
@@ -80,31 +91,40 @@ class SteeredLaw:
             self.values[name], integral = _followed(self.values[name], target, rate, step)
             if name == "tempo":
                 elapsed = integral
-        self.own_time += elapsed
+        self.own_time = self.own_time + elapsed
         return self._curvature()
 
     def _curvature(self) -> np.ndarray:
         size, speed = self.values["amplitude"], self.values["tempo"]
-        factors = np.zeros((2, 3, len(self._rows)))
+        swimmers = np.shape(self.own_time)
+        factors = np.zeros((*swimmers, 2, 3, len(self._rows)))
         for k, (frequency, axis) in enumerate(self._waves):
-            angle = frequency * self.own_time
-            s, c = math.sin(angle), math.cos(angle)
-            for row, (f, f1) in ((2 * k, (c, -frequency * s)), (2 * k + 1, (-s, -frequency * c))):
-                factors[axis, :, row] = _product(size, f, f1, frequency, speed)
+            s, c = (function(frequency * self.own_time) for function in (np.sin, np.cos))
+            if not swimmers:
+                s, c = float(s), float(c)
+            _put(factors[..., axis, :, :], 2 * k, _product(size, c, -frequency * s, frequency, speed))
+            _put(factors[..., axis, :, :], 2 * k + 1, _product(size, -s, -frequency * c, frequency, speed))
             if frequency and axis == AXES["yaw"]:
                 for name, (now, later) in ROLLING.items():
-                    if any(self.values[name]):
-                        for row, (f, f1) in (
-                            (2 * k, (now * c + later * s, frequency * (later * c - now * s))),
-                            (2 * k + 1, (later * c - now * s, -frequency * (now * c + later * s))),
-                        ):
-                            factors[AXES["pitch"], :, row] += _product(self.values[name], f, f1, frequency, speed)
+                    number = self.values[name]
+                    if number is not self._rest[name]:
+                        f, g = now * c + later * s, later * c - now * s
+                        parts = factors[..., AXES["pitch"], :, 2 * k : 2 * k + 2]
+                        for row, (value, slope) in enumerate(((f, frequency * g), (g, -frequency * f))):
+                            _put(parts, row, _product(number, value, slope, frequency, speed), parts[..., row])
         for name, bent in BENDS.items():
-            factors[AXES[bent], :, -1] = [-value for value in self.values[name]]
-        return factors.reshape(6, -1) @ self._rows
+            if self.values[name] is not self._rest[name]:
+                _put(factors[..., AXES[bent], :, :], -1, tuple(-value for value in self.values[name]))
+        return factors.reshape(*swimmers, 6, -1) @ self._rows
 
 
-def _product(number: tuple, f: float, f1: float, frequency: float, speed: tuple) -> tuple[float, float, float]:
+def _put(factors: np.ndarray, row: int, jet: tuple, more: np.ndarray | None = None) -> None:
+    """Put value, rate and acceleration of a row into the `factors` (..., 3, rows), with `more` (..., 3) added."""
+    for derivative, value in enumerate(jet):
+        factors[..., derivative, row] = value if more is None else value + more[..., derivative]
+
+
+def _product(number: tuple, f: Any, f1: Any, frequency: float, speed: tuple) -> tuple[Any, Any, Any]:
     """Value, rate and acceleration of a `number` times f(tau), where f'' = -frequency^2 f and tau' is the `speed`."""
     rate = f1 * speed[0]
     acceleration = -frequency * frequency * f * speed[0] ** 2 + f1 * speed[1]
@@ -123,7 +143,7 @@ def _rows(term, x: np.ndarray) -> np.ndarray:
     return np.stack((size * np.sin(angle), size * np.cos(angle)))
 
 
-def _followed(jet: tuple, target: float, rate: float, step: float) -> tuple[tuple, float]:
+def _followed(jet: tuple, target: Any, rate: float, step: float) -> tuple[tuple, Any]:
     """Value, rate and acceleration after `step` [s] of a critically damped oscillator that goes to its `target`.
 
     jet: the same before. rate [1/s]: of the oscillator. Returns the integral of the value over the step too.

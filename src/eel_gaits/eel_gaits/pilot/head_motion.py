@@ -5,15 +5,17 @@ The swimmer heads for +x, y is left, z is up.
 """
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from eel_base import attitude
 
+TURN = 2.0 * math.pi  # rad
+
 
 class HeadMotion(NamedTuple):
-    """Pose and twist of the head, in REP-103 axes."""
+    """Pose and twist of the head, in REP-103 axes; of N heads, with a further axis (., N) each."""
 
     position: np.ndarray  # (3,) m, world
     orientation: np.ndarray  # (4,) x y z w, world from head
@@ -21,21 +23,22 @@ class HeadMotion(NamedTuple):
     velocity: np.ndarray  # (3,) m/s, head's axes: forward, left, up
 
     @property
-    def heading(self) -> float:
+    def heading(self) -> Any:
         """Angle [rad] about the vertical, positive to the left, from -pi to pi."""
-        return attitude.heading(self.orientation.tolist())
+        return attitude.heading(self.orientation)
 
     @property
-    def climb(self) -> float:
+    def climb(self) -> Any:
         """Angle [rad] of the head above the horizontal."""
-        return attitude.climb(self.orientation.tolist())
+        return attitude.climb(self.orientation)
 
     @property
-    def roll(self) -> float:
+    def roll(self) -> Any:
         """Angle [rad] about the forward axis, positive where the right side is down, from -pi to pi."""
-        return attitude.roll(self.orientation.tolist())
+        return attitude.roll(self.orientation)
 
 
-def wrapped(angle: float) -> float:
-    """The `angle` [rad] from -pi to pi."""
-    return math.remainder(angle, 2.0 * math.pi)
+def wrapped(angle: Any) -> Any:
+    """The `angle` [rad] from -pi to pi; of an array each."""
+    inside = angle - TURN * np.rint(angle / TURN)
+    return inside if isinstance(inside, np.ndarray) else float(inside)

@@ -11,6 +11,8 @@
 
 namespace eel_core {
 
+using HeadMotion = std::array<double, 13>;  // see `March::head`
+
 // A copy goes on by itself: state, steps and work space are its own; swimmer and law, which never change, are shared.
 class March {
   public:
@@ -73,9 +75,22 @@ class March {
     Twist<Space, double> twist()
     {
         Workspace<Space>& work = workspace();
-        if (!find_motion(*swimmer_, settings_.law, time_, state_, work))
+        if (!find_head_motion(*swimmer_, settings_.law, time_, state_, work))
             throw std::domain_error("inertia is not positive definite");
         return work.twist;
+    }
+
+    // Position [m], orientation x y z w and twist over ground [rad/s, m/s] of the head in the present state; none where
+    // the inertia is not positive definite.
+    std::optional<HeadMotion> head()
+    {
+        Workspace<Space>& work = workspace();
+        if (!find_head_motion(*swimmer_, settings_.law, time_, state_, work)) return {};
+        HeadMotion head;
+        std::copy_n(state_.begin(), 7, head.begin());
+        put(work.twist.angular, head.data() + 7);
+        put(work.twist.linear + work.head.local(settings_.current), head.data() + 10);
+        return head;
     }
 
     // Puts the head of the present shape elsewhere, with the momentum of its twist relative to the water. Returns the

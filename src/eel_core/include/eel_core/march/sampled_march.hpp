@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+// Many swimmers of one kind, marched in one call over threads, each under a controller's samples of its own.
+//
+// A control step takes one sample: the curvature at its end. Between two samples the curvature is the quintic that
+// meets value, rate and acceleration at both. At the start a swimmer is straight and at rest: what its first sample
+// differs by dies out in a blend. Swimmers share nothing that changes, so the number of threads changes no result.
+#pragma once
+
+#include "eel_core/march/march.hpp"
+#include "eel_core/march/threads.hpp"
+
+namespace eel_core {
+
+inline constexpr std::size_t sample_rows = 6;  // pitch, its rate and its acceleration, then yaw
+
+// Takes values at the points of a sample to the columns of a law's tables.
+struct SampleWeights {
+    std::size_t points, columns;
+    std::vector<double> weight;  // (points, columns)
+};
+
+// result (sample_rows, columns) of the values (sample_rows, points), by the weights (points, columns), summed from the
+// first point to the last.
+inline void tabulate(const double* weights, std::size_t points, std::size_t columns, const double* values,
+                     double* result)
+{
+    std::fill_n(result, sample_rows * columns, 0.0);
+    for (std::size_t row = 0; row < sample_rows; ++row) {
+        const double* const of_row = values + row * points;
+        double* const to = result + row * columns;
+        if (std::all_of(of_row, of_row + points, [](double value) { return value == 0.0; })) continue;
+        const auto sum = [&]<class T>(T total, const auto& load) {
+            for (std::size_t point = 0; point < points; ++point) total += of_row[point] * load(weights + point * columns);
+            return total;
+        };
+        std::size_t k = 0;
+        for (; k + width <= columns; k += width)
+            sum(Lanes(0.0), [k](const double* from) { return Lanes::load(from + k); }).store(to + k);
+        for (; k < columns; ++k) to[k] = sum(0.0, [k](const double* from) { return from[k]; });
+    }
+}
+
+// What does not differ from swimmer to swimmer.
+struct SampledKind {
+    std::shared_ptr<const Swimmer> swimmer;
+    Method method;
+    bool planar, ledger;
+    Vector3<double> current;  // [m/s]
+    SampleWeights weights;
+    double transition;  // [s], of the blend
+};
+
+class SampledMarch {
+  public:
+    explicit SampledMarch(std::shared_ptr<const SampledKind> kind)
+        : kind_(std::move(kind)), march_(kind_->swimmer, kind_->method, kind_->planar), rows_(columns() * sample_rows)
+    {
+    }
+
+    March& march() { return march_; }
+    const March& march() const { return march_; }
+
+    // Stands at the start, straight, with the head's twist relative to the water; `values`: the sample at time 0.
+    // Returns the kinetic and potential energy [J].
+    double start(const StepBounds& bounds, const Vector3<double>& position, const Quaternion<double>& orientation,
+                 const Twist<Space, double>& twist, const double* values)
+    {
+        static const std::vector<std::size_t> axes{0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 0, 0, 0, 1, 1, 1};
+        tables_ = std::make_shared<LawTables>(axes, kind_->swimmer->grid.nodes, kind_->swimmer->stations);
+        law_ = {tables_, 0.0, {}, {}, {}};
+        bounds_ = bounds, under_way_ = unfinished_ = false;
+        tabulate_sample(values);
+        follow({}, false);
+        return march_.start(position, orientation, twist);
+    }
+
+    // Marches to `time` [s], at which the sample has these `values`; or goes on where it came back unfinished.
+    Status advance(double time, const double* values)
+    {
+        if (!unfinished_) take_sample(time, values);
+        const Status status = march_.advance(time);
+        unfinished_ = status == Status::unfinished;
+        return status;
+    }
+
+  private:
+    static constexpr std::size_t axes_rows = 6, blend_row = 12;
+
+    std::size_t columns() const { return kind_->weights.columns; }
+
+    void take_sample(double time, const double* values)
+    {
+        const double start = march_.time();
+        const bool begins = !under_way_;
+        if (begins) set_ends(0);
+        else
+            for (const std::size_t axis : {0, 1})
+                for (const std::size_t row : {0, 1, 2})
+                    tables_->copy(axes_rows * axis + 3 + row, axes_rows * axis + row);
+        law_.segment = {0, start, time};
+        if (begins) begin_blend(start);
+        tabulate_sample(values);
+        set_ends(3);
+        if (law_.blend.row != Quintic::none && start >= law_.blend.end) end_blend();
+        std::vector<double> breakpoints{start, time};
+        if (law_.blend.row != Quintic::none) breakpoints.push_back(law_.blend.end);
+        std::sort(breakpoints.begin(), breakpoints.end());
+        follow(std::move(breakpoints), !begins);
+        under_way_ = true;
+    }
+
+    void tabulate_sample(const double* values)
+    {
+        tabulate(kind_->weights.weight.data(), kind_->weights.points, columns(), values, rows_.data());
+    }
+
+    // Sets the rows of one end of the quintic, `first` of each axis and the two behind it.
+    void set_ends(std::size_t first)
+    {
+        for (std::size_t row = 0; row < sample_rows; ++row)
+            tables_->set(axes_rows * (row / 3) + first + row % 3, rows_.data() + row * columns());
+    }
+
+    // Has the difference between the straight body and the first sample, whose rows are in `rows_`, die out.
+    void begin_blend(double start)
+    {
+        std::vector<Jet> factor(tables_->rows());
+        law_.segment.set_segment(factor, start);
+        bool differs = false;
+        for (std::size_t row = 0; row < sample_rows; ++row) {
+            double* const difference = rows_.data() + row * columns();
+            for (std::size_t k = 0; k < columns(); ++k) {
+                difference[k] = 0.0 - factor[row % 3][row % 3] * difference[k];
+                differs |= difference[k] != 0.0;
+            }
+            tables_->set(blend_row + row, difference);
+        }
+        if (differs) law_.blend = {blend_row, start, start + kind_->transition};
+        else end_blend();
+    }
+
+    // Lets the rows of the blend cost nothing.
+    void end_blend()
+    {
+        law_.blend = {};
+        for (auto& rows : tables_->rows_of) rows.resize(axes_rows);
+    }
+
+    void follow(std::vector<double> breakpoints, bool smoothly)
+    {
+        march_.follow({law_, std::move(breakpoints), bounds_, kind_->ledger, kind_->current}, smoothly);
+    }
+
+    std::shared_ptr<const SampledKind> kind_;
+    March march_;
+    std::shared_ptr<LawTables> tables_;  // of the quintic, then of the blend
+    Law law_;
+    StepBounds bounds_{};
+    std::vector<double> rows_;  // (sample_rows, columns) of the last sample
+    bool under_way_ = false, unfinished_ = false;
+};
+
+class SampledMarches {
+  public:
+    SampledMarches(const std::shared_ptr<const SampledKind>& kind, std::size_t count, std::size_t threads)
+        : marches_(count, SampledMarch(kind)), threads_(std::min(threads, count)), points_(kind->weights.points)
+    {
+    }
+
+    std::size_t size() const { return marches_.size(); }
+    std::size_t points() const { return points_; }
+    SampledMarch& operator[](std::size_t index) { return marches_.at(index); }
+
+    // Marches each swimmer to its own of the `times` (N,) [s], where the sample has its `values` (N, 6, points).
+    // `status` (N,): those below 0 are left out; afterwards how each came back. `heads` (13, N): position [m],
+    // orientation, twist over ground [rad/s, m/s] of each that marched.
+    void advance(const double* times, const double* values, std::int64_t* status, double* heads)
+    {
+        threads_.run(size(), [&](std::size_t i) {
+            if (status[i] < 0) return;
+            Status found = marches_[i].advance(times[i], values + i * sample_rows * points_);
+            if (found == Status::marched && !put_head(i, heads)) found = Status::singular;
+            status[i] = static_cast<std::int64_t>(found);
+        });
+    }
+
+    // Puts the head of a swimmer into its column of `heads`; false where the inertia is not positive definite.
+    bool put_head(std::size_t index, double* heads)
+    {
+        const std::optional<HeadMotion> head = marches_[index].march().head();
+        if (!head) return false;
+        for (std::size_t row = 0; row < head->size(); ++row) heads[row * size() + index] = (*head)[row];
+        return true;
+    }
+
+  private:
+    std::vector<SampledMarch> marches_;
+    Threads threads_;
+    std::size_t points_;
+};
+
+}  // namespace eel_core

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+// The Python class of many swimmers, each driven by a controller's samples.
+#pragma once
+
+#include <atomic>
+#include <memory>
+
+#include "eel_core/march/sampled_march.hpp"
+#include "from_python.hpp"
+
+namespace eel_core {
+
+inline SampleWeights weights_from(const py::object& weights)
+{
+    const Numbers numbers(weights, "weights");
+    const std::size_t points = numbers.length(0), columns = numbers.length(1);
+    return {points, columns, std::vector<double>(numbers.data(), numbers.data() + points * columns)};
+}
+
+// As `SampledMarches`, for Python: one thread at a time, without Python's lock.
+class PySampledMarches {
+  public:
+    PySampledMarches(const std::shared_ptr<const Swimmer>& swimmer, const std::string& method, std::size_t order,
+                     bool planar, bool ledger, const py::object& current, const py::object& weights, double transition,
+                     std::size_t count, std::size_t threads)
+        : marches_(kind_of(swimmer, Method::of(method, order), planar, ledger, current, weights, transition), count,
+                   threads)
+    {
+    }
+
+    double start(std::size_t index, const StepBounds& bounds, const py::object& position, const py::object& orientation,
+                 const py::object& twist, const py::object& values)
+    {
+        const Numbers sample = sized(values, "values", sample_rows * marches_.points());
+        const auto q = row_from<4>(orientation, "orientation");
+        const InUse in_use(*this);
+        return marches_[index].start(bounds, vector_from(position, "position"), {q[0], q[1], q[2], q[3]},
+                                     twist_from(twist, "twist"), sample.data());
+    }
+    void advance(const py::object& times, const py::object& values, const py::object& status, const py::object& heads)
+    {
+        const std::size_t n = marches_.size();
+        const Numbers instants = sized(times, "times", n), into = sized(heads, "heads", 13 * n, true),
+                      samples = sized(values, "values", n * sample_rows * marches_.points());
+        const Array<std::int64_t> found(status, "status", true);
+        found.check_size(n, "status");
+        const InUse in_use(*this);
+        const py::gil_scoped_release unlocked;
+        marches_.advance(instants.data(), samples.data(), found.data(), into.data());
+    }
+    bool put_head(std::size_t index, const py::object& heads)
+    {
+        const Numbers into = sized(heads, "heads", 13 * marches_.size(), true);
+        const InUse in_use(*this);
+        return marches_.put_head(index, into.data());
+    }
+    bool observe(std::size_t index, const py::object& whole, bool wrench, bool load)
+    {
+        const InUse in_use(*this);
+        March& march = marches_[index].march();
+        const Profiles profiles(1, march.swimmer().stations, wrench, load);
+        const Numbers into = sized(whole, "whole", profiles.begin[Profiles::quantities], true);
+        return march.observe(Observer(march.swimmer(), profiles, into.data()), 0);
+    }
+    // Of one swimmer: time, works, and counts as of `March`.
+    py::tuple present(std::size_t index)
+    {
+        const InUse in_use(*this);
+        const March& march = marches_[index].march();
+        const Counts counts = march.counts();
+        return py::make_tuple(march.time(), march.works(),
+                              py::make_tuple(counts.steps, counts.rejected, counts.evaluations));
+    }
+
+  private:
+    class InUse {
+      public:
+        explicit InUse(PySampledMarches& marches) : marches_(marches)
+        {
+            if (marches_.in_use_.exchange(true))
+                throw std::runtime_error("these marches are under way in another thread");
+        }
+        ~InUse() { marches_.in_use_ = false; }
+        InUse(const InUse&) = delete;
+        InUse& operator=(const InUse&) = delete;
+
+      private:
+        PySampledMarches& marches_;
+    };
+
+    static Numbers sized(const py::object& object, const char* name, std::size_t size, bool writable = false)
+    {
+        Numbers numbers(object, name, writable);
+        numbers.check_size(size, name);
+        return numbers;
+    }
+
+    static std::shared_ptr<const SampledKind> kind_of(const std::shared_ptr<const Swimmer>& swimmer,
+                                                      const Method& method, bool planar, bool ledger,
+                                                      const py::object& current, const py::object& weights,
+                                                      double transition)
+    {
+        auto kind = std::make_shared<const SampledKind>(SampledKind{
+            swimmer, method, planar, ledger, vector_from(current, "current"), weights_from(weights), transition});
+        const std::size_t wanted = 4 * (swimmer->grid.nodes + swimmer->stations);
+        if (kind->weights.columns != wanted)
+            throw py::value_error("weights must have " + std::to_string(wanted) + " columns, got " +
+                                  std::to_string(kind->weights.columns));
+        return kind;
+    }
+
+    SampledMarches marches_;
+    std::atomic<bool> in_use_{false};
+};
+
+inline void bind_sampled_marches(py::module_& module)
+{
+    module.def(
+        "tabulate",
+        [](const py::object& weights, const py::object& values, const py::object& rows) {
+            const Numbers by_point(weights, "weights"), from(values, "values"), into(rows, "rows", true);
+            const std::size_t points = by_point.length(0), columns = by_point.length(1);
+            from.check_size(sample_rows * points, "values"), into.check_size(sample_rows * columns, "rows");
+            tabulate(by_point.data(), points, columns, from.data(), into.data());
+        },
+        py::arg("weights"), py::arg("values"), py::arg("rows"));
+
+    py::class_<PySampledMarches>(module, "SampledMarches")
+        .def(py::init<std::shared_ptr<Swimmer>, const std::string&, std::size_t, bool, bool, const py::object&,
+                      const py::object&, double, std::size_t, std::size_t>(),
+             py::arg("swimmer"), py::kw_only(), py::arg("method"), py::arg("order"), py::arg("planar"),
+             py::arg("ledger"), py::arg("current"), py::arg("weights"), py::arg("transition"), py::arg("count"),
+             py::arg("threads"))
+        .def("start", &PySampledMarches::start, py::arg("index"), py::arg("bounds"), py::arg("position"),
+             py::arg("orientation"), py::arg("twist"), py::arg("values"))
+        .def("advance", &PySampledMarches::advance, py::arg("times"), py::arg("values"), py::arg("status"),
+             py::arg("heads"))
+        .def("put_head", &PySampledMarches::put_head, py::arg("index"), py::arg("heads"))
+        .def("observe", &PySampledMarches::observe, py::arg("index"), py::arg("whole"), py::arg("wrench"),
+             py::arg("load"))
+        .def("present", &PySampledMarches::present, py::arg("index"));
+}
+
+}  // namespace eel_core

@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Many swimmers of one body in one scene, each driven by a controller's samples, marched in one call."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+import eel_core
+from eel_dynamics.accuracy.accuracy import Accuracy
+from eel_dynamics.accuracy.grid_settings import GridSettings, ShapeNeeds
+from eel_dynamics.accuracy.step_bounds import step_bounds_of
+from eel_dynamics.curvature.curvature_samples import CurvatureSample, check_points
+from eel_dynamics.curvature.law_follower import DEFAULT_TRANSITION
+from eel_dynamics.model.body import Body
+from eel_dynamics.model.initial_state import time_scale
+from eel_dynamics.model.scene import Scene
+from eel_dynamics.simulation.discretisation import discretise
+from eel_dynamics.simulation.observations import Snapshot
+from eel_dynamics.simulation.simulation import Simulation
+from eel_dynamics.simulation.simulation_setup import checked_state
+from eel_dynamics.simulation.stopping import SimulationStopped, stopped_by
+
+LEFT_OUT = -1
+MARCHED, SINGULAR, UNFINISHED = (eel_core.STATUSES.index(name) for name in ("marched", "singular", "unfinished"))
+Array = NDArray[np.float64]
+
+
+class SampledSwimmers:
+    """N swimmers. Each swims as a `Simulation` with the same samples, to the last bit, for any number of threads.
+
+    A sample is the curvature at the points `points` at the end of a control step: rows (6, n), pitch, its rate and its
+    acceleration, then yaw. Those of `advance` are not checked, see `check`.
+
+    Args:
+        count: N.
+        points: (n,) [m], of the samples.
+        waves: on the body, which the grid must resolve; None: as many as the points can carry.
+        body, scene, accuracy, stations: as of `Simulation`.
+        threads: how many march.
+
+    Attributes:
+        heads: (13, N) position [m], orientation x y z w, angular velocity [rad/s] and velocity [m/s] of each, as of
+            `Simulation.head`.
+    """
+
+    def __init__(
+        self,
+        count: int,
+        points: Array,
+        waves: float | None,
+        *,
+        body: Body | None = None,
+        scene: Scene | None = None,
+        accuracy: str | float | Accuracy = "standard",
+        stations: int = 51,
+        threads: int = 1,
+    ):
+        setup = self._setup = Simulation(body, scene, accuracy, stations).setup
+        self.body, self.scene, self.x, self.accuracy = setup.body, setup.scene, setup.x, setup.settings
+        self._points, self._waves = points, waves
+        sample = self.check(np.zeros((6, len(points))))
+        settings = GridSettings.of(self.accuracy, ShapeNeeds(sample.waves))
+        self._discretisation = discretise(self.body, self.scene, settings, self.x.tobytes())
+        self.grid = self._discretisation.grid
+        self._marches = eel_core.SampledMarches(
+            self._discretisation.swimmer,
+            method=self.accuracy.method,
+            order=self.accuracy.order,
+            planar=bool(self.scene.planar),
+            ledger=bool(self.scene.ledger),
+            current=setup.current,
+            weights=self._discretisation.tabulation.weights_of(points),
+            transition=DEFAULT_TRANSITION,
+            count=count,
+            threads=threads,
+        )
+        self.heads: Array = np.zeros((13, count))
+        self._energy_at_start = np.zeros(count)
+        self._bounds = [self._bounds_of(np.zeros(6))] * count
+
+    def check(self, rows: Array) -> CurvatureSample:
+        """A sample with these `rows` (6, n); `ValueError` for one that `Simulation.add_samples` refuses."""
+        check_points(len(self._points))
+        length, planar = self.body.length, self.scene.planar
+        return CurvatureSample.checked(
+            0.0, self._points, tuple(rows), waves=self._waves, length=length, planar=planar, now=0.0, begun=False
+        )
+
+    def start(self, index: int, position, orientation, twist, rows: Array) -> None:
+        """Put a swimmer at the start, straight, at time 0, where its sample has the `rows` (6, n).
+
+        position, orientation, twist: as of `Simulation`.
+        """
+        self.check(rows)
+        state = checked_state(self.scene, position, orientation, twist)
+        relative = state.in_water(self._setup.current)
+        self._bounds[index] = bounds = self._bounds_of(relative)
+        energy = self._marches.start(index, bounds, state.position, state.orientation, relative, rows)
+        if not (np.isfinite(energy) and self._marches.put_head(index, self.heads)):
+            raise SimulationStopped(0.0, "kinetic energy", energy, "start slower")
+        self._energy_at_start[index] = energy
+
+    def advance(self, times: Array, rows: Array, status: NDArray[np.int64]) -> dict[int, SimulationStopped]:
+        """March each swimmer to its own of the `times` (N,) [s], where its sample has its `rows` (N, 6, n).
+
+        status (N,): swimmers with `LEFT_OUT` stay; it is written to. Returns why swimmers stopped, by their index.
+        """
+        stopped: dict[int, SimulationStopped] = {}
+        while True:
+            self._marches.advance(times, rows, status, self.heads)
+            if not np.any(status > MARCHED):
+                return stopped
+            for index in np.flatnonzero((status > MARCHED) & (status != UNFINISHED)).tolist():
+                stopped[index] = self._stopped(index, int(status[index]))
+            status[status != UNFINISHED] = LEFT_OUT
+            if not np.any(status == UNFINISHED):
+                return stopped
+
+    def observe(self, index: int, *, wrench: bool = True, load: bool = True) -> Snapshot:
+        """The snapshot of a swimmer at present, as of `Simulation.observe`."""
+        wrench, load = bool(wrench and self.scene.internal_wrench), bool(load)
+        time, works, _ = self._marches.present(index)
+        snapshot = Snapshot(time, self.x, wrench, load)
+        if not self._marches.observe(index, snapshot.whole, wrench, load):
+            raise self._stopped(index, SINGULAR)
+        if self.scene.ledger:
+            snapshot.keep_ledger(np.array(works), float(self._energy_at_start[index]))
+        return snapshot
+
+    def evaluations(self, index: int) -> tuple[int, int, int]:
+        """Numbers of steps, rejected steps and evaluations of a swimmer since its start."""
+        return self._marches.present(index)[2]
+
+    def _stopped(self, index: int, status: int) -> SimulationStopped:
+        return stopped_by(status, self._marches.present(index)[0], self._bounds[index], self.accuracy)
+
+    def _bounds_of(self, twist: Array) -> eel_core.StepBounds:
+        """The bounds of the steps of a swimmer that starts with this `twist` (6,) relative to the water."""
+        length, discretisation = self.body.length, self._discretisation
+        return step_bounds_of(
+            accuracy=self.accuracy,
+            ledger=bool(self.scene.ledger),
+            between_samples=True,
+            nodes=len(self.grid.x),
+            mass=discretisation.mass,
+            length=length,
+            speed=0.0,
+            scale=min(time_scale(twist, length), discretisation.righting_time),
+            most_evaluations=self._setup.most_evaluations,
+        )

@@ -1,0 +1,169 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a task defines: its numbers, what the policy sees, reward and end; and the state that it does so from."""
+
+from dataclasses import dataclass, fields
+from typing import Any, ClassVar, NamedTuple
+
+import gymnasium
+import numpy as np
+from eel_base.quantity import Quantities, checked_instance, described_fields, quantity
+from eel_base.wording import shown
+from eel_dynamics.model.body import Body, checked_body
+from eel_dynamics.model.scene import Scene
+from eel_dynamics.simulation.sampled_swimmers import Array
+from eel_gaits.gaits.swimming import straight
+
+from eel_gym.knot_action import KnotAction
+from eel_gym.law_action import LawAction
+
+FASTEST, SPIN, FARTHEST = 10.0, 50.0, 100.0  # m/s, rad/s, m: bounds of what is observed
+GREATEST_START_SPEED = 0.5  # m/s, that the tasks draw: near that of straight()
+
+
+class Observed(NamedTuple):
+    """A number that the policy sees."""
+
+    name: str
+    unit: str
+    bound: float  #: greatest size; a larger value is cut to it
+
+
+class Start(NamedTuple):
+    """The head at the start of an episode, level, in REP-103 axes."""
+
+    position: tuple[float, float, float] = (0.0, 0.0, 0.0)  #: m, world
+    heading: float = 0.0  #: rad, positive: left
+    speed: float = 0.0  #: m/s, forward
+    roll_rate: float = 0.0  #: rad/s
+    own_time: float = 0.0  #: s, of the law
+    left_trim: float = 0.0  #: rad/m, a bend that the body has by itself, and that the policy does not see
+    goal: tuple[float, ...] = ()  #: numbers of the episode that the task keeps
+
+
+@dataclass(frozen=True, kw_only=True)
+class Episode(Quantities):
+    """The numbers that all tasks have."""
+
+    control_period: float = quantity(0.02, unit="s", description="length of a control step", minimum=1e-3, maximum=1.0)
+    duration: float = quantity(
+        20.0, unit="s", description="length of an episode, at which it is truncated", minimum=0.1, maximum=1e5
+    )
+
+
+class Task(gymnasium.Env[Any, Any]):
+    """A task for one swimmer, or for N side by side.
+
+    `head` and `heading` hold the motion of one head, `goal` (G,) the numbers of its episode (`Start.goal`), which a
+    task may change in `reward`. Of N swimmers `heading` is (N,), `goal` (G, N), and the parts of `head` (., N): array
+    expressions serve one swimmer and many.
+    """
+
+    name: ClassVar[str] = ""
+    Numbers: ClassVar[type[Episode]] = Episode
+    observed: ClassVar[tuple[Observed, ...]] = ()
+
+    def __init_subclass__(cls, **keywords: Any) -> None:
+        super().__init_subclass__(**keywords)
+        cls.__doc__ = described_task(cls)
+
+    def __init__(
+        self,
+        body: Body | None,
+        scene: Scene | None,
+        action: LawAction | KnotAction | None,
+        shape: tuple[int, ...],
+        numbers: dict[str, Any],
+    ):
+        self.numbers = checked_numbers(self.name, self.Numbers, numbers)
+        self.scene = self.default_scene() if scene is None else checked_instance("scene", scene, Scene)
+        self.body = checked_body(body)
+        if action is not None and not isinstance(action, (LawAction, KnotAction)):
+            raise ValueError(f"action must be a LawAction or a KnotAction, got {shown(action)}")
+        self.action = self.default_action() if action is None else action
+        bounds = [bound for _, _, bound in (*self.observed, *self.action.names_of_state)]
+        self._bounds = np.array(bounds, dtype=np.float32)
+        self.observation_space = gymnasium.spaces.Box(-self._bounds, self._bounds, dtype=np.float32)
+        self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (self.action.size,), np.float32)
+        self.shape = shape  #: () of one swimmer, (N,)
+        self.head: Any = None  #: a HeadMotion from the first reset on
+        self.heading: Any = np.zeros(shape) if shape else 0.0  #: rad, averaged over the gait's period; positive: left
+        self.goal: Array = np.zeros((0, *shape))
+
+    # -- a task defines these
+
+    def default_scene(self) -> Scene:
+        """The scene where none is given: of the motion alone, without internal wrench and energy ledger."""
+        return Scene(internal_wrench=False, ledger=False)
+
+    def default_action(self) -> LawAction | KnotAction:
+        """The action where none is given."""
+        bends = {"left_bend": (-0.5, 0.5)} if self.scene.planar else {"left_bend": (-0.5, 0.5), "up_bend": (-0.5, 0.5)}
+        return LawAction(straight(), bends, length=self.body.length)
+
+    def begin(self, options: dict[str, Any]) -> Start:
+        """Draw what is new in an episode of one swimmer from `self.np_random`. options: those of `reset`."""
+        return Start()
+
+    def observe(self) -> list[Any]:
+        """The numbers of `observed`, from `self.head`, `self.heading` and `self.goal`."""
+        return []
+
+    def reward(self) -> Any:
+        """The reward of the control step that has just ended."""
+        raise NotImplementedError(f"{type(self).__name__} must define reward")
+
+    def ended(self) -> Any:
+        """Whether the episode is over: the task is done, or a limit is exceeded."""
+        return False
+
+    def marks(self) -> list[tuple[float, float, float]]:
+        """Points [m], in the world, that the pictures of one swimmer show."""
+        return []
+
+    # -- what follows
+
+    def observation(self) -> np.ndarray:
+        """(D,) or (N, D) float32: what the task observes and the state of the action, cut to the bounds."""
+        seen = np.empty((len(self._bounds), *self.shape), dtype=np.float32)
+        for row, value in enumerate((*self.observe(), *self.action.state)):
+            seen[row] = value
+        return np.minimum(np.maximum(seen.T, -self._bounds), self._bounds)
+
+    def checked_action(self, action: Any) -> Array:
+        """The action of each swimmer, cut to the bounds. `InvalidAction` for one that does not fit."""
+        shape = (*self.shape, self.action.size)
+        try:
+            values = np.asarray(action, dtype=float)
+        except (TypeError, ValueError):
+            values = np.empty(0)
+        if values.shape != shape or not np.isfinite(values).all():
+            wanted = f"{'actions' if self.shape else 'action'} must be {' x '.join(map(str, shape))} finite numbers"
+            raise gymnasium.error.InvalidAction(f"{wanted}, got {shown(action)}")
+        cut: Array = np.minimum(np.maximum(values, -1.0), 1.0)
+        return cut
+
+    def describe(self) -> str:
+        """One line for each number of the observation and of the action, with unit and bounds."""
+        seen = [*self.observed, *self.action.names_of_state]
+        lines = [f"  {name} [{unit or '1'}], {-bound:g} to {bound:g}" for name, unit, bound in seen]
+        return "\n".join(
+            ["observation:", *lines, "action, each from -1 to 1:", *(f"  {each}" for each in self.action.described())]
+        )
+
+
+def described_task(task: type[Task]) -> str:
+    """The docstring of a task, with what it observes and its numbers."""
+    seen = "\n".join(f"    {each.name} [{each.unit or '1'}], at most {each.bound:g}" for each in task.observed)
+    observed = f"Observed, before the state of the action:\n{seen}"
+    text = (task.__doc__ or "A task.").rstrip()
+    return f"{text}\n\n{observed}\n\nNumbers:\n{described_fields(task.Numbers)}\n"
+
+
+def checked_numbers(task: str, kind: type[Episode], given: dict[str, Any]) -> Episode:
+    """The numbers of a task. `ValueError` names one that there is not, or that does not fit."""
+    known = [item.name for item in fields(kind)]
+    for name in given:
+        if name not in known:
+            others = "body, scene, accuracy, action, render_mode, recordings"
+            raise ValueError(f"task {shown(task)} has no parameter {shown(name)}, it has: {', '.join(known)}, {others}")
+    return kind(**given)
