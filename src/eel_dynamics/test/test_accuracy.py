@@ -129,7 +129,7 @@ def test_a_body_bent_into_turns_gets_more_points():
 
 @pytest.mark.parametrize("target", ["x", -1.0, 5.0, np.nan, True])
 def test_a_target_is_checked(target):
-    with pytest.raises(ValueError, match=r"accuracy target must be 1e-10 to 0.1, or None, got"):
+    with pytest.raises(ValueError, match=r"accuracy target must be (a number|finite|[<>]= )"):
         Accuracy(name="mine", resolution=30.0, target=target)
 
 

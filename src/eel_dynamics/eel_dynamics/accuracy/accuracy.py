@@ -21,7 +21,7 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from eel_base.quantity import is_finite
+from eel_base.quantity import is_finite, number, positive
 from eel_base.wording import did_you_mean, not_one_of, shown
 
 from eel_dynamics.accuracy.budget import Budget
@@ -116,22 +116,17 @@ class Accuracy:
             possible = f"{orders[0]} to {orders[-1]}" if len(orders) > 1 else f"{orders[0]}"
             raise ValueError(f"accuracy order of the method {self.method} must be {possible}, got {shown(self.order)}")
         object.__setattr__(self, "order", int(self.order))
-        if not (is_finite(self.resolution) and 1.0 <= self.resolution <= 1000.0):
-            raise ValueError(
-                f"accuracy resolution must lie in 1 to 1000 points per body length, got {shown(self.resolution)}"
-            )
+        number("accuracy resolution", self.resolution, "points per body length", minimum=1.0, maximum=1000.0)
         if not isinstance(self.kinks, str) or self.kinks not in KINKS:
             raise ValueError(not_one_of("accuracy kinks", self.kinks, KINKS))
-        if self.target is not None and not (is_finite(self.target) and FINEST <= self.target <= COARSEST):
-            raise ValueError(f"accuracy target must be {FINEST:g} to {COARSEST:g}, or None, got {shown(self.target)}")
-        if self.target is not None and self.step is not None:
-            raise ValueError(f"accuracy step cannot be given beside a target, got {shown(self.step)} s")
-        if not (is_finite(self.tolerance) and self.tolerance > 0.0):
-            raise ValueError(f"accuracy tolerance must be > 0, got {shown(self.tolerance)}")
-        if not (is_finite(self.longest_step) and 0.0 < self.longest_step <= 1.0):
-            raise ValueError(f"accuracy longest_step must be > 0 and at most 1, got {shown(self.longest_step)}")
-        if self.step is not None and not (is_finite(self.step) and self.step > 0.0):
-            raise ValueError(f"accuracy step must be > 0 s, got {shown(self.step)}")
+        if self.target is not None:
+            number("accuracy target", self.target, minimum=FINEST, maximum=COARSEST)
+            if self.step is not None:
+                raise ValueError(f"accuracy step cannot be given beside a target, got {shown(self.step)} s")
+        positive("accuracy tolerance", self.tolerance)
+        number("accuracy longest_step", self.longest_step, minimum=0.0, maximum=1.0, exclusive=True)
+        if self.step is not None:
+            positive("accuracy step", self.step, "s")
         unknown = self.fixed == 0.0 and self.target is not None  # until the scene is known
         if self.fixed is not None and (
             self.step is not None or not (unknown or (is_finite(self.fixed) and self.fixed > 0.0))

@@ -1,84 +1,58 @@
 # SPDX-License-Identifier: Apache-2.0
 """The measures of a run: one number per measure, with its unit and definition."""
 
-from functools import cache
+from contextlib import suppress
+from typing import Any
 
 import numpy as np
 from eel_base.wording import not_one_of, shown
 
 from eel_dynamics.analysis.analysis import Analysis
 
-
-def _analysed(name: str):
-    """A measure: a property of the run's analysis. None where the gait has no period or the run is too short."""
-
-    def measure(run, analysis):
-        try:
-            return None if analysis() is None else getattr(analysis(), name)
-        except ValueError:  # the scene has no ledger or no wrench
-            return None
-
-    return measure
+ANALYSIS, ESTIMATE = "analysis", "error estimate"  # parts of a run
 
 
-def _torque(run, _):
-    return None if run.torque is None else run.greatest_torque()[0]
-
-
-def _error(name: str):
-    def measure(run, _):
-        return None if run.error_estimate is None else getattr(run.error_estimate, name)
-
-    return measure
-
-
-def _residual(run, _):
-    return None if run.energy is None else float(np.max(np.abs(run.energy.residual)))
-
-
-def _work(run, _):
-    return None if run.energy is None else run.energy.actuator_work[-1]
-
-
-MEASURES = {  # name: (unit, description, function of the run and of a function that returns its analysis)
-    "head_x": ("m", "head at the end, world axes", lambda run, _: run.position[-1, 0]),
-    "head_y": ("m", "head at the end, world axes", lambda run, _: run.position[-1, 1]),
-    "head_z": ("m", "head at the end, world axes", lambda run, _: run.position[-1, 2]),
-    "duration": ("s", "time of the last sample", lambda run, _: run.time[-1]),
-    "path_length": ("m", "length of the head's path through the samples", lambda run, _: run.path_length),
-    "mean_speed": ("m/s", "U: period-averaged centre of mass over the water, later half", _analysed("mean_speed")),
-    "speed_change": ("", "change of U within the later half, relative", _analysed("speed_change")),
-    "settled": ("", "1 where the gait had settled in the later half, 0 where not", _analysed("settled")),
-    "stride": ("", "body lengths per period, later half", _analysed("stride")),
-    "slip": ("", "speed relative to that of the wave along the body, later half", _analysed("slip")),
-    "tail_excursion": ("m", "peak-to-peak excursion of the tail, later half", _analysed("tail_excursion")),
-    "strouhal": ("", "frequency times excursion by speed, later half", _analysed("strouhal")),
-    "reynolds": ("", "speed times length by viscosity, later half", _analysed("reynolds")),
-    "actuator_power": ("W", "mean power of the actuators, later half", _analysed("actuator_power")),
-    "actuator_work": ("J", "work of the actuators over the run", _work),
-    "cost_of_transport": (
-        "J/(kg m)",
-        "work of the actuators by mass and way, later half",
-        _analysed("cost_of_transport"),
+MEASURES: dict[
+    str, tuple[str, str, Any]
+] = {  # name: (unit, description, where it is found: in the run, or as an attribute of one of its parts)
+    "head_x": ("m", "head at the end, world axes", lambda run: run.position[-1, 0]),
+    "head_y": ("m", "head at the end, world axes", lambda run: run.position[-1, 1]),
+    "head_z": ("m", "head at the end, world axes", lambda run: run.position[-1, 2]),
+    "duration": ("s", "time of the last sample", lambda run: run.time[-1]),
+    "path_length": ("m", "length of the head's path through the samples", lambda run: run.path_length),
+    "mean_speed": ("m/s", "U: period-averaged centre of mass over the water, later half", ANALYSIS),
+    "speed_change": ("", "change of U within the later half, relative", ANALYSIS),
+    "settled": ("", "1 where the gait had settled in the later half, 0 where not", ANALYSIS),
+    "stride": ("", "body lengths per period, later half", ANALYSIS),
+    "slip": ("", "speed relative to that of the wave along the body, later half", ANALYSIS),
+    "tail_excursion": ("m", "peak-to-peak excursion of the tail, later half", ANALYSIS),
+    "strouhal": ("", "frequency times excursion by speed, later half", ANALYSIS),
+    "reynolds": ("", "speed times length by viscosity, later half", ANALYSIS),
+    "actuator_power": ("W", "mean power of the actuators, later half", ANALYSIS),
+    "actuator_work": (
+        "J",
+        "work of the actuators over the run",
+        lambda run: run.energy and run.energy.actuator_work[-1],
     ),
-    "hydromechanical_efficiency": (
-        "",
-        "part of the work not shed into the wake, later half",
-        _analysed("hydromechanical_efficiency"),
+    "cost_of_transport": ("J/(kg m)", "work of the actuators by mass and way, later half", ANALYSIS),
+    "hydromechanical_efficiency": ("", "part of the work not shed into the wake, later half", ANALYSIS),
+    "propulsive_efficiency": ("", "part of the work that overcomes the drag of going ahead, later half", ANALYSIS),
+    "greatest_torque": (
+        "N m",
+        "greatest internal torque over the run and the body",
+        lambda run: None if run.torque is None else run.greatest_torque()[0],
     ),
-    "propulsive_efficiency": (
-        "",
-        "part of the work that overcomes the drag of going ahead, later half",
-        _analysed("propulsive_efficiency"),
+    "ledger_residual": (
+        "J",
+        "greatest residual of the energy ledger",
+        lambda run: run.energy and np.max(np.abs(run.energy.residual)),
     ),
-    "greatest_torque": ("N m", "greatest internal torque over the run and the body", _torque),
-    "ledger_residual": ("J", "greatest residual of the energy ledger", _residual),
-    "error_position": ("", "estimated relative error of the head's position", _error("position")),
-    "error_torque": ("", "estimated relative error of the internal torque", _error("torque")),
-    "error_growth_rate": ("1/s", "rate at which errors grow", _error("growth_rate")),
-    "evaluations": ("", "evaluations of the head's dynamics", lambda run, _: run.evaluations),
+    "error_position": ("", "estimated relative error of the head's position", ESTIMATE),
+    "error_torque": ("", "estimated relative error of the internal torque", ESTIMATE),
+    "error_growth_rate": ("1/s", "rate at which errors grow", ESTIMATE),
+    "evaluations": ("", "evaluations of the head's dynamics", lambda run: run.evaluations),
 }
-OF_ESTIMATE = ("error_position", "error_torque", "error_growth_rate")  # need the run's error estimate
+OF_ESTIMATE = tuple(name for name, (_, _, where) in MEASURES.items() if where == ESTIMATE)
 
 
 def measures_of(run, names=tuple(MEASURES), periods: int | None = None) -> dict[str, float]:
@@ -87,14 +61,20 @@ def measures_of(run, names=tuple(MEASURES), periods: int | None = None) -> dict[
     periods: whole periods at the run's end in place of its later half.
     """
 
-    @cache
-    def analysis():
-        try:
-            return Analysis(run, periods)
-        except ValueError:
-            return None
+    analysis: Any = None
+    if any(MEASURES[name][2] == ANALYSIS for name in names):
+        with suppress(ValueError):  # the gait has no period, or the run is too short
+            analysis = Analysis(run, periods)
 
-    found = {name: MEASURES[name][2](run, analysis) for name in names}
+    def measure(name: str) -> Any:
+        where = MEASURES[name][2]
+        if where == ESTIMATE:
+            return getattr(run.error_estimate, name.removeprefix("error_"), None)
+        with suppress(ValueError):  # the scene has no ledger or no wrench
+            return (analysis and getattr(analysis, name)) if where == ANALYSIS else where(run)
+        return None
+
+    found = {name: measure(name) for name in names}
     return {name: float("nan") if value is None else float(value) for name, value in found.items()}
 
 
@@ -135,6 +115,3 @@ def described(name: str) -> dict[str, str]:
         return {}
     unit, description, _ = MEASURES[name]
     return {"units": unit or "1", "long_name": description}
-
-
-__all__ = ["MEASURES", "checked_measures", "checked_point", "described", "measures_of"]

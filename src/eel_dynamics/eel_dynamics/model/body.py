@@ -15,9 +15,9 @@ import numpy as np
 from eel_base.files.input_file import reading
 from eel_base.quantity import checked_instance, checked_row, number, positive
 from eel_base.wording import not_one_of, shown
+from eel_gaits.sources.tables import read_table
 from numpy.typing import ArrayLike
 
-from eel_dynamics.model.body_file import WHAT, columns_of
 from eel_dynamics.model.equality import same
 from eel_dynamics.model.grid import Grid
 from eel_dynamics.model.half_axis import ArrayHalfAxis, FunctionHalfAxis
@@ -28,6 +28,8 @@ from eel_dynamics.model.shapes import KINKS, NamedHalfAxis
 PANEL_OF_NOSE = 0.05  # of the length, where a body names no kinks
 LONGEST = 100.0  # m, of a body from a file; one that is longer may be in mm
 NUMBERS = ("density", "nose_added_mass", "nose_drag", "roll_drag", "lateral_drag", "vertical_drag")
+COLUMNS, WHAT = ("x", "half_width", "half_height"), "body file "  # of a body in a file; WHAT begins an error
+LARGEST = 1e6  # m, of a number in it
 SHARP = 1e-3  # of the body's greatest half-axis: a half-axis at the tail that counts as none
 
 
@@ -228,7 +230,11 @@ class Body:
             raise ValueError(f"body file must be a path, got {shown(path)}")
         path = Path(path)
         with reading(f"{WHAT}{shown(str(path))}"):
-            columns: dict[str, Any] = dict(columns_of(path))
+            table = read_table(path, WHAT)
+            if missing := [name for name in COLUMNS if name not in table.columns]:
+                raise table.error(f"a body must have columns {', '.join(COLUMNS)}; {', '.join(missing)} missing")
+            table.check_finite(COLUMNS, LARGEST)
+            columns: dict[str, Any] = {name: table.columns[name] for name in COLUMNS}
             body = Body(**columns, name=path.stem)
         if body.length > LONGEST:
             warnings.warn(f"body file {path} is {body.length:g} m long: are its columns in m?", stacklevel=2)

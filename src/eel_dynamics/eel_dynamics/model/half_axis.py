@@ -11,6 +11,8 @@ import numpy as np
 from eel_base.wording import shown
 from numpy.polynomial import chebyshev
 
+from eel_dynamics.model.shapes import piecewise
+
 DEGREE = 48  # of the polynomial through the square on each panel, for its derivative
 
 
@@ -46,12 +48,7 @@ class FunctionHalfAxis:
 
     def slope(self, x: np.ndarray) -> np.ndarray:
         """Derivative of the square by X [m] at `x` (M,) [m], from the polynomial through it on each panel."""
-        result = np.empty_like(x)
-        home = np.clip(np.searchsorted(self._bounds, x, side="left") - 1, 0, len(self._slopes) - 1)
-        for index, series in enumerate(self._slopes):
-            here = home == index
-            result[here] = series(x[here])
-        return result
+        return piecewise(self._slopes, self._bounds, x)
 
     def _fit(self, start: float, end: float) -> chebyshev.Chebyshev:
         # Gauss points lie inside the panel: a jump at its ends is not seen.
@@ -97,15 +94,7 @@ class ArrayHalfAxis:
         return self._each(self._slopes, x)
 
     def _each(self, functions, x):
-        x = np.minimum(np.maximum(np.asarray(x, dtype=float), 0.0), self._length)
-        if len(functions) == 1:
-            return functions[0](x)
-        home = np.clip(np.searchsorted(self._starts, x, side="left") - 1, 0, len(functions) - 1)
-        result = np.empty(x.shape)
-        for index, function in enumerate(functions):
-            here = home == index
-            result[here] = function(x[here])
-        return result
+        return piecewise(functions, self._starts, np.clip(np.asarray(x, dtype=float), 0.0, self._length))
 
 
 def _check_shape(name: str, x: np.ndarray, values: np.ndarray, length: float):

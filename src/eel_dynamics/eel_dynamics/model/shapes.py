@@ -5,6 +5,7 @@ Sources: boyer2010 after section 7.2.1 of Boyer, Porez and Leroyer (2010); kern2
 J. Exp. Biol. 209 (2006).
 """
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -42,17 +43,14 @@ class PolynomialHalfAxis:
     def __call__(self, x) -> np.ndarray:
         """[m] at `x` [m]; 0 at the nose."""
         x = np.asarray(x, dtype=float)
-        home = np.clip(np.searchsorted(self.bounds, x, side="left") - 1, 0, len(self.coefficients) - 1)
-        square = np.empty(x.shape)
-        for panel, row in enumerate(self.coefficients):
-            here = home == panel
-            square[here] = self._series(panel, row)(x[here])
-        square -= np.where(home == 0, self._series(0, self.coefficients[0])(0.0), 0.0)
+        series = [self._series(panel) for panel in range(len(self.coefficients))]
+        square = piecewise(series, self.bounds, x)
+        square -= np.where(x <= self.bounds[1], series[0](0.0), 0.0)
         least = np.finfo(float).tiny  # no section inside is singular by round-off
         return np.sqrt(np.where(x > 0.0, np.maximum(square, least), 0.0))
 
-    def _series(self, panel: int, row) -> chebyshev.Chebyshev:
-        return chebyshev.Chebyshev(row, domain=self.bounds[panel : panel + 2])
+    def _series(self, panel: int) -> chebyshev.Chebyshev:
+        return chebyshev.Chebyshev(self.coefficients[panel], domain=self.bounds[panel : panel + 2])
 
 
 def _boyer_radius(x):
@@ -95,3 +93,18 @@ def polynomials_through(half_axis, bounds: tuple[float, ...], degree: int = 48) 
         for start, end in pairwise(bounds)
     ]
     return PolynomialHalfAxis(tuple(bounds), tuple(tuple(each.coef.tolist()) for each in series))
+
+
+def piecewise(functions: Sequence[Callable], bounds: Sequence[float] | np.ndarray, x: np.ndarray) -> np.ndarray:
+    """Values at `x` [m] of functions of X, each from one of the `bounds` [m] to the next; a bound belongs to the first.
+
+    The first and the last function go on beyond the bounds.
+    """
+    if len(functions) == 1:
+        return functions[0](x)
+    home = np.clip(np.searchsorted(bounds, x, side="left") - 1, 0, len(functions) - 1)
+    result = np.empty(x.shape)
+    for index, function in enumerate(functions):
+        here = home == index
+        result[here] = function(x[here])
+    return result

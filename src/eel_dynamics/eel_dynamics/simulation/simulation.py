@@ -3,7 +3,7 @@
 
 import math
 import time as clock
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cache, partial
 
@@ -170,13 +170,14 @@ class Simulation:
     def add_samples(
         self,
         time: float,
-        x: np.ndarray,
+        x: np.ndarray | Sequence[float],
         pitch: ArrayLike,
         pitch_rate: ArrayLike,
         pitch_accel: ArrayLike,
         yaw: ArrayLike,
         yaw_rate: ArrayLike,
         yaw_accel: ArrayLike,
+        *,
         waves: float | None = None,
     ) -> None:
         """Add a controller's curvature at the instant `time` [s], which lies ahead; before the start it may be 0.

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
 import numpy as np
-from eel_base.quantity import checked_instance, checked_row, is_finite, positive
+from eel_base.quantity import checked_instance, checked_row, positive
 from eel_base.wording import shown
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
@@ -67,27 +67,15 @@ class SimulationSetup:
         scene = Scene() if scene is None else checked_instance("scene", scene, Scene)
         accuracy, x = Accuracy.of(accuracy), checked_stations(stations, body.length)
         start = checked_state(scene, *initial_state)
-        if not (is_finite(default_transition) and default_transition > 0.0):
-            raise ValueError(f"default_transition must be finite and > 0 s, got {shown(default_transition)}")
         most_evaluations = positive("most_evaluations", most_evaluations, "per simulated second")
-        transition = float(default_transition)
+        transition = positive("default_transition", default_transition, "s")
         return SimulationSetup(body, scene, accuracy, x, start, transition, most_evaluations)
 
     @property
     def arguments(self) -> dict:
         """The arguments of `Simulation` that give such a set-up, without a law."""
-        position, orientation, twist = self.initial_state
-        return {
-            "body": self.body,
-            "scene": self.scene,
-            "accuracy": self.accuracy,
-            "stations": self.x,
-            "position": position,
-            "orientation": orientation,
-            "twist": twist,
-            "default_transition": self.default_transition,
-            "most_evaluations": self.most_evaluations,
-        }
+        own = ("body", "scene", "accuracy", "default_transition", "most_evaluations")
+        return {name: getattr(self, name) for name in own} | {"stations": self.x} | self.initial_state._asdict()
 
     def __deepcopy__(self, memo: dict) -> "SimulationSetup":
         return self
@@ -131,10 +119,7 @@ class SimulationSetup:
 
     def transition_to(self, law: Law | SampledLaw, transition: float | None) -> float:
         """Time [s] of the blend to `law`: `transition`, the law's own, or the default."""
-        blend = transition or law.transition or self.default_transition
-        if not (is_finite(blend) and blend > 0.0):
-            raise ValueError(f"transition must be finite and > 0 s, got {shown(transition)}")
-        return float(blend)
+        return positive("transition", transition or law.transition or self.default_transition, "s")
 
     @cached_property
     def settings(self) -> Accuracy:
