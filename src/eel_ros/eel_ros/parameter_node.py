@@ -42,8 +42,8 @@ class ParameterNode(ServedNode):
         except ParameterNotDeclaredException:
             unknown = [each.name for each in parameters if not self.has_parameter(each.name)]
             known = self.get_parameters_by_prefix("")
-            told = "; ".join(f"no parameter {name!r}{did_you_mean(name, known)}" for name in unknown)
-            return SetParametersResult(successful=False, reason=told)
+            reason = "; ".join(f"no parameter {name!r}{did_you_mean(name, known)}" for name in unknown)
+            return SetParametersResult(successful=False, reason=reason)
         if result.successful:
             result.reason = self.answer_to([each.name for each in changes])
         return result

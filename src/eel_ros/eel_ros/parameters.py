@@ -63,9 +63,9 @@ def warn_of_unknown(node: Node, overrides: Iterable[str], known: Collection[str]
     unknown = [name for name in overrides if name not in known and not name.startswith(ROS_PREFIXES)]
     shared = shared_names(sys.argv) if unknown else set()
     hints = {name: did_you_mean(name, known, ALIKE) for name in unknown}
-    told = [f"{name!r}{hint}" for name, hint in hints.items() if hint or name not in shared]
-    if told:
-        node.get_logger().warning(f"not parameters of this node, ignored: {', '.join(told)}")
+    named = [f"{name!r}{hint}" for name, hint in hints.items() if hint or name not in shared]
+    if named:
+        node.get_logger().warning(f"not parameters of this node, ignored: {', '.join(named)}")
 
 
 def declare(node: ParameterNode, values: Any, prefix: str = "", changeable: bool | str | None = None) -> None:

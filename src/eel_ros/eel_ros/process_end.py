@@ -48,7 +48,7 @@ class ProcessEnd:
             os.read(reader, 1)
             time.sleep(seconds)
             if not self.over and not self._stays:
-                leave_at_once(0)
+                exit_immediately(0)
 
         threading.Thread(target=watch, daemon=True).start()
 
@@ -57,7 +57,7 @@ class ProcessEnd:
         self._stays = True
 
 
-def leave_at_once(status: int) -> NoReturn:
+def exit_immediately(status: int) -> NoReturn:
     """End the process with this exit status, without the interpreter's clean-up: a thread may still be running."""
     sys.stdout.flush()
     sys.stderr.flush()

@@ -21,10 +21,10 @@ LONGEST_REASON = 300  # characters
 
 @dataclass
 class Dropped:
-    """What has been dropped of one topic. told: how many of them the log has told of, and when [s, steady clock]."""
+    """What has been dropped of one topic. logged: how many of them the log has, and when [s, steady clock]."""
 
     count: int = 0
-    told: int = 0
+    logged: int = 0
     when: float = 0.0
     reason: str = ""
 
@@ -94,9 +94,9 @@ def log_dropped(node: Node, error: Exception, what: str = "a message") -> None:
 
 def _tell(node: Node, what: str, dropped: Dropped) -> None:
     now = time.monotonic()
-    if dropped.count == dropped.told or (dropped.told and now - dropped.when < LOG_PERIOD):
+    if dropped.count == dropped.logged or (dropped.logged and now - dropped.when < LOG_PERIOD):
         return
-    dropped.told, dropped.when = dropped.count, now
+    dropped.logged, dropped.when = dropped.count, now
     so_far = f" ({dropped.count} so far)" if dropped.count > 1 else ""
     node.get_logger().error(f"{what} cannot be taken and is left out{so_far}: {dropped.reason}")
 

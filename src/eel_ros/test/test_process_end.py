@@ -10,7 +10,7 @@ import pytest
 LIMIT = 60.0  # s
 BEGIN = """
 import os, signal, sys, threading, time
-from eel_ros.process_end import ProcessEnd, leave_at_once
+from eel_ros.process_end import ProcessEnd, exit_immediately
 end = ProcessEnd()
 """
 
@@ -32,5 +32,5 @@ def test_signals_that_are_ignored_do_not_change_the_status():
 
 
 def test_a_thread_that_hangs_does_not_keep_the_process():
-    done = run("threading.Thread(target=threading.Event().wait).start(); print(1); leave_at_once(3)")
+    done = run("threading.Thread(target=threading.Event().wait).start(); print(1); exit_immediately(3)")
     assert (done.returncode, done.stdout) == (3, "1\n")

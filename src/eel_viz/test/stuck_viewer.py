@@ -14,7 +14,7 @@ from pathlib import Path
 
 import made_up
 from eel_base.files.output_file import part_of
-from eel_ros.process_end import leave_at_once
+from eel_ros.process_end import exit_immediately
 from eel_viz.recording.recordings import Recordings
 from eel_viz.recording.sinks import destinations
 from eel_viz.settings import Settings
@@ -67,7 +67,7 @@ def main() -> None:
     tell()
     print("done", flush=True)
     made.close()
-    leave_at_once(0)
+    exit_immediately(0)
 
 
 if __name__ == "__main__":

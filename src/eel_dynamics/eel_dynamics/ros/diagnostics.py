@@ -33,7 +33,7 @@ class Event:
     seen: float = -math.inf  # s
     begin: float = -math.inf  # s
     lines: int = 0
-    left_out: int = 0  # lines that were not logged, and not told of yet
+    left_out: int = 0  # lines that were not logged, and not counted in a line yet
 
 
 class Report:

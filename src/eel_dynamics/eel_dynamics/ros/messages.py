@@ -31,6 +31,7 @@ from eel_dynamics.model.axes import QUATERNION, VECTOR, turn_quaternion, turn_ve
 from eel_dynamics.ros.parameters import DynamicsParameters, unit_quaternion
 from eel_dynamics.ros.serialised_message import SerialisedMessage
 from eel_dynamics.runs.exchange.records import outline
+from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.simulation import Simulation
 from eel_msgs.msg import (
     Backbone,
@@ -46,6 +47,7 @@ from eel_msgs.msg import (
 from eel_msgs.srv import SetState
 
 JOIN = "a controller that joins a running simulation begins 1/rate or more after the stamp of the last odom"
+Numbers = dict[str, np.ndarray]  # of a SerialisedMessage, by path
 SECOND = 1_000_000_000  # ns
 FAR_AHEAD = 3600.0  # s: a stamp further ahead of the simulation is wall time by mistake
 LARGEST_LAW = 2**19  # bytes, without the name: 1,000 terms of 30 knots, which are adopted in half a second
@@ -86,12 +88,13 @@ class Sample:
         messages["/tf"] = TFMessage(transforms=[TransformStamped(child_frame_id=child) for child in children])
         for transform in messages["/tf"].transforms:
             transform.header.frame_id = parameters.world_frame
-        robots = {"yaw": (2, parameters.yaw_joints), "pitch": (1, parameters.pitch_joints)}  # section axis, joints
-        self._joints = [(axis, Joints(x, float(x[-1]), count)) for axis, count in robots.values() if count]
+        yaw, pitch = parameters.yaw_joints, parameters.pitch_joints
+        robots = (2, slice(0, yaw), yaw), (1, slice(yaw, yaw + pitch), pitch)  # section axis, place, number of joints
+        self._joints = [(axis, place, Joints(x, float(x[-1]), count)) for axis, place, count in robots if count]
         if self._joints:
             from sensor_msgs.msg import JointState  # here, for its package takes a tenth of the node's start
 
-            names = [f"{name}_{k + 1}" for name, (_, count) in robots.items() for k in range(count)]
+            names = [f"{name}_{k + 1}" for name, count in (("yaw", yaw), ("pitch", pitch)) for k in range(count)]
             zeros = [0.0] * len(names)
             effort = zeros if scene.internal_wrench else []
             messages["joint_states"] = JointState(name=names, position=zeros, velocity=zeros, effort=effort)
@@ -111,9 +114,10 @@ class Sample:
             "joint_states": self._fill_joints,
             "/tf": self._fill_transform,
         }
-        self._of, self._head = None, np.zeros(13)  # a snapshot, and the head's position, orientation and twist in it
+        self._of: Snapshot | None = None
+        self._head = np.zeros(13)  # the head's position, orientation and twist in that snapshot
 
-    def set_time(self, nanoseconds: int):
+    def set_time(self, nanoseconds: int) -> None:
         """Set the simulation time [ns] of all messages, including /clock's."""
         self._nanoseconds = divmod(nanoseconds, SECOND)
 
@@ -121,7 +125,7 @@ class Sample:
         """The message of /clock."""
         return self._sealed(self._clock)
 
-    def fill(self, name: str, snapshot) -> bytes:
+    def fill(self, name: str, snapshot: Snapshot) -> bytes:
         """The message of topic `name`, filled from `snapshot`."""
         message = self._serialised[name]
         if snapshot is not self._of:  # several topics need the head's state
@@ -135,13 +139,13 @@ class Sample:
             stamp[:] = self._nanoseconds
         return message.data()
 
-    def _fill_pose(self, numbers, snapshot):
+    def _fill_pose(self, numbers: Numbers, snapshot: Snapshot) -> None:
         numbers["pose.position"][:], numbers["pose.orientation"][:] = self._head[POSITION], self._head[ORIENTATION]
 
-    def _fill_twist(self, numbers, snapshot):
+    def _fill_twist(self, numbers: Numbers, snapshot: Snapshot) -> None:
         numbers["twist.angular"][:], numbers["twist.linear"][:] = self._head[ANGULAR], self._head[LINEAR]
 
-    def _fill_odometry(self, numbers, snapshot):
+    def _fill_odometry(self, numbers: Numbers, snapshot: Snapshot) -> None:
         numbers["pose.pose.position"][:], numbers["pose.pose.orientation"][:] = (
             self._head[POSITION],
             self._head[ORIENTATION],
@@ -154,7 +158,7 @@ class Sample:
             for name, variances in (("pose.covariance", pose), ("twist.covariance", twist)):
                 numbers[name][:] = np.diag(np.repeat(variances, 3)).ravel() if known else UNKNOWN
 
-    def _fill_transform(self, numbers, snapshot):
+    def _fill_transform(self, numbers: Numbers, snapshot: Snapshot) -> None:
         numbers["transforms[0].transform.translation"][:] = self._head[POSITION]
         numbers["transforms[0].transform.rotation"][:] = self._head[ORIENTATION]
         if "transforms[1].transform.rotation" not in numbers:
@@ -164,30 +168,30 @@ class Sample:
             numbers[f"transforms[{k}].transform.translation"][:] = position
             numbers[f"transforms[{k}].transform.rotation"][:] = rotation
 
-    def _fill_backbone(self, numbers, snapshot):
+    def _fill_backbone(self, numbers: Numbers, snapshot: Snapshot) -> None:
         numbers["position"][:] = (turn_vector(snapshot.backbone) + 0.0).ravel()
         numbers["orientation"][:] = (turn_quaternion(snapshot.section_orientation) + 0.0).ravel()
 
-    def _fill_curvature(self, numbers, snapshot):
+    def _fill_curvature(self, numbers: Numbers, snapshot: Snapshot) -> None:
         numbers["pitch"][:], numbers["yaw"][:] = snapshot.curvature[:, 1], snapshot.curvature[:, 2]
         numbers["pitch_rate"][:], numbers["yaw_rate"][:] = snapshot.curvature_rate[:, 1], snapshot.curvature_rate[:, 2]
 
-    def _fill_wrench(self, numbers, snapshot):
+    def _fill_wrench(self, numbers: Numbers, snapshot: Snapshot) -> None:
         for axis in range(3):
             numbers[TORQUES[axis]][:] = snapshot.torque[:, axis]
             numbers[FORCES[axis]][:] = snapshot.force[:, axis]
 
-    def _fill_load(self, numbers, snapshot):
+    def _fill_load(self, numbers: Numbers, snapshot: Snapshot) -> None:
         for axis in range(3):
             numbers[FORCES[axis]][:] = snapshot.fluid_force[:, axis]
             numbers[RESISTANCES[axis]][:] = snapshot.resistive_force[:, axis]
         for name in ("tail_force", "nose_force", "wake_momentum_rate"):
             numbers[name][:] = getattr(snapshot, name) + 0.0
 
-    def _fill_energy(self, numbers, snapshot):
+    def _fill_energy(self, numbers: Numbers, snapshot: Snapshot) -> None:
         numbers[""][:] = [getattr(snapshot.energy, name) for name in ENERGY_FIELDS]
 
-    def _fill_state(self, numbers, snapshot):
+    def _fill_state(self, numbers: Numbers, snapshot: Snapshot) -> None:
         errors = self._simulation.head_errors
         numbers[""][:] = (  # in the order of the fields
             np.linalg.norm(self._head[LINEAR]),
@@ -198,17 +202,15 @@ class Sample:
             math.nan if errors is None else errors.relative,
         )
 
-    def _fill_joints(self, numbers, snapshot):
-        def put(name, values_of):
-            numbers[name][:] = np.concatenate([values_of(joints)[:, axis] for axis, joints in self._joints])
-
-        put("position", lambda joints: joints.angle(snapshot.curvature))
-        put("velocity", lambda joints: joints.angle(snapshot.curvature_rate))
-        if "effort" in numbers:
-            put("effort", lambda joints: joints.motor_torque(snapshot.torque))
+    def _fill_joints(self, numbers: Numbers, snapshot: Snapshot) -> None:
+        for axis, place, joints in self._joints:
+            numbers["position"][place] = joints.angle(snapshot.curvature)[:, axis]
+            numbers["velocity"][place] = joints.angle(snapshot.curvature_rate)[:, axis]
+            if "effort" in numbers:
+                numbers["effort"][place] = joints.motor_torque(snapshot.torque)[:, axis]
 
 
-def _lengthen(message, x: np.ndarray):
+def _lengthen(message: Any, x: np.ndarray) -> None:
     """Set the lengths of the sequences in a `message` for the stations `x` (M,) [m], and `x` itself."""
     for field, kind in message.get_fields_and_field_types().items():
         if kind == "sequence<double>":
@@ -319,7 +321,7 @@ def time_message(seconds: float) -> Time:
     return Time(sec=whole, nanosec=rest)
 
 
-def diagnostic_array(time: float, name: str, level: int, text: str, values: dict) -> DiagnosticArray:
+def diagnostic_array(time: float, name: str, level: int, text: str, values: dict[str, Any]) -> DiagnosticArray:
     """A DiagnosticArray with one status of the node `name` at simulation time `time` [s]."""
     status = DiagnosticStatus(level=bytes([level]), name=name, message=text, hardware_id="simulation")
     status.values = [

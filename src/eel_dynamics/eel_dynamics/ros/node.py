@@ -17,7 +17,7 @@ from eel_base.command.command_line import one_line_warnings
 from eel_base.wording import one_line
 from eel_ros.parameter_node import ParameterNode
 from eel_ros.parameters import help_rows
-from eel_ros.process_end import leave_at_once
+from eel_ros.process_end import exit_immediately
 from eel_ros.qos import latched
 from eel_ros.run_node import run_node
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
@@ -135,7 +135,7 @@ class DynamicsNode(ParameterNode):
             self._publish_diagnostics(final=True)
             self._diagnostics.wait_for_all_acked(Duration(seconds=SIGNAL_TIMEOUT))
         if self._thread.is_alive():  # in the middle of a step: it may not lose its publishers
-            leave_at_once(0)
+            exit_immediately(0)
         if self.run_loop.given_up:
             self.failure = self.failure or "the simulation stopped before its end"
 
@@ -241,4 +241,4 @@ def main(args: list[str] | None = None) -> int:
     if status == CANNOT_START:
         return status
     rclpy.get_default_context().destroy()  # leaves the network: others would wait 20 s for this node
-    return leave_at_once(status)
+    return exit_immediately(status)

@@ -15,7 +15,7 @@ import numpy as np
 from builtin_interfaces.msg import Time
 from rclpy.serialization import serialize_message
 
-HEAD = 4  # bytes before the content; numbers are aligned to the content's start
+ENCAPSULATION = 4  # bytes before the content; numbers are aligned to the content's start
 MARK = -1.2345678901234567e-200  # and its multiples: unique numbers, to find the offsets
 MARKED_TIME = 0x1A2B3C4D, 0x2B3C4D5E  # s, ns
 
@@ -35,7 +35,7 @@ class SerialisedMessage:
         blocks = dict(_marked(marked, (MARK * k for k in count(1)), times))
         where = serialize_message(marked)
         space = np.empty(len(data) + 8, dtype=np.uint8)
-        begin = -(space.__array_interface__["data"][0] + HEAD) % 8
+        begin = -(space.__array_interface__["data"][0] + ENCAPSULATION) % 8
         self._data = space[begin : begin + len(data)]
         self._data[:] = np.frombuffer(data, dtype=np.uint8)
         self.numbers = {path: self._view(where, np.array(values)) for path, values in blocks.items()}

@@ -14,7 +14,7 @@ from eel_base.wording import shown
 from eel_ros.command_line import handle_arguments
 from eel_ros.parameter_node import ParameterNode
 from eel_ros.parameters import declare_all, help_rows
-from eel_ros.process_end import leave_at_once
+from eel_ros.process_end import exit_immediately
 from eel_ros.qos import keep_all
 from eel_ros.run_node import run_node
 
@@ -122,7 +122,7 @@ def main(arguments: list[str] | None = None) -> int:
     status = run_node(NAME, words, Visualiser, Visualiser.poll, take, sim_time=True, complete=True)
     # Not by Python's own way: a stream may be blocked, and a thread of LTTng, which ROS brings, may fork just then. It
     # would wait for a lock of Arrow, and the destructors of LTTng for the thread.
-    return status if status == CANNOT_START else leave_at_once(status)
+    return status if status == CANNOT_START else exit_immediately(status)
 
 
 if __name__ == "__main__":
