@@ -7,6 +7,7 @@ Fields in section axes (1 = -x, 2 = -y, 3 = +z of base_link when straight) stay 
 
 import array
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -33,21 +34,12 @@ from eel_dynamics.ros.serialised_message import SerialisedMessage
 from eel_dynamics.runs.exchange.records import outline
 from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.simulation import Simulation
-from eel_msgs.msg import (
-    Backbone,
-    BodyGeometry,
-    Curvature,
-    CurvatureLaw,
-    CurvatureSamples,
-    EnergyLedger,
-    HydrodynamicLoad,
-    InternalWrench,
-    SwimState,
-)
+from eel_msgs import msg
 from eel_msgs.srv import SetState
 
 JOIN = "a controller that joins a running simulation begins 1/rate or more after the stamp of the last odom"
 Numbers = dict[str, np.ndarray]  # of a SerialisedMessage, by path
+Fill = Callable[[Numbers, Snapshot], None]
 SECOND = 1_000_000_000  # ns
 FAR_AHEAD = 3600.0  # s: a stamp further ahead of the simulation is wall time by mistake
 LARGEST_LAW = 2**19  # bytes, without the name: 1,000 terms of 30 knots, which are adopted in half a second
@@ -64,30 +56,30 @@ class Sample:
         self._nanoseconds, self._simulation = (0, 0), simulation
         x, scene = simulation.x, simulation.scene
         self._errors: HeadErrors | None = None  # those in the covariances of odom
-        messages = {
-            "head_pose": PoseStamped(),
-            "head_twist": TwistStamped(),
-            "odom": Odometry(child_frame_id=parameters.head_frame),
-            "backbone": Backbone(),
-            "curvature": Curvature(),
-            "internal_wrench": InternalWrench(),
-            "hydrodynamic_load": HydrodynamicLoad(),
-            "energy": EnergyLedger(),
-            "swim_state": SwimState(),
+        world, head, section = parameters.world_frame, parameters.head_frame, parameters.section_frame
+        topics: dict[str, tuple[Any, str, Fill]] = {
+            "head_pose": (PoseStamped(), world, self._fill_pose),
+            "head_twist": (TwistStamped(), head, self._fill_twist),
+            "odom": (Odometry(child_frame_id=head), world, self._fill_odometry),
+            "backbone": (msg.Backbone(), world, self._fill_backbone),
+            "curvature": (msg.Curvature(), section, self._fill_curvature),
+            "internal_wrench": (msg.InternalWrench(), section, self._fill_wrench),
+            "hydrodynamic_load": (msg.HydrodynamicLoad(), section, self._fill_load),
+            "energy": (msg.EnergyLedger(), world, self._fill_energy),
+            "swim_state": (msg.SwimState(), world, self._fill_state),
         }
         for name, computed in (("internal_wrench", scene.internal_wrench), ("energy", scene.ledger)):
             if not computed:
-                del messages[name]
-        in_section = ("curvature", "internal_wrench", "hydrodynamic_load")
-        frames = dict.fromkeys(in_section, parameters.section_frame) | {"head_twist": parameters.head_frame}
-        for name, message in messages.items():
-            message.header.frame_id = frames.get(name, parameters.world_frame)
+                del topics[name]
+        for message, frame, _ in topics.values():
+            message.header.frame_id = frame
             _lengthen(message, np.asarray(x, dtype=float))
         stations = len(x) if parameters.publish_tf_stations else 0
-        children = [parameters.head_frame, *(f"{parameters.section_frame}_{k}" for k in range(stations))]
-        messages["/tf"] = TFMessage(transforms=[TransformStamped(child_frame_id=child) for child in children])
-        for transform in messages["/tf"].transforms:
-            transform.header.frame_id = parameters.world_frame
+        children = [head, *(f"{section}_{k}" for k in range(stations))]
+        transforms = [TransformStamped(child_frame_id=child) for child in children]
+        for transform in transforms:
+            transform.header.frame_id = world
+        topics["/tf"] = TFMessage(transforms=transforms), world, self._fill_transform
         yaw, pitch = parameters.yaw_joints, parameters.pitch_joints
         robots = (2, slice(0, yaw), yaw), (1, slice(yaw, yaw + pitch), pitch)  # section axis, place, number of joints
         self._joints = [(axis, place, Joints(x, float(x[-1]), count)) for axis, place, count in robots if count]
@@ -97,23 +89,11 @@ class Sample:
             names = [f"{name}_{k + 1}" for name, count in (("yaw", yaw), ("pitch", pitch)) for k in range(count)]
             zeros = [0.0] * len(names)
             effort = zeros if scene.internal_wrench else []
-            messages["joint_states"] = JointState(name=names, position=zeros, velocity=zeros, effort=effort)
-        self.kinds = {name: type(message) for name, message in messages.items()}
-        self._serialised = {name: SerialisedMessage(message) for name, message in messages.items()}
+            joint_state = JointState(name=names, position=zeros, velocity=zeros, effort=effort)
+            topics["joint_states"] = joint_state, "", self._fill_joints
+        self.kinds = {name: type(message) for name, (message, *_) in topics.items()}
+        self._topics = {name: (SerialisedMessage(message), fill) for name, (message, _, fill) in topics.items()}
         self._clock = SerialisedMessage(Clock())
-        self._fill = {
-            "head_pose": self._fill_pose,
-            "head_twist": self._fill_twist,
-            "odom": self._fill_odometry,
-            "backbone": self._fill_backbone,
-            "curvature": self._fill_curvature,
-            "internal_wrench": self._fill_wrench,
-            "hydrodynamic_load": self._fill_load,
-            "energy": self._fill_energy,
-            "swim_state": self._fill_state,
-            "joint_states": self._fill_joints,
-            "/tf": self._fill_transform,
-        }
         self._of: Snapshot | None = None
         self._head = np.zeros(13)  # the head's position, orientation and twist in that snapshot
 
@@ -127,11 +107,11 @@ class Sample:
 
     def fill(self, name: str, snapshot: Snapshot) -> bytes:
         """The message of topic `name`, filled from `snapshot`."""
-        message = self._serialised[name]
+        message, fill = self._topics[name]
         if snapshot is not self._of:  # several topics need the head's state
             head = np.concatenate((snapshot.position, snapshot.orientation, snapshot.twist))
             self._of, self._head = snapshot, head * HEAD + 0.0
-        self._fill[name](message.numbers, snapshot)
+        fill(message.numbers, snapshot)
         return self._sealed(message)
 
     def _sealed(self, message: SerialisedMessage) -> bytes:
@@ -225,7 +205,7 @@ POSITION, ORIENTATION, ANGULAR, LINEAR = slice(0, 3), slice(3, 7), slice(7, 10),
 TORQUES, FORCES, RESISTANCES = (
     tuple(f"{name}_{axis}" for axis in (1, 2, 3)) for name in ("torque", "force", "resistive")
 )
-ENERGY_FIELDS = tuple(name for name, kind in EnergyLedger.get_fields_and_field_types().items() if kind == "double")
+ENERGY_FIELDS = tuple(name for name, kind in msg.EnergyLedger.get_fields_and_field_types().items() if kind == "double")
 
 
 def root_message(parameters: DynamicsParameters) -> TFMessage:
@@ -235,10 +215,10 @@ def root_message(parameters: DynamicsParameters) -> TFMessage:
     return TFMessage(transforms=[transform])
 
 
-def body_message(simulation: Simulation, section_frame: str) -> BodyGeometry:
+def body_message(simulation: Simulation, section_frame: str) -> msg.BodyGeometry:
     """The body's outline at the stations and at points in between, which are denser at the nose."""
     body, density = simulation.body, simulation.scene.density or simulation.body.density
-    message = BodyGeometry(length=float(body.length), mass=float(density * body.volume))
+    message = msg.BodyGeometry(length=float(body.length), mass=float(density * body.volume))
     message.header.frame_id = section_frame
     for name, values in outline(body, simulation.x).items():
         setattr(message, name, array.array("d", values.tolist()))
@@ -252,7 +232,7 @@ def law_name(data: bytes) -> str:
     return beginning.text()
 
 
-def read_law(data: bytes) -> CurvatureLaw:
+def read_law(data: bytes) -> msg.CurvatureLaw:
     """The CurvatureLaw in a serialised message. `ValueError` for too many terms, or too many numbers in them.
 
     They are counted before it is deserialised: 10^5 terms would block the process for a second.
@@ -264,10 +244,10 @@ def read_law(data: bytes) -> CurvatureLaw:
         raise ValueError(f"terms must be at most {MAXIMUM_TERMS}, got {terms}")
     if len(data) - len(name) > LARGEST_LAW:
         raise ValueError(f"its terms must have at most {LARGEST_LAW} bytes, got {len(data) - len(name)}")
-    return read_message(data, CurvatureLaw)
+    return read_message(data, msg.CurvatureLaw)
 
 
-def stamped(message: CurvatureLaw | CurvatureSamples, now: float) -> float:
+def stamped(message: msg.CurvatureLaw | msg.CurvatureSamples, now: float) -> float:
     """The stamp [s] of a `message` that comes at simulation time `now` [s]. `ValueError` for one that is not valid."""
     stamp = seconds_of(message.header.stamp)
     if stamp > now + FAR_AHEAD:
@@ -278,7 +258,7 @@ def stamped(message: CurvatureLaw | CurvatureSamples, now: float) -> float:
     return stamp
 
 
-def samples_from_message(message: CurvatureSamples, now: float) -> dict[str, Any]:
+def samples_from_message(message: msg.CurvatureSamples, now: float) -> dict[str, Any]:
     """The arguments of `Simulation.add_samples`: time [s], x [m], curvatures and two time derivatives, section axes.
 
     now: simulation time [s]. `ValueError` for a stamp that does not fit, or too many points.

@@ -33,13 +33,7 @@ from eel_dynamics.ros.law_subscription import LawSubscription
 from eel_dynamics.ros.loop.followed_clock import ClockSubscription, FollowedClock
 from eel_dynamics.ros.loop.requests import Answer
 from eel_dynamics.ros.loop.run_loop import RunLoop
-from eel_dynamics.ros.messages import (
-    diagnostic_array,
-    root_message,
-    state_from_message,
-    time_message,
-    values_of_status,
-)
+from eel_dynamics.ros.messages import diagnostic_array, root_message, state_from_message, time_message, values_of_status
 from eel_dynamics.ros.neighbours import Identity, Neighbours
 from eel_dynamics.ros.parameters import DynamicsParameters
 from eel_dynamics.ros.publishers import Publishers
