@@ -2,25 +2,16 @@
 """The nodes' settings with unit, default, bounds and description; the nodes declare their parameters from them."""
 
 import ipaddress
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
-from eel_base.quantity import Quantities
+from eel_base.quantity import Quantities, quantity
 from eel_base.wording import shown
 
 
-def setting(
-    default: Any,
-    description: str,
-    *,
-    unit: str = "",
-    minimum: float | None = None,
-    maximum: float | None = None,
-    **more: Any,
-) -> Any:
-    """A dataclass field with the metadata that `ros2 param describe` shows. Bounds are inclusive."""
-    metadata = {"description": description, "unit": unit, "minimum": minimum, "maximum": maximum}
-    return field(default=default, metadata=metadata | more)
+def setting(default: Any, description: str, unit: str = "", **bounds: Any) -> Any:
+    """A field as of `quantity`; most settings have no unit."""
+    return quantity(default, unit, description, **bounds)
 
 
 SINKS = ("spawn", "connect", "serve", "save")

@@ -128,7 +128,7 @@ def test_normals_are_those_of_the_surface(skin):
 
 def test_a_value_for_each_vertex(skin):
     x = np.linspace(0.0, 1.0, 51)
-    spread = skin.spread(x, 3.0 * x).reshape(len(skin.x), -1)
+    spread = skin.at_vertices(x, 3.0 * x).reshape(len(skin.x), -1)
     np.testing.assert_allclose(spread, np.broadcast_to(3.0 * skin.x[:, None], spread.shape), atol=1e-14)
 
 

@@ -206,7 +206,7 @@ def test_skin_and_frames_at_the_drawing_rate(made):
         np.testing.assert_allclose(logged["vertex_positions"][k], vertices, atol=SINGLE)
         np.testing.assert_allclose(logged["vertex_normals"][k], normals, atol=SINGLE)
         wrench = samples[stamp]["internal_wrench"][0]
-        shades = diverging(flanks.spread(wrench.x, wrench.values["torque_3"]), 0.25)
+        shades = diverging(flanks.at_vertices(wrench.x, wrench.values["torque_3"]), 0.25)
         np.testing.assert_array_equal(np.array(layer["vertex_colors"][1 + k], dtype=np.uint32), packed(shades))
         pose = samples[stamp]["head_pose"][0]
         np.testing.assert_allclose(heads["translation"][k][0], pose.position, atol=SINGLE)

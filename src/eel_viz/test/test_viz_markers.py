@@ -76,7 +76,7 @@ def test_markers_are_the_swimmer(show, sample):
     vertices, _ = mesh.place(backbone.x, backbone.position, backbone.orientation)
     assert skin.type == Marker.TRIANGLE_LIST and len(mesh.triangles) > RINGS * SIDES
     assert np.allclose(triples(skin.points), vertices[mesh.triangles.ravel()], rtol=0, atol=1e-6)
-    torque = mesh.spread(backbone.x, np.array(sample["internal_wrench"].torque_3))[mesh.triangles.ravel()]
+    torque = mesh.at_vertices(backbone.x, np.array(sample["internal_wrench"].torque_3))[mesh.triangles.ravel()]
     shades = np.array([(each.r, each.g, each.b) for each in skin.colors]) * 255
     assert np.allclose(shades, colours.diverging(torque, MarkerSettings().colour_limit), atol=0.01)
     assert shades[np.argmax(torque), 0] > 150 > shades[np.argmin(torque), 0], (

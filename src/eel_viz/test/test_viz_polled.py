@@ -4,7 +4,7 @@
 from contextlib import nullcontext
 
 from eel_viz.ros import polled_subscriptions
-from eel_viz.ros.polled_subscriptions import TURN, PolledSubscriptions
+from eel_viz.ros.polled_subscriptions import TAKE_LIMIT, PolledSubscriptions
 from rclpy.qos import QoSProfile
 from rclpy.serialization import serialize_message
 from std_msgs.msg import String
@@ -36,7 +36,7 @@ def test_a_turn_of_slow_messages_ends_and_all_topics_get_their_turns(monkeypatch
     monkeypatch.setattr(polled_subscriptions.time, "monotonic", lambda: now[0])
 
     def show(message, new_publisher):
-        now[0] += 0.6 * TURN
+        now[0] += 0.6 * TAKE_LIMIT
         shown.append(message.data)
 
     polled = PolledSubscriptions(Node())

@@ -31,10 +31,11 @@ LOADED_CHECKS = 5  # checks in a row of a loaded recording, after which no more 
 NOTICE = 2.5  # s after its start, for which a viewer shows a notice in the corner
 PICTURE_LIMIT = 90.0  # s until two screenshots must be equal
 SIZE = (1920, 1080)  # pixels
-FRAME = (8, 132)  # pixels, at least those of a window that a view alone does not fill: edges, tabs, title, time panel
+# Pixels of a window that a view alone does not fill, at least: edges, tabs, title, time panel.
+WINDOW_EDGES = (8, 132)
 MAGIC = b"RRF"  # first bytes of a recording of any version
 ALONE = "swimmer"  # the arrangement of a bare picture
-LEAST, MOST = 64, 8192  # pixels of a window's side
+LEAST_SIDE, MOST_SIDE = 64, 8192  # pixels of a window's side
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -206,11 +207,11 @@ def drawn(
     bare: the pictures show the arrangement's first view alone; without `blueprint`, that of the swimmer.
     `ValueError` if the file is not a recording; `CannotRender` if the viewer cannot draw.
     """
-    if not all(LEAST <= side <= MOST for side in size):
-        raise ValueError(f"size must be {LEAST} to {MOST} pixels each way, got {size[0]}x{size[1]}")
+    if not all(LEAST_SIDE <= side <= MOST_SIDE for side in size):
+        raise ValueError(f"size must be {LEAST_SIDE} to {MOST_SIDE} pixels each way, got {size[0]}x{size[1]}")
     with contextlib.ExitStack() as stack:
         path = _readable(pathlib.Path(recording).resolve(), stack)
-        window = (size[0] + FRAME[0], size[1] + FRAME[1]) if bare else size
+        window = (size[0] + WINDOW_EDGES[0], size[1] + WINDOW_EDGES[1]) if bare else size
         drawing = Drawing(stack.enter_context(viewer(window)), path, size)
         if blueprint or bare:
             drawing.arrange(blueprint or ALONE, bare=bare)

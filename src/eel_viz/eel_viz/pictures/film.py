@@ -13,7 +13,7 @@ from eel_base.wording import shown
 from PIL import Image
 
 ANIMATIONS = (".gif", ".webp")
-FRAME = "frame_%05d.png"
+PICTURE_NAME = "frame_%05d.png"
 QUALITY = 60  # of a .webp
 UNITS = {".gif": 10, ".webp": 1}  # ms, whole numbers of which a picture of an animation lasts
 FILMS = (".mp4", ".webm", ".mkv", ".mov", *ANIMATIONS)
@@ -33,9 +33,10 @@ def check_quality(quality: int) -> None:
 def film(
     folder: str | os.PathLike[str], count: int, output: str | os.PathLike[str], *, fps: float, quality: int = QUALITY
 ) -> None:
-    """Write the film `output` of the first `count` pictures `FRAME` in `folder`, of equal size, with `fps` per second.
+    """Write the film `output` of the first `count` pictures in `folder`, of equal size, with `fps` per second.
 
-    quality: of a .webp, 1 (smallest file) to 100. `ValueError` for an unknown suffix or a quality outside that range,
+    Their names are `PICTURE_NAME`. quality: of a .webp, 1 (smallest file) to 100.
+    `ValueError` for an unknown suffix or a quality outside that range,
     or if ffmpeg is needed and missing; `OSError` if writing fails.
     """
     check_quality(quality)
@@ -47,9 +48,9 @@ def film(
         raise ValueError(f"ffmpeg is not installed, which {path.suffix} needs; {' and '.join(ANIMATIONS)} do without")
     with replacing(path) as draft:
         if path.suffix in ANIMATIONS:
-            _animate([pathlib.Path(folder) / (FRAME % k) for k in range(count)], draft, fps, quality)
+            _animate([pathlib.Path(folder) / (PICTURE_NAME % k) for k in range(count)], draft, fps, quality)
         else:
-            _encode(program, pathlib.Path(folder) / FRAME, count, draft, fps)
+            _encode(program, pathlib.Path(folder) / PICTURE_NAME, count, draft, fps)
 
 
 def durations(count: int, fps: float, unit: int) -> list[int]:

@@ -23,7 +23,7 @@ from eel_base.files.output_file import NotWritten, check_output, replacing, writ
 from eel_base.wording import shown
 
 from eel_viz.pictures.drawing import SIZE, Drawing, SideBySide, check_recording, drawn_beside
-from eel_viz.pictures.film import ANIMATIONS, FILMS, FRAME, QUALITY, check_quality, ffmpeg, film
+from eel_viz.pictures.film import ANIMATIONS, FILMS, PICTURE_NAME, QUALITY, check_quality, ffmpeg, film
 from eel_viz.viewer import CannotRender
 from eel_viz.without_pandas import keep_pandas_out
 
@@ -31,30 +31,6 @@ NAME = "eel render"
 FILM = "film.mp4"
 MANY = 100_000  # pictures
 DEFAULT_SHARE = 0.7  # of a recording's duration, at which a single picture is taken: the swimmer moves by then
-
-
-def render(
-    recording: str | os.PathLike[str],
-    picture: str | os.PathLike[str],
-    *,
-    at: float | None = None,
-    size: tuple[int, int] = SIZE,
-    blueprint: str = "",
-    bare: bool = False,
-    beside: str | os.PathLike[str] | None = None,
-) -> None:
-    """Write the PNG `picture` of `recording` at simulation time `at` [s]; None: after a `DEFAULT_SHARE`.
-
-    size: width and height [pixels]. blueprint: the arrangement shown; empty: the recording's first. bare: its first
-    view alone, without the viewer's frame; with an empty blueprint, the swimmer. beside: another recording, drawn to
-    the right in the same size.
-    """
-    with drawn_beside(recording, beside, size=size, blueprint=blueprint, bare=bare) as drawing:
-        if at is None:
-            at = drawing.start + DEFAULT_SHARE * (drawing.end - drawing.start)
-        png = drawing.png(at)
-    with replacing(picture) as draft:
-        draft.write_bytes(png)
 
 
 def times(
@@ -85,7 +61,7 @@ def frames(
     written = []
     for k, moment in enumerate(at):
         png = drawing.png(min(moment, drawing.end))
-        written.append(folder / (FRAME % k))
+        written.append(folder / (PICTURE_NAME % k))
         with replacing(written[-1]) as draft:
             draft.write_bytes(png)
         if written_as(written[-1]) != written[-1]:  # a film would have the other's picture
@@ -177,12 +153,16 @@ def _draw(chosen: argparse.Namespace, output: pathlib.Path, size: tuple[int, int
     if not many and output.suffix != ".png":
         raise ValueError(f"a picture must end in .png, got {shown(str(output))}; --fps N makes many in a folder")
     _check_writable(output, folder=many and not alone)
-    shown_as = {"size": size, "blueprint": chosen.blueprint, "bare": chosen.bare}
-    if not many:
-        render(chosen.recording, output, at=chosen.at, beside=chosen.beside, **shown_as)
-        return
     with contextlib.ExitStack() as stack:
-        drawing = stack.enter_context(drawn_beside(chosen.recording, chosen.beside, **shown_as))
+        drawing = stack.enter_context(
+            drawn_beside(chosen.recording, chosen.beside, size=size, blueprint=chosen.blueprint, bare=chosen.bare)
+        )
+        if not many:
+            late = drawing.start + DEFAULT_SHARE * (drawing.end - drawing.start)
+            png = drawing.png(late if chosen.at is None else chosen.at)
+            with replacing(output) as draft:
+                draft.write_bytes(png)
+            return
         at = times(drawing, fps=chosen.fps, start=chosen.start, end=chosen.end, speed=chosen.speed)
         folder = output
         if alone:

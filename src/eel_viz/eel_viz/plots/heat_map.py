@@ -14,6 +14,7 @@ from eel_viz import entities
 from eel_viz.batched_stream import BatchedStream
 from eel_viz.plots.limit import Limit
 from eel_viz.scene3d import colours
+from eel_viz.scene3d.labels import text_labels
 
 COLUMNS = 200
 ROWS = 41
@@ -73,26 +74,9 @@ class HeatMap:
 
     def _draw_labels(self, stamp: int, length: float, limit: float) -> None:
         rise, right = 4.2, COLUMNS + 8.0
-        places = [
-            (-9.0, 2.5 - rise),
-            (-9.0, ROWS / 2 - rise),
-            (-9.0, ROWS - 2.5 - rise),
-            (right + 9.0, 2.5 - rise),
-            (right + 9.0, ROWS / 2 - rise),
-        ]
-        places += [(right + 9.0, ROWS - 2.5 - rise)]
+        places = [(x, y - rise) for x in (-9.0, right + 9.0) for y in (2.5, ROWS / 2, ROWS - 2.5)]
         texts = ["head 0", f"X {length / 2:.3g} m", f"tail {length:.3g}", f"+{limit:g}", "0", f"-{limit:g}"]
         span = COLUMNS * STEP
         places += [(COLUMNS * k / 4, ROWS + 4.5 - rise) for k in range(5)]
         texts += [f"-{span * (1 - k / 4):g} s" for k in range(4)] + ["now"]
-        self._stream.log(
-            stamp,
-            f"{entities.HEAT_MAP_FRAME}/labels",
-            rr.Points2D(
-                places,
-                labels=texts,
-                colors=[colours.LABEL] * len(texts),
-                show_labels=True,
-                radii=rr.Radius.ui_points(0.1),
-            ),
-        )
+        self._stream.log(stamp, f"{entities.HEAT_MAP_FRAME}/labels", text_labels(rr.Points2D, places, texts))

@@ -6,7 +6,6 @@ whose y points down: drawn x = WIDTH * X / length, drawn y = -value / (2 limit).
 grows to the next round number, and the ticks with it.
 """
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -18,9 +17,11 @@ from eel_viz.messages import same
 from eel_viz.plots.limit import Limit
 from eel_viz.scene3d import colours
 from eel_viz.scene3d.colours import Colour
+from eel_viz.scene3d.labels import text_labels
 
 WIDTH = 5.2
 LABEL_RISE = 0.085  # a label hangs below its point
+IN_FRONT = 40.0  # draw order of labels: before the curves (30), their envelope (20) and the frame (10)
 BOUNDS_X = (-0.5, WIDTH + 0.18)
 BOUNDS_Y = (-0.79, 0.79)
 
@@ -109,7 +110,10 @@ class ProfilePlot:
         widths = [0.16 + 0.095 * len(name) for name in self._names]
         starts = 0.08 + np.cumsum([0.0, *widths[:-1]])
         keys = [(start + width / 2, -0.62 - LABEL_RISE) for start, width in zip(starts, widths, strict=True)]
-        log(f"{self._root}/{entities.KEY}", _labels(keys, list(self._names), palette))
+        log(
+            f"{self._root}/{entities.KEY}",
+            text_labels(rr.Points2D, keys, list(self._names), palette, draw_order=IN_FRONT),
+        )
 
     def _draw_ticks(self, stamp: int, length: float) -> None:
         places = [(-0.26, -y - LABEL_RISE) for y in (0.5, 0.0, -0.5)]
@@ -118,10 +122,6 @@ class ProfilePlot:
         texts += [f"{length * k / 5:.3g}" for k in range(6)]
         places.append((WIDTH * 0.88, -0.62 - LABEL_RISE))
         texts.append(f"[{self._unit}] over X [m]")
-        self._stream.log(stamp, f"{self._root}/{entities.TICKS}", _labels(places, texts, [colours.LABEL] * len(texts)))
-
-
-def _labels(places: list[tuple[float, float]], texts: list[str], palette: Sequence[Colour]) -> rr.Points2D:
-    return rr.Points2D(
-        places, labels=texts, colors=palette, show_labels=True, radii=rr.Radius.ui_points(0.1), draw_order=40.0
-    )
+        self._stream.log(
+            stamp, f"{self._root}/{entities.TICKS}", text_labels(rr.Points2D, places, texts, draw_order=IN_FRONT)
+        )

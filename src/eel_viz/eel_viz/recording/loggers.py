@@ -6,6 +6,7 @@ Geometry is drawn in single precision at one rate. Scalars and profiles are logg
 order. Rows are sent in batches (see `batched_stream`): call `send_due` regularly, and `flush` at the end.
 """
 
+import reprlib
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,6 @@ from eel_viz import entities
 from eel_viz.batched_stream import BatchedStream
 from eel_viz.messages import Backbone, Body, Load, Pose, Profiles, Status, Twist, same
 from eel_viz.plots.comparison import Comparison
-from eel_viz.plots.event_log import EventLog
 from eel_viz.plots.heat_map import HeatMap
 from eel_viz.plots.limit import Limit
 from eel_viz.plots.profile_plot import ProfilePlot
@@ -30,6 +30,9 @@ from eel_viz.settings import Settings
 ENVELOPE_PERIOD = 500_000_000  # ns
 HEAT_MAP_PERIOD = 200_000_000
 SUMMARY_PERIOD = 200_000_000
+SHORT = reprlib.Repr()
+SHORT.maxstring = 220  # characters of a law's name, which is not checked before
+LEVELS = ("INFO", "WARN", "ERROR", "WARN")  # of a DiagnosticStatus: OK, WARN, ERROR, STALE
 
 
 class Loggers:
@@ -44,7 +47,7 @@ class Loggers:
         self._drawing_period = period_of(rates.drawings)
         self._due = Slots().due
         self._stations: dict[str, np.ndarray] = {}
-        self._events = EventLog(stream)
+        self._statuses: dict[str, tuple[int, str]] = {}  # level and message, by name
         self.summary = Summary()
         self._attitude = Attitude()
         self._scene = SwimmerScene(
@@ -193,14 +196,16 @@ class Loggers:
     def curvature_law(self, stamp: int, name: str) -> None:
         """Log the name of the published law."""
         self.summary.law = name
-        self._events.law(stamp, name)
+        self._event(stamp, f"law {SHORT.repr(name)} published", "INFO")
 
     def diagnostics(self, stamp: int, statuses: list[Status]) -> None:
         """Log each status whose level or message has changed; the values go into the summary."""
         for status in statuses:
             if self.summary.add_status(stamp, status.message, status.values):
                 self._summarise(self.summary.stamp)
-            self._events.status(stamp, status)
+            if self._statuses.get(status.name) != (status.level, status.message):
+                self._statuses[status.name] = (status.level, status.message)
+                self._event(stamp, f"{status.name}: {status.message}", LEVELS[min(status.level, len(LEVELS) - 1)])
 
     # --- logging ----------------------------------------------------------------------------------------
     def _numbers(
@@ -212,6 +217,9 @@ class Loggers:
             self._stations[path] = x
             values = {"x": x, **values}
         self._stream.add_arrays(stamp, path, name, values)
+
+    def _event(self, stamp: int, text: str, level: str) -> None:
+        self._stream.log(stamp, entities.LOG, rr.TextLog(text, level=level))
 
     def _summarise(self, stamp: int) -> None:
         self._stream.log(stamp, entities.RUN, rr.TextDocument(self.summary.text(), media_type="text/markdown"))

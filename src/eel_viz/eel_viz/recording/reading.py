@@ -19,7 +19,7 @@ from eel_base.files.input_file import reading
 from eel_base.wording import shown
 
 from eel_viz.entities import TIMELINE
-from eel_viz.recording.rrd_frames import HEAD, complete_file
+from eel_viz.recording.rrd_frames import HEADER_SIZE, complete_file
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,7 +51,7 @@ def read(path: str | os.PathLike[str], entity: str, *, static: bool = False) -> 
     found: dict[str, list[tuple[int, object]]] = {}
     stamps: set[int] = set()
     with reading(f"recording {shown(str(path))}"), complete_file(path) as readable, warnings.catch_warnings():
-        empty = readable.stat().st_size <= HEAD
+        empty = readable.stat().st_size <= HEADER_SIZE
         warnings.filterwarnings("ignore", message="RRD file has no footer")  # a file that is still being written
         chunks = [] if empty else list(RrdReader(str(readable)).stream().filter(content=entity))
     for chunk in chunks:

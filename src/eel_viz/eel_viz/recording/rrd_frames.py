@@ -14,7 +14,7 @@ from collections.abc import Iterator
 
 from eel_base.files.input_file import InputFile
 
-HEAD, FRAME = 12, struct.Struct("<QQ")  # bytes
+HEADER_SIZE, MESSAGE_HEADER = 12, struct.Struct("<QQ")  # bytes
 BLOCK = 2**20  # bytes copied at once
 FOOTER, FOOTER_PLACE = b"RRF2FOOT", 12  # and how many bytes before the end it begins
 
@@ -32,13 +32,13 @@ def end_of_whole_messages(path: str | os.PathLike[str]) -> int:
     if is_complete(path):
         return size
     with open(path, "rb") as file:
-        end = min(HEAD, size)
-        while end + FRAME.size <= size:
+        end = min(HEADER_SIZE, size)
+        while end + MESSAGE_HEADER.size <= size:
             file.seek(end)
-            _, length = FRAME.unpack(file.read(FRAME.size))
-            if not length or end + FRAME.size + length > size:  # zeros are left where a machine lost its power
+            _, length = MESSAGE_HEADER.unpack(file.read(MESSAGE_HEADER.size))
+            if not length or end + MESSAGE_HEADER.size + length > size:  # zeros are left where a machine lost its power
                 break
-            end += FRAME.size + length
+            end += MESSAGE_HEADER.size + length
     return end
 
 

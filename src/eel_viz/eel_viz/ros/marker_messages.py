@@ -15,7 +15,8 @@ from eel_viz.scene3d.load_vectors import ALONG, LoadVectors
 from eel_viz.scene3d.skin import Skin
 from eel_viz.settings import MarkerSettings
 
-SHAFT, HEAD, END_SHAFT, END_HEAD = 0.0044, 0.011, 0.008, 0.018  # m: diameters of the arrows' parts
+WIDTHS = (0.0044, 0.011)  # m: diameters of shaft and tip of the arrows along the body
+END_WIDTHS = (0.008, 0.018)  # m: of those at its ends
 
 
 class SkinMarker:
@@ -34,7 +35,7 @@ class SkinMarker:
         marker.pose.orientation.w, marker.color = 1.0, _colour(colours.GREY)
         marker.points = [points[corner] for corner in self._corners]
         if wrench is not None:
-            torque = self._skin.spread(wrench.x, wrench.values["torque_3"])
+            torque = self._skin.at_vertices(wrench.x, wrench.values["torque_3"])
             shades = [self._palette[k] for k in colours.diverging_index(torque, self._colour_limit)]
             marker.colors = [shades[corner] for corner in self._corners]
         return marker
@@ -48,8 +49,8 @@ class ForceMarkers:
 
     def markers(self, header: Header, backbone: Backbone, load: Load) -> list[Marker]:
         """One marker for each arrow; those that a shape with more stations had are deleted."""
-        along = _arrows(header, "load", self._vectors.along(backbone, load), colours.TEAL, (SHAFT, HEAD))
-        ends = _arrows(header, "end_force", self._vectors.ends(backbone, load), colours.MAGENTA, (END_SHAFT, END_HEAD))
+        along = _arrows(header, "load", self._vectors.along(backbone, load), colours.TEAL, WIDTHS)
+        ends = _arrows(header, "end_force", self._vectors.ends(backbone, load), colours.MAGENTA, END_WIDTHS)
         gone = [Marker(header=header, ns="load", id=k, action=Marker.DELETE) for k in range(len(along), ALONG)]
         return [*along, *gone, *ends]
 

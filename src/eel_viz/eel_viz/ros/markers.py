@@ -30,7 +30,7 @@ TOPICS = {
     "hydrodynamic_load": (HydrodynamicLoad, read_load),
 }
 DEPTH = 10  # samples that wait for the rest of their topics
-LOOK = 0.5  # s between two look-ups of the publishers
+LOOK_PERIOD = 0.5  # s between two look-ups of the publishers
 
 
 class Markers(ParameterNode):
@@ -55,7 +55,7 @@ class Markers(ParameterNode):
 
     def poll(self) -> bool:
         """Look up which topics have publishers, and draw what is due; True: the node continues."""
-        if time.monotonic() - self._looked > LOOK:
+        if time.monotonic() - self._looked > LOOK_PERIOD:
             self._looked = time.monotonic()
             self._expected = {"backbone"} | {topic for topic in TOPICS if self.count_publishers(topic)}
         self._draw_if_due()

@@ -30,7 +30,7 @@ from eel_viz.without_pandas import keep_pandas_out
 NAME = "visualiser"
 ABOUT = "Shows and records every topic of a swimmer in Rerun."
 EARLIER, LIVE = keep_all(latched=True), keep_all()  # the first gets earlier messages, the second matches any publisher
-LOOK = 0.5  # s between two look-ups of the publishers
+LOOK_PERIOD = 0.5  # s between two look-ups of the publishers
 
 CANNOT_START = 2  # exit status
 
@@ -69,7 +69,7 @@ class Visualiser(ParameterNode):
         """Poll the recordings; False once the swimmer has gone, with `stop_with_publisher`."""
         self._dispatcher.poll()
         now = time.monotonic()
-        if now - self._looked > LOOK:
+        if now - self._looked > LOOK_PERIOD:
             self._looked = now
             self._polled.note_publishers()
         return not (self.settings.stop_with_publisher and self._presence.has_gone())

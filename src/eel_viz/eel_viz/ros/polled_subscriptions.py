@@ -22,7 +22,7 @@ from eel_viz.ros.publisher_change import PublisherChange
 from eel_viz.topics import SWIMMER
 
 BATCH = 64  # messages taken from one subscription before the next one
-TURN = 0.2  # s after which `take` returns, so that the node hears calls and signals
+TAKE_LIMIT = 0.2  # s after which `take` returns, so that the node hears calls and signals
 PROCESS = 12  # bytes of an endpoint's identifier that all endpoints of a process share (RTPS: the GUID's prefix)
 GONE = 0.5  # s without publishers and messages, after which a swimmer has gone
 
@@ -91,9 +91,9 @@ class PolledSubscriptions:
     def take(self, before: int = 0) -> int:
         """Take the waiting messages of all subscriptions, and pass them on; returns as `take_waiting`.
 
-        After a `TURN` it returns, and the next call begins with the next subscription.
+        After a `TAKE_LIMIT` it returns, and the next call begins with the next subscription.
         """
-        count, end = 0, time.monotonic() + TURN
+        count, end = 0, time.monotonic() + TAKE_LIMIT
         for place, (subscription, receive) in enumerate(self._subscriptions, start=1):
             count += take_waiting(self._node, subscription, receive, before, end)
             if time.monotonic() > end:

@@ -32,9 +32,9 @@ from eel_viz.ros.polled_subscriptions import Receive, SwimmerPresence, take_wait
 from eel_viz.topics import GLOBAL, LATCHED, OWN, SAMPLED
 
 NAME, COMMAND = "record", "eel record"
-LOOK = 0.2  # s between two look-ups of the topics
-SAVE = 0.5  # s between two saves of the bag, at least
-SHARE = 15.0  # the least ratio of that period to the CPU time of a save
+LOOK_PERIOD = 0.2  # s between two look-ups of the topics
+SAVE_PERIOD = 0.5  # s between two saves of the bag, at least
+LEAST_PERIOD_TO_COST = 15.0  # the least ratio of that period to the CPU time of a save
 STAMP = slice(4, 12)  # of a serialised message that begins with a header
 NOT_BY_DEFAULT = ("/rosout", "/parameter_events")  # recorded only by name
 
@@ -73,7 +73,7 @@ class Recorder(Node):
     def poll(self) -> bool:
         """Look for new topics and save the bag; False when the recording is to end."""
         now = time.monotonic()
-        if now - self._looked >= LOOK:
+        if now - self._looked >= LOOK_PERIOD:
             self._looked = now
             self._update_topics()
         if not self._save_if_due(now):
@@ -103,7 +103,7 @@ class Recorder(Node):
 
     def _save_if_due(self, now: float) -> bool:
         """Save the bag where it is time; False if that fails."""
-        return now - self._saved < max(SAVE, SHARE * self._saving) or self._save()
+        return now - self._saved < max(SAVE_PERIOD, LEAST_PERIOD_TO_COST * self._saving) or self._save()
 
     def _save(self) -> bool:
         """Save the bag; whether that succeeded."""

@@ -4,15 +4,13 @@
 It stands at the lower edge of the picture, below `camera.CLEAR`, and so never before the swimmer.
 """
 
-from collections.abc import Sequence
-
 import numpy as np
 import rerun as rr
 
 from eel_viz import entities
 from eel_viz.batched_stream import BatchedStream
 from eel_viz.scene3d import camera, colours
-from eel_viz.scene3d.colours import Colour
+from eel_viz.scene3d.labels import text_labels
 
 DISTANCE = 1.0  # radii, from the eye: so a tangent in the picture is a length in radii
 BAR_AT = (-0.54, -0.425)  # tangents: the middle of the bar
@@ -34,7 +32,11 @@ def log_bar(stream: BatchedStream, stamp: int, *, limit: float, unit: str, name:
     mesh = rr.Mesh3D(vertex_positions=vertices, triangle_indices=triangles, vertex_colors=shades)
     stream.log(stamp, f"{entities.LEGEND}/bar", mesh)
     places = [middle + share * BAR_SIZE[0] * camera.RIGHT for share in (-0.5, 0.0, 0.5)]
-    _log_texts(stream, stamp, f"{entities.LEGEND}/labels", places, [f"-{limit:g}", f"{name} [{unit}]", f"+{limit:g}"])
+    stream.log(
+        stamp,
+        f"{entities.LEGEND}/labels",
+        text_labels(rr.Points3D, places, [f"-{limit:g}", f"{name} [{unit}]", f"+{limit:g}"]),
+    )
 
 
 def log_arrow_scale(
@@ -43,19 +45,9 @@ def log_arrow_scale(
     """Log what the lengths of arrows and wake mean: `load_scale` [m per N/m], `end_scale`, `wake_scale` [m per N]."""
     at = camera.before_eye(DISTANCE, *WAKE_AT)
     wake = f"momentum to the wake per time (scheme), 1 N: {wake_scale:g} m"
-    _log_texts(stream, stamp, entities.WAKE_LEGEND, [at], [wake], [colours.WAKE])
+    stream.log(stamp, entities.WAKE_LEGEND, text_labels(rr.Points3D, [at], [wake], [colours.WAKE]))
     texts = [f"1 N/m: {load_scale:g} m", f"1 N: {end_scale:g} m"]
     places = [camera.before_eye(DISTANCE, right, up) for right, up in ARROWS_AT]
-    _log_texts(stream, stamp, f"{entities.LEGEND}/arrows", places, texts, [colours.TEAL, colours.MAGENTA])
-
-
-def _log_texts(
-    stream: BatchedStream,
-    stamp: int,
-    path: str,
-    places: list[np.ndarray],
-    texts: list[str],
-    shades: Sequence[Colour] = (colours.LABEL,) * 3,
-) -> None:
-    dot = rr.Radius.ui_points(0.1)
-    stream.log(stamp, path, rr.Points3D(places, labels=texts, show_labels=True, radii=dot, colors=shades))
+    stream.log(
+        stamp, f"{entities.LEGEND}/arrows", text_labels(rr.Points3D, places, texts, [colours.TEAL, colours.MAGENTA])
+    )

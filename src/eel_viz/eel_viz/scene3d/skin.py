@@ -79,7 +79,7 @@ class Surface:
         normals = self._normal @ turn
         return vertices.reshape(-1, 3).astype(np.float32), normals.reshape(-1, 3).astype(np.float32)
 
-    def spread(self, x: np.ndarray, values: np.ndarray) -> np.ndarray:
+    def at_vertices(self, x: np.ndarray, values: np.ndarray) -> np.ndarray:
         """One value for each vertex, (rings * S,), from `values` at stations `x`, (M,)."""
         return np.repeat(self.resampling(x).linear(values), len(self._angles))
 

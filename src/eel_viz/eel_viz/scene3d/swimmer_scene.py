@@ -93,7 +93,7 @@ class SwimmerScene:
             self._torque_limit = limit
             legend.log_bar(self._stream, stamp, limit=limit, unit="N m", name="C3")
         if self._flanks is not None:
-            shades = colours.diverging(self._flanks.spread(x, torque), limit)
+            shades = colours.diverging(self._flanks.at_vertices(x, torque), limit)
             self._stream.add_row(stamp, entities.TORQUE_LAYER, rr.Mesh3D, vertex_colors=shades)
 
     def load(self, stamp: int, load: Load) -> None:

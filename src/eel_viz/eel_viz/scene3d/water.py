@@ -12,6 +12,7 @@ import rerun as rr
 
 from eel_viz.batched_stream import BatchedStream
 from eel_viz.scene3d import camera, colours
+from eel_viz.scene3d.labels import text_labels
 
 MESHES = (1.0, 2.5, 5.0, 10.0)  # possible widths of a mesh, times a power of ten
 MESHES_IN_RADIUS = 1.4  # at least, where the mesh is chosen
@@ -21,6 +22,7 @@ LAG = 1.5  # meshes: how far the centre moves before the box follows
 LABEL_SIZE = (0.15, 0.085)  # half of a label with the swimmer's thickness, as tangents in the picture
 APART = (0.20, 0.065)  # labels nearer than this would overlap, as tangents in the picture of a small view
 LABELLED = (1.3 * camera.EDGE, 0.93 * camera.EDGE)  # the part of the picture that has labels, as tangents
+MARK = 1.5  # pixels: the dot below a label
 GRID, LABELS, WALLS = "grid", "labels", "walls"
 
 Labels = dict[tuple[float, float, float], str]  # texts by their places [m]
@@ -134,15 +136,9 @@ class WaterBox:
         return labels
 
     def _draw_labels(self, stamp: int) -> None:
-        texts = list(self._labels.values())
-        points = rr.Points3D(
-            list(self._labels),
-            labels=texts,
-            show_labels=True,
-            radii=rr.Radius.ui_points(1.5),
-            colors=[colours.WATER_LABEL] * len(texts),
-        )
-        self._stream.log(stamp, f"{self._root}/{LABELS}", points)
+        shades = [colours.WATER_LABEL] * len(self._labels)
+        texts = text_labels(rr.Points3D, list(self._labels), list(self._labels.values()), shades, dot=MARK)
+        self._stream.log(stamp, f"{self._root}/{LABELS}", texts)
 
 
 def fitting_mesh(limit: float) -> float:
