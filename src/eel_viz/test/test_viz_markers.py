@@ -6,7 +6,7 @@ import time
 import numpy as np
 import pytest
 from eel_viz.messages import read_backbone, read_load
-from eel_viz.ros.marker_messages import SHAFT
+from eel_viz.ros.marker_messages import WIDTHS
 from eel_viz.scene3d import colours
 from eel_viz.scene3d.load_vectors import ALONG, LoadVectors
 from eel_viz.scene3d.skin import RINGS, SIDES, Skin
@@ -93,7 +93,7 @@ def test_markers_are_the_swimmer(show, sample):
         assert len(drawn) == count and [marker.id for marker in drawn] == list(range(count))
         for marker, origin, arrow in zip(drawn, origins, arrows, strict=True):
             assert np.allclose(triples(marker.points), (origin, origin + arrow), rtol=0, atol=1e-12)
-            assert marker.scale.x >= SHAFT and marker.color.a == 1.0
+            assert marker.scale.x >= WIDTHS[0] and marker.color.a == 1.0
     assert node.interrupt() == 0, node.output()
 
 
