@@ -12,7 +12,7 @@
 | `initial.omega_1`, ..., `initial.v_3` | twist of the head at the start [rad/s, m/s], its axes |
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import fields, replace
 from typing import Any, NamedTuple
 
@@ -30,6 +30,12 @@ from eel_dynamics.runs.run import Run, simulate
 from eel_gaits.gaits.registry import find
 from eel_gaits.laws.law import Law
 
+Gait = str | Callable[..., Law]  # its name, or a function of numbers
+Numbers = dict[str, Any]  # by the names above
+Measure = Callable[[Run], dict[str, Any]]  # run -> {name: number}
+AccuracyLike = str | float | Accuracy
+Stations = int | np.ndarray
+Progress = Callable[[int, int], object] | bool | None  # as in `sweep`
 POSITIONS = ("position_x", "position_y", "position_z")
 VELOCITIES = ("omega_1", "omega_2", "omega_3", "v_1", "v_2", "v_3")
 AT_REST = InitialState(np.zeros(3), np.array([0.0, 0.0, 0.0, 1.0]), np.zeros(6))
@@ -64,17 +70,22 @@ class SwimSettings(NamedTuple):
 
     duration: float | str  # s, or "settled"
     sample_period: float | None  # s
-    stations: "int | np.ndarray"
-    measure: "Callable | tuple[str, ...]"  # run -> {name: number}, or names of MEASURES
+    stations: Stations
+    measure: Measure | tuple[str, ...]  # run -> {name: number}, or names of MEASURES
     estimate: bool = True
     most_evaluations: float = MOST_EVALUATIONS
 
-    def measured(self, run, periods: int | None = None) -> dict:
+    def measured(self, run: Run, periods: int | None = None) -> dict[str, Any]:
         """The measures of `run`, over its last `periods` whole periods (None: the later half)."""
         return self.measure(run) if callable(self.measure) else measures_of(run, self.measure, periods)
 
 
-def batch_of_points(points: list[Point], how: SwimSettings, threads: int | None = None, progress=None) -> Batch:
+def batch_of_points(
+    points: list[Point],
+    how: SwimSettings,
+    threads: int | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Batch:
     """Simulate the `points`. threads, progress: as in `simulate_batch`."""
     return simulate_batch(
         [point.law for point in points],
@@ -100,7 +111,7 @@ def base_point(body: Body | None, scene: Scene | None, accuracy: Accuracy, frict
     return Point(None, checked_body(body), scene, accuracy)
 
 
-def point_at(values: dict, gait: "str | Callable[..., Law]", numbers: dict, base: Point) -> Point:
+def point_at(values: Numbers, gait: Gait, numbers: Numbers, base: Point) -> Point:
     """The point of these `values` by name; all else is as in `numbers`, by the same names, and in `base`.
 
     gait: its name, or a function of numbers that returns a law. `ValueError` tells the point and what does not fit.
@@ -114,25 +125,25 @@ def point_at(values: dict, gait: "str | Callable[..., Law]", numbers: dict, base
         raise ValueError(f"at {at}: {error}") from None
 
 
-def law_of_terms(law) -> Law:
+def law_of_terms(law: object) -> Law:
     """The `law` that a gait returned. `ValueError` for anything but a `Law`: a `SampledLaw` has no terms."""
     if not isinstance(law, Law):
         raise ValueError(f"gait must return a Law, whose terms are known, got {shown(law)}")
     return law
 
 
-def label_of(value):
+def label_of(value: Any) -> Any:
     """The label of a value on its axis."""
     if _named(value):
         return value.name
     return value if isinstance(value, (bool, int, float, str)) else str(value)
 
 
-def _named(value) -> bool:
+def _named(value: object) -> bool:
     return isinstance(value, (Body, Accuracy))
 
 
-def _point(values: dict, gait, base: Point) -> Point:
+def _point(values: Numbers, gait: Gait, base: Point) -> Point:
     body, accuracy = base.body, base.accuracy
     own: dict[str, Any] = {}
     groups: dict[str, dict[str, Any]] = {"scene": {}, "body": {}, "initial": {}}
@@ -153,7 +164,7 @@ def _point(values: dict, gait, base: Point) -> Point:
     return Point(law, body, replace(base.scene, **groups["scene"]), accuracy, _start(base.start, groups["initial"]))
 
 
-def _start(start: InitialState, changes: dict) -> InitialState:
+def _start(start: InitialState, changes: Numbers) -> InitialState:
     _check_names("initial", changes, (*POSITIONS, *VELOCITIES))
     position, twist = start.position.copy(), start.twist.copy()
     for name, value in changes.items():
@@ -162,7 +173,7 @@ def _start(start: InitialState, changes: dict) -> InitialState:
     return start._replace(position=position, twist=twist)
 
 
-def _check_names(group: str, given: dict, known) -> None:
+def _check_names(group: str, given: Numbers, known: Iterable[str]) -> None:
     for name in given:
         if name not in known:
             hint = did_you_mean(name, known)

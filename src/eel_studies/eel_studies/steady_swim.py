@@ -7,7 +7,7 @@ import numpy as np
 from eel_dynamics.analysis.averaging_window import common_period
 from eel_gaits.laws.law import Law
 
-from eel_studies.points import law_of_terms
+from eel_studies.points import Numbers, law_of_terms
 
 SAMPLES = 16  # in a period
 
@@ -23,6 +23,6 @@ def swim_times(law: Law, length: float, periods: int) -> dict[str, Any]:
     return {"duration": periods * period, "sample_period": period / SAMPLES}
 
 
-def at_speed(numbers: dict, speed: float) -> dict:
+def at_speed(numbers: Numbers, speed: float) -> Numbers:
     """The `numbers` with which the head begins to swim ahead at `speed` [m/s], unless they have a velocity already."""
     return {"initial.v_1": -speed} | numbers

@@ -6,6 +6,7 @@ eel compare before.nc after.nc --out pair.png
 eel compare measured.nc straight          # the gait swims in the body, scene and time of the file
 """
 
+import argparse
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -24,7 +25,7 @@ from eel_dynamics.runs.settled_duration import until_settled
 from eel_gaits.gaits.registry import gait
 
 from eel_studies.pictures.picture_file import write_picture
-from eel_studies.pictures.style import BLUE, ORANGE, legend_above, plain
+from eel_studies.pictures.style import BLUE, ORANGE, Figure, legend_above, plain
 
 NAME = "eel compare"
 PICTURES = (".png", ".svg", ".pdf")
@@ -38,7 +39,7 @@ def main(arguments: list[str] | None = None) -> int:
     return run_command(_parser(), _compare, arguments)
 
 
-def _compare(options) -> int:
+def _compare(options: argparse.Namespace) -> int:
     out = None if options.out is None else checked_out(NAME, options.out, (".rrd", *PICTURES))
     if out is not None and out.suffix == ".rrd" and find_spec("eel_viz") is None:
         raise ValueError("--out .rrd needs the package eel_viz, with rerun-sdk, which is not installed")
@@ -56,7 +57,7 @@ def _compare(options) -> int:
     return 0
 
 
-def _swum(options, name: str, like: Run | None) -> Run:
+def _swum(options: argparse.Namespace, name: str, like: Run | None) -> Run:
     """The run of the gait `name`: what no option says is as in the run `like`, where there is one."""
     body, scene, duration = Body.boyer2010(), Scene(), DURATION
     if like is not None:
@@ -90,7 +91,7 @@ def table_of(first: Run, second: Run, names: list[str]) -> str:
     return "\n".join(lines)
 
 
-def draw(figure, runs: tuple[Run, Run], names: list[str]) -> None:
+def draw(figure: Figure, runs: tuple[Run, Run], names: list[str]) -> None:
     """Draw the paths of both heads from above, and in time their speeds and the greatest torques along the bodies."""
     path, speed, torque = figure.subplots(3, 1, height_ratios=(2, 1, 1))
     for run, name, style in zip(runs, names, STYLES, strict=True):

@@ -14,6 +14,7 @@ from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.run import Run, simulate
 
 from eel_gaits import falling
+from eel_studies.points import AccuracyLike
 
 READINGS: dict[str, dict[str, Any]] = {  # label: what differs from the library's own reading
     "the library's own: perimeter and added mass corrected, friction as printed": {},
@@ -53,7 +54,9 @@ class Correction:
         return float(self.run.analysis().peak_torque.max())
 
 
-def swim(duration: float = 10.0, accuracy="fine", sample_period: float = 0.02, stations=101) -> list[Correction]:
+def swim(
+    duration: float = 10.0, accuracy: AccuracyLike = "fine", sample_period: float = 0.02, stations: int = 101
+) -> list[Correction]:
     """Simulate the falling gait with each reading of `READINGS`, the library's own first.
 
     duration, sample_period: [s]. accuracy, stations: as in `simulate`.

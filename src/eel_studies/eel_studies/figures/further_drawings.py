@@ -2,17 +2,18 @@
 """Figures beyond the paper's. Each function draws runs of the falling gait into an empty matplotlib figure."""
 
 from itertools import product
-from typing import Any
 
 import numpy as np
+from eel_dynamics.runs.run import Run
 
 from eel_studies.figures.orders import ConvergenceErrors
-from eel_studies.pictures.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, legend_above, mark_pitch, plain
+from eel_studies.figures.paper_drawings import wrench_of
+from eel_studies.pictures.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, Axes, Figure, legend_above, mark_pitch, plain
 
 PERIOD = 1.0  # s, of the falling gait
 
 
-def draw_torque_surface(figure, run):
+def draw_torque_surface(figure: Figure, run: Run) -> None:
     """Draw the internal torques C2 and C3 [N m] over time and X, each as a surface and, below it, as a map."""
     from matplotlib.ticker import MaxNLocator
 
@@ -21,7 +22,7 @@ def draw_torque_surface(figure, run):
     spaces = [figure.add_subplot(grid[0, k], projection="3d") for k in range(2)]
     maps = [figure.add_subplot(grid[1, k]) for k in range(2)]
     for (column, name), space, axes in zip(torques, spaces, maps, strict=True):
-        values = run.torque[..., column].T  # (M, T)
+        values = wrench_of(run)[1][..., column].T  # (M, T)
         size = np.max(np.abs(values))
         _draw_surface(space, run, values, size, name)
         levels = np.linspace(-size, size, 20)  # an even number: no line at 0, where the water is still
@@ -33,7 +34,7 @@ def draw_torque_surface(figure, run):
         figure.colorbar(drawn, ax=axes, label=name, pad=0.02, ticks=ticks, format="%+.2f")
 
 
-def _draw_surface(axes, run, values, size, name):
+def _draw_surface(axes: Axes, run: Run, values: np.ndarray, size: float, name: str) -> None:
     """Draw the surface of `values` (M, T) [N m] into 3D `axes`, coarse enough for a small file."""
     from matplotlib.ticker import MaxNLocator
 
@@ -60,7 +61,7 @@ def _draw_surface(axes, run, values, size, name):
     axes.tick_params(pad=0)
 
 
-def draw_head_path(figure, run):
+def draw_head_path(figure: Figure, run: Run) -> None:
     """Draw the paths of the head and of the centre of mass, averaged over a period, from above and from the side."""
     path, centre = run.position, run.center_of_mass
     each = round(PERIOD / (run.time[1] - run.time[0]))  # samples in a period
@@ -91,9 +92,10 @@ def draw_head_path(figure, run):
     legend_above(figure)
 
 
-def draw_ledger(figure, run):
+def draw_ledger(figure: Figure, run: Run) -> None:
     """Draw the powers [W], the works [J] and the residual [J] of the energy ledger over time."""
     energy = run.energy
+    assert energy is not None
     lines = (
         ("actuator", "actuators", BLUE, "-"),
         ("drag", "drag along the body", ORANGE, (0, (5, 2))),
@@ -119,7 +121,7 @@ def draw_ledger(figure, run):
 
 
 def draw_convergence(
-    figure: Any, in_space: dict[bool, ConvergenceErrors], in_time: dict[bool, ConvergenceErrors]
+    figure: Figure, in_space: dict[bool, ConvergenceErrors], in_time: dict[bool, ConvergenceErrors]
 ) -> None:
     """Draw errors against nodes and against the step, without (False) and with (True) drag of cross flow and roll."""
     by_nodes, by_step = figure.subplots(1, 2)

@@ -14,6 +14,7 @@ from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.run import simulate
 
 from eel_gaits import kern_efficient, kern_fast
+from eel_studies.points import AccuracyLike
 
 VISCOSITY = 1.4e-4  # L^2/T of the computations: Reynolds numbers of some thousands
 VOLUME = 0.0059326  # L^3, of the published shape
@@ -37,10 +38,10 @@ class Comparison:
 
     def less(self, efficiency: str) -> float:
         """Relative deficit of the fast gait in `efficiency`, the name of an `Analysis` property."""
-        return 1.0 - getattr(self.fast, efficiency) / getattr(self.efficient, efficiency)
+        return 1.0 - float(getattr(self.fast, efficiency) / getattr(self.efficient, efficiency))
 
 
-def compare(periods: int = 20, accuracy="standard") -> Comparison:
+def compare(periods: int = 20, accuracy: AccuracyLike = "standard") -> Comparison:
     """Simulate `periods` periods of both gaits from rest, with L = 1 m, T = 1 s and the published viscosity."""
     body, scene = Body.kern2006(), Scene(viscosity=VISCOSITY)
     fast, efficient = (

@@ -9,7 +9,7 @@ from eel_studies.figures import corrections, kern_comparison
 from eel_studies.figures.corrections import Correction
 from eel_studies.figures.kern_comparison import Comparison
 from eel_studies.figures.orders import ConvergenceErrors
-from eel_studies.figures.paper_drawings import INSTANT, PLACE
+from eel_studies.figures.paper_drawings import INSTANT, PLACE, wrench_of
 
 FINE = 4  # index of the number of points from which on the order along the body is fitted
 
@@ -59,18 +59,18 @@ def values_of(
 def _along(run: Run, printed: Run) -> dict[str, str]:
     """The greatest force and torques along the body at `INSTANT`, and where the friction jumps."""
     k = int(np.argmin(np.abs(run.time - INSTANT)))
-    force, torque = run.force[k], run.torque[k]
+    force, torque = (field[k] for field in wrench_of(run))
     found = {"jump": f"{TRANSITION * run.scene.viscosity / abs(run.twist[k, 3]):.2f}"}
     for name, values in (("axial", force[:, 0]), ("pitch", torque[:, 1]), ("yaw", torque[:, 2])):
         place = np.argmax(np.abs(values))
         found |= {name: f"{values[place]:+.3f}", f"{name}_at": f"{run.x[place]:.2f}"}
-    return found | {"pitch_share": _share(printed.torque[k, :, 1], torque[:, 1])}
+    return found | {"pitch_share": _share(wrench_of(printed)[1][k, :, 1], torque[:, 1])}
 
 
 def _in_time(run: Run, printed: Run) -> dict[str, str]:
     """The extremes of force and torque at `PLACE`, and the greatest torque of all."""
     station = int(np.argmin(np.abs(run.x - PLACE)))
-    axial, yaw = run.force[:, station, 0], run.torque[:, station, 2]
+    axial, yaw = wrench_of(run)[0][:, station, 0], wrench_of(run)[1][:, station, 2]
     torque, place, time = run.greatest_torque()
     return {
         "yaw_least": f"{yaw.min():.2f}",
@@ -78,7 +78,7 @@ def _in_time(run: Run, printed: Run) -> dict[str, str]:
         "yaw_late": f"{_greatest(yaw[run.time >= 0.5 * run.time[-1]]):.2f}",
         "axial_least": f"{axial.min():.2f}",
         "axial_most": f"{axial.max():.2f}",
-        "yaw_share": _share(printed.torque[:, station, 2], yaw),
+        "yaw_share": _share(wrench_of(printed)[1][:, station, 2], yaw),
         "peak": f"{torque:.3f}",
         "peak_at": f"{place:.2f}",
         "peak_time": f"{time:.2f}",
@@ -87,6 +87,7 @@ def _in_time(run: Run, printed: Run) -> dict[str, str]:
 
 def _ledger(run: Run) -> dict[str, str]:
     energy = run.energy
+    assert energy is not None
     work = energy.actuator_work[-1]
     parts = {name: f"{-energy[f'{name}_work'][-1] / work:.0%}" for name in ("drag", "wake", "nose")}
     return {"work": f"{work:.2f}", **parts, "residual": f"{_greatest(energy.residual) / work:.0e}"}

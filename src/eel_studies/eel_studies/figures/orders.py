@@ -27,6 +27,8 @@ INSTANT = 7.3  # s, both waves and bend are on
 STATIONS = (0.1, 0.3, 0.5, 0.75, 0.9)
 ROUND_OFF = 1e-12  # error below which round-off dominates: its value then depends on the processor
 
+Values = tuple[np.ndarray, np.ndarray]  # of the motion, and of the torque
+
 
 @dataclass(frozen=True)
 class ConvergenceErrors:
@@ -53,7 +55,7 @@ def in_space(cross_flow: bool) -> ConvergenceErrors:
     """Errors of one evaluation of the falling gait at t = 7.3 s, against one with 400 points per body length."""
     body = body_of(cross_flow)
 
-    def evaluated(resolution):
+    def evaluated(resolution: float) -> Values:
         swimmer = Simulation(
             body=body,
             scene=Scene(friction="laminar"),
@@ -77,7 +79,7 @@ def in_time(cross_flow: bool, duration: float = 2.5) -> ConvergenceErrors:
     """
     body = body_of(cross_flow)
 
-    def swum(step):
+    def swum(step: float) -> Values:
         run = simulate(
             falling(),
             duration,
@@ -95,8 +97,8 @@ def in_time(cross_flow: bool, duration: float = 2.5) -> ConvergenceErrors:
     return _errors(STEPS, [swum(step) for step in STEPS], exact)
 
 
-def _errors(against, values, exact) -> ConvergenceErrors:
-    def relative(index):
+def _errors(against: tuple[float, ...], values: list[Values], exact: Values) -> ConvergenceErrors:
+    def relative(index: int) -> np.ndarray:
         return np.array(
             [np.max(np.abs(value[index] - exact[index])) / np.max(np.abs(exact[index])) for value in values]
         )

@@ -3,6 +3,7 @@
 
 import numpy as np
 from eel_dynamics.model.body import Body
+from eel_dynamics.runs.run import Run
 
 from eel_studies.pictures.style import (
     AS_PRINTED,
@@ -11,6 +12,8 @@ from eel_studies.pictures.style import (
     COLOUR_BAR,
     OWN,
     PALE_BLUE,
+    Axes,
+    Figure,
     legend_above,
     mark_pitch,
     plain,
@@ -22,7 +25,7 @@ PLACE = 0.5  # m, of Fig. 8
 SECTIONS = (0.05, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95)  # of the length, drawn in Fig. 5
 
 
-def draw_body(figure, body: Body):
+def draw_body(figure: Figure, body: Body) -> None:
     """Draw Fig. 5: outlines from the side and from above, and cross-sections at their true size."""
     # points are denser at the nose, where the outline is round
     x = body.length * np.concatenate((np.linspace(0.0, 0.05**0.5, 60) ** 2, np.linspace(0.05, 1.0, 200)[1:]))
@@ -47,7 +50,7 @@ def draw_body(figure, body: Body):
         axes.grid(alpha=0.3)
 
 
-def draw_configurations(figure, run):
+def draw_configurations(figure: Figure, run: Run) -> None:
     """Draw Fig. 6: the backbone twice a second, in space, from above and from the side (world axes [m])."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
@@ -80,51 +83,56 @@ def draw_configurations(figure, run):
     figure.colorbar(colours, cax=bar, orientation="horizontal", label="time [s]")
 
 
-def draw_wrench_along_the_body(figure, run, printed):
+def draw_wrench_along_the_body(figure: Figure, run: Run, printed: Run) -> None:
     """Draw Fig. 7: N1 [N], C2 and C3 [N m] against X at t = 7 s, of our run and of the `printed` reading."""
-    samples = [int(np.argmin(np.abs(each.time - INSTANT))) for each in (run, printed)]
-    profiles = [
-        {"force": each.force[k], "torque": each.torque[k]} for each, k in zip((run, printed), samples, strict=True)
-    ]
+    profiles = [[field[np.argmin(np.abs(each.time - INSTANT))] for field in wrench_of(each)] for each in (run, printed)]
     _draw_wrench(figure, run.x, profiles, f"$X_1$ [m], nose to tail, at t = {INSTANT:g} s")
 
 
-def draw_wrench_in_time(figure, run, printed):
+def draw_wrench_in_time(figure: Figure, run: Run, printed: Run) -> None:
     """Draw Fig. 8: N1 [N], C2 and C3 [N m] against t at X = 0.5 m, of our run and of the `printed` reading."""
     station = int(np.argmin(np.abs(run.x - PLACE)))
-    profiles = [{"force": each.force[:, station], "torque": each.torque[:, station]} for each in (run, printed)]
+    profiles = [[field[:, station] for field in wrench_of(each)] for each in (run, printed)]
     _draw_wrench(figure, run.time, profiles, f"time t [s], at $X_1$ = {PLACE:g} m; grey: pitch bends")
     mark_pitch(figure.axes)
 
 
-def _draw_wrench(figure, abscissa, profiles, name):
+def wrench_of(run: Run) -> tuple[np.ndarray, np.ndarray]:
+    """Force [N] and torque [N m], (T, M, 3), of a run whose scene has them."""
+    assert run.force is not None and run.torque is not None
+    return run.force, run.torque
+
+
+def _draw_wrench(figure: Figure, abscissa: np.ndarray, profiles: list[list[np.ndarray]], name: str) -> None:
     """Draw N1, C2 and C3 in a column. profiles: force and torque (n, 3) against `abscissa`, ours and as printed."""
     rows = (
-        ("force", 0, "$N_1$ [N]\n(> 0: tension)"),
-        ("torque", 1, "$C_2$ [N m]\n(pitch)"),
-        ("torque", 2, "$C_3$ [N m]\n(yaw)"),
+        (0, 0, "$N_1$ [N]\n(> 0: tension)"),
+        (1, 1, "$C_2$ [N m]\n(pitch)"),
+        (1, 2, "$C_3$ [N m]\n(yaw)"),
     )
     for axes, (field, column, label) in zip(figure.subplots(3, 1, sharex=True), rows, strict=True):
         for profile, style in zip(profiles, (OWN, AS_PRINTED), strict=True):
             axes.plot(abscissa, profile[field][:, column], **style)
-        axes.set_ylabel(label)
-        axes.axhline(0.0, color=BLACK, linewidth=0.5)
-        plain(axes)
+        _finish(axes, label)
     axes.set_xlabel(name)
     legend_above(figure)
     figure.align_ylabels()
 
 
-def draw_head_velocity(figure, run, printed):
+def draw_head_velocity(figure: Figure, run: Run, printed: Run) -> None:
     """Draw Fig. 9: V1(0) [m/s] and Omega1(0) [rad/s] against t, of our run and of the `printed` reading."""
     rows = ((3, "$V_1(0)$ [m/s]\n(< 0: ahead)"), (0, "$\\Omega_1(0)$ [rad/s]\n(roll)"))
     for axes, (column, label) in zip(figure.subplots(2, 1, sharex=True), rows, strict=True):
         for each, style in ((run, OWN), (printed, AS_PRINTED)):
             axes.plot(each.time, each.twist[:, column], **style)
-        axes.set_ylabel(label)
-        axes.axhline(0.0, color=BLACK, linewidth=0.5)
-        plain(axes)
+        _finish(axes, label)
     axes.set_xlabel("time t [s]; grey: pitch bends")
     legend_above(figure)
     figure.align_ylabels()
     mark_pitch(figure.axes)
+
+
+def _finish(axes: Axes, label: str) -> None:
+    axes.set_ylabel(label)
+    axes.axhline(0.0, color=BLACK, linewidth=0.5)
+    plain(axes)

@@ -4,11 +4,12 @@
 import numpy as np
 from eel_base.attitude import world_from_body
 from eel_dynamics.model.section_data import TRANSITION
+from eel_dynamics.runs.run import Run
 
 PRINTED = "printed"
 
 
-def share_across_jump(one, other) -> float:
+def share_across_jump(one: Run, other: Run) -> float:
     """Share of samples and stations at which two runs lie on different sides of the printed friction's jump; 0 without.
 
     The speed V1 along the body is that of the backbone through the water, from splines through the samples.
@@ -18,11 +19,11 @@ def share_across_jump(one, other) -> float:
     return float(np.mean(_is_turbulent(one) != _is_turbulent(other)))
 
 
-def _is_turbulent(run) -> np.ndarray:
+def _is_turbulent(run: Run) -> np.ndarray:
     """Whether Re = abs(V1) X / nu exceeds the transition, (T, M)."""
     from scipy.interpolate import CubicSpline
 
     velocity = CubicSpline(run.time, run.backbone, axis=0)(run.time, 1) - run.scene.current
     along = world_from_body(run.section_orientation)[..., 0]  # axis 1 of each section
     speed = np.abs(np.sum(velocity * along, axis=-1))
-    return speed * run.x > TRANSITION * run.scene.viscosity
+    return np.asarray(speed * run.x > TRANSITION * run.scene.viscosity)

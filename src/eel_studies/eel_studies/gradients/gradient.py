@@ -15,7 +15,6 @@ settings and twice the difference.
 """
 
 import warnings
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -31,13 +30,27 @@ from eel_dynamics.model.body import Body
 from eel_dynamics.model.equality import same_fields
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.model.section_data import TRANSITION
+from eel_dynamics.runs.batch import Batch
 from eel_dynamics.runs.companion import relative_errors
 from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.sampling import default_sample_period
 
 from eel_studies.gradients.fixed_discretisation import fixed_steps, on_one_grid, step_of
 from eel_studies.gradients.friction_jump import share_across_jump
-from eel_studies.points import Point, SwimSettings, base_point, batch_of_points, law_of_terms, point_at
+from eel_studies.points import (
+    AccuracyLike,
+    Gait,
+    Measure,
+    Numbers,
+    Point,
+    Progress,
+    Stations,
+    SwimSettings,
+    base_point,
+    batch_of_points,
+    law_of_terms,
+    point_at,
+)
 
 RELATIVE_STEP = 1e-5  # of a parameter; of one unit where its value is 0
 COMPANION_STEP = 2.0  # times the steps, of the companions
@@ -63,7 +76,7 @@ class Gradient:
             raise KeyError(measure)
         return dict(zip(self.by, self.derivative[self.of.index(measure)].tolist(), strict=True))
 
-    def __eq__(self, other) -> bool:
+    def __eq__(self, other: object) -> bool:
         return same_fields(self, other)
 
     __hash__ = None  # type: ignore[assignment]  # typeshed has `object` hashable; this holds arrays
@@ -73,21 +86,21 @@ class Gradient:
 
 
 def gradient(
-    of: "str | tuple[str, ...] | Callable[[Run], dict]",
+    of: str | tuple[str, ...] | Measure,
     parameters: dict[str, float],
     *,
-    gait: "str | Callable" = "straight",
-    numbers: dict | None = None,
+    gait: Gait = "straight",
+    numbers: Numbers | None = None,
     duration: float = 10.0,
     body: Body | None = None,
     scene: Scene | None = None,
-    accuracy: "str | float | Accuracy" = "standard",
+    accuracy: AccuracyLike = "standard",
     sample_period: float | None = None,
-    stations=51,
+    stations: Stations = 51,
     steps: dict[str, float] | None = None,
     estimate: bool = True,
     threads: int | None = None,
-    progress: "Callable[[int, int], None] | bool | None" = False,
+    progress: Progress = False,
     most_evaluations: float = MOST_EVALUATIONS,
 ) -> Gradient:
     """Derivatives of measures of a run with respect to its parameters, at the values given.
@@ -115,13 +128,17 @@ def gradient(
     if sample_period is None:
         sample_period = default_sample_period([point.law], duration)
     how = SwimSettings(duration, sample_period, stations, measure, False, most_evaluations)
-    told, swims = progress_of(progress, "swims"), 1 + 2 * len(at)
+    tell, swims = progress_of(progress, "swims"), 1 + 2 * len(at)
 
     def taken(settings: Accuracy, apart: np.ndarray, before: int) -> _Differences:
         moved = [at] + [at | {name: float(at[name] + h)} for name, h in zip([*at] * 2, [*apart, *-apart], strict=True)]
         points = [_point(values, gait, numbers, base._replace(accuracy=settings)) for values in moved]
         points = on_one_grid(points, step_of(points[0]))
-        batch = batch_of_points(points, how, threads, lambda done, _: told(before + done, swims * (1 + bool(estimate))))
+
+        def count(done: int, _: int) -> None:
+            tell(before + done, swims * (1 + bool(estimate)))
+
+        batch = batch_of_points(points, how, threads, count)
         return _Differences.of([_run(batch, index) for index in range(swims)], how, apart)
 
     fine = taken(settings, apart, 0)
@@ -165,7 +182,8 @@ class _Differences(NamedTuple):
         least = np.finfo(float).tiny
         apart = np.abs(self.value - coarser.value) / np.maximum(np.abs(self.value), least)
         apart = np.minimum(apart, 1.0) + relative_errors(self.runs[0], coarser.runs[0]).worst
-        return np.abs(self.derivative - coarser.derivative) + apart[:, None] * np.abs(self.derivative)
+        error: np.ndarray = np.abs(self.derivative - coarser.derivative) + apart[:, None] * np.abs(self.derivative)
+        return error
 
 
 def _periods(run: Run) -> int | None:
@@ -176,7 +194,7 @@ def _periods(run: Run) -> int | None:
         return None
 
 
-def _point(values: dict, gait, numbers: dict | None, base: Point) -> Point:
+def _point(values: Numbers, gait: Gait, numbers: Numbers | None, base: Point) -> Point:
     try:
         point = point_at(values, gait, numbers or {}, base)
         law_of_terms(point.law)
@@ -185,13 +203,14 @@ def _point(values: dict, gait, numbers: dict | None, base: Point) -> Point:
     return point
 
 
-def _run(batch, index: int) -> Run:
-    if batch.error[index] is not None:
-        raise batch.error[index]
+def _run(batch: Batch, index: int) -> Run:
+    error = batch.error[index]
+    if error is not None:
+        raise error
     return batch[index]
 
 
-def _steps_of(at: dict, steps: dict | None) -> np.ndarray:
+def _steps_of(at: dict[str, float], steps: dict[str, float] | None) -> np.ndarray:
     """Differences (P,) of the parameters to either side."""
     steps = {} if steps is None else checked_instance("steps", steps, dict)
     for name in steps:

@@ -6,8 +6,10 @@ eel identify speeds.csv --gait straight --first body.lateral_drag=1.5 --noise 0.
 eel identify run.nc --first body.lateral_drag=1.5 --out fit.png --out fit.csv
 """
 
+import argparse
 import time
 from dataclasses import replace
+from typing import Any
 
 from eel_base.command.command_line import Parser
 from eel_base.command.progress import Progress
@@ -17,10 +19,12 @@ from eel_base.wording import shown
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.command_options import add_options, add_repeated, body_of, scene_of, set_numbers
 from eel_dynamics.runs.storage.tables import write_columns
+from eel_gaits.laws.law import Law
 
 from eel_studies.identification.drawing import FORMATS, draw_identified
 from eel_studies.identification.identify import identify
 from eel_studies.identification.measured_file import MeasuredFile, read_measured
+from eel_studies.points import Gait
 
 NAME = "eel identify"
 SUFFIXES = (*FORMATS, ".csv")
@@ -31,7 +35,7 @@ def main(arguments: list[str] | None = None) -> int:
     return run_command(_parser(), _identify, arguments)
 
 
-def _identify(options) -> int:
+def _identify(options: argparse.Namespace) -> int:
     start, progress = time.perf_counter(), Progress(NAME, "evaluations")
     outs = [checked_out(NAME, out, SUFFIXES) for out in options.out]
     first, numbers = set_numbers(options.first, "--first"), set_numbers(options.set)
@@ -61,10 +65,10 @@ def _identify(options) -> int:
     return 0
 
 
-def _gait(options, files: list[MeasuredFile]):
+def _gait(options: argparse.Namespace, files: list[MeasuredFile]) -> Gait:
     """The gait that was asked for, or the law that is in the file."""
     if options.gait is not None:
-        return options.gait
+        return str(options.gait)
     law = files[0].law
     if law is None:
         raise ValueError(f"--gait must be given: {shown(options.file[0])} does not tell how the body was moved")
@@ -73,13 +77,13 @@ def _gait(options, files: list[MeasuredFile]):
     if options.set:
         raise ValueError("--set belongs to --gait, which is not given: the law is that of the file")
 
-    def law_of_the_file():
+    def law_of_the_file() -> Law:
         return law
 
     return law_of_the_file
 
 
-def _common(name: str, files: list[MeasuredFile]):
+def _common(name: str, files: list[MeasuredFile]) -> Any:
     """The body or the scene, by its `name`, of all files that hold one. `ValueError` where they are not the same."""
     known = [getattr(file, name) for file in files if getattr(file, name) is not None]
     if any(each != known[0] for each in known[1:]):
@@ -87,9 +91,9 @@ def _common(name: str, files: list[MeasuredFile]):
     return known[0] if known else None
 
 
-def _scene(options, files: list[MeasuredFile]) -> Scene:
+def _scene(options: argparse.Namespace, files: list[MeasuredFile]) -> Scene:
     """The scene that was asked for, or that of the files. The friction is blended unless --scene says otherwise."""
-    scene = None if options.scene else _common("scene", files)
+    scene: Scene | None = None if options.scene else _common("scene", files)
     if scene is None:
         return scene_of(options.scene, friction="blended")
     return replace(scene, friction="blended") if scene.friction == "printed" else scene

@@ -1,20 +1,23 @@
 # SPDX-License-Identifier: Apache-2.0
 """What was identified, as a picture: measurements and the swims that were found, residuals, and intervals."""
 
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from eel_studies.identification.measurements import MeasuredPath
+from eel_studies.identification.identify import Identified
+from eel_studies.identification.measurements import MeasuredPath, MeasuredSpeed, Measurements
 from eel_studies.pictures.picture_file import write_picture
-from eel_studies.pictures.style import BLUE, GREY, ORANGE
+from eel_studies.pictures.style import BLUE, GREY, ORANGE, Axes, Figure
 
 FORMATS = ".png", ".svg"
 SIZE = 10.0, 3.4  # inches
 MILLI = 1e3
 
 
-def draw_identified(found, measured: list, path: Path) -> None:
+def draw_identified(found: Identified, measured: Measurements, path: Path) -> None:
     """Draw what was `found` (`Identified`) of `measured`, in that order, into a file (.png, .svg).
 
     `ImportError` without matplotlib; `NotWritten` where the file cannot be completed.
@@ -22,16 +25,16 @@ def draw_identified(found, measured: list, path: Path) -> None:
     write_picture(lambda figure: _draw(figure, found, measured), SIZE, path)
 
 
-def _draw(figure, found, measured: list) -> None:
+def _draw(figure: Figure, found: Identified, measured: Measurements) -> None:
     left, middle, right = figure.subplots(1, 3)
     if isinstance(measured[0], MeasuredPath):
-        _draw_paths(left, middle, found, measured)
+        _draw_paths(left, middle, found, [each for each in measured if isinstance(each, MeasuredPath)])
     else:
-        _draw_speeds(left, middle, found, measured)
+        _draw_speeds(left, middle, found, [each for each in measured if isinstance(each, MeasuredSpeed)])
     _draw_intervals(right, found)
 
 
-def _draw_paths(left, middle, found, measured: list) -> None:
+def _draw_paths(left: Axes, middle: Axes, found: Identified, measured: Sequence[MeasuredPath]) -> None:
     for each, residual in zip(measured, found.residuals, strict=True):
         fitted = each.position[:, : residual.shape[1]] - residual
         left.plot(*each.position[:, :2].T, ".", color=GREY, markersize=3, label="measured")
@@ -42,12 +45,12 @@ def _draw_paths(left, middle, found, measured: list) -> None:
     left.set_aspect("equal", adjustable="datalim")
     middle.set(xlabel="t [s]", ylabel="measured less found [mm]", title="residuals")
     for axes in (left, middle):
-        handles = dict(zip(*reversed(axes.get_legend_handles_labels()), strict=True))
+        handles: dict[str, Any] = dict(zip(*reversed(axes.get_legend_handles_labels()), strict=True))
         axes.legend(handles.values(), handles.keys(), frameon=False)
         axes.grid(alpha=0.3)
 
 
-def _draw_speeds(left, middle, found, measured: list) -> None:
+def _draw_speeds(left: Axes, middle: Axes, found: Identified, measured: Sequence[MeasuredSpeed]) -> None:
     speed, residual = np.array([each.speed for each in measured]), np.concatenate(found.residuals)
     swim = np.arange(1, len(speed) + 1)
     left.plot(swim, speed, "o", color=GREY, label="measured")
@@ -62,7 +65,7 @@ def _draw_speeds(left, middle, found, measured: list) -> None:
         axes.grid(alpha=0.3)
 
 
-def _draw_intervals(axes, found) -> None:
+def _draw_intervals(axes: Axes, found: Identified) -> None:
     """Each parameter, relative to its value."""
     row = np.arange(len(found.names))
     size = np.where(found.value, np.abs(found.value), 1.0)

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from eel_dynamics.runs.run import Run
 
-from eel_studies.identification.measurements import MeasuredPath
+from eel_studies.identification.measurements import MeasuredPath, Measurement
 from eel_studies.identification.prediction import Predicted, Swims, placed, placement_of
 from eel_studies.identification.statistics import Block, correlation_of, undetermined, whitened
 
@@ -24,7 +24,11 @@ class Fit:
     """Fits parameters, from their values `first`, to what was `measured`. `ValueError`: they are not determined."""
 
     def __init__(
-        self, swims: Swims, measured: list, first: dict[str, float], progress: Callable[[float, float], object]
+        self,
+        swims: Swims,
+        measured: list[Measurement],
+        first: dict[str, float],
+        progress: Callable[[float, float], object],
     ):
         self.names, self._swims, self._progress = tuple(first), swims, progress
         self._start = np.array(list(first.values()))
@@ -173,7 +177,7 @@ def _stays(name: str, value: float, low: float) -> bool:
     return name.startswith(POSITIVE) and value <= low
 
 
-def _informative(measured, found: Predicted, values: np.ndarray):
+def _informative(measured: Measurement, found: Predicted, values: np.ndarray) -> Measurement:
     """A path without its height, where no parameter moves the point up or down: its errors tell nothing then."""
     if not isinstance(measured, MeasuredPath) or measured.position.shape[1] == 2:
         return measured

@@ -12,8 +12,8 @@ is right and the errors are small: an error of the model is in no interval.
 """
 
 import warnings
-from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from eel_base.command.progress import progress_of
@@ -26,10 +26,10 @@ from eel_dynamics.runs.run import Run
 
 from eel_studies.gradients.fixed_discretisation import fixed_steps
 from eel_studies.identification.fit import Fit
-from eel_studies.identification.measurements import MeasuredPath, MeasuredSpeed
+from eel_studies.identification.measurements import MeasuredPath, MeasuredSpeed, Measurement, Measurements
 from eel_studies.identification.prediction import Swims
 from eel_studies.identification.statistics import gauss_newton_covariance
-from eel_studies.points import base_point, point_at
+from eel_studies.points import AccuracyLike, Gait, Numbers, Progress, base_point, point_at
 
 UNLIKELY = 1e-3  # probability of such residuals, for the noise given, below which a warning names the misfit
 
@@ -58,7 +58,7 @@ class Identified:
         index = self.names.index(name)
         return float(self.value[index]), float(self.low[index]), float(self.high[index])
 
-    def __eq__(self, other) -> bool:
+    def __eq__(self, other: object) -> bool:
         return same_fields(self, other)
 
     __hash__ = None  # type: ignore[assignment]  # typeshed has `object` hashable; this holds arrays
@@ -84,17 +84,17 @@ class Identified:
 
 def identify(
     parameters: dict[str, float],
-    measured: "MeasuredPath | MeasuredSpeed | list",
+    measured: Measurement | Measurements,
     *,
-    gait: "str | Callable" = "straight",
-    numbers: dict | None = None,
+    gait: Gait = "straight",
+    numbers: Numbers | None = None,
     body: Body | None = None,
     scene: Scene | None = None,
-    accuracy=1e-4,
+    accuracy: AccuracyLike = 1e-4,
     noise: float | None = None,
     level: float = 0.95,
     threads: int | None = None,
-    progress: "Callable[[int, int], None] | bool | None" = False,
+    progress: Progress = False,
 ) -> Identified:
     """The `parameters` with which the model comes nearest to what was `measured`, and their intervals.
 
@@ -111,21 +111,21 @@ def identify(
     if not isinstance(parameters, dict) or not parameters:
         raise ValueError(f"parameters must be a dict of names and first guesses, got {shown(parameters)}")
     first = {name: number(f"parameter {name}", value) for name, value in parameters.items()}
-    measured = _checked_measurements(measured)
+    measurements = _checked_measurements(measured)
     noise = None if noise is None else positive("noise", noise, "m or m/s")
     level = positive("level", level)
     if level >= 1.0:
         raise ValueError(f"level must be below 1, got {level:g}")
     base = base_point(body, scene, fixed_steps(accuracy), friction="blended")
     swims = Swims(gait, dict(numbers or {}), base, threads)
-    for each in measured:
+    for each in measurements:
         try:
             point_at(first, gait, {**swims.numbers, **each.numbers}, base)
         except ValueError as error:
             raise ValueError(f"parameters {error}") from None
         if isinstance(each, MeasuredPath) and each.station > base.body.length:
             raise ValueError(f"path station must be at most the body's {base.body.length:g} m, got {each.station:g}")
-    fit = Fit(swims, measured, first, progress_of(progress, "evaluations"))
+    fit = Fit(swims, measurements, first, progress_of(progress, "evaluations"))
     fit.check_count(noise)
     fit.solve()
     found = _identified(fit, noise, level)
@@ -134,13 +134,13 @@ def identify(
     return found
 
 
-def _checked_measurements(measured) -> list:
-    measured = [measured] if isinstance(measured, (MeasuredPath, MeasuredSpeed)) else list(measured)
-    kinds = {type(each) for each in measured}
+def _checked_measurements(measured: Any) -> list[Measurement]:
+    rows = [measured] if isinstance(measured, (MeasuredPath, MeasuredSpeed)) else list(measured)
+    kinds = {type(each) for each in rows}
     if len(kinds) != 1 or not kinds <= {MeasuredPath, MeasuredSpeed}:
         given = ", ".join(sorted(kind.__name__ for kind in kinds)) or "none"
         raise ValueError(f"measured must be MeasuredPath or MeasuredSpeed, one kind of them, got {given}")
-    return measured
+    return rows
 
 
 def _identified(fit: Fit, noise: float | None, level: float) -> Identified:

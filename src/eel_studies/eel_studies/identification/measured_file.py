@@ -10,7 +10,7 @@ backbone, the law and the body; a run the scene too.
 
 from dataclasses import replace
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from eel_base.attitude import heading
@@ -32,7 +32,7 @@ NEAR = 1e-6  # part of the body's length by which a run's station may lie elsewh
 class MeasuredFile(NamedTuple):
     """The measurements of a file, and what it tells of the swim."""
 
-    measured: list  # of MeasuredPath, or of MeasuredSpeed
+    measured: list[Any]  # of MeasuredPath, or of MeasuredSpeed
     law: Law | None = None
     body: Body | None = None
     scene: Scene | None = None  # of the motion alone
@@ -63,7 +63,7 @@ def read_measured(path: str, *, station: float = 0.0, namespace: str | None = No
     return MeasuredFile([measured], run.law, run.body, scene)
 
 
-def _of_table(table: Table, station: float) -> list:
+def _of_table(table: Table, station: float) -> list[Any]:
     columns = table.columns
     if {"time", "x", "y"} <= set(columns):
         names = [name for name in ("x", "y", "z") if name in columns]
@@ -101,7 +101,7 @@ def _tracked(path: str, run: Run, station: float) -> np.ndarray:
     return run.backbone[:, place]
 
 
-def _named(path: str, kind: type, *arguments):
+def _named(path: str, kind: type, *arguments: Any) -> Any:
     """`kind(*arguments)`; its `ValueError` names the file."""
     try:
         return kind(*arguments)

@@ -2,6 +2,7 @@
 """What was measured of a swim: the path of a point of the body, or a steady speed."""
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from eel_base.quantity import checked_instance, checked_row, number, positive
@@ -27,9 +28,9 @@ class MeasuredPath:
     time: np.ndarray
     position: np.ndarray
     station: float = 0.0
-    numbers: dict = field(default_factory=dict)
+    numbers: dict[str, Any] = field(default_factory=dict)
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         time = checked_row("path time", self.time, None)
         position = real_numbers("path position", self.position)
         if position.ndim != 2 or position.shape[1] not in (2, 3) or len(position) != len(time):
@@ -62,9 +63,9 @@ class MeasuredSpeed:
     """The speed [m/s] over the water of one steady swim, with the `numbers` of this swim as in `MeasuredPath`."""
 
     speed: float
-    numbers: dict = field(default_factory=dict)
+    numbers: dict[str, Any] = field(default_factory=dict)
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         object.__setattr__(self, "speed", positive("measured speed", self.speed, "m/s"))
         checked_instance("measured speed numbers", self.numbers, dict)
 
@@ -72,3 +73,7 @@ class MeasuredSpeed:
     def count(self) -> int:
         """Measured numbers."""
         return 1
+
+
+Measurement = MeasuredPath | MeasuredSpeed
+Measurements = list[MeasuredPath] | list[MeasuredSpeed] | list[Measurement]

@@ -12,10 +12,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from eel_dynamics.runs.run import Run
+from eel_gaits.laws.law import Law
 
 from eel_studies.gradients.gradient import gradient
 from eel_studies.identification.measurements import MeasuredPath
-from eel_studies.points import Point, law_of_terms, point_at
+from eel_studies.points import Gait, Numbers, Point, law_of_terms, point_at
 from eel_studies.steady_swim import at_speed, swim_times
 
 PERIODS = 12  # of a swim at a measured speed
@@ -35,8 +36,8 @@ class Predicted(NamedTuple):
 class Swims(NamedTuple):
     """How the measured swims are simulated: arguments of `gradient`."""
 
-    gait: "str | Callable"
-    numbers: dict
+    gait: Gait
+    numbers: Numbers
     base: Point
     threads: int | None
 
@@ -57,7 +58,7 @@ class Swims(NamedTuple):
                 body=self.base.body,
                 scene=replace(self.base.scene, internal_wrench=False, ledger=False),
                 accuracy=self.base.accuracy,
-                stations=[measured.station] if path else 2,
+                stations=np.array([measured.station]) if path else 2,
                 estimate=False,
                 threads=self.threads,
                 **times,
@@ -65,7 +66,7 @@ class Swims(NamedTuple):
         return Predicted(found.value, found.derivative, found.run)
 
 
-def path_times(path: MeasuredPath, law) -> dict[str, Any]:
+def path_times(path: MeasuredPath, law: Law) -> dict[str, Any]:
     """Duration and sample period [s] of the swim of a `path`. `ValueError` for a law without terms."""
     shortest = min((term.period for term in law_of_terms(law).terms if term.period), default=np.inf)
     duration = float(path.time[-1])

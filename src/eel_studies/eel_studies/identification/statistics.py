@@ -49,7 +49,7 @@ def correlation_of(blocks: list[Block]) -> float:
         left = residual - basis @ (basis.T @ residual)
         free = len(residual) - derivative.shape[1]
         information = 2.0 * np.sum(np.log(np.abs(np.diag(triangle)) + np.finfo(float).tiny))
-        return free * np.log(left @ left + np.finfo(float).tiny) + log + information
+        return float(free * np.log(left @ left + np.finfo(float).tiny) + log + information)
 
     found = minimize_scalar(loss, bounds=(0.0, MOST_CORRELATED), method="bounded", options={"xatol": 1e-4})
     return float(found.x) if found.fun < loss(0.0) else 0.0

@@ -5,6 +5,7 @@ eel midlines fish.csv                       # the distance, as a number
 eel midlines fish.csv --out midlines.png    # and a picture
 """
 
+import argparse
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +19,7 @@ from eel_gaits.sources.motion_file import read_midlines
 
 from eel_studies.midlines.comparison import MidlineComparison, compared
 from eel_studies.pictures.picture_file import write_picture
+from eel_studies.pictures.style import Figure
 
 NAME = "eel midlines"
 SUFFIXES = (".png", ".svg", ".pdf")
@@ -29,7 +31,7 @@ def main(arguments: list[str] | None = None) -> int:
     return run_command(_parser(), _compare, arguments)
 
 
-def _compare(options) -> int:
+def _compare(options: argparse.Namespace) -> int:
     out = None if options.out is None else checked_out(NAME, options.out, SUFFIXES)
     body = body_of(options.body)
     midlines = read_midlines(options.file, length=body.length, scale=options.scale)
@@ -57,7 +59,7 @@ def _compare(options) -> int:
     return 0
 
 
-def _draw(figure, found: MidlineComparison, instants: np.ndarray):
+def _draw(figure: Figure, found: MidlineComparison, instants: np.ndarray) -> None:
     """Draw the `instants` (n,), without the rigid motion: what was measured as points, the run's as lines."""
     axes = figure.add_subplot()
     for row, instant in enumerate(instants):
@@ -80,7 +82,7 @@ def _upright(points: np.ndarray, reference: np.ndarray) -> np.ndarray:
     centred = reference - reference.mean(axis=0)
     axes = np.linalg.svd(centred, full_matrices=False)[2][:2]
     axes[0] *= np.sign(axes[0] @ (reference[-1] - reference[0]))
-    return (points - reference[0]) @ axes.T
+    return np.asarray((points - reference[0]) @ axes.T)
 
 
 def _parser() -> Parser:

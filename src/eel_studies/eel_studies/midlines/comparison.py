@@ -4,6 +4,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from eel_dynamics.runs.run import Run
 from eel_gaits.sources.midlines import Midlines
 
 
@@ -19,7 +20,7 @@ class MidlineComparison:
     @property
     def distance(self) -> np.ndarray:
         """(T, n) relative to the body's length."""
-        return np.linalg.norm(self.found - self.measured, axis=2) / self.length
+        return np.asarray(np.linalg.norm(self.found - self.measured, axis=2) / self.length)
 
     @property
     def rms(self) -> float:
@@ -34,11 +35,12 @@ class MidlineComparison:
         )
 
 
-def compared(run, midlines: Midlines) -> MidlineComparison:
+def compared(run: Run, midlines: Midlines) -> MidlineComparison:
     """Compare a `run`, whose stations are the measured points, with the `midlines` at its instants."""
     from scipy.interpolate import CubicSpline
 
     measured = CubicSpline(midlines.time, midlines.position)(run.time)
+    assert run.backbone is not None  # it has stations
     found = run.backbone[..., : measured.shape[2]]
     return MidlineComparison(run.time, measured, laid_on(found, measured), run.body.length)
 
@@ -52,4 +54,4 @@ def laid_on(points: np.ndarray, others: np.ndarray) -> np.ndarray:
     left, _, right = np.linalg.svd((points - centre).swapaxes(1, 2) @ (others - other))
     sign = np.sign(np.linalg.det(left @ right))
     left[..., -1] *= sign[:, None]
-    return (points - centre) @ (left @ right) + other
+    return np.asarray((points - centre) @ (left @ right) + other)

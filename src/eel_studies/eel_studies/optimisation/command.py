@@ -5,6 +5,7 @@ eel optimise straight --bound period=0.4:3 --bound amplitude_0=0:2 --bound ampli
 eel optimise kern_fast --body kern2006 --bound period=0.5:2 --bound bend_tail=0:8 --speeds 0.3,0.4 --out front.png
 """
 
+import argparse
 import time
 
 from eel_base.command.command_line import Parser
@@ -38,7 +39,7 @@ def main(arguments: list[str] | None = None) -> int:
     return run_command(_parser(), _optimise, arguments)
 
 
-def _optimise(options) -> int:
+def _optimise(options: argparse.Namespace) -> int:
     start = time.perf_counter()
     outs = [checked_out(NAME, out, SUFFIXES) for out in options.out]
     bounds = {name: _bounds(name, text) for name, text in named_texts("--bound", options.bound)}
@@ -87,7 +88,7 @@ def _speeds(text: str) -> list[float]:
         raise ValueError(f"--speeds must be start:end:count, count >= 1, or a,b,c in m/s, got {shown(text)}") from None
 
 
-def _check_count(count: int):
+def _check_count(count: int) -> None:
     if count > MOST_SPEEDS:
         raise ValueError(f"at most {MOST_SPEEDS}")
 

@@ -1,10 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """The front as a picture: cost against speed, the parameters along the front, and the gaits as midlines."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from eel_dynamics.analysis.measures import described
+from eel_dynamics.runs.run import Run
 
-from eel_studies.pictures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE
+from eel_studies.pictures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, Axes, Figure
+
+if TYPE_CHECKING:
+    from eel_studies.optimisation.front import Front
 
 SIZE = 9.0, 5.6  # inches
 LOOKS = (  # of the parameters: colour, dash, mark
@@ -19,7 +25,7 @@ PHASES = 9  # midlines in a period
 FAR = 2.0  # times the front's greatest cost and speed: gaits beyond are not drawn
 
 
-def draw_front(figure, front):
+def draw_front(figure: Figure, front: "Front") -> None:
     """Draw a `Front` into an empty matplotlib figure."""
     upper, lower = figure.subfigures(2, 1, height_ratios=(2.4, 1.0))
     left, right = upper.subplots(1, 2)
@@ -33,7 +39,7 @@ def draw_front(figure, front):
     lower.supxlabel("midlines over one period [m], seen from above; the head on the left", fontsize="medium")
 
 
-def _draw_cost(axes, front):
+def _draw_cost(axes: Axes, front: "Front") -> None:
     unit = described(front.cost_name)["units"]
     near = (front.tried[:, 0] <= FAR * front.speed.max()) & (front.tried[:, 1] <= FAR * front.cost.max())
     axes.plot(*front.tried[near].T, ".", color=GREY, markersize=2.5, alpha=0.5, label="gaits tried", zorder=1)
@@ -56,7 +62,7 @@ def _draw_cost(axes, front):
     axes.grid(alpha=0.3)
 
 
-def _draw_parameters(axes, front):
+def _draw_parameters(axes: Axes, front: "Front") -> None:
     place = (front.values - front.low) / (front.high - front.low)
     for index, name in enumerate(front.names):
         colour, dash, mark = LOOKS[index % len(LOOKS)]
@@ -68,7 +74,7 @@ def _draw_parameters(axes, front):
     axes.grid(alpha=0.3)
 
 
-def _draw_gait(axes, run, speed: float):
+def _draw_gait(axes: Axes, run: Run, speed: float) -> None:
     """Midlines over the last period, in the axes of the way: ahead to the left."""
     analysis = run.analysis()
     window = analysis.window
@@ -83,5 +89,5 @@ def _draw_gait(axes, run, speed: float):
         axes.plot(along, across, color=BLUE, linewidth=0.9, alpha=0.25 + 0.75 * phase / (PHASES - 1))
     axes.set_aspect("equal")
     strouhal = analysis.strouhal
-    told = "" if strouhal is None else f", St {strouhal:.2f}"
-    axes.set_title(f"{speed:.3g} m/s, {1.0 / period:.2g} Hz{told}", fontsize="small")
+    number = "" if strouhal is None else f", St {strouhal:.2f}"
+    axes.set_title(f"{speed:.3g} m/s, {1.0 / period:.2g} Hz{number}", fontsize="small")

@@ -40,7 +40,7 @@ class Front:
     def __len__(self) -> int:
         return len(self.runs)
 
-    def __eq__(self, other) -> bool:
+    def __eq__(self, other: object) -> bool:
         return same_fields(self, other)
 
     __hash__ = None  # type: ignore[assignment]  # typeshed has `object` hashable; this holds arrays
@@ -52,13 +52,13 @@ class Front:
     def at_bound(self) -> np.ndarray:
         """(S, P) bool: parameters that lie at a bound, which then decides."""
         place = (self.values - self.low) / (self.high - self.low)
-        return (place < BOUND) | (place > 1.0 - BOUND)
+        return np.asarray((place < BOUND) | (place > 1.0 - BOUND))
 
     @property
     def dominated(self) -> np.ndarray:
         """(S,) bool: gaits for which another one is at least as fast and costs less."""
         faster = self.speed[None] >= self.speed[:, None]
-        return np.any(faster & (self.cost[None] < self.cost[:, None]), axis=1)
+        return np.asarray(np.any(faster & (self.cost[None] < self.cost[:, None]), axis=1))
 
     @property
     def columns(self) -> dict[str, np.ndarray]:
@@ -83,7 +83,7 @@ class Front:
             cells.append([f"{text:>{max(len(head) + 1, 9)}s}" for text in (f"{head} ", *rows)])
         return "\n".join(" ".join(row).rstrip() for row in zip(*cells, strict=True))
 
-    def draw(self, path) -> None:
+    def draw(self, path: str | Path) -> None:
         """Draw the front, the parameters and the gaits into a file (.png, .svg).
 
         `ValueError` for another suffix; `ImportError` without matplotlib; `OSError` where the file cannot be written.

@@ -6,16 +6,16 @@ above 0. Speed and cost go nearly like powers of a period or a length.
 """
 
 import warnings
-from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
 from eel_dynamics.analysis.measures import measures_of
 from eel_dynamics.runs.run import Run
 from eel_dynamics.simulation.stopping import SimulationStopped
+from eel_gaits.laws.law import Law
 
 from eel_studies.gradients.gradient import gradient
-from eel_studies.points import Point, point_at
+from eel_studies.points import Gait, Numbers, Point, law_of_terms, point_at
 from eel_studies.steady_swim import at_speed, swim_times
 from eel_studies.workers import in_threads
 
@@ -40,8 +40,8 @@ class GaitProblem:
     names: tuple[str, ...]
     low: np.ndarray
     high: np.ndarray
-    gait: "str | Callable"
-    numbers: dict
+    gait: Gait
+    numbers: Numbers
     base: Point
     cost: str
     periods: int
@@ -55,9 +55,9 @@ class GaitProblem:
         found = np.where(self._by_power, self.low * self._ratio**place, self.low + place * (self.high - self.low))
         return dict(zip(self.names, found.tolist(), strict=True))
 
-    def law(self, place: np.ndarray):
+    def law(self, place: np.ndarray) -> Law:
         """The law at a `place` (P,). `ValueError` where the parameters make none."""
-        return point_at(self.values(place), self.gait, self.numbers, self.base).law
+        return law_of_terms(point_at(self.values(place), self.gait, self.numbers, self.base).law)
 
     def measured(self, places: np.ndarray, speed: float | None) -> np.ndarray:
         """Speed [m/s] and cost (N, 2) at `places` (N, P), of swims that begin at `speed` [m/s]; NaN where one stops.
@@ -109,7 +109,7 @@ class GaitProblem:
         return np.where(self._by_power, self.high / np.where(self._by_power, self.low, 1.0), 1.0)
 
     @property
-    def _stations(self):
+    def _stations(self) -> int:
         return 51 if self.cost in ("greatest_torque", "tail_excursion", "strouhal") else 2
 
     def _measured(self, place: np.ndarray, speed: float | None) -> tuple[float, float]:
@@ -124,7 +124,7 @@ class GaitProblem:
         self._note(found[SPEED], found[self.cost], found[CHANGE])
         return found[SPEED], found[self.cost]
 
-    def _note(self, speed: float, cost: float, change: float):
+    def _note(self, speed: float, cost: float, change: float) -> None:
         if np.isfinite(cost) and change <= STEADY:
             self.tried.append((speed, cost))
 

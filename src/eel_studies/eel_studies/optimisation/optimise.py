@@ -11,7 +11,7 @@ found for the speed before. It minimises the cost with the speed as a constraint
 """
 
 import warnings
-from collections.abc import Callable, Sized
+from collections.abc import Callable, Iterator, Sized
 from dataclasses import replace
 from typing import Any
 
@@ -22,12 +22,13 @@ from eel_base.wording import not_one_of, shown
 from eel_dynamics.analysis.measures import checked_measures, measures_of
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
+from eel_dynamics.runs.run import Run
 
 from eel_studies.gradients.fixed_discretisation import fixed_steps
 from eel_studies.optimisation.front import Front
 from eel_studies.optimisation.gait_problem import GaitProblem
 from eel_studies.optimisation.searches import METHODS
-from eel_studies.points import base_point
+from eel_studies.points import AccuracyLike, Gait, Numbers, Progress, base_point
 from eel_studies.steady_swim import swim_times
 
 SPREAD_OVER_BOUNDS = 16  # gaits per parameter that are tried first
@@ -39,20 +40,20 @@ PENALTY = 20.0  # for a missed speed, in the order of the starts
 
 def optimise(
     bounds: dict[str, tuple[float, float]],
-    speeds,
+    speeds: Any,
     *,
-    gait: "str | Callable" = "straight",
-    numbers: dict | None = None,
+    gait: Gait = "straight",
+    numbers: Numbers | None = None,
     body: Body | None = None,
     scene: Scene | None = None,
     cost: str = "cost_of_transport",
     periods: int = 10,
-    accuracy=1e-3,
+    accuracy: AccuracyLike = 1e-3,
     method: str = "gradient",
     starts: int = 1,
     seed: int = 0,
     threads: int | None = None,
-    progress: "Callable[[int, int], None] | bool | None" = None,
+    progress: Progress = None,
 ) -> Front:
     """The gaits of least `cost` at `speeds` (S,) [m/s] over the water, by parameters within their `bounds`.
 
@@ -90,7 +91,14 @@ def optimise(
     return _front(problem, np.sort(wanted), method, int(starts), int(seed), progress_of(progress, "speeds"))
 
 
-def _front(problem: GaitProblem, wanted: np.ndarray, method: str, starts: int, seed: int, progress) -> Front:
+def _front(
+    problem: GaitProblem,
+    wanted: np.ndarray,
+    method: str,
+    starts: int,
+    seed: int,
+    progress: Callable[[float, float], object],
+) -> Front:
     places = _spread(len(problem.names), seed)
     measured = problem.measured(places, None)
     found, runs = [], []
@@ -140,7 +148,7 @@ def _front(problem: GaitProblem, wanted: np.ndarray, method: str, starts: int, s
     )
 
 
-def _checked_bounds(bounds) -> tuple[np.ndarray, np.ndarray]:
+def _checked_bounds(bounds: Any) -> tuple[np.ndarray, np.ndarray]:
     if not isinstance(bounds, dict) or not bounds:
         raise ValueError(f"bounds must be a dict of parameters and (low, high), got {shown(bounds)}")
     rows = []
@@ -158,7 +166,9 @@ def _spread(parameters: int, seed: int) -> np.ndarray:
     """Places (N, P) spread evenly over the bounds."""
     from scipy.stats import qmc
 
-    return qmc.Sobol(parameters, seed=seed).random(2 ** int(np.ceil(np.log2(SPREAD_OVER_BOUNDS * parameters))))
+    return np.asarray(
+        qmc.Sobol(parameters, seed=seed).random(2 ** int(np.ceil(np.log2(SPREAD_OVER_BOUNDS * parameters))))
+    )
 
 
 def _merit(measured: np.ndarray, speed: float) -> np.ndarray:
@@ -168,15 +178,15 @@ def _merit(measured: np.ndarray, speed: float) -> np.ndarray:
     return np.where(np.isfinite(worth), worth, np.inf)
 
 
-def _missed(wanted: np.ndarray, met: list[float], tried: np.ndarray):
+def _missed(wanted: np.ndarray, met: list[float], tried: np.ndarray) -> Iterator[str]:
     """One line for the speeds that no gait was found for."""
     left = [f"{speed:.4g}" for speed in wanted.tolist() if speed not in met]
     if left:
-        told = "no gait that was tried swims steadily"
+        reached = "no gait that was tried swims steadily"
         if len(tried):
-            told = f"the gaits that were tried swim at {tried[:, 0].min():.3g} to {tried[:, 0].max():.3g} m/s"
-        yield f"speeds: no gait within the bounds was found for {', '.join(left)} m/s; {told}"
+            reached = f"the gaits that were tried swim at {tried[:, 0].min():.3g} to {tried[:, 0].max():.3g} m/s"
+        yield f"speeds: no gait within the bounds was found for {', '.join(left)} m/s; {reached}"
 
 
-def _cost(run, cost: str) -> float:
+def _cost(run: Run, cost: str) -> float:
     return measures_of(run, (cost,))[cost]

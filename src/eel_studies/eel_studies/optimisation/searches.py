@@ -32,7 +32,7 @@ def _slsqp(problem: GaitProblem, start: np.ndarray, speed: float) -> tuple[float
     """Cost and place of the end of one search; None where it does not meet the speed."""
     import scipy.optimize
 
-    known: dict[bytes, tuple] = {}
+    known: dict[bytes, tuple[np.ndarray, np.ndarray, np.ndarray]] = {}
 
     def found(place: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         key = place.tobytes()
@@ -62,7 +62,9 @@ def _slsqp(problem: GaitProblem, start: np.ndarray, speed: float) -> tuple[float
     return met[-1] if met else None
 
 
-def _with_missed_speed(measured, derivatives, scale: float, speed: float) -> tuple[float, np.ndarray]:
+def _with_missed_speed(
+    measured: np.ndarray, derivatives: np.ndarray, scale: float, speed: float
+) -> tuple[float, np.ndarray]:
     """Cost by `scale` and the squared miss of the speed, and the derivative (P,): none of it changes the solution.
 
     Without the second, the line search of SLSQP may refuse a step that brings the speed and costs as much as it should.
@@ -77,7 +79,9 @@ def _ended(measured: list[np.ndarray], speed: float) -> bool:
     if len(measured) < 2:
         return False
     (before, cost), (after, last) = measured[-2:]
-    return max(abs(before / speed - 1.0), abs(after / speed - 1.0)) <= MET and abs(last - cost) <= TOLERANCE * abs(last)
+    return bool(
+        max(abs(before / speed - 1.0), abs(after / speed - 1.0)) <= MET and abs(last - cost) <= TOLERANCE * abs(last)
+    )
 
 
 def by_cma(problem: GaitProblem, starts: np.ndarray, speed: float, seed: int) -> np.ndarray | None:

@@ -5,13 +5,16 @@ Colours are those of Okabe and Ito, distinct for colour-blind readers. Each has 
 Colour maps are perceptually uniform (cividis) or diverging without red and green (PuOr).
 """
 
-from typing import Any
+from collections.abc import Iterable
+from typing import Any, TypeAlias
 
+Figure: TypeAlias = Any  # of matplotlib, which takes longer to import than all the rest
+Axes: TypeAlias = Any
 BLACK, BLUE, ORANGE, GREEN, PURPLE = "#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7"
 PALE_BLUE, GREY = "#d9e6f0", "#888888"
 OWN = {"color": BLUE, "linewidth": 1.6, "label": "corrected"}
 AS_PRINTED = {"color": ORANGE, "linewidth": 1.2, "linestyle": (0, (4, 2)), "label": "as printed"}
-SETTINGS = {
+SETTINGS: dict[str, Any] = {
     "font.size": 9.0,
     "axes.spines.top": False,
     "axes.spines.right": False,
@@ -25,14 +28,14 @@ COLOUR_BAR = "<colorbar>"  # label that matplotlib gives the axes of a colour ba
 PITCH_RAMPS = ((1.0, 3.0), (6.0, 8.0))  # s, intervals in which the falling gait bends in pitch: t1 to t3 and t4 to t6
 
 
-def mark_pitch(panels):
+def mark_pitch(panels: Iterable[Axes]) -> None:
     """Shade the intervals in which the falling gait bends in pitch, in each of the `panels`."""
     for axes in panels:
         for start, end in PITCH_RAMPS:
             axes.axvspan(start, end, color=GREY, alpha=0.12, linewidth=0)
 
 
-def legend_above(figure, columns: int = 2):
+def legend_above(figure: Figure, columns: int = 2) -> None:
     """One legend above all panels of a figure, where it covers no curve; curves of the same name are listed once."""
     named: dict[str, Any] = {}
     for axes in figure.axes:
@@ -41,13 +44,13 @@ def legend_above(figure, columns: int = 2):
     figure.legend(named.values(), named.keys(), loc="outside upper center", ncols=columns, frameon=False)
 
 
-def plain(axes):
+def plain(axes: Axes) -> None:
     """Add a grid to `axes` and remove the left and right margins."""
     axes.grid(alpha=0.3)
     axes.margins(x=0.0)
 
 
-def letter_panels(figure):
+def letter_panels(figure: Figure) -> None:
     """Put (a), (b), ... above the panels of a figure, where it has more than one; colour bars have none."""
     panels = [axes for axes in figure.axes if axes.get_label() != COLOUR_BAR]
     for number, axes in enumerate(panels if len(panels) > 1 else ()):

@@ -11,6 +11,8 @@ from eel_dynamics.simulation.head_motion import head_motion_of
 from eel_dynamics.simulation.simulation import Simulation
 from eel_gaits.pilot.pilot import Pilot
 
+from eel_studies.points import AccuracyLike
+
 STEP = 0.02  # s, from one sample of the head's motion to the next
 
 
@@ -34,10 +36,10 @@ def swim_with(
     duration: float,
     *,
     scene: Scene | None = None,
-    accuracy="draft",
+    accuracy: AccuracyLike = "draft",
     until: Callable[[Pilot], bool] = lambda pilot: False,
     each: Callable[[Simulation], None] = lambda simulation: None,
-    **start,
+    **start: Any,
 ) -> Voyage:
     """Let the `pilot` swim for `duration` [s] at most, or `until(pilot)`.
 

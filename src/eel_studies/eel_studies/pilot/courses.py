@@ -3,6 +3,7 @@
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from eel_dynamics.model.scene import Scene
@@ -50,7 +51,7 @@ def random_path(rng: np.random.Generator, settings: PilotSettings) -> Path:
             continue
 
 
-def swim_path(goal: Path, **scene) -> tuple[Pilot, Voyage]:
+def swim_path(goal: Path, **scene: Any) -> tuple[Pilot, Voyage]:
     """Swim a path, in at most three times the time that its legs take. scene: fields of `Scene`."""
     pilot = pilot_for(**scene)
     pilot.follow(goal)
@@ -61,7 +62,7 @@ def swim_path(goal: Path, **scene) -> tuple[Pilot, Voyage]:
     )
 
 
-def figures_of(seed: int, **scene) -> Figures:
+def figures_of(seed: int, **scene: Any) -> Figures:
     """The figures of the tasks that the `seed` draws. scene: fields of `Scene` for all of them."""
     rng = np.random.default_rng(seed)
     settings = PilotSettings()
@@ -92,11 +93,11 @@ def figures_of(seed: int, **scene) -> Figures:
     )
 
 
-def pilot_for(**scene) -> Pilot:
+def pilot_for(**scene: Any) -> Pilot:
     """A pilot that knows the keel of a scene with these fields."""
     return Pilot(PilotSettings(metacentric_height=scene.get("metacentric_height", 0.0)))
 
 
-def motion_alone(**scene) -> Scene:
+def motion_alone(**scene: Any) -> Scene:
     """A scene of these fields without internal wrench and ledger."""
     return Scene(**{"internal_wrench": False, "ledger": False, **scene})

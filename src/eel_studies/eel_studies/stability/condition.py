@@ -74,8 +74,8 @@ def needles() -> str:
 def needle(thickness: float) -> Body:
     """A round body of 1 m, pointed at both ends, with half-axes of `thickness` [m] in the middle."""
 
-    def half_axis(x):
-        return 2.0 * thickness * np.sqrt(x * (1.0 - x))
+    def half_axis(x: np.ndarray) -> np.ndarray:
+        return np.asarray(2.0 * thickness * np.sqrt(x * (1.0 - x)))
 
     return Body(length=1.0, half_width=half_axis, half_height=half_axis)
 

@@ -15,6 +15,7 @@ import numpy as np
 from eel_base.files.markdown import table as table_of
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.model.scene import Scene
+from eel_dynamics.simulation.observations import Observations
 from eel_dynamics.simulation.simulation import Simulation
 from eel_gaits.laws.law import Law
 
@@ -99,7 +100,7 @@ def table(found: list[Drift]) -> str:
     return f"{table_of(head, rows)}\n\nAccuracy `{ACCURACY}`, period {PERIOD} s; steps in time: {counts}."
 
 
-def _swum(law, scene, accuracy, times):
+def _swum(law: Law, scene: Scene, accuracy: Accuracy, times: np.ndarray) -> tuple[Simulation, Observations, np.ndarray]:
     """The simulation, its profiles and its works at the `times` [s]."""
     swimmer = Simulation(scene=scene, accuracy=accuracy, stations=STATIONS, law=law)
     out, works, _, stopped = swimmer.record(times, False, False)

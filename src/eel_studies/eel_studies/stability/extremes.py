@@ -58,7 +58,7 @@ def maps_of(points: int = 13) -> tuple[Map, ...]:
          lambda tolerance, row: _swim(_wave(), 4.0, accuracy=_method(row, tolerance)),
          tuple(f"{method} {order}" for method, order in METHODS)),
     ]  # fmt: skip
-    return tuple(Map(*row[:4], points, *row[4:]) for row in rows)
+    return tuple(Map(name, title, across, up, points, *at) for name, title, across, up, *at in rows)
 
 
 def _rows(label: str, names: Any) -> Axis:
@@ -67,13 +67,14 @@ def _rows(label: str, names: Any) -> Axis:
 
 def _wave(period: float = 1.0, wavelength: float = 1.0, size: float = 1.0, length: float = 1.0) -> Law:
     """The paper's wave on a body of `length` [m]. period: [s]; wavelength: [body lengths]; size: amplitude ratio."""
-    return straight(
+    law: Law = straight(
         period=period,
         wavelength=wavelength * length,
         amplitude_0=size / length,
         amplitude_1=0.5 * size / length**2,
         amplitude_2=2.0 * size / length**3,
     )
+    return law
 
 
 def _method(row: int, tolerance: float) -> Accuracy:

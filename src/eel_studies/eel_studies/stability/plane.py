@@ -8,6 +8,7 @@ depends neither on the accuracy nor on the perturbation is a property of the mod
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from eel_base.files.markdown import table as table_of
@@ -40,7 +41,16 @@ class Growth:
     mode: np.ndarray
 
 
-def out_of_plane(periods, *, push=0.0, axis="roll", accuracy=1e-4, orientation=None, body=None, **scene) -> np.ndarray:
+def out_of_plane(
+    periods: Any,
+    *,
+    push: float = 0.0,
+    axis: str = "roll",
+    accuracy: float = 1e-4,
+    orientation: Any = None,
+    body: Body | None = None,
+    **scene: Any,
+) -> np.ndarray:
     """(Omega1 l, Omega2 l, V3) of the head (T, 3) [m/s], in head axes, at `periods` (T,) of the gait `straight`.
 
     push: initial perturbation [rad/s or m/s] of the `axis` in `AXES`. orientation: initial quaternion. scene: fields of
@@ -61,10 +71,10 @@ def out_of_plane(periods, *, push=0.0, axis="roll", accuracy=1e-4, orientation=N
     if stopped is not None:
         raise stopped
     length = swimmer.body.length
-    return out.twist[:, list(AXES.values())] * (length, length, 1.0)
+    return np.asarray(out.twist[:, list(AXES.values())] * (length, length, 1.0))
 
 
-def growth(**swimmer) -> Growth:
+def growth(**swimmer: Any) -> Growth:
     """Fit the growth of a perturbation. swimmer: keywords of `out_of_plane`."""
     found = out_of_plane(np.arange(LONGEST + 1), **{"push": PUSHES[0], **swimmer})
     size = np.linalg.norm(found, axis=1)
@@ -107,11 +117,11 @@ def table(long: int = LONG) -> str:
     )
 
 
-def variants() -> dict[str, dict]:
+def variants() -> dict[str, dict[str, Any]]:
     """Variants that the growth is compared over: keywords of `growth`, by name."""
     robot = Body.boyer2010()
 
-    def shaped(half_width, half_height):
+    def shaped(half_width: Any, half_height: Any) -> Body:
         return Body(length=1.0, half_width=half_width, half_height=half_height, kinks=robot.kinks)
 
     return {

@@ -2,6 +2,8 @@
 """The studies by name. Each returns its part of the page, and draws its pictures."""
 
 from collections.abc import Callable
+from functools import partial
+from typing import Any
 
 import numpy as np
 from eel_base.files.markdown import table
@@ -12,7 +14,7 @@ from eel_studies.stability import condition, drift, plane
 from eel_studies.stability.drawing import draw, draw_map
 from eel_studies.stability.explicit import STEPS, treat
 from eel_studies.stability.extremes import maps_of
-from eel_studies.stability.maps import ACCURATE, INACCURATE, STOPPED, TARGET, Measured, measure
+from eel_studies.stability.maps import ACCURATE, INACCURATE, STOPPED, TARGET, Map, Measured, measure
 
 SIZE = 5.6, 4.2  # inches
 COLUMNS = (
@@ -29,7 +31,7 @@ RATIOS = (1e-3, 1e-2, 1e-1, 0.5, 1.0, 10.0, 1e3)
 def maps(points: int, outputs: Outputs) -> str:
     """Maps of runs over two parameters, with `points` values of each: accurate, inaccurate, or stopped."""
     found = [measure(item) for item in maps_of(points)]
-    pictures = [_picture(outputs, each.map, lambda figure, each=each: draw(figure, each)) for each in found]
+    pictures = [_picture(outputs, each.map, partial(draw, measured=each)) for each in found]
     return "\n".join([report(found), "", *pictures])
 
 
@@ -39,8 +41,8 @@ def conditions(points: int, outputs: Outputs) -> str:
     for item in condition.maps_of(points):
         values = item.values()
         rows.append((item.title, f"{values.min():.3g}", f"{values.max():.3g}"))
-        fill = lambda figure, *known: draw_map(figure, *known, "condition, log10", cmap="cividis")  # noqa: E731
-        pictures.append(_picture(outputs, item, lambda figure, known=(item, values), fill=fill: fill(figure, *known)))
+        fill = partial(draw_map, item=item, values=values, label="condition, log10", cmap="cividis")
+        pictures.append(_picture(outputs, item, fill))
     refused = f"Bodies of a condition above {MOST:g} are refused as singular:"
     return "\n".join([table(("map", "least", "greatest"), rows), "", refused, "", condition.needles(), "", *pictures])
 
@@ -95,5 +97,5 @@ def _reason(text: str) -> str:
     return text.partition("s: ")[2].partition(" (")[0]
 
 
-def _picture(outputs: Outputs, item, fill: Callable) -> str:
+def _picture(outputs: Outputs, item: Map, fill: Callable[[Any], object]) -> str:
     return outputs.draw(f"stability_{item.name}", item.title, fill, SIZE, ("svg",))

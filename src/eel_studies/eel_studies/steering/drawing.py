@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from eel_studies.pictures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE
+from eel_studies.pictures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, Axes, Figure
 from eel_studies.steering.linearisation import OUT_OF_PLANE, STATES
 from eel_studies.steering.study import Scan
 
@@ -17,7 +17,7 @@ LOOKS = (
 )
 
 
-def draw_multipliers(figure, scans: list[Scan]):
+def draw_multipliers(figure: Figure, scans: list[Scan]) -> None:
     """On the left the magnitudes of all multipliers of the first of the `scans`, on the right the greatest of each."""
     left, right = figure.subplots(1, 2)
     _draw_all(left, scans[0])
@@ -34,7 +34,7 @@ def draw_multipliers(figure, scans: list[Scan]):
         axes.margins(x=0.02)
 
 
-def _draw_all(axes, scan: Scan):
+def _draw_all(axes: Axes, scan: Scan) -> None:
     rows = [STATES.index(name) for name in OUT_OF_PLANE]
     for in_plane, colour, mark, label in (
         (False, BLUE, "o", "roll, pitch, vertical"),

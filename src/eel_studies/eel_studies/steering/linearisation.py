@@ -11,6 +11,7 @@ The matrices are central differences of swims over one period, from the settled 
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from eel_base.quantity import checked_instance, checked_row, number, positive
@@ -91,7 +92,7 @@ class PeriodicLinearisation:
         Left times right eigenvector, entry by entry: it does not depend on units.
         """
         share = np.abs(np.linalg.inv(self.modes).T * self.modes)
-        return share / share.sum(axis=0)
+        return np.asarray(share / share.sum(axis=0))
 
     def motion_of(self, mode: int) -> str:
         """The states that take part in a `mode` by a tenth or more, the greatest share first."""
@@ -102,7 +103,7 @@ class PeriodicLinearisation:
     def neutral(self) -> np.ndarray:
         """(9,) bool: modes of magnitude 1, as no heading is special, and without a righting moment no attitude."""
         free = [STATES.index("heading")] if self.scene.metacentric_height else [0, 1, 2]
-        return self.participation[free].sum(axis=0) > 0.5
+        return np.asarray(self.participation[free].sum(axis=0) > 0.5)
 
     @property
     def growth(self) -> float:
@@ -127,7 +128,7 @@ class PeriodicLinearisation:
         """(6,) complex: the amplitude to which an input of 1 rad/m in one period brings a `mode`, of its `state`."""
         left, row = np.linalg.inv(self.modes)[mode], STATES.index(state)
         pair = 1.0 if abs(self.multipliers[mode].imag) < 1e-9 else 2.0  # a mode and its conjugate
-        return pair * (left @ self.input_matrix) * self.modes[row, mode]
+        return np.asarray(pair * (left @ self.input_matrix) * self.modes[row, mode])
 
     def feedback(self, bend: float = 1.0) -> np.ndarray:
         """(6, 9) gain of the linear-quadratic regulator: inputs [rad/m] = - gain @ states, once a period.
@@ -144,9 +145,9 @@ class PeriodicLinearisation:
         except np.linalg.LinAlgError as error:
             weakest = self.motion_of(int(np.argmin(self.controllability())))
             raise ValueError(f"no feedback of these bends is stable, {weakest} is held least ({error})") from None
-        return np.linalg.solve(cost + b.T @ ahead @ b, b.T @ ahead @ a)
+        return np.asarray(np.linalg.solve(cost + b.T @ ahead @ b, b.T @ ahead @ a))
 
-    def bent(self, inputs) -> Law:
+    def bent(self, inputs: Any) -> Law:
         """The gait with `inputs` (6,) [rad/m] in its first period; t = 0 is the start of that period."""
         sizes = checked_row("inputs", inputs, len(INPUTS))
         pairs = zip(INPUTS, sizes, strict=True)
@@ -204,7 +205,7 @@ def _linearised(one: PeriodMap, scene: Scene, rise: float) -> PeriodicLinearisat
         both = np.concatenate([changes, -changes])
         moved = one.swim(turned_by(start.orientation, both[:, :3]), start.twist + both[:, 3:], above + below)
         first, second = np.split(states_after(start, end, moved), 2)
-        return (first - second).T / 2.0
+        return np.asarray((first - second).T / 2.0)
 
     straight_on = [one.law] * len(STATES)
     monodromy = differences(np.diag(steps), straight_on, straight_on) / steps

@@ -7,7 +7,7 @@ attitude is special, and its twist alone has to repeat. With one the attitude to
 
 import math
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from eel_base.wording import shown
@@ -38,10 +38,10 @@ class Motion(NamedTuple):
     @property
     def up(self) -> np.ndarray:
         """(3,) the vertical in the head's axes; (B, 3) for several swims."""
-        return rotation(self.orientation).inv().apply(UP)
+        return np.asarray(rotation(self.orientation).inv().apply(UP))
 
 
-def rotation(quaternion):
+def rotation(quaternion: np.ndarray) -> Any:
     """The `scipy` rotation of a quaternion (4,), or of several (B, 4)."""
     from scipy.spatial.transform import Rotation
 
@@ -52,7 +52,7 @@ def turned_by(orientation: np.ndarray, by: np.ndarray) -> np.ndarray:
     """The `orientation` (4,) turned in the world by the rotation vectors `by` (B, 3) [rad]: (B, 4)."""
     from scipy.spatial.transform import Rotation
 
-    return (Rotation.from_rotvec(by) * rotation(orientation)).as_quat()
+    return np.asarray((Rotation.from_rotvec(by) * rotation(orientation)).as_quat())
 
 
 class PeriodMap:
@@ -74,7 +74,7 @@ class PeriodMap:
         self.scene = replace(scene, current=(0.0, 0.0, 0.0), internal_wrench=False, ledger=False)
         self._accuracy = Accuracy(name="period", resolution=resolution, step=self.period / steps)
 
-    def swim(self, orientations, twists, laws=None) -> Motion:
+    def swim(self, orientations: np.ndarray, twists: np.ndarray, laws: list[Law] | None = None) -> Motion:
         """The ends (B, ...) of a period that begins with `orientations` (B, 4) and `twists` (B, 6); `laws`: (B,), if
         they are not the gait's. `SimulationStopped` where a swim cannot go on."""
         batch = simulate_batch(
@@ -151,7 +151,7 @@ class PeriodMap:
         ends = self.swim(np.array([each.orientation for each in both]), np.array([each.twist for each in both]))
         pairs = zip(both, map(Motion, *ends), strict=True)
         above, below = np.split(np.array([self._defect(first, last) for first, last in pairs]), 2)
-        return ((above - below) / (2.0 * DIFFERENCE)).T
+        return np.asarray(((above - below) / (2.0 * DIFFERENCE)).T)
 
     def _improved(self, start: Motion, change: np.ndarray) -> Motion:
         """A step of Newton's method, which goes no farther than `FARTHEST`."""

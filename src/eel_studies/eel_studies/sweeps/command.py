@@ -5,6 +5,7 @@ eel sweep straight --vary period=0.5:2:16 --vary scene.friction=printed,laminar 
 eel sweep straight --vary body=boyer2010,kern2006 --vary wavelength=0.6:1.2:7 --scheduler tcp://host:8786 --out waves.nc
 """
 
+import argparse
 import time
 from functools import partial
 
@@ -35,7 +36,7 @@ def main(arguments: list[str] | None = None) -> int:
     return run_command(_parser(), _sweep, arguments, interrupted="; the same command goes on from here")
 
 
-def _sweep(options) -> int:
+def _sweep(options: argparse.Namespace) -> int:
     start = time.perf_counter()
     numbers, vary = set_numbers(options.set), named_texts("--vary", options.vary)
     check_names([*numbers, *(name for name, _ in vary)])

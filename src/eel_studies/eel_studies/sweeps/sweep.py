@@ -12,8 +12,10 @@ sweep resumes when it is called again. It needs `pip install './src/eel_dynamics
 
 import itertools
 import math
-from collections.abc import Callable, Sized
+from collections.abc import Sized
 from functools import partial
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 from eel_base.command.progress import progress_of
@@ -30,11 +32,23 @@ from eel_dynamics.runs.batch import available_cores
 from eel_dynamics.runs.sampling import checked_times, default_sample_period
 from eel_dynamics.runs.settled_duration import UNTIL_SETTLED, period_of, until_settled
 from eel_dynamics.runs.storage.tables import needed
-from eel_gaits.laws.law import Law
 
-from eel_studies.points import Point, SwimSettings, base_point, batch_of_points, label_of, point_at
+from eel_studies.points import (
+    AccuracyLike,
+    Gait,
+    Measure,
+    Numbers,
+    Point,
+    Progress,
+    Stations,
+    SwimSettings,
+    base_point,
+    batch_of_points,
+    label_of,
+    point_at,
+)
 from eel_studies.sweeps.sweep_key import key_of
-from eel_studies.sweeps.sweep_parts import Parts
+from eel_studies.sweeps.sweep_parts import Parts, Results
 from eel_studies.workers import workers_of
 
 LONGEST_CHUNK = 64  # points
@@ -48,26 +62,26 @@ class PointsMissing(WorkStopped):
 
 
 def sweep(
-    grid: dict,
+    grid: Numbers,
     *,
-    gait: "str | Callable[..., Law]" = "straight",
-    numbers: dict | None = None,
+    gait: Gait = "straight",
+    numbers: Numbers | None = None,
     duration: float | str = UNTIL_SETTLED,
     body: Body | None = None,
     scene: Scene | None = None,
-    accuracy="standard",
+    accuracy: AccuracyLike = "standard",
     sample_period: float | None = None,
-    stations=51,
+    stations: Stations = 51,
     estimate: bool = True,
-    measure: "Callable | tuple[str, ...] | None" = None,
-    out=None,
-    scheduler=None,
+    measure: Measure | tuple[str, ...] | None = None,
+    out: str | Path | None = None,
+    scheduler: Any = None,
     workers: int | None = None,
     chunk: int | None = None,
-    progress: "Callable[[int, int], None] | bool | None" = None,
+    progress: Progress = None,
     overwrite: bool = False,
     most_evaluations: float = MOST_EVALUATIONS,
-):
+) -> Any:
     """Simulate every combination of the values in `grid`.
 
     Returns an `xarray.Dataset` over the parameters of the grid. A point that stops has NaN for its measures, `stopped`
@@ -153,14 +167,14 @@ def sweep(
     return _warned(data)
 
 
-def _warned(data):
+def _warned(data: Any) -> Any:
     """The result `data`; an `Unsettled` warning tells how many of its points have not settled."""
     if "settled" in data:
         tell_unsettled(data.settled, "points", stacklevel=4)
     return data
 
 
-def swim_points(points: list[tuple[int, Point]], how: SwimSettings) -> dict[int, dict]:
+def swim_points(points: list[tuple[int, Point]], how: SwimSettings) -> Results:
     """The task of a worker: simulate the points, given with their indices, and measure each.
 
     Returns the measures of each point by its index, with "error": the message of a point that stopped, else empty.
@@ -173,7 +187,7 @@ def swim_points(points: list[tuple[int, Point]], how: SwimSettings) -> dict[int,
     return result
 
 
-def _checked_grid(grid) -> tuple[list[str], list[list]]:
+def _checked_grid(grid: Any) -> tuple[list[str], list[list[Any]]]:
     if not isinstance(grid, dict) or not grid:
         raise ValueError(f"grid must be a dict of parameters and their values, got {shown(grid)}")
     axes = []
@@ -191,7 +205,7 @@ def _checked_grid(grid) -> tuple[list[str], list[list]]:
     return list(grid), axes
 
 
-def _check_count(name: str, value):
+def _check_count(name: str, value: Any) -> None:
     """`ValueError` unless `value` is a whole number >= 1, or None."""
     if value is None:
         return
@@ -199,13 +213,21 @@ def _check_count(name: str, value):
         raise ValueError(f"{name} must be a whole number >= 1, got {shown(value)}")
 
 
-def check_points(name: str, count: int):
+def check_points(name: str, count: int) -> None:
     """`ValueError` for more points than a grid can have."""
     if count > MOST_POINTS:
         raise ValueError(f"{name} must have at most {MOST_POINTS} points, got {count}")
 
 
-def _dataset(xarray, names, axes, points, done, how, gait):
+def _dataset(
+    xarray: Any,
+    names: list[str],
+    axes: list[list[Any]],
+    points: list[Point],
+    done: Results,
+    how: SwimSettings,
+    gait: Gait,
+) -> Any:
     shape = [len(values) for values in axes]
     measured = list(dict.fromkeys(name for index in sorted(done) for name in done[index] if name != "error"))
     found = [done[index] for index in range(len(points))]

@@ -5,6 +5,7 @@ import hashlib
 import inspect
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from eel_base.wording import shown
@@ -17,11 +18,12 @@ import eel_core
 import eel_dynamics
 import eel_gaits
 import eel_studies
+from eel_studies.points import Point, SwimSettings
 
 PACKAGES = (Path(eel_gaits.__file__).parent, Path(eel_dynamics.__file__).parent, Path(eel_studies.__file__).parent)
 
 
-def key_of(points, how) -> str:
+def key_of(points: list[Point], how: SwimSettings) -> str:
     """The key, 32 hexadecimal digits.
 
     It is a hash of the points, their `SwimSettings`, the measure's code and closure, and this software, including its
@@ -51,7 +53,7 @@ def _sources() -> bytes:
     return content.digest()
 
 
-def _content_of_function(argument: str, function) -> bytes:
+def _content_of_function(argument: str, function: Any) -> bytes:
     """The code and closure of `function`, with the whole file of its module where that can be imported.
 
     `ValueError` names the argument whose function cannot be hashed.

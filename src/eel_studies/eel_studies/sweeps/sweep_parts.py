@@ -17,6 +17,7 @@ from eel_base.wording import one_line, shown
 from eel_dynamics.analysis.measures import checked_point
 from eel_dynamics.runs.storage.digest import ATTRIBUTE, add_digest_to, check_digest_of, digest_of_text
 
+Results = dict[int, dict[str, Any]]  # the measures of each point, by its index
 ABOUT, OURS = "sweep.json", ("sweep*.json", "part-*.json")
 
 
@@ -26,7 +27,7 @@ class Parts:
     `ValueError` where `out` is invalid, or where the file or the folder is of another sweep, unless `overwrite`.
     """
 
-    def __init__(self, out, key: str, count: int, overwrite: bool):
+    def __init__(self, out: str | Path | None, key: str, count: int, overwrite: bool):
         self._key, self._count = key, count
         path = self.out = None if out is None else Path(out)
         self._overwrite, self._began = overwrite, time.time_ns()
@@ -44,7 +45,7 @@ class Parts:
                 )
             self._remove()
 
-    def complete(self):
+    def complete(self) -> Any:
         """The finished sweep, or None. `ValueError` for a file that is not of this sweep, unless `overwrite`."""
         if self.out is None or not self.out.exists():
             return None
@@ -61,7 +62,7 @@ class Parts:
             return None
         raise ValueError(f"{self.out} exists and is not of this sweep, or is damaged: choose another out, or overwrite")
 
-    def load(self) -> dict[int, dict]:
+    def load(self) -> Results:
         """Load the stored results, by index, and create the folder. A damaged part is removed, with a warning."""
         done: dict[int, Any] = {}
         if self.folder is not None:
@@ -77,7 +78,7 @@ class Parts:
                     path.unlink()
         return done
 
-    def keep(self, result: dict[int, dict]):
+    def keep(self, result: Results) -> None:
         """Write one task's results to a part, atomically."""
         if self.folder is None:
             return
@@ -88,7 +89,7 @@ class Parts:
         with replacing(self.folder / f"part-{min(result)}-{os.getpid()}-{next(self._number)}.json") as draft:
             draft.write_text(json.dumps({ATTRIBUTE: digest_of_text(json.dumps(points)), "points": points}))
 
-    def finish(self, data):
+    def finish(self, data: Any) -> None:
         """Write the complete sweep, and remove the parts."""
         if self.out is None:
             return
@@ -97,7 +98,7 @@ class Parts:
             add_digest_to(draft)
         self._remove()
 
-    def _part(self, path: Path) -> dict[int, dict]:
+    def _part(self, path: Path) -> Results:
         """The points of one part. `ValueError` if `keep` cannot have written it: text, NaN, a truncated file."""
         with reading(""), InputFile(path) as file:
             found = from_json(file.read(), parse_constant=_infinity)
@@ -123,7 +124,7 @@ class Parts:
             return str(from_json(file.read())["sweep"])
         return "unknown"
 
-    def _remove(self):
+    def _remove(self) -> None:
         """Remove the parts; other files in the folder stay."""
         for pattern in OURS:
             for path in self.folder.glob(pattern):
@@ -132,7 +133,7 @@ class Parts:
             self.folder.rmdir()
 
 
-def _undefined(value) -> bool:
+def _undefined(value: object) -> bool:
     return isinstance(value, float) and math.isnan(value)
 
 

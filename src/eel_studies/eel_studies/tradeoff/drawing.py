@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from eel_dynamics.accuracy.accuracy import PRESETS
 
-from eel_studies.pictures.style import BLACK, BLUE, GREEN, GREY, ORANGE
+from eel_studies.pictures.style import BLACK, BLUE, GREEN, GREY, ORANGE, Axes, Figure
 from eel_studies.tradeoff.measuring import Measured, Trade, front
 from eel_studies.tradeoff.models import Model
 from eel_studies.tradeoff.settings import METHODS
@@ -21,7 +21,7 @@ LEADER = 1.0, 1.06  # axes: where the line from a model's error to its name begi
 FLOOR = 3.0  # times the reference's own error: differences below it are not significant
 
 
-def draw_trade(figure: Any, trade: Trade, models: list[Model]) -> None:
+def draw_trade(figure: Figure, trade: Trade, models: list[Model]) -> None:
     """Draw the trade-off into an empty matplotlib figure: error of pose on the left, of torque on the right."""
     figure.suptitle(
         f"Gait {trade.name!r}, {trade.duration:g} s: what exactness costs, and what a poorer model is off by"
@@ -35,11 +35,11 @@ def draw_trade(figure: Any, trade: Trade, models: list[Model]) -> None:
     figure.legend(handles, labels, loc="outside lower center", ncols=len(labels), frameon=False)
 
 
-def _draw_panel(axes: Any, trade: Trade, models: list[Model], quantity: str, floor: float) -> None:
+def _draw_panel(axes: Axes, trade: Trade, models: list[Model], quantity: str, floor: float) -> None:
     from matplotlib.patheffects import withStroke
 
     def error(row: Measured) -> float:
-        return max(getattr(row, quantity), floor)
+        return float(max(getattr(row, quantity), floor))
 
     def plot(rows: Iterable[Measured], *mark: str, **looks: Any) -> None:
         axes.plot(*zip(*((row.times_real_time, error(row)) for row in rows), strict=True), *mark, **looks)
@@ -70,7 +70,7 @@ def _draw_panel(axes: Any, trade: Trade, models: list[Model], quantity: str, flo
     _draw_models(axes, models, quantity, floor)
 
 
-def _draw_models(axes: Any, models: list[Model], quantity: str, floor: float) -> None:
+def _draw_models(axes: Axes, models: list[Model], quantity: str, floor: float) -> None:
     """A line for each simpler model, with its name at the right edge. Names that would overlap are moved apart."""
     shown = [model for model in models if not model.stopped and getattr(model, quantity) > floor]
     shown.sort(key=lambda model: getattr(model, quantity))

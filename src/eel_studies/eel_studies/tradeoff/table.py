@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The trade-off as tables."""
 
+from collections.abc import Callable
 from operator import attrgetter
 
 from eel_dynamics.accuracy.accuracy import PRESETS
@@ -9,7 +10,7 @@ from eel_studies.table import Table
 from eel_studies.tradeoff.measuring import Measured, Trade, front
 from eel_studies.tradeoff.models import Model
 
-COLUMNS = {  # head: text of a row
+COLUMNS: dict[str, Callable[[Measured], str]] = {  # head: text of a row
     "setting": lambda row: row.accuracy.name,
     "method": lambda row: row.accuracy.method.replace("_", "-"),
     "order": lambda row: str(row.accuracy.order),
