@@ -26,6 +26,7 @@ from eel_gaits.gaits.registry import gait
 
 from eel_studies.pictures.picture_file import write_picture
 from eel_studies.pictures.style import BLUE, ORANGE, Figure, legend_above, plain
+from eel_studies.table import Table
 
 NAME = "eel compare"
 PICTURES = (".png", ".svg", ".pdf")
@@ -78,17 +79,15 @@ def _swum(options: argparse.Namespace, name: str, like: Run | None) -> Run:
 
 def table_of(first: Run, second: Run, names: list[str]) -> str:
     """The measures that either run has, and by how much those of the second are greater; relative to the first."""
-    width = max(map(len, MEASURES))
-    lines = [f"{'':{width}s}  {names[0]:>12.12s}  {names[1]:>12.12s}  {'difference':>12s}"]
+    rows = []
     one, two = measures_of(first), measures_of(second)
     for name, (unit, *_) in MEASURES.items():
         if np.isnan(one[name]) and np.isnan(two[name]):
             continue
         change = two[name] - one[name]
-        relative = f"{change / abs(one[name]):+9.2%}" if one[name] and np.isfinite(change) else " " * 9
-        line = f"{name:{width}s}  {one[name]:12.5g}  {two[name]:12.5g}  {change:12.3g}  {relative}  {unit}"
-        lines.append(line.rstrip())
-    return "\n".join(lines)
+        relative = f"{change / abs(one[name]):+.2%}" if one[name] and np.isfinite(change) else ""
+        rows.append((name, f"{one[name]:.5g}", f"{two[name]:.5g}", f"{change:.3g}", relative, f"  {unit}"))
+    return Table(("", *names, "difference", "", ""), rows).text()
 
 
 def draw(figure: Figure, runs: tuple[Run, Run], names: list[str]) -> None:

@@ -7,19 +7,12 @@ import numpy as np
 from eel_dynamics.analysis.measures import described
 from eel_dynamics.runs.run import Run
 
-from eel_studies.pictures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, Axes, Figure
+from eel_studies.pictures.style import BLUE, GREY, LOOKS, Axes, Figure
 
 if TYPE_CHECKING:
     from eel_studies.optimisation.front import Front
 
 SIZE = 9.0, 5.6  # inches
-LOOKS = (  # of the parameters: colour, dash, mark
-    (BLUE, "-", "o"),
-    (ORANGE, (0, (4, 2)), "s"),
-    (GREEN, (0, (1, 1)), "^"),
-    (PURPLE, (0, (6, 2, 1, 2)), "D"),
-    (BLACK, (0, (2, 2)), "v"),
-)
 MOST_GAITS = 5
 PHASES = 9  # midlines in a period
 FAR = 2.0  # times the front's greatest cost and speed: gaits beyond are not drawn

@@ -12,6 +12,7 @@ from eel_dynamics.runs.run import Run
 
 from eel_studies.optimisation.drawing import SIZE, draw_front
 from eel_studies.pictures.picture_file import write_picture
+from eel_studies.table import Table
 
 BOUND = 1e-3  # of the bounds' distance: nearer to one of them is at it
 FORMATS = (".png", ".svg")
@@ -78,10 +79,9 @@ class Front:
             stars = self.dominated if name == "speed" else np.zeros(len(self), dtype=bool)
             if name in self.names:
                 stars = self.at_bound[:, self.names.index(name)]
-            rows = [f"{value:.4g}{'*' if star else ' '}" for value, star in zip(values, stars, strict=True)]
-            head = columns.get(name, name)
-            cells.append([f"{text:>{max(len(head) + 1, 9)}s}" for text in (f"{head} ", *rows)])
-        return "\n".join(" ".join(row).rstrip() for row in zip(*cells, strict=True))
+            cells.append([f"{value:.4g}{'*' if star else ' '}" for value, star in zip(values, stars, strict=True)])
+        head = [f"{columns.get(name, name)} " for name in self.columns]
+        return Table(head, list(zip(*cells, strict=True)), left=0).text()
 
     def draw(self, path: str | Path) -> None:
         """Draw the front, the parameters and the gaits into a file (.png, .svg).

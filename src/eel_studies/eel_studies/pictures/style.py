@@ -12,6 +12,13 @@ Figure: TypeAlias = Any  # of matplotlib, which takes longer to import than all 
 Axes: TypeAlias = Any
 BLACK, BLUE, ORANGE, GREEN, PURPLE = "#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7"
 PALE_BLUE, GREY = "#d9e6f0", "#888888"
+LOOKS = (  # of several curves in one panel: colour, dash, mark
+    (BLUE, "-", "o"),
+    (ORANGE, (0, (4, 2)), "s"),
+    (GREEN, (0, (1, 1)), "^"),
+    (PURPLE, (0, (6, 2, 1, 2)), "D"),
+    (BLACK, (0, (2, 2)), "v"),
+)
 OWN = {"color": BLUE, "linewidth": 1.6, "label": "corrected"}
 AS_PRINTED = {"color": ORANGE, "linewidth": 1.2, "linestyle": (0, (4, 2)), "label": "as printed"}
 SETTINGS: dict[str, Any] = {

@@ -10,6 +10,7 @@ path: distance of the head from that of a finer run, relative to its distance fr
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from eel_base.files.markdown import table as table_of
@@ -63,14 +64,15 @@ def drift_of(name: str, law: Law, scene: Scene, decades: int = DECADES, compared
     """
     periods = 10.0 ** np.arange(decades + 1)
     times = np.concatenate(([0.0], PERIOD * periods))
-    swimmer, out, works = _swum(law, scene, Accuracy.of(ACCURACY).in_scene(scene), times)
+    swim: dict[str, Any] = {"law": law, "scene": scene, "stations": STATIONS}
+    swimmer, out, works = recorded(times, **swim, accuracy=Accuracy.of(ACCURACY).in_scene(scene))
     residual = out.energies.sum(axis=1) - swimmer.energy_at_start - works.sum(axis=1)
     bend, speed = out.curvature[1:], out.twist[1:, 3:]
     beat = np.full(len(periods), np.nan)
     beat[PERIODIC_FROM:] = np.linalg.norm(speed[PERIODIC_FROM:] - speed[PERIODIC_FROM : PERIODIC_FROM + 1], axis=1)
     beat[PERIODIC_FROM:] /= np.linalg.norm(speed[PERIODIC_FROM : PERIODIC_FROM + 1])
     way = np.linalg.norm(out.position[1:], axis=1)
-    _, finer, _ = _swum(law, scene, swimmer.accuracy.tightened(0.1), times[: compared + 2])
+    _, finer, _ = recorded(times[: compared + 2], **swim, accuracy=swimmer.accuracy.tightened(0.1))
     apart = np.linalg.norm(out.position[: compared + 2] - finer.position, axis=1)[1:]
     path = np.full(len(periods), np.nan)
     path[: compared + 1] = apart / np.maximum(way[: compared + 1], swimmer.body.length)
@@ -100,10 +102,13 @@ def table(found: list[Drift]) -> str:
     return f"{table_of(head, rows)}\n\nAccuracy `{ACCURACY}`, period {PERIOD} s; steps in time: {counts}."
 
 
-def _swum(law: Law, scene: Scene, accuracy: Accuracy, times: np.ndarray) -> tuple[Simulation, Observations, np.ndarray]:
-    """The simulation, its profiles and its works at the `times` [s]."""
-    swimmer = Simulation(scene=scene, accuracy=accuracy, stations=STATIONS, law=law)
-    out, works, _, stopped = swimmer.record(times, False, False)
+def recorded(times: np.ndarray, **swimmer: Any) -> tuple[Simulation, Observations, np.ndarray]:
+    """The simulation of a `swimmer` (keywords of `Simulation`), its profiles and its works at the `times` [s].
+
+    `SimulationStopped` where it cannot go on.
+    """
+    simulation = Simulation(**swimmer)
+    out, works, _, stopped = simulation.record(times, False, False)
     if stopped is not None:
         raise stopped
-    return swimmer, out, works
+    return simulation, out, works

@@ -14,9 +14,9 @@ import numpy as np
 from eel_base.files.markdown import table as table_of
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
-from eel_dynamics.simulation.simulation import Simulation
 
 from eel_gaits import straight
+from eel_studies.stability.drift import recorded
 
 LONG = 10_000  # periods
 LOOKED_AT = 50  # instants of a long run that are evaluated
@@ -58,7 +58,8 @@ def out_of_plane(
     """
     twist = np.zeros(6)
     twist[AXES[axis]] = push
-    swimmer = Simulation(
+    swimmer, out, _ = recorded(
+        np.asarray(periods, dtype=float),
         body=body,
         scene=Scene(internal_wrench=False, ledger=False, **scene),
         accuracy=accuracy,
@@ -67,9 +68,6 @@ def out_of_plane(
         orientation=(0.0, 0.0, 0.0, 1.0) if orientation is None else orientation,
         twist=twist,
     )
-    out, _, _, stopped = swimmer.record(np.asarray(periods, dtype=float), False, False)
-    if stopped is not None:
-        raise stopped
     length = swimmer.body.length
     return np.asarray(out.twist[:, list(AXES.values())] * (length, length, 1.0))
 

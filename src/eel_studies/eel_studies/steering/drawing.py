@@ -3,25 +3,18 @@
 
 import numpy as np
 
-from eel_studies.pictures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, Axes, Figure
+from eel_studies.pictures.style import BLUE, GREY, LOOKS, Axes, Figure
 from eel_studies.steering.linearisation import OUT_OF_PLANE, STATES
 from eel_studies.steering.study import Scan
 
 SIZE = 9.0, 4.0  # inches
-LOOKS = (
-    (BLUE, "-"),
-    (ORANGE, (0, (4, 2))),
-    (GREEN, (0, (1, 1))),
-    (PURPLE, (0, (6, 2, 1, 2))),
-    (BLACK, (0, (2, 2))),
-)
 
 
 def draw_multipliers(figure: Figure, scans: list[Scan]) -> None:
     """On the left the magnitudes of all multipliers of the first of the `scans`, on the right the greatest of each."""
     left, right = figure.subplots(1, 2)
     _draw_all(left, scans[0])
-    for scan, (colour, dash) in zip(scans, LOOKS, strict=True):
+    for scan, (colour, dash, _) in zip(scans, LOOKS, strict=True):
         right.plot(1e3 * scan.heights, scan.growth, color=colour, linestyle=dash, label=scan.name)
     right.set(ylabel="greatest growth in a period", yscale="log")
     right.set_yticks([1.0, 1.5, 2.0, 3.0, 4.0], ["1", "1.5", "2", "3", "4"])
