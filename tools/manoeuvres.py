@@ -18,7 +18,7 @@ from eel_base.files import markdown
 from eel_base.quantity import described_fields
 from eel_dynamics.model.axes import turn_vector
 from eel_gaits.gaits.registry import GAITS
-from eel_studies.pictures.style import BLUE, ORANGE, SETTINGS
+from eel_studies.pictures import BLUE, ORANGE, SETTINGS
 from PIL import Image
 
 from eel_dynamics import simulate

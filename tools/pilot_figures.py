@@ -14,8 +14,7 @@ from pathlib import Path
 import numpy as np
 from eel_base.files import markdown
 from eel_gaits.pilot.settings import PilotSettings
-from eel_studies.pictures.picture_file import write_picture
-from eel_studies.pictures.style import BLUE, ORANGE
+from eel_studies.pictures import BLUE, ORANGE, write_picture
 from eel_studies.pilot.courses import figures_of, random_path, swim_path
 from matplotlib.patches import Circle
 

@@ -12,7 +12,7 @@ from eel_base.files.markdown import with_part, write_page
 from eel_base.files.output_file import check_output, written_as
 from eel_dynamics.runs.storage.tables import needed
 
-from eel_studies.pictures.picture_file import write_picture
+from eel_studies.pictures import write_picture
 
 NEW = "<!-- {name}: written by `{command}` -->\n<!-- end of {name} -->\n\n"  # a part of a page that there is not yet
 

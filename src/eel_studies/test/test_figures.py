@@ -23,7 +23,7 @@ from eel_studies.figures import (
     paper_drawings,
 )
 from eel_studies.outputs import Outputs
-from eel_studies.pictures.style import SETTINGS, letter_panels
+from eel_studies.pictures import SETTINGS, letter_panels
 from matplotlib.figure import Figure
 
 from eel_dynamics import Body, simulate
@@ -70,7 +70,7 @@ def lines_of(axes):
 
 def test_body_is_drawn_at_its_true_size():
     body = Body.boyer2010()
-    side, above, sections = drawn(paper_drawings.draw_body, body).axes
+    side, above, sections = drawn(paper_drawings.draw_body, SimpleNamespace(body=body)).axes
     for axes, half in ((side, body.half_height), (above, body.half_width)):
         outline = axes.collections[0].get_paths()[0].vertices
         assert np.all(np.abs(outline[:, 1]) <= half(np.clip(outline[:, 0], 0.0, 1.0)) + 1e-12)
@@ -141,7 +141,7 @@ def test_ledger_curves_close(runs):
 
 
 def test_convergence_curves(errors):
-    by_nodes, by_step = drawn(further_drawings.draw_convergence, errors["in_space"], errors["in_time"]).axes
+    by_nodes, by_step = drawn(further_drawings.draw_convergence, None, None, errors).axes
     curves = iter(lines_of(by_nodes))
     for drag in (False, True):
         for name in ("motion", "torque"):
@@ -251,7 +251,7 @@ def test_a_figure_is_as_wide_as_a_journal_s_column_or_page():
     assert command.size_of("figure8_wrench_in_time", 1)[0] == 3.4
     assert command.size_of("figure8_wrench_in_time", 2)[0] == 7.0
     assert command.size_of("torque_surface", 1)[0] == 7.0  # panels side by side
-    assert command.size_of("head_path", None) == command.FIGURES["head_path"][0]
+    assert command.size_of("head_path", None) == command.FIGURES["head_path"][1:]
 
 
 def test_panels_have_letters_and_colour_bars_none():

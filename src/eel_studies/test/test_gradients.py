@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import scipy.optimize
 from eel_studies.gradients.fixed_discretisation import common_step, on_one_grid, step_of
-from eel_studies.gradients.friction_jump import share_across_jump
+from eel_studies.gradients.gradient import share_across_jump
 from eel_studies.points import Point, point_at
 
 from eel_dynamics import Accuracy, Body, Scene, SimulationStopped, simulate

@@ -24,8 +24,7 @@ from eel_dynamics.runs.run import Run, simulate
 from eel_dynamics.runs.settled_duration import until_settled
 from eel_gaits.gaits.registry import gait
 
-from eel_studies.pictures.picture_file import write_picture
-from eel_studies.pictures.style import BLUE, ORANGE, Figure, legend_above, plain
+from eel_studies.pictures import BLUE, ORANGE, Figure, legend_above, plain, write_picture
 from eel_studies.table import Table
 
 NAME = "eel compare"

@@ -7,7 +7,6 @@ eel figures --out out/figures --format pdf --columns 1       # for a journal
 
 import argparse
 from collections.abc import Callable, Iterable
-from typing import Any
 
 from eel_base.command.command_line import Parser
 from eel_base.command.progress import Progress
@@ -15,36 +14,25 @@ from eel_base.command.run_command import run_command
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.command_options import add_options
-from eel_dynamics.runs.run import simulate
+from eel_dynamics.runs.run import Run, simulate
 
 from eel_gaits import straight
 from eel_studies.figures import corrections, further_drawings, kern_comparison, notes, orders, paper_drawings
 from eel_studies.outputs import Outputs
-from eel_studies.pictures.style import letter_panels
+from eel_studies.pictures import Figure, letter_panels
 
 NAME = "eel figures"
-FIGURES: dict[str, tuple[tuple[float, float], Callable[..., None]]] = {  # name of the file: inches; its drawing
-    "figure5_body": ((7.0, 3.6), lambda figure, run, *_: paper_drawings.draw_body(figure, run.body)),
-    "figure6_configurations": ((9.0, 4.8), lambda figure, run, *_: paper_drawings.draw_configurations(figure, run)),
-    "figure7_wrench_along_the_body": (
-        (6.4, 5.0),
-        lambda figure, run, printed, _: paper_drawings.draw_wrench_along_the_body(figure, run, printed),
-    ),
-    "figure8_wrench_in_time": (
-        (6.8, 5.0),
-        lambda figure, run, printed, _: paper_drawings.draw_wrench_in_time(figure, run, printed),
-    ),
-    "figure9_head_velocity": (
-        (6.8, 3.8),
-        lambda figure, run, printed, _: paper_drawings.draw_head_velocity(figure, run, printed),
-    ),
-    "torque_surface": ((7.6, 6.4), lambda figure, run, *_: further_drawings.draw_torque_surface(figure, run)),
-    "head_path": ((7.0, 6.2), lambda figure, run, *_: further_drawings.draw_head_path(figure, run)),
-    "power_ledger": ((6.8, 5.8), lambda figure, run, *_: further_drawings.draw_ledger(figure, run)),
-    "convergence": (
-        (7.6, 3.8),
-        lambda figure, run, printed, errors: further_drawings.draw_convergence(figure, **errors),
-    ),
+Drawing = Callable[[Figure, Run, Run, orders.Errors], None]  # of our run, the one as printed, and the errors
+FIGURES: dict[str, tuple[Drawing, float, float]] = {  # name of the file: drawing, width and height [inches]
+    "figure5_body": (paper_drawings.draw_body, 7.0, 3.6),
+    "figure6_configurations": (paper_drawings.draw_configurations, 9.0, 4.8),
+    "figure7_wrench_along_the_body": (paper_drawings.draw_wrench_along_the_body, 6.4, 5.0),
+    "figure8_wrench_in_time": (paper_drawings.draw_wrench_in_time, 6.8, 5.0),
+    "figure9_head_velocity": (paper_drawings.draw_head_velocity, 6.8, 3.8),
+    "torque_surface": (further_drawings.draw_torque_surface, 7.6, 6.4),
+    "head_path": (further_drawings.draw_head_path, 7.0, 6.2),
+    "power_ledger": (further_drawings.draw_ledger, 6.8, 5.8),
+    "convergence": (further_drawings.draw_convergence, 7.6, 3.8),
 }
 FORMATS, KNOWN_FORMATS = ("svg", "png"), ("svg", "png", "pdf")
 COLUMN, PAGE = 3.4, 7.0  # inches: widths of a journal's column, and of its page
@@ -80,7 +68,7 @@ def draw(
     outputs: Outputs,
     names: Iterable[str],
     readings: list[corrections.Correction],
-    errors: dict[str, Any],
+    errors: orders.Errors,
     formats: Iterable[str] = FORMATS,
     columns: int | None = None,
 ) -> list[str]:
@@ -93,7 +81,7 @@ def draw(
     links = []
     for name in names:
 
-        def fill(figure: Any, draw: Callable[..., None] = FIGURES[name][1]) -> None:
+        def fill(figure: Figure, draw: Drawing = FIGURES[name][0]) -> None:
             draw(figure, run, printed, errors)
             letter_panels(figure)
 
@@ -104,7 +92,7 @@ def draw(
 
 def size_of(name: str, columns: int | None) -> tuple[float, float]:
     """Width and height [inches] of a figure."""
-    width, height = FIGURES[name][0]
+    _, width, height = FIGURES[name]
     if not columns:
         return width, height
     wanted = COLUMN if columns == 1 and name not in PAGE_WIDE else PAGE

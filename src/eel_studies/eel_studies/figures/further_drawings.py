@@ -6,14 +6,14 @@ from itertools import product
 import numpy as np
 from eel_dynamics.runs.run import Run
 
-from eel_studies.figures.orders import ConvergenceErrors
+from eel_studies.figures.orders import Errors
 from eel_studies.figures.paper_drawings import wrench_of
-from eel_studies.pictures.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, Axes, Figure, legend_above, mark_pitch, plain
+from eel_studies.pictures import BLACK, BLUE, GREEN, ORANGE, PURPLE, Axes, Figure, legend_above, mark_pitch, plain
 
 PERIOD = 1.0  # s, of the falling gait
 
 
-def draw_torque_surface(figure: Figure, run: Run) -> None:
+def draw_torque_surface(figure: Figure, run: Run, *_: object) -> None:
     """Draw the internal torques C2 and C3 [N m] over time and X, each as a surface and, below it, as a map."""
     from matplotlib.ticker import MaxNLocator
 
@@ -61,7 +61,7 @@ def _draw_surface(axes: Axes, run: Run, values: np.ndarray, size: float, name: s
     axes.tick_params(pad=0)
 
 
-def draw_head_path(figure: Figure, run: Run) -> None:
+def draw_head_path(figure: Figure, run: Run, *_: object) -> None:
     """Draw the paths of the head and of the centre of mass, averaged over a period, from above and from the side."""
     path, centre = run.position, run.center_of_mass
     each = round(PERIOD / (run.time[1] - run.time[0]))  # samples in a period
@@ -92,7 +92,7 @@ def draw_head_path(figure: Figure, run: Run) -> None:
     legend_above(figure)
 
 
-def draw_ledger(figure: Figure, run: Run) -> None:
+def draw_ledger(figure: Figure, run: Run, *_: object) -> None:
     """Draw the powers [W], the works [J] and the residual [J] of the energy ledger over time."""
     energy = run.energy
     assert energy is not None
@@ -120,18 +120,16 @@ def draw_ledger(figure: Figure, run: Run) -> None:
     mark_pitch((power, work))
 
 
-def draw_convergence(
-    figure: Figure, in_space: dict[bool, ConvergenceErrors], in_time: dict[bool, ConvergenceErrors]
-) -> None:
+def draw_convergence(figure: Figure, run: Run, printed: Run, errors: Errors) -> None:
     """Draw errors against nodes and against the step, without (False) and with (True) drag of cross flow and roll."""
     by_nodes, by_step = figure.subplots(1, 2)
-    for axes, errors in ((by_nodes, in_space), (by_step, in_time)):
+    for axes, found in ((by_nodes, errors["in_space"]), (by_step, errors["in_time"])):
         for (drag, colour), (name, mark) in product(
             ((False, BLUE), (True, ORANGE)), (("motion", "o"), ("torque", "s"))
         ):
             axes.loglog(
-                errors[drag].against,
-                getattr(errors[drag], name),
+                found[drag].against,
+                getattr(found[drag], name),
                 color=colour,
                 marker=mark,
                 markersize=4,

@@ -8,7 +8,7 @@ from eel_dynamics.runs.run import Run
 from eel_studies.figures import corrections, kern_comparison
 from eel_studies.figures.corrections import Correction
 from eel_studies.figures.kern_comparison import Comparison
-from eel_studies.figures.orders import ConvergenceErrors
+from eel_studies.figures.orders import ConvergenceErrors, Errors
 from eel_studies.figures.paper_drawings import INSTANT, PLACE, wrench_of
 
 FINE = 4  # index of the number of points from which on the order along the body is fitted
@@ -23,7 +23,7 @@ def values_of(
     readings: list[Correction],
     control: Run,
     comparison: Comparison,
-    errors: dict[str, dict[bool, ConvergenceErrors]],
+    errors: Errors,
 ) -> dict[str, str]:
     """The numbers within the sentences of the page, by name.
 

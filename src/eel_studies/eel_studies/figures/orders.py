@@ -45,6 +45,9 @@ class ConvergenceErrors:
         return float(np.polyfit(np.log(against[good]), np.log(error[good]), 1)[0])
 
 
+Errors = dict[str, dict[bool, ConvergenceErrors]]  # by the rule, `in_space` or `in_time`; with and without drag
+
+
 def body_of(cross_flow: bool) -> Body:
     """The paper's robot, with or without its drag of cross flow and roll."""
     robot = Body.boyer2010()

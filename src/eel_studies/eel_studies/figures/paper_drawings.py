@@ -2,10 +2,9 @@
 """Figures 5 to 9 of the paper. Each function draws runs of the falling gait into an empty matplotlib figure."""
 
 import numpy as np
-from eel_dynamics.model.body import Body
 from eel_dynamics.runs.run import Run
 
-from eel_studies.pictures.style import (
+from eel_studies.pictures import (
     AS_PRINTED,
     BLACK,
     BLUE,
@@ -25,8 +24,9 @@ PLACE = 0.5  # m, of Fig. 8
 SECTIONS = (0.05, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95)  # of the length, drawn in Fig. 5
 
 
-def draw_body(figure: Figure, body: Body) -> None:
+def draw_body(figure: Figure, run: Run, *_: object) -> None:
     """Draw Fig. 5: outlines from the side and from above, and cross-sections at their true size."""
+    body = run.body
     # points are denser at the nose, where the outline is round
     x = body.length * np.concatenate((np.linspace(0.0, 0.05**0.5, 60) ** 2, np.linspace(0.05, 1.0, 200)[1:]))
     side, above, ellipses = figure.subplots(3, 1, sharex=True)
@@ -50,7 +50,7 @@ def draw_body(figure: Figure, body: Body) -> None:
         axes.grid(alpha=0.3)
 
 
-def draw_configurations(figure: Figure, run: Run) -> None:
+def draw_configurations(figure: Figure, run: Run, *_: object) -> None:
     """Draw Fig. 6: the backbone twice a second, in space, from above and from the side (world axes [m])."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
@@ -83,13 +83,13 @@ def draw_configurations(figure: Figure, run: Run) -> None:
     figure.colorbar(colours, cax=bar, orientation="horizontal", label="time [s]")
 
 
-def draw_wrench_along_the_body(figure: Figure, run: Run, printed: Run) -> None:
+def draw_wrench_along_the_body(figure: Figure, run: Run, printed: Run, *_: object) -> None:
     """Draw Fig. 7: N1 [N], C2 and C3 [N m] against X at t = 7 s, of our run and of the `printed` reading."""
     profiles = [[field[np.argmin(np.abs(each.time - INSTANT))] for field in wrench_of(each)] for each in (run, printed)]
     _draw_wrench(figure, run.x, profiles, f"$X_1$ [m], nose to tail, at t = {INSTANT:g} s")
 
 
-def draw_wrench_in_time(figure: Figure, run: Run, printed: Run) -> None:
+def draw_wrench_in_time(figure: Figure, run: Run, printed: Run, *_: object) -> None:
     """Draw Fig. 8: N1 [N], C2 and C3 [N m] against t at X = 0.5 m, of our run and of the `printed` reading."""
     station = int(np.argmin(np.abs(run.x - PLACE)))
     profiles = [[field[:, station] for field in wrench_of(each)] for each in (run, printed)]
@@ -119,7 +119,7 @@ def _draw_wrench(figure: Figure, abscissa: np.ndarray, profiles: list[list[np.nd
     figure.align_ylabels()
 
 
-def draw_head_velocity(figure: Figure, run: Run, printed: Run) -> None:
+def draw_head_velocity(figure: Figure, run: Run, printed: Run, *_: object) -> None:
     """Draw Fig. 9: V1(0) [m/s] and Omega1(0) [rad/s] against t, of our run and of the `printed` reading."""
     rows = ((3, "$V_1(0)$ [m/s]\n(< 0: ahead)"), (0, "$\\Omega_1(0)$ [rad/s]\n(roll)"))
     for axes, (column, label) in zip(figure.subplots(2, 1, sharex=True), rows, strict=True):

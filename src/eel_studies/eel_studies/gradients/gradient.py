@@ -19,6 +19,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from eel_base.attitude import world_from_body
 from eel_base.command.progress import progress_of
 from eel_base.quantity import checked_instance, number, positive
 from eel_base.wording import not_one_of, shown
@@ -36,7 +37,6 @@ from eel_dynamics.runs.run import Run
 from eel_dynamics.runs.sampling import default_sample_period
 
 from eel_studies.gradients.fixed_discretisation import fixed_steps, on_one_grid, step_of
-from eel_studies.gradients.friction_jump import share_across_jump
 from eel_studies.points import (
     AccuracyLike,
     Gait,
@@ -53,6 +53,7 @@ from eel_studies.points import (
 )
 
 RELATIVE_STEP = 1e-5  # of a parameter; of one unit where its value is 0
+PRINTED = "printed"  # the friction law that jumps
 COMPANION_STEP = 2.0  # times the steps, of the companions
 
 
@@ -232,3 +233,23 @@ def _jumps(runs: list[Run], names: tuple[str, ...]) -> tuple[str, ...]:
         f"{max(shares.values()):.2g} of all sections and samples): a derivative may miss what the jump does; friction "
         "blended or laminar is smooth",
     )
+
+
+def share_across_jump(one: Run, other: Run) -> float:
+    """Share of samples and stations at which two runs lie on different sides of the printed friction's jump; 0 without.
+
+    The speed V1 along the body is that of the backbone through the water, from splines through the samples.
+    """
+    if one.scene.friction != PRINTED or not one.scene.resistive or not one.scene.viscosity or len(one.time) < 4:
+        return 0.0
+    return float(np.mean(_is_turbulent(one) != _is_turbulent(other)))
+
+
+def _is_turbulent(run: Run) -> np.ndarray:
+    """Whether Re = abs(V1) X / nu exceeds the transition, (T, M)."""
+    from scipy.interpolate import CubicSpline
+
+    velocity = CubicSpline(run.time, run.backbone, axis=0)(run.time, 1) - run.scene.current
+    along = world_from_body(run.section_orientation)[..., 0]  # axis 1 of each section
+    speed = np.abs(np.sum(velocity * along, axis=-1))
+    return np.asarray(speed * run.x > TRANSITION * run.scene.viscosity)

@@ -9,8 +9,7 @@ import numpy as np
 
 from eel_studies.identification.identify import Identified
 from eel_studies.identification.measurements import MeasuredPath, MeasuredSpeed, Measurements
-from eel_studies.pictures.picture_file import write_picture
-from eel_studies.pictures.style import BLUE, GREY, ORANGE, Axes, Figure
+from eel_studies.pictures import BLUE, GREY, ORANGE, Axes, Figure, write_picture
 
 FORMATS = ".png", ".svg"
 SIZE = 10.0, 3.4  # inches

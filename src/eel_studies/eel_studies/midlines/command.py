@@ -18,8 +18,7 @@ from eel_dynamics.runs.run import simulate
 from eel_gaits.sources.motion_file import read_midlines
 
 from eel_studies.midlines.comparison import MidlineComparison, compared
-from eel_studies.pictures.picture_file import write_picture
-from eel_studies.pictures.style import Figure
+from eel_studies.pictures import Figure, write_picture
 
 NAME = "eel midlines"
 SUFFIXES = (".png", ".svg", ".pdf")

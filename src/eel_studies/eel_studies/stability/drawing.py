@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from eel_studies.pictures.style import BLACK
+from eel_studies.pictures import BLACK
 from eel_studies.stability.maps import STOPPED, Map, Measured
 
 DECADES = 3.0  # range of the colours, above and below the target

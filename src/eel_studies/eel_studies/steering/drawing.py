@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from eel_studies.pictures.style import BLUE, GREY, LOOKS, Axes, Figure
+from eel_studies.pictures import BLUE, GREY, LOOKS, Axes, Figure
 from eel_studies.steering.linearisation import OUT_OF_PLANE, STATES
 from eel_studies.steering.study import Scan
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from eel_dynamics.accuracy.accuracy import PRESETS
 
-from eel_studies.pictures.style import BLACK, BLUE, GREEN, GREY, ORANGE, Axes, Figure
+from eel_studies.pictures import BLACK, BLUE, GREEN, GREY, ORANGE, Axes, Figure
 from eel_studies.tradeoff.measuring import Measured, Trade, front
 from eel_studies.tradeoff.models import Model
 from eel_studies.tradeoff.settings import METHODS

@@ -11,7 +11,7 @@ from eel_dynamics.runs.companion import relative_errors
 from eel_dynamics.runs.run import Run, simulate
 from eel_dynamics.simulation.stopping import SimulationStopped
 
-from eel_studies.pictures.style import BLACK, BLUE, GREY, ORANGE
+from eel_studies.pictures import BLACK, BLUE, GREY, ORANGE
 from eel_studies.tradeoff.delivered import LEAST, REFERENCES, TARGETS, swims_of
 
 SWIMS = 24  # of the settings: each takes some milliseconds

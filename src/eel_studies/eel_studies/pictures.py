@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Style of the figures: colours, dashes, and the settings of matplotlib.
+"""The pictures of the studies: one style, and files (.png, .svg, .pdf) that are the same each time.
 
 Colours are those of Okabe and Ito, distinct for colour-blind readers. Each has its own dash for print without colour.
 Colour maps are perceptually uniform (cividis) or diverging without red and green (PuOr).
 """
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from pathlib import Path
 from typing import Any, TypeAlias
+
+from eel_base.files.output_file import replacing
 
 Figure: TypeAlias = Any  # of matplotlib, which takes longer to import than all the rest
 Axes: TypeAlias = Any
@@ -31,6 +34,7 @@ SETTINGS: dict[str, Any] = {
     "figure.dpi": 100,
     "savefig.dpi": 100,
 }
+METADATA = {".png": {"Software": None}, ".svg": {"Date": None}, ".pdf": {"CreationDate": None}}  # None: left out
 COLOUR_BAR = "<colorbar>"  # label that matplotlib gives the axes of a colour bar
 PITCH_RAMPS = ((1.0, 3.0), (6.0, 8.0))  # s, intervals in which the falling gait bends in pitch: t1 to t3 and t4 to t6
 
@@ -62,3 +66,22 @@ def letter_panels(figure: Figure) -> None:
     panels = [axes for axes in figure.axes if axes.get_label() != COLOUR_BAR]
     for number, axes in enumerate(panels if len(panels) > 1 else ()):
         axes.set_title(f"({chr(ord('a') + number)})", loc="left", fontsize="medium", fontweight="bold")
+
+
+def write_picture(
+    draw: Callable[[Figure], object], size: tuple[float, float], *paths: Path, settings: dict[str, Any] | None = None
+) -> None:
+    """Draw with `draw(figure)` into an empty matplotlib figure, and write it to each of the `paths`.
+
+    size: width and height [inches]. The suffix of a path gives the format. settings: of matplotlib, in place of those
+    in `SETTINGS`. `ImportError` without matplotlib; `NotWritten` where a file cannot be completed.
+    """
+    import matplotlib.figure  # here: it takes longer to import than all the rest
+
+    chosen: Any = SETTINGS | (settings or {})
+    with matplotlib.rc_context(chosen):
+        figure = matplotlib.figure.Figure(figsize=size, layout="constrained")
+        draw(figure)
+        for path in paths:
+            with replacing(path) as draft:
+                figure.savefig(draft, format=path.suffix[1:], metadata=METADATA[path.suffix])
