@@ -134,9 +134,9 @@ class Accuracy:
             raise ValueError(f"accuracy fixed must be > 0 steps by period, and no step given, got {shown(self.fixed)}")
 
     def __repr__(self) -> str:
-        told = {item.name: getattr(self, item.name) for item in fields(self)}
-        others = [item.name for item in fields(self) if told[item.name] != item.default]
-        return f"Accuracy({', '.join(f'{name}={told[name]!r}' for name in others)})"
+        values = {item.name: getattr(self, item.name) for item in fields(self)}
+        others = [item.name for item in fields(self) if values[item.name] != item.default]
+        return f"Accuracy({', '.join(f'{name}={values[name]!r}' for name in others)})"
 
     def points_per_length(self, waves: float) -> float:
         """Points per body length for `waves` waves on the body. One wave or less needs `resolution`."""

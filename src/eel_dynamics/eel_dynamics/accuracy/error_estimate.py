@@ -15,7 +15,7 @@ ROUND_OFF = 2e-16  # relative error of the arithmetic, which grows with the moti
 ROUND_OFF_SHARE = 0.1  # of the target that grown round-off may take
 # Part of body length and path beyond which the distance of two runs is no longer small, so that it no longer grows.
 SMALL = 0.03
-SETTLED = 0.2  # share of a run in which the distance grows from nothing, and says nothing of the sensitivity
+FIRST_PART = 0.2  # share of a run in which the distance grows from nothing, and says nothing of the sensitivity
 LEAST_SAMPLES = 5  # of a fit of the growth rate
 # Torques below this part of m (l/T)^2 count by it: m mass, l length, T the shortest period or the run's duration.
 TORQUE_FLOOR = 1e-3
@@ -100,7 +100,7 @@ def growth_rate_of(time: np.ndarray, distance: np.ndarray, small: float) -> floa
     """Slope [1/s] of the logarithm of the `distance` (T,) over `time` (T,), until it is no longer `small`; or 0."""
     grown = distance >= small
     growing = (distance > 0.0) & (np.arange(len(time)) < (np.argmax(grown) if grown.any() else len(time)))
-    counts = growing & (time >= SETTLED * time[-1])
+    counts = growing & (time >= FIRST_PART * time[-1])
     if counts.sum() < LEAST_SAMPLES:
         counts = growing  # it has grown within the first part
     if counts.sum() < LEAST_SAMPLES:

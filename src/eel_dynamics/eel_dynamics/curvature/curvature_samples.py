@@ -18,7 +18,7 @@ from eel_dynamics.accuracy.law_waves import MOST_WAVES, waves_of_rows
 POINTS_PER_WAVE = 8
 MOST_POINTS = int(POINTS_PER_WAVE * MOST_WAVES) + 1  # of one sample
 MOST_AHEAD, MOST_POINTS_AHEAD = 10_000, 1_000_000  # of the simulation: 50 MB of samples
-AHEAD = 100  # samples for which a grid is chosen, so that it does not change with every one
+SAMPLES_OF_A_GRID = 100  # ahead, for which a grid is chosen, so that it does not change with every one
 QUANTITIES = "pitch", "pitch_rate", "pitch_accel", "yaw", "yaw_rate", "yaw_accel"
 TIME_OF = attrgetter("time")
 
@@ -178,7 +178,7 @@ class SampleQueue:
     @property
     def next_ones(self) -> list[CurvatureSample]:
         """The samples for which a grid is chosen."""
-        return self._samples[:AHEAD]
+        return self._samples[:SAMPLES_OF_A_GRID]
 
     @property
     def end(self) -> float | None:

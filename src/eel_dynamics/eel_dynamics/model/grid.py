@@ -190,9 +190,9 @@ def interpolation_matrix(points: int, at) -> np.ndarray:
     return chebyshev.chebvander(2.0 * np.asarray(at, dtype=float) - 1.0, points - 1) @ _series(points)
 
 
-def integration_matrix(points: int, upto) -> np.ndarray:
-    """Integral from 0 to `upto` (M,) in [0, 1] of the polynomial through the Radau points: (M, points)."""
-    return chebyshev.chebvander(2.0 * np.asarray(upto, dtype=float) - 1.0, points) @ _integral_series(points)
+def integration_matrix(points: int, end) -> np.ndarray:
+    """Integral from 0 to `end` (M,) in [0, 1] of the polynomial through the Radau points: (M, points)."""
+    return chebyshev.chebvander(2.0 * np.asarray(end, dtype=float) - 1.0, points) @ _integral_series(points)
 
 
 @cache

@@ -62,15 +62,15 @@ def missed_before(field, values: np.ndarray, grid: Grid, breaks: np.ndarray, x: 
     plus what the `grid` gives for the `values` (m, n) times g.
     """
     home = grid.panel_at(x)
-    upto = [panel.fraction(x[home == index]) for index, panel in enumerate(grid.panels)]
+    ends_at = [panel.fraction(x[home == index]) for index, panel in enumerate(grid.panels)]
     ends = [
         np.concatenate((_inside(panel, breaks), each)) if len(each) else None
-        for panel, each in zip(grid.panels, upto, strict=True)
+        for panel, each in zip(grid.panels, ends_at, strict=True)
     ]
     result = np.zeros((len(values), len(x), grid.matrix.shape[1]))
     for part in _parts(field, grid, ends):
         index = grid.panels.index(part.panel)
-        missed = _missed(part, values[:, part.nodes], upto[index])
+        missed = _missed(part, values[:, part.nodes], ends_at[index])
         result[:, home == index, : part.panel.points] = missed.transpose(1, 0, 2)
     return result
 
@@ -85,13 +85,13 @@ def missed_within(field, values: np.ndarray, grid: Grid, breaks: np.ndarray, fra
     return np.ascontiguousarray(result.transpose(1, 0, 2))
 
 
-def _missed(part: Part, values: np.ndarray, upto: np.ndarray) -> np.ndarray:
-    """Of the p nodes of the panel with the `values` (m, p), up to the fractions `upto` (K,) of it: (K, m, p)."""
+def _missed(part: Part, values: np.ndarray, ends_at: np.ndarray) -> np.ndarray:
+    """Of the p nodes of the panel with the `values` (m, p), up to the fractions `ends_at` (K,) of it: (K, m, p)."""
     panel, shape = part.panel, (len(part.ends), len(part.at) // len(part.ends))
     fields = part.field.reshape(-1, *shape).transpose(1, 0, 2)
     exact = np.cumsum(fields @ interpolation_matrix(panel.points, part.at).reshape(*shape, -1), axis=0)
-    rows = integration_matrix(panel.points, upto) * panel.locate(radau_points(panel.points))[1]
-    return exact[np.searchsorted(part.ends, upto)] - rows[:, None, :] * values
+    rows = integration_matrix(panel.points, ends_at) * panel.locate(radau_points(panel.points))[1]
+    return exact[np.searchsorted(part.ends, ends_at)] - rows[:, None, :] * values
 
 
 def _correction(part: Part, values: np.ndarray) -> np.ndarray:

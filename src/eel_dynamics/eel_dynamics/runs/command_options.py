@@ -33,8 +33,8 @@ def add_options(parser: Parser, *options: str, **defaults) -> None:
     for option in options:
         about = OPTIONS[option]
         default = defaults.get(option.strip("-").replace("-", "_"), about.get("default"))
-        default, told = default if isinstance(default, tuple) else (default, default)
-        text = f"{about['help']} ({told})" if told else about["help"]
+        default, shown_default = default if isinstance(default, tuple) else (default, default)
+        text = f"{about['help']} ({shown_default})" if shown_default else about["help"]
         names = ("-o", option) if option == "--out" else (option,)
         added: Any = parser.add_argument(*names, **{**about, "default": default, "help": text.replace("%", "%%")})
         if "gait" in option:

@@ -13,6 +13,7 @@ from eel_gaits.sources.sampled_law import SampledLaw
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.error_estimate import SMALL, ErrorEstimate, growth_rate_of, least_torque
+from eel_dynamics.analysis.peaks import torque_size
 from eel_dynamics.simulation.stopping import SimulationStopped
 
 ACCEPTED = 1.5  # factor of the target by which an estimate must lie below it
@@ -36,8 +37,8 @@ def relative_errors(run, reference) -> ErrorEstimate:
     if run.torque is None or reference.torque is None:
         return ErrorEstimate(position, None, rate)
     least = least_torque(run.law, run.body_mass, run.body.length, float(run.time[-1]))
-    size = max(np.linalg.norm(reference.torque, axis=2).max(), least)
-    return ErrorEstimate(position, float(np.linalg.norm(run.torque - reference.torque, axis=2).max() / size), rate)
+    size, distance = torque_size(reference.torque).max(), torque_size(run.torque - reference.torque).max()
+    return ErrorEstimate(position, float(distance / max(size, least)), rate)
 
 
 def with_error_estimate(swim: Any, request: Any) -> Any:

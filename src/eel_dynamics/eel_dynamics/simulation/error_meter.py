@@ -2,9 +2,9 @@
 """Measures the error of a march as it goes: a companion with coarser settings follows it.
 
 Both get the same laws and samples. Their distance is the estimate of the error (accuracy/error_estimate.py). A motion
-that is already known to others cannot be refined, so a missed target can only be told. With a controller in the loop,
-the estimate is the error for the same curvature. It does not contain what the controller would have done with a more
-accurate observation.
+that is already known to others cannot be refined, so a missed target can only be reported. With a controller in the
+loop, the estimate is the error for the same curvature. It does not contain what the controller would have done with a
+more accurate observation.
 """
 
 from collections import deque

@@ -22,10 +22,10 @@ def add_digest(file) -> None:
 
 def check_digest(file, named: str) -> None:
     """`ValueError` where the open file does not fit its digest; a warning, which has it `named`, where it has none."""
-    told = getattr(file, ATTRIBUTE, None)
-    if told is None:
+    written = getattr(file, ATTRIBUTE, None)
+    if written is None:
         warnings.warn(f"{named} has no digest, as older ones: damage to it would not be seen", stacklevel=5)
-    elif told != digest_of(file).encode():
+    elif written != digest_of(file).encode():
         raise ValueError("it is damaged, or was changed since it was saved: its content does not fit its digest")
 
 

@@ -61,8 +61,8 @@ def contents_of_batch(batch, out: Observations, works: np.ndarray, energy_at_sta
 
 def with_warnings(batch, contents: Contents) -> Contents:
     """The `contents` of a `Batch`, and for each swimmer its warnings."""
-    told = [list(batch[index].warnings) if samples else [] for index, samples in enumerate(batch.samples)]
-    return contents._replace(values=contents.values | {"warnings": told})
+    lines = [list(batch[index].warnings) if samples else [] for index, samples in enumerate(batch.samples)]
+    return contents._replace(values=contents.values | {"warnings": lines})
 
 
 def observed_of_batch(contents: Contents) -> tuple[Observations, np.ndarray]:
