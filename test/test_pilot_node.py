@@ -42,7 +42,7 @@ def test_a_short_course_is_swum_and_goals_that_do_not_fit_are_refused(start, fre
     answer = swim.call(
         SetParameters, "pilot/set_parameters", parameters=[Parameter("speed", value=5.0).to_parameter_msg()]
     )
-    assert not answer.results[0].successful and "<= 0.98 m/s" in answer.results[0].reason
+    assert not answer.results[0].successful and "<= 0.9795 m/s" in answer.results[0].reason
     goals.publish(path_message((4.0, 1.0, -0.2), (8.0, -1.0, 0.1)))
     pilot.wait_for_output("swim through 2 points", LIMIT)
     swim.listen("goal", Path, LATCHED)  # late

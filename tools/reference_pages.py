@@ -9,6 +9,7 @@ import subprocess
 import sys
 from dataclasses import dataclass, field, fields
 from pathlib import Path
+from typing import Any
 
 from eel_base.command.suite import commands as known_commands
 from eel_base.quantity import limits
@@ -36,7 +37,9 @@ class Gait:
     file: str = field(default="", metadata={"unit": "", "description": FILE})
 
 
-NODES = {  # name of the node: heading, prefix and dataclass of its parameters
+NODES: dict[
+    str, list[tuple[str, str, type[Any]]]
+] = {  # name of the node: heading, prefix and dataclass of its parameters
     "gait_generator": [
         ("", "", Gait),
         ("", "", Transition),

@@ -149,7 +149,7 @@ def test_transition_belongs_to_the_law():
         (lambda: falling(bend_full=0.5), "bend_full must be > bend_start (1 s), got 0.5"),
         (lambda: falling(counter_end=7.0), "counter_end must be > counter_full (7 s), got 7.0"),
         (lambda: turning(bend_start=2), "bend_full must be > bend_start (2 s), got 2.0"),
-        (lambda: falling(transition=-1), "transition must be >= 0 s, got -1.0"),
+        (lambda: falling(transition=-1), "transition must be >= 0 s, got -1"),
     ],
 )
 def test_refuses_with_the_number_and_what_it_got(make, message):

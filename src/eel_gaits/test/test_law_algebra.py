@@ -118,7 +118,7 @@ def test_names_and_transitions_of_what_is_made():
         (lambda: WAVE.mirrored(["yaw"]), "axis must be one of pitch, yaw, got ['yaw']"),
         (lambda: WAVE.ramped_in(2.0, 2.0), "end must be > start (2 s), got 2"),
         (lambda: WAVE.ramped_out(2.0, math.inf), "end must be finite, got inf"),
-        (lambda: WAVE.followed_by(WAVE, at=1.0, blend=0.0), "blend must be > 0 s, got 0"),
+        (lambda: WAVE.followed_by(WAVE, at=1.0, blend=0.0), "blend must be > 0 s, got 0.0"),
         (lambda: WAVE.followed_by("straight", at=1.0), "the law that follows must be a Law, got 'straight'"),
         (lambda: Ramp(0.0, 1.0, 1.0, 0.5), "factor must be a whole number from 0 to 255, got 0.5"),
         (lambda: Ramp(0.0, 1.0, 1.0, 256), "factor must be a whole number from 0 to 255, got 256"),

@@ -129,7 +129,7 @@ def test_a_way_point_straight_below_is_dived_to_on_the_present_heading():
     [
         (lambda: goals.course(math.nan, 0.0, 0.5, LIMITS), "heading must be finite, got nan"),
         (lambda: goals.course(0.0, math.inf, 0.5, LIMITS), "depth must be finite, got inf"),
-        (lambda: goals.course(0.0, 0.0, 3.0, LIMITS), "speed must be > 0 and <= 0.98 m/s, got 3"),
+        (lambda: goals.course(0.0, 0.0, 3.0, LIMITS), "speed must be <= 0.9795 m/s, got 3"),
         (lambda: goals.path([], 0.5, LIMITS), "path must have one point or more, got none"),
         (lambda: goals.path([(0, 0, math.nan)], 0.5, LIMITS), "path point 1 must be finite"),
         (lambda: goals.path([(5, 0, 0), (5, 0.1, 0)], 0.5, LIMITS), "path point 2 must lie more than 0.25 m ahead"),

@@ -80,8 +80,8 @@ def test_a_sequence_in_python_is_the_same():
     [
         ([(straight(), None), (still(), 1.0)], "steps[0]: duration must be given for all steps but the last, got None"),
         ([(straight(), 1.0), ("still", 1.0)], "steps[1]: a step must begin with a Law, got 'still'"),
-        ([(straight(), 0.0)], "steps[0]: duration must be > 0, got 0"),
-        ([(straight(), 1.0), (still(), 1.0, -1.0)], "steps[1]: blend must be > 0, got -1"),
+        ([(straight(), 0.0)], "steps[0]: duration must be > 0, got 0.0"),
+        ([(straight(), 1.0), (still(), 1.0, -1.0)], "steps[1]: blend must be > 0, got -1.0"),
     ],
 )
 def test_a_bad_step_in_python_is_named(rows, message):

@@ -11,8 +11,7 @@ from eel_gaits.pilot import goals
 from eel_gaits.pilot.settings import PilotSettings
 from eel_gaits.ros.messages import samples_to_message
 from eel_gaits.ros.pilot_messages import head_motion, path_message, read_path
-from eel_gaits.ros.row_stream import AHEAD, MOST_ROWS, RowStream
-from eel_gaits.ros.sample_stream import SampleStream
+from eel_gaits.ros.streams import MOST_SAMPLES, ROWS_AHEAD, OscillatorStream, RowStream
 from eel_gaits.sources.sampled_law import SampledLaw
 from eel_ros.stamps import LATEST, seconds_of
 from nav_msgs.msg import Odometry
@@ -54,7 +53,7 @@ def test_a_jump_of_time_begins_the_oscillators_anew_and_is_said_once(jump, monke
     steps, rate = [], Oscillators._rate
     monkeypatch.setattr(Oscillators, "_rate", lambda chain, state: steps.append(1) or rate(chain, state))
     topic = Topic()
-    stream = SampleStream(topic)
+    stream = OscillatorStream(topic, "section")
     stream.follow(Oscillation(), 0.0)
     before, sent = len(steps), len(topic.times)
     stream.extend(jump)
@@ -76,8 +75,8 @@ def test_after_a_jump_of_time_rows_go_on_from_the_present_and_some_at_a_time(jum
     for _ in range(5):
         stream.extend(jump)
     counts = len(topic.times) - sent
-    assert topic.times[sent] == pytest.approx(jump, abs=0.11) and topic.times[-1] <= jump + AHEAD
-    assert MOST_ROWS < counts <= 5 * MOST_ROWS and np.all(np.diff(topic.times) > 0.0)
+    assert topic.times[sent] == pytest.approx(jump, abs=0.11) and topic.times[-1] <= jump + ROWS_AHEAD
+    assert MOST_SAMPLES < counts <= 5 * MOST_SAMPLES and np.all(np.diff(topic.times) > 0.0)
 
 
 @pytest.mark.parametrize("time", [-1e-3, 2.0**31 - 1.0, math.inf, math.nan])

@@ -6,6 +6,7 @@ match then delivers each message twice.
 """
 
 from collections.abc import Mapping
+from typing import Any
 
 REMEMBERED = 4096  # deliveries: one subscription may be so far behind the other
 
@@ -14,9 +15,9 @@ class Deliveries:
     """The messages of one topic, by the time at which they were sent and their publisher's count of messages."""
 
     def __init__(self) -> None:
-        self._known: dict[tuple, None] = {}  # the oldest first
+        self._known: dict[tuple[Any, ...], None] = {}  # the oldest first
 
-    def repeats(self, info: Mapping) -> bool:
+    def repeats(self, info: Mapping[str, Any]) -> bool:
         """Whether the message with this message `info` has come before; from now on it has.
 
         A message without a time of sending is never a repetition.

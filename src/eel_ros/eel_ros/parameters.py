@@ -89,7 +89,7 @@ def help_rows(kind: type[Any], prefix: str = "") -> Iterator[tuple[str, str, Any
 def described(item: Field[Any]) -> str:
     """The description of a field, with its unit in brackets."""
     unit = item.metadata["unit"]
-    return item.metadata["description"] + (f" [{unit}]" if unit else "")
+    return f"{item.metadata['description']} [{unit}]" if unit else str(item.metadata["description"])
 
 
 def default_of(item: Field[Any]) -> Any:

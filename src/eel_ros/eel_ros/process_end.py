@@ -6,7 +6,7 @@ import signal
 import sys
 import threading
 import time
-from typing import NoReturn
+from typing import Any, NoReturn
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
@@ -26,7 +26,7 @@ class ProcessEnd:
         for number in SIGNALS:
             signal.signal(number, self._take_signal)
 
-    def _take_signal(self, number, frame) -> None:
+    def _take_signal(self, number: int, frame: Any) -> None:
         self.signalled = True
 
     def ignore_signals(self) -> None:

@@ -71,7 +71,8 @@ def run_node(
         executor.shutdown()
         if hasattr(node, "close"):
             node.close()
-        node.destroy_node()
+        made: Node = node
+        made.destroy_node()
         rclpy.try_shutdown()
         end.ignore_signals()
     failure = getattr(node, "failure", "")
@@ -80,7 +81,14 @@ def run_node(
     return int(bool(failure))
 
 
-def _serve(executor, node, poll, take_messages, period: float, end: ProcessEnd) -> None:
+def _serve(
+    executor: SingleThreadedExecutor,
+    node: Any,
+    poll: Callable[[Any], bool],
+    take_messages: Any,
+    period: float,
+    end: ProcessEnd,
+) -> None:
     last_poll = 0.0  # s, steady clock
     while not end.signalled:
         now = time.monotonic()
@@ -96,7 +104,7 @@ def _serve(executor, node, poll, take_messages, period: float, end: ProcessEnd) 
             time.sleep(PAUSE)
 
 
-def _goes_on(poll, node) -> bool:
+def _goes_on(poll: Callable[[Any], bool], node: Any) -> bool:
     """Whether `poll(node)` lets the node go on; it does so where it raises, which is logged."""
     try:
         return poll(node)
@@ -105,14 +113,14 @@ def _goes_on(poll, node) -> bool:
         return True
 
 
-def is_from_before(about: Mapping, before: int) -> bool:
+def is_from_before(about: Mapping[str, Any], before: int) -> bool:
     """Whether the message with this message info `about` had come `before` [ns, system clock], or had been sent and was
     on its way."""
     late = (about["received_timestamp"] or time.time_ns()) - before
     return late <= (ON_THE_WAY if about["source_timestamp"] <= before else 0)
 
 
-def _drain(node, take_messages) -> None:
+def _drain(node: Any, take_messages: Any) -> None:
     """Take what was sent before now: until none of it has come for `QUIET` [s], or the node has a `failure`."""
     before, last = time.time_ns(), time.monotonic()
     limit = last + DRAIN_LIMIT

@@ -24,7 +24,7 @@ class Beginning:
         except struct.error:
             raise EOFError("it ends before its fields") from None
         self._place += 4
-        return number
+        return int(number)
 
     def text(self) -> str:
         """The next field, a string. `EOFError` if the message ends before."""

@@ -5,6 +5,7 @@ import inspect
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 from weakref import WeakKeyDictionary
 
 from rcl_interfaces.msg import SetParametersResult
@@ -39,16 +40,18 @@ class ServedNode(Node):
     on stderr for each.
     """
 
-    def create_service(self, srv_type, srv_name, callback, **options):
+    def create_service(self, srv_type: Any, srv_name: str, callback: Callable[..., Any], **options: Any) -> Any:
         """As of `Node`, but each call is answered, whatever `callback` raises; also those of the parameter services."""
         return super().create_service(srv_type, srv_name, answering(self, srv_name, callback), **options)
 
-    def create_subscription(self, msg_type, topic: str, callback: Callable, qos_profile, **options) -> Subscription:
+    def create_subscription(
+        self, msg_type: Any, topic: str, callback: Callable[..., Any], qos_profile: Any, **options: Any
+    ) -> Subscription:
         """As of `Node`; what the `callback(message)` raises is logged, and the message dropped, as one that is too
         large. With `raw=True` it is `callback(data, about)`: the serialised message, and the message info."""
         what, raw = f"a message of {self.resolve_topic_name(topic)}", options.pop("raw", False)
 
-        def take(data: bytes, about: dict) -> None:
+        def take(data: bytes, about: dict[str, Any]) -> None:
             try:
                 callback(*((data, about) if raw else (read_message(data, msg_type),)))
             except Exception as error:
@@ -61,15 +64,15 @@ class ServedNode(Node):
 class PolledGroup(CallbackGroup):
     """A callback group that the executor neither waits for nor runs; the node polls its subscriptions."""
 
-    def can_execute(self, entity) -> bool:
+    def can_execute(self, entity: Any) -> bool:
         """Return False: the executor runs none of them."""
         return False
 
-    def beginning_execution(self, entity) -> bool:
+    def beginning_execution(self, entity: Any) -> bool:
         """Return False: the executor runs none of them."""
         return False
 
-    def ending_execution(self, entity) -> None:
+    def ending_execution(self, entity: Any) -> None:
         """Do nothing: none has begun."""
 
 
@@ -106,7 +109,7 @@ def reason_of(error: Exception) -> str:
     return " ".join(f"{type(error).__name__}: {error}".split())[:LONGEST_REASON]
 
 
-def read_message(data: bytes, kind: type):
+def read_message(data: bytes, kind: type) -> Any:
     """The message of the type `kind` that is serialised in `data`. `ValueError` for more bytes than are read.
 
     A sequence of messages takes microseconds for each of its bytes, and no signal is heard meanwhile.
@@ -116,11 +119,11 @@ def read_message(data: bytes, kind: type):
     return deserialize_message(data, kind)
 
 
-def answering(node: Node, name: str, callback: Callable) -> Callable:
-    """The `callback` of the service `name`, so that it answers each call: an exception is logged, and told as the
+def answering(node: Node, name: str, callback: Callable[..., Any]) -> Callable[..., Any]:
+    """The `callback` of the service `name`, so that it answers each call: an exception is logged, and is the
     reason of a refusal."""
 
-    async def answer(request, response):
+    async def answer(request: Any, response: Any) -> Any:
         try:
             answered = callback(request, response)
             return await answered if inspect.isawaitable(answered) else answered
@@ -132,7 +135,7 @@ def answering(node: Node, name: str, callback: Callable) -> Callable:
     return answer
 
 
-def _refusal(request, response, reason: str):
+def _refusal(request: Any, response: Any, reason: str) -> Any:
     """The `response` with the `reason`, where its type has a place for it."""
     if hasattr(response, "results"):  # of SetParameters, one for each parameter
         left = len(request.parameters) - len(response.results)

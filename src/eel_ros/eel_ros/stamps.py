@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reads the stamps of messages as seconds of simulation time."""
+"""The stamps of messages as seconds of simulation time, and back."""
+
+import math
 
 from builtin_interfaces.msg import Time
 
-LATEST = 2**31 - 61  # s: a minute before the last second that a stamp holds, so that what answers it has a stamp too
+END = 2**31 - 1  # s: the last second that a stamp holds
+LATEST = END - 60  # s: a minute before, so that what answers it has a stamp too
 
 
 def seconds_of(stamp: Time, name: str = "header.stamp") -> float:
@@ -14,4 +17,13 @@ def seconds_of(stamp: Time, name: str = "header.stamp") -> float:
     if not 0 <= stamp.sec < LATEST or stamp.nanosec >= 1_000_000_000:
         rule = f">= 0 s and < {LATEST} s, with nanosec < 1e9"
         raise ValueError(f"{name} must be {rule}, got sec {stamp.sec}, nanosec {stamp.nanosec}")
-    return stamp.sec + 1e-9 * stamp.nanosec
+    seconds: float = stamp.sec + 1e-9 * stamp.nanosec
+    return seconds
+
+
+def stamp_of(time: float) -> Time:
+    """The stamp of a `time` [s], to the nearest nanosecond. `ValueError` for one that no stamp holds."""
+    if not 0.0 <= time < END:
+        raise ValueError(f"time of a sample must be >= 0 s and < {END} s, got {time:.9g} s")
+    seconds, nanoseconds = divmod(math.floor(time * 1e9 + 0.5), 1_000_000_000)
+    return Time(sec=seconds, nanosec=nanoseconds)

@@ -22,7 +22,7 @@ def run_command(
 
     Returns the exit status: that of the work; 1 where an output cannot be written to its end; 2 for bad input, a
     missing package or too little memory; that of a `WorkStopped`, 3 for a swim that stops. An error prints one line
-    with its reason. interrupted: what Ctrl-C leaves, told with status 130; empty: Ctrl-C ends the command at once.
+    with its reason. interrupted: what Ctrl-C leaves, printed with status 130; empty: Ctrl-C ends the command at once.
     """
     options, name = parser.parse_args(arguments), parser.prog
     try:

@@ -21,7 +21,7 @@ MOST_NUMBERS = 5_000_000  # of a file: 40 MB
 SUFFIX = ".npy"
 END, PLACE = 22, slice(10, 12)  # bytes of a directory's end, and the place of the number of members in it
 LONGEST_HEAD = 1000  # bytes
-HEAD = re.compile(r"\{'descr': '([^']*)', 'fortran_order': (True|False), 'shape': \(([0-9, ]*)\), \} *\n")
+HEADER = re.compile(r"\{'descr': '([^']*)', 'fortran_order': (True|False), 'shape': \(([0-9, ]*)\), \} *\n")
 NUMBERS = re.compile(r"[<>|=]([biuf])([1248])")
 
 
@@ -53,7 +53,7 @@ def _array(archive: ZipFile, name: str, member: ZipInfo, most: int) -> np.ndarra
         length = int.from_bytes(file.read(width), "little")
         if start[:6] != b"\x93NUMPY" or not 0 < length <= LONGEST_HEAD:
             raise ValueError(f"{shown(name)} is no array")
-        head = HEAD.fullmatch(file.read(length).decode("latin-1"))
+        head = HEADER.fullmatch(file.read(length).decode("latin-1"))
         if head is None or NUMBERS.fullmatch(head[1]) is None:
             raise ValueError(f"{shown(name)} must be an array of real numbers, got {shown(head and head[1])}")
         shape = tuple(int(each) for each in head[3].split(",") if each.strip())

@@ -35,10 +35,10 @@ def reading(what: str) -> Iterator[None]:
     except BaseException as error:  # parsers raise nearly anything for a damaged file; those in Rust panic
         if not isinstance(error, Exception) and type(error).__module__ != "pyo3_runtime":
             raise
-        told = _reason(error)
-        if not told.startswith(what):
-            told = f"{what}{', ' if isinstance(error, Misplaced) else ': '}{told}"
-        raise ValueError(one_line(told)) from None
+        reason = _reason(error)
+        if not reason.startswith(what):
+            reason = f"{what}{', ' if isinstance(error, Misplaced) else ': '}{reason}"
+        raise ValueError(one_line(reason)) from None
 
 
 class InputFile(io.BufferedReader):
@@ -51,8 +51,8 @@ class InputFile(io.BufferedReader):
     def __init__(self, path: str | os.PathLike[str], most: int | None = None) -> None:
         path = Path(path)
         if not path.is_file():
-            told = "a folder" if path.is_dir() else "no regular file"
-            raise ValueError(f"it is {told}" if path.exists() else "there is no such file")
+            kind = "a folder" if path.is_dir() else "no regular file"
+            raise ValueError(f"it is {kind}" if path.exists() else "there is no such file")
         super().__init__(io.FileIO(path))
         self.size = os.fstat(self.fileno()).st_size
         self._left, self._reads = 2 * self.size, 0

@@ -39,8 +39,8 @@ def from_yaml(text: str, most: int = MOST_NODES) -> Any:
         return None if node is None else loader.value(node, 1)
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
-        told = getattr(error, "problem", None) or str(error)
-        raise (ValueError(told) if mark is None else Misplaced(f"line {mark.line + 1}", told)) from None
+        rule = getattr(error, "problem", None) or str(error)
+        raise (ValueError(rule) if mark is None else Misplaced(f"line {mark.line + 1}", rule)) from None
 
 
 class _Loader(yaml.SafeLoader):
@@ -78,23 +78,23 @@ class _Loader(yaml.SafeLoader):
     def _scalar(self, node: Any) -> Any:
         line = node.start_mark.line + 1
         if node.tag != "tag:yaml.org,2002:str" and len(node.value) > LONGEST_SCALAR:
-            told = f"a value must have at most {LONGEST_SCALAR} characters, got {len(node.value)}"
-            raise Misplaced(f"line {line}", told)
+            rule = f"a value must have at most {LONGEST_SCALAR} characters, got {len(node.value)}"
+            raise Misplaced(f"line {line}", rule)
         try:
             value = self.construct_object(node)
         except yaml.YAMLError:
             raise
         except Exception as error:  # of a tag that does not go with the value
-            told = f"{shown(node.value)} is no {node.tag.rpartition(':')[2]}: {error}"
-            raise Misplaced(f"line {line}", told) from None
+            rule = f"{shown(node.value)} is no {node.tag.rpartition(':')[2]}: {error}"
+            raise Misplaced(f"line {line}", rule) from None
         if isinstance(value, str) and node.style is None and _is_number(value):
             return float(value)  # such as 1e-3, which YAML 1.1 calls a text
         return value
 
     def _check(self, depth: int, nodes: int, mark: Any) -> None:
         if depth > DEEPEST or nodes > self._most:
-            told = "too many levels" if depth > DEEPEST else f"more than {self._most} values, with all aliases"
-            raise Misplaced(f"line {mark.line + 1}", told)
+            rule = "too many levels" if depth > DEEPEST else f"more than {self._most} values, with all aliases"
+            raise Misplaced(f"line {mark.line + 1}", rule)
 
 
 def _is_number(text: str) -> bool:

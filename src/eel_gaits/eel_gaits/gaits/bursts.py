@@ -17,9 +17,10 @@ from eel_gaits.gaits.numbers import bend_quantity, constant_bend
 from eel_gaits.gaits.registry import register
 from eel_gaits.gaits.swimming import Wave
 from eel_gaits.laws.ramp import Ramp
+from eel_gaits.laws.term import Term
 
 
-def _duration(default, description):
+def _duration(default: float, description: str) -> float:
     return quantity(default, "s", description, 1e-3, 1e4)
 
 
@@ -41,11 +42,11 @@ class Bursts(Wave):
     coast_time: float = _duration(3.0, "time of the straight body between two bursts")
 
     @property
-    def cycle(self):
+    def cycle(self) -> float:
         """Time [s] from the beginning of one burst to that of the next."""
         return (2.0 * self.start_periods + self.burst_periods) * self.period + self.coast_time
 
-    def envelope(self):
+    def envelope(self) -> tuple[Ramp, ...]:
         """The ramps of all bursts."""
         rise, full = self.start_periods * self.period, self.burst_periods * self.period
         starts = [index * self.cycle for index in range(int(self.bursts))]
@@ -60,7 +61,7 @@ class Bursts(Wave):
 
 
 @register(Start)
-def c_start(numbers):
+def c_start(numbers: Start) -> tuple[Term, ...]:
     """An escape from rest: the body bends into a C, straightens with a stroke, and swims away to that side."""
     ramps = (
         Ramp(0.0, numbers.bend_time, 1.0),
@@ -70,6 +71,6 @@ def c_start(numbers):
 
 
 @register(Bursts)
-def burst_and_coast(numbers):
+def burst_and_coast(numbers: Bursts) -> tuple[Term, ...]:
     """Forward swimming in bursts, with a straight body that coasts in between."""
     return (replace(numbers.term(), envelope=numbers.envelope()),)

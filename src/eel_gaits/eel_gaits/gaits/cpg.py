@@ -23,6 +23,7 @@ from eel_base.quantity import quantity
 from eel_gaits.gaits.numbers import bend_quantity, constant_bend
 from eel_gaits.gaits.registry import register
 from eel_gaits.gaits.swimming import Wave
+from eel_gaits.laws.term import Term
 
 OSCILLATORS = 21
 COUPLING = 40.0  # 1/s, w
@@ -41,18 +42,18 @@ class Oscillation(Wave):
     length: float = quantity(1.0, "m", "body length L", 1e-4, 1e3)
 
     @property
-    def sample_period(self):
+    def sample_period(self) -> float:
         """Time [s] between two samples of the stream."""
         return min(LONGEST_SAMPLE, self.period / SAMPLES_PER_PERIOD)
 
-    def targets(self):
+    def targets(self) -> np.ndarray:
         """What the oscillators are to settle at: f [Hz], k [rad/m], a0, a1, a2, B, shape (6,)."""
         wave = self.amplitude_0, self.amplitude_1, self.amplitude_2
         return np.array((1.0 / self.period, 2.0 * math.pi / self.wavelength, *wave, self.yaw_bend))
 
 
 @register(Oscillation)
-def cpg(numbers):
+def cpg(numbers: Oscillation) -> tuple[Term, ...]:
     """A chain of phase oscillators. The node streams it; the law is its settled wave."""
     return (numbers.term(), *constant_bend("yaw", numbers.yaw_bend, numbers.term().envelope))
 
@@ -66,7 +67,7 @@ class Oscillators:
         x: (21,) m, places of the oscillators.
     """
 
-    def __init__(self, numbers, time=0.0):
+    def __init__(self, numbers: Oscillation, time: float = 0.0) -> None:
         self.numbers, self.time = numbers, time
         self.x = np.linspace(0.0, numbers.length, OSCILLATORS)
         n = OSCILLATORS
@@ -76,7 +77,7 @@ class Oscillators:
         self._state[p[:2]] = numbers.targets()[:2]
         self._state[theta] = -self._state[p[1]] * self.x
 
-    def advance(self, time):
+    def advance(self, time: float) -> None:
         """Move on to `time` [s] by steps of the classical Runge-Kutta method."""
         p = self._parts[0]
         fastest = max(
@@ -95,7 +96,7 @@ class Oscillators:
             self._state = self._state + step / 6.0 * (first + 2.0 * second + 2.0 * third + fourth)
         self.time = time
 
-    def curvature(self):
+    def curvature(self) -> np.ndarray:
         """K3 [rad/m], its rate [rad/m/s] and its acceleration [rad/m/s^2] at the oscillators, shape (3, 21)."""
         p, _, theta, r, r_rate = (self._state[part] for part in self._parts)
         rates = self._rate(self._state)
@@ -114,7 +115,7 @@ class Oscillators:
             )
         )
 
-    def _rate(self, state):
+    def _rate(self, state: np.ndarray) -> np.ndarray:
         p, p_rate, theta, r, r_rate = (state[part] for part in self._parts)
         g, a = self.numbers.following, self.numbers.convergence
         wanted = np.append(p[2] + self.x * (p[3] + self.x * p[4]), p[5])
@@ -130,7 +131,7 @@ class Oscillators:
             )
         )
 
-    def _pull_rate(self, theta, theta_rate, p, p_rate):
+    def _pull_rate(self, theta: np.ndarray, theta_rate: np.ndarray, p: np.ndarray, p_rate: np.ndarray) -> np.ndarray:
         between = np.diff(self.x)
         apart_rate = np.cos(np.diff(theta) + p[1] * between) * (np.diff(theta_rate) + p_rate[1] * between)
-        return COUPLING * (np.append(apart_rate, 0.0) - np.append(0.0, apart_rate))
+        return np.asarray(COUPLING * (np.append(apart_rate, 0.0) - np.append(0.0, apart_rate)))

@@ -14,6 +14,7 @@ from eel_gaits.gaits.numbers import bend_quantity, constant_bend, instant_quanti
 from eel_gaits.gaits.registry import register
 from eel_gaits.gaits.swimming import Wave
 from eel_gaits.laws.ramp import Ramp
+from eel_gaits.laws.term import Term
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,7 +29,7 @@ class Dive(Wave):
     counter_full: float = instant_quantity(7.0, "the opposite bend is complete, t5", "counter_start")
     counter_end: float = instant_quantity(8.0, "the body is straight in pitch for good, t6", "counter_full")
 
-    def terms(self, direction):
+    def terms(self, direction: float) -> tuple[Term, ...]:
         """The wave, and the pitch term, which first bends the tail down (direction 1) or up (-1)."""
         ramps = (
             Ramp(self.bend_start, self.bend_full, 1.0),
@@ -62,26 +63,26 @@ class Spiral(Wave):
 
 
 @register(Dive)
-def falling(numbers):
+def falling(numbers: Dive) -> tuple[Term, ...]:
     """The gait of section 7.2.2, eqs. (62) to (66): forward swimming and a dive to a greater depth."""
     return numbers.terms(1.0)
 
 
 @register(Dive)
-def rising(numbers):
+def rising(numbers: Dive) -> tuple[Term, ...]:
     """The falling gait upside down: forward swimming and a climb."""
     return numbers.terms(-1.0)
 
 
 @register(Slope)
-def diving(numbers):
+def diving(numbers: Slope) -> tuple[Term, ...]:
     """Forward swimming and one bend in pitch: the body then swims straight on down a slope."""
     ramps = Ramp(numbers.bend_start, numbers.bend_full, 1.0), Ramp(numbers.unbend_start, numbers.bend_end, -1.0)
     return (numbers.term(), *constant_bend("pitch", numbers.pitch_bend, ramps))
 
 
 @register(Spiral)
-def spiral(numbers):
+def spiral(numbers: Spiral) -> tuple[Term, ...]:
     """A descent on a helix. Constant bends turn the body by the same screw motion in each period."""
     start, time = numbers.entry_start, numbers.entry_time
     middle, end = start + time, start + 2.0 * time

@@ -10,6 +10,7 @@ anguilliform: a / L = a_tail exp(growth (X / L - 1)), of a lamprey; Borazjani an
 (2009), 576-592, doi:10.1242/jeb.025007, after Hultmark, Leftwich and Smits (2007).
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,9 +19,10 @@ from eel_base.quantity import quantity
 from eel_gaits.gaits.numbers import PeriodicBody, waves_quantity
 from eel_gaits.gaits.registry import register
 from eel_gaits.laws.midline import lateral_wave
+from eel_gaits.laws.term import Term
 
 
-def _lateral(default, description):
+def _lateral(default: float, description: str) -> float:
     return quantity(default, "L", description, -1.0, 1.0)
 
 
@@ -30,10 +32,10 @@ class Fish(PeriodicBody):
 
     waves: float = waves_quantity(1.0)
 
-    def terms(self, amplitude):
+    def terms(self, amplitude: Callable[[np.ndarray], tuple[np.ndarray, ...]]) -> tuple[Term, ...]:
         """The terms of a midline. amplitude: function of X / L that returns a / L and its first two derivatives."""
 
-        def scaled(x):
+        def scaled(x: np.ndarray) -> tuple[np.ndarray, ...]:
             a, slope, bend = amplitude(x / self.length)
             return a * self.length, slope, bend / self.length
 
@@ -66,17 +68,17 @@ class Anguilliform(Fish):
 
 
 @register(Carangiform)
-def carangiform(numbers):
+def carangiform(numbers: Carangiform) -> tuple[Term, ...]:
     """A mackerel: the lateral amplitude is small in front and grows towards the tail."""
     a = np.polynomial.Polynomial((numbers.lateral_0, numbers.lateral_1, numbers.lateral_2))
     return numbers.terms(lambda x: (a(x), a.deriv(1)(x), a.deriv(2)(x)))
 
 
 @register(Anguilliform)
-def anguilliform(numbers):
+def anguilliform(numbers: Anguilliform) -> tuple[Term, ...]:
     """A lamprey or an eel: the whole body moves sideways, and more towards the tail."""
 
-    def amplitude(x):
+    def amplitude(x: np.ndarray) -> tuple[np.ndarray, ...]:
         a = numbers.lateral_tail * np.exp(numbers.growth * (x - 1.0))
         return a, numbers.growth * a, numbers.growth**2 * a
 

@@ -14,7 +14,7 @@ from eel_gaits.gaits.registry import register
 from eel_gaits.laws.term import Term
 
 
-def _scaled_bend(default, place):
+def _scaled_bend(default: float, place: str) -> float:
     description = f"curvature times body length, K L, at {place}"
     return quantity(default, "rad", description, -1e3, 1e3)
 
@@ -42,18 +42,18 @@ class EfficientKern(Kern):
 
 
 @register(Kern)
-def kern_fast(numbers):
+def kern_fast(numbers: Kern) -> tuple[Term, ...]:
     """The gait that evolved for speed in 3-D computations of a self-propelled eel."""
     return (_kern_term(numbers),)
 
 
 @register(EfficientKern)
-def kern_efficient(numbers):
+def kern_efficient(numbers: EfficientKern) -> tuple[Term, ...]:
     """The gait that evolved for efficiency in 3-D computations of a self-propelled eel."""
     return (_kern_term(numbers),)
 
 
-def _kern_term(numbers):
+def _kern_term(numbers: Kern) -> Term:
     """The wave K(s) sin 2 pi (t/T - tau s/L), written as K(s) sin(2 pi (X/wavelength - t/T) + pi) with s = X."""
     length = numbers.length
     scaled = (numbers.bend_nose, numbers.bend_third, numbers.bend_two_thirds, numbers.bend_tail)

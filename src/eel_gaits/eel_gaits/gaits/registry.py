@@ -12,6 +12,7 @@ is installed adds its own by an entry point, whose value is a function with the 
 import functools
 import inspect
 import warnings
+from collections.abc import Callable
 from dataclasses import dataclass
 from importlib.metadata import entry_points
 from typing import Any
@@ -33,15 +34,16 @@ GROUP = "eel_gaits.gaits"  # of entry points
 GAITS: dict[str, Any] = {}  # name of the gait: its function, whose attribute `numbers` is the class of its numbers
 
 
-def gait(name, *, transition=0.0, **numbers):
+def gait(name: str, *, transition: float = 0.0, **numbers: float) -> Law:
     """The law of the gait called `name`. `numbers` replace its defaults.
 
     transition [s]: that of the law. `ValueError` for an unknown gait lists the known ones.
     """
-    return find(name)(transition=transition, **numbers)
+    law: Law = find(name)(transition=transition, **numbers)
+    return law
 
 
-def find(name):
+def find(name: object) -> Any:
     """The function of the gait called `name`. `ValueError` for an unknown gait lists the known ones."""
     if not isinstance(name, str) or name not in GAITS:
         hint = did_you_mean(name, GAITS) if isinstance(name, str) else ""
@@ -49,17 +51,17 @@ def find(name):
     return GAITS[name]
 
 
-def register(numbers_class):
+def register(numbers_class: type[Quantities]) -> Callable[[Callable[..., Any]], Any]:
     """Decorator: list `terms_of(numbers) -> terms` as a gait, which takes keyword numbers and returns a `Law`."""
 
-    def decorate(terms_of):
+    def decorate(terms_of: Callable[..., Any]) -> Any:
         name = terms_of.__name__
         if name in GAITS and GAITS[name].__module__ != terms_of.__module__:
             raise ValueError(f"gait {shown(name)} is there already, in {GAITS[name].__module__}")
         own_names = tuple(inspect.signature(numbers_class).parameters)
 
         @functools.wraps(terms_of)
-        def made(*, transition=0.0, **numbers):
+        def made(*, transition: float = 0.0, **numbers: float) -> Law:
             unknown = [key for key in numbers if key not in own_names]
             if unknown:
                 hint = did_you_mean(unknown[0], own_names)
@@ -85,7 +87,7 @@ def register(numbers_class):
     return decorate
 
 
-def load_gaits():
+def load_gaits() -> None:
     """Load the gaits of other packages, each of which lists itself. One that cannot be loaded gives a warning."""
     for entry in entry_points(group=GROUP):
         try:

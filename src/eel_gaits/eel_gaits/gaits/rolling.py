@@ -3,6 +3,7 @@
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 from eel_base.quantity import quantity
 
@@ -39,18 +40,18 @@ class RollOver(Periodic):
 
 
 @register(Roll)
-def rolling(numbers):
+def rolling(numbers: Roll) -> tuple[Term, ...]:
     """A body bent into an arc whose direction turns about the backbone."""
     return _pair(numbers, wavelength=0.0)
 
 
 @register(RollOver)
-def roll_over(numbers):
+def roll_over(numbers: RollOver) -> tuple[Term, ...]:
     """Half a turn about the backbone: while a bend turns about it, body and water turn the other way."""
     start, end = numbers.start_periods * numbers.period, numbers.hold_periods * numbers.period
     end += start
     envelope = (Ramp(0.0, start, 1.0), Ramp(end, end + start, -1.0))
-    shared = {"period": numbers.period, "envelope": envelope}
+    shared: dict[str, Any] = {"period": numbers.period, "envelope": envelope}
     return (
         Term(axis="pitch", amplitude=(-numbers.bend,), phase=math.pi / 2.0, **shared),
         Term(axis="yaw", amplitude=(abs(numbers.bend),), **shared),
@@ -58,13 +59,13 @@ def roll_over(numbers):
 
 
 @register(Helix)
-def helix(numbers):
+def helix(numbers: Helix) -> tuple[Term, ...]:
     """A corkscrew: equal waves in pitch and yaw, a quarter of a period apart."""
     return _pair(numbers, wavelength=numbers.wavelength)
 
 
-def _pair(numbers, *, wavelength):
-    shared = {"wavelength": wavelength, "period": numbers.period, "envelope": numbers.start}
+def _pair(numbers: Roll | Helix, *, wavelength: float) -> tuple[Term, ...]:
+    shared: dict[str, Any] = {"wavelength": wavelength, "period": numbers.period, "envelope": numbers.start}
     return (
         Term(axis="pitch", amplitude=(numbers.pitch_amplitude,), phase=math.pi / 2.0, **shared),
         Term(axis="yaw", amplitude=(numbers.yaw_amplitude,), **shared),

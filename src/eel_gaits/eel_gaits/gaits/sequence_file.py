@@ -1,17 +1,22 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reads a sequence from a YAML file (`laws.sequence` has the format). An error names file, line and key."""
 
+import os
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any, NoReturn, TypeVar
 
 from eel_base.files.input_file import Misplaced, reading
 from eel_base.files.yaml_tree import Entries, read_yaml
-from eel_base.quantity import number
+from eel_base.quantity import number, positive
 from eel_base.wording import shown
 
 from eel_gaits.gaits.numbers import TURNS
 from eel_gaits.gaits.registry import find
 from eel_gaits.laws.law import MAXIMUM_NAME, Law
-from eel_gaits.laws.sequence import BLEND, positive, sequence
+from eel_gaits.laws.sequence import BLEND, sequence
+
+Made = TypeVar("Made")
 
 DEEPEST, MOST_STEPS = 8, 1000
 FILE = ("name", "blend", "steps")
@@ -19,7 +24,7 @@ PART = ("gait", "set", "together", "scale", "mirror", "delay")
 STEP = (*PART, "steps", "repeat", "duration", "blend")
 
 
-def sequence_from_file(path):
+def sequence_from_file(path: str | os.PathLike[str]) -> Law:
     """The `Law` of the sequence in a YAML file. `ValueError` in one line names file, line and key."""
     path = Path(path)
     with reading(shown(str(path))):
@@ -29,10 +34,10 @@ def sequence_from_file(path):
 class SequenceReader:
     """Makes a law of a YAML document. name: of the law, where the document gives none."""
 
-    def __init__(self, name):
+    def __init__(self, name: str) -> None:
         self._name, self._steps = name, 0
 
-    def law(self, root):
+    def law(self, root: Any) -> Law:
         """The law of the document."""
         if not isinstance(root, Entries):
             raise Misplaced("line 1", f"a sequence must have the key steps, got {shown(root)}")
@@ -46,7 +51,7 @@ class SequenceReader:
         self._tried(root, "name", Law, name=name)
         return self._tried(root, "steps", sequence, rows, blend=blend, name=name)
 
-    def _step(self, step, above, blend, depth, *, last=False):
+    def _step(self, step: Any, above: Entries, blend: float, depth: int, *, last: bool = False) -> tuple[Any, ...]:
         """A row for `sequence`."""
         self._steps += 1
         if self._steps > MOST_STEPS or depth > DEEPEST:
@@ -63,7 +68,7 @@ class SequenceReader:
             self._fail(step, "duration", "must be given for all steps but the last, got none")
         return law, None if duration is None else self._tried(step, "duration", positive, "duration", duration), into
 
-    def _repeated(self, step, blend, depth):
+    def _repeated(self, step: Entries, blend: float, depth: int) -> tuple[Law, float]:
         """The law and the duration of a step that has steps of its own."""
         for key in (*PART, "duration"):
             if key in step:
@@ -74,7 +79,7 @@ class SequenceReader:
         rows = [self._step(each, step, blend, depth + 1) for each in self._list(step, "steps")] * int(times)
         return self._tried(step, "steps", sequence, rows, blend=blend), sum(row[1] for row in rows)
 
-    def _part(self, part, depth):
+    def _part(self, part: Entries, depth: int) -> Law:
         """The law of a step, or of one of those together."""
         if ("gait" in part) == ("together" in part):
             self._fail(part, "gait", "must be given, or together or steps in its place, and only one of them")
@@ -83,7 +88,7 @@ class SequenceReader:
         law = self._tried(part, "delay", law.delayed, part.get("delay", 0.0))
         return self._tried(part, "mirror", law.mirrored, part["mirror"]) if "mirror" in part else law
 
-    def _together(self, part, depth):
+    def _together(self, part: Entries, depth: int) -> Law:
         if "set" in part:
             self._fail(part, "set", "goes with gait")
         laws = []
@@ -95,10 +100,10 @@ class SequenceReader:
             laws.append(self._part(each, depth + 1))
         return sum(laws[1:], laws[0])
 
-    def _gait(self, part):
-        given = part.get("set", {})
+    def _gait(self, part: Entries) -> Law:
+        given = part.get("set", Entries(part.line))
         make = self._tried(part, "gait", find, part["gait"])
-        if not isinstance(given, dict):
+        if not isinstance(given, Entries):
             self._fail(part, "set", f"must be a mapping of names to numbers, got {shown(given)}")
         numbers = {}
         for name, value in given.items():
@@ -106,30 +111,31 @@ class SequenceReader:
                 name, value = TURNS[name], -self._tried(given, name, number, name, value)
             numbers[name] = value
         try:
-            return make(**numbers)
+            law: Law = make(**numbers)
+            return law
         except ValueError as error:
             names = {TURNS.get(name, name): name for name in given}
-            guilty = next((name for own, name in names.items() if own in str(error).split()[0:1]), None)
-            guilty = guilty or next((name for own, name in names.items() if own in str(error)), None)
+            guilty = next((name for own, name in names.items() if str(own) in str(error).split()[0:1]), None)
+            guilty = guilty or next((name for own, name in names.items() if str(own) in str(error)), None)
             return self._fail(given, guilty, error) if guilty else self._fail(part, "gait", error)
 
     # -- places and errors
 
-    def _list(self, entries, key):
+    def _list(self, entries: Entries, key: str) -> list[Any]:
         if not isinstance(entries.get(key), list) or not entries[key]:
             self._fail(entries, key, f"must be a list, got {shown(entries.get(key))}")
-        return entries[key]
+        return list(entries[key])
 
-    def _check_mapping(self, value, above, key):
+    def _check_mapping(self, value: Any, above: Entries, key: str) -> None:
         if not isinstance(value, Entries):
             self._fail(above, key, f"must hold mappings, such as {{gait: straight, duration: 8}}, got {shown(value)}")
 
-    def _check_keys(self, entries, known):
+    def _check_keys(self, entries: Entries, known: tuple[str, ...]) -> None:
         for key in entries:
             if key not in known:
                 self._fail(entries, key, f"is unknown, must be one of {', '.join(known)}")
 
-    def _tried(self, entries, key, make, *arguments, **options):
+    def _tried(self, entries: Entries, key: str, make: Callable[..., Made], *arguments: Any, **options: Any) -> Made:
         try:
             return make(*arguments, **options)
         except (ValueError, TypeError) as error:
@@ -137,6 +143,6 @@ class SequenceReader:
                 raise
             return self._fail(entries, key, error)
 
-    def _fail(self, entries, key, reason):
+    def _fail(self, entries: Entries, key: str, reason: object) -> NoReturn:
         line = entries.lines.get(key, entries.line)
         raise Misplaced(f"line {line}, key {shown(key)}", str(reason)) from None

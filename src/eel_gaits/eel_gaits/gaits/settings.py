@@ -8,6 +8,7 @@ Settings never change. `changed` returns new ones, or raises a `ValueError` that
 name. A number that the user has set carries over to another gait that has a number of that name. Defaults do not.
 """
 
+from collections.abc import Mapping
 from dataclasses import Field, dataclass, field, fields, make_dataclass
 from functools import cache
 from types import MappingProxyType
@@ -64,24 +65,24 @@ class Settings:
     file: str = ""
     _law: Law | SampledLaw = field(init=False, repr=False, compare=False)
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         object.__setattr__(self, "chosen", MappingProxyType(dict(self.chosen)))
         from_file = isinstance(self.gait, str) and self.gait in FILE_GAITS
         object.__setattr__(self, "_law", self._read_law() if from_file else self._make_law())
 
     @classmethod
-    def known_names(cls):
+    def known_names(cls) -> set[str]:
         """The names of all parameters of all gaits."""
         numbers = {entry.name for name in (*GAITS, *FILE_GAITS) for entry in fields(numbers_of(name))}
         return {"gait", "file", "transition"} | numbers
 
     @classmethod
-    def start(cls, overrides):
+    def start(cls, overrides: Mapping[str, Any]) -> "Settings":
         """The settings at start, from a mapping of name to value. Names that no gait has are ignored."""
         known = {name: value for name, value in overrides.items() if name in cls.known_names()}
         return cls(gait=known.pop("gait", cls.gait), file=known.pop("file", cls.file), chosen=known)
 
-    def changed(self, changes):
+    def changed(self, changes: Mapping[str, Any]) -> "Settings":
         """The settings after `changes`, a mapping of name to value. `ValueError` where one of them does not fit."""
         changes = dict(changes)
         gait, file = changes.pop("gait", self.gait), changes.pop("file", self.file)
@@ -91,22 +92,22 @@ class Settings:
                 raise ValueError(f"gait {shown(gait)} has no parameter {shown(name)}, it has: {', '.join(own_names)}")
         return Settings(gait=gait, file=file, chosen={**self.chosen, **changes})
 
-    def groups(self):
+    def groups(self) -> tuple[Any, ...]:
         """The transition and the gait's numbers: two `Quantities`. The user's numbers replace the defaults."""
         return tuple(
             kind(**{entry.name: self.chosen[entry.name] for entry in fields(kind) if entry.name in self.chosen})
             for kind in (Transition, numbers_of(self.gait))
         )
 
-    def numbers(self):
+    def numbers(self) -> dict[str, Any]:
         """The value of each number that can be set with this gait, by name."""
         return {entry.name: getattr(group, entry.name) for group in self.groups() for entry in fields(group)}
 
-    def law(self):
+    def law(self) -> Law | SampledLaw:
         """The law of this gait with these numbers."""
         return self._law
 
-    def oscillation(self):
+    def oscillation(self) -> Oscillation | None:
         """The numbers of the oscillators whose curvature the node streams; None for a gait that is a law."""
         if self.gait != "cpg":
             return None
@@ -114,7 +115,7 @@ class Settings:
         del numbers["transition"]
         return Oscillation(**numbers)
 
-    def _read_law(self):
+    def _read_law(self) -> Law | SampledLaw:
         transition, numbers = self.groups()
         if not isinstance(self.file, str) or not self.file:
             raise ValueError(f"gait {shown(self.gait)} needs the parameter file, got {shown(self.file)}")
@@ -124,10 +125,11 @@ class Settings:
             return law
         return Law(*law.terms, name=law.name, transition=transition.transition)
 
-    def _make_law(self):
-        return find(self.gait)(**self._numbers_of_gait())
+    def _make_law(self) -> Law:
+        law: Law = find(self.gait)(**self._numbers_of_gait())
+        return law
 
-    def _numbers_of_gait(self):
+    def _numbers_of_gait(self) -> dict[str, Any]:
         numbers = self.numbers()
         for name, opposite in TURNS.items():
             if name in numbers:
@@ -135,28 +137,28 @@ class Settings:
         return numbers
 
 
-def _as_left(description):
+def _as_left(description: str) -> str:
     """The description of a number whose sign is turned."""
     about, _, _ = description.partition("; positive:")
     return f"{about}; positive: to the left, negative: to the right"
 
 
 @cache
-def numbers_of(gait):
+def numbers_of(gait: str) -> type[Any]:
     """The class of the node's numbers of a `gait`. `ValueError` for an unknown gait."""
     kind, _ = FILE_GAITS[gait] if gait in FILE_GAITS else (find(gait).numbers, None)
     entries = [(entry.name, float, entry) for entry in map(_as_ros_expects, fields(kind))]
     return make_dataclass(kind.__name__, entries, bases=(Quantities,), frozen=True, kw_only=True)
 
 
-def _as_ros_expects(entry: Field) -> Field:
+def _as_ros_expects(entry: Field[Any]) -> Field[Any]:
     """The field of a number of the node, from that of the gait."""
     for name, opposite in TURNS.items():
         if entry.name == opposite:
             metadata = entry.metadata | {"minimum": -entry.metadata["maximum"], "maximum": -entry.metadata["minimum"]}
             metadata["description"] = _as_left(metadata["description"])
             default: Any = entry.default
-            turned: Any = field(default=0.0 - default, metadata=metadata)  # not -0.0
+            turned: Field[Any] = field(default=0.0 - default, metadata=metadata)  # not -0.0
             turned.name = name
             return turned
     return entry

@@ -18,11 +18,13 @@ angle of each joint is the integral of the curvature over its segment, exactly.
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 from eel_base.quantity import quantity
 
 from eel_gaits.gaits.numbers import PeriodicBody, bend_quantity, constant_bend, waves_quantity
 from eel_gaits.gaits.registry import register
+from eel_gaits.laws.ramp import Ramp
 from eel_gaits.laws.term import Term
 
 
@@ -53,7 +55,7 @@ class JointWave(PeriodicBody):
 
 
 @register(Serpenoid)
-def serpenoid(numbers):
+def serpenoid(numbers: Serpenoid) -> tuple[Term, ...]:
     """The serpenoid curve of Hirose, which travels from head to tail."""
     wave = Term(
         axis="yaw",
@@ -67,7 +69,7 @@ def serpenoid(numbers):
 
 
 @register(JointWave)
-def joint_wave(numbers):
+def joint_wave(numbers: JointWave) -> tuple[Term, ...]:
     """A wave of joint angles, as snake robots swim: lateral undulation (eel_like = 0) or eel-like motion (1)."""
     n, segment = numbers.joints, numbers.length / numbers.joints
     # i - 1 = n - 1/2 - X / segment at joint i, so g and the phase are linear in X
@@ -88,7 +90,16 @@ def joint_wave(numbers):
     )
 
 
-def _segment_wave(first, growth, *, segment, wave_number, phase, period, envelope):
+def _segment_wave(
+    first: float,
+    growth: float,
+    *,
+    segment: float,
+    wave_number: float,
+    phase: float,
+    period: float,
+    envelope: tuple[Ramp, ...],
+) -> tuple[Term, ...]:
     """The curvature whose integral over a segment about X is (first + growth X) sin theta.
 
     With theta = 2 pi t / T + phase + wave_number X, h = segment / 2, and k = wave_number, the integrals over a segment
@@ -103,7 +114,7 @@ def _segment_wave(first, growth, *, segment, wave_number, phase, period, envelop
         shift = 1.0 / wave_number - 0.5 * segment / math.tan(half)
     # sin(2 pi t / T + b) = sin(-2 pi t / T + pi - b), and the wave number of a term goes with -2 pi t / T
     wavelength = -2.0 * math.pi / wave_number if wave_number else 0.0
-    shared = {"axis": "yaw", "wavelength": wavelength, "period": period, "envelope": envelope}
+    shared: dict[str, Any] = {"axis": "yaw", "wavelength": wavelength, "period": period, "envelope": envelope}
     wave = Term(amplitude=(share * first, share * growth), phase=math.pi - phase, **shared)
     correction = Term(amplitude=(-share * growth * shift,), phase=0.5 * math.pi - phase, **shared)
     return (wave, correction) if growth * shift else (wave,)

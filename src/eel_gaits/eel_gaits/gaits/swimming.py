@@ -24,7 +24,7 @@ class Wave(Periodic):
     amplitude_1: float = quantity(0.5, "rad/m^2", "growth of the amplitude with X, a1", -1e8, 1e8)
     amplitude_2: float = quantity(2.0, "rad/m^3", "growth of the amplitude with X^2, a2", -1e11, 1e11)
 
-    def term(self, direction=1.0):
+    def term(self, direction: float = 1.0) -> Term:
         """The yaw wave. It runs to the tail (direction 1) or to the head (-1)."""
         return Term(
             axis="yaw",
@@ -36,7 +36,7 @@ class Wave(Periodic):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Turn(Wave):
+class TurningWave(Wave):
     """The forward wave with a lasting bend in yaw."""
 
     yaw_bend: float = bend_quantity(0.5, "yaw curvature of the turn; positive: to the right, negative: to the left")
@@ -45,25 +45,25 @@ class Turn(Wave):
 
 
 @register(Quantities)
-def still(numbers):
+def still(numbers: Quantities) -> tuple[Term, ...]:
     """The straight body, whose shape does not move. Use it to coast, or to push the body."""
     return ()
 
 
 @register(Wave)
-def straight(numbers):
+def straight(numbers: Wave) -> tuple[Term, ...]:
     """Forward swimming: the yaw wave of eqs. (63) and (65), from head to tail."""
     return (numbers.term(),)
 
 
 @register(Wave)
-def backward(numbers):
+def backward(numbers: Wave) -> tuple[Term, ...]:
     """Backward swimming: the same wave, from tail to head."""
     return (numbers.term(direction=-1.0),)
 
 
-@register(Turn)
-def turning(numbers):
+@register(TurningWave)
+def turning(numbers: TurningWave) -> tuple[Term, ...]:
     """Forward swimming with a lasting bend in yaw."""
     ramp = Ramp(numbers.bend_start, numbers.bend_full, 1.0)
     return (numbers.term(), *constant_bend("yaw", numbers.yaw_bend, (ramp,)))

@@ -14,11 +14,12 @@ Section axes (the paper's): 1 along the backbone from head to tail, 2 lateral, 3
 K3 > 0 bends it towards +2. X runs from 0 at the nose to the body's length at the tail.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from eel_base.quantity import number, numbers
+from eel_base.quantity import number, numbers, positive
 from eel_base.wording import not_one_of, shown
 
 from eel_gaits.laws.term import AXES, Term
@@ -51,24 +52,21 @@ class Law:
         for index, term in enumerate(terms):
             if not isinstance(term, Term):
                 raise ValueError(f"terms[{index}] must be a Term, got {shown(term)}")
-        transition = number("transition", transition)
-        if transition < 0.0:
-            raise ValueError(f"transition must be >= 0 s, got {transition}")
         object.__setattr__(self, "terms", tuple(terms))
         object.__setattr__(self, "name", checked_name(name))
-        object.__setattr__(self, "transition", transition)
+        object.__setattr__(self, "transition", number("transition", transition, "s", minimum=0.0))
 
-    def __hash__(self):  # kept: tables are looked up by it
+    def __hash__(self) -> int:  # kept: tables are looked up by it
         found = self.__dict__.get("_hash")
         if found is None:
             found = hash((self.terms, self.name, self.transition))
             object.__setattr__(self, "_hash", found)
         return found
 
-    def __getstate__(self):
+    def __getstate__(self) -> dict[str, Any]:
         return {name: value for name, value in self.__dict__.items() if name != "_hash"}  # of this process's strings
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         count = f"{len(self.terms)} term{'' if len(self.terms) == 1 else 's'}"
         return f"Law({shown(self.name)}, {count}{f', transition={self.transition:g} s' if self.transition else ''})"
 
@@ -82,7 +80,7 @@ class Law:
         """The terms that have a period."""
         return tuple(term for term in self.terms if term.period)
 
-    def curvature(self, time, x):
+    def curvature(self, time: float, x: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Curvature, its rate and its acceleration at one time. `ValueError` names an argument that is not finite.
 
         Args:
@@ -104,14 +102,14 @@ class Law:
 
     # -- laws made of laws
 
-    def __add__(self, other):
+    def __add__(self, other: object) -> "Law":
         """The sum of two laws. Its transition is the longer one."""
         if not isinstance(other, Law):
             return NotImplemented
         name = self.name if self.name == other.name else f"{self.name} + {other.name}"[:MAXIMUM_NAME]
         return Law(*self.terms, *other.terms, name=name, transition=max(self.transition, other.transition))
 
-    def __mul__(self, scale):
+    def __mul__(self, scale: Any) -> "Law":
         """The law with `scale` times its curvature."""
         if isinstance(scale, Law):
             return NotImplemented
@@ -120,18 +118,18 @@ class Law:
 
     __rmul__ = __mul__
 
-    def delayed(self, delay):
+    def delayed(self, delay: float) -> "Law":
         """The same motion, later by `delay` [s]; earlier where it is negative."""
         delay = number("delay", delay)
         return self._of(term.delayed(delay) for term in self.terms)
 
-    def mirrored(self, axis="yaw"):
+    def mirrored(self, axis: str = "yaw") -> "Law":
         """The law with the opposite curvature about one `axis`: left and right ("yaw") or up and down ("pitch")."""
         if not isinstance(axis, str) or axis not in AXES:
             raise ValueError(not_one_of("axis", axis, AXES))
         return self._of(term.scaled(-1.0) if term.axis == axis else term for term in self.terms)
 
-    def ramped_in(self, start, end):
+    def ramped_in(self, start: float, end: float) -> "Law":
         """The law that is straight before `start` [s] and unchanged after `end` [s].
 
         A term that is 0 until `start` by itself stays as it is.
@@ -139,13 +137,13 @@ class Law:
         start, end = _interval(start, end)
         return self._of(term.begun(start, end) for term in self.terms)
 
-    def ramped_out(self, start, end):
+    def ramped_out(self, start: float, end: float) -> "Law":
         """The law that is unchanged before `start` [s] and straight after `end` [s]."""
         start, end = _interval(start, end)
         ended = (term.ended(start, end) for term in self.terms)
         return self._of(term for term in ended if term is not None)
 
-    def followed_by(self, other, at, blend=0.5):
+    def followed_by(self, other: "Law", at: float, blend: float = 0.5) -> "Law":
         """This law until `at` [s], then `other`, whose own t = 0 lies there.
 
         From `at` on this law fades out over `blend` [s]. The terms of `other` that do not start from rest fade in
@@ -153,24 +151,22 @@ class Law:
         """
         if not isinstance(other, Law):
             raise ValueError(f"the law that follows must be a Law, got {shown(other)}")
-        at, blend = number("at", at), number("blend", blend)
-        if not blend > 0.0:
-            raise ValueError(f"blend must be > 0 s, got {blend:g}")
+        at, blend = number("at", at), positive("blend", blend, "s")
         first, second = self.ramped_out(at, at + blend), other.delayed(at).ramped_in(at, at + blend)
         return Law(*first.terms, *second.terms, name=self.name, transition=self.transition)
 
-    def _of(self, terms):
+    def _of(self, terms: Iterable[Term]) -> "Law":
         return Law(*terms, name=self.name, transition=self.transition)
 
 
-def _interval(start, end):
+def _interval(start: float, end: float) -> tuple[float, float]:
     start, end = number("start", start), number("end", end)
     if not end > start:
         raise ValueError(f"end must be > start ({start:g} s), got {end:g}")
     return start, end
 
 
-def checked_name(value):
+def checked_name(value: object) -> str:
     """`value`, if it is a text that can be the name of a law."""
     if not isinstance(value, str):
         raise ValueError(f"name must be a text, got {shown(value)}")

@@ -13,10 +13,13 @@ t / period). Its Fourier series in u has odd multiples only, and each of them is
 """
 
 import math
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from eel_base.quantity import numbers
 
+from eel_gaits.laws.ramp import Ramp
 from eel_gaits.laws.term import Term
 
 STEEPEST = 0.95  # slope |dh/dX| of a midline, of 1 at most
@@ -25,7 +28,7 @@ POINTS, DEGREE = 65, 10  # along the body: points of the fit, and degree of the 
 TOLERANCE = 1e-3  # greatest curvature of a multiple that is left out, relative to the greatest curvature
 
 
-def curvature_of_lateral(slope, bend):
+def curvature_of_lateral(slope: Any, bend: Any) -> np.ndarray:
     """The curvature K3 [rad/m] of a midline with the `slope` dh/dX [1] and the `bend` d2h/dX2 [1/m].
 
     All three are arrays of one shape. `ValueError` where a slope reaches 1, because no midline of that arc length has
@@ -35,10 +38,17 @@ def curvature_of_lateral(slope, bend):
     steepest = float(np.max(np.abs(slope), initial=0.0))
     if not steepest < 1.0:
         raise ValueError(f"slope of the midline must be below 1, got {steepest:.3g}")
-    return bend / np.sqrt(1.0 - slope**2)
+    return np.asarray(bend / np.sqrt(1.0 - slope**2))
 
 
-def lateral_wave(amplitude, *, length, wavelength, period, envelope=()):
+def lateral_wave(
+    amplitude: Callable[[np.ndarray], tuple[np.ndarray, ...]],
+    *,
+    length: float,
+    wavelength: float,
+    period: float,
+    envelope: tuple[Ramp, ...] = (),
+) -> tuple[Term, ...]:
     """Terms in yaw of the wave h = a(X) sin(2 pi (X / wavelength - t / period)), which begins with an `envelope`.
 
     The multiples that are left out are below 1/1000 of the greatest curvature, each.
@@ -49,7 +59,7 @@ def lateral_wave(amplitude, *, length, wavelength, period, envelope=()):
         envelope: ramps, as `Term` has them. They multiply the curvature.
 
     Returns:
-        a list of `Term`. `ValueError` where the midline is steeper than 0.95.
+        the terms. `ValueError` where the midline is steeper than 0.95.
     """
     x = 0.5 * length * (1.0 - np.cos(np.pi * (np.arange(POINTS) + 0.5) / POINTS))
     a, a_x, a_xx = amplitude(x)
@@ -80,4 +90,4 @@ def lateral_wave(amplitude, *, length, wavelength, period, envelope=()):
                         envelope=envelope,
                     )
                 )
-    return terms
+    return tuple(terms)

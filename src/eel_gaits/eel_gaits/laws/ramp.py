@@ -8,6 +8,7 @@ one is needed where a term fades out while a ramp is still under way.
 
 import math
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from eel_base.quantity import number
@@ -29,7 +30,7 @@ class Ramp:
     delta: float
     factor: int = 0
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         for field in ("start", "end", "delta"):
             object.__setattr__(self, field, number(field, getattr(self, field)))
         factor = number("factor", self.factor)
@@ -42,7 +43,7 @@ class Ramp:
         if not math.isfinite(duration) or not math.isfinite(10.0 * self.delta / duration / duration):
             raise ValueError(f"end must lie so after start ({self.start} s) that rates are finite, got {self.end}")
 
-    def value(self, t):
+    def value(self, t: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """The ramp and its first and second time derivatives at `t` [s]: three arrays of the shape of `t`."""
         duration = self.end - self.start
         s = np.clip((np.asarray(t, dtype=float) - self.start) / duration, 0.0, 1.0)
@@ -53,12 +54,12 @@ class Ramp:
         acceleration = np.where(moving, self.delta * 2.0 * math.pi * np.sin(angle) / duration / duration, 0.0)
         return value, rate, acceleration
 
-    def delayed(self, delay):
+    def delayed(self, delay: float) -> "Ramp":
         """The same ramp, later by `delay` [s]."""
         return replace(self, start=self.start + delay, end=self.end + delay)
 
 
-def envelope_at(ramps, t):
+def envelope_at(ramps: tuple[Ramp, ...], t: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """An envelope of `ramps` and its first and second time derivatives at `t` [s]: three arrays of the shape of `t`.
 
     Without ramps the envelope is 1.
@@ -75,13 +76,13 @@ def envelope_at(ramps, t):
     return value, zero + rate, zero + acceleration
 
 
-def factors_of(ramps):
+def factors_of(ramps: tuple[Ramp, ...]) -> list[list[Ramp]]:
     """The ramps of each factor, a list of lists."""
     numbers = dict.fromkeys(ramp.factor for ramp in ramps)
     return [[ramp for ramp in ramps if ramp.factor == number] for number in numbers]
 
 
-def height_of(ramps):
+def height_of(ramps: tuple[Ramp, ...]) -> float:
     """A bound [1] on the magnitude and the changes of an envelope of `ramps`."""
     height = 1.0
     for each in factors_of(ramps):
@@ -93,7 +94,7 @@ def height_of(ramps):
     return height
 
 
-def begun(ramps, start, end):
+def begun(ramps: tuple[Ramp, ...], start: float, end: float) -> tuple[Ramp, ...]:
     """The envelope of `ramps` that is 0 before `start` [s] and unchanged after `end` [s].
 
     It stays as it is where it is 0 until `start` by itself.
@@ -103,7 +104,7 @@ def begun(ramps, start, end):
     return _multiplied(ramps, (Ramp(start, end, 1.0),))
 
 
-def ended(ramps, start, end):
+def ended(ramps: tuple[Ramp, ...], start: float, end: float) -> tuple[Ramp, ...] | None:
     """The envelope of `ramps` that is unchanged before `start` [s] and 0 after `end` [s]; None where it is 0 always.
 
     Ramps that begin after `end` are dropped.
@@ -118,7 +119,7 @@ def ended(ramps, start, end):
     return _multiplied(kept, (Ramp(2.0 * ALWAYS, ALWAYS, 1.0), Ramp(start, end, -1.0)))
 
 
-def _multiplied(ramps, others):
+def _multiplied(ramps: tuple[Ramp, ...], others: tuple[Ramp, ...]) -> tuple[Ramp, ...]:
     """The product of the envelope of `ramps` with that of `others`, which have factor 0."""
     factor = 1 + max((ramp.factor for ramp in ramps), default=-1)
     return (*ramps, *(replace(ramp, factor=factor) for ramp in others))

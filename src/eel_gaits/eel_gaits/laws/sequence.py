@@ -29,15 +29,19 @@
 The curvature is twice differentiable in time.
 """
 
-from eel_base.quantity import number
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from eel_base.quantity import positive
 from eel_base.wording import shown
 
 from eel_gaits.laws.law import MAXIMUM_TERMS, Law
+from eel_gaits.laws.term import Term
 
 BLEND = 0.5  # s
 
 
-def sequence(steps, *, blend=BLEND, name="sequence"):
+def sequence(steps: Iterable[Sequence[Any]], *, blend: float = BLEND, name: str = "sequence") -> Law:
     """The law in which the `steps` follow one another.
 
     steps: rows (law, duration [s]) or (law, duration [s], blend [s] into this step). The last duration may be None: the
@@ -48,7 +52,8 @@ def sequence(steps, *, blend=BLEND, name="sequence"):
     for index, (_, _, into) in enumerate(rows):
         positive(f"steps[{index}]: blend", into)
     fades = [float(into) for _, _, into in rows[1:]] + [positive("blend", blend)]  # out of each step
-    terms, at = [], 0.0
+    terms: list[Term] = []
+    at = 0.0
     for index, (law, duration, into) in enumerate(rows):
         try:
             if not isinstance(law, Law):
@@ -67,11 +72,3 @@ def sequence(steps, *, blend=BLEND, name="sequence"):
         except ValueError as error:
             raise ValueError(f"steps[{index}]: {error}") from None
     return Law(*terms, name=name)
-
-
-def positive(name, value):
-    """`value` as a float above 0. `ValueError` names anything else."""
-    value = number(name, value)
-    if not value > 0.0:
-        raise ValueError(f"{name} must be > 0, got {value:g}")
-    return value

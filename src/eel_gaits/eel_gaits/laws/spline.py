@@ -10,12 +10,14 @@ both end knots. Its second derivatives M_i at the knots ("moments") solve the tr
 (de Boor, A Practical Guide to Splines, 1978, chapter IV). Beyond its end knots the spline continues as a straight line.
 """
 
+from typing import Any
+
 import numpy as np
 from eel_base.quantity import numbers
 from eel_base.wording import shown
 
 
-def natural_spline(knots, values, x):
+def natural_spline(knots: Any, values: Any, x: Any) -> np.ndarray:
     """Evaluate the natural cubic splines through (knots, values) at x. `ValueError` names what does not fit.
 
     The result is linear in the values. So `natural_spline(knots, numpy.eye(n), x).T` is the matrix, shape (m, n), that
@@ -48,19 +50,20 @@ def natural_spline(knots, values, x):
     cubic = (moments[..., piece + 1] - moments[..., piece]) / (6.0 * spacing[piece])
     result = values[..., piece] + step * (start_slopes[..., piece] + step * (0.5 * moments[..., piece] + step * cubic))
     end_slope = slopes[..., -1] + spacing[-1] * moments[..., -2] / 6.0
-    return (
+    whole: np.ndarray = (
         result
         + start_slopes[..., :1] * np.minimum(x - knots[0], 0.0)
         + end_slope[..., np.newaxis] * np.maximum(x - knots[-1], 0.0)
     )
+    return whole
 
 
-def _moments(spacing, slopes):
+def _moments(spacing: Any, slopes: np.ndarray) -> np.ndarray:
     """Second derivatives at the knots, shape (..., n), by elimination without pivoting (diagonally dominant).
 
     The loops run over numbers of Python where there is one spline: NumPy's take ten times as long.
     """
-    rows = np.moveaxis(6.0 * np.diff(slopes, axis=-1), -1, 0)
+    rows: Any = np.moveaxis(6.0 * np.diff(slopes, axis=-1), -1, 0)
     rows, zero = (rows.tolist(), 0.0) if rows.ndim == 1 else (list(rows), np.zeros(slopes.shape[:-1]))
     pivots, spacing = (2.0 * (spacing[:-1] + spacing[1:])).tolist(), spacing.tolist()
     for row in range(1, len(rows)):

@@ -16,7 +16,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from eel_gaits.laws.law import Law
+from eel_gaits.laws.term import Term
 
+Jet = tuple[Any, Any, Any]  # value, rate and acceleration, of one swimmer or several
 AXES = {"pitch": 0, "yaw": 1}
 
 
@@ -77,7 +79,7 @@ class SteeredLaw:
             if self.values[name] is not rest:
                 for value, begun in zip(self.values[name], rest, strict=True):
                     value[swimmer] = begun
-        return self._curvature()[swimmer]
+        return np.asarray(self._curvature()[swimmer])
 
     def advance(self, targets: Mapping[str, Any], step: float, response: float | None = None) -> np.ndarray:
         """The curvature at the end of a step of `step` [s] with these `targets` by name; other numbers stay.
@@ -115,16 +117,16 @@ class SteeredLaw:
         for name, bent in BENDS.items():
             if self.values[name] is not self._rest[name]:
                 _put(factors[..., AXES[bent], :, :], -1, tuple(-value for value in self.values[name]))
-        return factors.reshape(*swimmers, 6, -1) @ self._rows
+        return np.asarray(factors.reshape(*swimmers, 6, -1) @ self._rows)
 
 
-def _put(factors: np.ndarray, row: int, jet: tuple, more: np.ndarray | None = None) -> None:
+def _put(factors: np.ndarray, row: int, jet: Jet, more: np.ndarray | None = None) -> None:
     """Put value, rate and acceleration of a row into the `factors` (..., 3, rows), with `more` (..., 3) added."""
     for derivative, value in enumerate(jet):
         factors[..., derivative, row] = value if more is None else value + more[..., derivative]
 
 
-def _product(number: tuple, f: Any, f1: Any, frequency: float, speed: tuple) -> tuple[Any, Any, Any]:
+def _product(number: Jet, f: Any, f1: Any, frequency: float, speed: Jet) -> tuple[Any, Any, Any]:
     """Value, rate and acceleration of a `number` times f(tau), where f'' = -frequency^2 f and tau' is the `speed`."""
     rate = f1 * speed[0]
     acceleration = -frequency * frequency * f * speed[0] ** 2 + f1 * speed[1]
@@ -135,7 +137,7 @@ def _product(number: tuple, f: Any, f1: Any, frequency: float, speed: tuple) -> 
     )
 
 
-def _rows(term, x: np.ndarray) -> np.ndarray:
+def _rows(term: Term, x: np.ndarray) -> np.ndarray:
     """Rows (2, len(x)) of a term with its ramps complete: those of the cosine and the sine of its time."""
     end = max((ramp.end for ramp in term.envelope), default=0.0)
     size = term.amplitude_at(x) * term.envelope_at(end)[0]
@@ -143,7 +145,7 @@ def _rows(term, x: np.ndarray) -> np.ndarray:
     return np.stack((size * np.sin(angle), size * np.cos(angle)))
 
 
-def _followed(jet: tuple, target: Any, rate: float, step: float) -> tuple[tuple, Any]:
+def _followed(jet: Jet, target: Any, rate: float, step: float) -> tuple[Jet, Any]:
     """Value, rate and acceleration after `step` [s] of a critically damped oscillator that goes to its `target`.
 
     jet: the same before. rate [1/s]: of the oscillator. Returns the integral of the value over the step too.

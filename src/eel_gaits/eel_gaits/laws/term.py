@@ -3,6 +3,7 @@
 
 import math
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from eel_base.quantity import number
@@ -42,18 +43,18 @@ class Term:
     phase: float = 0.0
     envelope: tuple[Ramp, ...] = ()
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if not isinstance(self.axis, str) or self.axis not in AXES:
             raise ValueError(not_one_of("axis", self.axis, AXES))
         for field in ("amplitude", "knots"):
             object.__setattr__(self, field, _numbers(field, getattr(self, field)))
-        for field in ("wavelength", "period", "phase"):
-            object.__setattr__(self, field, number(field, getattr(self, field)))
+        for field, least in (("wavelength", None), ("period", 0.0), ("phase", None)):
+            object.__setattr__(self, field, number(field, getattr(self, field), "s", minimum=least))
         object.__setattr__(self, "envelope", _row("envelope", "Ramps", self.envelope))
         self._check_amplitude()
         self._check_wave()
 
-    def _check_amplitude(self):
+    def _check_amplitude(self) -> None:
         if not self.knots:
             if not self.amplitude:
                 raise ValueError("amplitude must have at least 1 coefficient, got none")
@@ -70,9 +71,7 @@ class Term:
             if not np.all(np.isfinite(self.amplitude_at(self.knots))):
                 raise ValueError(f"knots must lie far enough apart for a finite spline, got {shown(list(self.knots))}")
 
-    def _check_wave(self):
-        if self.period < 0.0:
-            raise ValueError(f"period must be >= 0 s, got {self.period}")
+    def _check_wave(self) -> None:
         if self.period and self.period < 1e-100:
             raise ValueError(f"period must be 0 or long enough for finite rates, got {self.period}")
         if self.wavelength and abs(self.wavelength) < 1e-100:
@@ -82,24 +81,24 @@ class Term:
                 raise ValueError(f"envelope must hold Ramps, got {shown(ramp)}")
 
     @property
-    def wave_number(self):
+    def wave_number(self) -> float:
         """2 pi / wavelength [rad/m]; 0 for a standing term."""
         return 2.0 * math.pi / self.wavelength if self.wavelength else 0.0
 
     @property
-    def angular_frequency(self):
+    def angular_frequency(self) -> float:
         """2 pi / period [rad/s]; 0 for a term that is constant in time except for its envelope."""
         return 2.0 * math.pi / self.period if self.period else 0.0
 
-    def amplitude_at(self, x):
+    def amplitude_at(self, x: Any) -> np.ndarray:
         """The amplitude [rad/m], shape (len(x),), at the stations x [m], shape (len(x),)."""
         return amplitude_of(self.amplitude, self.knots, np.asarray(x, dtype=float))
 
-    def envelope_at(self, t):
+    def envelope_at(self, t: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """The envelope [1] and its first and second time derivatives at `t` [s]: three arrays of the shape of `t`."""
         return envelope_at(self.envelope, t)
 
-    def curvature(self, time, x):
+    def curvature(self, time: float, x: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Curvature [rad/m], its rate [rad/m/s] and its acceleration [rad/m/s^2], each of shape (len(x),).
 
         time [s] is the law's own time. x [m], shape (len(x),): arc length from the nose.
@@ -117,11 +116,11 @@ class Term:
         )
         return value, rate, acceleration
 
-    def scaled(self, scale):
+    def scaled(self, scale: float) -> "Term":
         """The term with `scale` times its amplitude."""
         return replace(self, amplitude=tuple(scale * value for value in self.amplitude))
 
-    def delayed(self, delay):
+    def delayed(self, delay: float) -> "Term":
         """The same motion, later by `delay` [s]."""
         turns = math.remainder(delay / self.period, 1.0) if self.period else 0.0
         return replace(
@@ -130,32 +129,32 @@ class Term:
             envelope=tuple(ramp.delayed(delay) for ramp in self.envelope),
         )
 
-    def begun(self, start, end):
+    def begun(self, start: float, end: float) -> "Term":
         """The term that fades in from `start` to `end` [s], or begins by itself after `start`."""
         return replace(self, envelope=begun(self.envelope, start, end))
 
-    def ended(self, start, end):
+    def ended(self, start: float, end: float) -> "Term | None":
         """The term that fades out from `start` to `end` [s]; None where it begins after `end`."""
         envelope = ended(self.envelope, start, end)
         return None if envelope is None else replace(self, envelope=envelope)
 
 
-def amplitude_of(amplitude, knots, x):
+def amplitude_of(amplitude: tuple[float, ...], knots: tuple[float, ...], x: Any) -> np.ndarray:
     """The amplitude [rad/m], shape (len(x),), at the stations x [m], of a term with this `amplitude` and `knots`."""
     if knots:
         return natural_spline(knots, amplitude, x)
-    return np.polynomial.polynomial.polyval(x, amplitude)
+    return np.asarray(np.polynomial.polynomial.polyval(x, amplitude))
 
 
-def _numbers(name, values):
+def _numbers(name: str, values: Any) -> tuple[float, ...]:
     return tuple(number(f"{name}[{index}]", value) for index, value in enumerate(_row(name, "numbers", values)))
 
 
-def _row(name, kind, values):
+def _row(name: str, kind: str, values: Any) -> tuple[Any, ...]:
     try:
-        values = tuple(values)
+        row = tuple(values)
     except TypeError:
         raise ValueError(f"{name} must be a row of {kind}, got {shown(values)}") from None
-    if len(values) > MAXIMUM_VALUES:
-        raise ValueError(f"{name} must have at most {MAXIMUM_VALUES} {kind}, got {len(values)}")
-    return values
+    if len(row) > MAXIMUM_VALUES:
+        raise ValueError(f"{name} must have at most {MAXIMUM_VALUES} {kind}, got {len(row)}")
+    return row

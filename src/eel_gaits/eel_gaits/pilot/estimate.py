@@ -43,14 +43,14 @@ class Estimator:
     the estimate of the water's velocity follows.
     """
 
-    def __init__(self, *, period: float, speed_time: float, water_time: float):
+    def __init__(self, *, period: float, speed_time: float, water_time: float) -> None:
         self._means = PeriodMeans(5, period)  # position, heading, speed through the water
         self._speed_time, self._water_time = speed_time, water_time
         self._heading = 0.0  # rad, unwrapped
         self._time = -math.inf
         self._speed, self._water = 0.0, np.zeros(2)
 
-    def restart(self):
+    def restart(self) -> None:
         """Forget all but the water."""
         self._means.clear()
         self._time, self._speed = -math.inf, 0.0
@@ -98,6 +98,7 @@ class Plane(NamedTuple):
         forward, left, up = world_from_body(head.orientation).T
         turning = head.angular_velocity[0] * forward + head.angular_velocity[1] * left  # without that about `up`
         c, s = math.cos(heading), math.sin(heading)
-        ahead, aside = (lambda v: c * v[0] + s * v[1]), (lambda v: c * v[1] - s * v[0])
-        climb = math.asin(max(-1.0, min(1.0, -ahead(up))))
-        return Plane(math.atan2(-aside(up), up[2]), climb, float(ahead(turning)), float(-aside(turning)))
+        level = np.array(((c, s), (-s, c)))
+        (ahead, aside), (ahead_rate, aside_rate) = level @ up[:2], level @ turning[:2]
+        climb = math.asin(max(-1.0, min(1.0, -ahead)))
+        return Plane(math.atan2(-aside, up[2]), climb, float(ahead_rate), float(-aside_rate))

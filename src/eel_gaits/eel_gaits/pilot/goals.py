@@ -6,8 +6,10 @@
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from eel_base.quantity import number
 from eel_base.wording import shown
 
 FARTHEST = 1e5  # m from the origin
@@ -51,15 +53,11 @@ class Station:
 
 def course(heading: float, depth: float, speed: float, limits: Limits) -> Course:
     """A course that is possible."""
-    for name, value in (("heading", heading), ("depth", depth)):
-        if not math.isfinite(value):
-            raise ValueError(f"{name} must be finite, got {value}")
-    if abs(depth) > FARTHEST:
-        raise ValueError(f"depth must be at most {FARTHEST:g} m in size, got {depth:g}")
-    return Course(math.remainder(heading, 2.0 * math.pi), float(depth), checked_speed(speed, limits))
+    depth = number("depth", depth, "m", minimum=-FARTHEST, maximum=FARTHEST)
+    return Course(math.remainder(number("heading", heading), 2.0 * math.pi), depth, checked_speed(speed, limits))
 
 
-def path(points, speed: float, limits: Limits) -> Path:
+def path(points: Any, speed: float, limits: Limits) -> Path:
     """A path whose legs the swimmer can follow from the second point on; how it gets to the first is its affair."""
     check_count(len(points))
     points = _points("path", points)
@@ -70,13 +68,13 @@ def path(points, speed: float, limits: Limits) -> Path:
     return Path(points, checked_speed(speed, limits))
 
 
-def check_count(points: int):
+def check_count(points: int) -> None:
     """`ValueError` for more `points` than a path may have."""
     if points > MOST_POINTS:
         raise ValueError(f"path must have at most {MOST_POINTS} points, got {points}")
 
 
-def station(point, speed: float, limits: Limits) -> Station:
+def station(point: Any, speed: float, limits: Limits) -> Station:
     """A station that is possible."""
     return Station(_points("station", [point])[0], checked_speed(speed, limits))
 
@@ -97,28 +95,26 @@ def described(goal: Course | Path | Station) -> str:
     return f"swim through {len(goal.points)} points to {where}" if isinstance(goal, Path) else f"stay at {where}"
 
 
-def check_first_point(goal: Path, position, heading: float, limits: Limits):
+def check_first_point(goal: Path, position: np.ndarray, heading: float, limits: Limits) -> None:
     """`ValueError` where the first point lies within a turning circle at `position` (3,) [m] with this `heading`."""
     _check_turn("1", "of the swimmer", goal.points[0] - position, (math.cos(heading), math.sin(heading)), limits)
 
 
 def checked_speed(speed: float, limits: Limits) -> float:
     """`speed` [m/s], if the swimmer can have it."""
-    if not (math.isfinite(speed) and 0.0 < speed <= limits.greatest_speed):
-        raise ValueError(f"speed must be > 0 and <= {limits.greatest_speed:.3g} m/s, got {speed:g}")
-    return float(speed)
+    return number("speed", speed, "m/s", minimum=0.0, maximum=limits.greatest_speed, exclusive=True)
 
 
-def _points(name: str, points) -> np.ndarray:
-    points = np.array(points, dtype=float).reshape(-1, 3)
-    for k, point in enumerate(points):
+def _points(name: str, points: Any) -> np.ndarray:
+    rows: np.ndarray = np.array(points, dtype=float).reshape(-1, 3)
+    for k, point in enumerate(rows):
         if not np.isfinite(point).all() or np.abs(point).max() > FARTHEST:
             rule = f"finite and at most {FARTHEST:g} m from the origin"
             raise ValueError(f"{name} point {k + 1} must be {rule}, got {shown(point.tolist())}")
-    return points
+    return rows
 
 
-def _check_leg(k: int, points: np.ndarray, limits: Limits):
+def _check_leg(k: int, points: np.ndarray, limits: Limits) -> None:
     """`ValueError` where point k + 1 cannot be reached from point k."""
     leg, before = points[k] - points[k - 1], points[k - 1] - points[k - 2] if k > 1 else None
     flat = float(np.hypot(leg[0], leg[1]))
@@ -135,7 +131,9 @@ def _check_leg(k: int, points: np.ndarray, limits: Limits):
     _check_turn(f"{k + 1}", f"at point {k}", leg, before[:2] / math.hypot(before[0], before[1]), limits)
 
 
-def _check_turn(point: str, where: str, leg: np.ndarray, forward, limits: Limits):
+def _check_turn(
+    point: str, where: str, leg: np.ndarray, forward: tuple[float, float] | np.ndarray, limits: Limits
+) -> None:
     """`ValueError` where a `point` lies within a turning circle.
 
     leg (3,) [m]: to it. forward (2,): horizontal direction in which the swimmer comes to where the leg begins.

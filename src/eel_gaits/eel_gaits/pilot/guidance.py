@@ -40,7 +40,7 @@ class CourseGuidance:
 
     done = False
 
-    def __init__(self, goal: Course, look_ahead: float):
+    def __init__(self, goal: Course, look_ahead: float) -> None:
         self._goal, self._look_ahead, self.speed = goal, look_ahead, goal.speed
 
     def demand(self, estimate: Estimate, greatest_speed: float) -> Demand:
@@ -60,7 +60,7 @@ class PathGuidance:
         last_miss: [m], the head's least distance to the point that was passed last.
     """
 
-    def __init__(self, goal: Path, start: np.ndarray, look_ahead: float, close: float):
+    def __init__(self, goal: Path, start: np.ndarray, look_ahead: float, close: float) -> None:
         self._points, self.speed = np.vstack((start, goal.points)), goal.speed
         self._look_ahead, self._close = look_ahead, close
         self.target, self.last_miss, self._least = 0, math.inf, math.inf
@@ -115,7 +115,7 @@ class StationGuidance:
 
     done = False
 
-    def __init__(self, goal: Station, look_ahead: float, turning_radius: float, gain: float, rest: float):
+    def __init__(self, goal: Station, look_ahead: float, turning_radius: float, gain: float, rest: float) -> None:
         self._goal, self._look_ahead, self._radius = goal, look_ahead, turning_radius
         self.speed = goal.speed
         self._gain, self._rest, self._resting = gain, rest, False

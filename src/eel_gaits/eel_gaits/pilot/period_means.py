@@ -6,7 +6,7 @@ where the swimmer heads, and the change across it how fast it turns and moves.
 """
 
 from collections import deque
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -23,16 +23,16 @@ class Means(NamedTuple):
 class PeriodMeans:
     """Collects `count` signals and gives their means over the last `period` [s] of the gait's own time."""
 
-    def __init__(self, count: int, period: float):
+    def __init__(self, count: int, period: float) -> None:
         self._period = period
-        self._rows: deque = deque()  # time, own time, signals and their integrals since the start
+        self._rows: deque[Any] = deque()  # time, own time, signals and their integrals since the start
         self._empty = np.zeros(count)
 
-    def clear(self):
+    def clear(self) -> None:
         """Forget all signals."""
         self._rows.clear()
 
-    def add(self, time: float, own_time: float, signals) -> Means:
+    def add(self, time: float, own_time: float, signals: Any) -> Means:
         """Add the `signals` (n,) at `time` [s], when the gait's own time is `own_time` [s]; the means since then."""
         signals = np.asarray(signals, dtype=float)
         if not self._rows:
@@ -48,7 +48,7 @@ class PeriodMeans:
         span = time - start[0]
         return Means((integral - start[2]) / span, (signals - start[1]) / span, span, first[1] <= begin)
 
-    def _row_at(self, own_time: float) -> tuple:
+    def _row_at(self, own_time: float) -> tuple[Any, ...]:
         """Time, signals and integrals at `own_time` [s], which lies in the oldest interval or before it."""
         (t0, tau0, signals0, integral0), (t1, tau1, signals1, _) = self._rows[0], self._rows[1]
         share = (own_time - tau0) / (tau1 - tau0) if own_time > tau0 else 0.0

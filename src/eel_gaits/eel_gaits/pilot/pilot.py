@@ -53,7 +53,9 @@ class Pilot:
         news: what is to be reported, the oldest first; whoever reports it empties the list.
     """
 
-    def __init__(self, settings: PilotSettings | None = None, law: Law | None = None, gains: Gains | None = None):
+    def __init__(
+        self, settings: PilotSettings | None = None, law: Law | None = None, gains: Gains | None = None
+    ) -> None:
         self.settings = settings or PilotSettings()
         gait = law or straight()
         self.law = SteeredLaw(gait, response=RESPONSE, length=self.settings.length)
@@ -79,7 +81,7 @@ class Pilot:
         self._guidance, self.estimate = None, None
         return self.law.begin(0.0, amplitude=0.0, tempo=self.settings.slowest_tempo)
 
-    def follow(self, goal: Course | Path | Station):
+    def follow(self, goal: Course | Path | Station) -> None:
         """Change the goal. It is begun with at the next step."""
         self.goal, self._guidance = goal, None
 
@@ -90,7 +92,7 @@ class Pilot:
             check_first_point(goal, where.position, where.heading, self.settings.limits)
         return goal
 
-    def change_speed(self, speed: float):
+    def change_speed(self, speed: float) -> None:
         """Swim to the same goal with another `speed` [m/s]."""
         self.goal = replace(self.goal, speed=speed)
         if self._guidance is not None:
@@ -101,7 +103,7 @@ class Pilot:
         """Index of the way point that is aimed at; 0 without a path."""
         return self._guidance.target if isinstance(self._guidance, PathGuidance) else 0
 
-    def limit_torque(self, torque: float, limit: float, time: float):
+    def limit_torque(self, torque: float, limit: float, time: float) -> None:
         """Slow down where the internal `torque` [N m] at `time` [s] exceeds the `limit` [N m]; 0: there is none."""
         if self._torque.exceeded(torque, limit, time, self.law.values["tempo"][0]):
             text = f"the torque of {torque:.3g} N m exceeds the limit of {limit:.3g} N m at the slowest beat too"
@@ -113,7 +115,7 @@ class Pilot:
         self.see(time, head)
         return self.steer(step)
 
-    def see(self, time: float, head: HeadMotion):
+    def see(self, time: float, head: HeadMotion) -> None:
         """Take in the motion of the `head` at `time` [s], and guide the swimmer. Times must rise."""
         values = self.law.values
         through = self.settings.cruise_speed * values["tempo"][0] * min(1.0, values["amplitude"][0])
@@ -129,7 +131,7 @@ class Pilot:
         tempo = max(self.law.values["tempo"][0], self.settings.slowest_tempo)
         return self.law.advance(targets, step, RESPONSE * self.law.period / tempo)
 
-    def _guided(self, estimate: Estimate, head: HeadMotion):
+    def _guided(self, estimate: Estimate, head: HeadMotion) -> CourseGuidance | PathGuidance | StationGuidance:
         """The guidance to the present goal. When a path is done, its last point is the station to stay at."""
         settings, goal = self.settings, self.goal
         ahead = settings.look_ahead * settings.length
@@ -158,7 +160,7 @@ class Pilot:
                 return self._guided(estimate, head)
         return self._guidance
 
-    def _watch(self, time: float, head: HeadMotion, estimate: Estimate, demand: Demand):
+    def _watch(self, time: float, head: HeadMotion, estimate: Estimate, demand: Demand) -> None:
         """Report where the goal does not come nearer."""
         goal = self.goal
         if isinstance(goal, Course):

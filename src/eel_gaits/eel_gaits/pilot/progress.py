@@ -9,12 +9,12 @@ SHARE = 0.98  # of the least error: what counts as nearer
 class Progress:
     """Watches the error of a goal. patience: [s] without progress after which it counts as out of reach."""
 
-    def __init__(self, patience: float):
+    def __init__(self, patience: float) -> None:
         self._patience = patience
         self.least = math.inf  # least error so far
         self._since, self._said = 0.0, False
 
-    def restart(self, time: float):
+    def restart(self, time: float) -> None:
         """Watch another goal from `time` [s] on."""
         self.least, self._since, self._said = math.inf, time, False
 

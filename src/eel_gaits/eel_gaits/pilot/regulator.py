@@ -46,13 +46,13 @@ class Gains:
 class Regulator:
     """Turns demands into targets of a `SteeredLaw`. `tempo_limit` may be lowered, where the torque is too great."""
 
-    def __init__(self, settings: PilotSettings, gains: Gains | None = None):
+    def __init__(self, settings: PilotSettings, gains: Gains | None = None) -> None:
         self._settings, self._gains = settings, gains or Gains()
         self._climb_offset = 0.0  # rad, integral of the error of the height
         self._bend_offset = 0.0  # rad/m, integral of the error of the climb
         self.tempo_limit = settings.fastest_tempo
 
-    def restart(self):
+    def restart(self) -> None:
         """Forget the integrals."""
         self._climb_offset = self._bend_offset = 0.0
 

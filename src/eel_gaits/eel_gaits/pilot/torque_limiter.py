@@ -11,12 +11,12 @@ AT_SLOWEST = 1.05  # times the slowest tempo: a beat that is no faster has no ro
 class TorqueLimiter:
     """The greatest tempo, between `slowest` and `fastest`, that keeps the torque below a limit."""
 
-    def __init__(self, slowest: float, fastest: float):
+    def __init__(self, slowest: float, fastest: float) -> None:
         self._slowest, self._fastest = slowest, fastest
         self._time, self._said = -math.inf, False
         self.tempo = fastest
 
-    def restart(self):
+    def restart(self) -> None:
         """Begin a run."""
         self.tempo, self._time, self._said = self._fastest, -math.inf, False
 

@@ -5,13 +5,11 @@ It swims straight, and bends the whole body towards the target heading. Its answ
 simulation as fast as possible (`real_time_factor:=0`) keeps in step with it. docs/howto/controllers.md tells how.
 """
 
-import array
 import math
 import sys
 from dataclasses import dataclass
 
 import numpy as np
-from builtin_interfaces.msg import Time
 from eel_base.attitude import heading
 from eel_base.quantity import Quantities, quantity
 from eel_ros.parameter_node import ParameterNode
@@ -20,10 +18,10 @@ from eel_ros.qos import keep_all
 from eel_ros.run_node import run_node
 from eel_ros.stamps import seconds_of
 from nav_msgs.msg import Odometry
-from std_msgs.msg import Header
 
 from eel_gaits.gaits.swimming import straight
 from eel_gaits.ros.lead import Lead
+from eel_gaits.ros.messages import samples_to_message
 from eel_gaits.ros.pilot_messages import head_motion
 from eel_msgs.msg import CurvatureSamples
 
@@ -58,16 +56,17 @@ class HeadingParameters(Quantities):
 class HeadingController(ParameterNode):
     """A node with the topics `odom` (in) and `curvature_samples` (out)."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         super().__init__(NAME)
         (given,) = declare_all(self, HeadingParameters)
         self.gait, self.x = straight(), np.linspace(0.0, given.length, 21)
         self.period, self.lead = given.period, Lead(given.period, given.lead)
-        self.bend, self.last, self.answers = np.zeros(3), math.inf, []
+        self.bend, self.last = np.zeros(3), math.inf
+        self.answers: list[CurvatureSamples] = []
         self.publisher = self.create_publisher(CurvatureSamples, "curvature_samples", keep_all())
         self.create_subscription(Odometry, "odom", self.receive, keep_all())
 
-    def receive(self, odometry):
+    def receive(self, odometry: Odometry) -> None:
         """Answer one sample: the curvature up to `lead` later. A stamp that is repeated gets the same answers."""
         now, head = seconds_of(odometry.header.stamp), head_motion(odometry)  # bad values are errors, and left out
         if now != self.last:
@@ -82,7 +81,7 @@ class HeadingController(ParameterNode):
         for answer in self.answers:
             self.publisher.publish(answer)
 
-    def next_bend(self, present):
+    def next_bend(self, present: float) -> np.ndarray:
         """The bend of the body one period on, at the `present` heading [rad]: K3 [rad/m], its rate and acceleration.
         K3 > 0 turns to the right."""
         target, gain, limit = (self.get_parameter(name).value for name in ("heading", "gain", "greatest_bend"))
@@ -92,20 +91,17 @@ class HeadingController(ParameterNode):
         rate += self.period * acceleration
         return np.array((value + self.period * rate, rate, acceleration))
 
-    def sample(self, time):
+    def sample(self, time: float) -> CurvatureSamples:
         """The curvature at `time` [s]: the gait and the bend."""
         yaw = [rows[:, 2] + bend for rows, bend in zip(self.gait.curvature(time, self.x), self.bend, strict=True)]
-        numbers = dict(zip(("x", "yaw", "yaw_rate", "yaw_accel"), (self.x, *yaw), strict=True))
-        flat = dict.fromkeys(("pitch", "pitch_rate", "pitch_accel"), np.zeros(len(self.x)))
-        seconds, nanoseconds = divmod(round(time * 1e9), 1_000_000_000)
-        fields = {name: array.array("d", values.tobytes()) for name, values in (numbers | flat).items()}
-        return CurvatureSamples(header=Header(stamp=Time(sec=seconds, nanosec=nanoseconds)), **fields)
+        pitch = np.zeros((3, len(self.x)))
+        return samples_to_message(time, self.x, np.vstack((pitch, *yaw)))
 
 
 # [end of controller]
 
 
-def main(args=None):
+def main(args: list[str] | None = None) -> int:
     """Run the node. The exit status is 0 after SIGINT or SIGTERM, and 2 if a parameter or word is refused at start."""
     rows = help_rows(HeadingParameters)
     return run_node(NAME, sys.argv if args is None else args, HeadingController, about=ABOUT, parameters=rows)

@@ -12,7 +12,7 @@ class Lead:
     The times are simulation time [s]. A run begins with a stamp that goes back, or after a long gap.
     """
 
-    def __init__(self, period: float, lead: float):
+    def __init__(self, period: float, lead: float) -> None:
         self._period, self._lead = period, max(lead, period)
         self._last, self._first, self._count = math.inf, 0.0, 0
 

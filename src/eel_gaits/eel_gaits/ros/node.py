@@ -7,6 +7,7 @@ the present time.
 """
 
 import sys
+from typing import Any
 
 from builtin_interfaces.msg import Time
 from eel_base.wording import shown
@@ -24,9 +25,9 @@ from rclpy.parameter import Parameter
 from eel_gaits.gaits.registry import GAITS, Transition
 from eel_gaits.gaits.settings import FILE_GAITS, MeasuredBody, Settings
 from eel_gaits.gaits.swimming import still
+from eel_gaits.laws.law import Law
 from eel_gaits.ros.messages import FRAME, law_to_message
-from eel_gaits.ros.row_stream import RowStream
-from eel_gaits.ros.sample_stream import SampleStream
+from eel_gaits.ros.streams import OscillatorStream, RowStream
 from eel_gaits.sources.sampled_law import SampledLaw
 from eel_msgs.msg import CurvatureLaw
 
@@ -48,31 +49,27 @@ LOOK = 0.05  # s between two looks at the time: whether it went back, and how fa
 class GaitGenerator(ParameterNode):
     """A node with the parameters `gait`, `transition` and the gait's own numbers, and the topic `curvature_law`."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         self._ticks = PolledGroup()
         super().__init__(NAME)
         overrides = take_overrides(self)
         self._settings = Settings.start(overrides)
         warn_of_unknown(self, overrides, Settings.known_names())
-        self._plan = None  # in mid-change: the new Settings, or the reason of a refusal
         self._stamp = Time()
-        self._stream = SampleStream(self)
-        self._rows = RowStream(self, frame_in(self.get_namespace(), FRAME))
+        self._frame = frame_in(self.get_namespace(), FRAME)
+        self._stream, self._rows = OscillatorStream(self, self._frame), RowStream(self, self._frame)
         self._publisher = self.create_publisher(CurvatureLaw, "curvature_law", latched(1))
         descriptor = ParameterDescriptor(description="name of the gait", additional_constraints=f"one of {KNOWN}")
         self.declare_parameter("gait", self._settings.gait, descriptor, ignore_override=True)
         descriptor = ParameterDescriptor(description=FILE)
         self.declare_parameter("file", self._settings.file, descriptor, ignore_override=True)
         self._declare_numbers()
-        self.add_pre_set_parameters_callback(self._plan_change)
-        self.add_on_set_parameters_callback(self._judge_change)
-        self.add_post_set_parameters_callback(self._make_change)
         backwards = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1), on_clock_change=False)
         self._publish_later = self.create_guard_condition(self._publish)  # after the present callback: one law of all
         self._jump_handle = self.get_clock().create_jump_callback(backwards, post_callback=self._follow_reset)
         self._publish()
 
-    def create_subscription(self, *args, **kwargs):
+    def create_subscription(self, *args: Any, **kwargs: Any) -> Any:
         """Put a subscription into the group that the node polls.
 
         The only subscription is rclpy's own, to /clock, which may tick thousands of times per second. The node needs
@@ -100,53 +97,50 @@ class GaitGenerator(ParameterNode):
         """Simulation time [s]."""
         return 1e-9 * self.get_clock().now().nanoseconds
 
-    def _declare_numbers(self):
+    def _declare_numbers(self) -> None:
         for group in self._settings.groups():
             declare(self, group, changeable=True)
 
-    def _plan_change(self, parameters):
-        """Before a set: find the new settings, and give rclpy the parameters that the present gait can store."""
+    def set_parameters_atomically(self, parameters: list[Parameter]) -> SetParametersResult:
+        """Set `parameters` at once; those of the gait give new settings and a new law, or are refused together."""
         ours = Settings.known_names()
         others = [each for each in parameters if each.name not in ours and self.has_parameter(each.name)]
         changes = {each.name: each.value for each in parameters if each not in others}
-        self._plan = None
         if not changes:
-            return parameters
+            return super().set_parameters_atomically(parameters)
         try:
-            self._plan = self._settings.changed(changes)
+            settings = self._settings.changed(changes)
         except ValueError as error:
-            self._plan = str(error)
-            return [Parameter("gait", value=self._settings.gait)]
-        if self._plan.gait != self._settings.gait:  # its numbers are declared once the set is accepted
-            return [*others, Parameter("gait", value=self._plan.gait), Parameter("file", value=self._plan.file)]
-        stored = {"gait": self._plan.gait, "file": self._plan.file, **self._plan.numbers()}
-        return [*others, *(Parameter(name, value=stored[name]) for name in changes)]
+            self.get_logger().warning(f"refused: {error}")
+            return SetParametersResult(successful=False, reason=str(error))
+        stored = {"gait": settings.gait, "file": settings.file}
+        if settings.gait == self._settings.gait:  # else its numbers are declared once the set is accepted
+            stored = {name: (stored | settings.numbers())[name] for name in changes}
+        result = super().set_parameters_atomically(
+            [*others, *(Parameter(name, value=value) for name, value in stored.items())]
+        )
+        if result.successful:
+            self._follow(settings)
+        return result
 
-    def _judge_change(self, parameters):
-        if isinstance(self._plan, str):
-            self.get_logger().warning(f"refused: {self._plan}")
-            return SetParametersResult(successful=False, reason=self._plan)
-        return SetParametersResult(successful=True)
-
-    def _make_change(self, parameters):
-        plan, self._plan = self._plan, None
-        if plan is None:  # a declaration, or nothing of ours
-            return
+    def _follow(self, settings: Settings) -> None:
+        """Swim by these settings from now on."""
         self.look_at_clock()
-        before, self._settings = self._settings, plan
-        if plan.gait != before.gait:
+        before, self._settings = self._settings, settings
+        if settings.gait != before.gait:
             for name in before.numbers():
                 self.undeclare_parameter(name)
             self._declare_numbers()
             self._stamp = self.get_clock().now().to_msg()
-        if isinstance(plan.law(), SampledLaw) and self._rows.next_stamp is not None:
+        if isinstance(settings.law(), SampledLaw) and self._rows.next_stamp is not None:
             self._stamp = self._rows.next_stamp
         self._publish_later.trigger()
 
-    def _follow_reset(self, jump):
+    def _follow_reset(self, jump: Any) -> None:
         """After time went back, the receiver's law has its own t = 0 at 0. Laws published later have it too."""
-        if self._settings.oscillation() is not None:
-            self._stream.restart(self._settings.oscillation(), self._now())
+        oscillation = self._settings.oscillation()
+        if oscillation is not None:
+            self._stream.restart(oscillation, self._now())
         if self._rows.running:
             self._stamp = Time()
             self._rows.begin_again(0.0)
@@ -154,15 +148,15 @@ class GaitGenerator(ParameterNode):
             self._stamp = Time()
             self._publish()
 
-    def _publish(self):
+    def _publish(self) -> None:
         law, oscillation = self._settings.law(), self._settings.oscillation()
         began = self._stamp.sec + 1e-9 * self._stamp.nanosec
-        told = f"gait {shown(self._settings.gait)}, t = 0 at {began:.3f} s, published on"
+        beginning = f"gait {shown(self._settings.gait)}, t = 0 at {began:.3f} s, published on"
         if isinstance(law, SampledLaw):
             if self._stream.running:
                 self._drop_samples()
             self._rows.follow(law, began)
-            self.get_logger().info(f"{told} {self._rows.topic_name}: {law.about}")
+            self.get_logger().info(f"{beginning} {self._rows.topic_name}: {law.about}")
         elif oscillation is not None:
             if self._rows.running:
                 self._drop_samples()
@@ -170,21 +164,20 @@ class GaitGenerator(ParameterNode):
             self.get_logger().info(f"gait {shown(self._settings.gait)}, published on curvature_samples")
         else:
             self._publish_law(law)
-            self.get_logger().info(f"{told} {self._publisher.topic_name}")
+            self.get_logger().info(f"{beginning} {self._publisher.topic_name}")
 
-    def _publish_law(self, law):
+    def _publish_law(self, law: Law) -> None:
         """Publish a law. A simulation then drops the samples that it has."""
         self._stream.stop()
         self._rows.stop()
-        frame = frame_in(self.get_namespace(), FRAME)
-        self._publisher.publish(law_to_message(law, stamp=self._stamp, frame=frame))
+        self._publisher.publish(law_to_message(law, stamp=self._stamp, frame=self._frame))
 
-    def _drop_samples(self):
+    def _drop_samples(self) -> None:
         """Have a simulation drop the samples of one stream before another begins."""
         self._publish_law(still())
 
 
-def main(args=None):
+def main(args: list[str] | None = None) -> int:
     """Run the node. The exit status is 0 after SIGINT or SIGTERM, and 2 if a parameter or word is refused at start."""
     words, look = sys.argv if args is None else args, GaitGenerator.look
     return run_node(NAME, words, GaitGenerator, look, about=ABOUT, parameters=ROWS, sim_time=True, period=LOOK)

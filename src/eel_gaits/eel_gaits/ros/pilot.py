@@ -8,7 +8,9 @@ docs/howto/pilot.md says more.
 
 import math
 import sys
+from collections.abc import Callable
 from dataclasses import fields
+from typing import Any
 
 import numpy as np
 from eel_base.wording import shown
@@ -21,6 +23,8 @@ from eel_ros.stamps import seconds_of
 from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import Odometry, Path
 from rcl_interfaces.msg import SetParametersResult
+from rclpy.parameter import Parameter
+from rclpy.subscription import Subscription
 
 from eel_gaits.pilot import goals
 from eel_gaits.pilot.pilot import Pilot
@@ -39,7 +43,7 @@ LONGEST_GAP = 2.0  # s between two samples of odom: after a longer one the body 
 class PilotNode(ParameterNode):
     """A node with the topics `odom`, `goal_path`, `goal_pose`, `swim_state` (in), `curvature_samples`, `goal` (out)."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         super().__init__(NAME)
         self._numbers: GoalParameters
         self._timing: TimingParameters
@@ -50,7 +54,8 @@ class PilotNode(ParameterNode):
         self._frames = {frame_in(self.get_namespace(), "odom"), ""}
         self._section_frame = frame_in(self.get_namespace(), FRAME)
         self._lead = Lead(self._timing.sample_period, self._timing.lead)
-        self._last, self._answers = math.inf, []  # s: last odom; what it was answered
+        self._last = math.inf  # s, of the last odom
+        self._answers: list[CurvatureSamples] = []  # to it
         self._waiting: list[tuple[float, Odometry]] = []  # by time [s]
         self._torques: dict[float, float] = {}  # time [s]: torque [N m]
         self._torque_comes = False  # whether swim_state has come, and none has been missed since
@@ -58,7 +63,7 @@ class PilotNode(ParameterNode):
         self.create_subscription(Odometry, "odom", self._receive, keep_all())
         self.create_subscription(Path, "goal_path", self._receive_path, 10, raw=True)
         self.create_subscription(PoseStamped, "goal_pose", self._receive_pose, 10)
-        self._swim_state = None
+        self._swim_state: Subscription | None = None
         self._subscribe_to_torque()
         self.add_on_set_parameters_callback(self._change)
 
@@ -67,7 +72,7 @@ class PilotNode(ParameterNode):
     def _course(self, numbers: GoalParameters) -> goals.Course:
         return goals.course(numbers.heading, numbers.depth, numbers.speed, self._pilot.settings.limits)
 
-    def _change(self, parameters) -> SetParametersResult:
+    def _change(self, parameters: list[Parameter]) -> SetParametersResult:
         changes = {each.name: each.value for each in parameters if each.name in GoalParameters.__dataclass_fields__}
         if not changes:
             return SetParametersResult(successful=True)
@@ -86,8 +91,8 @@ class PilotNode(ParameterNode):
         self._subscribe_to_torque()
         return SetParametersResult(successful=True)
 
-    def _receive_path(self, data: bytes, about: dict):
-        def goal():
+    def _receive_path(self, data: bytes, about: dict[str, Any]) -> None:
+        def goal() -> Any:
             message = read_path(data)
             self._check_frame(message.header.frame_id)
             points = [point_of(each.pose.position) for each in message.poses]
@@ -95,25 +100,25 @@ class PilotNode(ParameterNode):
 
         self._take("goal_path", goal)
 
-    def _receive_pose(self, message: PoseStamped):
-        def goal():
+    def _receive_pose(self, message: PoseStamped) -> None:
+        def goal() -> Any:
             self._check_frame(message.header.frame_id)
             return goals.station(point_of(message.pose.position), self._numbers.speed, self._pilot.settings.limits)
 
         self._take("goal_pose", goal)
 
-    def _take(self, topic: str, make):
+    def _take(self, topic: str, make: Callable[[], Any]) -> None:
         try:
             self._follow(make(), topic)
         except ValueError as error:
             self.get_logger().warning(f"{topic} refused, the last goal stays: {error}")
 
-    def _follow(self, goal, source: str):
+    def _follow(self, goal: Any, source: str) -> None:
         self._pilot.follow(goal)
         self._goal.publish(path_message(goals.way_points(goal), frame_in(self.get_namespace(), "odom")))
         self.get_logger().info(f"{goals.described(goal)}, from {source}")
 
-    def _check_frame(self, frame: str):
+    def _check_frame(self, frame: str) -> None:
         """`ValueError` for a frame that is not that of odom."""
         if frame.lstrip("/") not in self._frames:
             known = " or ".join(shown(each) for each in sorted(self._frames - {""})) or "empty"
@@ -121,7 +126,7 @@ class PilotNode(ParameterNode):
 
     # -- samples
 
-    def _subscribe_to_torque(self):
+    def _subscribe_to_torque(self) -> None:
         """Subscribe to swim_state while there is a limit of torque."""
         wanted = self._numbers.torque_limit > 0.0
         if wanted and self._swim_state is None:
@@ -133,7 +138,7 @@ class PilotNode(ParameterNode):
             self._pilot.limit_torque(0.0, 0.0, 0.0)
             self._answer_waiting()
 
-    def _receive_state(self, message: SwimState):
+    def _receive_state(self, message: SwimState) -> None:
         try:
             now = seconds_of(message.header.stamp)
         except ValueError as error:
@@ -146,20 +151,20 @@ class PilotNode(ParameterNode):
             self._warn_of_torque("swim_state holds no torque; the dynamics node needs internal_wrench")
         self._answer_waiting()
 
-    def _warn_of_torque(self, reason: str):
+    def _warn_of_torque(self, reason: str) -> None:
         self.get_logger().warning(f"torque_limit is not kept: {reason}", throttle_duration_sec=10.0)
 
-    def _receive(self, odometry: Odometry):
+    def _receive(self, odometry: Odometry) -> None:
         try:
             self._waiting.append((seconds_of(odometry.header.stamp), odometry))
         except ValueError as error:
             self._leave_out(error)
         self._answer_waiting()
 
-    def _leave_out(self, error: ValueError):
+    def _leave_out(self, error: ValueError) -> None:
         self.get_logger().warning(f"odom left out: {error}", throttle_duration_sec=1.0)
 
-    def _answer_waiting(self):
+    def _answer_waiting(self) -> None:
         """Answer each odom once the torque of its time is known, so that a run repeats itself.
 
         Nothing waits before swim_state has come, nor once it stays away.
@@ -178,7 +183,7 @@ class PilotNode(ParameterNode):
             self._waiting.pop(0)
             self._answer(now, odometry)
 
-    def _answer(self, now: float, odometry: Odometry):
+    def _answer(self, now: float, odometry: Odometry) -> None:
         """Send the samples up to `lead` after `now` [s]. A stamp that goes back is a start, and so is one after a gap;
         one that is repeated gets the same answers."""
         if now != self._last:
@@ -209,12 +214,12 @@ class PilotNode(ParameterNode):
                 self.get_logger().warning(text)
         self._pilot.news.clear()
 
-    def _add(self, time: float, rows: np.ndarray, now: float):
+    def _add(self, time: float, rows: np.ndarray, now: float) -> None:
         if time > now:
             self._answers.append(samples_to_message(time, self._pilot.law.x, rows, self._section_frame))
 
 
-def main(args=None):
+def main(args: list[str] | None = None) -> int:
     """Run the node. The exit status is 0 after SIGINT or SIGTERM, and 2 if a parameter or word is refused at start."""
     words, rows = sys.argv if args is None else args, [row for kind in GROUPS for row in help_rows(kind)]
     return run_node(NAME, words, PilotNode, about=ABOUT, parameters=rows, sim_time=True)

@@ -2,6 +2,7 @@
 """What the pilot reads of messages, and the goal as one."""
 
 import numpy as np
+from eel_base.attitude import unit_quaternion
 from eel_base.wording import shown
 from eel_ros.serialised import Beginning
 from eel_ros.serving import read_message
@@ -53,7 +54,5 @@ def head_motion(odometry: Odometry) -> HeadMotion:
             raise ValueError(f"{name} must be finite, got {shown(values.tolist())}")
         if np.abs(values).max() > GREATEST:
             raise ValueError(f"{name} must be at most {GREATEST:g} in size, got {shown(values.tolist())}")
-    norm = float(np.linalg.norm(orientation))
-    if not 0.99 < norm < 1.01:
-        raise ValueError(f"orientation must be a unit quaternion, got {shown(orientation.tolist())}")
-    return HeadMotion(position, orientation / norm, angular_velocity, velocity)
+    orientation = np.array(unit_quaternion("orientation", orientation.tolist()))
+    return HeadMotion(position, orientation, angular_velocity, velocity)

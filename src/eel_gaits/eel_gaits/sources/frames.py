@@ -7,7 +7,7 @@ left would be taken for motion, and the accelerations for what it does.
 """
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from eel_base.wording import shown
@@ -37,7 +37,7 @@ class Frames(NamedTuple):
         last, count = first if last is None else last, self.fields.shape[1]
         return self.table.error(text, first * count, (last + 1) * count - 1)
 
-    def check_gaps(self, motion: np.ndarray):
+    def check_gaps(self, motion: np.ndarray) -> None:
         """`ValueError` for a gap longer than a quarter of the fastest period in `motion` (N, m)."""
         gaps, period = np.diff(self.time), fastest_period(self.time, motion)
         place = int(np.argmax(gaps))
@@ -73,7 +73,7 @@ def frames_of(table: Table, names: tuple[str, ...]) -> Frames:
     return found if arc is None else found._replace(arc=_material(found, arc.reshape(len(starts), -1)))
 
 
-def check_rising(table: Table, instants: np.ndarray, rows: np.ndarray):
+def check_rising(table: Table, instants: np.ndarray, rows: np.ndarray) -> None:
     """`ValueError` where the `instants` of these `rows` do not rise, or are few."""
     back = np.flatnonzero(np.diff(instants) <= 0.0)
     if len(back):
@@ -90,7 +90,7 @@ def _material(frames: Frames, arc: np.ndarray) -> np.ndarray:
         frame, point = falls[0]
         row = frame * arc.shape[1] + point + 1
         raise frames.table.error(f"arc_length must rise along a frame, got {arc[frame, point + 1]:g}", row)
-    mean = arc.mean(axis=0)
+    mean: np.ndarray = arc.mean(axis=0)
     apart = np.abs(arc - mean)
     frame, point = np.unravel_index(np.argmax(apart), apart.shape)
     if apart[frame, point] > MATERIAL * (mean[-1] - mean[0]):
@@ -109,7 +109,7 @@ class SmoothedFrames:
     about: what smoothing did, in words; unit: of the fields, of which `factor` make one of the frames'.
     """
 
-    def __init__(self, frames: Frames, arc: np.ndarray, smooth: bool, unit: str, factor: float = 1.0):
+    def __init__(self, frames: Frames, arc: np.ndarray, smooth: bool, unit: str, factor: float = 1.0) -> None:
         count, points, _ = frames.fields.shape
         found = (smoothed if smooth else interpolated)(arc, frames.fields.swapaxes(0, 1).reshape(points, -1))
         self._spline, self._count = found.spline, count
@@ -118,7 +118,7 @@ class SmoothedFrames:
 
     def at(self, arc: np.ndarray, order: int = 0) -> np.ndarray:
         """Fields (N, m, fields) at the arc lengths `arc` (m,), or their derivatives of this `order` along the body."""
-        return self._spline(arc, order).reshape(len(arc), self._count, -1).swapaxes(0, 1)
+        return np.asarray(self._spline(arc, order)).reshape(len(arc), self._count, -1).swapaxes(0, 1)
 
 
 def law_of_frames(
@@ -129,7 +129,7 @@ def law_of_frames(
     name: str,
     kind: str,
     along: str = "",
-    raw: Callable | None = None,
+    raw: Callable[..., Any] | None = None,
 ) -> SampledLaw:
     """The law of curvature(X) (N, 2, m) [rad/m], of pitch and yaw, at the instants of the `frames`.
 
@@ -143,14 +143,14 @@ def law_of_frames(
         found = (interpolated if raw is None else smoothed_in_time)(time, rows[:, axis])
         values[:, axis] = np.stack([found.spline(time, order) for order in range(3)], axis=1)
         degrees.append(found.degrees)
-    told = "not smoothed"
+    smoothing = "not smoothed"
     if raw is not None:
         frames.check_gaps(values[:, :, 0].reshape(len(rows), -1))
         residual = np.sqrt(np.mean((values[:, :, 0] - rows) ** 2))
         left = f"{np.mean(degrees):.0f} of {len(time)}" if degrees else "none"
-        told = (
+        smoothing = (
             "smoothed by quintic splines with generalised cross-validation; residual (RMS) "
             f"{along}{', ' if along else ''}{residual:.3g} rad/m in time ({left} degrees of freedom left)"
         )
-    about = f"{kind} of {shown(frames.table.path.name)}, {len(time)} instants, {told}"
+    about = f"{kind} of {shown(frames.table.path.name)}, {len(time)} instants, {smoothing}"
     return SampledLaw(time, x, values, name=name, about=about, raw=raw)

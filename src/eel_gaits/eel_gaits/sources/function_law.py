@@ -7,9 +7,10 @@ rows.
 """
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
-from eel_base.quantity import is_finite, numbers
+from eel_base.quantity import numbers, positive
 from eel_base.wording import shown
 
 from eel_gaits.sources.body_points import points_for
@@ -22,7 +23,12 @@ SMOOTH = 1e-3  # part of the accelerations' root mean square by which those that
 
 
 def sampled(
-    function: Callable, duration: float, *, length: float = 1.0, tolerance: float = TOLERANCE, name: str | None = None
+    function: Callable[..., Any],
+    duration: float,
+    *,
+    length: float = 1.0,
+    tolerance: float = TOLERANCE,
+    name: str | None = None,
 ) -> SampledLaw:
     """The law of `function` from t = 0 to `duration` [s], for a body of `length` [m].
 
@@ -32,12 +38,11 @@ def sampled(
 
     `ValueError` names t and X where the function returns something else, or jumps.
     """
-    for argument, value, unit in (("duration", duration, "s"), ("length", length, "m"), ("tolerance", tolerance, "")):
-        if not is_finite(value) or not value > 0.0:
-            raise ValueError(f"{argument} must be > 0 {unit}".rstrip() + f", got {shown(value)}")
-    curvature = CheckedFunction(function)
-    x = _points(curvature, float(duration), float(length), tolerance)
-    time, values, missed = _rows(curvature, float(duration), x, tolerance)
+    duration, length = positive("duration", duration, "s"), positive("length", length, "m")
+    tolerance, curvature = positive("tolerance", tolerance), CheckedFunction(function)
+    instants = np.linspace(0.0, duration, LOOKS)
+    x = points_for(lambda x: np.array([curvature(t, x)[0] for t in instants]), length, tolerance)
+    time, values, missed = _rows(curvature, duration, x, tolerance)
     about = f"a function in {len(time)} rows of {len(x)} points, which miss it by {missed:.1g} of its greatest value"
     name = getattr(function, "__name__", type(function).__name__) if name is None else name
     return SampledLaw(time, x, values, name=name, about=about)
@@ -46,7 +51,7 @@ def sampled(
 class CheckedFunction:
     """Calls a user's function, and checks what it returns. `given`: whether it returns derivatives too."""
 
-    def __init__(self, function: Callable):
+    def __init__(self, function: Callable[..., Any]) -> None:
         self._function = function
         self.given: bool | None = None
 
@@ -82,19 +87,16 @@ class CheckedFunction:
         return found
 
 
-def _points(curvature: CheckedFunction, duration: float, length: float, tolerance: float) -> np.ndarray:
-    instants = np.linspace(0.0, duration, LOOKS)
-    return points_for(lambda x: np.array([curvature(t, x)[0] for t in instants]), length, tolerance)
-
-
-def _rows(curvature: CheckedFunction, duration: float, x: np.ndarray, tolerance: float):
+def _rows(
+    curvature: CheckedFunction, duration: float, x: np.ndarray, tolerance: float
+) -> tuple[np.ndarray, np.ndarray, float]:
     """Times (N,), values (N, 2, 3, n) and the greatest distance between rows, relative to the greatest curvature."""
     from scipy.interpolate import make_interp_spline
 
-    def evaluated(instants):
+    def evaluated(instants: np.ndarray) -> np.ndarray:
         return np.array([curvature(t, x) for t in instants]).swapaxes(1, 2)  # (N, 2, 1 or 3, n)
 
-    def completed(time, values):
+    def completed(time: np.ndarray, values: np.ndarray) -> np.ndarray:
         if curvature.given:
             return values
         spline = make_interp_spline(time, values[:, :, 0], k=5)

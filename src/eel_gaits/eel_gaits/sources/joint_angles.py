@@ -6,7 +6,9 @@ integral of the curvature up to there. The curvature is the derivative of the sp
 """
 
 import re
+from collections.abc import Iterable
 from functools import partial
+from typing import Any
 
 import numpy as np
 from eel_base.wording import shown
@@ -19,7 +21,7 @@ COLUMN = re.compile(r"(pitch|yaw)_([1-9][0-9]*)")
 FEWEST_JOINTS = 3  # in an axis
 
 
-def joint_columns(names) -> dict[str, list[str]]:
+def joint_columns(names: Iterable[str]) -> dict[str, list[str]]:
     """The columns of joints among `names`, of each axis in their order."""
     found: dict[str, dict[int, str]] = {}
     for name in names:
@@ -58,7 +60,7 @@ def law_of_joints(table: Table, length: float, name: str, smooth: bool = True) -
     return law_of_frames(frames, curvature, length, name=name, kind=f"angles of {len(columns)} joints", raw=raw)
 
 
-def _sums(angles: np.ndarray, length: float):
+def _sums(angles: np.ndarray, length: float) -> Any:
     """The spline along X through the sums of `angles` (n, N) from the nose on, at the ends of the segments."""
     from scipy.interpolate import make_interp_spline
 

@@ -6,6 +6,7 @@ X is the arc length from the nose, and h the displacement across the line on whi
 """
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from eel_base.quantity import numbers
@@ -23,7 +24,7 @@ class LateralMidline:
     h(X, t): of the points X (n,) [m] at the time t [s]. `ValueError` names t and X where it does not fit.
     """
 
-    def __init__(self, displacement: Callable, length: float = 1.0):
+    def __init__(self, displacement: Callable[..., Any], length: float = 1.0) -> None:
         self._displacement, self.length = displacement, float(length)
         self._x = 0.5 * self.length * (1.0 - np.cos(np.linspace(0.0, np.pi, POINTS)))
 
@@ -40,7 +41,7 @@ class LateralMidline:
         ahead = make_interp_spline(self._x, np.sqrt(1.0 - line(self._x, 1) ** 2), k=5).antiderivative()
         return np.stack((ahead(x), line(x)), axis=-1)
 
-    def _line(self, time: float):
+    def _line(self, time: float) -> Any:
         """The spline of h at `time` [s]."""
         from scipy.interpolate import make_interp_spline
 

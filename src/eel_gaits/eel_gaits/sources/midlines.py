@@ -27,7 +27,7 @@ class Midlines:
     the file's unit of length. x, y, z are right-handed, z is up. `ValueError` names the rows that do not fit.
     """
 
-    def __init__(self, table: Table, length: float, scale: float = 1.0):
+    def __init__(self, table: Table, length: float, scale: float = 1.0) -> None:
         names = ("x", "y", "z") if "z" in table.columns else ("x", "y")
         frames = frames_of(table, names)
         frames = frames._replace(fields=scale * frames.fields, arc=None if frames.arc is None else scale * frames.arc)
@@ -75,7 +75,7 @@ class Midlines:
             raise self.frames.error(f"a midline of {lengths[worst]:.4g} m, the others have {mean:.4g} m", worst)
         return mean
 
-    def _check_upright(self, fitted: SmoothedFrames):
+    def _check_upright(self, fitted: SmoothedFrames) -> None:
         if self.position.shape[2] == 3:
             tangent = fitted.at(self.arc[:1], 1)[:, 0]
             upward = np.abs(tangent[:, 2]) / np.linalg.norm(tangent, axis=1)

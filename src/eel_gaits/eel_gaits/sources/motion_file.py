@@ -19,7 +19,7 @@ import numpy as np
 from eel_base.files.archive import read_archive
 from eel_base.files.input_file import reading
 from eel_base.files.output_file import replacing
-from eel_base.quantity import is_finite
+from eel_base.quantity import positive
 from eel_base.wording import shown
 
 from eel_gaits.sources.frames import SmoothedFrames, frames_of, law_of_frames
@@ -34,7 +34,12 @@ FITTING = 1e-6  # part of the body's length by which a law's rows may be shorter
 
 
 def read_motion(
-    path: str | os.PathLike, *, length: float = 1.0, scale: float = 1.0, smooth: bool = True, name: str | None = None
+    path: str | os.PathLike[str],
+    *,
+    length: float = 1.0,
+    scale: float = 1.0,
+    smooth: bool = True,
+    name: str | None = None,
 ) -> SampledLaw:
     """The law of the motion in a .csv or .npz file, for a body of `length` [m].
 
@@ -43,9 +48,7 @@ def read_motion(
     column and value of what does not fit.
     """
     path = Path(path)
-    for argument, value in (("length", length), ("scale", scale)):
-        if not is_finite(value) or not value > 0.0:
-            raise ValueError(f"{argument} must be > 0, got {shown(value)}")
+    length, scale = positive("length", length, "m"), positive("scale", scale)
     name = path.stem if name is None else name
     with reading(shown(str(path))):
         return _motion(path, length, scale, smooth, name)
@@ -65,7 +68,7 @@ def _motion(path: Path, length: float, scale: float, smooth: bool, name: str) ->
     return Midlines(table, length, scale).law(name, smooth)
 
 
-def read_midlines(path: str | os.PathLike, *, length: float = 1.0, scale: float = 1.0) -> Midlines:
+def read_midlines(path: str | os.PathLike[str], *, length: float = 1.0, scale: float = 1.0) -> Midlines:
     """The midlines in a .csv or .npz file, as measured. `ValueError` as in `read_motion`, and for another motion."""
     with reading(shown(str(path))):
         table = read_table(path)
@@ -74,7 +77,7 @@ def read_midlines(path: str | os.PathLike, *, length: float = 1.0, scale: float 
         return Midlines(table, length, scale)
 
 
-def save_law(law: SampledLaw, path: str | os.PathLike) -> None:
+def save_law(law: SampledLaw, path: str | os.PathLike[str]) -> None:
     """Write the rows of `law` to an .npz file, which `read_motion` reads. `NotWritten` where that fails."""
     with replacing(path) as draft:
         np.savez_compressed(draft, time=law.time, x=law.x, values=law.values)

@@ -8,6 +8,7 @@ rate and acceleration at both, as between the samples of a controller. So it is 
 from bisect import bisect_right
 from collections.abc import Callable
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from eel_base.quantity import number, numbers
@@ -39,9 +40,19 @@ class SampledLaw:
         about: where the rows come from, in one line; may be empty.
     """
 
-    def __init__(self, time, x, values, *, name="sampled", transition=0.0, about="", raw: Callable | None = None):
+    def __init__(
+        self,
+        time: Any,
+        x: Any,
+        values: Any,
+        *,
+        name: str = "sampled",
+        transition: float = 0.0,
+        about: str = "",
+        raw: Callable[..., Any] | None = None,
+    ) -> None:
         self.time, self.x, self.values = (numbers(*each) for each in (("time", time), ("x", x), ("values", values)))
-        self.name, self.transition = checked_name(name), number("transition", transition)
+        self.name, self.transition = checked_name(name), number("transition", transition, "s", minimum=0.0)
         self.about, self._raw = about, raw
         for field, least in (("time", FEWEST_ROWS), ("x", LEAST_POINTS)):
             row = getattr(self, field)
@@ -54,12 +65,10 @@ class SampledLaw:
             row, axis, _, point = np.argwhere(~np.isfinite(self.values))[0]
             where = f"{list(AXES)[axis]} at t = {self.time[row]:g} s, X = {self.x[point]:g} m"
             raise ValueError(f"values must be finite, got none of {where}")
-        if self.transition < 0.0:
-            raise ValueError(f"transition must be >= 0 s, got {self.transition}")
         for array in (self.time, self.x, self.values):
             array.flags.writeable = False
 
-    def __eq__(self, other) -> bool:
+    def __eq__(self, other: object) -> bool:
         return isinstance(other, SampledLaw) and self._key == other._key
 
     def __hash__(self) -> int:
@@ -68,11 +77,11 @@ class SampledLaw:
     def __repr__(self) -> str:
         return f"SampledLaw({shown(self.name)}, {len(self.time)} rows of {len(self.x)} points, {self.duration:g} s)"
 
-    def __deepcopy__(self, memo: dict) -> "SampledLaw":
+    def __deepcopy__(self, memo: dict[str, Any]) -> "SampledLaw":
         return self
 
     @cached_property
-    def _key(self) -> tuple:
+    def _key(self) -> tuple[Any, ...]:
         arrays = (each.tobytes() for each in (self.time, self.x, self.values))
         return (self.name, self.transition, *arrays)
 
@@ -121,7 +130,7 @@ class SampledLaw:
         values = self.values[rows][..., points]
         return SampledLaw(self.time[rows], self.x[points], values, name=self.name, transition=self.transition)
 
-    def curvature(self, time, x):
+    def curvature(self, time: float, x: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Curvature, its rate and its acceleration at one time, as `Law.curvature`. At rest beyond the last row.
 
         Args:
@@ -145,7 +154,7 @@ class SampledLaw:
         return found[0], found[1], found[2]
 
 
-def quintic(start, end, step, s):
+def quintic(start: np.ndarray, end: np.ndarray, step: float | np.ndarray, s: float) -> np.ndarray:
     """Value, rate and acceleration (3, ...) at the part `s` (0 to 1) of an interval of `step` [s], from both ends.
 
     start, end (3, ...): value, rate and acceleration there.
@@ -160,4 +169,4 @@ def quintic(start, end, step, s):
     value = a[0] + s * (a[1] + s * (0.5 * a[2] + s * (c3 + s * (c4 + s * c5))))
     rate = a[1] + s * (a[2] + s * (3.0 * c3 + s * (4.0 * c4 + s * 5.0 * c5)))
     acceleration = a[2] + s * (6.0 * c3 + s * (12.0 * c4 + s * 20.0 * c5))
-    return np.stack((value, rate, acceleration)) / scale
+    return np.asarray(np.stack((value, rate, acceleration)) / scale)

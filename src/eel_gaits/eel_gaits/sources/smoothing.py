@@ -79,7 +79,7 @@ def smoothed(x: np.ndarray, values: np.ndarray, together: bool = True) -> Smooth
     return Smoothed(BSpline(places, coefficients + centre, DEGREE), float(degrees.mean()))
 
 
-def _roughness(knots: np.ndarray):
+def _roughness(knots: np.ndarray) -> Any:
     """The matrix (n, n) of the integrals of the products of third derivatives of the B-splines on these `knots`."""
     from scipy.interpolate import BSpline
     from scipy.sparse import diags
@@ -99,7 +99,7 @@ def _roughness(knots: np.ndarray):
     return third.T @ diags(weight) @ third
 
 
-def _bands(matrix) -> np.ndarray:
+def _bands(matrix: Any) -> np.ndarray:
     """The lower bands (6, n) of a symmetric sparse `matrix`, as `scipy.linalg.cholesky_banded` takes them."""
     bands = np.zeros((DEGREE + 1, matrix.shape[0]))
     for offset in range(min(DEGREE + 1, matrix.shape[0])):

@@ -36,7 +36,7 @@ class Table(NamedTuple):
             place = f", {self.word}s {self.lines[first]} to {self.lines[last]}"
         return ValueError(f"{self.what}{shown(str(self.path))}{place}: {text}")
 
-    def check_finite(self, names: tuple[str, ...], largest: float = LARGEST):
+    def check_finite(self, names: tuple[str, ...], largest: float = LARGEST) -> None:
         """`ValueError` for the first number of these columns that is not finite, or beyond the `largest`."""
         for name in names:
             bad = np.flatnonzero(~(np.abs(self.columns[name]) <= largest))
@@ -46,7 +46,7 @@ class Table(NamedTuple):
                 raise self.error(f"{name} must be {rule}, got {value:g}", bad[0])
 
 
-def read_table(path: str | os.PathLike, what: str = "") -> Table:
+def read_table(path: str | os.PathLike[str], what: str = "") -> Table:
     """The columns of a .csv or .npz file. `ValueError` in one line, with line and column, for what cannot be read.
 
     what: begins an error, before the file's name, such as "body file ".
@@ -73,8 +73,8 @@ def _flat(arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
         found[name] = each.ravel()
     sizes = {name: len(each) for name, each in found.items()}
     if len(set(sizes.values())) > 1:
-        told = ", ".join(f"{name} {arrays[name].shape}" for name in arrays)
-        raise ValueError(f"its arrays must fit together, (N,) and (N, n), got {told}")
+        shapes = ", ".join(f"{name} {arrays[name].shape}" for name in arrays)
+        raise ValueError(f"its arrays must fit together, (N,) and (N, n), got {shapes}")
     return found
 
 
@@ -87,8 +87,8 @@ def _table(path: Path) -> tuple[dict[str, np.ndarray], np.ndarray]:
             if not any(names):
                 raise ValueError("it is empty")
             if len(set(names)) < len(names) or len(names) > MOST_COLUMNS:
-                told = f"at most {MOST_COLUMNS} columns, each with a name of its own"
-                raise ValueError(f"there must be {told}, got {len(names)}: {shown(names)}")
+                rule = f"at most {MOST_COLUMNS} columns, each with a name of its own"
+                raise ValueError(f"there must be {rule}, got {len(names)}: {shown(names)}")
             for row in filter(None, rows):
                 if len(row) != len(names):
                     raise ValueError(f"a row must have {len(names)} fields, as the header has, got {len(row)}")

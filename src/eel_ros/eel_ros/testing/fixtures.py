@@ -10,7 +10,9 @@ import os
 import resource
 import subprocess
 import sys
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -35,14 +37,14 @@ for words in json.loads(sys.argv[2]):
 """
 
 
-def pytest_configure(config):
+def pytest_configure(config: Any) -> None:
     """Register the markers."""
     for marker in MARKERS:
         config.addinivalue_line("markers", marker)
 
 
 @pytest.fixture(scope="session", autouse=True)
-def ros_domain(tmp_path_factory):
+def ros_domain(tmp_path_factory: Any) -> Iterator[int]:
     """The number of a ROS domain that nobody else on this machine uses; in the environment for the whole session."""
     domain = reserve_domain()
     fastdds_profile.use_profile()
@@ -54,7 +56,7 @@ def ros_domain(tmp_path_factory):
 
 
 @pytest.fixture
-def fresh_domain(monkeypatch):
+def fresh_domain(monkeypatch: Any) -> Iterator[int]:
     """A domain for one test alone, for what counts messages or publishers; in the environment while the test lasts."""
     domain = reserve_domain()
     monkeypatch.setenv("ROS_DOMAIN_ID", str(domain.number))
@@ -69,7 +71,7 @@ OVER_UDP = {
 }
 
 
-def starter(folder, **settings: str):
+def starter(folder: Path, **settings: str) -> Iterator[Callable[..., NodeProcess]]:
     """Yields start(executable, *arguments) -> NodeProcess, and ends what it started; output goes to `folder`.
 
     settings: environment variables beside this process's own.
@@ -88,13 +90,13 @@ def starter(folder, **settings: str):
 
 
 @pytest.fixture
-def start(tmp_path):
+def start(tmp_path: Any) -> Any:
     """start(executable, *arguments) -> NodeProcess; all of them are gone when the test ends."""
     yield from starter(tmp_path)
 
 
 @pytest.fixture
-def start_to_kill(tmp_path):
+def start_to_kill(tmp_path: Any) -> Any:
     """As `start`, for tests that kill a node while others run.
 
     A killed node may leave a lock in shared memory behind. Fast DDS's thread of discovery in the nodes that go on then
@@ -104,7 +106,7 @@ def start_to_kill(tmp_path):
 
 
 @pytest.fixture
-def start_in_turn(start):
+def start_in_turn(start: Any) -> Any:
     """start_in_turn(module, [words, ...]) -> [(status, what it said), ...]: the `main` of a node's module with one
     command line after the other, each of which it refuses; in one process, as imports take most of a start."""
 
@@ -119,7 +121,7 @@ def start_in_turn(start):
 
 
 @pytest.fixture(scope="module")
-def start_for_module(tmp_path_factory):
+def start_for_module(tmp_path_factory: Any) -> Any:
     """As `start`, for the tests of one module together; in a domain of its own."""
     before = os.environ["ROS_DOMAIN_ID"]
     domain = reserve_domain()
@@ -130,11 +132,11 @@ def start_for_module(tmp_path_factory):
 
 
 @pytest.fixture
-def limit_of_files():
+def limit_of_files() -> Any:
     """limit_of_files(size): a context in which no file of this process may become larger [bytes]."""
 
     @contextlib.contextmanager
-    def limited(size):
+    def limited(size: int) -> Iterator[None]:
         before = resource.getrlimit(resource.RLIMIT_FSIZE)
         resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
         try:
@@ -146,7 +148,7 @@ def limit_of_files():
 
 
 @pytest.fixture
-def small_disk(tmp_path):
+def small_disk(tmp_path: Any) -> Iterator[Path]:
     """The folder of a file system of 1 MB."""
     folder = tmp_path / "small disk"
     folder.mkdir()

@@ -43,7 +43,7 @@ def reserve_domain() -> Domain:
     raise RuntimeError(f"every ROS domain from {DOMAINS.start} to {DOMAINS.stop - 1} is in use on this machine")
 
 
-def forget_the_killed(number: int, folder: Path = SHARED_MEMORY):
+def forget_the_killed(number: int, folder: Path = SHARED_MEMORY) -> None:
     """Remove what processes in a domain have left of their ports in shared memory, where none runs any more.
 
     A killed process leaves them, at times locked; Fast DDS then finds the next one in the domain but hands it nothing

@@ -7,15 +7,16 @@ A node drops its reply to a client that it has not matched within 0.1 s, with "c
 
 import time
 from collections.abc import Callable
+from typing import Any
 
 REPEAT = 20.0  # s without an answer
 
 
-def answer_of(service, request) -> Callable[[], object]:
+def answer_of(service: Any, request: Any) -> Callable[[], object]:
     """Send the `request` with the client `service`; the result gives the answer, or None as long as there is none."""
     sent, last = [service.call_async(request)], time.monotonic()
 
-    def answer():
+    def answer() -> Any:
         nonlocal last
         for each in sent:
             if each.done():
