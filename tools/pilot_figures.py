@@ -24,49 +24,42 @@ HEIGHTS = (0.0, 0.002, 0.005)  # m, metacentric heights
 SHOWN = 4  # seed of the course in the picture
 
 
+QUANTITIES = (  # of a task: values; what is counted as good, with its limit; what median and greatest are told of
+    (
+        lambda each: each.misses,
+        ("way points reached within a quarter of the length", 0.25),
+        "distance from a way point, {} [lengths]",
+    ),
+    (lambda each: [100.0 * each.depth], ("depth held within 2 cm", 2.0), "error of the depth, {} [cm]"),
+    (
+        lambda each: [math.degrees(each.heading)],
+        ("heading held within 3 degrees", 3.0),
+        "error of the heading, {} [degrees]",
+    ),
+    (
+        lambda each: [each.station],
+        ("station held within half a length", 0.5),
+        "distance from the station, {} [lengths]",
+    ),
+    (lambda each: [math.degrees(each.course_roll)], None, "greatest roll on a course, {} [degrees]"),
+    (lambda each: [math.degrees(each.straight_roll)], None, "roll while a course is held, {} [degrees]"),
+)
+
+
 def table(courses: int, processes: int) -> str:
     """The figures of so many `courses`, held courses and stations at each metacentric height, as Markdown."""
     with ProcessPoolExecutor(processes, mp_context=get_context("spawn")) as pool:
         found = [list(pool.map(partial(figures_of, metacentric_height=height), range(courses))) for height in HEIGHTS]
-    rows = {
-        "way points reached within a quarter of the length": lambda all: share(
-            miss < 0.25 for each in all for miss in each.misses
-        ),
-        "distance from a way point, median and greatest [lengths]": lambda all: extremes(
-            [miss for each in all for miss in each.misses]
-        ),
-        "depth held within 2 cm": lambda all: share(each.depth < 0.02 for each in all),
-        "error of the depth, median and greatest [cm]": lambda all: extremes([100.0 * each.depth for each in all]),
-        "heading held within 3 degrees": lambda all: share(each.heading < math.radians(3.0) for each in all),
-        "error of the heading, median and greatest [degrees]": lambda all: extremes(
-            [math.degrees(each.heading) for each in all]
-        ),
-        "station held within half a length": lambda all: share(each.station < 0.5 for each in all),
-        "distance from the station, median and greatest [lengths]": lambda all: extremes(
-            [each.station for each in all]
-        ),
-        "greatest roll on a course, median and greatest [degrees]": lambda all: extremes(
-            [math.degrees(each.course_roll) for each in all]
-        ),
-        "roll while a course is held, median and greatest [degrees]": lambda all: extremes(
-            [math.degrees(each.straight_roll) for each in all]
-        ),
-    }
+    cells = []
+    for values_of, counted, told in QUANTITIES:
+        values = [np.array([value for each in tasks for value in values_of(each)]) for tasks in found]
+        if counted:
+            cells.append([counted[0], *(f"{np.sum(each < counted[1])} of {len(each)}" for each in values)])
+        spread = (f"{np.median(each):.2g}, {np.max(each):.2g}" for each in values)
+        cells.append([told.format("median and greatest"), *spread])
     heads = ["no keel", *(f"metacentric height {1e3 * height:g} mm" for height in HEIGHTS[1:])]
     told = f"{courses} random tasks of each kind, seeds 0 to {courses - 1}."
-    cells = [[name, *(figure(each) for each in found)] for name, figure in rows.items()]
     return f"{told}\n\n{markdown.table(['', *heads], cells)}"
-
-
-def share(good) -> str:
-    """Of how many, in words."""
-    good = list(good)
-    return f"{sum(good)} of {len(good)}"
-
-
-def extremes(values) -> str:
-    """Median and greatest value."""
-    return f"{np.median(values):.2g}, {np.max(values):.2g}"
 
 
 def draw(path: Path):

@@ -18,7 +18,7 @@ from eel_ros.qos import keep_all
 from eel_ros.run_node import run_node
 from eel_ros.stamps import seconds_of
 from nav_msgs.msg import Odometry
-from row_policy import actions_of, file_of
+from train_policy import actions_of, file_of
 
 from eel_gym import HeadingEnv
 from eel_msgs.msg import CurvatureSamples

@@ -17,7 +17,6 @@ from typing import Any, NamedTuple
 
 import gymnasium
 import numpy as np
-from row_policy import actions_of, file_of
 
 import eel_gym  # noqa: F401, it registers the environments
 from eel_dynamics import Scene
@@ -71,6 +70,17 @@ TASKS = {
         *(25, 1, 1.0, "distance of the point [m]"),
     ),
 }
+
+
+def file_of(task: str) -> Path:
+    """The file of the policy for the `task`."""
+    return Path(__file__).with_name(f"policy_{task}.json")
+
+
+def actions_of(weights: np.ndarray, observations: np.ndarray) -> np.ndarray:
+    """The actions (n, A) of policies `weights` (n, A, O + 1) or (A, O + 1) at `observations` (n, O)."""
+    actions: np.ndarray = np.tanh(np.einsum("...ao,...o->...a", weights[..., :-1], observations) + weights[..., -1])
+    return actions
 
 
 def size_of(task: Task) -> tuple[int, int]:

@@ -7,7 +7,7 @@ A recording carries all of them as tabs: those of `ARRANGEMENTS`, and `compare` 
 from collections.abc import Callable
 
 import rerun.blueprint as rrb
-from eel_base.wording import shown
+from eel_base.wording import not_one_of
 
 from eel_viz import entities
 from eel_viz.settings import BLUEPRINTS
@@ -128,7 +128,7 @@ def arrangement(
     live: the time cursor follows the newest data, otherwise it stands at the start. comparison: with another run.
     """
     if first not in ARRANGEMENTS:
-        raise ValueError(f"blueprint must be one of {', '.join(ARRANGEMENTS)}, got {shown(first)}")
+        raise ValueError(not_one_of("blueprint", first, ARRANGEMENTS))
     names = [name for name in ARRANGEMENTS if name != "compare" or comparison or first == "compare"]
     return rrb.Blueprint(
         rrb.Tabs(*(ARRANGEMENTS[name](look) for name in names), active_tab=names.index(first)),
