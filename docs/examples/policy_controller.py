@@ -31,7 +31,7 @@ class PolicyController(ParameterNode):
     """Answers each sample on `odom` with the curvature one control step on. The rate of the run is that of training."""
 
     def __init__(self):
-        super().__init__(NAME)
+        super().__init__(NAME, automatically_declare_parameters_from_overrides=False)  # they are declared below
         found = json.loads(Path(self.declare_parameter("policy", str(file_of("heading"))).value).read_text())
         self.weights, self.step = np.array(found["weights"]), found["task"]["control_period"]
         self.env, self.lead = HeadingEnv(control_period=self.step), Lead(self.step, self.step)
