@@ -35,10 +35,10 @@ def paper_scheme() -> Lines:
             STEP if internal else DURATION,
         )
         ours = partial(simulate, LAW, DURATION, body=BODY, scene=scene, estimate=False)
-        finest = ours(accuracy=REFERENCE, sample_period=STEP, stations=COMMON + 1)
+        finest = ours(accuracy=REFERENCE, sample_period=STEP, stations=COMMON + 1).in_axes("paper")
         errors = {}
         for target in TARGETS:
-            run = ours(accuracy=target, sample_period=period, stations=COMMON + 1)
+            run = ours(accuracy=target, sample_period=period, stations=COMMON + 1).in_axes("paper")
             errors[target] = _errors(run.position, run.torque, finest)
         yield "with the internal torque at each step" if internal else "motion alone", None, ""
         for count in CELLS:

@@ -73,7 +73,7 @@ def swum(law: Law, period: float, body: Body, speed: float):
         scene=WATER,
         accuracy=1e-3,
         sample_period=period / 24,
-        twist=(0.0, 0.0, 0.0, -speed, 0.0, 0.0),
+        twist=(0.0, 0.0, 0.0, speed, 0.0, 0.0),
     )
     return run.analysis()
 

@@ -8,7 +8,6 @@ import itertools
 
 import numpy as np
 import pytest
-from eel_dynamics.model.axes import turn_vector
 from eel_gaits.gaits.registry import GAITS
 from eel_viz.scene3d import camera
 from eel_viz.scene3d.camera import FollowFrame, PathFrame
@@ -27,7 +26,7 @@ def runs():
 
     def backbones(name):
         run = simulate(GAITS[name](), DURATION, accuracy="draft", sample_period=PERIOD, stations=21, estimate=False)
-        return np.array([turn_vector(backbone) for backbone in run.backbone])
+        return run.backbone
 
     return {name: backbones(name) for name in GAIT_NAMES}
 

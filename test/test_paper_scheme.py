@@ -31,6 +31,7 @@ def test_paper_scheme_converges_to_the_library(benchmark):
     law, body = falling(), Body.boyer2010()
     scene = Scene(friction="laminar", ledger=False)
     run = simulate(law, DURATION, body=body, scene=scene, accuracy=1e-6, sample_period=STEP, stations=51)
+    run = run.in_axes("paper")
     motion, torque = [], []
     for count in (50, 100, 200):
         theirs = scheme.swum(python, law, body, DURATION, STEP, count, wrench=True)

@@ -24,20 +24,12 @@ def results(start_for_module, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def library():
-    """The same run by the library, its frames turned to REP-103."""
+    """The same run by the library."""
     from eel_dynamics import simulate
     from eel_gaits import falling
 
     options = {"sample_period": 1.0 / RATE, "stations": STATIONS, "load": True}
     return simulate(falling(), duration=DURATION, estimate=False, **options)  # settings of a run that stays as it is
-
-
-def turned(vectors):
-    return vectors * np.array([-1.0, -1.0, 1.0])
-
-
-def turned_quaternions(quaternions):
-    return quaternions * np.array([-1.0, -1.0, 1.0, 1.0])
 
 
 def assert_same(values, expected, tolerance=ROUND_OFF):
@@ -70,11 +62,11 @@ def test_the_other_topics_are_in_the_bag(results):
 
 def test_pose_and_twist(results, library):
     poses = [message.pose for message in results.messages("/head_pose")]
-    assert_same(triple([pose.position for pose in poses]), turned(library.position))
-    assert_same(quadruple([pose.orientation for pose in poses]), turned_quaternions(library.orientation))
+    assert_same(triple([pose.position for pose in poses]), library.position)
+    assert_same(quadruple([pose.orientation for pose in poses]), library.orientation)
     twists = [message.twist for message in results.messages("/head_twist")]
-    assert_same(triple([twist.angular for twist in twists]), turned(library.twist[:, :3]))
-    assert_same(triple([twist.linear for twist in twists]), turned(library.twist[:, 3:]))
+    assert_same(triple([twist.angular for twist in twists]), library.twist[:, :3])
+    assert_same(triple([twist.linear for twist in twists]), library.twist[:, 3:])
 
 
 def test_odometry_is_pose_and_twist(results):
@@ -96,10 +88,8 @@ def test_odometry_is_pose_and_twist(results):
 
 def test_shape(results, library):
     backbone, curvature = results.messages("/backbone"), results.messages("/curvature")
-    assert_same(field(backbone, "position").reshape(SAMPLES, STATIONS, 3), turned(library.backbone))
-    assert_same(
-        field(backbone, "orientation").reshape(SAMPLES, STATIONS, 4), turned_quaternions(library.section_orientation)
-    )
+    assert_same(field(backbone, "position").reshape(SAMPLES, STATIONS, 3), library.backbone)
+    assert_same(field(backbone, "orientation").reshape(SAMPLES, STATIONS, 4), library.section_orientation)
     for axis, name in ((1, "pitch"), (2, "yaw")):
         assert_same(field(curvature, name), library.curvature[:, :, axis])
         assert_same(field(curvature, f"{name}_rate"), library.curvature_rate[:, :, axis])
@@ -135,10 +125,10 @@ def test_rerun_has_every_scalar(results, library):
     from eel_viz import entities
 
     expected = {
-        entities.POSITION: turned(library.position),
-        entities.ORIENTATION: turned_quaternions(library.orientation),
-        entities.LINEAR: turned(library.twist[:, 3:]),
-        entities.ANGULAR: turned(library.twist[:, :3]),
+        entities.POSITION: library.position,
+        entities.ORIENTATION: library.orientation,
+        entities.LINEAR: library.twist[:, 3:],
+        entities.ANGULAR: library.twist[:, :3],
         entities.SPEED: np.linalg.norm(library.twist[:, 3:], axis=1, keepdims=True),
         entities.KINETIC: np.stack([library.energy.kinetic_body, library.energy.kinetic_fluid], axis=1),
         entities.POWER: np.stack(
@@ -178,7 +168,7 @@ def test_rerun_draws_every_backbone(results, library):
 
     times, rows = results.column(entities.BACKBONE, "strips")
     np.testing.assert_array_equal(times, SAMPLE_TIMES)
-    assert_same(np.array(rows).reshape(SAMPLES, STATIONS, 3), turned(library.backbone), SINGLE)
+    assert_same(np.array(rows).reshape(SAMPLES, STATIONS, 3), library.backbone, SINGLE)
 
 
 def test_rerun_recording_carries_its_blueprint(results):

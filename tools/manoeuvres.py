@@ -16,7 +16,6 @@ import numpy as np
 from eel_base.attitude import heading
 from eel_base.files import markdown
 from eel_base.quantity import described_fields
-from eel_dynamics.model.axes import turn_vector
 from eel_gaits.gaits.registry import GAITS
 from eel_studies.pictures import BLUE, ORANGE, SETTINGS
 from PIL import Image
@@ -44,10 +43,10 @@ class Swim:
     def __init__(self, name):
         self.name = name
         self.run = simulate(GAITS[name](), DURATION, accuracy="standard", sample_period=SAMPLE, estimate=False)
-        self.path = turn_vector(self.run.center_of_mass)
+        self.path = self.run.center_of_mass
         self.speed = np.linalg.norm(np.gradient(self.path, self.run.time, axis=0), axis=1)
         self.heading = np.unwrap([heading(orientation) for orientation in self.run.orientation])
-        rate = -self.run.twist[:, 0]  # axis 1 points to the tail
+        rate = self.run.twist[:, 0]
         self.roll = np.concatenate(([0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]) * SAMPLE)))
         self.period, self.cost = 1.0, None
         try:
@@ -102,7 +101,7 @@ class Swim:
         in_plane = np.ptp(self.path[:, 2]) < 1e-6 and np.linalg.norm(moved) > 0.05 and self.name not in SHAPES
         turn = -math.atan2(moved[1], moved[0]) if in_plane and self.name != "backward" else 0.0
         for k, index in enumerate(np.linspace(last - steps, last, 9).astype(int)[:-1]):
-            line = turn_vector(self.run.backbone[index]) - self.path[index]
+            line = self.run.backbone[index] - self.path[index]
             x = line[:, 0] * math.cos(turn) - line[:, 1] * math.sin(turn)
             y = line[:, 0] * math.sin(turn) + line[:, 1] * math.cos(turn)
             axes.plot(x, y, color=plt.cm.cividis(k / 8.0), linewidth=1.0)

@@ -346,8 +346,8 @@ class PlanarInstant:
         """Powers (4,) [W] of actuators, wake, nose and drag in the motion whose rate was found last."""
 
     def inertia(self, law: Law, time: float) -> list[list[float]]:
-        """Inertia (3, 3) of body, water and nose about the head, in its axes, rotation first, as the law bends the body
-        at a time [s]."""
+        """Inertia (3, 3) of body, water and nose about the head, in the paper's axes, rotation first, as the law bends
+        the body at a time [s]."""
 
 class Instant:
     """Single instants of a motion in space."""

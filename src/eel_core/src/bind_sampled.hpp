@@ -32,9 +32,8 @@ class PySampledMarches {
                  const py::object& twist, const py::object& values)
     {
         const Numbers sample = sized(values, "values", sample_rows * marches_.points());
-        const auto q = row_from<4>(orientation, "orientation");
         const InUse in_use(*this);
-        return marches_[index].start(bounds, vector_from(position, "position"), {q[0], q[1], q[2], q[3]},
+        return marches_[index].start(bounds, vector_from(position, "position"), orientation_from(orientation),
                                      twist_from(twist, "twist"), sample.data());
     }
     void advance(const py::object& times, const py::object& values, const py::object& status, const py::object& heads)

@@ -73,19 +73,24 @@ std::array<double, N> row_from(const py::handle& object, const std::string& name
 inline Vector3<double> vector_from(const py::handle& object, const std::string& name)
 {
     const auto v = row_from<3>(object, name);
-    return {v[0], v[1], v[2]};
+    return half_turn(Vector3{v[0], v[1], v[2]});
+}
+inline Quaternion<double> orientation_from(const py::handle& object)
+{
+    const auto q = row_from<4>(object, "orientation");
+    return half_turn(Quaternion<double>{q[0], q[1], q[2], q[3]});
 }
 inline Twist<Space, double> twist_from(const py::handle& object, const std::string& name)
 {
     const auto v = row_from<6>(object, name);
-    return {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
+    return half_turn(Twist<Space, double>{{v[0], v[1], v[2]}, {v[3], v[4], v[5]}});
 }
 inline State state_from(const py::handle& object)
 {
     const auto v = row_from<state_size>(object, "state");
     State y{};
     std::copy(v.begin(), v.end(), y.begin());
-    return y;
+    return half_turn(y);
 }
 
 // One number for each of n points.

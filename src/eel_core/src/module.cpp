@@ -22,6 +22,12 @@ py::list list_of(const S& numbers)
     return result;
 }
 
+py::list list_of_state(const State& state)
+{
+    const State turned = half_turn(state);
+    return list_of(std::span(turned).first(state_size));
+}
+
 py::dict build_info_as_dict()
 {
     const BuildInfo info = build_info();
@@ -158,15 +164,14 @@ class PyMarch {
     }
     double start(const py::object& position, const py::object& orientation, const py::object& twist)
     {
-        const auto q = row_from<4>(orientation, "orientation");
         const Driven in_use(*this);
-        return march_.start(vector_from(position, "position"), {q[0], q[1], q[2], q[3]}, twist_from(twist, "twist"));
+        return march_.start(vector_from(position, "position"), orientation_from(orientation),
+                            twist_from(twist, "twist"));
     }
     double set_state(const py::object& position, const py::object& orientation, const py::object& twist)
     {
-        const auto q = row_from<4>(orientation, "orientation");
         const Driven in_use(*this);
-        return march_.set_state(vector_from(position, "position"), {q[0], q[1], q[2], q[3]},
+        return march_.set_state(vector_from(position, "position"), orientation_from(orientation),
                                 twist_from(twist, "twist"));
     }
     double set_twist(const py::object& twist)
@@ -177,7 +182,7 @@ class PyMarch {
     py::list twist()
     {
         const Driven in_use(*this);
-        return list_of(components_of(march_.twist()));
+        return list_of(components_of(half_turn(march_.twist())));
     }
     int advance(double time)
     {
@@ -221,7 +226,7 @@ class PyMarch {
         return march_.memory();
     }
     double time() const { return march_.time(); }
-    py::list state() const { return list_of(std::span(march_.state()).first(state_size)); }
+    py::list state() const { return list_of_state(march_.state()); }
     py::list works() const { return list_of(march_.works()); }
     py::tuple counts() const
     {
@@ -271,7 +276,7 @@ py::object rate_of(Instant<M>& instant, const Law& law, const py::object& curren
 {
     State rate{};
     if (!instant.rate(law, vector_from(current, "current"), time, state_from(state), rate)) return py::none();
-    return list_of(std::span(rate).first(state_size));
+    return list_of_state(rate);
 }
 
 template <class M>
@@ -405,7 +410,7 @@ PYBIND11_MODULE(EEL_CORE_MODULE, module)
             "loads",
             [](Instant<Space>& instant, const Law& law, double time, const py::object& twist) {
                 const auto [tail, drag] = instant.loads(law, time, twist_from(twist, "twist"));
-                return py::make_tuple(list_of(components_of(tail)), list_of(components_of(drag)));
+                return py::make_tuple(list_of(components_of(half_turn(tail))), list_of(components_of(half_turn(drag))));
             },
             py::arg("law"), py::arg("time"), py::arg("twist"))
         .def(
@@ -424,8 +429,8 @@ PYBIND11_MODULE(EEL_CORE_MODULE, module)
             "momentum_taken",
             [](Instant<Space>& instant, const Law& law, double time, const py::object& twist,
                const py::object& acceleration) {
-                return list_of(components_of(instant.momentum_taken(law, time, twist_from(twist, "twist"),
-                                                                    twist_from(acceleration, "acceleration"))));
+                return list_of(components_of(half_turn(instant.momentum_taken(
+                    law, time, twist_from(twist, "twist"), twist_from(acceleration, "acceleration")))));
             },
             py::arg("law"), py::arg("time"), py::arg("twist"), py::arg("acceleration"));
 }

@@ -224,7 +224,7 @@ def test_falling_gait(measured, case, accuracy, tolerance):
     """
     wanted = np.array(DATA[case]["state"])
     scene = Scene(**DATA[case]["scene"], ledger=False, internal_wrench=False)
-    run = simulate(falling_law(), duration=10.0, scene=scene, accuracy=accuracy, sample_period=0.5)
+    run = simulate(falling_law(), duration=10.0, scene=scene, accuracy=accuracy, sample_period=0.5).in_axes("paper")
     at = np.searchsorted(run.time, np.array(DATA["times"]) - 1e-9)
     assert np.allclose(run.time[at], DATA["times"])
     path = np.sum(np.linalg.norm(np.diff(run.position, axis=0), axis=1))

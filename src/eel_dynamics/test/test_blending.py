@@ -227,7 +227,7 @@ def test_samples_are_refused_where_there_are_too_many():
 
 
 def test_reset_swims_again_from_the_start():
-    simulation = Simulation(twist=(0, 0, 0.1, -0.2, 0, 0))
+    simulation = Simulation(twist=(0, 0, 0.1, 0.2, 0, 0))
     simulation.adopt(law_of(8), origin=0.0)
     simulation.advance(0.6)
     once = simulation.observe()

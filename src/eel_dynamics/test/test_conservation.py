@@ -6,7 +6,8 @@ import pytest
 from cases import falling_law
 from draws import few, swimmers, twists
 from hypothesis import example, given
-from library_state import Reference, Scene, distance, library_body, reference_scene, rotation, simulate
+from library_state import Reference, Scene, distance, library_body, reference_scene, rotation
+from library_state import simulate_in_paper_axes as simulate
 from reference import boyer_body
 from scipy.interpolate import make_interp_spline
 from scipy.spatial.transform import Rotation

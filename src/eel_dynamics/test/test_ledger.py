@@ -7,7 +7,8 @@ from cases import falling_law, random_law
 from draws import few, scenes, swimmers, twists
 from hypothesis import given
 from hypothesis import strategies as st
-from library_state import Reference, Scene, distance, library_body, reference_scene, rotation, simulate
+from library_state import Reference, Scene, distance, library_body, reference_scene, rotation
+from library_state import simulate_in_paper_axes as simulate
 from scipy.interpolate import make_interp_spline
 
 pytestmark = pytest.mark.identity("Energy ledger")

@@ -62,7 +62,7 @@ def test_skin_of_a_section_folds_just_where_the_limit_says():
     run = swum(bent("yaw", bend), 0.0, stations=x, scene=Scene(internal_wrench=False, ledger=False))
     side, _ = cross_axes(run.section_orientation[0])
     for across in (0.9 / bend, 1.1 / bend):
-        skin = run.backbone[0] + across * side
+        skin = run.backbone[0] - across * side  # axis 2 of the section is to the right
         along = np.sum(np.diff(skin, axis=0) * np.diff(run.backbone[0], axis=0), axis=1)
         assert (along > 0.0).all() == (across * bend < 1.0)
         assert (along < 0.0).all() == (across * bend > 1.0)
@@ -107,19 +107,19 @@ def test_reynolds_number(viscosity, found):
 
 def test_reynolds_number_counts_the_speed_over_the_water():
     """Adrift in a current, or held against it: only what flows past the body counts."""
-    scene = Scene(viscosity=2e-4, current=(2.0, 0.0, 0.0))
-    adrift = swum(still(), 1.0, scene=scene, twist=(0.0, 0.0, 0.0, 2.0, 0.0, 0.0))
+    scene = Scene(viscosity=2e-4, current=(-2.0, 0.0, 0.0))
+    adrift = swum(still(), 1.0, scene=scene, twist=(0.0, 0.0, 0.0, -2.0, 0.0, 0.0))
     held = swum(still(), 1.0, scene=scene)
     assert adrift.warnings == ()
     assert held.warnings == ()  # up to 2 m/s past a body of 1 m: Re > 1000
-    slow = swum(still(), 1.0, scene=Scene(viscosity=1e-3), twist=(0.0, 0.0, 0.0, -0.5, 0.0, 0.0))
+    slow = swum(still(), 1.0, scene=Scene(viscosity=1e-3), twist=(0.0, 0.0, 0.0, 0.5, 0.0, 0.0))
     assert any("Reynolds number" in text for text in slow.warnings)
 
 
 def test_the_tail_leads_in_a_body_that_starts_backwards():
-    run = swum(still(), 1.0, twist=(0.0, 0.0, 0.0, 0.5, 0.1, 0.0))
+    run = swum(still(), 1.0, twist=(0.0, 0.0, 0.0, -0.5, 0.1, 0.0))
     assert any("the tail leads" in text for text in run.warnings)
-    assert not swum(still(), 1.0, twist=(0.0, 0.0, 0.0, -0.5, 0.1, 0.0)).warnings
+    assert not swum(still(), 1.0, twist=(0.0, 0.0, 0.0, 0.5, 0.1, 0.0)).warnings
     assert any("the tail leads" in text for text in simulate(backward(), 6.0).warnings)
 
 
@@ -143,7 +143,7 @@ class Lines:
 
 
 def test_the_node_says_each_once_and_keeps_it_until_a_reset():
-    swimmer, report = Simulation(twist=(0.0, 0.0, 0.0, 0.5, 0.1, 0.0)), Lines()
+    swimmer, report = Simulation(twist=(0.0, 0.0, 0.0, -0.5, 0.1, 0.0)), Lines()
     monitor = LimitsMonitor(swimmer, report)
     swimmer.adopt(bent("yaw", 8.0))
     for sample in range(20):

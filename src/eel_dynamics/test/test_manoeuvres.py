@@ -1,18 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Each manoeuvre does what its name says, on the robot of the paper: heading, depth and roll, in REP-103 sense."""
+"""Each manoeuvre does what its name says, on the robot of the paper: heading, depth and roll."""
 
 import math
 
 import numpy as np
 import pytest
-from eel_dynamics.model.axes import turn_vector
 
 from eel_dynamics import simulate
 from eel_gaits import gait
 
 
 class Swim:
-    """A run of a gait. course: displacement (3,) [m]; forward, left, up (T, 3): the head's axes; all of REP-103."""
+    """A run of a gait. course: displacement (3,) [m]; forward, left, up (T, 3): the head's axes."""
 
     def __init__(self, name, duration, **numbers):
         self.run = simulate(
@@ -21,8 +20,8 @@ class Swim:
         x, y, z, w = self.run.orientation.T
         first = np.stack((1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + z * w), 2.0 * (x * z - y * w)), axis=1)
         third = np.stack((2.0 * (x * z + y * w), 2.0 * (y * z - x * w), 1.0 - 2.0 * (x * x + y * y)), axis=1)
-        self.forward, self.up = -turn_vector(first), turn_vector(third)
-        self.path = turn_vector(self.run.center_of_mass)
+        self.forward, self.up = first, third
+        self.path = self.run.center_of_mass
         self.speed = np.linalg.norm(np.gradient(self.path, self.run.time, axis=0), axis=1)
 
     @property

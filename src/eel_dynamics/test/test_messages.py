@@ -20,7 +20,7 @@ from eel_gaits import Law, falling
 from eel_msgs.msg import CurvatureSamples
 
 ERRORS = HeadErrors(relative=1e-5, position=2e-5, orientation=3e-5, velocity=4e-5, angular_velocity=5e-5)
-TURN = np.diag([-1.0, -1.0, 1.0])
+SECTION_AXES = np.diag([-1.0, -1.0, 1.0])  # of a section turned as base_link
 
 
 def matrix(quaternion):
@@ -78,19 +78,18 @@ def test_headers(swum):
     assert messages["odom"].child_frame_id == "base_link"
 
 
-def test_pose_is_turned_half_a_turn_about_z(swum):
+def test_pose_is_that_of_the_library(swum):
     snapshot, messages = swum
     for pose in (messages["head_pose"].pose, messages["odom"].pose.pose):
-        assert np.array_equal(xyz(pose.position), TURN @ snapshot.position)
-        expected = TURN @ matrix(snapshot.orientation) @ TURN
-        assert np.allclose(matrix(xyzw(pose.orientation)), expected, rtol=0, atol=1e-15)
+        assert np.array_equal(xyz(pose.position), snapshot.position)
+        assert np.array_equal(xyzw(pose.orientation), snapshot.orientation)
 
 
 def test_twist_is_in_the_head_frame(swum):
     snapshot, messages = swum
     for twist in (messages["head_twist"].twist, messages["odom"].twist.twist):
-        assert np.array_equal(xyz(twist.angular), TURN @ snapshot.twist[:3])
-        assert np.array_equal(xyz(twist.linear), TURN @ snapshot.twist[3:])
+        assert np.array_equal(xyz(twist.angular), snapshot.twist[:3])
+        assert np.array_equal(xyz(twist.linear), snapshot.twist[3:])
 
 
 def test_backbone_starts_at_the_head_and_runs_along_minus_x_of_its_sections(swum):
@@ -100,7 +99,7 @@ def test_backbone_starts_at_the_head_and_runs_along_minus_x_of_its_sections(swum
     pose = messages["head_pose"].pose
     assert np.allclose(points[0], xyz(pose.position), rtol=0, atol=1e-15)
     assert np.allclose(matrix(turns[0]), matrix(xyzw(pose.orientation)), rtol=0, atol=1e-15)
-    assert np.array_equal(points, snapshot.backbone @ TURN)
+    assert np.array_equal(points, snapshot.backbone)
     middle = len(points) // 2  # the chord through a section's neighbours is along its tangent, up to curvature squared
     chord = points[middle + 1] - points[middle - 1]
     ahead = matrix(turns[middle]) @ [1.0, 0.0, 0.0]
@@ -213,7 +212,7 @@ def test_what_the_scene_leaves_out_is_not_offered():
 
 
 def test_start_is_given_in_ros_frames_and_published_back():
-    """The conversion in and the conversion out are each other's inverse; swimming forward is along +x."""
+    """What goes in comes out; swimming forward is along +x."""
     orientation = (0.1, -0.2, 0.3, np.sqrt(0.86))
     values = DynamicsParameters(
         initial_position=(1.0, 2.0, 3.0),
@@ -222,9 +221,9 @@ def test_start_is_given_in_ros_frames_and_published_back():
         initial_angular_velocity=(0.3, -0.5, 0.7),
     )
     simulation = simulation_from_parameters(values, Scene(current=(0.5, 0.25, 0.0)))
-    assert simulation.scene.current == (-0.5, -0.25, 0.0)
+    assert simulation.scene.current == (0.5, 0.25, 0.0)
     snapshot = simulation.observe()
-    assert snapshot.twist[3] == pytest.approx(-0.4)  # library: forward is V1 < 0
+    assert snapshot.twist[3] == pytest.approx(0.4)
     sample = Sample(simulation, DynamicsParameters())
     pose = filled(sample, "head_pose", snapshot).pose
     twist = filled(sample, "head_twist", snapshot).twist
@@ -308,7 +307,7 @@ def test_a_message_whose_places_are_not_sure_is_refused():
 
 
 def test_transforms_of_the_stations_turn_section_axes_into_the_world(swum):
-    """What a listener to tf2 makes of a torque in section axes is the torque turned by the library, in REP-103 axes."""
+    """What a listener to tf2 makes of a torque in section axes is the torque turned by the library."""
     snapshot, messages = swum
     assert [each.child_frame_id for each in messages["/tf"].transforms] == ["base_link"]
     x = snapshot.x
@@ -323,7 +322,7 @@ def test_transforms_of_the_stations_turn_section_axes_into_the_world(swum):
         assert (each.header.frame_id, each.header.stamp) == ("eel1/odom", messages["odom"].header.stamp)
         assert np.array_equal(xyz(each.transform.translation), backbone.position[3 * k : 3 * k + 3])
         turned = matrix(xyzw(each.transform.rotation)) @ snapshot.torque[k]
-        expected = TURN @ matrix(snapshot.section_orientation[k]) @ snapshot.torque[k]
+        expected = matrix(snapshot.section_orientation[k]) @ SECTION_AXES @ snapshot.torque[k]
         assert np.allclose(turned, expected, rtol=0, atol=1e-15)
 
 

@@ -76,7 +76,7 @@ def test_overload_falls_behind_and_skips_no_physics(start, client):
         snapshot = simulation.observe()
         if stamp in received["head_pose"]:
             pose = received["head_pose"][stamp].pose.position
-            assert np.allclose((-pose.x, -pose.y, pose.z), snapshot.position, rtol=0, atol=1e-12)
+            assert np.allclose((pose.x, pose.y, pose.z), snapshot.position, rtol=0, atol=1e-12)
         if stamp in received["internal_wrench"]:
             torque = received["internal_wrench"][stamp].torque_3
             assert np.allclose(torque, snapshot.torque[:, 2], rtol=0, atol=1e-10)

@@ -41,7 +41,7 @@ def test_ten_seconds_are_1001_samples_on_every_topic(start, client, measured):
         simulation.advance(k / 100)
         snapshot = simulation.observe()
         pose, wrench = listener.received["head_pose"][k].pose, listener.received["internal_wrench"][k]
-        position = np.array([-pose.position.x, -pose.position.y, pose.position.z])
+        position = np.array([pose.position.x, pose.position.y, pose.position.z])
         assert np.allclose(position, snapshot.position, rtol=0, atol=1e-12)
         assert np.allclose(wrench.torque_3, snapshot.torque[:, 2], rtol=0, atol=1e-11)
 

@@ -6,7 +6,17 @@ import pytest
 from draws import bodies, few, numbers
 from hypothesis import given
 from hypothesis import strategies as st
-from library_state import Accuracy, Reference, Scene, distance, library_body, prescribed, reference_scene, simulate
+from library_state import (
+    Accuracy,
+    Reference,
+    Scene,
+    distance,
+    library_body,
+    prescribed,
+    reference_scene,
+    simulate,
+    turn_twist,
+)
 from reference import boyer_body
 from scipy.special import ellipj
 
@@ -86,8 +96,8 @@ def test_free_top(measured, which, least_roll, most_roll, data):
         scene=Scene(reactive=False, resistive=False),
         sample_period=0.1,
         accuracy="reference",
-        twist=(*omega, *-np.cross(omega, centre)),
-    )
+        twist=turn_twist((*omega, *-np.cross(omega, centre))),
+    ).in_axes("paper")
     energy2, momentum2 = A * omega[0] ** 2 + C * omega[1] ** 2, (A * omega[0]) ** 2 + (C * omega[1]) ** 2
     if momentum2 > energy2 * B:  # turns about C
         rate = np.sqrt((C - B) * (momentum2 - energy2 * A) / (A * B * C))

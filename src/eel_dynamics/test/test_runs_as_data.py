@@ -4,6 +4,7 @@
 import json
 import pickle
 from dataclasses import fields, replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from eel_dynamics.runs.storage import netcdf
 from eel_dynamics import Accuracy, Batch, Body, Run, Scene, SimulationStopped, simulate, simulate_batch
 from eel_gaits import Law, Ramp, Term, falling, kern_fast, straight, turning
 
+DATA = Path(__file__).parent / "data"
 SHORT = {"accuracy": 1e-2, "sample_period": 0.1, "stations": 7}
 
 
@@ -39,7 +41,7 @@ def by_arrays() -> Body:
 def run() -> Run:
     scene = Scene(friction="laminar", current=(0.1, 0.0, -0.2), density=990.0)
     return simulate(
-        falling(period=0.7), 2.0, scene=scene, body=by_arrays(), load=True, twist=(0, 0, 0, -0.2, 0, 0), **SHORT
+        falling(period=0.7), 2.0, scene=scene, body=by_arrays(), load=True, twist=(0, 0, 0, 0.2, 0, 0), **SHORT
     )
 
 
@@ -166,7 +168,7 @@ def test_labelled_arrays_and_columns(run, batch):
     assert json.loads(data.attrs["eel"])["law"]["name"] == "falling"
     assert np.array_equal(batch.to_xarray().backbone[1], batch.backbone[1])
     frame = run.to_dataframe()
-    assert np.array_equal(frame.v_1, run.twist[:, 3]) and np.array_equal(frame.wake_work, run.energy.wake_work)
+    assert np.array_equal(frame.v_x, run.twist[:, 3]) and np.array_equal(frame.wake_work, run.energy.wake_work)
 
 
 def test_xarray_opens_what_was_saved(run, tmp_path):
@@ -228,7 +230,7 @@ def test_files_that_are_no_runs_are_refused_in_one_line(run, batch, tmp_path, mo
     monkeypatch.setattr(netcdf, "FORMAT", 7)
     run.save(path)
     monkeypatch.undo()
-    refused("has format 7, of eel_dynamics .* reads format 1")
+    refused("has format 7, of eel_dynamics .* reads up to 2")
     with pytest.raises(ValueError, match=r"path must be that of a \.nc file, got 3"):
         Run.load(3)
 
@@ -241,6 +243,41 @@ def test_an_older_file_without_a_digest_is_loaded_with_a_line_that_says_so(run, 
     ) as told:
         assert Run.load(tmp_path / "run.nc") == run
     assert len(told) == 1
+
+
+def test_files_that_name_no_axes_have_the_paper_s_and_are_converted_with_one_line():
+    """The files are of the software before its world had REP-103 axes."""
+    twist, current = (-0.1, -0.2, 0.3, 0.4, -0.1, 0.05), (-0.2, -0.1, 0.0)
+    with pytest.warns(UserWarning, match=r"^run file .*run\.nc' has the paper's axes, which are converted") as told:
+        run = Run.load(DATA / "paper_axes_run.nc")
+    again = simulate(run.law, 0.6, scene=run.scene, stations=4, sample_period=0.1, position=(-1, -2, 3), twist=twist)
+    assert len(told) == 1 and run.scene.current == current and run.axes == "rep103"
+    for name in ("position", "orientation", "twist", "head_acceleration", "backbone", "section_orientation", "torque"):
+        assert getattr(run, name) == pytest.approx(getattr(again, name), abs=1e-9), name
+    with pytest.warns(UserWarning, match=r"^batch file .*batch\.nc' has the paper's axes, which are converted") as told:
+        batch = Batch.load(DATA / "paper_axes_batch.nc")
+    options = {"twists": [twist, (0,) * 6], "sample_period": 0.1, "accuracy": 1e-2}
+    again = simulate_batch(batch.laws, 0.3, scenes=batch.scenes, **options)
+    assert len(told) == 1 and batch.scenes[0].current == current
+    for name in ("position", "orientation", "twist"):
+        assert getattr(batch, name) == pytest.approx(getattr(again, name), abs=1e-9), name
+
+
+def test_files_and_tables_say_which_axes_they_have(run, batch, tmp_path):
+    pytest.importorskip("xarray")
+    pytest.importorskip("pandas")
+    for each in (run, batch):
+        assert each.to_xarray().attrs["axes"] == "rep103" == each.to_dataframe().attrs["axes"]
+    run.in_axes("paper").save(tmp_path / "run.nc")
+    with pytest.warns(UserWarning, match="has the paper's axes, which are converted to those of REP-103$"):
+        assert Run.load(tmp_path / "run.nc") == run
+    content = (tmp_path / "run.nc").read_bytes().replace(b"paper", b"papal").replace(b"digest", b"Digest")
+    (tmp_path / "run.nc").write_bytes(content)
+    with (
+        pytest.warns(UserWarning, match="no digest"),
+        pytest.raises(ValueError, match="its axes must be rep103 or paper, got 'papal'"),
+    ):
+        Run.load(tmp_path / "run.nc")
 
 
 def test_paths_that_do_not_fit_are_refused(run, tmp_path):

@@ -2,7 +2,6 @@
 """A small picture of the swimmer, from above and from the side, drawn by matplotlib without a display."""
 
 import numpy as np
-from eel_dynamics.model.axes import turn_vector
 from eel_dynamics.model.body import Body
 from eel_dynamics.simulation.observations import Snapshot
 
@@ -12,13 +11,13 @@ BODY, MARK = "#0072B2", "#D55E00"
 
 
 def picture(snapshot: Snapshot, body: Body, marks: list[tuple[float, float, float]]) -> np.ndarray:
-    """The picture (400, 800, 3), uint8, of a `Snapshot`; `marks`: points [m] in REP-103 axes."""
+    """The picture (400, 800, 3), uint8, of a `Snapshot`; `marks`: points [m]."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg  # here: it takes longer to import than all the rest
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=SIZE, dpi=DPI)
     canvas = FigureCanvasAgg(figure)
-    line, head = turn_vector(snapshot.backbone), turn_vector(snapshot.position)
+    line, head = snapshot.backbone, snapshot.position
     views = (("from above", "y [m], left", 1, body.half_width), ("from the side", "z [m], up", 2, body.half_height))
     for axes, (title, label, row, half) in zip(figure.subplots(1, 2), views, strict=True):
         axes.fill(*_outline(line[:, (0, row)], np.asarray(half(snapshot.x), dtype=float)), color=BODY)

@@ -21,9 +21,6 @@ from eel_gym.mean_heading import MeanHeading
 from eel_gym.picture import picture
 from eel_gym.task import Start, Task
 
-# The library's axes by those of the environments: of position, orientation, twist.
-AXES = np.array([-1, -1, 1, -1, -1, 1, 1, -1, -1, 1, -1, -1, 1.0])[:, None]
-
 
 class Judged(NamedTuple):
     """How a control step has ended, of one swimmer or of N."""
@@ -150,9 +147,8 @@ class SwimmerEnv(Task):
         self.starts[index] = start = self.begin(options)
         rows = self.action.begin_one(index, start.own_time) if self.shape else self.restart(start.own_time)
         rows[3] -= start.left_trim
-        twist = (-start.roll_rate, 0.0, 0.0, -start.speed, 0.0, 0.0)
-        position, orientation = np.array(start.position) * (-1.0, -1.0, 1.0), level_orientation(start.heading)
-        self.swimmers.start(index, position, orientation, twist, rows)
+        twist = (start.roll_rate, 0.0, 0.0, start.speed, 0.0, 0.0)
+        self.swimmers.start(index, start.position, level_orientation(start.heading), twist, rows)
         self._trim[index], self.ticks[index], self._under_way[index] = start.left_trim, 0, True
         if len(start.goal) != len(self.goal):
             self.goal = np.zeros((len(start.goal), *self.shape))
@@ -210,7 +206,7 @@ class SwimmerEnv(Task):
         return picture(self.swimmers.observe(index, wrench=False, load=False), self.body, self.one(index).marks())
 
     def _heads(self) -> HeadMotion:
-        heads = self.swimmers.heads * AXES
+        heads = self.swimmers.heads
         if not self.shape:
             heads = heads[:, 0]
         return HeadMotion(heads[:3], heads[3:7], heads[7:10], heads[10:])

@@ -9,7 +9,7 @@
 | `body.lateral_drag`, ... | a number of `Body` |
 | `accuracy` | as in `simulate` |
 | `initial.position_x`, `_y`, `_z` | head at the start [m], world |
-| `initial.omega_1`, ..., `initial.v_3` | twist of the head at the start [rad/s, m/s], its axes |
+| `initial.omega_x`, ..., `initial.v_z` | twist of the head at the start [rad/s, m/s], its axes |
 """
 
 from collections.abc import Callable, Iterable
@@ -37,7 +37,7 @@ AccuracyLike = str | float | Accuracy
 Stations = int | np.ndarray
 Progress = Callable[[int, int], object] | bool | None  # as in `sweep`
 POSITIONS = ("position_x", "position_y", "position_z")
-VELOCITIES = ("omega_1", "omega_2", "omega_3", "v_1", "v_2", "v_3")
+VELOCITIES = ("omega_x", "omega_y", "omega_z", "v_x", "v_y", "v_z")
 AT_REST = InitialState(np.zeros(3), np.array([0.0, 0.0, 0.0, 1.0]), np.zeros(6))
 
 

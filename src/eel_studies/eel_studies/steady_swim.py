@@ -25,4 +25,4 @@ def swim_times(law: Law, length: float, periods: int) -> dict[str, Any]:
 
 def at_speed(numbers: Numbers, speed: float) -> Numbers:
     """The `numbers` with which the head begins to swim ahead at `speed` [m/s], unless they have a velocity already."""
-    return {"initial.v_1": -speed} | numbers
+    return {"initial.v_x": speed} | numbers

@@ -23,7 +23,7 @@ AT = {
     "wavelength": 1.0,
     "scene.density": 990.0,
     "body.lateral_drag": 1.98,
-    "initial.v_1": -0.1,
+    "initial.v_x": 0.1,
 }
 
 
@@ -117,11 +117,11 @@ def test_functions_of_the_user_and_two_swims_per_parameter():
     def depth(run):
         return {"depth": -run.position[-1, 2], "path": run.path_length}
 
-    at, swim = {"pitch_bend": 0.5, "initial.omega_2": 0.0}, {"gait": "falling", "duration": 1.5, "accuracy": 1e-2}
+    at, swim = {"pitch_bend": 0.5, "initial.omega_y": 0.0}, {"gait": "falling", "duration": 1.5, "accuracy": 1e-2}
     found = gradient(depth, at, scene=SMOOTH, estimate=False, progress=lambda *pair: told.append(pair), **swim)
     assert found.of == ("depth", "path") and found["depth"]["pitch_bend"] > 0.0
     assert told == [(k, 5) for k in range(1, 6)]
-    assert repr(found) == "Gradient(of depth, path; by pitch_bend, initial.omega_2)"
+    assert repr(found) == "Gradient(of depth, path; by pitch_bend, initial.omega_y)"
     assert found == gradient(depth, at, scene=SMOOTH, estimate=False, threads=1, **swim)
     assert found.steps.tolist() == [5e-6, 1e-5]
 

@@ -31,7 +31,7 @@ def test_the_gaits_have_the_speeds_and_cost_least_of_a_scan(front):
     for size in sizes:
         periods = np.linspace(*BOUNDS["period"], 5)
         laws = [straight(period=period, amplitude_0=size, **NUMBERS) for period in periods]
-        twist = (0.0, 0.0, 0.0, -0.5, 0.0, 0.0)
+        twist = (0.0, 0.0, 0.0, 0.5, 0.0, 0.0)
         batch = simulate_batch(laws, 12.0, scenes=PLANE, accuracy=1e-2, stations=2, twists=twist, estimate=False)
         speed, cost = np.array([(a.mean_speed, a.cost_of_transport) for a in (run.analysis() for run in batch)]).T
         order = np.argsort(speed)

@@ -28,7 +28,7 @@ def test_a_held_course_settles_in_heading_depth_and_roll():
     """A disturbance of the roll that nobody controls grows by exp(1.45) a period."""
     pilot = Pilot()
     pilot.follow(course(-0.6, 0.3, 0.6, LIMITS))
-    voyage = swim_with(pilot, 32.0, twist=(0.2, 0.1, 0.0, -0.3, 0.0, 0.0))
+    voyage = swim_with(pilot, 32.0, twist=(-0.2, -0.1, 0.0, 0.3, 0.0, 0.0))
     last = voyage.time > 30.0
     assert voyage.heading[last] == pytest.approx(-0.6, abs=math.radians(3.0))
     assert voyage.position[last, 2] == pytest.approx(-0.3, abs=0.05)
@@ -38,7 +38,7 @@ def test_a_held_course_settles_in_heading_depth_and_roll():
 def test_a_station_in_a_current_of_half_the_swimmers_speed_is_kept():
     pilot = Pilot()
     pilot.follow(station((2.0, 0.5, 0.0), 0.6, LIMITS))
-    voyage = swim_with(pilot, 60.0, scene=motion_alone(current=(0.3, 0.12, 0.0)))
+    voyage = swim_with(pilot, 60.0, scene=motion_alone(current=(-0.3, -0.12, 0.0)))
     last = voyage.time > 57.0
     assert np.linalg.norm(voyage.position[last] - (2.0, 0.5, 0.0), axis=1).max() < 0.5
 

@@ -385,13 +385,13 @@ def test_threads_serve_a_script_without_a_main_guard(tmp_path):
 
 
 def test_threads_give_what_processes_give(client, tmp_path):
-    grid = {"period": [0.3, 0.8], "body.lateral_drag": [1.0, 1.98], "initial.v_1": [-0.2]}
+    grid = {"period": [0.3, 0.8], "body.lateral_drag": [1.0, 1.98], "initial.v_x": [0.2]}
     told = []
     here = sweep(grid, progress=lambda *pair: told.append(pair), out=tmp_path / "here.nc", chunk=1, **SHORT)
     assert told[0] == (0, 4) and told[-1] == (4, 4)
     assert here.equals(sweep(grid, scheduler=client, progress=False, **SHORT))
     run = simulate(
-        straight(period=0.3), body=Body.boyer2010().changed(lateral_drag=1.0), twist=(0, 0, 0, -0.2, 0, 0), **SHORT
+        straight(period=0.3), body=Body.boyer2010().changed(lateral_drag=1.0), twist=(0, 0, 0, 0.2, 0, 0), **SHORT
     )
     assert float(here.mean_speed[0, 0, 0]) == run.mean_speed  # sampled for its own period
     assert sweep(grid, out=tmp_path / "here.nc", **SHORT).equals(here)  # read, not swum

@@ -169,7 +169,7 @@ def ledger_tolerance(target: float | None) -> float:
 
 
 def cross_axes(orientation) -> tuple[np.ndarray, np.ndarray]:
-    """Axes 2 and 3 of sections, (..., 3) each, in the world, from their orientation (..., 4) x y z w."""
+    """Directions left and up of sections, (..., 3) each, in the world, from their orientation (..., 4) x y z w."""
     x, y, z, w = np.moveaxis(np.asarray(orientation), -1, 0)
     side = np.stack((2.0 * (x * y - z * w), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + x * w)), axis=-1)
     up = np.stack((2.0 * (x * z + y * w), 2.0 * (y * z - x * w), 1.0 - 2.0 * (x * x + y * y)), axis=-1)

@@ -12,6 +12,7 @@ be 2 % off at 20 samples in a period.
 
 import numpy as np
 
+from eel_dynamics.model.axes import REP103
 from eel_dynamics.simulation.simulation import Simulation
 
 DEGREE = 5
@@ -73,6 +74,7 @@ def peak_along(time: np.ndarray, x: np.ndarray, torque: np.ndarray) -> tuple[flo
 
 def _swum_anew(run, time: float, station: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Times (T,) [s], stations (M,) [m] and torque (T, M, 3) [N m] around `time` [s] and a `station` of `run`."""
+    run = run.in_axes(REP103)
     sample = int(np.searchsorted(run.time, time, side="right")) - 1
     first, last = max(0, sample - AROUND), min(len(run.time) - 1, sample + 1 + AROUND)
     start, end = run.time[first], run.time[last]

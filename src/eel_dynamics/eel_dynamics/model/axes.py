@@ -1,35 +1,46 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The two sets of axes, and the half turn about z between them.
+"""The axes of the library, of the sections and of the paper, and the half turn that takes each into the other.
 
-Library (the paper's) axes: at rest the body lies along +x from the head and swims towards -x.
-ROS (REP-103) axes: the eel swims towards +x, y is left, z up. A half turn about z takes each set into the other. It is
-applied to the world and to every section alike, where a function does not say otherwise: such a function is its own
-inverse.
+World and head have REP-103 axes: the eel swims towards +x, y is left, z up. Section quantities (curvature, internal
+wrench, loads) have the paper's section axes: 1 along the body towards the tail, 2 to the right, 3 up. These are -x, -y
+and +z of the section turned as the head. In the paper's world the eel swims towards -x. `eel_core` turns what goes in
+and out.
 """
 
 import numpy as np
+from eel_base.attitude import world_from_body
 from numpy.typing import ArrayLike
 
+REP103, PAPER = AXES = ("rep103", "paper")  # of world and head; the first are the library's
 VECTOR, QUATERNION = np.array([-1.0, -1.0, 1.0]), np.array([-1.0, -1.0, 1.0, 1.0])
+SIGNS = {  # of the components of what is observed, under the half turn
+    **dict.fromkeys(("position", "center_of_mass", "backbone"), VECTOR),
+    **dict.fromkeys(("orientation", "section_orientation"), QUATERNION),
+    **dict.fromkeys(("twist", "head_acceleration"), np.tile(VECTOR, 2)),
+}
 
 
 def turn_vector(vector: ArrayLike) -> np.ndarray:
-    """Components (-x, -y, z) of `vector`, shape (..., 3), in the other set of axes. Its own inverse."""
-    return np.asarray(vector, dtype=float) * VECTOR
+    """Components (-x, -y, z) of `vector`, shape (..., 3), after a half turn of its axes about z. Its own inverse."""
+    return np.asarray(vector, dtype=float) * VECTOR + 0.0  # + 0.0: no minus zero
 
 
 def turn_quaternion(quaternion: ArrayLike) -> np.ndarray:
-    """Orientation `quaternion`, shape (..., 4), order x y z w, in the other set of axes. Its own inverse.
-
-    The axes of the world and of the body are both turned: R -> Q R Q^T with Q = diag(-1, -1, 1).
-    """
-    return np.asarray(quaternion, dtype=float) * QUATERNION
+    """Orientation `quaternion`, (..., 4) x y z w, after a half turn of the axes of world and body. Its own inverse."""
+    return np.asarray(quaternion, dtype=float) * QUATERNION + 0.0
 
 
-def turn_world(quaternion: np.ndarray) -> np.ndarray:
-    """Orientation `quaternion`, shape (..., 4), order x y z w, with the axes of the world turned and the body's kept.
+def with_section_axes(orientation: np.ndarray) -> np.ndarray:
+    """World from the paper's section axes, for an `orientation` (..., 4) x y z w of a section turned as the head."""
+    x, y, z, w = np.moveaxis(np.asarray(orientation, dtype=float), -1, 0)
+    return np.stack([y, -x, w, -z], axis=-1)
 
-    R -> Q R: the unit quaternion of Q, half a turn about z, times `quaternion`.
-    """
-    x, y, z, w = np.moveaxis(np.asarray(quaternion, dtype=float), -1, 0)
-    return np.stack([-y, x, w, -z], axis=-1)
+
+def in_world(vector: np.ndarray, orientation: np.ndarray) -> np.ndarray:
+    """`vector` (..., 3), given in section axes, in the world, for the `orientation` (..., 4) of its section."""
+    return (world_from_body(orientation) @ turn_vector(vector)[..., None])[..., 0]
+
+
+def turned(arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Those of the `arrays`, by their names in a run, that have axes of world or head, in the other axes."""
+    return {name: values * SIGNS[name] + 0.0 for name, values in arrays.items() if name in SIGNS}

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Converts between snapshots and messages: fills serialised sample messages, and reads laws and samples of laws.
 
-The paper's frames, which the library uses, are converted to REP-103 frames by `turn_vector` and `turn_quaternion`.
-Fields in section axes (1 = -x, 2 = -y, 3 = +z of base_link when straight) stay unchanged.
+Poses, twists and the backbone are in REP-103 axes; section quantities have the paper's section axes: 1 = -x, 2 = -y,
+3 = +z of the section, turned as base_link. The library has the same axes.
 """
 
 import array
@@ -28,7 +28,7 @@ from tf2_msgs.msg import TFMessage
 from eel_dynamics.accuracy.error_estimate import HeadErrors
 from eel_dynamics.analysis.actuators import Joints
 from eel_dynamics.curvature.curvature_samples import LateSample, check_points
-from eel_dynamics.model.axes import QUATERNION, VECTOR, turn_quaternion, turn_vector, turn_world
+from eel_dynamics.model.axes import with_section_axes
 from eel_dynamics.ros.parameters import DynamicsParameters, unit_quaternion
 from eel_dynamics.ros.serialised_message import SerialisedMessage
 from eel_dynamics.runs.exchange.records import outline
@@ -110,7 +110,7 @@ class Sample:
         message, fill = self._topics[name]
         if snapshot is not self._of:  # several topics need the head's state
             head = np.concatenate((snapshot.position, snapshot.orientation, snapshot.twist))
-            self._of, self._head = snapshot, head * HEAD + 0.0
+            self._of, self._head = snapshot, head
         fill(message.numbers, snapshot)
         return self._sealed(message)
 
@@ -143,14 +143,14 @@ class Sample:
         numbers["transforms[0].transform.rotation"][:] = self._head[ORIENTATION]
         if "transforms[1].transform.rotation" not in numbers:
             return
-        positions, rotations = turn_vector(snapshot.backbone), turn_world(snapshot.section_orientation)
+        positions, rotations = snapshot.backbone, with_section_axes(snapshot.section_orientation)
         for k, (position, rotation) in enumerate(zip(positions, rotations, strict=True), start=1):
             numbers[f"transforms[{k}].transform.translation"][:] = position
             numbers[f"transforms[{k}].transform.rotation"][:] = rotation
 
     def _fill_backbone(self, numbers: Numbers, snapshot: Snapshot) -> None:
-        numbers["position"][:] = (turn_vector(snapshot.backbone) + 0.0).ravel()
-        numbers["orientation"][:] = (turn_quaternion(snapshot.section_orientation) + 0.0).ravel()
+        numbers["position"][:] = snapshot.backbone.ravel()
+        numbers["orientation"][:] = snapshot.section_orientation.ravel()
 
     def _fill_curvature(self, numbers: Numbers, snapshot: Snapshot) -> None:
         numbers["pitch"][:], numbers["yaw"][:] = snapshot.curvature[:, 1], snapshot.curvature[:, 2]
@@ -198,7 +198,6 @@ def _lengthen(message: Any, x: np.ndarray) -> None:
             setattr(message, field, array.array("d", x.tolist() if field == "x" else bytes(8 * count)))
 
 
-HEAD = np.concatenate((VECTOR, QUATERNION, VECTOR, VECTOR))  # to REP-103 axes
 NO_ERRORS = HeadErrors(*[math.inf] * 5)
 UNKNOWN = np.array([-1.0, *[0.0] * 35])  # a covariance
 POSITION, ORIENTATION, ANGULAR, LINEAR = slice(0, 3), slice(3, 7), slice(7, 10), slice(10, 13)
@@ -279,7 +278,7 @@ def refused(error: Exception, driven: bool = False) -> str:
 
 
 def state_from_message(request: SetState.Request) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The arguments of `Simulation.set_state` from a request in REP-103 frames. `ValueError` names the field."""
+    """The arguments of `Simulation.set_state` from a request. `ValueError` names the field."""
     pose, twist = request.pose, request.twist
     groups = {
         "pose.position": [getattr(pose.position, axis) for axis in "xyz"],
@@ -292,7 +291,7 @@ def state_from_message(request: SetState.Request) -> tuple[np.ndarray, np.ndarra
             raise ValueError(f"{name} must be finite, got {shown(values)}")
     position, orientation, angular, linear = groups.values()
     unit = unit_quaternion("pose.orientation", orientation)
-    return turn_vector(position), turn_quaternion(unit), turn_vector([angular, linear]).ravel()
+    return np.array(position), np.array(unit), np.array([*angular, *linear])
 
 
 def time_message(seconds: float) -> Time:

@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Makes the simulation (in the library's frames) from the node's parameters (in REP-103 frames)."""
+"""Makes the simulation from the node's parameters."""
 
-from dataclasses import replace
 from pathlib import Path
 
-from eel_dynamics.model.axes import turn_quaternion, turn_vector
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.ros.parameters import DynamicsParameters
@@ -12,16 +10,15 @@ from eel_dynamics.simulation.simulation import Simulation
 
 
 def simulation_from_parameters(parameters: DynamicsParameters, scene: Scene) -> Simulation:
-    """The simulation at t = 0; the scene's current is in the ROS world frame. `ValueError` names what does not fit."""
-    twist = (*parameters.initial_angular_velocity, *parameters.initial_linear_velocity)
+    """The simulation at t = 0; `ValueError` names what does not fit."""
     return Simulation(
         body=body_of(parameters.body),
-        scene=replace(scene, current=tuple(turn_vector(scene.current).tolist())),
+        scene=scene,
         accuracy=parameters.accuracy,
         stations=parameters.stations,
-        position=turn_vector(parameters.initial_position),
-        orientation=turn_quaternion(parameters.initial_orientation),
-        twist=turn_vector([twist[:3], twist[3:]]).ravel(),
+        position=parameters.initial_position,
+        orientation=parameters.initial_orientation,
+        twist=(*parameters.initial_angular_velocity, *parameters.initial_linear_velocity),
         default_transition=parameters.default_transition,
         most_evaluations=parameters.most_evaluations,
         measure_error=parameters.estimate_error,

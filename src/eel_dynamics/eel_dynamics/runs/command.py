@@ -195,7 +195,7 @@ def _write(run: Run, path: Path):
     errors |= {} if error is None or error.torque is None else {"error_torque": error.torque}
     if path.suffix == ".npz":
         with replacing(path) as draft:
-            arrays: dict[str, Any] = contents_of_run(run).arrays | errors
+            arrays: dict[str, Any] = contents_of_run(run).arrays | errors | {"axes": run.axes}
             np.savez_compressed(draft, **arrays)
         return
     columns = columns_of(run) | {name: np.full(len(run.time), value) for name, value in errors.items()}

@@ -9,6 +9,7 @@ from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
+from eel_base.wording import shown
 from eel_gaits.laws.law import Law
 from eel_gaits.sources.sampled_law import SampledLaw
 from numpy.typing import ArrayLike
@@ -22,6 +23,7 @@ from eel_dynamics.analysis.model_limits import warnings_of
 from eel_dynamics.analysis.peaks import FINER, MOST_SAMPLES, greatest_torque_of
 from eel_dynamics.analysis.run_summary import describe
 from eel_dynamics.analysis.settling import Unsettled
+from eel_dynamics.model.axes import AXES, REP103, SIGNS, in_world, turn_vector, turned
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.equality import same_fields
 from eel_dynamics.model.scene import Scene
@@ -85,6 +87,7 @@ class Run:
     evaluations: int
     nodes: int
     error_estimate: ErrorEstimate | None = None  #: None where none was wanted, or for fewer than two samples
+    axes: str = REP103  #: of world and head: "rep103" (x forward, y left, z up), or "paper"
 
     def __eq__(self, other: object) -> bool:
         return self is other or same_fields(self, other)
@@ -116,6 +119,36 @@ class Run:
         rate = self.head_acceleration.copy()
         rate[:, 3:] -= np.cross(self.twist[:, :3], self.twist[:, 3:])
         return rate
+
+    @property
+    def torque_world(self) -> np.ndarray:
+        """(T, M, 3) N m: the internal torque in the axes of the world. `ValueError` where there is none."""
+        return self._in_world("torque")
+
+    @property
+    def force_world(self) -> np.ndarray:
+        """(T, M, 3) N: the internal force in the axes of the world. `ValueError` where there is none."""
+        return self._in_world("force")
+
+    def in_axes(self, axes: str) -> "Run":
+        """This run with world and head in these `axes`: "rep103" (x forward, y left, z up), or "paper".
+
+        In the paper's axes the eel swims towards -x. What has section axes is the same in both. `ValueError` for other
+        axes.
+        """
+        if axes not in AXES:
+            raise ValueError(f"axes must be {' or '.join(AXES)}, got {shown(axes)}")
+        if axes == self.axes:
+            return self
+        scene = replace(self.scene, current=tuple(turn_vector(self.scene.current).tolist()))
+        return replace(self, axes=axes, scene=scene, **turned({name: getattr(self, name) for name in SIGNS}))
+
+    def _in_world(self, name: str) -> np.ndarray:
+        if getattr(self, name) is None:
+            raise ValueError(f"{name}_world needs a run with scene internal_wrench on")
+        own = self.in_axes(REP103)
+        found = in_world(getattr(own, name), own.section_orientation)
+        return found if self.axes == REP103 else turn_vector(found)
 
     @property
     def path_length(self) -> float:
@@ -190,7 +223,10 @@ class Run:
 
     @staticmethod
     def load(path: str | os.PathLike[str]) -> "Run":
-        """The run that `save` wrote. `ValueError` in one line for a damaged or foreign file, or another version's."""
+        """The run that `save` wrote, in REP-103 axes. `ValueError` in one line for a file that is none.
+
+        A file in the paper's axes, as all were that do not name theirs, is converted, with a warning of one line.
+        """
         run: Run = loaded(path, "run", lambda contents: Run(**fields_of_run(contents)))
         return run
 
@@ -354,7 +390,8 @@ def _simulated_again(
     """
     if run.time[0] != 0.0:
         raise ValueError(f"run must begin at t = 0 to be simulated again, got {run.time[0]:g} s")
-    return simulate(
+    axes, run = run.axes, run.in_axes(REP103)
+    again = simulate(
         law,
         float(run.time[-1]),
         body=run.body,
@@ -370,6 +407,7 @@ def _simulated_again(
         most_evaluations=most_evaluations,
         progress=lambda reached, left: None,
     )
+    return again.in_axes(axes)
 
 
 class Swim(NamedTuple):

@@ -10,6 +10,7 @@ from typing import NamedTuple, TypeVar, get_type_hints
 
 import numpy as np
 
+from eel_dynamics.model.axes import REP103
 from eel_dynamics.simulation.energy import EnergyLedger
 from eel_dynamics.simulation.observations import OBSERVED, Variable
 
@@ -19,7 +20,7 @@ LABELS = {  # of the dimensions that are neither time, station nor swimmer
     "world": ("x", "y", "z"),
     "section": ("1", "2", "3"),
     "quaternion": ("x", "y", "z", "w"),
-    "component": ("omega_1", "omega_2", "omega_3", "v_1", "v_2", "v_3"),
+    "component": ("omega_x", "omega_y", "omega_z", "v_x", "v_y", "v_z"),
 }
 SIZES = {"time": "T", "station": "M", "swimmer": "B"}  # names of the other dimensions' sizes
 CLOSURES = {
@@ -77,12 +78,14 @@ def documented_arrays(kind: str):
 class Contents(NamedTuple):
     """A run or a batch, taken apart.
 
-    kind: "run" or "batch". values: what JSON can hold. arrays: by the names of `VARIABLES` and `OF_SWIMMERS`.
+    kind: "run" or "batch". values: what JSON can hold. arrays: by the names of `VARIABLES` and `OF_SWIMMERS`. axes: of
+    world and head, one of `model.axes.AXES`.
     """
 
     kind: str
     values: dict
     arrays: dict[str, np.ndarray]
+    axes: str = REP103
 
     def variable(self, name: str) -> Variable:
         """Dimensions, unit and meaning of an array of these contents."""

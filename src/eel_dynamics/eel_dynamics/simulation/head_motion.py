@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The motion of a simulation's head in REP-103 axes, as on the topic `odom`.
+"""The motion of a simulation's head, as on the topic `odom`.
 
 So a controller or a policy that works here drives the dynamics node too.
 """
@@ -8,16 +8,14 @@ import math
 
 from eel_gaits.pilot.head_motion import HeadMotion
 
-from eel_dynamics.model.axes import turn_quaternion, turn_vector
 from eel_dynamics.model.initial_state import InitialState
 
 
 def head_motion_of(head: InitialState) -> HeadMotion:
-    """The motion of a simulation's `head`, which has the library's axes."""
-    angular_velocity, velocity = turn_vector(head.twist.reshape(2, 3))
-    return HeadMotion(turn_vector(head.position), turn_quaternion(head.orientation), angular_velocity, velocity)
+    """The motion of a simulation's `head`."""
+    return HeadMotion(head.position, head.orientation, head.twist[:3], head.twist[3:])
 
 
 def level_orientation(heading: float) -> tuple[float, float, float, float]:
-    """The orientation (x, y, z, w), in either set of axes, of a level head with this `heading` [rad]."""
+    """The orientation (x, y, z, w) of a level head with this `heading` [rad]."""
     return 0.0, 0.0, math.sin(0.5 * heading), math.cos(0.5 * heading)

@@ -47,7 +47,7 @@ class Simulation:
         stations: how many, or their X (M,) [m].
         position: (3,) [m], of the head at the start, in the world frame.
         orientation: (4,) x y z w, world from head, at the start.
-        twist: (6,) (Omega, V) [rad/s, m/s], of the head at the start, in its axes. The axes are the library's.
+        twist: (6,) (Omega, V) [rad/s, m/s], of the head at the start, in its axes. World and head have REP-103 axes.
         default_transition: [s], duration of a blend where a law gives none.
         law: the first law to adopt.
         most_evaluations: of the head's dynamics per simulated second. A law that needs more is refused, or the run

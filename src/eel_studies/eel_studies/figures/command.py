@@ -53,7 +53,7 @@ def _figures(options: argparse.Namespace) -> int:
     outputs.page = outputs.folder / "README.md"
     progress.say("runs of the falling gait")
     readings = corrections.swim(accuracy=options.accuracy)
-    control = simulate(straight(), readings[0].run.time[-1], accuracy=options.accuracy)
+    control = simulate(straight(), readings[0].run.time[-1], accuracy=options.accuracy).in_axes("paper")
     comparison = kern_comparison.compare()
     progress.say("convergence in space and time")
     errors = {rule.__name__: {drag: rule(drag) for drag in (False, True)} for rule in (orders.in_space, orders.in_time)}

@@ -57,7 +57,7 @@ class Correction:
 def swim(
     duration: float = 10.0, accuracy: AccuracyLike = "fine", sample_period: float = 0.02, stations: int = 101
 ) -> list[Correction]:
-    """Simulate the falling gait with each reading of `READINGS`, the library's own first.
+    """Simulate the falling gait with each reading of `READINGS`, the library's own first; runs in the paper's axes.
 
     duration, sample_period: [s]. accuracy, stations: as in `simulate`.
     """
@@ -69,7 +69,7 @@ def swim(
             accuracy=accuracy,
             sample_period=sample_period,
             stations=stations,
-        )
+        ).in_axes("paper")
         for label, reading in READINGS.items()
     }
     end = runs[OWN].position[-1]

@@ -108,7 +108,7 @@ def gradient(
 
     of: names of `analysis.measures.MEASURES` ("head_x", "mean_speed", "actuator_work", "cost_of_transport",
     "greatest_torque", ...), or a smooth function run -> {name: number}. parameters: value by name, with the names of
-    `studies.points`: numbers of the gait, "scene.density", "body.lateral_drag", "initial.v_1" and the like. gait: its
+    `studies.points`: numbers of the gait, "scene.density", "body.lateral_drag", "initial.v_x" and the like. gait: its
     name, or a function of `numbers` and the parameters that returns a law. duration [s], body, scene, sample_period
     [s], stations, threads, most_evaluations: as in `simulate_batch`. accuracy: a target, or settings with fixed steps.
     steps: differences by name, in place of 1e-5 of the value (of 1 where it is 0). estimate: state the derivatives'

@@ -110,7 +110,7 @@ def _parser() -> Parser:
         help=".csv or .npz with the columns time, x, y (perhaps z), or speed and numbers of the gait; a run (.nc); a "
         "bag. Paths or speeds, not both",
     )
-    about = "a parameter and its first guess: body.FIELD, scene.FIELD, initial.v_1, a number of the gait"
+    about = "a parameter and its first guess: body.FIELD, scene.FIELD, initial.v_x, a number of the gait"
     add_repeated(parser, "--first", "NAME=VALUE", about, required=True)
     add_options(
         parser,

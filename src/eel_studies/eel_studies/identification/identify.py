@@ -99,7 +99,7 @@ def identify(
     """The `parameters` with which the model comes nearest to what was `measured`, and their intervals.
 
     parameters: first guesses by name, with the names of `studies.points`: "body.lateral_drag", "scene.density",
-    "initial.v_1" and the like. Those of body and scene stay above 0. measured: one or several paths, or steady speeds;
+    "initial.v_x" and the like. Those of body and scene stay above 0. measured: one or several paths, or steady speeds;
     each may have `numbers` of its own. Of each path a displacement and a turn about the vertical are fitted too, as the
     axes of a laboratory are its own. gait, numbers, body, accuracy, threads: as in `optimise`. scene: by default that
     of the library with blended friction. noise: standard deviation of the errors [m] or [m/s], where it is known; None:

@@ -20,7 +20,7 @@ class MeasuredPath:
         time: [s], (T,), rising from 0 or later, in the law's own time.
         position: [m], (T, 2) or (T, 3), in axes of the laboratory: z up, and x, y wherever they point.
         station: X [m] of the point that was tracked; 0 is the nose.
-        numbers: of this swim, by the names of `studies.points`, such as {"period": 0.8, "initial.v_1": -0.2}.
+        numbers: of this swim, by the names of `studies.points`, such as {"period": 0.8, "initial.v_x": 0.2}.
 
     `ValueError` names what does not fit.
     """

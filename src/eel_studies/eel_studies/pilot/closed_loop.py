@@ -18,7 +18,7 @@ STEP = 0.02  # s, from one sample of the head's motion to the next
 
 @dataclass(frozen=True)
 class Voyage:
-    """A swim with a pilot, in REP-103 axes; T samples."""
+    """A swim with a pilot; T samples."""
 
     time: np.ndarray  # (T,) s
     head: np.ndarray  # (T, 3) m, position

@@ -52,7 +52,7 @@ def of_bent(ratio: float, size: float) -> float:
 
 
 def inertia_at(swimmer: Simulation, time: float) -> np.ndarray:
-    """Inertia matrix (6, 6) about the head, in head axes, for the shape at `time` [s]. The body is 1 m long."""
+    """Inertia matrix (6, 6) about the head, in the paper's axes, at `time` [s]. The body is 1 m long."""
     return np.array(eel_core.Instant(swimmer.discretisation.swimmer).inertia(swimmer.tabulated_law, time))
 
 

@@ -44,7 +44,7 @@ def maps_of(points: int = 13) -> tuple[Map, ...]:
         ("velocity", "initial velocity, and spin about three axes: 0.2 s",
          Axis("speed (m/s)", 1e-2, 100.0), Axis("spin (turns/s)", 1e-2, 100.0),
          lambda speed, turns: _swim(_wave(), 0.2, start=AT_REST._replace(
-             twist=np.array([*np.full(3, 2.0 * np.pi * turns / np.sqrt(3.0)), -speed, 0.0, 0.0])))),
+             twist=np.array([*np.full(3, 2.0 * np.pi * turns / np.sqrt(3.0)), speed, 0.0, 0.0])))),
         ("body", "length and slenderness: 4 periods", Axis("length (m)", 0.01, 100.0), SLENDERNESS,
          lambda length, slenderness: _swim(_wave(length=length), 4.0, body=Body.spindle(length, slenderness))),
         ("step", "a fixed step (classical Runge-Kutta): 4 periods", Axis("step (periods)", 1e-2, 1.0), DENSITY,

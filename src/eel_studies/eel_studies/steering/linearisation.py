@@ -37,8 +37,8 @@ COARSER = 0.7  # times the steps and points of the companion, that tells the err
 class PeriodicLinearisation:
     """How small changes of the head's motion at the start of a period, and small bends during it, act at its end.
 
-    States: roll, pitch, heading [rad], a turn of the head about the axes of the course: 1 against the way of the
-    period, 3 up. roll_rate ... heave: the twist (Omega, V) [rad/s, m/s] in the head's axes. Position is left out:
+    States: roll, pitch, heading [rad], a turn of the head about the axes of the course: x along the way of the
+    period, z up. roll_rate ... heave: the twist (Omega, V) [rad/s, m/s] in the head's axes. Position is left out:
     nothing depends on it. Inputs [rad/m]: bends, uniform along the body, that are added to the gait. They come and go
     within the period, by the ramp f_r of eq. (64). "yaw" is constant between; "yaw_cos" and "yaw_sin" beat with the
     gait.

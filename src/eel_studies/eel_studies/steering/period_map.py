@@ -158,11 +158,11 @@ class PeriodMap:
         return self._moved(start, change / max(1.0, np.abs(change).max() / FARTHEST))
 
     def _on_course(self, start: Motion, end: Motion) -> tuple[Motion, Motion]:
-        """Both turned about the vertical such that the way of the period leads to -x."""
+        """Both turned about the vertical such that the way of the period leads to +x."""
         way = end.position[:2]
         if np.linalg.norm(way) < 1e-3 * self.body.length:  # where there is none, the head points there
-            way = -rotation(start.orientation).apply([1.0, 0.0, 0.0])[:2]
-        about = np.array([[0.0, 0.0, math.pi - math.atan2(way[1], way[0])]])
+            way = rotation(start.orientation).apply([1.0, 0.0, 0.0])[:2]
+        about = np.array([[0.0, 0.0, -math.atan2(way[1], way[0])]])
         turn = rotation(turned_by(np.array([0.0, 0.0, 0.0, 1.0]), about)[0])
         first, last = (
             Motion(turn.apply(each.position), turned_by(each.orientation, about)[0], each.twist)

@@ -26,6 +26,7 @@ from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.step_bounds import MOST_EVALUATIONS
 from eel_dynamics.analysis.measures import checked_measures, checked_point, described
 from eel_dynamics.analysis.settling import tell_unsettled
+from eel_dynamics.model.axes import REP103
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.batch import available_cores
@@ -89,7 +90,7 @@ def sweep(
 
     Args:
         grid: values by name, with the names of `studies.points`: numbers of the gait ("period"), of scene, body or
-            initial state ("scene.friction", "body.lateral_drag", "initial.v_1"), "body" and "accuracy".
+            initial state ("scene.friction", "body.lateral_drag", "initial.v_x"), "body" and "accuracy".
         gait: its name, or a function of `numbers` and the grid's that returns a law.
         numbers: of the gait, the same for all points.
         duration: [s], or "settled": each point swims until its gait has settled, as in `simulate`.
@@ -243,6 +244,7 @@ def _dataset(
         "gait": gait if isinstance(gait, str) else getattr(gait, "__name__", "law"),
         "duration": how.duration if until_settled(how.duration) else float(how.duration),
         "estimate": int(how.estimate),
+        "axes": REP103,
     }
     if how.sample_period is not None:
         attributes["sample_period"] = float(how.sample_period)

@@ -2,9 +2,11 @@
 // What an instant shows: pose, velocities, energies, and profiles along the body at the stations.
 //
 // The fields go on from the nodes to the stations by the integrals that made them, so a profile is as exact as the run.
+// What is in the axes of the world or of the head is turned into those of the outside (axes.hpp).
 #pragma once
 
 #include "eel_core/algorithm.hpp"
+#include "eel_core/march/axes.hpp"
 #include "eel_core/march/missed.hpp"
 #include "eel_core/march/profiles.hpp"
 
@@ -55,6 +57,7 @@ inline std::array<double, 3> energies_of(const Swimmer& swimmer, const Workspace
 }
 
 inline void put(const Vector3<double>& v, double* to) { to[0] = v.x, to[1] = v.y, to[2] = v.z; }
+inline void put(const Spatial<Space, double>& s, double* to) { put(s.angular, to), put(s.linear, to + 3); }
 
 class Observer {
   public:
@@ -89,12 +92,12 @@ class Observer {
     void show_head(const State& y, const Vector3<double>& current, std::size_t sample,
                    const Workspace<Space>& work) const
     {
-        std::copy_n(y.begin(), 3, at(Profiles::position, sample));
-        std::copy_n(y.begin() + 3, 4, at(Profiles::orientation, sample));
-        double* const twist = at(Profiles::twist, sample);
-        put(work.twist.angular, twist), put(work.twist.linear + work.head.local(current), twist + 3);
-        double* const acceleration = at(Profiles::head_acceleration, sample);
-        put(work.head_acceleration.angular, acceleration), put(work.head_acceleration.linear, acceleration + 3);
+        const State shown = half_turn(y);
+        std::copy_n(shown.begin(), 3, at(Profiles::position, sample));
+        std::copy_n(shown.begin() + 3, 4, at(Profiles::orientation, sample));
+        put(half_turn(Twist<Space, double>{work.twist.angular, work.twist.linear + work.head.local(current)}),
+            at(Profiles::twist, sample));
+        put(half_turn(work.head_acceleration), at(Profiles::head_acceleration, sample));
 
         Vector3<Lanes> moment{};
         Lanes mass(0.0);
@@ -103,7 +106,7 @@ class Observer {
             mass += part, moment += part * work.position[k];
         }
         const Vector3<double> centre = work.head.parent((1.0 / total(mass)) * total_of(moment));
-        put(Vector3{y[0], y[1], y[2]} + centre, at(Profiles::center_of_mass, sample));
+        put(half_turn(Vector3{y[0], y[1], y[2]} + centre), at(Profiles::center_of_mass, sample));
     }
 
     void show_energies_and_closure(std::size_t sample, const Workspace<Space>& work) const
@@ -136,8 +139,8 @@ class Observer {
                 here.base[k] * magnus({pitch[0], yaw[0]}, {pitch[1], yaw[1]}, {pitch[2], yaw[2]});
             here.frame.store(k, turn.frame());
             here.curvature.store(k, curvature);
-            show(Profiles::backbone, sample, k, nose + work.head.parent(here.position[k]));
-            show(Profiles::section_orientation, sample, k, head_turn * turn);
+            show(Profiles::backbone, sample, k, half_turn(nose + work.head.parent(here.position[k])));
+            show(Profiles::section_orientation, sample, k, half_turn(head_turn * turn));
             show(Profiles::curvature, sample, k, Vector3<Lanes>{0.0, curvature.x, curvature.y});
             show(Profiles::curvature_rate, sample, k, Vector3<Lanes>{0.0, rate.x, rate.y});
         }

@@ -184,12 +184,13 @@ class SampledMarches {
         });
     }
 
-    // Puts the head of a swimmer into its column of `heads`; false where the inertia is not positive definite.
+    // Puts the head of a swimmer into its column of `heads`, in the axes of the outside; false where the inertia is not positive definite.
     bool put_head(std::size_t index, double* heads)
     {
-        const std::optional<HeadMotion> head = marches_[index].march().head();
-        if (!head) return false;
-        for (std::size_t row = 0; row < head->size(); ++row) heads[row * size() + index] = (*head)[row];
+        const std::optional<HeadMotion> found = marches_[index].march().head();
+        if (!found) return false;
+        const HeadMotion head = half_turn(*found);
+        for (std::size_t row = 0; row < head.size(); ++row) heads[row * size() + index] = head[row];
         return true;
     }
 

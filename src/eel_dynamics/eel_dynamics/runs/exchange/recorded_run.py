@@ -21,7 +21,6 @@ from eel_gaits.laws.term import AXES, Term
 
 from eel_dynamics.accuracy.accuracy import Accuracy
 from eel_dynamics.accuracy.budget import Budget
-from eel_dynamics.model.axes import turn_quaternion, turn_vector
 from eel_dynamics.model.body import Body, checked_body
 from eel_dynamics.model.grid import Grid
 from eel_dynamics.model.moments import with_moments
@@ -106,8 +105,8 @@ def _collected(messages) -> tuple[dict, dict]:
 def _motion(rows: dict, time: np.ndarray) -> dict:
     pose = [message.pose for message in rows["head_pose"]]
     twist = [message.twist for message in rows["head_twist"]]
-    angular = turn_vector(_numbers((each.angular for each in twist), "xyz"))
-    linear = turn_vector(_numbers((each.linear for each in twist), "xyz"))
+    angular = _numbers((each.angular for each in twist), "xyz")
+    linear = _numbers((each.linear for each in twist), "xyz")
     whole = np.concatenate((angular, linear), axis=1)
     rate = _spline(time, whole)(time, 1)
     rate[:, 3:] += np.cross(angular, linear)
@@ -116,13 +115,13 @@ def _motion(rows: dict, time: np.ndarray) -> dict:
     bend |= {f"{name}_rate": np.array([getattr(each, f"{name}_rate") for each in rows["curvature"]]) for name in bend}
     straight = np.zeros_like(bend["pitch"])
     return {
-        "position": turn_vector(_numbers((each.position for each in pose), "xyz")),
-        "orientation": turn_quaternion(_numbers((each.orientation for each in pose), "xyzw")),
+        "position": _numbers((each.position for each in pose), "xyz"),
+        "orientation": _numbers((each.orientation for each in pose), "xyzw"),
         "twist": whole,
         "head_acceleration": rate,
         "x": x,
-        "backbone": turn_vector(_along(rows["backbone"], "position", len(x), 3)),
-        "section_orientation": turn_quaternion(_along(rows["backbone"], "orientation", len(x), 4)),
+        "backbone": _along(rows["backbone"], "position", len(x), 3),
+        "section_orientation": _along(rows["backbone"], "orientation", len(x), 4),
         "curvature": np.stack((straight, bend["pitch"], bend["yaw"]), axis=2),
         "curvature_rate": np.stack((straight, bend["pitch_rate"], bend["yaw_rate"]), axis=2),
     }

@@ -1,16 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Converts a run to the messages that the node would publish: the same topics and fields, as plain objects without ROS.
-
-The paper's frames, which the library uses, are converted to REP-103 frames by `turn_vector` and `turn_quaternion`, as
-in `messages`. Fields in section axes stay unchanged.
-"""
+"""Converts a run to the messages that the node would publish: same topics and fields, as plain objects without ROS."""
 
 from collections.abc import Iterator
 from types import SimpleNamespace
 
 import numpy as np
-
-from eel_dynamics.model.axes import turn_quaternion, turn_vector
 
 SECOND = 1_000_000_000  # ns
 AXES = (1, 2, 3)
@@ -22,6 +16,7 @@ ENERGIES = (
 
 def records(run) -> Iterator[tuple[str, SimpleNamespace]]:
     """Yield topic and message in the order of time: body and law, then all samples, then the diagnostics."""
+    run = run.in_axes("rep103")
     start, end = (_stamp(run.time[k]) for k in (0, -1))
     yield "body", body_record(run)
     yield "curvature_law", SimpleNamespace(name=run.law.name)
@@ -54,12 +49,10 @@ def body_record(run) -> SimpleNamespace:
 def _sample(run, k: int) -> dict[str, dict]:
     """Fields of each topic at sample `k`."""
     pose = SimpleNamespace(
-        position=_named("xyz", turn_vector(run.position[k])),
-        orientation=_named("xyzw", turn_quaternion(run.orientation[k])),
+        position=_named("xyz", run.position[k]),
+        orientation=_named("xyzw", run.orientation[k]),
     )
-    twist = SimpleNamespace(
-        angular=_named("xyz", turn_vector(run.twist[k, :3])), linear=_named("xyz", turn_vector(run.twist[k, 3:]))
-    )
+    twist = SimpleNamespace(angular=_named("xyz", run.twist[k, :3]), linear=_named("xyz", run.twist[k, 3:]))
     curvature, rate = run.curvature[k], run.curvature_rate[k]
     found = {
         "head_pose": {"pose": pose},
@@ -67,8 +60,8 @@ def _sample(run, k: int) -> dict[str, dict]:
         "odom": {"pose": SimpleNamespace(pose=pose), "twist": SimpleNamespace(twist=twist)},
         "backbone": {
             "x": run.x,
-            "position": turn_vector(run.backbone[k]).ravel() + 0.0,
-            "orientation": turn_quaternion(run.section_orientation[k]).ravel() + 0.0,
+            "position": run.backbone[k].ravel() + 0.0,
+            "orientation": run.section_orientation[k].ravel() + 0.0,
         },
         "curvature": {
             "x": run.x,

@@ -7,6 +7,7 @@ JSON text in the attribute `eel`.
 
 import json
 import os
+import warnings
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
@@ -16,10 +17,12 @@ from eel_base.files.input_file import InputFile, from_json, reading
 from eel_base.files.output_file import check_output, replacing
 from eel_base.wording import shown
 
+from eel_dynamics.model.axes import AXES, PAPER, REP103
 from eel_dynamics.runs.storage.digest import add_digest, check_digest
+from eel_dynamics.runs.storage.run_contents import in_rep103_axes
 from eel_dynamics.runs.variables import LABELS, OF_SWIMMERS, VARIABLES, Contents
 
-FORMAT = 1  # of the files; another number cannot be read
+FORMAT = 2  # of the files; format 1 does not name its axes, the paper's; a later one cannot be read
 MOST_BYTES = 2**31 - 4  # of an array in a file
 SUFFIX = ".nc"
 KNOWN = (*VARIABLES, *OF_SWIMMERS)
@@ -35,7 +38,13 @@ def software() -> str:
 
 def attributes_of(contents: Contents) -> dict:
     """The attributes of a file, and of labelled arrays."""
-    return {"software": software(), "kind": contents.kind, "format": FORMAT, "eel": json.dumps(contents.values)}
+    return {
+        "software": software(),
+        "kind": contents.kind,
+        "format": FORMAT,
+        "axes": contents.axes,
+        "eel": json.dumps(contents.values),
+    }
 
 
 def checked_path(argument: str, path) -> Path:
@@ -91,6 +100,7 @@ def read(path, kind: str) -> Contents:
         about: dict[str, Any] = {name: getattr(file, name, None) for name in ("software", "kind", "format", "eel")}
         of_sweep = about["kind"] is None and hasattr(file, "sweep")
         ours = {} if of_sweep else {name: file.variables[name] for name in KNOWN if name in file.variables}
+        axes = getattr(file, "axes", PAPER.encode())
         arrays = {name: _native(np.asarray(each.data)) for name, each in ours.items()}
         if not of_sweep and None not in about.values():
             check_digest(file, named)
@@ -99,22 +109,26 @@ def read(path, kind: str) -> Contents:
     if None in about.values():
         raise ValueError(f"{named} is no {kind} of eel_dynamics")
     with reading(named):
-        if about["format"] != FORMAT:
+        if about["format"] not in range(1, FORMAT + 1):
             writer = about["software"].decode(errors="replace")
-            raise ValueError(f"{named} has format {about['format']}, of {writer}; {software()} reads format {FORMAT}")
+            raise ValueError(f"{named} has format {about['format']}, of {writer}; {software()} reads up to {FORMAT}")
         if about["kind"].decode() != kind:
             raise ValueError(f"{named} holds a {about['kind'].decode()}, not a {kind}")
     with reading(told):
-        contents = Contents(kind, from_json(about["eel"]), arrays)
+        contents = Contents(kind, from_json(about["eel"]), arrays, axes.decode())
         sizes_of(contents)
+        if contents.axes not in AXES:
+            raise ValueError(f"its axes must be {' or '.join(AXES)}, got {shown(contents.axes)}")
     return contents
 
 
 def loaded(path, kind: str, made):
     """`made(contents)` of the file `path`. `ValueError` in one line, as in `read`, where they do not fit together."""
-    contents = read(path, kind)
-    with reading(f"{kind} file {shown(os.fspath(path))} cannot be read"):
-        return made(contents)
+    contents, named = read(path, kind), f"{kind} file {shown(os.fspath(path))}"
+    if contents.axes != REP103:
+        warnings.warn(f"{named} has the paper's axes, which are converted to those of REP-103", stacklevel=3)
+    with reading(f"{named} cannot be read"):
+        return made(in_rep103_axes(contents))
 
 
 def sizes_of(contents: Contents) -> dict[str, int]:

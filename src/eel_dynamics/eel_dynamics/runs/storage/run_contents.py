@@ -5,6 +5,7 @@ import numpy as np
 from eel_base.wording import shown
 
 from eel_dynamics.accuracy.error_estimate import ErrorEstimate
+from eel_dynamics.model.axes import REP103, turn_vector, turned
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.storage import plain
 from eel_dynamics.runs.variables import COUNTS, ENERGY, LEDGER, OWN, Contents
@@ -22,7 +23,7 @@ def contents_of_run(run) -> Contents:
         **{name: int(getattr(run, name)) for name in COUNTS},
     }
     arrays = {name: getattr(run, name) for name in OWN if getattr(run, name) is not None}
-    return Contents("run", values, arrays | _of_ledger(run.energy))
+    return Contents("run", values, arrays | _of_ledger(run.energy), run.axes)
 
 
 def fields_of_run(contents: Contents) -> dict:
@@ -38,9 +39,20 @@ def fields_of_run(contents: Contents) -> dict:
         "accuracy": plain.accuracy_of(values["accuracy"]),
         "error_estimate": values["error_estimate"] and ErrorEstimate(**values["error_estimate"]),
         "energy": energy,
+        "axes": contents.axes,
         **{name: arrays.get(name) for name in OWN},
         **{name: _count(name, values[name]) for name in COUNTS},
     }
+
+
+def in_rep103_axes(contents: Contents) -> Contents:
+    """The contents, fresh from a file, with world and head in the library's axes."""
+    if contents.axes == REP103:
+        return contents
+    values = contents.values
+    for scene in [values["scene"]] if contents.kind == "run" else values["scenes"]["values"]:
+        scene["current"] = turn_vector(scene["current"]).tolist()
+    return contents._replace(arrays=contents.arrays | turned(contents.arrays), axes=REP103)
 
 
 def contents_of_batch(batch, out: Observations, works: np.ndarray, energy_at_start: np.ndarray) -> Contents:

@@ -60,7 +60,9 @@ def write_columns(columns: dict, path: Path):
 
 def frame_of(run: Any) -> Any:
     """A `pandas.DataFrame` of `columns_of` a run, by time."""
-    return needed("pandas", "to_dataframe").DataFrame(columns_of(run)).set_index("time")
+    frame = needed("pandas", "to_dataframe").DataFrame(columns_of(run)).set_index("time")
+    frame.attrs["axes"] = run.axes
+    return frame
 
 
 def frame_of_all(runs: Iterable[Any]) -> Any:
