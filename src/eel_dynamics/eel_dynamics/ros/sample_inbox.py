@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Takes a controller's samples in the thread of the run loop: a turn of the executor would cost as much as a sample.
+"""Takes a controller's samples in the thread of the run loop: a turn of the executor costs twice as much as a sample.
 
 The loop waits for samples and requests together, in a wait set of its own, as `rclpy.wait_for_message` does.
 """

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Passes laws, and a controller's samples of laws, to the simulation; logs refusals, and when samples run out."""
 
+import math
 import time
 from typing import Any
 
@@ -35,6 +36,7 @@ class LawAdopter:
         ] = {}  # time [s] of the instants that were added at the start, and a hash of the values
         self._driven = False  # whether a controller's samples drove the swimmer when it was last looked at
         self._farthest = 0.0  # s: the greatest time by which a sample lay ahead of the simulation
+        self._missing_since = math.inf  # s, steady clock: since when samples are missing; -inf: no longer waited for
         self._echo_until = 0.0  # s, steady clock: until when samples from before the last reset may come
 
     @property
@@ -96,19 +98,26 @@ class LawAdopter:
             if self.simulation.time == 0.0:
                 self._first[samples["time"]] = values
 
-    def lacks_samples(self, instant: float) -> bool:
-        """Whether a controller's samples drive the swimmer and do not reach simulation time `instant` [s] yet."""
-        until = self.simulation.samples_until
-        return until is not None and until < instant and not self.simulation.resting
+    def waits_for_samples(self, instant: float, period: float, now: float, timeout: float) -> bool:
+        """Whether to wait for samples up to `instant` [s], a `period` [s] ahead, for `timeout` [s] at most in each gap.
 
-    def report_missing(self, instant: float, period: float, waited: float) -> None:
-        """Log that samples up to `instant` [s], a `period` [s] ahead, were `waited` [s] for in vain."""
-        self._report.event(
-            "missing samples",
-            f"no curvature sample for t >= {instant:.9g} s within {waited:g} s, the newest is for t = "
-            f"{self.simulation.samples_until:.9g} s: at real_time_factor 0 a controller's samples must lie at least "
-            f"1/rate = {period:.9g} s ahead of the simulation",
-        )
+        now: [s, steady clock]. A wait in vain is logged.
+        """
+        until = self.simulation.samples_until
+        if until is None or until >= instant or self.simulation.resting:
+            self._missing_since = math.inf
+            return False
+        self._missing_since = min(self._missing_since, now)
+        waits = now - self._missing_since < timeout
+        if not waits and self._missing_since > -math.inf:
+            self._missing_since = -math.inf
+            self._report.event(
+                "missing samples",
+                f"no curvature sample for t >= {instant:.9g} s within {timeout:g} s, the newest is for t = "
+                f"{until:.9g} s: at real_time_factor 0 a controller's samples must lie at least 1/rate = "
+                f"{period:.9g} s ahead of the simulation",
+            )
+        return waits
 
     def reset(self) -> None:
         """Set the law's own t = 0 back to simulation time 0."""

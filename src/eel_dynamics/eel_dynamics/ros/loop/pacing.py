@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pacing on the steady clock: due times of samples, and the wait for a controller.
+"""Pacing on the steady clock: due times of samples.
 
 Sample k is due at start + (k - first) * period / factor. A run that is late by more than a period and `SHORTEST_DELAY`
 does not hurry: it regains the lost time at `CATCH_UP` above its pace, so that a controller can follow. Until then later
@@ -66,24 +66,3 @@ class Pace:
 
     def _steps(self, sample: int) -> float:
         return (sample - self._first) * self.period / self.factor if self.factor > 0.0 else 0.0
-
-
-class ControllerWait:
-    """Decides whether to wait for a controller that sends samples of a law: once per gap, up to a time-out.
-
-    Attributes:
-        timed_out: whether the last call of `waits` ended a wait in vain.
-    """
-
-    def __init__(self) -> None:
-        self._since: float | None = None  # s, steady clock: since when its samples are missing
-        self.timed_out = False
-
-    def waits(self, missing: bool, now: float, timeout: float) -> bool:
-        """Whether to wait for samples that are `missing` at `now` [s, steady clock], for `timeout` [s] at most."""
-        self._since = (now if self._since is None else self._since) if missing else None
-        waiting = self._since is not None and now - self._since < timeout
-        self.timed_out = self._since is not None and not waiting and self._since > -math.inf
-        if self.timed_out:
-            self._since = -math.inf
-        return waiting
