@@ -12,11 +12,11 @@ from eel_base.files.output_file import replacing
 
 @dataclass(frozen=True)
 class Table:
-    """Rows of cells below a head. left: columns from the left that are aligned to the left, in `text`."""
+    """Rows of cells below a head. left: the columns that are aligned to the left, in `text`."""
 
     head: Sequence[str]
     rows: Sequence[Sequence[str]]
-    left: int = 1
+    left: Sequence[int] = (0,)
 
     def text(self) -> str:
         """The table as lines of aligned text."""
@@ -35,4 +35,4 @@ class Table:
 
     def _aligned(self, line: Sequence[str], widths: list[int]) -> list[str]:
         pairs = enumerate(zip(line, widths, strict=True))
-        return [cell.ljust(width) if place < self.left else cell.rjust(width) for place, (cell, width) in pairs]
+        return [cell.ljust(width) if place in self.left else cell.rjust(width) for place, (cell, width) in pairs]

@@ -85,8 +85,8 @@ def table_of(first: Run, second: Run, names: list[str]) -> str:
             continue
         change = two[name] - one[name]
         relative = f"{change / abs(one[name]):+.2%}" if one[name] and np.isfinite(change) else ""
-        rows.append((name, f"{one[name]:.5g}", f"{two[name]:.5g}", f"{change:.3g}", relative, f"  {unit}"))
-    return Table(("", *names, "difference", "", ""), rows).text()
+        rows.append((name, f"{one[name]:.5g}", f"{two[name]:.5g}", f"{change:.3g}", relative, unit))
+    return Table(("", *names, "difference", "", ""), rows, left=(0, 5)).text()
 
 
 def draw(figure: Figure, runs: tuple[Run, Run], names: list[str]) -> None:

@@ -84,7 +84,7 @@ class Front:
                 stars = self.at_bound[:, self.names.index(name)]
             cells.append([f"{value:.4g}{'*' if star else ' '}" for value, star in zip(values, stars, strict=True)])
         head = [f"{columns.get(name, name)} " for name in self.columns]
-        return Table(head, list(zip(*cells, strict=True)), left=0).text()
+        return Table(head, list(zip(*cells, strict=True)), left=()).text()
 
     def draw(self, path: str | Path) -> None:
         """Draw the front, the parameters and the gaits into a file (.png, .svg).

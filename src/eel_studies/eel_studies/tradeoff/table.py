@@ -23,7 +23,7 @@ COLUMNS: dict[str, Callable[[Measured], str]] = {  # head: text of a row
     "times real time": lambda row: f"{row.times_real_time:.0f}",
     "memory [kB]": lambda row: f"{row.memory / 1000.0:.0f}",
 }
-LEFT = 3  # columns that are texts
+LEFT = 0, 1, 2  # columns that are texts
 LONG_ONLY = "method", "order", "us per evaluation", "memory [kB]"  # columns that the short table leaves out
 WANTED = 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7  # relative errors of the rows of the short table
 SECONDS = attrgetter("seconds")  # of a row: its cost
