@@ -161,7 +161,7 @@ class Run:
 
         `ValueError` where the gait has no period, or the run does not hold one. It warns as `analysis` does.
         """
-        return self._told(Analysis(self)).mean_speed
+        return self._warned(Analysis(self)).mean_speed
 
     def greatest_torque(self) -> tuple[float, float, float]:
         """Greatest magnitude [N m] of the internal torque over the run, with its X [m] and its time [s].
@@ -183,20 +183,20 @@ class Run:
         None: those of the run's later half. `ValueError` if the run is shorter than one period. The first analysis of
         a run over periods in which its gait had not settled gives an `Unsettled` warning.
         """
-        return self._told(Analysis(self, periods))
+        return self._warned(Analysis(self, periods))
 
-    def _told(self, found: Analysis) -> Analysis:
+    def _warned(self, found: Analysis) -> Analysis:
         if not found.settled:
-            _ = self._told_unsettled
+            _ = self._warned_unsettled
         return found
 
     @cached_property
-    def _told_unsettled(self) -> bool:
-        """Whether the reader has been told that the means are of a gait that has not settled: from the first access."""
+    def _warned_unsettled(self) -> bool:
+        """Whether a warning was given that the means are of a gait that has not settled: from the first access."""
         change = Analysis(self).change_per_period
         by = "one period does not tell its change" if change is None else f"it changes by {change:.1%} a period"
-        told = f"{self.law.name}: the mean speed has not settled ({by}); swim longer, or with duration='settled'"
-        warnings.warn(told, Unsettled, stacklevel=5)
+        line = f"{self.law.name}: the mean speed has not settled ({by}); swim longer, or with duration='settled'"
+        warnings.warn(line, Unsettled, stacklevel=5)
         return True
 
     def actuators(self, joints: int) -> Actuators:
@@ -503,9 +503,9 @@ def _with_stable_step(stopped: SimulationStopped, request: SwimRequest, accuracy
     """The same error, with a stable step in its hint."""
     step = stable_step(request, accuracy)
     hint = f"a step of {step:.3g} s is stable" if step else "no shorter step that was tried is stable"
-    told = SimulationStopped(stopped.time, stopped.quantity, stopped.value, f"{hint}; it was {accuracy.step:.3g} s")
-    told.run, told.diverged = stopped.run, True
-    return told
+    better = SimulationStopped(stopped.time, stopped.quantity, stopped.value, f"{hint}; it was {accuracy.step:.3g} s")
+    better.run, better.diverged = stopped.run, True
+    return better
 
 
 __all__ = ["Run", "SimulationStopped", "simulate"]

@@ -14,13 +14,14 @@ from eel_dynamics.model.body import Body
 from eel_dynamics.model.initial_state import time_scale
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.simulation.discretisation import discretise
+from eel_dynamics.simulation.march import MARCHED, SINGULAR, UNFINISHED
 from eel_dynamics.simulation.observations import Snapshot
 from eel_dynamics.simulation.simulation import Simulation
 from eel_dynamics.simulation.simulation_setup import checked_state
 from eel_dynamics.simulation.stopping import SimulationStopped, stopped_by
 
 LEFT_OUT = -1
-MARCHED, SINGULAR, UNFINISHED = (eel_core.STATUSES.index(name) for name in ("marched", "singular", "unfinished"))
+
 Array = NDArray[np.float64]
 
 
