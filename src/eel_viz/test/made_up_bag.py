@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """The made-up swimmer in a rosbag2 folder, in each of the ways in which bags come; written by `rosbags` alone."""
 
-from pathlib import Path
+import pathlib
 
 import made_up
 from eel_viz.bags.definitions import definition, type_hash
 from eel_viz.topics import GLOBAL, OWN
 from fake_swimmer import body_message, diagnostics, messages
+from nav_msgs.msg import Path
 from rclpy.serialization import serialize_message
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
 
@@ -16,7 +17,7 @@ BEGAN = 1_800_000_000 * 10**9  # ns, wall time of the recording
 
 
 def write_bag(
-    folder: Path,
+    folder: pathlib.Path,
     seconds: float = 1.0,
     rate: float = 100.0,
     *,
@@ -27,11 +28,12 @@ def write_bag(
     storage: StoragePlugin = StoragePlugin.MCAP,
     compression: CompressionMode = CompressionMode.NONE,
     kinds: dict[str, str] | None = None,
+    goal: Path | None = None,
     spoil=lambda topic, message: message,
-) -> Path:
+) -> pathlib.Path:
     """Body and law first, then all samples; returns `folder`.
 
-    waiting: before each run, so many messages of stamp 0 with the numbers of another time.
+    goal: nav_msgs/Path. waiting: before each run, so many messages of stamp 0 with the numbers of another time.
     `spoil(topic, message)` is what is written instead, None: nothing; `kinds` are types given out for topics' own.
     """
     writer = Writer(folder, version=9, storage_plugin=storage)
@@ -53,6 +55,8 @@ def write_bag(
 
         for space in namespaces:
             add(f"{space}/body", OWN["body"], body_message(made_up.STATIONS))
+            if goal is not None:
+                add(f"{space}/goal", OWN["goal"], goal)
             add(f"{space}/curvature_law", OWN["curvature_law"], CurvatureLaw(name="made up"))
         swimmer = made_up.Swimmer(stations)
         whole = [*[-1] * waiting, *(round(k * 1e9 / rate) for k in range(round(seconds * rate) + 1))]

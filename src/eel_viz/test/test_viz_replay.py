@@ -205,6 +205,19 @@ def test_bad_messages_and_foreign_types_are_said_once_and_left_out(tmp_path, cap
     np.testing.assert_array_equal(read(tmp_path / "run.rrd", entities.POSITION).stamps, STAMPS[:11])
 
 
+def test_the_course_of_a_goal_is_shown(tmp_path):
+    from geometry_msgs.msg import PoseStamped
+    from nav_msgs.msg import Path
+
+    goal = Path(poses=[PoseStamped(), PoseStamped()])
+    goal.poses[1].pose.position.x = 4.0
+
+    folder = write_bag(tmp_path / "bag", 0.1, goal=goal)
+    assert main([str(folder), "-o", str(tmp_path / "run.rrd")]) == 0
+    legs = read(tmp_path / "run.rrd", entities.COURSE, static=True)["strips"][-1][0]
+    np.testing.assert_array_equal(legs, [(0.0, 0.0, 0.0), (4.0, 0.0, 0.0)])
+
+
 @pytest.mark.fault("names", "`replay` of messages of another version", "said once, left out; the rest is shown")
 def test_messages_of_another_version_are_said_once_and_left_out(tmp_path, capsys):
     folder = write_bag(tmp_path / "bag", 0.1)
