@@ -141,7 +141,8 @@ class Run:
         if axes == self.axes:
             return self
         scene = replace(self.scene, current=tuple(turn_vector(self.scene.current).tolist()))
-        return replace(self, axes=axes, scene=scene, **turned({name: getattr(self, name) for name in SIGNS}))
+        changes: dict[str, Any] = turned({name: getattr(self, name) for name in SIGNS})
+        return replace(self, axes=axes, scene=scene, **changes)
 
     def _in_world(self, name: str) -> np.ndarray:
         if getattr(self, name) is None:
