@@ -14,7 +14,8 @@ demo: build   ## swim the falling gait through the three nodes; leaves out/falli
 test: build   ## all tests but the long ones (ARGS=... goes to pytest)
 	@$(RUN) tools/test.sh $(ARGS)
 
-sanitize: build   ## the mechanics under AddressSanitizer and UndefinedBehaviorSanitizer
+sanitize: build   ## the mechanics under AddressSanitizer and UndefinedBehaviorSanitizer, and ThreadSanitizer
+	@$(RUN) tools/core_tests.sh threads
 	@$(RUN) tools/core_tests.sh sanitize
 
 aarch64: build   ## the C++ tests of the mechanics compiled for 64-bit ARM, run by qemu

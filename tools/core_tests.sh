@@ -3,6 +3,7 @@
 # Builds and runs the C++ tests of eel_core, each kind in a build folder of its own (src/eel_core/CMakePresets.json).
 #   tests      for this machine
 #   sanitize   with AddressSanitizer and UndefinedBehaviorSanitizer, and the Python tests of the mechanics with them
+#   threads    those of marches over threads, with ThreadSanitizer
 #   aarch64    for 64-bit ARM, run by qemu; skipped where the tools are missing
 #   clang      compiled by Clang; skipped where it is missing
 set -euo pipefail
@@ -13,15 +14,16 @@ skip_without() {   # COMMAND PACKAGE
     command -v "$1" > /dev/null || { echo "[core] $kind skipped: no $1. On Debian or Ubuntu: sudo apt-get install $2"; exit 0; }
 }
 case "$kind" in
-    tests | sanitize) ;;
+    tests | sanitize | threads) ;;
     aarch64) skip_without aarch64-linux-gnu-g++ g++-aarch64-linux-gnu; skip_without qemu-aarch64 qemu-user ;;
     clang) skip_without clang++ clang ;;
-    *) echo "core_tests.sh: the kind must be tests, sanitize, aarch64 or clang, got '$kind'" >&2; exit 2 ;;
+    *) echo "core_tests.sh: the kind must be tests, sanitize, threads, aarch64 or clang, got '$kind'" >&2; exit 2 ;;
 esac
 
 mkdir -p "$folder"
 { (cd src/eel_core && cmake --preset "$kind") && cmake --build "$folder" --parallel; } > "$folder/build.log" 2>&1 ||
     { cat "$folder/build.log"; echo "[core] $kind: the build failed; its output is in $folder/build.log"; exit 1; }
+[ "$kind" != threads ] || export GTEST_FILTER="SampledMarches*:ThreadSanitizer*"
 ctest --test-dir "$folder" --output-on-failure --no-tests=error
 [ "$kind" = sanitize ] || exit 0
 

@@ -5,13 +5,14 @@
 #include <cstdio>
 #include <limits>
 #include <memory>
+#include <thread>
 
 #include "eel_core/build_info.hpp"
 
 class Sanitizers : public testing::Test {
     void SetUp() override
     {
-        if (eel_core::build_info().sanitizers.empty()) GTEST_SKIP() << "built without sanitizers";
+        if (eel_core::build_info().sanitizers != "address,undefined") GTEST_SKIP() << "built without these sanitizers";
     }
 };
 
@@ -26,4 +27,17 @@ TEST_F(Sanitizers, ReportAnOverflowOfIntegers)
 {
     volatile int largest = std::numeric_limits<int>::max();
     EXPECT_DEATH(std::printf("%d", largest + 1), "signed integer overflow");
+}
+
+TEST(ThreadSanitizer, ReportsARace)
+{
+    if (eel_core::build_info().sanitizers != "thread") GTEST_SKIP() << "built without this sanitizer";
+    const auto race = [] {
+        int shared = 0;
+        std::thread other([&shared] { ++shared; });
+        ++shared;
+        other.join();
+        std::exit(0);
+    };
+    EXPECT_EXIT(race(), testing::ExitedWithCode(66), "data race");
 }

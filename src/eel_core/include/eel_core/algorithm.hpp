@@ -54,12 +54,20 @@ bool rate_of_state(const Swimmer& swimmer, const Law& law, const Vector3<double>
     return true;
 }
 
-// Powers [W] of actuators, wake, nose and drag, in the motion that `work` holds: eq. (60) in accelerations, eq. (50).
+// The internal wrench in the motion that `work` holds: accelerations, eq. (60); then the balance of the part of the
+// body behind each section, eq. (50), which `wrench_behind` reads at a section.
 template <class M>
-Powers find_powers(const Swimmer& swimmer, const Law& law, Workspace<M>& work)
+void find_internal_wrench(const Swimmer& swimmer, const Law& law, Workspace<M>& work)
 {
     find_accelerations(swimmer, law, work);
     integrate_balance(swimmer, work);
+}
+
+// Powers [W] of actuators, wake, nose and drag, in the motion that `work` holds.
+template <class M>
+Powers find_powers(const Swimmer& swimmer, const Law& law, Workspace<M>& work)
+{
+    find_internal_wrench(swimmer, law, work);
     return {actuator_power(swimmer, work), work.tail_speed * work.tail_energy, work.nose_force * work.twist.linear.x,
             work.drag_power};
 }

@@ -50,6 +50,8 @@ constexpr std::string_view active_sanitizers()
 {
 #if defined(__SANITIZE_ADDRESS__)  // GCC
     return "address,undefined";
+#elif defined(__SANITIZE_THREAD__)
+    return "thread";
 #elif defined(__has_feature)
 #if __has_feature(address_sanitizer)
     return "address,undefined";

@@ -155,8 +155,13 @@ struct LawTables {
     LawTables() = default;
     // `axis` of each row: 0 pitch, 1 yaw; n nodes, s stations.
     LawTables(const std::vector<std::size_t>& axis, std::size_t n, std::size_t s)
-        : node(axis.size(), n), angle(axis.size(), n), moments(axis.size(), n), station(axis.size(), s),
-          station_moments(axis.size(), s), nodes_(n), stations_(s)
+        : node(axis.size(), n),
+          angle(axis.size(), n),
+          moments(axis.size(), n),
+          station(axis.size(), s),
+          station_moments(axis.size(), s),
+          nodes_(n),
+          stations_(s)
     {
         for (std::size_t row = 0; row < axis.size(); ++row) rows_of[axis[row] == 0 ? 0 : 1].push_back(row);
     }

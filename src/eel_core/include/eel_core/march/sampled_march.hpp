@@ -30,7 +30,8 @@ inline void tabulate(const double* weights, std::size_t points, std::size_t colu
         double* const to = result + row * columns;
         if (std::all_of(of_row, of_row + points, [](double value) { return value == 0.0; })) continue;
         const auto sum = [&]<class T>(T total, const auto& load) {
-            for (std::size_t point = 0; point < points; ++point) total += of_row[point] * load(weights + point * columns);
+            for (std::size_t point = 0; point < points; ++point)
+                total += of_row[point] * load(weights + point * columns);
             return total;
         };
         std::size_t k = 0;
@@ -92,7 +93,8 @@ class SampledMarch {
     {
         const double start = march_.time();
         const bool begins = !under_way_;
-        if (begins) set_ends(0);
+        if (begins)
+            set_ends(0);
         else
             for (const std::size_t axis : {0, 1})
                 for (const std::size_t row : {0, 1, 2})
@@ -135,8 +137,10 @@ class SampledMarch {
             }
             tables_->set(blend_row + row, difference);
         }
-        if (differs) law_.blend = {blend_row, start, start + kind_->transition};
-        else end_blend();
+        if (differs)
+            law_.blend = {blend_row, start, start + kind_->transition};
+        else
+            end_blend();
     }
 
     // Lets the rows of the blend cost nothing.
