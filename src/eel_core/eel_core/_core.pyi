@@ -374,6 +374,6 @@ class Instant:
         times (T,) [s]; twists (T, 6) of the head.
         """
 
-    def momentum_taken(self, law: Law, time: float, twist: Buffer, acceleration: Buffer) -> list[float]:
+    def momentum_rate(self, law: Law, time: float, twist: Buffer, acceleration: Buffer) -> list[float]:
         """Rate (6,) of the momentum along the body, [N m, N] about the head in its axes, for a twist (6,) and a true
         acceleration (6,) [rad/s^2, m/s^2] of the head, its axes."""

@@ -4,8 +4,8 @@
 
 #include <atomic>
 
-#include "eel_core/build_info.hpp"
 #include "bind_sampled.hpp"
+#include "eel_core/build_info.hpp"
 #include "eel_core/march/instant.hpp"
 #include "from_python.hpp"
 
@@ -420,16 +420,15 @@ PYBIND11_MODULE(EEL_CORE_MODULE, module)
                 const Numbers at(times, "times"), into(powers, "powers", true);
                 into.check_size(4 * at.size(), "powers");
                 for (std::size_t k = 0; k < at.size(); ++k)
-                    std::ranges::copy(
-                        instant.drag_powers(law, at.data()[k], twist_from(twists[py::int_(k)], "twists")),
-                        into.data() + 4 * k);
+                    std::ranges::copy(instant.drag_powers(law, at.data()[k], twist_from(twists[py::int_(k)], "twists")),
+                                      into.data() + 4 * k);
             },
             py::arg("law"), py::arg("times"), py::arg("twists"), py::arg("powers"))
         .def(
-            "momentum_taken",
+            "momentum_rate",
             [](Instant<Space>& instant, const Law& law, double time, const py::object& twist,
                const py::object& acceleration) {
-                return list_of(components_of(half_turn(instant.momentum_taken(
+                return list_of(components_of(half_turn(instant.momentum_rate(
                     law, time, twist_from(twist, "twist"), twist_from(acceleration, "acceleration")))));
             },
             py::arg("law"), py::arg("time"), py::arg("twist"), py::arg("acceleration"));

@@ -26,7 +26,7 @@ Wrench<M, double> wrench_at(const Workspace<M>& work, std::size_t node)
 {
     Field<Wrench<M, double>> wrench(work.frame.stride() / width - 1);
     const std::size_t k = node / width;
-    wrench.store(k, wrench_behind<M>(work, work.upto[k], work.frame[k], work.position[k]));
+    wrench.store(k, wrench_behind<M>(work, work.integral[k], work.frame[k], work.position[k]));
     return wrench.node(node);
 }
 

@@ -38,7 +38,7 @@ inline double blended_part(double ratio)
 
 inline AxialFriction axial_friction(const DragSection<Lanes>& section, Friction law, Lanes v1)
 {
-    const Lanes speed = size(v1), laminar = section.laminar * root(speed);
+    const Lanes speed = abs(v1), laminar = section.laminar * sqrt(speed);
     if (law == Friction::laminar) return {laminar, 0.0, 0.0, -1.0};
     const Lanes ratio = speed * section.reynolds;
     const Lanes turbulent = section.turbulent * ratio * inverse_fifth_root(ratio + 1e-30);

@@ -203,12 +203,13 @@ void find_kinks(const Swimmer& swimmer, Workspace<M>& work)
     if (swimmer.friction == Friction::printed) find_kinks_of(swimmer, above_transition, -1.0, 0.0, work);
 }
 
-// Corrects `upto` for the kinks. `upto` holds the integrals of the balance's density from the nose to the points of
-// `from_nose`. The density holds the resistance (minus the load), with the signs that the speeds have at the nodes. The
-// integrals to the points continue those to the nodes. `known_have_kinks`: those to the nodes are corrected already.
+// Corrects `integral` for the kinks. `integral` holds the integrals of the balance's density from the nose to the
+// points of `from_nose`. The density holds the resistance (minus the load), with the signs that the speeds have at the
+// nodes. The integrals to the points continue those to the nodes. `known_have_kinks`: those to the nodes are corrected
+// already.
 template <class M>
 void add_kinks(const Swimmer& swimmer, const FromNose& from_nose, bool known_have_kinks, Workspace<M>& work,
-               Field<Wrench<M, double>>& upto)
+               Field<Wrench<M, double>>& integral)
 {
     const Grid& grid = swimmer.grid;
     for (std::size_t j = 0; j < work.kink_count; ++j) {
@@ -235,9 +236,9 @@ void add_kinks(const Swimmer& swimmer, const FromNose& from_nose, bool known_hav
             if (stretch.end <= first || (behind_panel && known_have_kinks)) continue;
             for (std::size_t part = 0; part < FromNose::parts; ++part) {
                 const std::size_t k = FromNose::parts * s + part;
-                auto here = upto[k];
+                auto here = integral[k];
                 if (behind_panel) {
-                    upto.store(k, here + change);
+                    integral.store(k, here + change);
                     continue;
                 }
                 const Mask behind = from_nose.place()[k] >= Lanes(static_cast<double>(first) + kink.fraction);
@@ -249,7 +250,7 @@ void add_kinks(const Swimmer& swimmer, const FromNose& from_nose, bool known_hav
                     here += (ahead ? select(behind, weight, 0.0) : select(behind, 0.0, -weight)) *
                             work.kink_density.node(node);
                 }
-                upto.store(k, here);
+                integral.store(k, here);
             }
         }
     }

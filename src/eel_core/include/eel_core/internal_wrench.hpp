@@ -18,7 +18,7 @@ namespace eel_core {
 using Powers = std::array<double, 4>;  // [W], of actuators, wake, nose and drag
 
 // alpha' of the sections of a block.
-inline Vector3<Lanes> turning_gain(const Law& law, const Workspace<Space>& work, std::size_t k)
+inline Vector3<Lanes> alpha_slope(const Law& law, const Workspace<Space>& work, std::size_t k)
 {
     const auto frame = work.frame[k];
     return turning(frame, law.combine_both(law.tables->node, work.factor, 2, k)) +
@@ -26,7 +26,7 @@ inline Vector3<Lanes> turning_gain(const Law& law, const Workspace<Space>& work,
 }
 // acc' of the sections of a block.
 template <class M>
-Vector<M, Lanes> moving_gain(const Workspace<M>& work, std::size_t k)
+Vector<M, Lanes> acceleration_slope(const Workspace<M>& work, std::size_t k)
 {
     const auto t1 = work.frame[k].t1();
     const auto omega = work.omega[k];
@@ -37,7 +37,7 @@ Vector<M, Lanes> moving_gain(const Workspace<M>& work, std::size_t k)
 inline void set_turning_acceleration(const Swimmer& swimmer, const Law& law, Workspace<Space>& work)
 {
     for (std::size_t k = 0; k < swimmer.grid.blocks; ++k)
-        work.integrand.store(k, {turning_gain(law, work, k), Vector3<Lanes>{}});
+        work.integrand.store(k, {alpha_slope(law, work, k), Vector3<Lanes>{}});
     swimmer.grid.from_nose.integrate(work.integrand, work.alpha);
 }
 inline void set_turning_acceleration(const Swimmer& swimmer, const Law& law, Workspace<Plane>& work)
@@ -55,7 +55,7 @@ template <class M>
 Wrench<M, Lanes> inertial_wrench(const Section<Lanes>& section, const Workspace<M>& work, std::size_t k)
 {
     const auto frame = work.frame[k];
-    const Turn<M, Lanes> omega = frame.local(work.omega[k]), omega_rate = frame.local(work.alpha[k]);
+    const Angular<M, Lanes> omega = frame.local(work.omega[k]), omega_rate = frame.local(work.alpha[k]);
     const Vector<M, Lanes> v = frame.local(work.velocity[k]);
     const Vector<M, Lanes> v_rate = frame.local(work.acceleration[k]) - cross(omega, v);
     const Vector<M, Lanes> momentum = section.linear_momentum(v);
@@ -96,8 +96,8 @@ void find_shape_accelerations(const Swimmer& swimmer, const Law& law, Workspace<
 {
     set_turning_acceleration(swimmer, law, work);
     for (std::size_t k = 0; k < swimmer.grid.blocks; ++k)
-        work.integrand.store(k, {work.alpha[k], moving_gain(work, k)});
-    swimmer.grid.from_nose.integrate(work.integrand, work.acceleration, Components<Turn<M, Lanes>>::count);
+        work.integrand.store(k, {work.alpha[k], acceleration_slope(work, k)});
+    swimmer.grid.from_nose.integrate(work.integrand, work.acceleration, Components<Angular<M, Lanes>>::count);
 }
 
 // Acceleration of the head and of the sections, and the density of the balance: eq. (60) in accelerations. `work` holds
@@ -125,18 +125,18 @@ void find_accelerations(const Swimmer& swimmer, const Law& law, Workspace<M>& wo
 template <class M>
 void integrate_balance(const Swimmer& swimmer, Workspace<M>& work)
 {
-    swimmer.grid.from_nose.integrate(work.density, work.upto);
-    add_kinks(swimmer, swimmer.grid.from_nose, false, work, work.upto);
+    swimmer.grid.from_nose.integrate(work.density, work.integral);
+    add_kinks(swimmer, swimmer.grid.from_nose, false, work, work.integral);
 }
 
 // THE WRENCH BEHIND A SECTION, w_tail - integral from X to the tail of the density, about the section and in its axes;
-// from the integral `upto` X. Still to be subtracted: the water's momentum flux through the section; see
+// from the integral `integral` X. Still to be subtracted: the water's momentum flux through the section; see
 // show_internal_wrench in observe.hpp.
 template <class M>
-Wrench<M, Lanes> wrench_behind(const Workspace<M>& work, const Wrench<M, Lanes>& upto, const Frame<M, Lanes>& frame,
+Wrench<M, Lanes> wrench_behind(const Workspace<M>& work, const Wrench<M, Lanes>& integral, const Frame<M, Lanes>& frame,
                                const Vector<M, Lanes>& position)
 {
-    const auto at_head = upto + (work.tail - work.balance);
+    const auto at_head = integral + (work.tail - work.balance);
     return {frame.local(at_head.angular - cross(position, at_head.linear)), frame.local(at_head.linear)};
 }
 
@@ -153,7 +153,7 @@ double actuator_power(const Swimmer& swimmer, const Workspace<M>& work)
 {
     Lanes power(0.0);
     for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
-        const auto wrench = wrench_behind<M>(work, work.upto[k], work.frame[k], work.position[k]);
+        const auto wrench = wrench_behind<M>(work, work.integral[k], work.frame[k], work.position[k]);
         power -= swimmer.grid.weight[k] * bending_power(wrench.angular, work.curvature_rate[k]);
     }
     return total(power);

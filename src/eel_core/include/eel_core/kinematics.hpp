@@ -68,7 +68,7 @@ void configure(const Swimmer& swimmer, const Law& law, double time, Workspace<M>
         const auto t1 = work.frame[k].t1();
         work.integrand.store(k, {work.omega[k], cross(work.omega[k], t1)});
     }
-    constexpr std::size_t linear = Components<Turn<M, Lanes>>::count;  // row of the linear part
+    constexpr std::size_t linear = Components<Angular<M, Lanes>>::count;  // row of the linear part
     swimmer.grid.from_nose.integrate(work.integrand, work.velocity, linear);
 }
 

@@ -8,7 +8,7 @@ namespace eel_core {
 
 // The water's momentum that is swept past a section, in its axes: (V1 J_f1 Omega1 E1; V1 M_f V).
 template <class M, Number T>
-Wrench<M, T> momentum_flux(const Section<T>& section, const Vector<M, T>& v, const Turn<M, T>& omega)
+Wrench<M, T> momentum_flux(const Section<T>& section, const Vector<M, T>& v, const Angular<M, T>& omega)
 {
     return {v.x * section.water_roll(omega), v.x * section.water_momentum(v)};
 }
@@ -30,7 +30,7 @@ void set_tail_load(const Swimmer& swimmer, Workspace<M>& work)
     const auto position = work.position.node(tail);
     const Section<double> section = swimmer.sections.node(tail).weighed(swimmer.wake);
     const Vector<M, double> v = frame.local(work.velocity.node(tail));
-    const Turn<M, double> omega = frame.local(work.omega.node(tail));
+    const Angular<M, double> omega = frame.local(work.omega.node(tail));
     work.tail_speed = swimmer.wake * v.x;
     work.tail_energy = section.water_energy(v, omega);
     work.tail =

@@ -173,7 +173,7 @@ struct Space {
     template <Number T>
     using Vector = Vector3<T>;
     template <Number T>
-    using Turn = Vector3<T>;
+    using Angular = Vector3<T>;
     template <Number T>
     using Frame = Frame3<T>;
     static constexpr bool planar = false;
@@ -184,7 +184,7 @@ struct Plane {
     template <Number T>
     using Vector = Vector2<T>;
     template <Number T>
-    using Turn = T;
+    using Angular = T;
     template <Number T>
     using Frame = Frame2<T>;
     static constexpr bool planar = true;
@@ -194,14 +194,14 @@ struct Plane {
 template <class M, Number T>
 using Vector = typename M::template Vector<T>;
 template <class M, Number T>
-using Turn = typename M::template Turn<T>;
+using Angular = typename M::template Angular<T>;
 template <class M, Number T>
 using Frame = typename M::template Frame<T>;
 
 // An angular and a linear part. About the head and in its axes, unless said.
 template <class M, Number T>
 struct Spatial {
-    Turn<M, T> angular;
+    Angular<M, T> angular;
     Vector<M, T> linear;
 
     Spatial& operator+=(const Spatial& other) { return angular += other.angular, linear += other.linear, *this; }
@@ -231,20 +231,20 @@ using Momentum = Spatial<M, T>;  // [kg m^2/s], [kg m/s]
 
 template <class M, Number T>
 struct Components<Spatial<M, T>> {
-    using Angular = Components<Turn<M, T>>;
+    using AngularPart = Components<Angular<M, T>>;
     using Linear = Components<Vector<M, T>>;
-    static constexpr std::size_t count = Angular::count + Linear::count;
+    static constexpr std::size_t count = AngularPart::count + Linear::count;
     template <Number B>
     using With = Spatial<M, B>;
     template <class Make>
     static Spatial<M, T> make(Make component, std::size_t first = 0)
     {
-        return {Angular::make(component, first), Linear::make(component, first + Angular::count)};
+        return {AngularPart::make(component, first), Linear::make(component, first + AngularPart::count)};
     }
     template <class Take>
     static void each(const Spatial<M, T>& s, Take take, std::size_t first = 0)
     {
-        Angular::each(s.angular, take, first), Linear::each(s.linear, take, first + Angular::count);
+        AngularPart::each(s.angular, take, first), Linear::each(s.linear, take, first + AngularPart::count);
     }
 };
 

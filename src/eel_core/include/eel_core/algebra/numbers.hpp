@@ -177,11 +177,11 @@ inline Lanes with_sign_of(Lanes value, Lanes sign)
 
 // -- functions
 
-inline double size(double value) { return std::abs(value); }
-inline Lanes size(Lanes value) { return with_sign_of(value, Lanes(1.0)); }
+inline double abs(double value) { return std::abs(value); }
+inline Lanes abs(Lanes value) { return with_sign_of(value, Lanes(1.0)); }
 
-inline double root(double value) { return std::sqrt(value); }
-inline Lanes root(Lanes value)
+inline double sqrt(double value) { return std::sqrt(value); }
+inline Lanes sqrt(Lanes value)
 {
 #if defined(__AVX512F__)
     return Lanes(_mm512_maskz_sqrt_pd(all_lanes, value.native()));

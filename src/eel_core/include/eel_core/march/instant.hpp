@@ -57,8 +57,8 @@ class Instant {
     }
 
     // Rate of the momentum along the body for a given twist and acceleration of the head.
-    Wrench<M, double> momentum_taken(const Law& law, double time, const Twist<M, double>& twist,
-                                     const Twist<M, double>& acceleration)
+    Wrench<M, double> momentum_rate(const Law& law, double time, const Twist<M, double>& twist,
+                                    const Twist<M, double>& acceleration)
     {
         move(law, time, twist);
         find_shape_accelerations(*swimmer_, law, work_);

@@ -21,11 +21,11 @@ class MissedWrench {
         for (Row& row : factor_) row = Row(blocks_of(swimmer.stations));
     }
 
-    // Adds it to `upto`. The drag has the signs of the speeds at each station, as if none changed within its panel.
+    // Adds it to `integral`. The drag has the signs of the speeds at each station, as if none changed within its panel.
     // omega, velocity: true ones of the stations.
     void add(const Swimmer& swimmer, const Workspace<Space>& work, const Field<Frame3<double>>& frame,
              const Field<Vector3<double>>& omega, const Field<Vector3<double>>& velocity,
-             Field<Wrench<Space, double>>& upto)
+             Field<Wrench<Space, double>>& integral)
     {
         set_inertial_units(swimmer, work);
         if (swimmer.resistive) set_drag_units(swimmer, work);
@@ -33,9 +33,9 @@ class MissedWrench {
         const std::size_t used = swimmer.resistive ? Part::count : Part::drag2;
         for (std::size_t part = 0; part < used; ++part)
             if ((Part::inertia1 <= part && part < Part::drag2) || part == Part::drag_roll)  // without a force
-                swimmer.missed[part].add<Vector3<double>>(unit_[part], factor_[part], upto);
+                swimmer.missed[part].add<Vector3<double>>(unit_[part], factor_[part], integral);
             else
-                swimmer.missed[part].add<Wrench<Space, double>>(unit_[part], factor_[part], upto);
+                swimmer.missed[part].add<Wrench<Space, double>>(unit_[part], factor_[part], integral);
     }
 
   private:
@@ -82,7 +82,7 @@ class MissedWrench {
         for (std::size_t k = 0; k < blocks_of(swimmer.stations); ++k) {
             const Frame3<Lanes> there = frame[k];
             const Vector3<Lanes> v = there.local(velocity[k]);
-            const Lanes ratio = size(v.x) * swimmer.at_station.reynolds[k];
+            const Lanes ratio = abs(v.x) * swimmer.at_station.reynolds[k];
             const Mask above = ratio > Lanes(1.0);
             const bool printed = swimmer.friction == Friction::printed;
             for (std::size_t part = 0; part < Part::drag2; ++part) factor_[part].store(k, 1.0);

@@ -19,7 +19,7 @@ struct StationWork {
         const std::size_t n = blocks_of(swimmer.stations);
         frame = Field<Frame3<double>>(n), curvature = Field<Vector2<double>>(n), base = Field<Quaternion<double>>(n);
         position = omega = velocity = alpha = acceleration = Field<Vector3<double>>(n);
-        upto = Field<Wrench<Space, double>>(n);
+        integral = Field<Wrench<Space, double>>(n);
         for (std::size_t i = 0; i < swimmer.stations; ++i) base.row(3)[i] = 1.0;
     }
 
@@ -27,8 +27,8 @@ struct StationWork {
     Field<Quaternion<double>> base;  // of the node before
     Field<Vector2<double>> curvature;
     Field<Vector3<double>> position, omega, velocity, alpha, acceleration;
-    Field<Wrench<Space, double>> upto;  // integral of the balance's density from the nose
-    MissedWrench missed;                // of it, where the sections are from data
+    Field<Wrench<Space, double>> integral;  // integral of the balance's density from the nose
+    MissedWrench missed;                    // of it, where the sections are from data
 };
 
 // Puts components of a block of stations, of which there are `stations`, into rows (stations, Components of the value).
@@ -160,7 +160,7 @@ class Observer {
     void find_accelerations_there(const Law& law, Workspace<Space>& work, StationWork& here) const
     {
         for (std::size_t k = 0; k < swimmer_.grid.blocks; ++k)
-            work.integrand.store(k, {turning_gain(law, work, k), moving_gain(work, k)});
+            work.integrand.store(k, {alpha_slope(law, work, k), acceleration_slope(work, k)});
         const Twist<Space, double>& head = work.head_acceleration;
         swimmer_.to_station.integrate(work.integrand, 0, head.angular, work.alpha, here.alpha);
         swimmer_.to_station.integrate(work.integrand, 3, head.linear, work.acceleration, here.acceleration);
@@ -169,14 +169,15 @@ class Observer {
     // Eq. (50), (51): the wrench behind each station less the momentum of the water that is swept past it.
     void show_internal_wrench(std::size_t sample, Workspace<Space>& work, StationWork& here) const
     {
-        swimmer_.to_station.integrate(work.density, 0, Wrench<Space, double>{}, work.upto, here.upto);
-        add_kinks(swimmer_, swimmer_.to_station, true, work, here.upto);
-        if (!swimmer_.missed.empty()) here.missed.add(swimmer_, work, here.frame, here.omega, here.velocity, here.upto);
+        swimmer_.to_station.integrate(work.density, 0, Wrench<Space, double>{}, work.integral, here.integral);
+        add_kinks(swimmer_, swimmer_.to_station, true, work, here.integral);
+        if (!swimmer_.missed.empty())
+            here.missed.add(swimmer_, work, here.frame, here.omega, here.velocity, here.integral);
         for (std::size_t k = 0; k < blocks(); ++k) {
             const Section<Lanes> section = swimmer_.at_station[k].weighed(swimmer_.wake);
             const Frame3<Lanes> frame = here.frame[k];
             const Vector3<Lanes> v = frame.local(here.velocity[k]), omega = frame.local(here.omega[k]);
-            auto wrench = wrench_behind<Space>(work, here.upto[k], frame, here.position[k]) -
+            auto wrench = wrench_behind<Space>(work, here.integral[k], frame, here.position[k]) -
                           momentum_flux<Space, Lanes>(section, v, omega);
             if (swimmer_.distributed_pressure)
                 wrench = plus_axial<Space, Lanes>(wrench, section.water_energy(v, omega));

@@ -27,11 +27,11 @@ struct Workspace {
         const std::size_t n = swimmer.grid.blocks;
         frame = Field<Frame<M, double>>(n), quaternion = Field<Quaternion<double>>(n),
         position = Field<Vector<M, double>>(n);
-        omega = Field<Turn<M, double>>(n), velocity = Field<Vector<M, double>>(n),
+        omega = Field<Angular<M, double>>(n), velocity = Field<Vector<M, double>>(n),
         curvature_rate = Field<Vector2<double>>(n);
-        alpha = Field<Turn<M, double>>(n), acceleration = Field<Vector<M, double>>(n);
+        alpha = Field<Angular<M, double>>(n), acceleration = Field<Vector<M, double>>(n);
         integrand = Field<Wrench<M, double>>(n), density = Field<Wrench<M, double>>(n),
-        upto = Field<Wrench<M, double>>(n);
+        integral = Field<Wrench<M, double>>(n);
         friction_laminar = friction_excess = turbulent_part = Row(n);
         for (Row& row : speed) row = Row(n);
         for (Row& row : load_weight) row = Row(n);
@@ -45,15 +45,15 @@ struct Workspace {
     Field<Frame<M, double>> frame;         // t1, t2, t3 of the sections
     Field<Quaternion<double>> quaternion;  // the same, in space alone
     Field<Vector<M, double>> position;     // r [m]
-    Field<Turn<M, double>> omega;  // [rad/s], due to the change of shape; with the head's motion once that is known
+    Field<Angular<M, double>> omega;  // [rad/s], due to the change of shape; with the head's motion once that is known
     Field<Vector<M, double>> velocity;      // [m/s], likewise
     Field<Vector2<double>> curvature_rate;  // Kdot [rad/m/s], pitch and yaw
     Field<Wrench<M, double>> integrand;
-    Field<Turn<M, double>> alpha;           // [rad/s^2]
+    Field<Angular<M, double>> alpha;        // [rad/s^2]
     Field<Vector<M, double>> acceleration;  // [m/s^2]
     Field<Wrench<M, double>>
-        density;                    // of the balance: what the motion takes, less the loads, per length, about the head
-    Field<Wrench<M, double>> upto;  // its integral from the nose
+        density;  // of the balance: what the motion takes, less the loads, per length, about the head
+    Field<Wrench<M, double>> integral;  // its integral from the nose
 
     // Drag, in section axes:
     std::array<Row, speeds> speed;          // see `Speed`
@@ -68,14 +68,14 @@ struct Workspace {
     // Of the whole body:
     Frame<M, double> head;  // axes of the head in the world
     Factored<M::freedoms> inertia;
-    Twist<M, double> twist;        // of the head, relative to the water
-    Momentum<M, double> momentum;  // of body, water and nose
-    Wrench<M, double> tail, drag;  // on the body
-    Vector3<double> up{};          // of the world; as the next, where there is a righting moment
-    Turn<M, double> righting{};    // [N m], torque of weight and buoyancy
-    double drag_power = 0.0;       // [W]
-    double tail_speed = 0.0;       // V1 at the tail [m/s]
-    double tail_energy = 0.0;      // T_f there [J/m]
+    Twist<M, double> twist;         // of the head, relative to the water
+    Momentum<M, double> momentum;   // of body, water and nose
+    Wrench<M, double> tail, drag;   // on the body
+    Vector3<double> up{};           // of the world; as the next, where there is a righting moment
+    Angular<M, double> righting{};  // [N m], torque of weight and buoyancy
+    double drag_power = 0.0;        // [W]
+    double tail_speed = 0.0;        // V1 at the tail [m/s]
+    double tail_energy = 0.0;       // T_f there [J/m]
     Twist<M, double> head_acceleration;
     Wrench<M, double> balance;  // integral over the body of the density, as the head equation has it
     double nose_force = 0.0;    // [N], along t1(0)
@@ -84,7 +84,7 @@ struct Workspace {
     {
         std::size_t sum = frame.bytes() + quaternion.bytes() + position.bytes() + omega.bytes() + velocity.bytes() +
                           curvature_rate.bytes() + integrand.bytes() + alpha.bytes() + acceleration.bytes() +
-                          density.bytes() + upto.bytes() + friction_laminar.bytes() + friction_excess.bytes() +
+                          density.bytes() + integral.bytes() + friction_laminar.bytes() + friction_excess.bytes() +
                           turbulent_part.bytes() + kink_density.bytes();
         for (const Row& row : speed) sum += row.bytes();
         for (const Row& row : load_weight) sum += row.bytes();

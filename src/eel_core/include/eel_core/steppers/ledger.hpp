@@ -33,7 +33,7 @@ struct StepPowers {
     std::array<Powers, 4> at{};  // [W], at Lobatto's points
 
     // Works at the fraction `theta` of a step of `length` [s]: the integral of the cubic through the powers.
-    Works works_upto(const Works& start, double length, double theta) const
+    Works works_until(const Works& start, double length, double theta) const
     {
         static constexpr auto cubic = lagrange_cubics();
         Works result = start;

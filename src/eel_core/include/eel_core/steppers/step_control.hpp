@@ -59,16 +59,21 @@ inline double error_by_tolerance(const StepBounds& bounds, MomentumScale scale, 
 
 // A growth of the step in whole parts of 32, no greater. It comes from an estimate of the error, whose last digits
 // differ from processor to processor: they must not be handed on to all later steps.
-inline double in_parts(double growth) { return std::floor(32.0 * growth) / 32.0; }
+inline double rounded_down(double growth) { return std::floor(32.0 * growth) / 32.0; }
+
+// Of Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I, section II.4, eq. 4.13: the step is a
+// little shorter than its error allows, and changes by no more than these factors at once.
+inline constexpr double safety = 0.9, greatest_growth = 5.0, greatest_shrinking = 0.2;
+inline constexpr double no_error = 1e-4;  // of the tolerance: the step grows by the greatest factor at any order
 
 // How many times longer a step may be whose error goes with the power `order` of its length.
-inline double growth_of(double error, double order)
+inline double growth_factor(double error, double order)
 {
-    return error < 1e-4 ? 5.0 : std::min(5.0, 0.9 * std::pow(error, -1.0 / order));
+    return error < no_error ? greatest_growth : std::min(greatest_growth, safety * std::pow(error, -1.0 / order));
 }
-inline double shrinking_of(double error, double order)
+inline double shrink_factor(double error, double order)
 {
-    return in_parts(std::max(0.2, 0.9 * std::pow(error, -1.0 / order)));
+    return rounded_down(std::max(greatest_shrinking, safety * std::pow(error, -1.0 / order)));
 }
 
 // Times at which a derivative of the shape jumps, ascending: the last one up to a time, and the next one.
@@ -85,8 +90,8 @@ struct Span {
 
 // Length [s] of the next step from `start`: as proposed, or such that steps end on the next breakpoint without a sliver
 // before it; at most a part of the span, for the works are integrals of what goes on there.
-inline double fitted_length(const Method& method, const StepBounds& bounds, double proposed, double start,
-                            const Span& span, double tiny)
+inline double step_size(const Method& method, const StepBounds& bounds, double proposed, double start, const Span& span,
+                        double tiny)
 {
     const double left = span.next - start;
     if (!method.adaptive) return left < 1e100 ? left / std::ceil(left / bounds.longest - 1e-9) : bounds.longest;

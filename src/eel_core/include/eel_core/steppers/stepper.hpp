@@ -98,7 +98,7 @@ class Stepper {
             theta = std::clamp((time - start_) / length_, 0.0, 1.0);
             y = interpolated(theta);
         }
-        if (ledger) works = powers_.works_upto(works_, length_, theta);
+        if (ledger) works = powers_.works_until(works_, length_, theta);
     }
 
   private:
@@ -169,21 +169,21 @@ class Stepper {
         const bool first_of_span = anew_;
         begin_anew_ = anew_;
         if (!anew_) rate_[0] = rate_[method_.stages - 1];  // the last rate of a step is the first of the next
-        double proposed = proposed_, length = fitted_length(method_, bounds, proposed, start, span, tiny), error = 0.0;
+        double proposed = proposed_, length = step_size(method_, bounds, proposed, start, span, tiny), error = 0.0;
         const double accepted =
             method_.adams > 0 ? 4.0 : 1.0;  // Adams' next step is the shorter: cheaper than to repeat
         for (;;) {
             const Status status = attempt(settings, start, length, error);
             if (status == Status::marched && error <= accepted) break;
             ++counts_.rejected, budget_ -= 1.0;
-            length *= status != Status::marched ? 0.1 : shrinking_of(error, method_.order);
+            length *= status != Status::marched ? 0.1 : shrink_factor(error, method_.order);
             proposed = length;
             if (!method_.adaptive || length < bounds.smallest) {
                 anew_ = true;
                 return status == Status::marched ? Status::step_too_small : status;
             }
         }
-        const double grown = length * in_parts(growth(bounds, length, error));
+        const double grown = length * rounded_down(growth(bounds, length, error));
         if (method_.adams > 0) adams_.accept(length, rate_[method_.stages - 1]);
         proposed_ = std::min(bounds.longest, length >= proposed ? grown : std::max(proposed, grown));
         if (std::abs(start + length - span.next) <= tiny) length = span.next - start;
@@ -194,14 +194,14 @@ class Stepper {
     // How many times longer the next step may be.
     double growth(const StepBounds& bounds, double length, double error)
     {
-        if (method_.adams == 0) return growth_of(error, method_.order);
+        if (method_.adams == 0) return growth_factor(error, method_.order);
         const bool steps_are_short = length <= Adams::is_short * bounds.longest;
         const auto promised = [&](std::size_t terms) {
             const State defect = adams_.defect(terms, rate_[method_.stages - 1]);
-            return growth_of(error_by_tolerance(bounds, scale_, trial_, defect, length),
-                             static_cast<double>(terms + 1));
+            return growth_factor(error_by_tolerance(bounds, scale_, trial_, defect, length),
+                                 static_cast<double>(terms + 1));
         };
-        const double here = growth_of(error, static_cast<double>(adams_.order() + 1));
+        const double here = growth_factor(error, static_cast<double>(adams_.order() + 1));
         const double below = steps_are_short && adams_.may_fall() ? promised(adams_.terms() - 1) : 0.0;
         const double above = steps_are_short && adams_.may_rise() ? promised(adams_.terms() + 1) : 0.0;
         return adams_.choose_order(steps_are_short, here, below, above);
@@ -210,7 +210,7 @@ class Stepper {
     void accept(const MarchSettings& settings, double start, double length)
     {
         if (settings.ledger) {
-            works_ = powers_.works_upto(works_, length_, 1.0);
+            works_ = powers_.works_until(works_, length_, 1.0);
             powers_.at[0] = powers_.at[3];
         }
         begin_ = end_, end_ = trial_;
