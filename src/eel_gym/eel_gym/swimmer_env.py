@@ -206,7 +206,7 @@ class SwimmerEnv(Task):
         return picture(self.swimmers.observe(index, wrench=False, load=False), self.body, self.one(index).marks())
 
     def _heads(self) -> HeadMotion:
-        heads = self.swimmers.heads
+        heads = self.swimmers.heads.copy()
         if not self.shape:
             heads = heads[:, 0]
         return HeadMotion(heads[:3], heads[3:7], heads[7:10], heads[10:])

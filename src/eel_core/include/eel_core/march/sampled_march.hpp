@@ -188,7 +188,8 @@ class SampledMarches {
         });
     }
 
-    // Puts the head of a swimmer into its column of `heads`, in the axes of the outside; false where the inertia is not positive definite.
+    // Puts the head of a swimmer into its column of `heads`, in the axes of the outside; false where the inertia is not
+    // positive definite.
     bool put_head(std::size_t index, double* heads)
     {
         const std::optional<HeadMotion> found = marches_[index].march().head();
