@@ -20,7 +20,7 @@ def evaluations(simulation: Simulation) -> Action:
     """Evaluates the head's dynamics COUNT times in the simulation's present state, and in its scene's dimensions."""
     kind = eel_core.PlanarInstant if simulation.scene.planar else eel_core.Instant
     instant = kind(simulation.discretisation.swimmer)
-    return partial(instant.repeat_rate, simulation.tabulated_law, simulation.time, simulation.state, COUNT)
+    return partial(instant.repeat_rate, simulation.law_on_grid, simulation.time, simulation.state, COUNT)
 
 
 def _microseconds(times: list[float]) -> float:

@@ -118,7 +118,7 @@ def _begin(scene: Scene, kinks: str = "all") -> tuple[Rate, np.ndarray]:
     summed over the nodes as they are."""
     accuracy = Accuracy(name="study", resolution=RESOLUTION, kinks=kinks)
     simulation = Simulation(accuracy=accuracy, scene=scene, law=falling())
-    instant, law = eel_core.Instant(simulation.discretisation.swimmer), simulation.tabulated_law
+    instant, law = eel_core.Instant(simulation.discretisation.swimmer), simulation.law_on_grid
     return lambda time, y: np.array(instant.rate(law, STILL, time, y)), simulation.state
 
 

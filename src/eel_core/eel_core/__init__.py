@@ -13,7 +13,7 @@ _core = sys.modules["eel_core._core"] = import_core()
 from eel_core._core import (  # noqa: E402
     STATUSES,
     Instant,
-    Law,
+    LawOnGrid,
     LawTables,
     March,
     PlanarInstant,
@@ -28,7 +28,7 @@ from eel_core._core import (  # noqa: E402
 __all__ = [
     "STATUSES",
     "Instant",
-    "Law",
+    "LawOnGrid",
     "LawTables",
     "March",
     "PlanarInstant",

@@ -146,7 +146,7 @@ class LawTables(_Shared):
         the nodes [rad/m]; its three Magnus moments [rad] over the interval that ends at each node, (3, n); the field at
         the stations; and its moments from the node before each station, (3, s). `ValueError` for another size."""
 
-class Law(_Shared):
+class LawOnGrid(_Shared):
     """The curvature K(t, X): the sum of rows times factors of time, with two time derivatives."""
 
     def __init__(
@@ -227,7 +227,7 @@ class March:
         """Goes on with another grid or method. The state keeps its momentum; a law on the new grid must follow."""
 
     def follow(
-        self, law: Law, breakpoints: Sequence[float], bounds: StepBounds, ledger: bool, current: Buffer, smoothly: bool
+        self, law: LawOnGrid, breakpoints: Sequence[float], bounds: StepBounds, ledger: bool, current: Buffer, smoothly: bool
     ) -> None:
         """What drives the body from now on. breakpoints: ascending times [s] at which a derivative of the shape jumps.
         ledger: the works are integrated too. current (3,) [m/s]: of the water, world. smoothly: the motion goes on as
@@ -335,17 +335,17 @@ class PlanarInstant:
     """Single instants of a motion in the plane: three degrees of freedom (yaw, along, across)."""
 
     def __init__(self, swimmer: Swimmer) -> None: ...
-    def rate(self, law: Law, current: Buffer, time: float, state: Buffer) -> list[float] | None:
+    def rate(self, law: LawOnGrid, current: Buffer, time: float, state: Buffer) -> list[float] | None:
         """Rate (13,) of a state (13,) at a time [s], in a current (3,) [m/s], world. None where the inertia is not
         positive definite."""
 
-    def repeat_rate(self, law: Law, time: float, state: Buffer, count: int) -> None:
+    def repeat_rate(self, law: LawOnGrid, time: float, state: Buffer, count: int) -> None:
         """Finds the rate of a state (13,) `count` times, in still water, without Python's lock: for benchmarks."""
 
-    def powers(self, law: Law) -> list[float]:
+    def powers(self, law: LawOnGrid) -> list[float]:
         """Powers (4,) [W] of actuators, wake, nose and drag in the motion whose rate was found last."""
 
-    def inertia(self, law: Law, time: float) -> list[list[float]]:
+    def inertia(self, law: LawOnGrid, time: float) -> list[list[float]]:
         """Inertia (3, 3) of body, water and nose about the head, in the paper's axes, rotation first, as the law bends
         the body at a time [s]."""
 
@@ -353,27 +353,27 @@ class Instant:
     """Single instants of a motion in space."""
 
     def __init__(self, swimmer: Swimmer) -> None: ...
-    def rate(self, law: Law, current: Buffer, time: float, state: Buffer) -> list[float] | None:
+    def rate(self, law: LawOnGrid, current: Buffer, time: float, state: Buffer) -> list[float] | None:
         """As in `PlanarInstant`."""
 
-    def repeat_rate(self, law: Law, time: float, state: Buffer, count: int) -> None:
+    def repeat_rate(self, law: LawOnGrid, time: float, state: Buffer, count: int) -> None:
         """As in `PlanarInstant`."""
 
-    def powers(self, law: Law) -> list[float]:
+    def powers(self, law: LawOnGrid) -> list[float]:
         """As in `PlanarInstant`."""
 
-    def inertia(self, law: Law, time: float) -> list[list[float]]:
+    def inertia(self, law: LawOnGrid, time: float) -> list[list[float]]:
         """As in `PlanarInstant`, (6, 6)."""
 
-    def loads(self, law: Law, time: float, twist: Buffer) -> tuple[list[float], list[float]]:
+    def loads(self, law: LawOnGrid, time: float, twist: Buffer) -> tuple[list[float], list[float]]:
         """Wrenches (6,) of the wake and of the drag along the body, for a twist (6,) of the head at a time [s]."""
 
-    def drag_powers(self, law: Law, times: Buffer, twists: np.ndarray, powers: Buffer) -> None:
+    def drag_powers(self, law: LawOnGrid, times: Buffer, twists: np.ndarray, powers: Buffer) -> None:
         """Writes powers (T, 4) [W] on the body: of the axial friction, the lateral, the vertical and the roll drag.
 
         times (T,) [s]; twists (T, 6) of the head.
         """
 
-    def momentum_rate(self, law: Law, time: float, twist: Buffer, acceleration: Buffer) -> list[float]:
+    def momentum_rate(self, law: LawOnGrid, time: float, twist: Buffer, acceleration: Buffer) -> list[float]:
         """Rate (6,) of the momentum along the body, [N m, N] about the head in its axes, for a twist (6,) and a true
         acceleration (6,) [rad/s^2, m/s^2] of the head, its axes."""

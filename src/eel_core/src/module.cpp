@@ -90,10 +90,10 @@ Quintic quintic_from(const py::object& quintic)
     return {row, start, end};
 }
 
-std::shared_ptr<const Law> law_from(std::shared_ptr<const LawTables> tables, double origin, const py::list& waves,
-                                    const py::object& segment, const py::object& blend)
+std::shared_ptr<const LawOnGrid> law_from(std::shared_ptr<const LawTables> tables, double origin, const py::list& waves,
+                                          const py::object& segment, const py::object& blend)
 {
-    auto law = std::make_shared<Law>();
+    auto law = std::make_shared<LawOnGrid>();
     law->tables = std::move(tables), law->origin = origin;
     for (const py::handle wave : waves) law->waves.push_back(wave_from(wave.cast<py::tuple>()));
     law->segment = quintic_from(segment), law->blend = quintic_from(blend);
@@ -108,7 +108,7 @@ std::shared_ptr<const Law> law_from(std::shared_ptr<const LawTables> tables, dou
     return law;
 }
 
-py::list factors_at(const Law& law, double time)
+py::list factors_at(const LawOnGrid& law, double time)
 {
     std::vector<Jet> factor(law.tables->rows());
     law.set_factors(time, factor);
@@ -121,7 +121,7 @@ py::list factors_at(const Law& law, double time)
     return result;
 }
 
-void check_fits(const Law& law, const Swimmer& swimmer)
+void check_fits(const LawOnGrid& law, const Swimmer& swimmer)
 {
     const LawTables& t = *law.tables;
     const std::size_t rows = t.rows(), nodes = swimmer.grid.blocks, stations = blocks_of(swimmer.stations);
@@ -153,7 +153,7 @@ class PyMarch {
         has_law_ = false;
         march_.change(std::move(swimmer), Method::of(method, order), planar);
     }
-    void follow(const std::shared_ptr<const Law>& law, std::vector<double> breakpoints, const StepBounds& bounds,
+    void follow(const std::shared_ptr<const LawOnGrid>& law, std::vector<double> breakpoints, const StepBounds& bounds,
                 bool ledger, const py::object& current, bool smoothly)
     {
         check_fits(*law, march_.swimmer());
@@ -272,7 +272,8 @@ void share_in_copies(Class& bound)
 }
 
 template <class M>
-py::object rate_of(Instant<M>& instant, const Law& law, const py::object& current, double time, const py::object& state)
+py::object rate_of(Instant<M>& instant, const LawOnGrid& law, const py::object& current, double time,
+                   const py::object& state)
 {
     State rate{};
     if (!instant.rate(law, vector_from(current, "current"), time, state_from(state), rate)) return py::none();
@@ -280,7 +281,7 @@ py::object rate_of(Instant<M>& instant, const Law& law, const py::object& curren
 }
 
 template <class M>
-py::list inertia_of(Instant<M>& instant, const Law& law, double time)
+py::list inertia_of(Instant<M>& instant, const LawOnGrid& law, double time)
 {
     const auto inertia = instant.inertia(law, time);
     py::list rows;
@@ -295,7 +296,7 @@ py::list inertia_of(Instant<M>& instant, const Law& law, double time)
 
 // Evaluates the rate again and again, for benchmarks.
 template <class M>
-void repeat_rate(Instant<M>& instant, const Law& law, double time, const py::object& state, std::size_t count)
+void repeat_rate(Instant<M>& instant, const LawOnGrid& law, double time, const py::object& state, std::size_t count)
 {
     const State y = state_from(state);
     State rate{};
@@ -311,7 +312,8 @@ py::class_<Instant<M>> bind_instant(py::module_& module, const char* name, const
         .def("rate", &rate_of<M>, py::arg("law"), py::arg("current"), py::arg("time"), py::arg("state"))
         .def("repeat_rate", &repeat_rate<M>, py::arg("law"), py::arg("time"), py::arg("state"), py::arg("count"))
         .def(
-            "powers", [](Instant<M>& instant, const Law& law) { return list_of(instant.powers(law)); }, py::arg("law"))
+            "powers", [](Instant<M>& instant, const LawOnGrid& law) { return list_of(instant.powers(law)); },
+            py::arg("law"))
         .def("inertia", &inertia_of<M>, py::arg("law"), py::arg("time"));
 }
 
@@ -349,12 +351,12 @@ PYBIND11_MODULE(EEL_CORE_MODULE, module)
                    }),
                    py::arg("axis"), py::arg("rows"), py::arg("nodes"), py::arg("stations"));
 
-    auto curvature_law = py::class_<Law, std::shared_ptr<Law>>(module, "Law");
+    auto curvature_law = py::class_<LawOnGrid, std::shared_ptr<LawOnGrid>>(module, "LawOnGrid");
     share_in_copies(curvature_law);
     curvature_law
         .def(py::init([](std::shared_ptr<LawTables> tables, double origin, const py::list& waves,
                          const py::object& segment, const py::object& blend) {
-                 return std::const_pointer_cast<Law>(law_from(std::move(tables), origin, waves, segment, blend));
+                 return std::const_pointer_cast<LawOnGrid>(law_from(std::move(tables), origin, waves, segment, blend));
              }),
              py::arg("tables"), py::arg("origin"), py::arg("waves"), py::arg("segment"), py::arg("blend"))
         .def("factors", &factors_at, py::arg("time"));
@@ -408,14 +410,14 @@ PYBIND11_MODULE(EEL_CORE_MODULE, module)
     bind_instant<Space>(module, "Instant", "Single instants in space.")
         .def(
             "loads",
-            [](Instant<Space>& instant, const Law& law, double time, const py::object& twist) {
+            [](Instant<Space>& instant, const LawOnGrid& law, double time, const py::object& twist) {
                 const auto [tail, drag] = instant.loads(law, time, twist_from(twist, "twist"));
                 return py::make_tuple(list_of(components_of(half_turn(tail))), list_of(components_of(half_turn(drag))));
             },
             py::arg("law"), py::arg("time"), py::arg("twist"))
         .def(
             "drag_powers",
-            [](Instant<Space>& instant, const Law& law, const py::object& times, const py::object& twists,
+            [](Instant<Space>& instant, const LawOnGrid& law, const py::object& times, const py::object& twists,
                const py::object& powers) {
                 const Numbers at(times, "times"), into(powers, "powers", true);
                 into.check_size(4 * at.size(), "powers");
@@ -426,7 +428,7 @@ PYBIND11_MODULE(EEL_CORE_MODULE, module)
             py::arg("law"), py::arg("times"), py::arg("twists"), py::arg("powers"))
         .def(
             "momentum_rate",
-            [](Instant<Space>& instant, const Law& law, double time, const py::object& twist,
+            [](Instant<Space>& instant, const LawOnGrid& law, double time, const py::object& twist,
                const py::object& acceleration) {
                 return list_of(components_of(half_turn(instant.momentum_rate(
                     law, time, twist_from(twist, "twist"), twist_from(acceleration, "acceleration")))));

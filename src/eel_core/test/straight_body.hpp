@@ -75,7 +75,7 @@ inline std::shared_ptr<Swimmer> straight_body()
 }
 
 // Rows of constant curvature 1 rad/m in pitch and yaw; the yaw's factor is f_r(t; 0, 1) times `bend`.
-inline Law arc(double bend)
+inline LawOnGrid arc(double bend)
 {
     const PanelOfOne panel;
     auto tables = std::make_shared<LawTables>(std::vector<std::size_t>{0, 1}, panel_nodes, 0);
@@ -86,7 +86,7 @@ inline Law arc(double bend)
         columns[panel_nodes + i] = panel.fraction[i] - (i > 0 ? panel.fraction[i - 1] : 0.0);
     }
     tables->set(1, columns.data());
-    Law law;
+    LawOnGrid law;
     law.tables = tables;
     law.waves = {{0.0, {}, 0, 0}, {0.0, {{{0.0, 1.0, bend}}}, 1, 1}};
     return law;

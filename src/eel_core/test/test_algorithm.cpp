@@ -10,7 +10,8 @@ namespace {
 
 // State of the straight or bent body with a twist of the head, which lies at the origin along the world's axes.
 template <class M>
-State state_with(const Swimmer& swimmer, const Law& law, double time, const Twist<M, double>& twist, Workspace<M>& work)
+State state_with(const Swimmer& swimmer, const LawOnGrid& law, double time, const Twist<M, double>& twist,
+                 Workspace<M>& work)
 {
     State y{};
     y[6] = 1.0;
@@ -38,7 +39,7 @@ TEST(Algorithm, ArcHasThePlaceAndVelocityOfACircle)
 {
     const auto swimmer = straight_body();
     const double bend = 1.5, time = 0.6;
-    const Law law = arc(bend);
+    const LawOnGrid law = arc(bend);
     Jet jet{};
     Ramp{0.0, 1.0, bend}.add_to(jet, time);
     const auto check = [&](auto& work) {
@@ -61,7 +62,7 @@ TEST(Algorithm, ArcHasThePlaceAndVelocityOfACircle)
 TEST(Algorithm, RigidStraightBodyHasTheAccelerationsAndTheShearOfABeam)
 {
     const auto swimmer = straight_body();
-    const Law law = arc(0.0);
+    const LawOnGrid law = arc(0.0);
     Workspace<Plane> work(*swimmer);
     const State y = state_with<Plane>(*swimmer, law, 0.0, {0.0, {v1, v2}}, work);
     State rate{};
@@ -94,7 +95,7 @@ TEST(Algorithm, SinkingBodyOfEqualSectionsIsBrakedAlikeEverywhereAndBearsNoWrenc
 {
     const auto swimmer = straight_body();
     swimmer->resistive = true;
-    const Law law = arc(0.0);
+    const LawOnGrid law = arc(0.0);
     Workspace<Space> work(*swimmer);
     const State y = state_with<Space>(*swimmer, law, 0.0, {{}, {0.0, 0.0, v3}}, work);
     ASSERT_TRUE(find_motion(*swimmer, law, 0.0, y, work));
@@ -117,7 +118,7 @@ TEST(Algorithm, AccelerationsAreTheSlopesOfTheMarchedTwist)
 {
     const auto swimmer = straight_body();
     swimmer->nose_mass = 0.3, swimmer->nose_drag = 0.2;
-    const Law law = arc(1.5);
+    const LawOnGrid law = arc(1.5);
     const double time = 0.4, step = 1e-6;
     Workspace<Plane> work(*swimmer);
     const State y = state_with<Plane>(*swimmer, law, time, {0.2, {v1, v2}}, work);
@@ -143,7 +144,7 @@ TEST(Algorithm, WrenchAtTheNoseIsTheNosesLoad)
 {
     const auto swimmer = straight_body();
     swimmer->nose_mass = 0.3, swimmer->nose_drag = 0.2, swimmer->resistive = true;
-    const Law law = arc(1.5);
+    const LawOnGrid law = arc(1.5);
     Workspace<Space> work(*swimmer);
     const State y = state_with<Space>(*swimmer, law, 0.4, {{0.1, -0.3, 0.2}, {v1, v2, v3}}, work);
     ASSERT_TRUE(find_motion(*swimmer, law, 0.4, y, work));

@@ -115,7 +115,7 @@ def test_drag_between_kinks_is_that_of_the_spline(seed, pointed):
         instant = eel_core.Instant(simulation.discretisation.swimmer)
         size = np.array([0.0, 0.0, 1.0, body.length, body.length, 0.0])
         twists = [size * [0, 0, 0.2 * np.sin(7 * t), 0.3, -0.1 * np.sin(3 * t), 0] for t in np.arange(0.5, 3.0, 0.05)]
-        return np.array([instant.loads(simulation.tabulated_law, 1.0, twist)[1] for twist in twists])
+        return np.array([instant.loads(simulation.law_on_grid, 1.0, twist)[1] for twist in twists])
 
     wanted = drags(with_kinks_at_data(body), 100.0)
     assert np.abs(drags(body, 32.0) - wanted).max() < 1e-6 * np.abs(wanted).max()

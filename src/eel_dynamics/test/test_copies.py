@@ -81,7 +81,7 @@ def test_samples_of_a_copy_are_its_own():
 
 def test_a_copy_of_a_march_shares_what_never_changes():
     simulation = Simulation(law=falling())
-    for constant in (simulation.discretisation.swimmer, simulation.tabulated_law):
+    for constant in (simulation.discretisation.swimmer, simulation.law_on_grid):
         assert copy.copy(constant) is constant and copy.deepcopy(constant) is constant
     march = eel_core.March(simulation.discretisation.swimmer, "adams", 4, False)
     assert copy.copy(march).counts == (0, 0, 0)

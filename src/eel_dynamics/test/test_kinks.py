@@ -22,7 +22,7 @@ def drag_powers(friction: str, kinks: str) -> np.ndarray:
         swimmer.advance(time)
         twists.append(swimmer.observe().twist)
     powers = np.empty((len(times), 4))
-    eel_core.Instant(other.discretisation.swimmer).drag_powers(other.tabulated_law, times, np.array(twists), powers)
+    eel_core.Instant(other.discretisation.swimmer).drag_powers(other.law_on_grid, times, np.array(twists), powers)
     return powers
 
 

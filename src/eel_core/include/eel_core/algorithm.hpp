@@ -3,9 +3,8 @@
 // internal wrench.
 #pragma once
 
-#include "eel_core/drag_kinks.hpp"
-#include "eel_core/head_dynamics.hpp"
 #include "eel_core/internal_wrench.hpp"
+#include "eel_core/momentum_balance.hpp"
 
 namespace eel_core {
 
@@ -24,7 +23,7 @@ void find_loads(const Swimmer& swimmer, Workspace<M>& work)
 
 // Shape and twist of the head in state y at `time` [s]. False where the inertia is not positive definite.
 template <class M>
-bool find_head_motion(const Swimmer& swimmer, const Law& law, double time, const State& y, Workspace<M>& work)
+bool find_head_motion(const Swimmer& swimmer, const LawOnGrid& law, double time, const State& y, Workspace<M>& work)
 {
     configure(swimmer, law, time, work);  // eq. (25)
     work.head = head_frame(y, M());
@@ -34,7 +33,7 @@ bool find_head_motion(const Swimmer& swimmer, const Law& law, double time, const
 
 // The same, and the velocities and loads along the body.
 template <class M>
-bool find_motion(const Swimmer& swimmer, const Law& law, double time, const State& y, Workspace<M>& work)
+bool find_motion(const Swimmer& swimmer, const LawOnGrid& law, double time, const State& y, Workspace<M>& work)
 {
     if (!find_head_motion(swimmer, law, time, y, work)) return false;
     add_head_motion(swimmer, work.twist, work.position, work.omega, work.velocity);
@@ -45,19 +44,19 @@ bool find_motion(const Swimmer& swimmer, const Law& law, double time, const Stat
 
 // Rate of state y at `time` [s]: eq. (27). `current` [m/s]: of the water.
 template <class M>
-bool rate_of_state(const Swimmer& swimmer, const Law& law, const Vector3<double>& current, double time, const State& y,
-                   Workspace<M>& work, State& rate)
+bool rate_of_state(const Swimmer& swimmer, const LawOnGrid& law, const Vector3<double>& current, double time,
+                   const State& y, Workspace<M>& work, State& rate)
 {
     if (!find_motion(swimmer, law, time, y, work)) return false;
     put_velocity(work.twist, work.head, current, y, rate);
-    put_momentum(momentum_rate(swimmer, work), work.head, rate);
+    put_momentum(momentum_rate_from_loads(swimmer, work), work.head, rate);
     return true;
 }
 
-// The internal wrench in the motion that `work` holds: accelerations, eq. (60); then the balance of the part of the
-// body behind each section, eq. (50), which `wrench_behind` reads at a section.
+// What the internal wrench needs, in the motion that `work` holds: accelerations, eq. (60); then the balance's density
+// integrated from the nose, from which `internal_wrench` gives eq. (50) at a section.
 template <class M>
-void find_internal_wrench(const Swimmer& swimmer, const Law& law, Workspace<M>& work)
+void find_internal_wrench(const Swimmer& swimmer, const LawOnGrid& law, Workspace<M>& work)
 {
     find_accelerations(swimmer, law, work);
     integrate_balance(swimmer, work);
@@ -65,7 +64,7 @@ void find_internal_wrench(const Swimmer& swimmer, const Law& law, Workspace<M>& 
 
 // Powers [W] of actuators, wake, nose and drag, in the motion that `work` holds.
 template <class M>
-Powers find_powers(const Swimmer& swimmer, const Law& law, Workspace<M>& work)
+Powers find_powers(const Swimmer& swimmer, const LawOnGrid& law, Workspace<M>& work)
 {
     find_internal_wrench(swimmer, law, work);
     return {actuator_power(swimmer, work), work.tail_speed * work.tail_energy, work.nose_force * work.twist.linear.x,

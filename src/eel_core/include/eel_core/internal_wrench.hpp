@@ -1,125 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The internal wrench, eq. (50), from the balance of the part of the body behind each section; and the accelerations
-// that it needs, eq. (60).
-//
-//     alpha' = R Kddot + omega x R Kdot        acc' = alpha x t1 + omega x (omega x t1)
-//
-// Both are linear in the head's acceleration. The balance of the whole body gives that; the balance of the part behind
-// a section gives the wrench there.
+// The internal wrench, eq. (50), from the balance of the part of the body behind each section; and the actuators'
+// power.
 #pragma once
 
-#include "eel_core/drag_kinks.hpp"
-#include "eel_core/loads.hpp"
-#include "eel_core/momentum.hpp"
-#include "eel_core/righting.hpp"
+#include "eel_core/accelerations.hpp"
 
 namespace eel_core {
 
 using Powers = std::array<double, 4>;  // [W], of actuators, wake, nose and drag
-
-// alpha' of the sections of a block.
-inline Vector3<Lanes> alpha_slope(const Law& law, const Workspace<Space>& work, std::size_t k)
-{
-    const auto frame = work.frame[k];
-    return turning(frame, law.combine_both(law.tables->node, work.factor, 2, k)) +
-           cross(work.omega[k], turning(frame, work.curvature_rate[k]));
-}
-// acc' of the sections of a block.
-template <class M>
-Vector<M, Lanes> acceleration_slope(const Workspace<M>& work, std::size_t k)
-{
-    const auto t1 = work.frame[k].t1();
-    const auto omega = work.omega[k];
-    return cross(work.alpha[k], t1) + cross(omega, cross(omega, t1));
-}
-
-// `alpha` where the head has no acceleration.
-inline void set_turning_acceleration(const Swimmer& swimmer, const Law& law, Workspace<Space>& work)
-{
-    for (std::size_t k = 0; k < swimmer.grid.blocks; ++k)
-        work.integrand.store(k, {alpha_slope(law, work, k), Vector3<Lanes>{}});
-    swimmer.grid.from_nose.integrate(work.integrand, work.alpha);
-}
-inline void set_turning_acceleration(const Swimmer& swimmer, const Law& law, Workspace<Plane>& work)
-{
-    for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
-        work.alpha.store(k, law.combine(law.tables->angle, Law::yaw, work.factor, 2, k)[0]);
-        work.curvature_rate.store(k, {0.0, law.combine(law.tables->node, Law::yaw, work.factor, 1, k)[0]});
-    }
-}
-
-// The wrench that the motion of a block's nodes takes of sections, about the head. In section axes:
-//
-//     f_N = M Vdot + Omega x M V      f_C = J Omegadot + Omega x J Omega + V x M V
-template <class M>
-Wrench<M, Lanes> inertial_wrench(const Section<Lanes>& section, const Workspace<M>& work, std::size_t k)
-{
-    const auto frame = work.frame[k];
-    const Angular<M, Lanes> omega = frame.local(work.omega[k]), omega_rate = frame.local(work.alpha[k]);
-    const Vector<M, Lanes> v = frame.local(work.velocity[k]);
-    const Vector<M, Lanes> v_rate = frame.local(work.acceleration[k]) - cross(omega, v);
-    const Vector<M, Lanes> momentum = section.linear_momentum(v);
-    const Wrench<M, Lanes> taken{
-        section.angular_momentum(omega_rate) + cross(omega, section.angular_momentum(omega)) + cross(v, momentum),
-        section.linear_momentum(v_rate) + cross(omega, momentum)};
-    return about_head<M>(frame, work.position[k], taken);
-}
-
-// Writes to `density` that wrench per length. Returns the integral of the density over the body.
-template <class M>
-Wrench<M, double> set_inertial_density(const Swimmer& swimmer, Workspace<M>& work)
-{
-    Wrench<M, Lanes> sum{};
-    for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
-        const auto density = inertial_wrench<M>(swimmer.sections[k], work, k);
-        work.density.store(k, density);
-        sum += swimmer.grid.weight[k] * density;
-    }
-    return total_of(sum);
-}
-
-// Adds the resistance, minus the drag, with the signs at the nodes.
-template <class M>
-void add_resistance(const Swimmer& swimmer, Workspace<M>& work)
-{
-    for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
-        const auto load =
-            local_resistive_load<M>(swimmer.sections.drag(k), work.friction_laminar[k], work.friction_excess[k],
-                                    work.turbulent_part[k], speeds_from(work, width * k), roll_from(work, width * k));
-        work.density.store(k, work.density[k] - about_head<M>(work.frame[k], work.position[k], load));
-    }
-}
-
-// Accelerations of the sections where the head has none.
-template <class M>
-void find_shape_accelerations(const Swimmer& swimmer, const Law& law, Workspace<M>& work)
-{
-    set_turning_acceleration(swimmer, law, work);
-    for (std::size_t k = 0; k < swimmer.grid.blocks; ++k)
-        work.integrand.store(k, {work.alpha[k], acceleration_slope(work, k)});
-    swimmer.grid.from_nose.integrate(work.integrand, work.acceleration, Components<Angular<M, Lanes>>::count);
-}
-
-// Acceleration of the head and of the sections, and the density of the balance: eq. (60) in accelerations. `work` holds
-// the true velocities, the loads that go with them and the factored inertia.
-template <class M>
-void find_accelerations(const Swimmer& swimmer, const Law& law, Workspace<M>& work)
-{
-    find_shape_accelerations(swimmer, law, work);
-    const double drag_of_nose = nose_drag(swimmer, work.twist.linear.x);
-    auto left = work.tail + work.drag - set_inertial_density(swimmer, work);
-    left.linear.x += drag_of_nose;
-    if (swimmer.righting != 0.0) left.angular += work.righting;
-    auto head = components_of(left);
-    work.inertia.solve(head);
-    work.head_acceleration = Components<Twist<M, double>>::make([&](std::size_t k) { return head[k]; });
-
-    add_head_motion(swimmer, work.head_acceleration, work.position, work.alpha, work.acceleration);
-    work.balance = set_inertial_density(swimmer, work) - work.drag;
-    if (swimmer.resistive) add_resistance(swimmer, work);
-    if (swimmer.righting != 0.0) take_righting_torque(swimmer, work);
-    work.nose_force = drag_of_nose - swimmer.nose_mass * work.head_acceleration.linear.x;
-}
 
 // Integral of the density from the nose to the nodes.
 template <class M>
@@ -129,15 +17,27 @@ void integrate_balance(const Swimmer& swimmer, Workspace<M>& work)
     add_kinks(swimmer, swimmer.grid.from_nose, false, work, work.integral);
 }
 
-// THE WRENCH BEHIND A SECTION, w_tail - integral from X to the tail of the density, about the section and in its axes;
-// from the integral `integral` X. Still to be subtracted: the water's momentum flux through the section; see
-// show_internal_wrench in observe.hpp.
+// The wrench on the part of the body behind a section, w_tail - integral from X to the tail of the density, about the
+// section and in its axes; from the integral `integral` X.
 template <class M>
 Wrench<M, Lanes> wrench_behind(const Workspace<M>& work, const Wrench<M, Lanes>& integral, const Frame<M, Lanes>& frame,
                                const Vector<M, Lanes>& position)
 {
     const auto at_head = integral + (work.tail - work.balance);
     return {frame.local(at_head.angular - cross(position, at_head.linear)), frame.local(at_head.linear)};
+}
+
+// THE INTERNAL WRENCH, eq. (50), (51), at a block of sections: the wrench behind each, less the momentum of the water
+// that is swept past it. v, omega: V and Omega of the sections, in their axes.
+template <class M>
+Wrench<M, Lanes> internal_wrench(const Swimmer& swimmer, const Workspace<M>& work, const Wrench<M, Lanes>& integral,
+                                 const Frame<M, Lanes>& frame, const Vector<M, Lanes>& position,
+                                 const Section<Lanes>& section, const Vector<M, Lanes>& v,
+                                 const Angular<M, Lanes>& omega)
+{
+    const Section<Lanes> swept = section.weighed(swimmer.wake);
+    const auto wrench = wrench_behind<M>(work, integral, frame, position) - momentum_flux<M, Lanes>(swept, v, omega);
+    return swimmer.distributed_pressure ? plus_axial<M, Lanes>(wrench, swept.water_energy(v, omega)) : wrench;
 }
 
 // Bending torque times the rate of bending, of a block.
@@ -147,7 +47,7 @@ inline Lanes bending_power(const Vector3<Lanes>& torque, const Vector2<Lanes>& r
 }
 inline Lanes bending_power(Lanes torque, const Vector2<Lanes>& rate) { return torque * rate.y; }
 
-// - integral of C . Kdot over the body [W].
+// - integral of C . Kdot over the body [W]. The water that is swept past a section has no part in C2 and C3.
 template <class M>
 double actuator_power(const Swimmer& swimmer, const Workspace<M>& work)
 {

@@ -19,17 +19,17 @@ Vector3<T> turning(const Frame3<T>& frame, const Vector2<T>& bending)
 
 // Rotations over the intervals that end at the nodes, to `quaternion`: apart from their product, in which each block
 // waits for the one before.
-inline void turn_intervals(const Swimmer& swimmer, const Law& law, Workspace<Space>& work)
+inline void turn_intervals(const Swimmer& swimmer, const LawOnGrid& law, Workspace<Space>& work)
 {
     for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
-        const auto pitch = law.combine(law.tables->moments, Law::pitch, work.factor, 0, k);
-        const auto yaw = law.combine(law.tables->moments, Law::yaw, work.factor, 0, k);
+        const auto pitch = law.combine(law.tables->moments, LawOnGrid::pitch, work.factor, 0, k);
+        const auto yaw = law.combine(law.tables->moments, LawOnGrid::yaw, work.factor, 0, k);
         work.quaternion.store(k, magnus({pitch[0], yaw[0]}, {pitch[1], yaw[1]}, {pitch[2], yaw[2]}));
     }
 }
 
 // Axes of the sections and, in space, their angular velocities.
-inline void orient_sections(const Swimmer& swimmer, const Law& law, Workspace<Space>& work)
+inline void orient_sections(const Swimmer& swimmer, const LawOnGrid& law, Workspace<Space>& work)
 {
     turn_intervals(swimmer, law, work);
     Quaternion<Lanes> before{0.0, 0.0, 0.0, 1.0};
@@ -47,18 +47,18 @@ inline void orient_sections(const Swimmer& swimmer, const Law& law, Workspace<Sp
 }
 
 // In the plane the angle of a section is the integral of K3, tabulated with the law.
-inline void orient_sections(const Swimmer& swimmer, const Law& law, Workspace<Plane>& work)
+inline void orient_sections(const Swimmer& swimmer, const LawOnGrid& law, Workspace<Plane>& work)
 {
     for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
-        const auto [s, c] = sine_and_cosine(law.combine(law.tables->angle, Law::yaw, work.factor, 0, k)[0]);
+        const auto [s, c] = sine_and_cosine(law.combine(law.tables->angle, LawOnGrid::yaw, work.factor, 0, k)[0]);
         work.frame.store(k, {c, s});
-        work.omega.store(k, law.combine(law.tables->angle, Law::yaw, work.factor, 1, k)[0]);
+        work.omega.store(k, law.combine(law.tables->angle, LawOnGrid::yaw, work.factor, 1, k)[0]);
     }
 }
 
 // Shape of the body and velocities due to its change. Sets `factor`, which holds until the next instant.
 template <class M>
-void configure(const Swimmer& swimmer, const Law& law, double time, Workspace<M>& work)
+void configure(const Swimmer& swimmer, const LawOnGrid& law, double time, Workspace<M>& work)
 {
     work.factor.resize(law.tables->rows());
     law.set_factors(time, work.factor);

@@ -145,7 +145,7 @@ struct RowTable {
 
 // The rows of a law, tabulated on the nodes and the stations of a swimmer.
 struct LawTables {
-    std::vector<std::size_t> rows_of[2];  // of each axis, `Law::Axis`
+    std::vector<std::size_t> rows_of[2];  // of each axis, `LawOnGrid::Axis`
     RowTable<1> node;                     // [rad/m] at the nodes, per unit of factor
     RowTable<1> angle;                    // [rad], its integral from the nose to the nodes
     RowTable<3> moments;                  // [rad], Magnus moments over the interval that ends at each node
@@ -192,7 +192,7 @@ struct LawTables {
     std::size_t nodes_ = 0, stations_ = 0;
 };
 
-struct Law {
+struct LawOnGrid {
     enum Axis : std::size_t { pitch = 0, yaw = 1 };
 
     std::shared_ptr<const LawTables> tables;

@@ -44,7 +44,7 @@ def drag_powers(run) -> np.ndarray:
         follower.pass_events(now, now := float(time[begin]))
         end = max(begin + 1, int(np.searchsorted(time, follower.next_event(now), side="right")))
         part = slice(begin, end)
-        instant.drag_powers(follower.tabulated_law, time[part], relative[part], powers[part])
+        instant.drag_powers(follower.law_on_grid, time[part], relative[part], powers[part])
         begin = end
     return powers
 

@@ -33,7 +33,7 @@ class Blend(NamedTuple):
 
 
 class LawFollower:
-    """The present source of curvature and its blend. `tabulated_law` holds both for the compiled mechanics.
+    """The present source of curvature and its blend. `law_on_grid` holds both for the compiled mechanics.
 
     default_transition [s]: of blends to samples and to rest. law: the first law, whose own t = 0 lies at `origin` [s].
     Without a law the body is straight. The rows of a `SampledLaw` are samples that are all there from the beginning.
@@ -55,7 +55,7 @@ class LawFollower:
         self._spline: tuple[np.ndarray, np.ndarray] | None = None  # x of a sample, and its splines on the grid
         self._last: tuple[CurvatureSample, np.ndarray] | None = None  # the last sample that was tabulated, and its rows
         self._source = self._begun(law, origin, 0.0)
-        self.tabulated_law = self._with_blend()
+        self.law_on_grid = self._with_blend()
 
     def move(self, tabulation: Tabulation, values_at_nodes):
         """Change to the grid of another `tabulation`.
@@ -184,7 +184,7 @@ class LawFollower:
     def _at(self, time: float) -> np.ndarray:
         """Tabulated value, rate and acceleration (3, 2, width) at `time` [s]."""
         rows, axis = self._rows()
-        factor = np.array(self.tabulated_law.factors(time))
+        factor = np.array(self.law_on_grid.factors(time))
         result = np.zeros((3, 2, self._tabulation.width))
         for each in range(2):
             result[:, each] = factor[:, axis == each] @ rows[axis == each]
@@ -208,7 +208,7 @@ class LawFollower:
 
     def _follow(self, source: TabulatedLaw):
         self._source = source
-        self.tabulated_law = self._with_blend()
+        self.law_on_grid = self._with_blend()
 
     def _rows(self) -> tuple[np.ndarray, np.ndarray]:
         """Rows (m, width) of source and blend, and their axes (m,)."""
@@ -217,10 +217,10 @@ class LawFollower:
         rows = np.concatenate((self._source.rows, self._blend.difference))
         return rows, np.concatenate((self._source.axis, np.repeat((0, 1), 3)))
 
-    def _with_blend(self) -> eel_core.Law:
+    def _with_blend(self) -> eel_core.LawOnGrid:
         source, blend = self._source, self._blend
         shared = source.tables if blend is None else None
         tables = self._tabulation.law_tables(*self._rows()) if shared is None else shared
         segment = source.segment and (0, *source.segment)
         dying = blend and (len(source.rows), blend.start, blend.end)
-        return eel_core.Law(tables, float(source.origin), list(source.waves), segment, dying)
+        return eel_core.LawOnGrid(tables, float(source.origin), list(source.waves), segment, dying)

@@ -8,7 +8,7 @@ Every law is a sum of fields of X times functions of time alone,
 since sin(kX + phase - wt) = sin(kX + phase) cos wt - cos(kX + phase) sin wt. The rows are tabulated once: at the nodes,
 at the stations, and as the Magnus moments of the intervals that lead to both. An instant needs only the factors c_m.
 The difference between a motion and the law that takes over, and the quintic between two samples of a controller, are of
-the same form. `eel_core.Law` holds both and evaluates them.
+the same form. `eel_core.LawOnGrid` holds both and evaluates them.
 """
 
 from functools import lru_cache
@@ -82,7 +82,7 @@ class TabulatedLaw(NamedTuple):
     rows: np.ndarray  # (m, width), as `Tabulation.columns` has them
     axis: np.ndarray  # (m,) of the rows, 0 pitch, 1 yaw
     tables: eel_core.LawTables | None = None  # the rows for the compiled mechanics, where several runs share them
-    waves: tuple = ()  # as `eel_core.Law` takes them: period [s], envelope, row of the sine, row of the cosine
+    waves: tuple = ()  # as `eel_core.LawOnGrid` takes them: period [s], envelope, row of the sine, row of the cosine
     origin: float = 0.0  # s, simulation time of the law's own t = 0
     segment: tuple[float, float] | None = None  # s, of the quintic between two samples of a controller
     law: Law | None = None  # that was tabulated

@@ -35,7 +35,7 @@ class March:
         settings: of the grid.
         discretisation: body and scene on the grid.
         follower: what drives the shape, and its blends.
-        tabulated_law: the law or the samples in force, on the grid.
+        law_on_grid: the law or the samples in force, on the grid.
         energy_at_start: [J], kinetic and potential.
     """
 
@@ -45,7 +45,7 @@ class March:
         self.discretisation = discretise(setup.body, setup.scene, settings, setup.x.tobytes())
         self.follower = LawFollower(self.discretisation.tabulation, setup.default_transition, law, origin)
         self.core = eel_core.March(self.discretisation.swimmer, *self._method)
-        self.tabulated_law, self._bounds = self.follower.tabulated_law, self._step_bounds()
+        self.law_on_grid, self._bounds = self.follower.law_on_grid, self._step_bounds()
         self._hand_over_law()
         position, orientation, _ = setup.initial_state
         self.energy_at_start = self.core.start(position, orientation, setup.initial_twist)
@@ -119,9 +119,9 @@ class March:
 
     def _hand_over_law(self, smoothly: bool = False):
         """Continue under the follower's law. The next step begins anew, unless the motion goes on `smoothly`."""
-        self.tabulated_law, self._bounds = self.follower.tabulated_law, self._step_bounds()
+        self.law_on_grid, self._bounds = self.follower.law_on_grid, self._step_bounds()
         breakpoints, ledger = self.follower.breakpoints, bool(self.setup.scene.ledger)
-        self.core.follow(self.tabulated_law, breakpoints, self._bounds, ledger, self.setup.current, smoothly)
+        self.core.follow(self.law_on_grid, breakpoints, self._bounds, ledger, self.setup.current, smoothly)
 
     def _step_bounds(self) -> eel_core.StepBounds:
         setup, follower, here = self.setup, self.follower, self.discretisation
@@ -153,7 +153,7 @@ class March:
             if time <= event:
                 break
         self.follower.end_blend(self.time)
-        if self.follower.tabulated_law is not self.tabulated_law:
+        if self.follower.law_on_grid is not self.law_on_grid:
             self._hand_over_law(smoothly=True)
             if not self.follower.sampled and self.follower.law is not None:
                 self._fit(self.setup.shape_needs(self.follower.law))
@@ -167,7 +167,7 @@ class March:
         """
         before = self.follower.between_samples
         self.follower.pass_event(self.time, self._fit_samples)
-        if self.follower.tabulated_law is not self.tabulated_law:
+        if self.follower.law_on_grid is not self.law_on_grid:
             self._hand_over_law(smoothly=before and self.follower.between_samples)
         return self.follower.next_event(self.time)
 

@@ -71,8 +71,8 @@ def hydrodynamic_wrench(
     acceleration[3:] += np.cross(twist[:3], twist[3:])
     arguments = scene, here.grid, here.sections.of_water(), simulation.x, simulation.accuracy.kinks
     water = eel_core.Instant(core_swimmer(simulation.body, *arguments))
-    inertia = np.array(water.momentum_rate(simulation.tabulated_law, time, relative, acceleration))
-    wake, resistive = np.array(eel_core.Instant(here.swimmer).loads(simulation.tabulated_law, time, relative))
+    inertia = np.array(water.momentum_rate(simulation.law_on_grid, time, relative, acceleration))
+    wake, resistive = np.array(eel_core.Instant(here.swimmer).loads(simulation.law_on_grid, time, relative))
     nose_mass, nose_drag = nose_of(simulation.body, scene)
     nose = np.zeros(6)
     nose[3] = -nose_mass * acceleration[3] - nose_drag * relative[3] * abs(relative[3])

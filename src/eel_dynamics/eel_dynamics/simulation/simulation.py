@@ -125,9 +125,9 @@ class Simulation:
         return self._march.follower.law
 
     @property
-    def tabulated_law(self) -> eel_core.Law:
+    def law_on_grid(self) -> eel_core.LawOnGrid:
         """The law or the samples that drive the body, on the grid."""
-        return self._march.tabulated_law
+        return self._march.law_on_grid
 
     @property
     def samples_until(self) -> float | None:

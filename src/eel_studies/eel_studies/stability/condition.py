@@ -53,7 +53,7 @@ def of_bent(ratio: float, size: float) -> float:
 
 def inertia_at(swimmer: Simulation, time: float) -> np.ndarray:
     """Inertia matrix (6, 6) about the head, in the paper's axes, at `time` [s]. The body is 1 m long."""
-    return np.array(eel_core.Instant(swimmer.discretisation.swimmer).inertia(swimmer.tabulated_law, time))
+    return np.array(eel_core.Instant(swimmer.discretisation.swimmer).inertia(swimmer.law_on_grid, time))
 
 
 def needles() -> str:

@@ -5,7 +5,7 @@
 // A half turn about axis 3, of world and head alike, takes each into the other. Section axes stay the paper's.
 #pragma once
 
-#include "eel_core/head_dynamics.hpp"
+#include "eel_core/momentum_balance.hpp"
 
 namespace eel_core {
 

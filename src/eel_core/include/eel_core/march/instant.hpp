@@ -14,16 +14,16 @@ class Instant {
     explicit Instant(std::shared_ptr<const Swimmer> swimmer) : swimmer_(std::move(swimmer)), work_(*swimmer_) {}
 
     // Rate of the state; false where the inertia is not positive definite.
-    bool rate(const Law& law, const Vector3<double>& current, double time, const State& y, State& rate)
+    bool rate(const LawOnGrid& law, const Vector3<double>& current, double time, const State& y, State& rate)
     {
         return rate_of_state(*swimmer_, law, current, time, y, work_, rate);
     }
 
     // Powers of actuators, wake, nose and drag in the motion that `rate` has found last.
-    Powers powers(const Law& law) { return find_powers(*swimmer_, law, work_); }
+    Powers powers(const LawOnGrid& law) { return find_powers(*swimmer_, law, work_); }
 
     // Inertia of the body about the head, nose included, as the law bends it.
-    Factored<M::freedoms> inertia(const Law& law, double time)
+    Factored<M::freedoms> inertia(const LawOnGrid& law, double time)
     {
         configure(*swimmer_, law, time, work_);
         inertia_and_momentum(*swimmer_, work_);
@@ -31,14 +31,14 @@ class Instant {
     }
 
     // Wrenches of wake and drag on the body for a given twist of the head.
-    std::array<Wrench<M, double>, 2> loads(const Law& law, double time, const Twist<M, double>& twist)
+    std::array<Wrench<M, double>, 2> loads(const LawOnGrid& law, double time, const Twist<M, double>& twist)
     {
         move(law, time, twist);
         return {work_.tail, work_.drag};
     }
 
     // Powers of the axial friction, the lateral and vertical drag, and the roll drag, for a given twist.
-    std::array<double, 4> drag_powers(const Law& law, double time, const Twist<M, double>& twist)
+    std::array<double, 4> drag_powers(const LawOnGrid& law, double time, const Twist<M, double>& twist)
     {
         move(law, time, twist);
         std::array<Lanes, 4> sum;
@@ -57,7 +57,7 @@ class Instant {
     }
 
     // Rate of the momentum along the body for a given twist and acceleration of the head.
-    Wrench<M, double> momentum_rate(const Law& law, double time, const Twist<M, double>& twist,
+    Wrench<M, double> momentum_rate(const LawOnGrid& law, double time, const Twist<M, double>& twist,
                                     const Twist<M, double>& acceleration)
     {
         move(law, time, twist);
@@ -67,7 +67,7 @@ class Instant {
     }
 
   private:
-    void move(const Law& law, double time, const Twist<M, double>& twist)
+    void move(const LawOnGrid& law, double time, const Twist<M, double>& twist)
     {
         configure(*swimmer_, law, time, work_);
         work_.twist = twist;

@@ -67,7 +67,7 @@ class Observer {
     }
 
     // Fills the `sample` with what state y at `time` [s] shows. False where the inertia is not positive definite.
-    bool observe(const Law& law, const Vector3<double>& current, double time, const State& y, std::size_t sample,
+    bool observe(const LawOnGrid& law, const Vector3<double>& current, double time, const State& y, std::size_t sample,
                  Workspace<Space>& work, StationWork& here) const
     {
         if (!find_motion(swimmer_, law, time, y, work)) return false;
@@ -120,7 +120,7 @@ class Observer {
     }
 
     // Backbone, orientation and curvature.
-    void place_stations(const Law& law, const State& y, std::size_t sample, const Workspace<Space>& work,
+    void place_stations(const LawOnGrid& law, const State& y, std::size_t sample, const Workspace<Space>& work,
                         StationWork& here) const
     {
         const Quaternion<Lanes> head_turn{y[3], y[4], y[5], y[6]};
@@ -133,8 +133,8 @@ class Observer {
         for (std::size_t k = 0; k < blocks(); ++k) {
             const Vector2<Lanes> curvature = law.combine_both(law.tables->station, work.factor, 0, k);
             const Vector2<Lanes> rate = law.combine_both(law.tables->station, work.factor, 1, k);
-            const auto pitch = law.combine(law.tables->station_moments, Law::pitch, work.factor, 0, k);
-            const auto yaw = law.combine(law.tables->station_moments, Law::yaw, work.factor, 0, k);
+            const auto pitch = law.combine(law.tables->station_moments, LawOnGrid::pitch, work.factor, 0, k);
+            const auto yaw = law.combine(law.tables->station_moments, LawOnGrid::yaw, work.factor, 0, k);
             const Quaternion<Lanes> turn =
                 here.base[k] * magnus({pitch[0], yaw[0]}, {pitch[1], yaw[1]}, {pitch[2], yaw[2]});
             here.frame.store(k, turn.frame());
@@ -157,7 +157,7 @@ class Observer {
         swimmer_.to_station.integrate(work.integrand, 3, work.twist.linear, work.velocity, here.velocity);
     }
 
-    void find_accelerations_there(const Law& law, Workspace<Space>& work, StationWork& here) const
+    void find_accelerations_there(const LawOnGrid& law, Workspace<Space>& work, StationWork& here) const
     {
         for (std::size_t k = 0; k < swimmer_.grid.blocks; ++k)
             work.integrand.store(k, {alpha_slope(law, work, k), acceleration_slope(work, k)});
@@ -166,7 +166,6 @@ class Observer {
         swimmer_.to_station.integrate(work.integrand, 3, head.linear, work.acceleration, here.acceleration);
     }
 
-    // Eq. (50), (51): the wrench behind each station less the momentum of the water that is swept past it.
     void show_internal_wrench(std::size_t sample, Workspace<Space>& work, StationWork& here) const
     {
         swimmer_.to_station.integrate(work.density, 0, Wrench<Space, double>{}, work.integral, here.integral);
@@ -174,13 +173,10 @@ class Observer {
         if (!swimmer_.missed.empty())
             here.missed.add(swimmer_, work, here.frame, here.omega, here.velocity, here.integral);
         for (std::size_t k = 0; k < blocks(); ++k) {
-            const Section<Lanes> section = swimmer_.at_station[k].weighed(swimmer_.wake);
             const Frame3<Lanes> frame = here.frame[k];
-            const Vector3<Lanes> v = frame.local(here.velocity[k]), omega = frame.local(here.omega[k]);
-            auto wrench = wrench_behind<Space>(work, here.integral[k], frame, here.position[k]) -
-                          momentum_flux<Space, Lanes>(section, v, omega);
-            if (swimmer_.distributed_pressure)
-                wrench = plus_axial<Space, Lanes>(wrench, section.water_energy(v, omega));
+            const auto wrench = internal_wrench<Space>(swimmer_, work, here.integral[k], frame, here.position[k],
+                                                       swimmer_.at_station[k], frame.local(here.velocity[k]),
+                                                       frame.local(here.omega[k]));
             show(Profiles::torque, sample, k, wrench.angular);
             show(Profiles::force, sample, k, wrench.linear);
         }

@@ -158,7 +158,7 @@ class SampledMarch {
     std::shared_ptr<const SampledKind> kind_;
     March march_;
     std::shared_ptr<LawTables> tables_;  // of the quintic, then of the blend
-    Law law_;
+    LawOnGrid law_;
     StepBounds bounds_{};
     std::vector<double> rows_;  // (sample_rows, columns) of the last sample
     bool under_way_ = false, unfinished_ = false;

@@ -16,7 +16,7 @@
 #include <algorithm>
 #include <span>
 
-#include "eel_core/head_dynamics.hpp"
+#include "eel_core/momentum_balance.hpp"
 
 namespace eel_core {
 

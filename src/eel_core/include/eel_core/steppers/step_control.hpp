@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "eel_core/head_dynamics.hpp"
+#include "eel_core/momentum_balance.hpp"
 #include "eel_core/steppers/method.hpp"
 
 namespace eel_core {

@@ -25,7 +25,7 @@ struct Slice {
 
 // What is fixed while a march goes on undisturbed.
 struct MarchSettings {
-    Law law;
+    LawOnGrid law;
     std::vector<double> breakpoints;  // [s], ascending
     StepBounds bounds;
     bool ledger = true;                      // integrate the works

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Motion of the head: eq. (27), in the momentum form of the balance (60).
+// Motion of the head: eq. (27), in the momentum form of the balance (60). It needs no acceleration; that of the head,
+// which the internal wrench needs, is found in accelerations.hpp.
 //
 // The balance is the time derivative of the total momentum P' = P + m_o V1 E1, L about the head. With that momentum as
 // the state, neither accelerations nor Kddot are needed to march:
@@ -76,9 +77,9 @@ inline void put_velocity(const Twist<Plane, double>& twist, const Frame2<double>
     rate[3] = rate[4] = 0.0, rate[5] = 0.5 * y[6] * twist.angular, rate[6] = -0.5 * y[5] * twist.angular;
 }
 
-// Rate of the momentum of world vectors, in the axes of the head.
+// Rate of the momentum of world vectors, in the axes of the head, by the loads.
 template <class M>
-Momentum<M, double> momentum_rate(const Swimmer& swimmer, const Workspace<M>& work)
+Momentum<M, double> momentum_rate_from_loads(const Swimmer& swimmer, const Workspace<M>& work)
 {
     const Twist<M, double>& twist = work.twist;
     Wrench<M, double> rate = work.tail + work.drag;

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+// Accelerations of the head and of the sections, from the balance of the whole body, eq. (60).
+//
+//     alpha' = R Kddot + omega x R Kdot        acc' = alpha x t1 + omega x (omega x t1)
+//
+// Both are linear in the head's acceleration, which makes the wrench on the whole body vanish.
+#pragma once
+
+#include "eel_core/drag_kinks.hpp"
+#include "eel_core/loads.hpp"
+#include "eel_core/momentum.hpp"
+#include "eel_core/righting.hpp"
+
+namespace eel_core {
+
+// alpha' of the sections of a block.
+inline Vector3<Lanes> alpha_slope(const LawOnGrid& law, const Workspace<Space>& work, std::size_t k)
+{
+    const auto frame = work.frame[k];
+    return turning(frame, law.combine_both(law.tables->node, work.factor, 2, k)) +
+           cross(work.omega[k], turning(frame, work.curvature_rate[k]));
+}
+// acc' of the sections of a block.
+template <class M>
+Vector<M, Lanes> acceleration_slope(const Workspace<M>& work, std::size_t k)
+{
+    const auto t1 = work.frame[k].t1();
+    const auto omega = work.omega[k];
+    return cross(work.alpha[k], t1) + cross(omega, cross(omega, t1));
+}
+
+// `alpha` where the head has no acceleration.
+inline void set_turning_acceleration(const Swimmer& swimmer, const LawOnGrid& law, Workspace<Space>& work)
+{
+    for (std::size_t k = 0; k < swimmer.grid.blocks; ++k)
+        work.integrand.store(k, {alpha_slope(law, work, k), Vector3<Lanes>{}});
+    swimmer.grid.from_nose.integrate(work.integrand, work.alpha);
+}
+inline void set_turning_acceleration(const Swimmer& swimmer, const LawOnGrid& law, Workspace<Plane>& work)
+{
+    for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
+        work.alpha.store(k, law.combine(law.tables->angle, LawOnGrid::yaw, work.factor, 2, k)[0]);
+        work.curvature_rate.store(k, {0.0, law.combine(law.tables->node, LawOnGrid::yaw, work.factor, 1, k)[0]});
+    }
+}
+
+// The wrench that the motion of a block's nodes takes of sections, about the head. In section axes:
+//
+//     f_N = M Vdot + Omega x M V      f_C = J Omegadot + Omega x J Omega + V x M V
+template <class M>
+Wrench<M, Lanes> inertial_wrench(const Section<Lanes>& section, const Workspace<M>& work, std::size_t k)
+{
+    const auto frame = work.frame[k];
+    const Angular<M, Lanes> omega = frame.local(work.omega[k]), omega_rate = frame.local(work.alpha[k]);
+    const Vector<M, Lanes> v = frame.local(work.velocity[k]);
+    const Vector<M, Lanes> v_rate = frame.local(work.acceleration[k]) - cross(omega, v);
+    const Vector<M, Lanes> momentum = section.linear_momentum(v);
+    const Wrench<M, Lanes> taken{
+        section.angular_momentum(omega_rate) + cross(omega, section.angular_momentum(omega)) + cross(v, momentum),
+        section.linear_momentum(v_rate) + cross(omega, momentum)};
+    return about_head<M>(frame, work.position[k], taken);
+}
+
+// Writes to `density` that wrench per length. Returns the integral of the density over the body.
+template <class M>
+Wrench<M, double> set_inertial_density(const Swimmer& swimmer, Workspace<M>& work)
+{
+    Wrench<M, Lanes> sum{};
+    for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
+        const auto density = inertial_wrench<M>(swimmer.sections[k], work, k);
+        work.density.store(k, density);
+        sum += swimmer.grid.weight[k] * density;
+    }
+    return total_of(sum);
+}
+
+// Adds the resistance, minus the drag, with the signs at the nodes.
+template <class M>
+void add_resistance(const Swimmer& swimmer, Workspace<M>& work)
+{
+    for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
+        const auto load =
+            local_resistive_load<M>(swimmer.sections.drag(k), work.friction_laminar[k], work.friction_excess[k],
+                                    work.turbulent_part[k], speeds_from(work, width * k), roll_from(work, width * k));
+        work.density.store(k, work.density[k] - about_head<M>(work.frame[k], work.position[k], load));
+    }
+}
+
+// Accelerations of the sections where the head has none.
+template <class M>
+void find_shape_accelerations(const Swimmer& swimmer, const LawOnGrid& law, Workspace<M>& work)
+{
+    set_turning_acceleration(swimmer, law, work);
+    for (std::size_t k = 0; k < swimmer.grid.blocks; ++k)
+        work.integrand.store(k, {work.alpha[k], acceleration_slope(work, k)});
+    swimmer.grid.from_nose.integrate(work.integrand, work.acceleration, Components<Angular<M, Lanes>>::count);
+}
+
+// Acceleration of the head and of the sections, and the density of the balance: eq. (60) in accelerations. `work` holds
+// the true velocities, the loads that go with them and the factored inertia.
+template <class M>
+void find_accelerations(const Swimmer& swimmer, const LawOnGrid& law, Workspace<M>& work)
+{
+    find_shape_accelerations(swimmer, law, work);
+    const double drag_of_nose = nose_drag(swimmer, work.twist.linear.x);
+    auto left = work.tail + work.drag - set_inertial_density(swimmer, work);
+    left.linear.x += drag_of_nose;
+    if (swimmer.righting != 0.0) left.angular += work.righting;
+    auto head = components_of(left);
+    work.inertia.solve(head);
+    work.head_acceleration = Components<Twist<M, double>>::make([&](std::size_t k) { return head[k]; });
+
+    add_head_motion(swimmer, work.head_acceleration, work.position, work.alpha, work.acceleration);
+    work.balance = set_inertial_density(swimmer, work) - work.drag;
+    if (swimmer.resistive) add_resistance(swimmer, work);
+    if (swimmer.righting != 0.0) take_righting_torque(swimmer, work);
+    work.nose_force = drag_of_nose - swimmer.nose_mass * work.head_acceleration.linear.x;
+}
+
+}  // namespace eel_core
