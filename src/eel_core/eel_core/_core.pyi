@@ -227,7 +227,13 @@ class March:
         """Goes on with another grid or method. The state keeps its momentum; a law on the new grid must follow."""
 
     def follow(
-        self, law: LawOnGrid, breakpoints: Sequence[float], bounds: StepBounds, ledger: bool, current: Buffer, smoothly: bool
+        self,
+        law: LawOnGrid,
+        breakpoints: Sequence[float],
+        bounds: StepBounds,
+        ledger: bool,
+        current: Buffer,
+        smoothly: bool,
     ) -> None:
         """What drives the body from now on. breakpoints: ascending times [s] at which a derivative of the shape jumps.
         ledger: the works are integrated too. current (3,) [m/s]: of the water, world. smoothly: the motion goes on as
