@@ -119,7 +119,7 @@ def test_a_parameter_file_for_all_nodes_makes_none_warn_of_the_others_names(star
     path = tmp_path / "all.yaml"
     recording = tmp_path / "run.rrd"
     path.write_text(
-        "/**:\n  ros__parameters:\n    gait: turning\n    yaw_bend: -1.0\n    rate: 50.0\n    stations: 21\n"
+        "/**:\n  ros__parameters:\n    gait: turning\n    left_bend: 1.0\n    rate: 50.0\n    stations: 21\n"
         "    scene:\n      planar: true\n    heading: 0.3\n    periods: 2.0\n"
         f"    sink: [save]\n    recording: {recording}\n"
     )

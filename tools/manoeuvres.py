@@ -200,7 +200,6 @@ def _roll_over(swim, swims):
     end = swim.at(7.1)
     x, y, z, w = swim.run.orientation.T
     roll = np.degrees(np.arctan2(2.0 * (y * z + x * w), 1.0 - 2.0 * (x * x + y * y))) % 360.0  # of the straight body
-    roll = 360.0 - roll
     moved = np.linalg.norm(swim.path[end] - swim.path[0])
     return (
         f"At its end, after 7.1 s, the straight body lies {roll[end]:+.0f} degrees about its own axis, and its centre "

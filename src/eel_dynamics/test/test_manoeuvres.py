@@ -42,8 +42,8 @@ def test_swims_forward(name):
 
 @pytest.mark.parametrize("bend", [4.0, -4.0])
 def test_a_c_start_turns_to_its_side_and_is_faster_than_the_plain_start(bend):
-    swim, plain = Swim("c_start", 3.0, yaw_bend=bend), Swim("straight", 3.0)
-    assert math.copysign(1.0, swim.heading(2.0, 3.0)) == -math.copysign(1.0, bend)  # yaw_bend > 0: to the right
+    swim, plain = Swim("c_start", 3.0, left_bend=bend), Swim("straight", 3.0)
+    assert math.copysign(1.0, swim.heading(2.0, 3.0)) == math.copysign(1.0, bend)
     assert abs(swim.heading(2.0, 3.0)) > math.radians(60.0)
     assert np.max(swim.speed[:31]) > 3.0 * np.max(plain.speed[:31])
 
@@ -64,7 +64,7 @@ def test_diving_goes_down_a_slope_and_a_negative_bend_goes_up():
 
 def test_a_spiral_is_a_helix_about_a_steep_axis_that_goes_down():
     """In each period the body makes the same screw motion: the mean velocities lie on a cone about the helix's axis."""
-    right, left = Swim("spiral", 30.0), Swim("spiral", 30.0, yaw_bend=-2.0)
+    right, left = Swim("spiral", 30.0), Swim("spiral", 30.0, left_bend=2.0)
     steps = right.path[200::20] - right.path[180:-20:20]  # of 1 s, one period, from 10 s on
     np.testing.assert_allclose(np.linalg.norm(steps, axis=1), np.linalg.norm(steps[-1]), rtol=1e-3)
     changes = np.diff(steps, axis=0)  # all across the axis

@@ -9,10 +9,10 @@ from eel_gaits import cpg, straight
 
 
 def test_its_steady_state_is_one_wave_term_and_a_bend():
-    chain = Oscillators(Oscillation(yaw_bend=0.3))
+    chain = Oscillators(Oscillation(left_bend=-0.3))
     for time in (10.0, 10.37):
         chain.advance(time)
-        expected = cpg(yaw_bend=0.3).curvature(time, chain.x)
+        expected = cpg(left_bend=-0.3).curvature(time, chain.x)
         for ours, law in zip(chain.curvature(), expected, strict=True):
             np.testing.assert_allclose(ours, law[:, 2], atol=1e-4 * np.max(np.abs(law)))
     assert cpg().terms == straight().terms
@@ -45,7 +45,7 @@ def test_it_begins_at_rest():
 
 
 @pytest.mark.parametrize(
-    "change", [{"period": 0.5}, {"wavelength": 2.0}, {"amplitude_0": 3.0}, {"yaw_bend": 1.0}, {"amplitude_2": -2.0}]
+    "change", [{"period": 0.5}, {"wavelength": 2.0}, {"amplitude_0": 3.0}, {"left_bend": -1.0}, {"amplitude_2": -2.0}]
 )
 def test_no_rate_and_no_acceleration_jumps_when_a_number_changes(change):
     chain = Oscillators(Oscillation())

@@ -57,7 +57,7 @@ def test_the_other_gaits_of_the_family(t):
     forward = straight().curvature(t, STATIONS)[0]
     np.testing.assert_allclose(forward[:, 2], wave, atol=1e-13)
     assert not forward[:, 1].any()
-    turn = turning(yaw_bend=-0.7).curvature(t, STATIONS)[0]
+    turn = turning(left_bend=0.7).curvature(t, STATIONS)[0]
     np.testing.assert_allclose(turn[:, 2], wave - 0.7 * f_r(t, 1.0, 2.0), atol=1e-13)
     backward = gait("backward").curvature(t, STATIONS)[0][:, 2]
     to_the_head = np.polyval([2.0, 0.5, 1.0], STATIONS) * np.sin(2.0 * math.pi * (-STATIONS - t))
@@ -141,6 +141,11 @@ def test_transition_belongs_to_the_law():
         (lambda: gait(3), "unknown gait 3, must be one of"),
         (lambda: gait(["falling"]), "unknown gait ['falling'], must be one of"),
         (lambda: gait("falling", yaw_bend=1.0), "gait 'falling' has no number 'yaw_bend', it has: period, start"),
+        (
+            lambda: turning(yaw_bend=1.0),
+            "gait 'turning' has no number 'yaw_bend': it is 'left_bend' now, of the opposite sign (positive: to the",
+        ),
+        (lambda: gait("joint_wave", yaw_angle=0.1), "'yaw_angle': it is 'left_angle' now, of the opposite sign"),
         (lambda: gait("still", period=1.0), "gait 'still' has no number 'period', it has: none"),
         (lambda: falling(period=-1.0), "period must be >= 0.001 s, got -1.0"),
         (lambda: falling(period=1e9), "period must be <= 10000 s, got 1000000000.0"),

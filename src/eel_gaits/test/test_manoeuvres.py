@@ -53,7 +53,7 @@ def test_a_midline_that_is_too_steep_is_refused():
 
 
 def test_the_backbone_of_a_serpenoid_turns_by_the_winding_angle():
-    law, k = serpenoid(winding_angle=0.7, waves=1.5, yaw_bend=0.2), 1.5 * TURN
+    law, k = serpenoid(winding_angle=0.7, waves=1.5, left_bend=-0.2), 1.5 * TURN
     for t in (1.2, 2.9):
         angle = cumulative_simpson(law.curvature(t, X)[0][:, 2], x=X, initial=0.0)
         wanted = 0.7 * np.sin(k * X - TURN * t) + 0.2 * X
@@ -64,7 +64,7 @@ def test_the_backbone_of_a_serpenoid_turns_by_the_winding_angle():
 @pytest.mark.parametrize(("phase", "eel_like"), [(0.6, 1.0), (0.6, 0.0), (-1.1, 0.5), (0.0, 1.0)])
 def test_each_joint_has_the_angle_of_the_formula(joints, phase, eel_like):
     """The integral of the curvature over the joint's segment; joints count from the tail."""
-    law = joint_wave(joints=joints, joint_phase=phase, eel_like=eel_like, yaw_angle=0.05, length=1.3, period=2.0)
+    law = joint_wave(joints=joints, joint_phase=phase, eel_like=eel_like, left_angle=-0.05, length=1.3, period=2.0)
     points, weights = roots_legendre(20)
     half = 0.65 / joints
     for t in (2.1, 3.77):

@@ -75,7 +75,7 @@ def test_a_params_file_in_a_namespace(generator, client, tmp_path):
     generator("--params-file", str(file), "-r", "__ns:=/second")
     client.listen("second/curvature_law")
     client.generator = "second/gait_generator"
-    assert client.law(0) == (turning(yaw_bend=-1.0), 0.0)
+    assert client.law(0) == (turning(left_bend=1.0), 0.0)
     values = client.values()
     assert values["use_sim_time"] is False and "rate" not in values and "pitch_bend" not in values
 
@@ -99,9 +99,9 @@ def test_a_parameter_of_the_same_gait_keeps_the_time_another_gait_starts_at_now(
     count = len(client.messages)
     client.tick(20.0)
     assert client.set(left_bend=1)[0].successful
-    assert client.law(count) == (turning(wavelength=0.8, yaw_bend=-1.0), 12.5)
+    assert client.law(count) == (turning(wavelength=0.8, left_bend=1.0), 12.5)
     assert client.set(transition=2)[0].successful
-    assert client.law(count + 1) == (turning(wavelength=0.8, yaw_bend=-1.0, transition=2.0), 12.5)
+    assert client.law(count + 1) == (turning(wavelength=0.8, left_bend=1.0, transition=2.0), 12.5)
 
 
 @pytest.mark.fault(
@@ -138,11 +138,11 @@ def test_what_the_user_set_carries_over(generator, client):
     client.listen()
     assert client.law(0)[0] == falling()
     assert all(result.successful for result in client.set(period=3, wavelength=0.7, gait="turning"))
-    assert client.law(1)[0] == turning(period=3.0, wavelength=0.7, yaw_bend=0.25)
+    assert client.law(1)[0] == turning(period=3.0, wavelength=0.7, left_bend=-0.25)
     client.set(gait="kern_efficient")
     assert client.law(2)[0] == gait("kern_efficient", period=3.0)
     client.set(gait="turning")
-    assert client.law(3)[0] == turning(period=3.0, wavelength=0.7, yaw_bend=0.25)
+    assert client.law(3)[0] == turning(period=3.0, wavelength=0.7, left_bend=-0.25)
 
 
 def test_a_gait_and_its_numbers_set_together(generator, client):
@@ -150,10 +150,10 @@ def test_a_gait_and_its_numbers_set_together(generator, client):
     client.listen()
     client.law(0)
     assert client.set_together(gait="turning", left_bend=2, period=1.5).successful
-    assert client.law(1)[0] == turning(yaw_bend=-2.0, period=1.5)
+    assert client.law(1)[0] == turning(left_bend=2.0, period=1.5)
     assert client.values()["left_bend"] == 2.0
     assert client.set_together(bend_start=5, bend_full=6).successful
-    assert client.law(2)[0] == turning(yaw_bend=-2.0, period=1.5, bend_start=5.0, bend_full=6.0)
+    assert client.law(2)[0] == turning(left_bend=2.0, period=1.5, bend_start=5.0, bend_full=6.0)
 
 
 def test_oscillators_are_streamed_ahead_of_the_clock_and_follow_new_numbers(generator, client):
@@ -260,7 +260,7 @@ def test_a_refused_set_says_why_and_changes_nothing(generator, client):
         ({"period": None}, "period must be a number, got None"),
         ({"period": [1.0, 2.0]}, "period must be a number, got"),
         ({"bend_full": 0.5}, "bend_full must be > bend_start (1 s), got 0.5"),
-        ({"left_bend": 1.0}, "gait 'falling' has no parameter 'left_bend', it has: transition, period"),
+        ({"left_bend": 1.0}, "gait 'falling' has no parameter 'left_bend' (did you mean 'pitch_bend'?), it has"),
         ({"transition": -1}, "transition must be >= 0 s, got -1"),
     ):
         result = client.set(**values)[0]

@@ -58,12 +58,12 @@ def test_a_file_is_what_its_steps_say(read):
     law = read(GOOD)
     assert law.name == "patrol"
     check_follows(law, 0.0, straight(wavelength=0.8), (0.3, 2.0, 8.0))
-    check_follows(law, 8.0, (0.8 * turning(yaw_bend=-0.5)).delayed(0.3).mirrored(), (0.5, 1.7, 4.0))
+    check_follows(law, 8.0, (0.8 * turning(left_bend=0.5)).delayed(0.3).mirrored(), (0.5, 1.7, 4.0))
     check_follows(law, 12.0, straight() + 0.2 * gait("rolling"), (0.6, 3.0))
     check_follows(law, 15.0, straight(), (0.6, 2.0))
     check_follows(law, 17.0, still(), (0.6, 1.0))
     check_follows(law, 18.0, straight(), (0.6, 2.0))
-    check_follows(law, 21.0, gait("joint_wave", yaw_angle=-0.1), (0.7, 5.0, 100.0))
+    check_follows(law, 21.0, gait("joint_wave", left_angle=0.1), (0.7, 5.0, 100.0))
 
 
 def test_a_sequence_in_python_is_the_same():
@@ -101,7 +101,12 @@ def test_a_bad_step_in_python_is_named(rows, message):
         ("gait: turning", "gait: turn", "line 7, key 'gait': unknown gait 'turn' (did you mean 'turning'?)"),
         ("gait: turning", "gait: [turning]", "line 7, key 'gait': unknown gait ['turning'], must be one of"),
         ("left_bend: 0.5", "left_bend: x", "line 8, key 'left_bend': left_bend must be a number, got 'x'"),
-        ("left_bend: 0.5", "left_bend: 1e9", "line 8, key 'left_bend': yaw_bend must be >= -100000 rad/m"),
+        ("left_bend: 0.5", "left_bend: 1e9", "line 8, key 'left_bend': left_bend must be <= 100000 rad/m"),
+        (
+            "left_bend: 0.5",
+            "period: 1, yaw_bend: 0.5",
+            "line 8, key 'yaw_bend': gait 'turning' has no number 'yaw_bend': it is 'left_bend' now, of the opposite",
+        ),
         ("left_bend: 0.5", "bend_start: 2", "line 8, key 'bend_start': bend_full must be > bend_start (2 s), got 2.0"),
         ("{left_bend: 0.5}", "fast", "line 8, key 'set': must be a mapping of names to numbers, got 'fast'"),
         ("blend: 1e-1", "blend: 0", "line 10, key 'blend': blend must be > 0, got 0"),

@@ -14,7 +14,7 @@ def test_starts_with_the_falling_gait():
 def test_overrides_of_other_gaits_and_other_nodes_wait_or_are_left_aside():
     start = Settings.start({"gait": "falling", "period": 2, "left_bend": -0.25, "rate": 100, "scene.planar": True})
     assert start.law() == falling(period=2.0)
-    assert start.changed({"gait": "turning"}).law() == turning(period=2.0, yaw_bend=0.25)
+    assert start.changed({"gait": "turning"}).law() == turning(period=2.0, left_bend=-0.25)
 
 
 def test_what_the_user_set_carries_over_and_defaults_do_not():
@@ -27,19 +27,25 @@ def test_what_the_user_set_carries_over_and_defaults_do_not():
     assert rolled.changed({"gait": "falling"}).law() == settings.law()
 
 
-def test_the_node_turns_left_where_the_paper_turns_right():
+def test_a_number_that_was_renamed_is_refused_with_the_new_name_and_its_sign():
+    told = r"has no parameter 'yaw_bend': it is 'left_bend' now, of the opposite sign"
+    with pytest.raises(ValueError, match=told):
+        Settings(gait="turning").changed({"yaw_bend": 0.5})
+    with pytest.raises(ValueError, match=r"no parameter 'yaw_angle': it is 'left_angle' now"):
+        Settings.start({"gait": "falling", "yaw_angle": 0.1})
+
+
+def test_the_numbers_are_those_of_the_gait():
     settings = Settings(gait="turning")
-    assert settings.law() == turning() and settings.numbers()["left_bend"] == -turning.numbers().yaw_bend
-    assert settings.changed({"left_bend": 0.75}).law() == turning(yaw_bend=-0.75)
-    with pytest.raises(ValueError, match="has no parameter 'yaw_bend'"):
-        settings.changed({"yaw_bend": 0.5})
+    assert settings.law() == turning() and settings.numbers()["left_bend"] == turning.numbers().left_bend
+    assert settings.changed({"left_bend": 0.75}).law() == turning(left_bend=0.75)
     with pytest.raises(ValueError, match=r"left_bend must be >= -100000 rad/m, got -1000000.0"):
         settings.changed({"left_bend": -1e6})
 
 
 def test_a_gait_and_its_numbers_together():
     together = Settings().changed({"gait": "turning", "left_bend": 1, "period": 3})
-    assert together.law() == turning(yaw_bend=-1.0, period=3.0)
+    assert together.law() == turning(left_bend=1.0, period=3.0)
 
 
 @pytest.mark.parametrize(
@@ -47,7 +53,7 @@ def test_a_gait_and_its_numbers_together():
     [
         ({"gait": "swim"}, "unknown gait 'swim'"),
         ({"gait": None}, "unknown gait None"),
-        ({"left_bend": 1.0}, "gait 'falling' has no parameter 'left_bend', it has: transition, period"),
+        ({"left_bend": 1.0}, "gait 'falling' has no parameter 'left_bend' (did you mean 'pitch_bend'?), it has"),
         ({"gait": "turning", "pitch_bend": 1.0}, "gait 'turning' has no parameter 'pitch_bend'"),
         ({"period": 0.0}, "period must be >= 0.001 s, got 0.0"),
         ({"period": True}, "period must be a number, got True"),

@@ -5,5 +5,5 @@ The numbers of a gait are the fields of a frozen dataclass. Each has a unit, a d
 
     falling()                         # the paper's gait
     falling(period=2.0)               # with one number changed
-    gait("turning", yaw_bend=-0.5)    # by name
+    gait("turning", left_bend=0.5)    # by name
 """

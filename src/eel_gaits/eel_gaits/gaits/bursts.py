@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Manoeuvres with a beginning and an end: the C-start of a fish that escapes, and swimming in bursts.
 
-c_start: a bend B(t) of the whole body and a wave, K3 = B(t) + wave(t, X). The body bends into a C, and the wave begins
-while it straightens. The form, a bend plus a wave, is that of Gazzola, van Rees and Koumoutsakos, J. Fluid Mech. 698
-(2012), 5-18, doi:10.1017/jfm.2011.558. The numbers are our own, for a robot of 1 m.
+c_start: a bend B(t) of the whole body, positive to the left, and a wave: K3 = wave(t, X) - B(t). The body bends into a
+C, and the wave begins while it straightens. The form, a bend plus a wave, is that of Gazzola, van Rees and
+Koumoutsakos, J. Fluid Mech. 698 (2012), 5-18, doi:10.1017/jfm.2011.558. The numbers are our own, for a robot of 1 m.
 
 burst_and_coast: the forward wave comes and goes; between two bursts the straight body coasts (Weihs, J. Theor. Biol. 48
 (1974), 215-229, doi:10.1016/0022-5193(74)90192-1).
@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 from eel_base.quantity import quantity
 
-from eel_gaits.gaits.numbers import bend_quantity, constant_bend
+from eel_gaits.gaits.numbers import left_quantity, left_turn
 from eel_gaits.gaits.registry import register
 from eel_gaits.gaits.swimming import Wave
 from eel_gaits.laws.ramp import Ramp
@@ -28,7 +28,7 @@ def _duration(default: float, description: str) -> float:
 class Start(Wave):
     """A strong bend of the whole body, and the forward wave that follows it."""
 
-    yaw_bend: float = bend_quantity(4.0, "yaw curvature of the C; positive: to the right, negative: to the left")
+    left_bend: float = left_quantity(-4.0, "yaw curvature of the C")
     bend_time: float = _duration(0.5, "time in which the body bends into the C")
     return_time: float = _duration(0.4, "time in which it straightens")
 
@@ -67,7 +67,7 @@ def c_start(numbers: Start) -> tuple[Term, ...]:
         Ramp(0.0, numbers.bend_time, 1.0),
         Ramp(numbers.bend_time, numbers.bend_time + numbers.return_time, -1.0),
     )
-    return (*constant_bend("yaw", numbers.yaw_bend, ramps), numbers.term().delayed(numbers.bend_time))
+    return (*left_turn(numbers.left_bend, ramps), numbers.term().delayed(numbers.bend_time))
 
 
 @register(Bursts)

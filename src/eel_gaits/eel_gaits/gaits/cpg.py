@@ -7,7 +7,7 @@ Oscillator i at X_i has a phase theta_i and an amplitude r_i, and the curvature 
     r_i''    = a (a / 4 (A(X_i) - r_i) - r_i')        b'' = a (a / 4 (B - b) - b')
 
 after Ijspeert, Crespi, Ryczko and Cabelguen, Science 315 (2007), 1416-1420, doi:10.1126/science.1138353. The numbers
-f = 1 / period, k = 2 pi / wavelength, those of A(X) = a0 + a1 X + a2 X^2, and the bend B follow what is set:
+f = 1 / period, k = 2 pi / wavelength, those of A(X) = a0 + a1 X + a2 X^2, and B = -left_bend follow what is set:
 
     p'' = g^2 (p_set - p) - 2 g p'
 
@@ -20,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 from eel_base.quantity import quantity
 
-from eel_gaits.gaits.numbers import bend_quantity, constant_bend
+from eel_gaits.gaits.numbers import left_quantity, left_turn
 from eel_gaits.gaits.registry import register
 from eel_gaits.gaits.swimming import Wave
 from eel_gaits.laws.term import Term
@@ -36,7 +36,7 @@ LONGEST_SAMPLE = 0.02  # s
 class Oscillation(Wave):
     """The numbers of a chain of oscillators. The node streams its curvature; a law has the settled wave."""
 
-    yaw_bend: float = bend_quantity(0.0, "yaw curvature of a turn; positive: to the right, negative: to the left")
+    left_bend: float = left_quantity(0.0, "yaw curvature of a turn")
     convergence: float = quantity(8.0, "1/s", "rate at which amplitudes settle, a", 0.01, 1e3)
     following: float = quantity(4.0, "1/s", "rate at which new numbers are followed, g", 0.01, 1e3)
     length: float = quantity(1.0, "m", "body length L", 1e-4, 1e3)
@@ -49,13 +49,13 @@ class Oscillation(Wave):
     def targets(self) -> np.ndarray:
         """What the oscillators are to settle at: f [Hz], k [rad/m], a0, a1, a2, B, shape (6,)."""
         wave = self.amplitude_0, self.amplitude_1, self.amplitude_2
-        return np.array((1.0 / self.period, 2.0 * math.pi / self.wavelength, *wave, self.yaw_bend))
+        return np.array((1.0 / self.period, 2.0 * math.pi / self.wavelength, *wave, -self.left_bend))
 
 
 @register(Oscillation)
 def cpg(numbers: Oscillation) -> tuple[Term, ...]:
     """A chain of phase oscillators. The node streams it; the law is its settled wave."""
-    return (numbers.term(), *constant_bend("yaw", numbers.yaw_bend, numbers.term().envelope))
+    return (numbers.term(), *left_turn(numbers.left_bend, numbers.term().envelope))
 
 
 class Oscillators:

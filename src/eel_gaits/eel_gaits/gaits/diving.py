@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 from eel_base.quantity import quantity
 
-from eel_gaits.gaits.numbers import bend_quantity, constant_bend, instant_quantity
+from eel_gaits.gaits.numbers import bend_quantity, constant_bend, instant_quantity, left_quantity, left_turn
 from eel_gaits.gaits.registry import register
 from eel_gaits.gaits.swimming import Wave
 from eel_gaits.laws.ramp import Ramp
@@ -55,7 +55,7 @@ class Slope(Wave):
 class Spiral(Wave):
     """The forward wave with lasting bends in yaw and pitch, after a first bend in pitch that lowers the head."""
 
-    yaw_bend: float = bend_quantity(2.0, "yaw curvature of the spiral; positive: to the right, negative: to the left")
+    left_bend: float = left_quantity(-2.0, "yaw curvature of the spiral")
     pitch_bend: float = bend_quantity(0.5, "pitch curvature of the spiral; positive: down, negative: up")
     first_pitch_bend: float = bend_quantity(0.2, "pitch curvature of the entry; positive: down, negative: up")
     entry_start: float = instant_quantity(1.0, "the entry begins; it lasts two entry times")
@@ -88,8 +88,8 @@ def spiral(numbers: Spiral) -> tuple[Term, ...]:
     middle, end = start + time, start + 2.0 * time
     lasting = (Ramp(middle, end, 1.0),)
     return (
-        numbers.term().scaled(math.copysign(1.0, numbers.yaw_bend)),  # so that left and right are mirror images
+        numbers.term().scaled(math.copysign(1.0, 0.0 - numbers.left_bend)),  # so that left and right are mirror images
         *constant_bend("pitch", numbers.first_pitch_bend, (Ramp(start, middle, 1.0), Ramp(middle, end, -1.0))),
-        *constant_bend("yaw", numbers.yaw_bend, lasting),
+        *left_turn(numbers.left_bend, lasting),
         *constant_bend("pitch", numbers.pitch_bend, lasting),
     )

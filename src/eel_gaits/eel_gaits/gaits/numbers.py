@@ -1,16 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Numbers that several gaits have, their smooth start from rest, and bends of the whole body."""
+"""Numbers that several gaits have, their smooth start from rest, and bends of the whole body.
+
+A number that has a side is positive to the left.
+"""
 
 import math
+from collections.abc import Collection
 from dataclasses import dataclass
 
 from eel_base.quantity import Quantities, quantity
+from eel_base.wording import did_you_mean
 
 from eel_gaits.laws.ramp import Ramp
 from eel_gaits.laws.term import Term
 
-# number of the node and of sequence files, positive to the left: that of the gait, which has the opposite sign
-TURNS = {"left_bend": "yaw_bend", "left_angle": "yaw_angle"}
+RENAMED = {"yaw_bend": "left_bend", "yaw_angle": "left_angle"}  # former numbers, positive to the right
+TO_THE_LEFT = "; positive: to the left, negative: to the right"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,6 +50,11 @@ def bend_quantity(default: float, description: str) -> float:
     return quantity(default, "rad/m", description, -1e5, 1e5)
 
 
+def left_quantity(default: float, description: str) -> float:
+    """A yaw curvature [rad/m] that turns the body to the left."""
+    return bend_quantity(default, description + TO_THE_LEFT)
+
+
 def instant_quantity(default: float, description: str, after: str = "") -> float:
     """A time of the law [s], which may have to lie after another one."""
     return quantity(default, "s", f"{description}, in the law's own time", 0.0, 1e6, after=after)
@@ -58,3 +68,15 @@ def waves_quantity(default: float) -> float:
 def constant_bend(axis: str, bend: float, envelope: tuple[Ramp, ...]) -> tuple[Term, ...]:
     """The terms of a `bend` [rad/m] of the whole body about an `axis`, with an `envelope`. None where it is 0."""
     return (Term(axis=axis, amplitude=(bend,), phase=0.5 * math.pi, envelope=envelope),) if bend else ()
+
+
+def left_turn(bend: float, envelope: tuple[Ramp, ...]) -> tuple[Term, ...]:
+    """The terms of a `bend` [rad/m] to the left. A curvature K3 above 0 bends the tail to the right."""
+    return constant_bend("yaw", -bend, envelope)
+
+
+def named_instead(name: str, known: Collection[str]) -> str:
+    """What a message says after a number `name` that is not `known`: its new name, or those that there are."""
+    if (new := RENAMED.get(name)) in known:
+        return f": it is {new!r} now, of the opposite sign (positive: to the left)"
+    return f"{did_you_mean(name, known)}, it has: {', '.join(known) or 'none'}"

@@ -20,6 +20,7 @@ from typing import Any
 from eel_base.quantity import Quantities, described_fields, quantity
 from eel_base.wording import did_you_mean, one_line, shown
 
+from eel_gaits.gaits.numbers import named_instead
 from eel_gaits.laws.law import Law
 
 
@@ -64,11 +65,8 @@ def register(numbers_class: type[Quantities]) -> Callable[[Callable[..., Any]], 
         def made(*, transition: float = 0.0, **numbers: float) -> Law:
             unknown = [key for key in numbers if key not in own_names]
             if unknown:
-                hint = did_you_mean(unknown[0], own_names)
-                raise ValueError(
-                    f"gait {shown(name)} has no number {shown(unknown[0])}{hint}, it has: "
-                    f"{', '.join(own_names) or 'none'}"
-                )
+                told = named_instead(unknown[0], own_names)
+                raise ValueError(f"gait {shown(name)} has no number {shown(unknown[0])}{told}")
             return Law(*terms_of(numbers_class(**numbers)), name=name, transition=transition)
 
         keyword = inspect.Parameter("transition", inspect.Parameter.KEYWORD_ONLY, default=0.0)

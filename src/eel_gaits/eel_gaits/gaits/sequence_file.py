@@ -2,16 +2,16 @@
 """Reads a sequence from a YAML file (`laws.sequence` has the format). An error names file, line and key."""
 
 import os
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NoReturn, TypeVar
 
 from eel_base.files.input_file import Misplaced, reading
 from eel_base.files.yaml_tree import Entries, read_yaml
-from eel_base.quantity import number, positive
+from eel_base.quantity import positive
 from eel_base.wording import shown
 
-from eel_gaits.gaits.numbers import TURNS
 from eel_gaits.gaits.registry import find
 from eel_gaits.laws.law import MAXIMUM_NAME, Law
 from eel_gaits.laws.sequence import BLEND, sequence
@@ -105,18 +105,12 @@ class SequenceReader:
         make = self._tried(part, "gait", find, part["gait"])
         if not isinstance(given, Entries):
             self._fail(part, "set", f"must be a mapping of names to numbers, got {shown(given)}")
-        numbers = {}
-        for name, value in given.items():
-            if name in TURNS:
-                name, value = TURNS[name], -self._tried(given, name, number, name, value)
-            numbers[name] = value
         try:
-            law: Law = make(**numbers)
+            law: Law = make(**given)
             return law
         except ValueError as error:
-            names = {TURNS.get(name, name): name for name in given}
-            guilty = next((name for own, name in names.items() if str(own) in str(error).split()[0:1]), None)
-            guilty = guilty or next((name for own, name in names.items() if str(own) in str(error)), None)
+            words = re.findall(r"\w+", str(error))
+            guilty = min((name for name in given if name in words), key=words.index, default=None)
             return self._fail(given, guilty, error) if guilty else self._fail(part, "gait", error)
 
     # -- places and errors

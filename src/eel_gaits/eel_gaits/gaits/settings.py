@@ -1,16 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """The settings of the gait generator: a gait, its numbers and the transition. They give the law.
 
-Numbers have the names that the gaits give them, except turns. The paper's `yaw_bend` is positive to the right; the node
-has `left_bend`, which is positive to the left, as REP-103 asks.
-
 Settings never change. `changed` returns new ones, or raises a `ValueError` that gives the reason. Numbers are kept by
 name. A number that the user has set carries over to another gait that has a number of that name. Defaults do not.
 """
 
 from collections.abc import Mapping
-from dataclasses import Field, dataclass, field, fields, make_dataclass
-from functools import cache
+from dataclasses import dataclass, field, fields
 from types import MappingProxyType
 from typing import Any
 
@@ -18,7 +14,7 @@ from eel_base.quantity import Quantities, quantity
 from eel_base.wording import shown
 
 from eel_gaits.gaits.cpg import Oscillation
-from eel_gaits.gaits.numbers import TURNS
+from eel_gaits.gaits.numbers import RENAMED, named_instead
 from eel_gaits.gaits.registry import GAITS, Transition, find
 from eel_gaits.gaits.sequence_file import sequence_from_file
 from eel_gaits.laws.law import Law
@@ -78,8 +74,15 @@ class Settings:
 
     @classmethod
     def start(cls, overrides: Mapping[str, Any]) -> "Settings":
-        """The settings at start, from a mapping of name to value. Names that no gait has are ignored."""
-        known = {name: value for name, value in overrides.items() if name in cls.known_names()}
+        """The settings at start, from a mapping of name to value. Names that no gait has are ignored.
+
+        `ValueError` for a number that was renamed.
+        """
+        names = cls.known_names()
+        for name in RENAMED:
+            if name in overrides and name not in names:
+                raise ValueError(f"no parameter {shown(name)}{named_instead(name, names)}")
+        known = {name: value for name, value in overrides.items() if name in names}
         return cls(gait=known.pop("gait", cls.gait), file=known.pop("file", cls.file), chosen=known)
 
     def changed(self, changes: Mapping[str, Any]) -> "Settings":
@@ -89,7 +92,7 @@ class Settings:
         own_names = ["transition", *(entry.name for entry in fields(numbers_of(gait)))]
         for name in changes:
             if name not in own_names:
-                raise ValueError(f"gait {shown(gait)} has no parameter {shown(name)}, it has: {', '.join(own_names)}")
+                raise ValueError(f"gait {shown(gait)} has no parameter {shown(name)}{named_instead(name, own_names)}")
         return Settings(gait=gait, file=file, chosen={**self.chosen, **changes})
 
     def groups(self) -> tuple[Any, ...]:
@@ -111,9 +114,9 @@ class Settings:
         """The numbers of the oscillators whose curvature the node streams; None for a gait that is a law."""
         if self.gait != "cpg":
             return None
-        numbers = self._numbers_of_gait()
-        del numbers["transition"]
-        return Oscillation(**numbers)
+        oscillation: Oscillation
+        _, oscillation = self.groups()
+        return oscillation
 
     def _read_law(self) -> Law | SampledLaw:
         transition, numbers = self.groups()
@@ -126,39 +129,11 @@ class Settings:
         return Law(*law.terms, name=law.name, transition=transition.transition)
 
     def _make_law(self) -> Law:
-        law: Law = find(self.gait)(**self._numbers_of_gait())
+        law: Law = find(self.gait)(**self.numbers())
         return law
 
-    def _numbers_of_gait(self) -> dict[str, Any]:
-        numbers = self.numbers()
-        for name, opposite in TURNS.items():
-            if name in numbers:
-                numbers[opposite] = -numbers.pop(name)
-        return numbers
 
-
-def _as_left(description: str) -> str:
-    """The description of a number whose sign is turned."""
-    about, _, _ = description.partition("; positive:")
-    return f"{about}; positive: to the left, negative: to the right"
-
-
-@cache
 def numbers_of(gait: str) -> type[Any]:
-    """The class of the node's numbers of a `gait`. `ValueError` for an unknown gait."""
-    kind, _ = FILE_GAITS[gait] if gait in FILE_GAITS else (find(gait).numbers, None)
-    entries = [(entry.name, float, entry) for entry in map(_as_ros_expects, fields(kind))]
-    return make_dataclass(kind.__name__, entries, bases=(Quantities,), frozen=True, kw_only=True)
-
-
-def _as_ros_expects(entry: Field[Any]) -> Field[Any]:
-    """The field of a number of the node, from that of the gait."""
-    for name, opposite in TURNS.items():
-        if entry.name == opposite:
-            metadata = entry.metadata | {"minimum": -entry.metadata["maximum"], "maximum": -entry.metadata["minimum"]}
-            metadata["description"] = _as_left(metadata["description"])
-            default: Any = entry.default
-            turned: Field[Any] = field(default=0.0 - default, metadata=metadata)  # not -0.0
-            turned.name = name
-            return turned
-    return entry
+    """The class of the numbers of a `gait`. `ValueError` for an unknown gait."""
+    kind: type[Any] = FILE_GAITS[gait][0] if gait in FILE_GAITS else find(gait).numbers
+    return kind

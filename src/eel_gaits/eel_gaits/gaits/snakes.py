@@ -3,7 +3,7 @@
 
 serpenoid: the angle of the backbone is a sine of the arc length. Its curvature is
 
-    K3(t, X) = winding_angle k cos(k X - 2 pi t / T) + bend,   k = 2 pi waves / L
+    K3(t, X) = winding_angle k cos(k X - 2 pi t / T) - left_bend,   k = 2 pi waves / L
 
 (Hirose, Biologically Inspired Robots, Oxford University Press, 1993).
 
@@ -13,7 +13,7 @@ joint_wave: the angle of joint i of n, counted from the tail as on the robot Mam
 
 (Kelasidi, Liljeback, Pettersen and Gravdahl, Robotics and Biomimetics 2:8 (2015), doi:10.1186/s40638-015-0029-4). With
 delta > 0 the wave runs from head to tail. A joint stands for a segment of the length L / n and lies in its middle. The
-angle of each joint is the integral of the curvature over its segment, exactly.
+angle of each joint is the integral of the curvature K3 over its segment, exactly: phi > 0 bends the tail to the right.
 """
 
 import math
@@ -22,7 +22,7 @@ from typing import Any
 
 from eel_base.quantity import quantity
 
-from eel_gaits.gaits.numbers import PeriodicBody, bend_quantity, constant_bend, waves_quantity
+from eel_gaits.gaits.numbers import TO_THE_LEFT, PeriodicBody, left_quantity, left_turn, waves_quantity
 from eel_gaits.gaits.registry import register
 from eel_gaits.laws.ramp import Ramp
 from eel_gaits.laws.term import Term
@@ -34,7 +34,7 @@ class Serpenoid(PeriodicBody):
 
     waves: float = waves_quantity(1.0)
     winding_angle: float = quantity(0.5, "rad", "greatest angle of the backbone to its mean direction", -1e3, 1e3)
-    yaw_bend: float = bend_quantity(0.0, "yaw curvature of a turn; positive: to the right, negative: to the left")
+    left_bend: float = left_quantity(0.0, "yaw curvature of a turn")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,13 +44,7 @@ class JointWave(PeriodicBody):
     joints: float = quantity(10.0, "", "number of joints, n", 1.0, 1000.0, whole=True)
     joint_amplitude: float = quantity(0.35, "rad", "amplitude of the joint angles, alpha", -math.pi, math.pi)
     joint_phase: float = quantity(0.6, "rad", "phase from joint to joint, delta", -math.pi, math.pi)
-    yaw_angle: float = quantity(
-        0.0,
-        "rad",
-        "offset of every joint, phi_0; positive: turns to the right, negative: to the left",
-        -math.pi,
-        math.pi,
-    )
+    left_angle: float = quantity(0.0, "rad", f"offset of every joint, -phi_0{TO_THE_LEFT}", -math.pi, math.pi)
     eel_like: float = quantity(1.0, "", "amplitude along the body: 1: (n - i) / (n + 1), 0: g = 1", 0.0, 1.0)
 
 
@@ -65,7 +59,7 @@ def serpenoid(numbers: Serpenoid) -> tuple[Term, ...]:
         phase=0.5 * math.pi,
         envelope=numbers.start,
     )
-    return (wave, *constant_bend("yaw", numbers.yaw_bend, numbers.start))
+    return (wave, *left_turn(numbers.left_bend, numbers.start))
 
 
 @register(JointWave)
@@ -86,7 +80,7 @@ def joint_wave(numbers: JointWave) -> tuple[Term, ...]:
             period=numbers.period,
             envelope=numbers.start,
         ),
-        *constant_bend("yaw", numbers.yaw_angle / segment, numbers.start),
+        *left_turn(numbers.left_angle / segment, numbers.start),
     )
 
 

@@ -9,7 +9,14 @@ from dataclasses import dataclass
 
 from eel_base.quantity import Quantities, quantity
 
-from eel_gaits.gaits.numbers import Periodic, bend_quantity, constant_bend, instant_quantity, wavelength_quantity
+from eel_gaits.gaits.numbers import (
+    Periodic,
+    bend_quantity,
+    instant_quantity,
+    left_quantity,
+    left_turn,
+    wavelength_quantity,
+)
 from eel_gaits.gaits.registry import register
 from eel_gaits.laws.ramp import Ramp
 from eel_gaits.laws.term import Term
@@ -39,7 +46,7 @@ class Wave(Periodic):
 class TurningWave(Wave):
     """The forward wave with a lasting bend in yaw."""
 
-    yaw_bend: float = bend_quantity(0.5, "yaw curvature of the turn; positive: to the right, negative: to the left")
+    left_bend: float = left_quantity(-0.5, "yaw curvature of the turn")
     bend_start: float = instant_quantity(1.0, "the turn begins")
     bend_full: float = instant_quantity(2.0, "the bend of the turn is complete", after="bend_start")
 
@@ -66,4 +73,4 @@ def backward(numbers: Wave) -> tuple[Term, ...]:
 def turning(numbers: TurningWave) -> tuple[Term, ...]:
     """Forward swimming with a lasting bend in yaw."""
     ramp = Ramp(numbers.bend_start, numbers.bend_full, 1.0)
-    return (numbers.term(), *constant_bend("yaw", numbers.yaw_bend, (ramp,)))
+    return (numbers.term(), *left_turn(numbers.left_bend, (ramp,)))

@@ -6,7 +6,7 @@
     name: patrol              # of the law; the file's name where it is left out
     blend: 0.5                # s, from one step to the next (0.5)
     steps:
-      - gait: straight        # any gait, with `set` as in `eel simulate --set`, and the node's left_bend and left_angle
+      - gait: straight        # any gait, with `set` as in `eel simulate --set`
         set: {period: 0.8}
         duration: 8.0         # s; the last step may leave it out, and then lasts
       - gait: turning
