@@ -11,6 +11,7 @@ from eel_core.levels import import_core
 _core = sys.modules["eel_core._core"] = import_core()
 
 from eel_core._core import (  # noqa: E402
+    FRICTION_LAWS,
     STATUSES,
     Instant,
     LawOnGrid,
@@ -26,6 +27,7 @@ from eel_core._core import (  # noqa: E402
 )
 
 __all__ = [
+    "FRICTION_LAWS",
     "STATUSES",
     "Instant",
     "LawOnGrid",

@@ -16,6 +16,7 @@ from typing_extensions import Buffer as _Buffer
 
 Buffer = _Buffer | np.ndarray  # numpy's stubs call an array a buffer from Python 3.12 on
 
+FRICTION_LAWS: tuple[str, ...]  # of the axial friction
 STATUSES: tuple[str, ...]
 """Names of the numbers by which a march tells how it ended: "marched", "not_finite", "step_too_small", "singular",
 "too_many_steps", "unfinished"."""
@@ -83,7 +84,7 @@ class _Sections(Protocol):
     @property
     def turbulent(self) -> Buffer: ...  # friction force per length = -turbulent (Re/8e4)^(4/5) V1
     @property
-    def reynolds(self) -> Buffer: ...  # [s/m], Re/8e4 per |V1|
+    def by_critical_speed(self) -> Buffer: ...  # [s/m], Re/8e4 per |V1|
 
 class _Stations(Protocol):
     """M places along the body where profiles are given."""
@@ -130,7 +131,7 @@ class Swimmer(_Shared):
         righting: float,
         missed_drag: Iterable[Buffer] = (),
     ) -> None:
-        """sections: at the nodes. friction: "printed", "laminar" or "blended". resistive: drag along the body.
+        """sections: at the nodes. friction: of `FRICTION_LAWS`. resistive: drag along the body.
         first_watched: first of the speeds (0 V1, 1 V2, 2 V3, 3 Omega1, 4 Re/8e4 - 1) whose changes of sign within a
         panel are integrated exactly; 5 for none. nose_mass: m_o [kg]; nose_drag: 1/2 rho_f k_o [kg/m].
         distributed_pressure: along the body in place of at the tail. righting [m^2/s^2]: g h of the righting moment of

@@ -105,10 +105,19 @@ inline Row points(const py::handle& object, const char* name, std::size_t n)
 
 inline Sections sections_from(const py::handle& s, std::size_t n)
 {
-    return {points(s, "mass", n),     points(s, "added2", n),    points(s, "added3", n),     points(s, "inertia1", n),
-            points(s, "inertia2", n), points(s, "inertia3", n),  points(s, "added_roll", n), points(s, "drag2", n),
-            points(s, "drag3", n),    points(s, "drag_roll", n), points(s, "laminar", n),    points(s, "turbulent", n),
-            points(s, "reynolds", n)};
+    return {points(s, "mass", n),
+            points(s, "added2", n),
+            points(s, "added3", n),
+            points(s, "inertia1", n),
+            points(s, "inertia2", n),
+            points(s, "inertia3", n),
+            points(s, "added_roll", n),
+            points(s, "drag2", n),
+            points(s, "drag3", n),
+            points(s, "drag_roll", n),
+            points(s, "laminar", n),
+            points(s, "turbulent", n),
+            points(s, "by_critical_speed", n)};
 }
 
 // `matrix`: rows for the `points`, as those of `PanelRows`.
@@ -153,14 +162,10 @@ inline std::shared_ptr<const Swimmer> swimmer_from(const py::object& grid, const
     swimmer->grid = grid_from(grid);
     const std::size_t n = swimmer->grid.nodes;
     swimmer->sections = sections_from(sections, n);
-    if (friction == "printed")
-        swimmer->friction = Friction::printed;
-    else if (friction == "laminar")
-        swimmer->friction = Friction::laminar;
-    else if (friction == "blended")
-        swimmer->friction = Friction::blended;
-    else
-        throw py::value_error("friction must be 'printed', 'laminar' or 'blended', got '" + friction + "'");
+    const auto name = std::find(friction_names.begin(), friction_names.end(), friction);
+    if (name == friction_names.end())
+        throw py::value_error("friction is none of FRICTION_LAWS, got '" + friction + "'");
+    swimmer->friction = static_cast<Friction>(name - friction_names.begin());
     swimmer->resistive = resistive, swimmer->first_watched = first_watched, swimmer->wake = wake ? 1.0 : 0.0;
     swimmer->nose_mass = nose_mass, swimmer->nose_drag = nose_drag,
     swimmer->distributed_pressure = distributed_pressure, swimmer->righting = righting;

@@ -326,6 +326,7 @@ PYBIND11_MODULE(EEL_CORE_MODULE, module)
     module.def("build_info", &build_info_as_dict,
                "How this module was compiled: level, compiler, flags, sanitizers, pybind11.");
     module.def("layout", &layout, py::arg("samples"), py::arg("stations"), py::arg("wrench"), py::arg("load"));
+    module.attr("FRICTION_LAWS") = py::tuple(py::cast(friction_names));
     module.attr("STATUSES") =
         py::make_tuple("marched", "not_finite", "step_too_small", "singular", "too_many_steps", "unfinished");
 

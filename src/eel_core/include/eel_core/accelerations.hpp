@@ -81,7 +81,7 @@ void add_resistance(const Swimmer& swimmer, Workspace<M>& work)
     for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
         const auto load =
             local_resistive_load<M>(swimmer.sections.drag(k), work.friction_laminar[k], work.friction_excess[k],
-                                    work.turbulent_part[k], speeds_from(work, width * k), roll_from(work, width * k));
+                                    work.turbulent_share[k], speeds_from(work, width * k), roll_from(work, width * k));
         work.density.store(k, work.density[k] - about_head<M>(work.frame[k], work.position[k], load));
     }
 }

@@ -3,7 +3,8 @@
 //
 //     n = -1/2 rho_f (k1 V1|V1|, k2 V2|V2|, k3 V3|V3|)        c1 = -1/2 rho_f k4 Omega1|Omega1|
 //
-// Where a speed changes its sign within a panel, the load has a kink there; `drag_kinks` integrates it exactly.
+// k1 is a friction law: model/friction.hpp. Where a speed changes its sign within a panel, the load has a kink there;
+// `drag_kinks` integrates it exactly.
 #pragma once
 
 #include "eel_core/model/workspace.hpp"
@@ -17,39 +18,6 @@ struct LoadSigns {
     T excess;   // part of the turbulent law in the friction
     T lateral, vertical, roll;
 };
-
-// Axial friction of sections, per length and V1 [kg/m/s].
-struct AxialFriction {
-    Lanes laminar;           // by the laminar law
-    Lanes excess;            // what the turbulent law adds
-    Lanes turbulent_part;    // how much of the excess there is, 0 to 1
-    Lanes above_transition;  // Re / 8e4 - 1
-};
-
-// Share of the turbulent law, for ratio = Re / 8e4: the ramp f_r of eq. (64) in ln Re, from Re = 4e4 to 1.6e5; ours,
-// not the paper's.
-inline double blended_part(double ratio)
-{
-    if (ratio <= 0.5) return 0.0;
-    if (ratio >= 2.0) return 1.0;
-    const double part = std::log(2.0 * ratio) / std::log(4.0), turn = 2.0 * std::numbers::pi;
-    return part - std::sin(turn * part) / turn;
-}
-
-inline AxialFriction axial_friction(const DragSection<Lanes>& section, Friction law, Lanes v1)
-{
-    const Lanes speed = abs(v1), laminar = section.laminar * sqrt(speed);
-    if (law == Friction::laminar) return {laminar, 0.0, 0.0, -1.0};
-    const Lanes ratio = speed * section.reynolds;
-    const Lanes turbulent = section.turbulent * ratio * inverse_fifth_root(ratio + 1e-30);
-    Lanes part = select(ratio > Lanes(1.0), 1.0, 0.0);
-    if (law == Friction::blended) {
-        std::array<double, width> parts;
-        for (std::size_t lane = 0; lane < width; ++lane) parts[lane] = blended_part(ratio[lane]);
-        part = Lanes::load(parts.data());
-    }
-    return {laminar, turbulent - laminar, part, ratio - 1.0};
-}
 
 // THE resistive load, in section axes: per length, or integrated over the length that the signs are weighed by.
 inline Wrench<Space, Lanes> resistive_load(const DragSection<Lanes>& section, Lanes laminar, Lanes excess,
@@ -81,10 +49,10 @@ inline Lanes roll_from(const Workspace<Plane>&, std::size_t) { return 0.0; }
 
 // The load per length with the signs that the speeds have at the node.
 template <class M>
-Wrench<M, Lanes> local_resistive_load(const DragSection<Lanes>& section, Lanes laminar, Lanes excess, Lanes part,
+Wrench<M, Lanes> local_resistive_load(const DragSection<Lanes>& section, Lanes laminar, Lanes excess, Lanes share,
                                       const Vector<M, Lanes>& v, Lanes roll)
 {
-    LoadSigns<Lanes> sign{1.0, part, with_sign_of(1.0, v.y), 0.0, with_sign_of(1.0, roll)};
+    LoadSigns<Lanes> sign{1.0, share, with_sign_of(1.0, v.y), 0.0, with_sign_of(1.0, roll)};
     if constexpr (!M::planar) sign.vertical = with_sign_of(1.0, v.z);
     return resistive_load(section, laminar, excess, sign, v, roll);
 }
@@ -114,9 +82,9 @@ void set_load_weights(const Swimmer& swimmer, Workspace<M>& work)
         const AxialFriction friction = axial_friction(swimmer.sections.drag(k), swimmer.friction, work.speed[axial][k]);
         work.friction_laminar.store(k, friction.laminar);
         work.friction_excess.store(k, friction.excess);
-        work.turbulent_part.store(k, friction.turbulent_part);
-        work.speed[above_transition].store(k, friction.above_transition);
-        work.load_weight[0].store(k, weight * friction.turbulent_part);
+        work.turbulent_share.store(k, friction.turbulent_share);
+        work.speed[above_critical].store(k, friction.above_critical);
+        work.turbulent_weight.store(k, weight * friction.turbulent_share);
         for (const Speed speed : {lateral, vertical, roll})
             if (!M::planar || speed == lateral)
                 work.load_weight[speed].store(k, with_sign_of(weight, work.speed[speed][k]));
@@ -130,7 +98,7 @@ inline Lanes roll_torque(const Wrench<Plane, Lanes>&) { return 0.0; }
 template <class M>
 LoadSigns<Lanes> load_weights(const Swimmer& swimmer, const Workspace<M>& work, std::size_t k)
 {
-    LoadSigns<Lanes> sign{swimmer.grid.weight[k], work.load_weight[0][k], work.load_weight[lateral][k], 0.0, 0.0};
+    LoadSigns<Lanes> sign{swimmer.grid.weight[k], work.turbulent_weight[k], work.load_weight[lateral][k], 0.0, 0.0};
     if constexpr (!M::planar) sign.vertical = work.load_weight[vertical][k], sign.roll = work.load_weight[roll][k];
     return sign;
 }

@@ -123,7 +123,7 @@ void add_kink(const Swimmer& swimmer, Speed speed, std::size_t i, double at_nose
     const Row& values = work.speed[speed];
     const double value = values.node(i), before = i > 0 ? values.node(i - 1) : at_nose;
     if (!(std::abs(value - before) > noise) || work.kink_count == work.most_kinks) return;
-    const bool of_friction = speed == above_transition;
+    const bool of_friction = speed == above_critical;
     const std::size_t first = grid.first[i], count = grid.count[i];
     Kink& kink = work.kinks[work.kink_count++];
     kink.speed = speed;
@@ -133,7 +133,7 @@ void add_kink(const Swimmer& swimmer, Speed speed, std::size_t i, double at_nose
     set_weights_upto(grid, first, count, kink.fraction, kink.weights);
     if (const auto& missed = swimmer.missed_drag[speed]; !missed.empty())
         add_missed_weights(missed, first, count, kink.fraction, kink.weights);
-    Row& weight = work.load_weight[of_friction ? std::size_t{0} : speed];
+    Row& weight = of_friction ? work.turbulent_weight : work.load_weight[speed];
     for (std::size_t k = 0; k < count; k += width) {
         const std::size_t node = first + k;
         const Lanes passed = select(Mask::below(i > node ? i - node : 0), grid.weight.from(node), 0.0);
@@ -200,7 +200,7 @@ void find_kinks(const Swimmer& swimmer, Workspace<M>& work)
         find_kinks_of(swimmer, vertical, work.twist.linear.z, noise_of_speeds * at_tail, work);
         find_kinks_of(swimmer, roll, work.twist.angular.x, noise_of_speeds * spin, work);
     }
-    if (swimmer.friction == Friction::printed) find_kinks_of(swimmer, above_transition, -1.0, 0.0, work);
+    if (jumps(swimmer.friction)) find_kinks_of(swimmer, above_critical, -1.0, 0.0, work);
 }
 
 // Corrects `integral` for the kinks. `integral` holds the integrals of the balance's density from the nose to the
@@ -216,7 +216,7 @@ void add_kinks(const Swimmer& swimmer, const FromNose& from_nose, bool known_hav
         const Kink& kink = work.kinks[j];
         const std::size_t first = kink.first, count = grid.count[first];
         const auto jump = [&](Speed speed) { return Lanes(kink.speed == speed ? kink.jump : 0.0); };
-        const LoadSigns<Lanes> sign{0.0, jump(above_transition), jump(lateral), jump(vertical), jump(roll)};
+        const LoadSigns<Lanes> sign{0.0, jump(above_critical), jump(lateral), jump(vertical), jump(roll)};
         Wrench<M, Lanes> to_kink{}, to_node{};  // integrals over the panel up to the kink, and by the nodes before it
         for (std::size_t k = 0; k < count; k += width) {
             const std::size_t node = first + k;

@@ -22,7 +22,9 @@ from dataclasses import dataclass, fields
 from eel_base.quantity import Quantities, checked, documented, positive, quantity
 from eel_base.wording import shown
 
-FRICTION = ("printed", "laminar", "blended", "none")
+import eel_core
+
+FRICTION = (*eel_core.FRICTION_LAWS, "none")
 PERIMETER = ("ellipse", "printed")
 ADDED_MASS = ("corrected", "printed")
 TAIL_PRESSURE = ("lumped", "distributed")

@@ -27,7 +27,7 @@ WATCHED = {"all": 1, "jumps": 4, "none": 5}  # first of the speeds (V1, V2, V3, 
 GRAVITY = 9.80665  # m/s^2, standard
 LEAST = 1e-9  # of the greatest drag by length: no drag at a node is smaller
 PLACES = 8  # by node of the largest panel, at which integrals up to a kink are tabulated
-TRANSITION = 8.0e4  # Reynolds number at which the printed friction law jumps from laminar to turbulent
+CRITICAL_REYNOLDS = 8.0e4  # Reynolds number at which the printed friction law jumps from laminar to turbulent
 
 
 def added_masses(body: Body, scene: Scene, a_squared, b_squared):
@@ -55,7 +55,7 @@ class SectionData(NamedTuple):
     drag_roll: np.ndarray  # kg, 1/2 rho_f k4
     laminar: np.ndarray  # friction force per length = -laminar |V1|^(1/2) V1
     turbulent: np.ndarray  # friction force per length = -turbulent (Re/8e4)^(4/5) V1
-    reynolds: np.ndarray  # s/m, Re/8e4 per |V1|
+    by_critical_speed: np.ndarray  # s/m, Re/8e4 per |V1|
 
     def of_water(self) -> "SectionData":
         """The section data of the water alone: the mass and inertia of the body are zero."""
@@ -64,7 +64,7 @@ class SectionData(NamedTuple):
 
 
 # In which a section's inertial wrench and its drag are linear; the order is that of the core's `SectionPart`.
-PARTS = tuple(name for name in SectionData._fields if name not in ("added_roll", "reynolds"))
+PARTS = tuple(name for name in SectionData._fields if name not in ("added_roll", "by_critical_speed"))
 
 
 class StationData(NamedTuple):
@@ -162,7 +162,7 @@ def sections_on(body: Body, scene: Scene, grid: Grid) -> SectionData:
         return sections
     table = SectionData(*with_moments(lambda x: np.array(sections_of(body, scene, x)), grid, body.breaks))
     drags = {name: _off_zero(getattr(table, name)) for name in ("drag2", "drag3", "drag_roll")}
-    return table._replace(reynolds=sections.reynolds, **drags)
+    return table._replace(by_critical_speed=sections.by_critical_speed, **drags)
 
 
 def _off_zero(values: np.ndarray) -> np.ndarray:
@@ -184,9 +184,9 @@ def sections_of(body: Body, scene: Scene, x: np.ndarray) -> SectionData:
     c, d = (a, b) if np.array_equal(behind, x) else (body.half_height(behind), body.half_width(behind))
     perimeter = np.pi * (1.5 * (c + d) - np.sqrt(c * d)) * (0.5 if scene.perimeter == "printed" else 1.0)
     rubbed = 0.0 if scene.friction == "none" else half_rho
-    transition = TRANSITION * scene.viscosity / behind  # m/s, |V1| at which Re = 8e4
+    critical_speed = CRITICAL_REYNOLDS * scene.viscosity / behind  # m/s, |V1| at which Re = 8e4
     with np.errstate(divide="ignore"):
-        reynolds = np.where(transition > 0.0, 1.0 / transition, 0.0)
+        by_critical_speed = np.where(critical_speed > 0.0, 1.0 / critical_speed, 0.0)
     table = SectionData(
         mass=density * area,
         added2=added2,
@@ -199,7 +199,7 @@ def sections_of(body: Body, scene: Scene, x: np.ndarray) -> SectionData:
         drag3=half_rho * 2.0 * body.vertical_drag * b,
         drag_roll=half_rho * body.roll_drag * np.pi * (a**2 - b**2) ** 2,
         laminar=rubbed * perimeter * 0.664 * np.sqrt(scene.viscosity / behind),
-        turbulent=rubbed * perimeter * 0.059 * (scene.viscosity / behind) * TRANSITION**0.8,
-        reynolds=reynolds,
+        turbulent=rubbed * perimeter * 0.059 * (scene.viscosity / behind) * CRITICAL_REYNOLDS**0.8,
+        by_critical_speed=by_critical_speed,
     )
     return SectionData(*(np.ascontiguousarray(row, dtype=float) for row in table))

@@ -2,7 +2,7 @@
 """The numbers of the page beside the figures, docs/figures/README.md. Each is computed from the runs in the figures."""
 
 import numpy as np
-from eel_dynamics.model.section_data import TRANSITION
+from eel_dynamics.model.section_data import CRITICAL_REYNOLDS
 from eel_dynamics.runs.run import Run
 
 from eel_studies.figures import corrections, kern_comparison
@@ -60,7 +60,7 @@ def _along(run: Run, printed: Run) -> dict[str, str]:
     """The greatest force and torques along the body at `INSTANT`, and where the friction jumps."""
     k = int(np.argmin(np.abs(run.time - INSTANT)))
     force, torque = (field[k] for field in wrench_of(run))
-    found = {"jump": f"{TRANSITION * run.scene.viscosity / abs(run.twist[k, 3]):.2f}"}
+    found = {"jump": f"{CRITICAL_REYNOLDS * run.scene.viscosity / abs(run.twist[k, 3]):.2f}"}
     for name, values in (("axial", force[:, 0]), ("pitch", torque[:, 1]), ("yaw", torque[:, 2])):
         place = np.argmax(np.abs(values))
         found |= {name: f"{values[place]:+.3f}", f"{name}_at": f"{run.x[place]:.2f}"}

@@ -30,7 +30,7 @@ from eel_dynamics.analysis.measures import checked_measures
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.equality import same_fields
 from eel_dynamics.model.scene import Scene
-from eel_dynamics.model.section_data import TRANSITION
+from eel_dynamics.model.section_data import CRITICAL_REYNOLDS
 from eel_dynamics.runs.batch import Batch
 from eel_dynamics.runs.companion import relative_errors
 from eel_dynamics.runs.run import Run
@@ -229,9 +229,9 @@ def _jumps(runs: list[Run], names: tuple[str, ...]) -> tuple[str, ...]:
     if not crossed:
         return ()
     return (
-        f"the printed friction jumps at Re = {TRANSITION:g} between the two swims for {', '.join(crossed)} (at up to "
-        f"{max(shares.values()):.2g} of all sections and samples): a derivative may miss what the jump does; friction "
-        "blended or laminar is smooth",
+        f"the printed friction jumps at Re = {CRITICAL_REYNOLDS:g} between the two swims for {', '.join(crossed)} (at "
+        f"up to {max(shares.values()):.2g} of all sections and samples): a derivative may miss what the jump does; "
+        "friction blended or laminar is smooth",
     )
 
 
@@ -252,4 +252,4 @@ def _is_turbulent(run: Run) -> np.ndarray:
     velocity = CubicSpline(run.time, run.backbone, axis=0)(run.time, 1) - run.scene.current
     along = world_from_body(run.section_orientation)[..., 0]  # axis 1 of each section
     speed = np.abs(np.sum(velocity * along, axis=-1))
-    return np.asarray(speed * run.x > TRANSITION * run.scene.viscosity)
+    return np.asarray(speed * run.x > CRITICAL_REYNOLDS * run.scene.viscosity)

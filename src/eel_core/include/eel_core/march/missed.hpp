@@ -58,10 +58,10 @@ class MissedWrench {
     void set_drag_units(const Swimmer& swimmer, const Workspace<Space>& work)
     {
         for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
-            const DragSection<Lanes> rough{0.0, 0.0, 0.0, 1.0, 1.0, swimmer.sections.reynolds[k]};
+            const DragSection<Lanes> rough{0.0, 0.0, 0.0, 1.0, 1.0, swimmer.sections.by_critical_speed[k]};
             const AxialFriction friction = axial_friction(rough, swimmer.friction, work.speed[axial][k]);
-            const Lanes turned = swimmer.friction == Friction::printed ? Lanes(1.0) : friction.turbulent_part;
-            const Lanes kept = swimmer.friction == Friction::printed ? Lanes(1.0) : 1.0 - friction.turbulent_part;
+            const Lanes turned = jumps(swimmer.friction) ? Lanes(1.0) : friction.turbulent_share;
+            const Lanes kept = jumps(swimmer.friction) ? Lanes(1.0) : 1.0 - friction.turbulent_share;
             const LoadSigns<Lanes> sign{1.0, 0.0, 1.0, 1.0, 1.0};
             const auto store = [&](std::size_t part, const DragSection<Lanes>& one, Lanes friction_of_one) {
                 const auto load = resistive_load(one, friction_of_one, 0.0, sign, speeds_from(work, width * k),
@@ -82,15 +82,13 @@ class MissedWrench {
         for (std::size_t k = 0; k < blocks_of(swimmer.stations); ++k) {
             const Frame3<Lanes> there = frame[k];
             const Vector3<Lanes> v = there.local(velocity[k]);
-            const Lanes ratio = abs(v.x) * swimmer.at_station.reynolds[k];
-            const Mask above = ratio > Lanes(1.0);
-            const bool printed = swimmer.friction == Friction::printed;
+            const Lanes share = axial_friction(swimmer.at_station.drag(k), swimmer.friction, v.x).turbulent_share;
             for (std::size_t part = 0; part < Part::drag2; ++part) factor_[part].store(k, 1.0);
             factor_[Part::drag2].store(k, with_sign_of(1.0, v.y));
             factor_[Part::drag3].store(k, with_sign_of(1.0, v.z));
             factor_[Part::drag_roll].store(k, with_sign_of(1.0, dot(there.axis1, omega[k])));
-            factor_[Part::laminar].store(k, printed ? select(above, 0.0, 1.0) : Lanes(1.0));
-            factor_[Part::turbulent].store(k, printed ? select(above, 1.0, 0.0) : Lanes(1.0));
+            factor_[Part::laminar].store(k, jumps(swimmer.friction) ? 1.0 - share : Lanes(1.0));
+            factor_[Part::turbulent].store(k, jumps(swimmer.friction) ? share : Lanes(1.0));
         }
     }
 

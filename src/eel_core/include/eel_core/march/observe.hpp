@@ -213,7 +213,7 @@ class Observer {
                 const DragSection<Lanes> drag = swimmer_.at_station.drag(k);
                 const AxialFriction friction = axial_friction(drag, swimmer_.friction, v.x);
                 resistive = local_resistive_load<Space>(drag, friction.laminar, friction.excess,
-                                                        friction.turbulent_part, v, omega.x)
+                                                        friction.turbulent_share, v, omega.x)
                                 .linear;
             }
             show(Profiles::resistive_force, sample, k, resistive);

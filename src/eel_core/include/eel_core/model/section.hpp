@@ -92,14 +92,14 @@ template <Number T>
 struct DragSection {
     T drag2, drag3;        // [kg/m^2], 1/2 rho_f k2 and k3
     T drag_roll;           // [kg], 1/2 rho_f k4
-    T laminar, turbulent;  // friction per V1: laminar |V1|^(1/2), turbulent (|V1|/transition)^(4/5)
-    T reynolds;            // [s/m], Re / 8e4 per |V1|
+    T laminar, turbulent;  // friction per V1: laminar |V1|^(1/2), turbulent (Re / 8e4)^(4/5)
+    T by_critical_speed;   // [s/m], Re / 8e4 per |V1|
 };
 
 // The sections at the nodes, or at the stations.
 struct Sections {
     Row mass, added2, added3, inertia1, inertia2, inertia3, added_roll;
-    Row drag2, drag3, drag_roll, laminar, turbulent, reynolds;
+    Row drag2, drag3, drag_roll, laminar, turbulent, by_critical_speed;
 
     Section<Lanes> operator[](std::size_t k) const
     {
@@ -113,7 +113,8 @@ struct Sections {
     DragSection<Lanes> drag(std::size_t k) const { return drag_from(width * k); }
     DragSection<Lanes> drag_from(std::size_t i) const
     {
-        return {drag2.from(i), drag3.from(i), drag_roll.from(i), laminar.from(i), turbulent.from(i), reynolds.from(i)};
+        return {drag2.from(i),   drag3.from(i),     drag_roll.from(i),
+                laminar.from(i), turbulent.from(i), by_critical_speed.from(i)};
     }
 };
 

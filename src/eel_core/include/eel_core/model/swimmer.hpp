@@ -2,16 +2,14 @@
 // What a run never writes: body and water at the nodes and stations, and which physics is on.
 #pragma once
 
+#include "eel_core/model/friction.hpp"
 #include "eel_core/model/grid.hpp"
-#include "eel_core/model/section.hpp"
 
 namespace eel_core {
 
-enum class Friction { printed, laminar, blended };
-
 // Speeds of a section on which its drag depends: V1, V2, V3, Omega1 and Re / 8e4 - 1; `speeds` is their number. From
 // `lateral` on, the drag has a kink or a jump where the speed changes its sign.
-enum Speed : std::size_t { axial = 0, lateral = 1, vertical = 2, roll = 3, above_transition = 4, speeds = 5 };
+enum Speed : std::size_t { axial = 0, lateral = 1, vertical = 2, roll = 3, above_critical = 4, speeds = 5 };
 
 // Numbers of a section in which its inertial wrench and, from `drag2` on, its drag are linear.
 struct SectionPart {

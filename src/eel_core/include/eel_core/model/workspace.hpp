@@ -32,9 +32,9 @@ struct Workspace {
         alpha = Field<Angular<M, double>>(n), acceleration = Field<Vector<M, double>>(n);
         integrand = Field<Wrench<M, double>>(n), density = Field<Wrench<M, double>>(n),
         integral = Field<Wrench<M, double>>(n);
-        friction_laminar = friction_excess = turbulent_part = Row(n);
+        friction_laminar = friction_excess = turbulent_share = turbulent_weight = Row(n);
         for (Row& row : speed) row = Row(n);
-        for (Row& row : load_weight) row = Row(n);
+        for (const Speed each : {lateral, vertical, roll}) load_weight[each] = Row(n);
         kink_density = Field<Wrench<M, double>>(blocks_of(swimmer.grid.widest));
         for (Kink& kink : kinks) kink.weights.resize(swimmer.grid.widest + width);
     }
@@ -58,8 +58,9 @@ struct Workspace {
     // Drag, in section axes:
     std::array<Row, speeds> speed;          // see `Speed`
     Row friction_laminar, friction_excess;  // [kg/m/s], friction per V1 by the laminar law, and what turbulence adds
-    Row turbulent_part;                     // of the friction, 0 to 1
-    std::array<Row, 4> load_weight;         // [m], integration weights of the loads with their signs; 0: of the excess
+    Row turbulent_share;                    // of the friction, 0 to 1
+    Row turbulent_weight;                   // [m], integration weights of the excess
+    std::array<Row, 4> load_weight;         // [m], of the other loads, with their signs; none for `axial`
     static constexpr std::size_t most_kinks = 24;  // beyond, signs change too often to be integrated apart
     std::array<Kink, most_kinks> kinks;
     std::size_t kink_count = 0;
@@ -85,7 +86,7 @@ struct Workspace {
         std::size_t sum = frame.bytes() + quaternion.bytes() + position.bytes() + omega.bytes() + velocity.bytes() +
                           curvature_rate.bytes() + integrand.bytes() + alpha.bytes() + acceleration.bytes() +
                           density.bytes() + integral.bytes() + friction_laminar.bytes() + friction_excess.bytes() +
-                          turbulent_part.bytes() + kink_density.bytes();
+                          turbulent_share.bytes() + turbulent_weight.bytes() + kink_density.bytes();
         for (const Row& row : speed) sum += row.bytes();
         for (const Row& row : load_weight) sum += row.bytes();
         return sum + sizeof(*this);

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// The laws of the axial friction c_f(Re), section 7.2.1: all that depends on the law stands here.
+//
+// A new law is an entry of `Friction` and `friction_names`, and a case of `axial_friction`; `Scene.friction` takes its
+// name. Its coefficients come from `sections_of` in eel_dynamics/model/section_data.py. One that is not analytic along
+// the body, as `blended`, wants more points: `Accuracy.in_scene`, and eel_dynamics/runs/companion.py.
+#pragma once
+
+#include <numbers>
+
+#include "eel_core/model/section.hpp"
+
+namespace eel_core {
+
+enum class Friction : std::size_t { printed, laminar, blended };
+inline constexpr std::array friction_names{"printed", "laminar", "blended"};  // as in Python
+
+// Whether the friction jumps where Re is critical, 8e4; the place of the jump is then integrated exactly
+// (`find_kinks`).
+inline bool jumps(Friction law) { return law == Friction::printed; }
+
+// Axial friction of sections, per length and V1 [kg/m/s].
+struct AxialFriction {
+    Lanes laminar;          // by the laminar law
+    Lanes excess;           // what the turbulent law adds
+    Lanes turbulent_share;  // how much of the excess there is, 0 to 1
+    Lanes above_critical;   // Re / 8e4 - 1
+};
+
+// Share of the turbulent law, for ratio = Re / 8e4: the ramp f_r of eq. (64) in ln Re, from Re = 4e4 to 1.6e5; ours,
+// not the paper's.
+inline double turbulent_share(double ratio)
+{
+    if (ratio <= 0.5) return 0.0;
+    if (ratio >= 2.0) return 1.0;
+    const double part = std::log(2.0 * ratio) / std::log(4.0), turn = 2.0 * std::numbers::pi;
+    return part - std::sin(turn * part) / turn;
+}
+
+inline AxialFriction axial_friction(const DragSection<Lanes>& section, Friction law, Lanes v1)
+{
+    const Lanes speed = abs(v1), laminar = section.laminar * sqrt(speed);
+    if (law == Friction::laminar) return {laminar, 0.0, 0.0, -1.0};
+    const Lanes ratio = speed * section.by_critical_speed;
+    const Lanes turbulent = section.turbulent * ratio * inverse_fifth_root(ratio + 1e-30);
+    Lanes share = select(ratio > Lanes(1.0), 1.0, 0.0);
+    if (law == Friction::blended) {
+        std::array<double, width> shares;
+        for (std::size_t lane = 0; lane < width; ++lane) shares[lane] = turbulent_share(ratio[lane]);
+        share = Lanes::load(shares.data());
+    }
+    return {laminar, turbulent - laminar, share, ratio - 1.0};
+}
+
+}  // namespace eel_core
