@@ -86,7 +86,8 @@ def test_a_budget_is_measured_on_this_machine():
     run = simulate(gait("straight"), 0.2, accuracy="fastest within 900 s per second", scene=Scene(planar=True))
     finest = Accuracy.of(BUDGET_TARGETS[-1]).in_scene(run.scene)
     assert run.accuracy.tolerance == finest.tolerance  # so much time affords the finest
-    assert run.error_estimate.worst > BUDGET_TARGETS[-1] and not any("target" in each for each in run.warnings)
+    assert run.accuracy.target is None and 0.0 < run.error_estimate.worst < 100.0 * BUDGET_TARGETS[-1]
+    assert not any("target" in each for each in run.warnings)
     batch = simulate_batch(
         [gait("straight")] * 2, 0.2, accuracy="fastest within 900 s per second", scenes=Scene(planar=True)
     )

@@ -20,24 +20,28 @@ ACCEPTED = 1.5  # factor of the target by which an estimate must lie below it
 MOST_REFINEMENTS = 4  # of a run whose error is above its target
 BLENDED_ORDER = 3.0  # at most, at which the error of the grid falls where friction changes its law along the body
 RESAMPLING = 1.0 / 3.0  # 1 / (2^p - 1) of the order p = 2 of an interpolation
+# The companion has every third of the samples, where they are many. A period has 20 of them by default, so that three
+# periods show as many phases of it as before.
+COMPARED_EVERY, MANY_SAMPLES = 3, 100
 HALVINGS = 8  # of an unstable step, at most, in the search for a stable one
 
 
 def relative_errors(run, reference) -> ErrorEstimate:
-    """Distance of `run` from `reference`, a run of the same swimmer with the same samples and stations.
+    """Distance of `run` from `reference`, a run of the same swimmer with the same stations, at the reference's samples.
 
     Of the head's position: the greatest over the later half of the samples, relative to the length of the path, or of
     the body if that is longer. Of the torque: the greatest over samples and stations, relative to its own maximum,
     which counts for no less than `least_torque`. growth_rate: of the distance of the heads.
     """
-    distance = np.linalg.norm(run.position - reference.position, axis=1)
+    time, here = reference.time, np.searchsorted(run.time, reference.time)
+    distance = np.linalg.norm(run.position[here] - reference.position, axis=1)
     scale = max(reference.path_length, reference.body.length)
-    later = distance[run.time >= 0.5 * run.time[-1]]
-    position, rate = float(later.max()) / scale, growth_rate_of(run.time, distance, SMALL * scale)
+    later = distance[time >= 0.5 * time[-1]]
+    position, rate = float(later.max()) / scale, growth_rate_of(time, distance, SMALL * scale)
     if run.torque is None or reference.torque is None:
         return ErrorEstimate(position, None, rate)
-    least = least_torque(run.law, run.body_mass, run.body.length, float(run.time[-1]))
-    size, distance = torque_size(reference.torque).max(), torque_size(run.torque - reference.torque).max()
+    least = least_torque(run.law, run.body_mass, run.body.length, float(time[-1]))
+    size, distance = torque_size(reference.torque).max(), torque_size(run.torque[here] - reference.torque).max()
     return ErrorEstimate(position, float(distance / max(size, least)), rate)
 
 
@@ -50,7 +54,7 @@ def with_error_estimate(swim: Any, request: Any) -> Any:
     target = getattr(request.setup.accuracy, "target", None)  # a budget of time has none
     if swim.stopped is not None or len(request.times) < 2:
         return swim
-    marching = _without_ledger(request)
+    marching = _for_comparison(request)
     companion = _finished(marching, swim.run.accuracy.coarser().by_adams(), swim.run.nodes)
     for refinement in range(MOST_REFINEMENTS + 1):
         error = ErrorEstimate(np.inf, None) if companion is None else relative_errors(swim.run, companion.run)
@@ -101,9 +105,15 @@ def _with_resampling(run, request, others: list):
     return replace(run, error_estimate=error)
 
 
-def _without_ledger(request):
-    """The `request` for a motion and its torque alone: Adams' method is the cheaper one without a ledger."""
-    return request.changed(scene=replace(request.setup.scene, ledger=False))._replace(load=False)
+def _for_comparison(request):
+    """The `request` for what is compared: motion and torque, at some of the samples, the last one among them.
+
+    Adams' method is the cheaper one without a ledger.
+    """
+    times = request.times
+    if len(times) > MANY_SAMPLES:
+        times = times[(len(times) - 1) % COMPARED_EVERY :: COMPARED_EVERY]
+    return request.changed(scene=replace(request.setup.scene, ledger=False))._replace(load=False, times=times)
 
 
 def _for_target(swim, target: float | None):
