@@ -5,10 +5,10 @@ import made_up
 import numpy as np
 import pytest
 from eel_base.attitude import world_from_body
-from eel_viz.scene3d import camera
+from eel_viz.scene3d import camera, colours
 from eel_viz.scene3d.centre_line import Resampling
 from eel_viz.scene3d.orientation import world_from_section
-from eel_viz.scene3d.skin import Flanks, Skin
+from eel_viz.scene3d.skin import Skin
 
 
 def about_z(angle):
@@ -86,14 +86,38 @@ def test_every_ring_is_the_body_s_ellipse(skin):
     rings = vertices.reshape(len(skin.x), -1, 3)
     np.testing.assert_allclose(rings[:, :, 0], -np.broadcast_to(skin.x[:, None], rings.shape[:2]), atol=1e-7)
     given, exact = made_up.body(201), made_up.body(100_001)
-    for k, x in enumerate(skin.x[1:], start=1):
+    blunt = 1.0 - float(given["half_height"][-1])  # from here on the tail is rounded
+    for k, x in enumerate(skin.x[skin.x < blunt][1:], start=1):
         # 1e-5 of the squares between the given points; 3 % of the true ones, where 5 mm are coarse for the nose
         for body, tolerance in ((given, 1e-5), (exact, 3e-2)):
             b2, a2 = (np.interp(x, body["x"], body[name] ** 2) for name in ("half_width", "half_height"))
             np.testing.assert_allclose(rings[k, :, 1] ** 2 / b2 + rings[k, :, 2] ** 2 / a2, 1.0, rtol=tolerance)
     assert np.abs(rings[:, :, 2]).max() == pytest.approx(0.05, rel=1e-2)
-    assert rings[-1, :, 1].max() < 0.1 * rings[-1, :, 2].max()  # the tail is an upright edge
     np.testing.assert_array_equal(rings[0], 0.0)
+
+
+def test_the_tail_is_rounded_within_the_body_and_closed_in_a_point(skin):
+    rings = skin.place(*straight())[0].reshape(len(skin.x), -1, 3)
+    given = made_up.body(201)
+    for k, x in enumerate(skin.x):
+        for axis, name in ((1, "half_width"), (2, "half_height")):
+            assert np.abs(rings[k, :, axis]).max() <= np.sqrt(np.interp(x, given["x"], given[name] ** 2)) + 1e-5
+    height = float(given["half_height"][-1])
+    rounded = skin.x > 1.0 - height
+    assert rounded.sum() >= 3
+    expected = height * np.sqrt(1.0 - ((skin.x[rounded] - 1.0) / height + 1.0) ** 2)  # a half circle from the side
+    np.testing.assert_allclose(np.abs(rings[rounded, :, 2]).max(axis=1), expected, atol=2e-3 * height)
+    np.testing.assert_allclose(rings[-1], np.broadcast_to((-1.0, 0.0, 0.0), rings[-1].shape), atol=1e-7)
+
+
+def test_the_eyes_lie_in_the_skin_at_the_head_and_nowhere_beyond_the_widest_section(skin):
+    given = made_up.body(201)
+    assert np.all(skin.eyes[:, 0] < 0.0) and np.all(skin.eyes[:, 0] > -0.05) and np.all(skin.eyes[:, 2] > 0.0)
+    np.testing.assert_allclose(skin.eyes[:2] * (1, -1, 1), skin.eyes[2:])
+    b2, a2 = (np.interp(-skin.eyes[0, 0], given["x"], given[name] ** 2) for name in ("half_width", "half_height"))
+    assert skin.eyes[0, 1] ** 2 / b2 + skin.eyes[0, 2] ** 2 / a2 < 1.0
+    reach = np.abs(skin.eyes[:, 1]) + skin.eye_sizes[:, 1]
+    assert np.all(reach > np.sqrt(b2 * (1 - skin.eyes[0, 2] ** 2 / a2))) and reach.max() <= given["half_width"].max()
 
 
 def test_the_mesh_is_closed_and_faces_outwards(skin):
@@ -103,8 +127,8 @@ def test_the_mesh_is_closed_and_faces_outwards(skin):
     edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
     directed = {tuple(edge) for edge in edges}
     sides = len(vertices) // len(skin.x)
-    nose = set(range(sides))  # one point, so its edges have no length
-    open_edges = [(a, b) for a, b in directed if (b, a) not in directed and not {a, b} <= nose]
+    ends = set(range(sides)), set(range(len(vertices) - sides, len(vertices)))  # points: their edges have no length
+    open_edges = [edge for edge in directed if edge[::-1] not in directed and not any(set(edge) <= end for end in ends)]
     assert open_edges == []
     a, b, c = (vertices[triangles[:, k]].astype(float) for k in range(3))
     volume = np.einsum("ni,ni->n", a, np.cross(b, c)).sum() / 6
@@ -166,18 +190,15 @@ def test_back_and_belly_differ_and_both_sides_are_alike(skin):
     np.testing.assert_array_equal(shades[:, 0], shades[:, 2 * quarter])
 
 
-def test_the_torque_layer_lies_just_outside_the_skin_on_both_flanks(skin):
-    geometry = made_up.body()
-    flanks = Flanks(geometry["x"], geometry["half_width"], geometry["half_height"])
-    around = flanks.place(*straight())[0].reshape(len(flanks.x), 6, 3)[1:]
-    width = np.interp(flanks.x[1:], geometry["x"], np.square(geometry["half_width"])) ** 0.5
-    sides = np.abs(around[:, (1, 4), 1])
-    np.testing.assert_allclose(sides, 1.05 * np.stack([width, width], axis=1), rtol=1e-4)
-    assert np.all(around[:, 1, 1] * around[:, 4, 1] < 0.0)
-    vertices, normals = (array.reshape(-1, 3) for array in flanks.place(*straight()))
-    corners = vertices[flanks.triangles.astype(int)]
-    facing = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    assert np.all(np.sum(facing * normals[flanks.triangles[:, 0].astype(int)], axis=1) > -1e-9)
+def test_a_torque_colours_the_flanks_alone(skin):
+    x = np.linspace(0.0, 1.0, 51)
+    shades = skin.coloured(x, x - 0.5, 0.5).reshape(len(skin.x), -1, 3)
+    bare = skin.shades.reshape(shades.shape)
+    quarter = shades.shape[1] // 4
+    for angle in (quarter, 3 * quarter):  # back and belly
+        np.testing.assert_array_equal(shades[:, angle], bare[:, angle])
+    for angle in (0, 2 * quarter):
+        np.testing.assert_array_equal(shades[:, angle], colours.diverging(skin.x - 0.5, 0.5))
 
 
 def test_the_camera_has_no_lag_behind_a_steady_motion_and_leaves_the_wiggle():

@@ -17,9 +17,9 @@ from eel_viz.recording.reading import read
 from eel_viz.recording.recording_file import FileDestination
 from eel_viz.recording.recordings import Recordings
 from eel_viz.scene3d import camera
-from eel_viz.scene3d.colours import diverging, diverging_index
+from eel_viz.scene3d.colours import diverging_index
 from eel_viz.scene3d.orientation import world_from_section
-from eel_viz.scene3d.skin import Flanks, Skin
+from eel_viz.scene3d.skin import Skin
 from eel_viz.scene3d.track import LENGTH, PIECES, POINTS, STROBE_PERIOD, THREADS
 from eel_viz.scene3d.water import GRID, LABELS, WALLS
 from eel_viz.settings import Settings
@@ -184,18 +184,15 @@ def test_skin_and_frames_at_the_drawing_rate(made):
     path, samples = made
     stamps = drawn_stamps(samples)
     assert len(stamps) == 26
-    sections = body().x, body().half_width, body().half_height
-    skin, flanks = Skin(*sections), Flanks(*sections)
-    logged, layer = read(path, entities.SKIN), read(path, entities.TORQUE_LAYER)
+    skin = Skin(body().x, body().half_width, body().half_height)
+    logged, eyes = read(path, entities.SKIN), read(path, entities.EYES)
     for name in ("vertex_positions", "vertex_normals"):
         np.testing.assert_array_equal(logged.stamps_of[name], stamps)
-    np.testing.assert_array_equal(layer.stamps_of["vertex_colors"], [0, *stamps])  # first those without a torque
-    np.testing.assert_array_equal(layer.stamps_of["vertex_positions"], stamps)
-    for path_of, surface in ((entities.SKIN, skin), (entities.TORQUE_LAYER, flanks)):
-        triangles = read(path, path_of, static=True)["triangle_indices"][0]
-        np.testing.assert_array_equal(triangles, surface.triangles)
-    fixed = np.array(read(path, entities.SKIN, static=True)["vertex_colors"][0], dtype=np.uint32)
-    np.testing.assert_array_equal(fixed, packed(skin.shades))
+    np.testing.assert_array_equal(logged.stamps_of["vertex_colors"], [0, *stamps])  # first those without a torque
+    np.testing.assert_array_equal(np.array(logged["vertex_colors"][0], dtype=np.uint32), packed(skin.shades))
+    np.testing.assert_array_equal(read(path, entities.SKIN, static=True)["triangle_indices"][0], skin.triangles)
+    fixed = read(path, entities.EYES, static=True)
+    np.testing.assert_allclose(fixed["half_sizes"][0], skin.eye_sizes, atol=SINGLE)
     heads, tails, follow, whole = (
         read(path, entity) for entity in (entities.HEAD, entities.TAIL, entities.FOLLOW, entities.WHOLE_PATH)
     )
@@ -206,8 +203,10 @@ def test_skin_and_frames_at_the_drawing_rate(made):
         np.testing.assert_allclose(logged["vertex_positions"][k], vertices, atol=SINGLE)
         np.testing.assert_allclose(logged["vertex_normals"][k], normals, atol=SINGLE)
         wrench = samples[stamp]["internal_wrench"][0]
-        shades = diverging(flanks.at_vertices(wrench.x, wrench.values["torque_3"]), 0.25)
-        np.testing.assert_array_equal(np.array(layer["vertex_colors"][1 + k], dtype=np.uint32), packed(shades))
+        shades = skin.coloured(wrench.x, wrench.values["torque_3"], 0.25)
+        np.testing.assert_array_equal(np.array(logged["vertex_colors"][1 + k], dtype=np.uint32), packed(shades))
+        np.testing.assert_allclose(eyes["translation"][k][0], backbone.position[0], atol=SINGLE)
+        np.testing.assert_allclose(eyes["quaternion"][k][0], backbone.orientation[0], atol=SINGLE)
         pose = samples[stamp]["head_pose"][0]
         np.testing.assert_allclose(heads["translation"][k][0], pose.position, atol=SINGLE)
         np.testing.assert_allclose(heads["quaternion"][k][0], pose.orientation, atol=SINGLE)
@@ -307,7 +306,7 @@ def test_nothing_is_shown_that_no_test_compares_with_the_messages(made):
     compared |= {entities.LOAD, entities.LOAD_ENDS, entities.WAKE, entities.WAKE_LEGEND, entities.HEAT_MAP_IMAGE}
     compared |= {f"{root}/{part}" for root in plots for part in (entities.CURVES, entities.ENVELOPE, entities.TICKS)}
     compared |= {f"{root}/{part}" for root in (entities.WATER, entities.PATH_WATER) for part in (GRID, LABELS, WALLS)}
-    compared |= {entities.SHADOW, entities.RUN, entities.LOG, entities.TORQUE_LAYER, entities.WHOLE_PATH}
+    compared |= {entities.SHADOW, entities.RUN, entities.LOG, entities.EYES, entities.WHOLE_PATH}
     compared |= {f"{entities.LEGEND}/{part}" for part in ("bar", "labels", "arrows")}
     compared.add(f"{entities.HEAT_MAP_FRAME}/labels")
     assert changing - {path for path in changing if path.startswith("/__")} == compared
@@ -430,7 +429,7 @@ def test_the_order_of_topics_does_not_matter(tmp_path):
         paths.append(tmp_path / f"{name}.rrd")
     for entity, component in (
         (entities.LOAD, "vectors"),
-        (entities.TORQUE_LAYER, "vertex_colors"),
+        (entities.SKIN, "vertex_colors"),
         (entities.SKIN, "vertex_positions"),
         (entities.SPEED, "scalars"),
         (f"{entities.TORQUE}/curves", "strips"),

@@ -18,7 +18,7 @@ from eel_viz.batched_stream import BatchedStream
 from eel_viz.messages import Backbone, Body, Load, Pose, Profiles, Status, Twist, same
 from eel_viz.plots.comparison import Comparison
 from eel_viz.plots.heat_map import HeatMap
-from eel_viz.plots.limit import Limit
+from eel_viz.plots.limit import RecentLimit
 from eel_viz.plots.profile_plot import ProfilePlot
 from eel_viz.plots.series import Attitude, log_styles
 from eel_viz.plots.state_text import Summary
@@ -65,7 +65,7 @@ class Loggers:
                 (entities.CURVATURE, ("K2", "K3"), "rad/m", settings.curvature_limit),
             )
         )
-        self._colour_limit = Limit(settings.colour_limit, grows=not settings.colour_limit)
+        self._colour_limit = RecentLimit(settings.colour_limit)
         self._heat_map = HeatMap(stream, limit=self._colour_limit)
         log_styles(stream)
         self._targets: tuple[list[object], list[object]] = [self], []  # what draws this run, and the compared one
@@ -143,7 +143,7 @@ class Loggers:
             self._scene.backbone(stamp, backbone)
 
     def internal_wrench(self, stamp: int, wrench: Profiles) -> None:
-        """Log torques and forces along the body; C3 colours the torque layer and makes the heat map."""
+        """Log torques and forces along the body; C3 colours the flanks and makes the heat map."""
         torque = wrench.together("torque_1", "torque_2", "torque_3")
         force = wrench.together("force_1", "force_2", "force_3")
         self.summary.add_torque(stamp, wrench.x, torque[:, 2])
@@ -151,7 +151,7 @@ class Loggers:
         self._force.include(wrench.x, force)
         if self._due("wrench", stamp, self._number_period):
             self._numbers(stamp, entities.WRENCH_NUMBERS, "InternalWrench", wrench.values, wrench.x)
-        self._colour_limit.include(float(np.abs(torque[:, 2]).max()))
+        self._colour_limit.include(stamp, float(np.abs(torque[:, 2]).max()))
         self._heat_map.include(stamp, wrench.x, torque[:, 2])
         if self._due("profiles", stamp, self._drawing_period):
             self._torque.draw(stamp, wrench.x, torque)

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Colours for colour-blind readers too: one for each section axis, and a diverging map for signed values.
 
-The three axis colours are Okabe and Ito's orange, bluish green and sky blue. The diverging map goes from blue over
-a light grey to red (after Moreland's "cool to warm"), so that both signs differ in hue and lightness from zero.
+The three axis colours are Okabe and Ito's orange, bluish green and sky blue. The diverging map goes from a light blue
+over the dark of the eel's back to a light red, so that both signs differ in hue and lightness from zero, and a body
+without torque looks as it is.
 """
 
 import numpy as np
@@ -25,18 +26,19 @@ WATER_BACKGROUND = (9, 20, 33)
 PLOT_BACKGROUND = (13, 16, 17)
 WATER_DEEP, WATER_SHALLOW = (8, 20, 32), (17, 46, 68)
 BACK, BELLY = (58, 74, 62), (226, 222, 200)  # of the skin
+IRIS, PUPIL = (214, 178, 92), (8, 9, 10)
 
 _ANCHORS = np.array(
     [
-        (35, 60, 170),
-        (66, 106, 214),
-        (106, 150, 240),
-        (162, 194, 250),
-        (225, 225, 225),
-        (247, 184, 150),
-        (236, 128, 98),
-        (208, 66, 54),
-        (165, 12, 38),
+        (150, 205, 255),
+        (88, 160, 250),
+        (52, 114, 208),
+        (48, 84, 128),
+        BACK,
+        (124, 66, 48),
+        (198, 78, 48),
+        (244, 118, 70),
+        (255, 182, 136),
     ],
     dtype=float,
 )
@@ -60,7 +62,7 @@ def faded(colour: Colour, left: np.ndarray) -> np.ndarray:
 
 
 def diverging(values: np.ndarray, limit: float) -> np.ndarray:
-    """Colours of signed `values`: -limit and below the bluest, 0 grey, +limit and above the reddest; uint8 (..., 3)."""
+    """Colours of signed `values`: -limit and below the bluest, 0 dark, +limit and above the reddest; uint8 (..., 3)."""
     return np.asarray(DIVERGING[diverging_index(values, limit)])
 
 

@@ -4,7 +4,8 @@
 A point of the surface is r(X) + b(X) cos(angle) t2 + a(X) sin(angle) t3, with b the half width (section axis 2) and a
 the half height (axis 3). The normal is the gradient of (y/b)^2 + (z/a)^2 - 1 in section axes, times a b / 2:
 (-(a cos^2 b' + b sin^2 a'), a cos, b sin). Half axes are interpolated in their squares, since they go like sqrt(X)
-at the nose.
+at the nose. Where the body ends blunt, the skin is rounded within the last half height: it is nowhere wider than the
+body, nor longer.
 """
 
 import numpy as np
@@ -12,55 +13,64 @@ import numpy as np
 from eel_viz.scene3d import colours
 from eel_viz.scene3d.centre_line import Resampling
 
-RINGS = 20
+RINGS = 26
 SIDES = 12
-FLANK = 0.34  # rad: half of the angle that a flank covers
-OUTSIDE = 1.05  # how far a flank lies outside the skin, which has flat sides
+NOSE, TAIL = 0.06, 0.04  # shares of the length that have finer rings
+FLANK = 0.6  # sine of the greatest angle that a torque colours fully
+EYE_AT, EYE_HEIGHT = 0.03, 0.32  # of the eyes: X [lengths], and height above the middle [half heights]
+EYE_DEPTH = 0.03  # how far their middle lies in the skin [half heights]
+EYE_SIZES = np.array(((0.24, 0.08, 0.24), (0.15, 0.095, 0.15)))  # half axes of iris and pupil [half heights]
 
 
-class Surface:
-    """The part of the surface between the `angles` (S,) [rad] of each ring.
+class Skin:
+    """The closed skin of `rings` rings with `sides` vertices.
 
-    x, half_width, half_height: [m], each (B,), as in the message `BodyGeometry`. edges: pairs of neighbouring angles by
-    their numbers. swell: factor of the half axes.
+    x, half_width, half_height: [m], each (B,), as in the message `BodyGeometry`.
+
+    Attributes:
+        x: abscissae of the rings [m], (rings,). triangles: indices of vertices, uint32 (T, 3).
+        shades: colours of the vertices without torque, uint8 (V, 3): dark back (+ axis 3), light belly, so roll shows.
+        eyes, eye_sizes: middles and half axes [m] of iris and pupil at either side, each (4, 3), in the nose's REP-103
+            axes.
     """
 
     def __init__(
-        self,
-        x: np.ndarray,
-        half_width: np.ndarray,
-        half_height: np.ndarray,
-        *,
-        rings: int,
-        angles: np.ndarray,
-        edges: list[tuple[int, int]],
-        swell: float = 1.0,
+        self, x: np.ndarray, half_width: np.ndarray, half_height: np.ndarray, *, rings: int = RINGS, sides: int = SIDES
     ):
         length = float(x[-1])
         self.x = length * _graded(rings)  # [m], (rings,)
-        fine = np.linspace(0.0, 1.0, 400) ** 2 * length
-        width = np.sqrt(np.interp(self.x, x, np.square(half_width)))
-        height = np.sqrt(np.interp(self.x, x, np.square(half_height)))
-        # b b' and a a' are half the slopes of the squares, which are finite at the nose
-        width_slope = np.interp(self.x, fine, np.gradient(np.interp(fine, x, np.square(half_width)), fine)) / 2
-        height_slope = np.interp(self.x, fine, np.gradient(np.interp(fine, x, np.square(half_height)), fine)) / 2
+        fine = length * np.sin(np.linspace(0.0, np.pi / 2, 800)) ** 2
+        rounded = max(float(half_height[-1]), 1e-9)  # m: over which the tail is rounded
+
+        def axis(half: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+            """Half axis b and b b' at the rings: half the slope of the square, which is finite at both ends."""
+            at_rings, squares = (
+                np.interp(at, x, np.square(half)) * (1.0 - np.maximum(0.0, (at - length) / rounded + 1.0) ** 2)
+                for at in (self.x, fine)
+            )
+            return np.sqrt(at_rings), np.interp(self.x, fine, np.gradient(squares, fine)) / 2
+
+        (width, width_slope), (height, height_slope) = axis(half_width), axis(half_height)
+        angles = np.linspace(0.0, 2 * np.pi, sides, endpoint=False)
         cos, sin = np.cos(angles), np.sin(angles)
-        zero = np.zeros((rings, len(angles)))
-        self._offset = swell * np.stack([zero, np.outer(width, cos), np.outer(height, sin)], axis=2)
+        self._offset = np.stack([np.zeros((rings, sides)), np.outer(width, cos), np.outer(height, sin)], axis=2)
         b, a = np.maximum(width, 1e-6), np.maximum(height, 1e-6)
-        normal = np.stack(
-            [
-                -(np.outer(a / b * width_slope, cos**2) + np.outer(b / a * height_slope, sin**2)),
-                np.outer(a, cos),
-                np.outer(b, sin),
-            ],
-            axis=2,
-        )
-        normal[0] = (-1.0, 0.0, 0.0)
+        slopes = -(np.outer(a / b * width_slope, cos**2) + np.outer(b / a * height_slope, sin**2))
+        normal = np.stack([slopes, np.outer(a, cos), np.outer(b, sin)], axis=2)
+        normal[0], normal[-1] = (-1.0, 0.0, 0.0), (1.0, 0.0, 0.0)
         self._normal = normal / np.linalg.norm(normal, axis=2, keepdims=True)
-        self.triangles = _triangles(rings, len(angles), edges)
-        self._angles = angles
+        self.triangles = _triangles(rings, sides)
+        self._sides = sides
+        self._flank = np.tile(np.abs(sin) < FLANK, rings)
+        back = np.clip(0.5 + 0.8 * sin, 0.0, 1.0)[:, None]
+        around = back * np.array(colours.BACK) + (1.0 - back) * np.array(colours.BELLY)
+        self.shades = np.tile(around.round().astype(np.uint8), (rings, 1))
         self._resampling: Resampling | None = None
+        at = EYE_AT * length
+        side, up = (float(np.sqrt(np.interp(at, x, np.square(half)))) for half in (half_width, half_height))
+        outwards = side * np.sqrt(1.0 - EYE_HEIGHT**2) - EYE_DEPTH * up
+        self.eyes = np.array([(-at, sign * outwards, EYE_HEIGHT * up) for sign in (1, 1, -1, -1)])
+        self.eye_sizes = up * np.tile(EYE_SIZES, (2, 1))
 
     def resampling(self, x: np.ndarray) -> Resampling:
         """The interpolation from stations `x` (M,) [m] to the rings; cached while the stations stay the same."""
@@ -69,66 +79,39 @@ class Surface:
         return self._resampling
 
     def place(self, x: np.ndarray, position: np.ndarray, orientation: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Vertices [m] and normals in the world, float32 (rings * S, 3), of a backbone at stations `x` [m]."""
-        return self.place_on(*self.resampling(x).centre_line(position, orientation))
-
-    def place_on(self, points: np.ndarray, axes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """As `place`, on the centre line at the rings: `points` (rings, 3) [m], `axes` (rings, 3, 3)."""
+        """Vertices [m] and normals in the world, float32 (V, 3), of a backbone at stations `x` [m]."""
+        points, axes = self.resampling(x).centre_line(position, orientation)
         turn = np.swapaxes(axes, 1, 2)
         vertices = points[:, None, :] + self._offset @ turn
         normals = self._normal @ turn
         return vertices.reshape(-1, 3).astype(np.float32), normals.reshape(-1, 3).astype(np.float32)
 
     def at_vertices(self, x: np.ndarray, values: np.ndarray) -> np.ndarray:
-        """One value for each vertex, (rings * S,), from `values` at stations `x`, (M,)."""
-        return np.repeat(self.resampling(x).linear(values), len(self._angles))
+        """One value for each vertex, (V,), from `values` at stations `x`, (M,)."""
+        return np.repeat(self.resampling(x).linear(values), self._sides)
 
-    @property
-    def shades(self) -> np.ndarray:
-        """Colours of the vertices, uint8 (V, 3): dark back (+ axis 3), light belly, so that roll shows."""
-        share = np.clip(0.5 + 0.8 * np.sin(self._angles), 0.0, 1.0)[:, None]
-        around = share * np.array(colours.BACK) + (1.0 - share) * np.array(colours.BELLY)
-        return np.tile(around.round().astype(np.uint8), (len(self.x), 1))
-
-
-class Skin(Surface):
-    """The closed skin."""
-
-    def __init__(
-        self, x: np.ndarray, half_width: np.ndarray, half_height: np.ndarray, *, rings: int = RINGS, sides: int = SIDES
-    ):
-        angles = np.linspace(0.0, 2 * np.pi, sides, endpoint=False)
-        edges = [(k, (k + 1) % sides) for k in range(sides)]
-        super().__init__(x, half_width, half_height, rings=rings, angles=angles, edges=edges)
-        last = (rings - 1) * sides
-        fan = np.array([(last, last + k, last + k + 1) for k in range(1, sides - 1)], dtype=np.uint32)
-        self.triangles = np.concatenate([self.triangles, fan])  # closes the tail
-
-
-class Flanks(Surface):
-    """A band along each flank, just outside the skin: a layer that a torque colours."""
-
-    def __init__(self, x: np.ndarray, half_width: np.ndarray, half_height: np.ndarray, *, rings: int = RINGS):
-        band = np.array((-FLANK, 0.0, FLANK))
-        edges = [(0, 1), (1, 2), (3, 4), (4, 5)]
-        angles = np.concatenate([band, np.pi + band])
-        super().__init__(x, half_width, half_height, rings=rings, angles=angles, edges=edges, swell=OUTSIDE)
+    def coloured(self, x: np.ndarray, torque: np.ndarray, limit: float) -> np.ndarray:
+        """As `shades`, with the flanks coloured by the `torque` (M,) at stations `x`, deepest at `limit`."""
+        shades = self.shades.copy()
+        shades[self._flank] = colours.diverging(self.at_vertices(x, torque)[self._flank], limit)
+        return shades
 
 
 def _graded(rings: int) -> np.ndarray:
-    """Abscissae from 0 to 1, finer at the nose: quadratic over the first rings, then even."""
-    nose = max(4, rings // 6)
-    start = 0.06
-    return np.concatenate([start * (np.arange(nose) / nose) ** 2, np.linspace(start, 1.0, rings - nose)])
+    """Abscissae from 0 to 1: finer at the nose and the tail, where they are quadratic, and even between."""
+    nose, tail = max(4, rings // 5), max(3, rings // 6)
+    middle = np.linspace(NOSE, 1.0 - TAIL, rings - nose - tail)
+    ends = NOSE * (np.arange(nose) / nose) ** 2, 1.0 - TAIL * (np.arange(tail) / tail)[::-1] ** 2
+    return np.concatenate([ends[0], middle, ends[1]])
 
 
-def _triangles(rings: int, sides: int, edges: list[tuple[int, int]]) -> np.ndarray:
+def _triangles(rings: int, sides: int) -> np.ndarray:
     """Indices of the triangles between neighbouring rings, uint32 (T, 3).
 
     Counter-clockwise seen from outside: angles go from t2 to t3, and rings go along t1 = t2 x t3.
     """
     ring = np.arange(rings - 1)[:, None] * sides
-    side, beside = np.array(edges).T
-    here, next_to = ring + side, ring + beside
-    quads = np.stack([here, next_to, here + sides, next_to, next_to + sides, here + sides], axis=-1)
+    side = np.arange(sides)
+    here, beside = ring + side, ring + (side + 1) % sides
+    quads = np.stack([here, beside, here + sides, beside, beside + sides, here + sides], axis=-1)
     return quads.reshape(-1, 3).astype(np.uint32)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Draws one swimmer in its water: line, skin, torque layer, arrows, path of the head, frames of the cameras."""
+"""Draws one swimmer in its water: line, skin and eyes, arrows, path of the head, frames of the cameras."""
 
 import numpy as np
 import rerun as rr
@@ -11,7 +11,7 @@ from eel_viz.scene3d import colours, legend
 from eel_viz.scene3d.arrows import Arrows
 from eel_viz.scene3d.camera import FollowFrame, PathFrame
 from eel_viz.scene3d.course import Course
-from eel_viz.scene3d.skin import Flanks, Skin
+from eel_viz.scene3d.skin import Skin
 from eel_viz.scene3d.track import Strobes, Track
 from eel_viz.scene3d.water import WaterBox
 
@@ -26,7 +26,6 @@ class SwimmerScene:
     def __init__(self, stream: BatchedStream, *, reach: float, **scales: float) -> None:
         self._stream, self._scales = stream, scales
         self._skin: Skin | None = None
-        self._flanks: Flanks | None = None
         self._torque_limit = 0.0  # N m: of the colours in the legend
         self._loaded = False
         self._frame, self._path_frame = FollowFrame(), PathFrame()
@@ -41,15 +40,15 @@ class SwimmerScene:
             stream.log_static(path, rr.TransformAxes3D(AXES_LENGTH))
 
     def body(self, body: Body) -> None:
-        """Take the sections, and log what never changes of skin and torque layer."""
+        """Take the sections, and log what never changes of skin and eyes."""
         self._course.resize(body.length)
-        sections = body.x, body.half_width, body.half_height
-        self._skin, self._flanks = Skin(*sections), Flanks(*sections)
-        fixed = rr.Mesh3D.from_fields(triangle_indices=self._skin.triangles, vertex_colors=self._skin.shades)
-        self._stream.log_static(entities.SKIN, fixed)
-        self._stream.log_static(entities.TORQUE_LAYER, rr.Mesh3D.from_fields(triangle_indices=self._flanks.triangles))
+        self._skin = skin = Skin(body.x, body.half_width, body.half_height)
+        self._stream.log_static(entities.SKIN, rr.Mesh3D.from_fields(triangle_indices=skin.triangles))
         # until a torque comes; not static, for static colours would hide later ones
-        self._stream.add_row(0, entities.TORQUE_LAYER, rr.Mesh3D, vertex_colors=self._flanks.shades)
+        self._stream.add_row(0, entities.SKIN, rr.Mesh3D, vertex_colors=skin.shades)
+        shades = (colours.IRIS, colours.PUPIL) * 2
+        eyes = rr.Ellipsoids3D(centers=skin.eyes, half_sizes=skin.eye_sizes, colors=shades, fill_mode="solid")
+        self._stream.log_static(entities.EYES, eyes)
 
     def course(self, points: np.ndarray) -> None:
         """Draw the way `points` (n, 3) [m] of a goal."""
@@ -80,21 +79,20 @@ class SwimmerScene:
         shadow[:, 2] = self._water.floor + 0.002
         self._stream.add_lines(stamp, entities.SHADOW, shadow[None])
         self._stream.add_pose(stamp, entities.TAIL, position[-1], backbone.orientation[-1])
-        if self._skin is not None and self._flanks is not None:
-            rings = self._skin.resampling(backbone.x).centre_line(position, backbone.orientation)
-            for path, surface in ((entities.SKIN, self._skin), (entities.TORQUE_LAYER, self._flanks)):
-                vertices, normals = surface.place_on(*rings)
-                self._stream.add_row(stamp, path, rr.Mesh3D, vertex_positions=vertices, vertex_normals=normals)
+        if self._skin is not None:
+            vertices, normals = self._skin.place(backbone.x, position, backbone.orientation)
+            self._stream.add_row(stamp, entities.SKIN, rr.Mesh3D, vertex_positions=vertices, vertex_normals=normals)
+            self._stream.add_pose(stamp, entities.EYES, position[0], backbone.orientation[0])
         self._arrows.backbone(stamp, backbone)
 
     def torque(self, stamp: int, x: np.ndarray, torque: np.ndarray, limit: float) -> None:
-        """Colour the torque layer by `torque` (M,) [N m] at `x` (M,) [m]; the colours are deepest at `limit`."""
+        """Colour the flanks by `torque` (M,) [N m] at `x` (M,) [m]; the colours are deepest at `limit`."""
         if limit != self._torque_limit:
             self._torque_limit = limit
             legend.log_bar(self._stream, stamp, limit=limit, unit="N m", name="C3")
-        if self._flanks is not None:
-            shades = colours.diverging(self._flanks.at_vertices(x, torque), limit)
-            self._stream.add_row(stamp, entities.TORQUE_LAYER, rr.Mesh3D, vertex_colors=shades)
+        if self._skin is not None:
+            shades = self._skin.coloured(x, torque, limit)
+            self._stream.add_row(stamp, entities.SKIN, rr.Mesh3D, vertex_colors=shades)
 
     def load(self, stamp: int, load: Load) -> None:
         """Draw the force of the water as arrows."""
