@@ -169,7 +169,7 @@ class LawOnGrid(_Shared):
         """Factors of the rows at a time [s] of the simulation, their rates and accelerations: (3, m)."""
 
 class StepBounds(_Shared):
-    """What bounds the steps of a march."""
+    """What bounds the time steps of a march."""
 
     def __init__(
         self,
@@ -188,7 +188,7 @@ class StepBounds(_Shared):
         """Relative error of a step."""
     @property
     def longest(self) -> float:
-        """[s]; the step itself, where the method has fixed steps."""
+        """[s], of a time step; a fixed method takes all as long, or a little shorter."""
     @property
     def smallest(self) -> float:
         """[s]."""

@@ -49,7 +49,7 @@ TEST(Algorithm, ArcHasThePlaceAndVelocityOfACircle)
             EXPECT_NEAR(work.position.node(i).x, std::sin(angle) / k, 1e-9);
             EXPECT_NEAR(work.position.node(i).y, (1.0 - std::cos(angle)) / k, 1e-9);
             const double by_k = (x * std::cos(angle) - std::sin(angle) / k) / k;  // of sin(k x) / k
-            EXPECT_NEAR(work.velocity.node(i).x, jet[1] * by_k, 1e-8);
+            EXPECT_NEAR(work.shape_velocity.node(i).x, jet[1] * by_k, 1e-8);
         }
     };
     Workspace<Space> space(*swimmer);

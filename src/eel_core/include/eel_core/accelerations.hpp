@@ -110,7 +110,8 @@ void find_accelerations(const Swimmer& swimmer, const LawOnGrid& law, Workspace<
     work.inertia.solve(head);
     work.head_acceleration = Components<Twist<M, double>>::make([&](std::size_t k) { return head[k]; });
 
-    add_head_motion(swimmer, work.head_acceleration, work.position, work.alpha, work.acceleration);
+    add_head_motion(swimmer, work.head_acceleration, work.position, work.alpha, work.acceleration, work.alpha,
+                    work.acceleration);
     work.balance = set_inertial_density(swimmer, work) - work.drag;
     if (swimmer.resistive) add_resistance(swimmer, work);
     if (swimmer.righting != 0.0) take_righting_torque(swimmer, work);

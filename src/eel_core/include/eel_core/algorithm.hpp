@@ -36,7 +36,7 @@ template <class M>
 bool find_motion(const Swimmer& swimmer, const LawOnGrid& law, double time, const State& y, Workspace<M>& work)
 {
     if (!find_head_motion(swimmer, law, time, y, work)) return false;
-    add_head_motion(swimmer, work.twist, work.position, work.omega, work.velocity);
+    set_velocities(swimmer, work.twist, work);
     find_loads(swimmer, work);
     if (swimmer.righting != 0.0) set_righting_torque(swimmer, work);
     return true;

@@ -43,7 +43,7 @@ inline void orient_sections(const Swimmer& swimmer, const LawOnGrid& law, Worksp
         work.curvature_rate.store(k, rate);
         work.integrand.store(k, {turning(frame, rate), frame.t1()});
     }
-    swimmer.grid.from_nose.integrate(work.integrand, work.omega);
+    swimmer.grid.from_nose.integrate(work.integrand, work.shape_omega);
 }
 
 // In the plane the angle of a section is the integral of K3, tabulated with the law.
@@ -52,11 +52,12 @@ inline void orient_sections(const Swimmer& swimmer, const LawOnGrid& law, Worksp
     for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
         const auto [s, c] = sine_and_cosine(law.combine(law.tables->angle, LawOnGrid::yaw, work.factor, 0, k)[0]);
         work.frame.store(k, {c, s});
-        work.omega.store(k, law.combine(law.tables->angle, LawOnGrid::yaw, work.factor, 1, k)[0]);
+        work.shape_omega.store(k, law.combine(law.tables->angle, LawOnGrid::yaw, work.factor, 1, k)[0]);
     }
 }
 
-// Shape of the body and velocities due to its change. Sets `factor`, which holds until the next instant.
+// Shape of the body and velocities due to its change: `set_velocities` adds the head's. Sets `factor`, which holds
+// until the next instant.
 template <class M>
 void configure(const Swimmer& swimmer, const LawOnGrid& law, double time, Workspace<M>& work)
 {
@@ -66,21 +67,29 @@ void configure(const Swimmer& swimmer, const LawOnGrid& law, double time, Worksp
     swimmer.grid.from_nose.integrate(work.frame, work.position);
     for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
         const auto t1 = work.frame[k].t1();
-        work.integrand.store(k, {work.omega[k], cross(work.omega[k], t1)});
+        work.integrand.store(k, {work.shape_omega[k], cross(work.shape_omega[k], t1)});
     }
     constexpr std::size_t linear = Components<Angular<M, Lanes>>::count;  // row of the linear part
-    swimmer.grid.from_nose.integrate(work.integrand, work.velocity, linear);
+    swimmer.grid.from_nose.integrate(work.integrand, work.shape_velocity, linear);
 }
 
-// Adds a motion of the head to fields along the body that were found without it: a, and b + a x r.
+// Fields along the body with a motion of the head, from those without it: a, and b + a x r.
 template <class M>
-void add_head_motion(const Swimmer& swimmer, const Spatial<M, double>& head, const auto& position, auto& turning,
-                     auto& moving)
+void add_head_motion(const Swimmer& swimmer, const Spatial<M, double>& head, const auto& position,
+                     const auto& shape_turning, const auto& shape_moving, auto& turning, auto& moving)
 {
     for (std::size_t k = 0; k < swimmer.grid.blocks; ++k) {
-        turning.store(k, head.angular + turning[k]);
-        moving.store(k, head.linear + cross(head.angular, position[k]) + moving[k]);
+        turning.store(k, head.angular + shape_turning[k]);
+        moving.store(k, head.linear + cross(head.angular, position[k]) + shape_moving[k]);
     }
+}
+
+// True velocities, from those due to the change of shape and the twist of the head, which becomes `work.twist`.
+template <class M>
+void set_velocities(const Swimmer& swimmer, const Twist<M, double>& twist, Workspace<M>& work)
+{
+    work.twist = twist;
+    add_head_motion(swimmer, twist, work.position, work.shape_omega, work.shape_velocity, work.omega, work.velocity);
 }
 
 }  // namespace eel_core

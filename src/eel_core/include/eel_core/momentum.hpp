@@ -71,7 +71,7 @@ struct Inertia<Plane, T> {
     }
 };
 
-// Sets the inertia of a configured body; returns the momentum that its velocities carry, without the nose's.
+// Sets the inertia of a configured body; returns the momentum of its change of shape, without the nose's.
 template <class M>
 Momentum<M, double> inertia_and_momentum(const Swimmer& swimmer, Workspace<M>& work)
 {
@@ -84,8 +84,8 @@ Momentum<M, double> inertia_and_momentum(const Swimmer& swimmer, Workspace<M>& w
         const auto mass = section.mass_matrix(frame);
         const auto turning = section.inertia_matrix(frame);
         inertia += Inertia<M, Lanes>::of(turning, mass, position);
-        const auto linear = mass * work.velocity[k];
-        momentum += {turning * work.omega[k] + cross(position, linear), linear};
+        const auto linear = mass * work.shape_velocity[k];
+        momentum += {turning * work.shape_omega[k] + cross(position, linear), linear};
     }
     work.inertia = inertia.whole(swimmer.nose_mass);
     return total_of(momentum);

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bounds of the steps in time. They follow from the accuracy, the law, the initial velocity and the body."""
+"""Bounds of the time step. They follow from the accuracy, the law, the initial velocity and the body.
+
+Within them the core chooses each step by its error: `time_step_size` in eel_core/steppers/step_control.hpp.
+"""
 
 from functools import lru_cache
 

@@ -62,7 +62,8 @@ class Instant {
     {
         move(law, time, twist);
         find_shape_accelerations(*swimmer_, law, work_);
-        add_head_motion(*swimmer_, acceleration, work_.position, work_.alpha, work_.acceleration);
+        add_head_motion(*swimmer_, acceleration, work_.position, work_.alpha, work_.acceleration, work_.alpha,
+                        work_.acceleration);
         return set_inertial_density(*swimmer_, work_);
     }
 
@@ -70,8 +71,7 @@ class Instant {
     void move(const LawOnGrid& law, double time, const Twist<M, double>& twist)
     {
         configure(*swimmer_, law, time, work_);
-        work_.twist = twist;
-        add_head_motion(*swimmer_, twist, work_.position, work_.omega, work_.velocity);
+        set_velocities(*swimmer_, twist, work_);
         find_loads(*swimmer_, work_);
     }
 

@@ -110,7 +110,7 @@ class March {
         configure(*swimmer_, settings_.law, time_, work);
         work.head = head_frame(state_, Space());
         put_momentum(momentum_of(*swimmer_, twist, work), work.head, state_);
-        add_head_motion(*swimmer_, twist, work.position, work.omega, work.velocity);
+        set_velocities(*swimmer_, twist, work);
         if (swimmer_->righting != 0.0) set_righting_torque(*swimmer_, work);
         begin();
         const auto [body, water, potential] = energies_of(*swimmer_, work);

@@ -27,7 +27,7 @@ struct Workspace {
         const std::size_t n = swimmer.grid.blocks;
         frame = Field<Frame<M, double>>(n), quaternion = Field<Quaternion<double>>(n),
         position = Field<Vector<M, double>>(n);
-        omega = Field<Angular<M, double>>(n), velocity = Field<Vector<M, double>>(n),
+        shape_omega = omega = Field<Angular<M, double>>(n), shape_velocity = velocity = Field<Vector<M, double>>(n),
         curvature_rate = Field<Vector2<double>>(n);
         alpha = Field<Angular<M, double>>(n), acceleration = Field<Vector<M, double>>(n);
         integrand = Field<Wrench<M, double>>(n), density = Field<Wrench<M, double>>(n),
@@ -42,12 +42,14 @@ struct Workspace {
     std::vector<Jet> factor;  // of the law's rows
 
     // Along the body, in the axes of the head, about the head:
-    Field<Frame<M, double>> frame;         // t1, t2, t3 of the sections
-    Field<Quaternion<double>> quaternion;  // the same, in space alone
-    Field<Vector<M, double>> position;     // r [m]
-    Field<Angular<M, double>> omega;  // [rad/s], due to the change of shape; with the head's motion once that is known
-    Field<Vector<M, double>> velocity;      // [m/s], likewise
-    Field<Vector2<double>> curvature_rate;  // Kdot [rad/m/s], pitch and yaw
+    Field<Frame<M, double>> frame;            // t1, t2, t3 of the sections
+    Field<Quaternion<double>> quaternion;     // the same, in space alone
+    Field<Vector<M, double>> position;        // r [m]
+    Field<Angular<M, double>> shape_omega;    // [rad/s], due to the change of shape alone
+    Field<Vector<M, double>> shape_velocity;  // [m/s], likewise
+    Field<Angular<M, double>> omega;          // [rad/s], with the head's motion, as the next
+    Field<Vector<M, double>> velocity;        // [m/s]
+    Field<Vector2<double>> curvature_rate;    // Kdot [rad/m/s], pitch and yaw
     Field<Wrench<M, double>> integrand;
     Field<Angular<M, double>> alpha;        // [rad/s^2]
     Field<Vector<M, double>> acceleration;  // [m/s^2]
@@ -83,10 +85,11 @@ struct Workspace {
 
     std::size_t bytes() const
     {
-        std::size_t sum = frame.bytes() + quaternion.bytes() + position.bytes() + omega.bytes() + velocity.bytes() +
-                          curvature_rate.bytes() + integrand.bytes() + alpha.bytes() + acceleration.bytes() +
-                          density.bytes() + integral.bytes() + friction_laminar.bytes() + friction_excess.bytes() +
-                          turbulent_share.bytes() + turbulent_weight.bytes() + kink_density.bytes();
+        std::size_t sum = frame.bytes() + quaternion.bytes() + position.bytes() + shape_omega.bytes() + omega.bytes() +
+                          shape_velocity.bytes() + velocity.bytes() + curvature_rate.bytes() + integrand.bytes() +
+                          alpha.bytes() + acceleration.bytes() + density.bytes() + integral.bytes() +
+                          friction_laminar.bytes() + friction_excess.bytes() + turbulent_share.bytes() +
+                          turbulent_weight.bytes() + kink_density.bytes();
         for (const Row& row : speed) sum += row.bytes();
         for (const Row& row : load_weight) sum += row.bytes();
         return sum + sizeof(*this);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long the next step may be: by the error of the last one, and by what lies ahead.
+// The time step: `time_step_size` of the next one, by the error of the last step and by what lies ahead, within
+// `StepBounds`. The bounds come from the accuracy and the law: eel_dynamics/accuracy/step_bounds.py.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +16,7 @@ namespace eel_core {
 // What bounds the steps of a march.
 struct StepBounds {
     double tolerance;       // relative error per step
-    double longest;         // [s]; the step itself, where it is fixed
+    double longest;         // [s], of a time step; a fixed method takes all as long, or a little shorter
     double smallest;        // [s]
     double length;          // [m], scale of positions
     double momentum_floor;  // [kg m/s], below which momentum counts as none
@@ -90,8 +91,8 @@ struct Span {
 
 // Length [s] of the next step from `start`: as proposed, or such that steps end on the next breakpoint without a sliver
 // before it; at most a part of the span, for the works are integrals of what goes on there.
-inline double step_size(const Method& method, const StepBounds& bounds, double proposed, double start, const Span& span,
-                        double tiny)
+inline double time_step_size(const Method& method, const StepBounds& bounds, double proposed, double start,
+                             const Span& span, double tiny)
 {
     const double left = span.next - start;
     if (!method.adaptive) return left < 1e100 ? left / std::ceil(left / bounds.longest - 1e-9) : bounds.longest;

@@ -169,7 +169,7 @@ class Stepper {
         const bool first_of_span = anew_;
         begin_anew_ = anew_;
         if (!anew_) rate_[0] = rate_[method_.stages - 1];  // the last rate of a step is the first of the next
-        double proposed = proposed_, length = step_size(method_, bounds, proposed, start, span, tiny), error = 0.0;
+        double proposed = proposed_, length = time_step_size(method_, bounds, proposed, start, span, tiny), error = 0.0;
         const double accepted =
             method_.adams > 0 ? 4.0 : 1.0;  // Adams' next step is the shorter: cheaper than to repeat
         for (;;) {
