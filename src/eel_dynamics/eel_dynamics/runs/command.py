@@ -5,6 +5,7 @@ eel simulate falling
 eel simulate falling --duration 20 --periods 4 --actuators 8
 eel simulate --sequence patrol.yaml --duration 20
 eel simulate --file midlines.csv
+eel simulate --midlines lamprey.csv --units mm
 eel simulate straight --set wavelength=0.8 --scene friction=laminar --accuracy 1e-6 --out run.npz
 """
 
@@ -20,6 +21,7 @@ from eel_base.command.run_command import checked_out, run_command
 from eel_base.files.output_file import replacing, written_as
 from eel_base.quantity import described_fields
 from eel_base.wording import one_line, shown
+from eel_gaits.film.beat import Beat
 from eel_gaits.gaits.registry import gait
 from eel_gaits.gaits.sequence_file import sequence_from_file
 from eel_gaits.laws.law import Law
@@ -31,8 +33,9 @@ from eel_dynamics.analysis.actuators import MOST_JOINTS
 from eel_dynamics.model.body import Body
 from eel_dynamics.model.scene import Scene
 from eel_dynamics.runs.command_options import add_options, body_of, scene_of, set_numbers
+from eel_dynamics.runs.filmed import EEL, add_film_options, beat_from, body_for, effect_of_fit
 from eel_dynamics.runs.run import Run, simulate
-from eel_dynamics.runs.settled_duration import until_settled
+from eel_dynamics.runs.settled_duration import UNTIL_SETTLED, until_settled
 from eel_dynamics.runs.storage.run_contents import contents_of_run
 from eel_dynamics.runs.storage.tables import columns_of, write_columns
 from eel_dynamics.simulation.stopping import SimulationStopped
@@ -50,10 +53,13 @@ def main(arguments: list[str] | None = None) -> int:
 def _swim(options) -> int:
     """Simulate, print the summary and write the run; returns the exit status: 0, or 3 for a run that stopped."""
     out = _checked_out(options.out)
-    body = body_of(options.body)
-    law, scene = _law(options, body), scene_of(options.scene)
+    beat = None if options.midlines is None else beat_from(options.midlines, options)
+    body = body_of(options.body or "boyer2010") if beat is None else body_for(options.body, beat.film)
+    law, scene = _law(options, body, beat), scene_of(options.scene)
     duration = options.duration
-    if duration is None:
+    if duration is None and beat is not None:
+        duration = UNTIL_SETTLED
+    elif duration is None:
         duration = law.duration if isinstance(law, SampledLaw) else DURATION
     if options.actuators is not None:
         _check_actuators(options, scene)
@@ -79,7 +85,11 @@ def _swim(options) -> int:
             _write(stopped.run, out)
         return 3
     seconds = time.perf_counter() - start
+    if beat is not None:
+        _print_lines(beat.about())
     print(run.summary(options.periods))
+    if beat is not None:
+        _print_lines(effect_of_fit(beat, body, scene))
     if options.file is not None:
         _print_smoothing(run)
     print(f"wall time           {seconds:.3f} s, set-up included")
@@ -91,19 +101,28 @@ def _swim(options) -> int:
     return 0
 
 
-def _law(options, body: Body) -> Law | SampledLaw:
-    """The law of the gait, of the sequence, or of the motion in a file."""
-    if options.file is None and (options.unsmoothed or options.scale != 1.0):
+def _law(options, body: Body, beat: Beat | None) -> Law | SampledLaw:
+    """The law of the gait, of the sequence, of the motion in a file, or of the `beat` of a film."""
+    if options.file is None and (options.unsmoothed or (options.scale != 1.0 and beat is None)):
         raise ValueError("--unsmoothed and --scale belong to --file, which is not given")
-    given = [name for name in ("file", "sequence") if getattr(options, name) is not None]
+    if beat is None and (options.units or options.rate or options.animal or options.rigid or options.harmonics):
+        raise ValueError("--units, --rate, --animal, --rigid and --harmonics belong to --midlines, which is not given")
+    given = [name for name in ("midlines", "file", "sequence") if getattr(options, name) is not None]
     if not given:
         return gait(options.gait or "falling", **set_numbers(options.set))
     others = [options.gait, *(f"--set {text}" for text in options.set[:1]), *(f"--{name}" for name in given[1:])]
     if any(others):
         raise ValueError(f"--{given[0]} takes the place of a gait, got {shown(next(filter(None, others)))} too")
+    if beat is not None:
+        return beat.law(body.length)
     if options.file is None:
         return sequence_from_file(options.sequence)
     return read_motion(options.file, length=body.length, scale=options.scale, smooth=not options.unsmoothed)
+
+
+def _print_lines(lines: list[tuple[str, str]]):
+    for name, text in lines:
+        print(f"{name:<20}{text}")
 
 
 def _print_smoothing(run: Run):
@@ -134,11 +153,18 @@ def _parser() -> Parser:
         help="a measured motion in place of a gait: .csv or .npz with columns time and x, y (midlines), yaw_1, "
         "yaw_2 ... (joint angles), or arc_length, yaw (curvature): docs/howto/motions.md",
     )
+    parser.add_argument(
+        "--midlines",
+        metavar="FILE",
+        help="a filmed swimmer in place of a gait: tracked points as published, or of DeepLabCut or SLEAP; it swims by "
+        "the mean beat: docs/howto/motions.md",
+    )
+    add_film_options(parser)
     parser.add_argument("--unsmoothed", action="store_true", help="do not smooth what was measured")
-    duration = None, f"{DURATION:g}; of a file: all of it"
+    duration = None, f"{DURATION:g}; of a file: all of it; of midlines: {UNTIL_SETTLED}"
     add_options(
         parser, "--scale", "--duration", "--accuracy", "--bare", "--body", "--scene", "--sample-period",
-        duration=duration,
+        duration=duration, body=(None, f"boyer2010; with --midlines {EEL}, as long as the swimmer in the film"),
     )  # fmt: skip
     parser.add_argument("--stations", type=int, default=51, help="points along the body (51)")
     parser.add_argument(

@@ -80,7 +80,7 @@ def _flat(arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
 
 def _table(path: Path) -> tuple[dict[str, np.ndarray], np.ndarray]:
     with InputFile(path, MOST_BYTES) as file, io.TextIOWrapper(file, encoding="utf-8-sig", newline="") as text:
-        rows = csv.reader(_lines(text), strict=True)
+        rows = csv.reader(lines_of(text), strict=True)
         numbers, lines = array.array("d"), array.array("q")
         try:
             names = [name.strip() for name in next(rows, [])]
@@ -111,7 +111,8 @@ def _table(path: Path) -> tuple[dict[str, np.ndarray], np.ndarray]:
     )
 
 
-def _lines(text: io.TextIOBase) -> Iterator[str]:
+def lines_of(text: io.TextIOBase) -> Iterator[str]:
+    """The lines of an open `text`, as many and as long as a table may have."""
     for _ in range(MOST_LINES):
         line = text.readline(LONGEST_LINE)
         if not line:

@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Swimmers by the mean beat of a film: the options of commands, the body, and what smoothing does to the speed."""
+
+import argparse
+from collections.abc import Sequence
+
+import numpy as np
+from eel_base.wording import shown
+from eel_gaits.film.beat import Beat, beat_of, jackknife
+from eel_gaits.film.film import Film, read_film
+
+from eel_dynamics.model.body import Body
+from eel_dynamics.model.scene import Scene
+from eel_dynamics.runs.batch import simulate_batch
+from eel_dynamics.runs.command_options import body_of
+from eel_dynamics.runs.settled_duration import UNTIL_SETTLED
+
+FITTING = 0.05  # part of the length by which body and film may differ
+ACCURACY = 1e-2  # of the swims that tell what smoothing does
+EEL = "kern2006"
+
+
+def add_film_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options that say how a film is read: all have to do with files of midlines."""
+    parser.add_argument("--units", metavar="UNIT", help="of the midlines: m, cm, mm, or px with a --scale")
+    parser.add_argument("--rate", type=float, metavar="FPS", help="frames per second, where a file counts frames")
+    parser.add_argument("--animal", metavar="NAME", help="which of several animals in the file")
+    parser.add_argument(
+        "--rigid", type=float, default=0.0, metavar="PART", help="of the length from the head on that does not bend (0)"
+    )
+    parser.add_argument("--harmonics", type=int, metavar="N", help="of the beat (as many as predict it best)")
+
+
+def film_of(path: str, options: argparse.Namespace) -> Film:
+    """The film in the file at `path`, read as the `options` say."""
+    scale = None if options.scale == 1.0 else options.scale
+    return read_film(path, units=options.units, scale=scale, rate=options.rate, animal=options.animal)
+
+
+def beat_from(path: str, options: argparse.Namespace) -> Beat:
+    """The mean beat in the file at `path`, as the `options` say."""
+    return beat_of(film_of(path, options), harmonics=options.harmonics, rigid=options.rigid)
+
+
+def body_for(text: str | None, film: Film) -> Body:
+    """The body that --body gives; None or kern2006: that of an eel, as long as the `film`'s swimmer."""
+    if text in (None, EEL):
+        return Body.kern2006(film.length)
+    body = body_of(str(text))
+    if abs(body.length - film.length) > FITTING * film.length:
+        raise ValueError(
+            f"body {shown(body.name)} is {body.length:g} m long, the swimmer in the film {film.length:.4g} m: give a body "
+            f"of that length, or none for {EEL} of that length"
+        )
+    return body
+
+
+def speeds_of(beats: Sequence[Beat], body: Body, scene: Scene) -> np.ndarray:
+    """Mean speed [m/s] of each of the `beats` once it has settled; NaN for a swim that stops."""
+    laws = [beat.law(body.length) for beat in beats]
+    batch = simulate_batch(laws, UNTIL_SETTLED, bodies=body, scenes=scene, accuracy=ACCURACY, estimate=False)
+    return np.array([np.nan if batch.stopped[i] else batch[i].mean_speed for i in range(len(laws))])
+
+
+def effect_of_fit(beat: Beat, body: Body, scene: Scene) -> list[tuple[str, str]]:
+    """What the choice of the fit does to the speed, as names and sentences."""
+    others = [beat_of(beat.film, harmonics=count, rigid=beat.rigid) for count in range(1, beat.most_harmonics + 1)]
+    speeds = speeds_of([beat, *others, *beat.others], body, scene)
+    mean, by_count, without = speeds[0], speeds[1 : len(others) + 1], speeds[len(others) + 1 :]
+    half = float(jackknife(without))
+    listed = ", ".join(f"{count + 1}: {speed:.4g}" for count, speed in enumerate(by_count))
+    seen = beat.measured.speed
+    return [
+        ("speed", f"{mean:.4g} m/s, {mean - half:.4g} to {mean + half:.4g} m/s by the beats (95 %)"),
+        ("speed by harmonics", f"{listed} m/s"),
+        ("beside the film", f"{seen:.4g} m/s measured: {mean / seen - 1.0:+.1%} computed"),
+    ]

@@ -1,0 +1,294 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The mean beat of a filmed swimmer: a period, harmonics in time, smooth functions along the body.
+
+The angle of each segment between two points, less the mean over the body, holds no rigid motion. It is fitted, weighted
+by the segment's length, by
+
+    theta(t, s) = sum over h = 0 ... H of (a_h(s) cos 2 pi h t / T + b_h(s) sin 2 pi h t / T),   K = d theta / ds
+
+where the curvatures of a_h and b_h are natural cubic splines through `knots` equally spaced knots. H and the number of
+knots are those that predict a beat best from the other beats: each whole beat is left out in turn (cross-validation by
+blocks, Burman, Chow and Nolan, Biometrika 81 (1994), doi:10.1093/biomet/81.2.351). So errors that last for several
+frames, which a smoothing spline takes for motion, do not count as motion unless they come again with each beat. Of the
+fits whose error is within one standard error of the least, the one with fewest numbers counts (Breiman et al.,
+Classification and Regression Trees, 1984). The fits without each beat give the bands (jackknife).
+"""
+
+import itertools
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from eel_gaits.film.film import Film
+from eel_gaits.film.kinematics import Kinematics, kinematics
+from eel_gaits.laws.law import Law
+from eel_gaits.laws.spline import natural_spline
+from eel_gaits.laws.term import Term
+
+FEWEST_BEATS = 3
+LEAST_FRAMES = 4.0  # in a beat
+HARMONICS = 5  # at most
+KNOTS = 12  # at most, along the body
+TRAVELS = 1.0  # rad of phase along the body, less of which counts as standing
+LEAST_SHARE = 0.5  # of the variance that the other beats must predict
+FINE = 257  # places along the body at which splines are integrated
+OF_LAW = 65  # knots of the law's splines, where a part of the body is rigid
+QUANTILE = 0.975  # of Student's t, for the bands: 95 %
+
+
+@dataclass(frozen=True, eq=False)
+class Beat:
+    """The beat of a `film`. Two fits (without a beat, or with another number of harmonics) differ in `curvature`."""
+
+    film: Film
+    period: float  # s
+    harmonics: int
+    knots: int  # along the bending part of the body
+    rigid: float  # part of the length from the head on that does not bend
+    curvature: np.ndarray  # (1 + 2 harmonics, FINE) rad/m, at equal distances along the body: mean, cos, sin, cos ...
+    share: float  # of the variance of the angles that the fit explains
+    predicted: float  # of it that is predicted from the other beats
+    residual: float  # m, root mean square distance of the points, rigid motion removed
+    others: tuple["Beat", ...] = ()  # the fits without each of the beats
+
+    @property
+    def most_harmonics(self) -> int:
+        """As many as the frames in a beat can tell."""
+        return most_harmonics(self.film, self.period)
+
+    @property
+    def measured(self) -> Kinematics:
+        """Figures of the swimmer in the film."""
+        return kinematics(self.film.time, self.film.points, self.period)
+
+    @property
+    def band(self) -> float:
+        """Half of the 95 % band of the curvature, mean over the body, by the greatest amplitude."""
+        size = np.max(np.hypot(self.curvature[1], self.curvature[2]))
+        return float(np.mean(jackknife([each.curvature[1:3] for each in self.others])) / size)
+
+    def law(self, length: float, name: str | None = None) -> Law:
+        """The beat for ever, on a body of `length` [m]: bends by the same angles, so curvature goes like 1 / length."""
+        ratio, count = self.film.length / length, OF_LAW if self.rigid else self.knots
+        place = np.linspace(0.0, length, count)
+        values = ratio * natural_spline(np.linspace(0.0, length, FINE), self.curvature, place)
+        values[:, place < (self.rigid - 1e-9) * length] = 0.0
+        terms = [Term(amplitude=tuple(values[0]), knots=tuple(place), phase=0.5 * math.pi)]
+        for h, phase in itertools.product(range(1, self.harmonics + 1), (0.5 * math.pi, math.pi)):
+            row = values[2 * h - 1 if phase < 2.0 else 2 * h]
+            terms.append(Term(amplitude=tuple(row), knots=tuple(place), period=self.period / h, phase=phase))
+        return Law(terms, name=name or self.film.name.rpartition(".")[0] or "beat")
+
+    def about(self) -> list[tuple[str, str]]:
+        """What was read and how it was smoothed: names and sentences."""
+        film, seen = self.film, self.measured
+        kept = f"{self.harmonics} harmonic{'s' if self.harmonics > 1 else ''}"
+        periods = jackknife([each.period for each in self.others])
+        return [
+            ("film", f"{film.name}: {film.points.shape[1]} points, {len(film.time)} frames, {film.length:.4g} m long"),
+            *(("repaired", note) for note in film.notes),
+            ("beat", f"period {self.period:.4g} +- {float(periods):.2g} s (95 %), {len(self.others)} beats, {kept} kept"),
+            ("along the body", f"splines through {self.knots} knots{self._rigid_part()}"),
+            ("fit", f"{self.share:.1%} of the variance, {self.predicted:.1%} predicted from the other beats; residual "
+                    f"{1e3 * self.residual:.3g} mm (RMS), {self.residual / film.length:.2%} of the length; curvature "
+                    f"+- {self.band:.1%} (95 %)"),
+            ("in the film", f"{seen.speed:.4g} m/s, stride {seen.stride:.3f} L, tail {seen.excursion[-1]:.3f} L from "
+                            f"side to side, wave {seen.wavelength:.3f} L, slip {seen.slip:.2f}, Strouhal number "
+                            f"{seen.strouhal:.3f}{'' if seen.ahead else '; it drifts tail first: flowing water?'}"),
+        ]  # fmt: skip
+
+    def _rigid_part(self) -> str:
+        return f", rigid up to {self.rigid:g} of the length" if self.rigid else ""
+
+
+def beat_of(film: Film, *, harmonics: int | None = None, rigid: float = 0.0) -> Beat:
+    """The mean beat of a `film`.
+
+    harmonics: None: as many as predict best. rigid: part of the length from the head on that does not bend.
+    `ValueError` for a motion that does not repeat, and for points in an order that is not plausible.
+    """
+    if not 0.0 <= rigid <= 0.9:
+        raise ValueError(f"rigid must be a part of the length from 0 to 0.9, got {rigid:g}")
+    fit = _Fit(film, rigid)
+    found = fit.best(harmonics)
+    if _phase(found) > TRAVELS:
+        seen = found.measured.excursion
+        if seen[0] <= seen[-1]:
+            raise ValueError(
+                f"{film.name}: the wave runs from the last point to the first, and the last moves most. Points must "
+                "stand from head to tail; a swimmer that swims backward is read by --file"
+            )
+        note = "points reversed: the wave ran from the last to the first, and the first moved most"
+        return beat_of(film.reversed(note), harmonics=harmonics, rigid=rigid)
+    return found
+
+
+def most_harmonics(film: Film, period: float) -> int:
+    """Harmonics that the frames in a beat of this `period` [s] can tell: fewer than half of their number."""
+    frames = (len(film.time) - 1) * period / (film.time[-1] - film.time[0])
+    return max(1, min(HARMONICS, math.ceil(0.5 * frames) - 1))
+
+
+def jackknife(values: Any) -> np.ndarray:
+    """Half of the 95 % band of a mean from its `values` (n, ...) without each of n parts."""
+    from scipy.stats import t
+
+    rows, count = np.asarray(values), len(values)
+    error = np.sqrt((count - 1) / count * np.sum((rows - rows.mean(axis=0)) ** 2, axis=0))
+    return np.asarray(t.ppf(QUANTILE, count - 1) * error)
+
+
+def _phase(beat: Beat) -> float:
+    """Phase [rad] of the curvature's first harmonic from head to tail: negative for a wave towards the last point."""
+    wave = beat.curvature[1] - 1j * beat.curvature[2]
+    return float(FINE * np.sum(np.imag(np.conj(wave[:-1]) * wave[1:])) / np.sum(np.abs(wave) ** 2))
+
+
+class _Fit:
+    """Least squares of the angles of a film."""
+
+    def __init__(self, film: Film, rigid: float) -> None:
+        steps = np.diff(film.points, axis=1)
+        angles = np.unwrap(np.arctan2(steps[..., 1], steps[..., 0]), axis=1)
+        self.film, self.rigid = film, rigid
+        self.weight = np.diff(film.arc) / np.mean(np.diff(film.arc))  # an error of a point turns a short segment more
+        self.mean = self._mean(angles)
+        self.angles = self.weight * (angles - self.mean)  # (N, n - 1): no turn of the whole body is left
+        self.time = film.time - film.time[0]
+        self.power = float(np.sum((self.angles - self.angles.mean(axis=0)) ** 2))
+        if self.power <= 1e-12 * self.angles.size:
+            raise ValueError(f"{film.name}: the body does not bend")
+        self.period = self._first_period()
+        self.beats = np.floor(self.time / self.period + 1e-6).astype(int)
+        self.beats = np.minimum(self.beats, max(0, round(self.time[-1] / self.period + 1e-6) - 1))
+        if (count := self.beats[-1] + 1) < FEWEST_BEATS:
+            raise ValueError(f"{film.name}: there must be {FEWEST_BEATS} beats or more, got {count} of {self.period:.3g} s")
+        self.bases = {knots: self._basis(knots) for knots in range(3, min(KNOTS, self.angles.shape[1]) + 1)}
+
+    def best(self, harmonics: int | None) -> Beat:
+        """The fit that predicts best, with those without each beat."""
+        most = most_harmonics(self.film, self.period)
+        if harmonics is not None and not 1 <= harmonics <= most:
+            raise ValueError(f"harmonics must be 1 to {most} with this film, got {harmonics}")
+        orders = range(1, most + 1) if harmonics is None else [harmonics]
+        tried = {each: self._errors(*each) for each in itertools.product(orders, self.bases)}
+        least = min(tried.values(), key=np.mean)
+        good = [each for each, errors in tried.items() if _within_one_error(errors, least)]
+        order, knots = min(good, key=lambda each: ((1 + 2 * each[0]) * each[1], np.mean(tried[each])))
+        predicted = 1.0 - float(np.sum(tried[order, knots])) / self.power
+        if predicted < LEAST_SHARE:
+            raise ValueError(
+                f"{self.film.name}: the motion does not repeat: at its best period, {self.period:.3g} s, the other beats "
+                f"predict {max(predicted, 0.0):.0%} of its variance. A motion that is not steady is read by --file"
+            )
+        all_frames = np.ones(len(self.time), dtype=bool)
+        period = self._refined(self.period, order, all_frames)
+        found = self._beat(order, knots, period, all_frames, predicted)
+        others = []
+        for beat in range(self.beats[-1] + 1):
+            rest = self.beats != beat
+            others.append(self._beat(order, knots, self._refined(period, order, rest), rest, predicted))
+        return replace(found, others=tuple(others))
+
+    def _beat(self, order: int, knots: int, period: float, frames: np.ndarray, predicted: float) -> Beat:
+        angles, curvature = self.bases[knots]
+        design = _in_time(self.time, self.time[-1], period, order)
+        found = _solved(design[frames], self.angles[frames], angles)
+        fitted = design @ found @ angles.T
+        share = 1.0 - float(np.sum((fitted - self.angles)[frames] ** 2)) / max(
+            float(np.sum((self.angles - self.angles.mean(axis=0))[frames] ** 2)), 1e-300
+        )
+        return Beat(
+            film=self.film,
+            period=period,
+            harmonics=order,
+            knots=knots,
+            rigid=self.rigid,
+            curvature=found @ curvature,
+            share=share,
+            predicted=predicted,
+            residual=self._distance(fitted),
+        )
+
+    def _errors(self, order: int, knots: int) -> np.ndarray:
+        """Sums of squares by which each beat is missed by the fit of the others."""
+        angles, _ = self.bases[knots]
+        design, found = _in_time(self.time, self.time[-1], self.period, order), []
+        for beat in range(self.beats[-1] + 1):
+            out = self.beats == beat
+            guess = design[out] @ _solved(design[~out], self.angles[~out], angles) @ angles.T
+            found.append(float(np.sum((guess - self.angles[out]) ** 2)))
+        return np.array(found)
+
+    def _basis(self, knots: int) -> tuple[np.ndarray, np.ndarray]:
+        """Angles of the segments less their mean (n - 1, P), and curvatures (P, FINE) [rad/m], of P splines."""
+        from scipy.interpolate import CubicSpline, make_interp_spline
+
+        arc, length = self.film.arc, self.film.length
+        fine = np.linspace(0.0, length, FINE)
+        if self.rigid:
+            start = self.rigid * length
+            places = np.linspace(start, length, knots + 1)
+            spline = CubicSpline(places, np.eye(knots + 1)[:, 1:], bc_type=((1, np.zeros(knots)), (2, np.zeros(knots))))
+            curvature = np.where(fine[:, None] > start, spline(fine), 0.0)
+        else:
+            curvature = natural_spline(np.linspace(0.0, length, knots), np.eye(knots), fine).T
+        twice = make_interp_spline(fine, curvature, k=3).antiderivative(2)
+        angles = np.diff(twice(arc), axis=0) / np.diff(arc)[:, None]  # of a chord: the mean over the segment
+        return self.weight[:, None] * (angles - self._mean(angles.T).T), curvature.T
+
+    def _mean(self, angles: np.ndarray) -> np.ndarray:
+        """The weighted mean (m, 1) over the body of angles (m, n - 1)."""
+        return np.average(angles, axis=1, weights=self.weight**2)[:, None]
+
+    def _first_period(self) -> float:
+        """The period whose first harmonic explains most of the angles."""
+        step, span = float(np.median(np.diff(self.time))), float(self.time[-1])
+        periods = 1.0 / np.arange(1.5 / span, 1.0 / (LEAST_FRAMES * step), 0.1 / span)
+        if not len(periods):
+            raise ValueError(f"{self.film.name}: its frames are too few for a beat, {len(self.time)} in {span:.3g} s")
+        missed = [self._missed(period, 1, np.ones(len(self.time), dtype=bool)) for period in periods]
+        return self._refined(float(periods[int(np.argmin(missed))]), 1, np.ones(len(self.time), dtype=bool))
+
+    def _refined(self, period: float, order: int, frames: np.ndarray) -> float:
+        from scipy.optimize import minimize_scalar
+
+        width = 0.2 * period / self.time[-1]  # the frequency is known to a part of 1 / span
+        bounds = period * (1.0 - width), period * (1.0 + width)
+        found = minimize_scalar(self._missed, args=(order, frames), bounds=bounds, method="bounded",
+                                options={"xatol": 1e-7 * period})  # fmt: skip
+        return float(found.x)
+
+    def _missed(self, period: float, order: int, frames: np.ndarray) -> float:
+        design = _in_time(self.time[frames], self.time[-1], period, order)
+        values = self.angles[frames]
+        return float(np.sum((design @ np.linalg.lstsq(design, values, rcond=None)[0] - values) ** 2))
+
+    def _distance(self, fitted: np.ndarray) -> float:
+        """Root mean square distance [m] of the points from those of the `fitted` angles (N, n - 1)."""
+        whole = fitted / self.weight + self.mean
+        steps = np.diff(self.film.arc)[:, None] * np.stack((np.cos(whole), np.sin(whole)), axis=-1)
+        points = np.concatenate((np.zeros((len(whole), 1, 2)), np.cumsum(steps, axis=1)), axis=1)
+        apart = (points - points.mean(axis=1, keepdims=True)) - (
+            self.film.points - self.film.points.mean(axis=1, keepdims=True)
+        )
+        return float(np.sqrt(np.mean(np.sum(apart**2, axis=2))))
+
+
+def _in_time(time: np.ndarray, span: float, period: float, order: int) -> np.ndarray:
+    turns = 2.0 * math.pi / period * (time - 0.5 * span)  # from the middle, where the phase is least uncertain
+    columns = [np.ones_like(time), *(f(h * turns) for h in range(1, order + 1) for f in (np.cos, np.sin))]
+    return np.column_stack(columns)
+
+
+def _solved(design: np.ndarray, values: np.ndarray, along: np.ndarray) -> np.ndarray:
+    """The coefficients C (2 H + 1, P) with which design C along^T comes nearest to the `values`."""
+    rows = np.linalg.lstsq(design, values, rcond=None)[0]
+    return np.asarray(np.linalg.lstsq(along, rows.T, rcond=None)[0].T)
+
+
+def _within_one_error(errors: np.ndarray, least: np.ndarray) -> bool:
+    apart = errors - least
+    return bool(np.mean(apart) <= np.std(apart, ddof=1) / math.sqrt(len(apart)) or np.mean(apart) <= 0.0)

@@ -1,0 +1,203 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A filmed swimmer: tracked points in metres, repaired where that can be done safely, or refused in a sentence.
+
+Empty frames are left out. Where a point is missing, or has jumped, a cubic along the body through the others of its
+frame takes its place; a frame without an end point, or without a quarter of its points, is left out. Drift and turns
+of the swimmer need no repair: the body's bending does not contain them.
+"""
+
+import os
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from eel_base.files.input_file import reading
+from eel_base.quantity import number, positive
+from eel_base.wording import shown
+
+from eel_gaits.film.forms import UNITS, Tracks, read_tracks
+
+FEWEST_POINTS, FEWEST_FRAMES = 5, 16
+MISSING = 0.25  # part of a frame's points that may be missing
+OFTEN = 0.5  # part of the frames in which a point must be seen to count
+JUMP, SPREADS = 0.5, 6.0  # of a segment's median length, and of its robust spread, beyond which a point has jumped
+CUT, STEPS = 0.25, 10.0  # of the length, and of the median step, beyond which the whole body has jumped
+CLOSE = 0.3  # of the median distance between neighbours, below which two points are one
+LONGEST = 100.0  # m, of a swimmer
+
+
+class Film(NamedTuple):
+    """Points from head to tail in N frames."""
+
+    name: str  # of the file
+    time: np.ndarray  # (N,) s
+    points: np.ndarray  # (N, n, 2) m
+    notes: tuple[str, ...]  # what was done to the data, in words
+
+    @property
+    def arc(self) -> np.ndarray:
+        """(n,) m, mean arc lengths of the points, by their distances."""
+        steps = np.linalg.norm(np.diff(self.points, axis=1), axis=2).mean(axis=0)
+        return np.concatenate(([0.0], np.cumsum(steps)))
+
+    @property
+    def length(self) -> float:
+        """[m] from the first point to the last, along the body."""
+        return float(self.arc[-1])
+
+    def reversed(self, note: str) -> "Film":
+        """The points in the other order."""
+        return self._replace(points=self.points[:, ::-1], notes=(*self.notes, note))
+
+
+def read_film(
+    path: str | os.PathLike[str],
+    *,
+    units: str | None = None,
+    scale: float | None = None,
+    rate: float | None = None,
+    animal: str | None = None,
+) -> Film:
+    """The swimmer in a file of tracked points, in a form of `eel_gaits.film.forms`.
+
+    units: of length: m, cm, mm or px; None: those that the columns tell. scale: metres in the file's unit, for pixels.
+    rate: frames per second, where the file counts frames. animal: which of several. `ValueError` in one line for what
+    does not fit.
+    """
+    path = Path(path)
+    with reading(shown(str(path))):
+        tracks = read_tracks(path)
+        metres = _metres(tracks, units, scale)
+        if tracks.frames and rate is None:
+            raise ValueError("it counts frames: give the rate of the film, frames per second")
+        if not tracks.frames and rate is not None:
+            raise ValueError("it has times: a rate of the film has no place")
+        points, chosen = _of_one(tracks, animal)
+        time = tracks.time / positive("rate", rate, "1/s") if rate is not None else tracks.time
+        found = _repaired(path.name, time, metres * points, [*tracks.notes, *chosen])
+        if found.length > LONGEST:
+            raise ValueError(f"its swimmer is {found.length:.4g} m long: give its units, or a scale")
+        _check_whole(found)
+        return found
+
+
+def _metres(tracks: Tracks, units: str | None, scale: float | None) -> float:
+    """Metres in the file's unit of length."""
+    if units is not None and units not in (*UNITS, "px"):
+        raise ValueError(f"units must be one of {', '.join((*UNITS, 'px'))}, got {shown(units)}")
+    if units is not None and tracks.unit and units != tracks.unit:
+        raise ValueError(f"its columns are in {tracks.unit}, the units given are {units}")
+    unit = tracks.unit or units
+    if scale is not None:
+        return number("scale", positive("scale", scale, "m"))
+    if unit == "px":
+        raise ValueError("its points are in pixels, which have no length: give the scale, metres in a pixel")
+    if unit is None:
+        raise ValueError(f"its columns do not tell their unit of length: give units, {', '.join(UNITS)} or px")
+    if unit not in UNITS:
+        raise ValueError(f"its columns have the unit {shown(unit)}, which must be one of {', '.join(UNITS)} or px")
+    return UNITS[unit]
+
+
+def _of_one(tracks: Tracks, animal: str | None) -> tuple[np.ndarray, list[str]]:
+    """The points of the one animal, and a note where another was left out."""
+    seen = [name for name, points in tracks.animals.items() if np.any(np.isfinite(points))]
+    if animal is not None:
+        if animal not in tracks.animals:
+            raise ValueError(f"there is no animal {shown(animal)}, there are: {', '.join(map(shown, seen))}")
+        others = [name for name in seen if name != animal]
+        return tracks.animals[animal], [f"animal {animal} of {len(seen)}"] if others else []
+    if len(seen) > 1:
+        raise ValueError(f"it has {len(seen)} animals, {', '.join(map(shown, seen))}: say which one")
+    if not seen:
+        raise ValueError("all its points are missing")
+    return tracks.animals[seen[0]], []
+
+
+def _repaired(name: str, time: np.ndarray, points: np.ndarray, notes: list[str]) -> Film:
+    def keep(frames: np.ndarray, why: str) -> None:
+        nonlocal time, points
+        if not np.all(frames):
+            notes.append(f"{np.sum(~frames)} of {len(frames)} frames left out: {why}")
+            time, points = time[frames], points[frames]
+
+    keep(np.any(np.isfinite(points), axis=(1, 2)), "empty")
+    there = np.all(np.isfinite(points), axis=2)
+    rare = np.flatnonzero(there.mean(axis=0) < OFTEN)
+    if len(rare):
+        notes.append(f"points left out, missing in most frames: {', '.join(str(each + 1) for each in rare)}")
+        points = np.delete(points, rare, axis=1)
+    points = _apart(points, notes)
+    if points.shape[1] < FEWEST_POINTS or len(time) < FEWEST_FRAMES:
+        rule = f"{FEWEST_POINTS} points in {FEWEST_FRAMES} frames or more"
+        raise ValueError(f"there must be {rule}, got {points.shape[1]} in {len(time)}{_told(notes)}")
+    jumped = _jumps(points)
+    points = np.where(jumped[..., None], np.nan, points)
+    missing = ~np.all(np.isfinite(points), axis=2)
+    if np.any(jumped):
+        notes.append(f"{np.sum(jumped)} points have jumped along the body and count as missing")
+    keep(~(missing[:, 0] | missing[:, -1]), "an end of the body is missing")
+    keep(np.mean(~np.all(np.isfinite(points), axis=2), axis=1) <= MISSING, "more than a quarter of the points missing")
+    if len(time) < FEWEST_FRAMES:
+        raise ValueError(f"there must be {FEWEST_FRAMES} frames or more, got {len(time)}{_told(notes)}")
+    missing = ~np.all(np.isfinite(points), axis=2)
+    if np.any(missing):
+        notes.append(f"{np.sum(missing)} of {missing.size} points filled by a cubic along the body")
+        points = _filled(points, missing)
+    return Film(name, time, points, tuple(notes))
+
+
+def _apart(points: np.ndarray, notes: list[str]) -> np.ndarray:
+    """The points without those that lie on the one ahead: two marks that were mixed up have no direction."""
+    usual = float(np.nanmedian(np.nanmedian(np.linalg.norm(np.diff(points, axis=1), axis=2), axis=0)))
+    kept = [0]
+    for place in range(1, points.shape[1]):
+        if np.nanmedian(np.linalg.norm(points[:, place] - points[:, kept[-1]], axis=1)) > CLOSE * usual:
+            kept.append(place)
+    out = [str(each + 1) for each in range(points.shape[1]) if each not in kept]
+    if out:
+        notes.append(f"points left out, as they lie on the one ahead: {', '.join(out)}")
+    return points[:, kept]
+
+
+def _told(notes: list[str]) -> str:
+    return f" ({'; '.join(notes)})" if notes else ""
+
+
+def _jumps(points: np.ndarray) -> np.ndarray:
+    """(N, n), whether both distances of a point to its neighbours, or the one of an end, are far from the usual."""
+    steps = np.linalg.norm(np.diff(points, axis=1), axis=2)
+    usual = np.nanmedian(steps, axis=0)
+    spread = 1.4826 * np.nanmedian(np.abs(steps - usual), axis=0)
+    with np.errstate(invalid="ignore"):
+        off = np.abs(steps - usual) > np.maximum(JUMP * usual, SPREADS * spread)
+    found = np.zeros(points.shape[:2], dtype=bool)
+    found[:, 1:-1] = off[:, 1:] & off[:, :-1]
+    found[:, 0] = off[:, 0] & ~found[:, 1]
+    found[:, -1] = off[:, -1] & ~found[:, -2]
+    return found
+
+
+def _filled(points: np.ndarray, missing: np.ndarray) -> np.ndarray:
+    from scipy.interpolate import CubicSpline
+
+    steps = np.nanmedian(np.linalg.norm(np.diff(points, axis=1), axis=2), axis=0)
+    arc, found = np.concatenate(([0.0], np.cumsum(steps))), points.copy()
+    for frame in np.flatnonzero(missing.any(axis=1)):
+        there = ~missing[frame]
+        found[frame, ~there] = CubicSpline(arc[there], points[frame, there])(arc[~there])
+    return found
+
+
+def _check_whole(film: Film) -> None:
+    """`ValueError` where the whole body jumps from one frame to the next: a cut, or another animal."""
+    centre = film.points.mean(axis=1)
+    steps = np.linalg.norm(np.diff(centre, axis=0), axis=1)
+    pace = steps / np.diff(film.time)
+    far = (steps > CUT * film.length) & (pace > STEPS * np.median(pace))
+    if np.any(far):
+        place = int(np.argmax(far))
+        raise ValueError(
+            f"the swimmer jumps by {steps[place]:.3g} m between {film.time[place]:g} s and {film.time[place + 1]:g} s: "
+            "another animal, or a cut of the film? Give one side of it"
+        )

@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What biologists measure on a steady swimmer, from points along its body: of a film, or of a run likewise.
+
+The path is a polynomial in time of degree 2 through the points' mean, with harmonics of the beat beside it. Sideways
+is across the path. The wave's length follows from the slope of the phase along the body, weighted by the square of
+the amplitude.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+HARMONICS = 2  # of the beat, beside the path
+STANDING = 1e-2  # of the length in a beat: a slower swimmer has no direction of its own
+
+
+@dataclass(frozen=True)
+class Kinematics:
+    """Figures of a steady swimmer; lengths relative to its own."""
+
+    length: float  # m
+    period: float  # s
+    speed: float  # m/s, of the points' mean along the path
+    ahead: bool  # whether it moves head first
+    excursion: np.ndarray  # (n,) L, of each point from side to side
+    wavelength: float  # L, of the sideways motion; inf where it stands
+    yaw: float  # rad, amplitude of the first segment's angle
+
+    @property
+    def stride(self) -> float:
+        """Way in a beat, by the length."""
+        return self.speed * self.period / self.length
+
+    @property
+    def slip(self) -> float:
+        """Speed of swimming by that of the wave."""
+        return self.stride / self.wavelength
+
+    @property
+    def strouhal(self) -> float:
+        """Frequency times the tail's excursion by the speed."""
+        return float(self.excursion[-1]) / self.stride if self.stride else math.inf
+
+
+def kinematics(time: np.ndarray, points: np.ndarray, period: float) -> Kinematics:
+    """Figures of the points (N, n, 2) [m] from head to tail at `time` (N,) [s], which beat with a `period` [s]."""
+    time = time - time.mean()
+    arc = np.concatenate(([0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=1), axis=2).mean(axis=0))))
+    length = float(arc[-1])
+    turns = 2.0 * math.pi / period * time
+    beat = np.column_stack([f(h * turns) for h in range(1, HARMONICS + 1) for f in (np.cos, np.sin)])
+    powers = np.column_stack((np.ones_like(time), time, time**2))
+    found = np.linalg.lstsq(np.column_stack((powers, beat)), points.mean(axis=1), rcond=None)[0][:3]
+    velocity = found[1] + 2.0 * time[:, None] * found[2]
+    speed = float(np.mean(np.linalg.norm(velocity, axis=1)))
+    axis = (points[:, 0] - points[:, -1]).mean(axis=0)
+    ahead = float(np.mean(np.sum(velocity * (points[:, 0] - points[:, -1]), axis=1))) > 0.0
+    along = velocity if speed * period > STANDING * length else np.broadcast_to(axis, velocity.shape)
+    along = along / np.linalg.norm(along, axis=1, keepdims=True)
+    across = np.column_stack((-along[:, 1], along[:, 0]))
+    side = np.sum((points - (powers @ found)[:, None]) * across[:, None], axis=2)
+    wave = _harmonic(turns, side)
+    phase, weight = np.unwrap(np.angle(wave)), np.abs(wave)
+    slope = float(np.polyfit(arc, phase, 1, w=weight)[0])  # negative for a wave towards the tail
+    head = points[:, 0] - points[:, 1]
+    angle = np.unwrap(np.arctan2(np.sum(head * across, axis=1), np.sum(head * along, axis=1)))
+    return Kinematics(
+        length=length,
+        period=period,
+        speed=speed,
+        ahead=ahead,
+        excursion=2.0 * np.abs(wave) / length,
+        wavelength=-2.0 * math.pi / (slope * length) if slope else math.inf,
+        yaw=float(np.abs(_harmonic(turns, angle[:, None])[0])),
+    )
+
+
+def _harmonic(turns: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Complex amplitudes A (n,) of the `values` (N, n) = mean + trend + Re(A exp(i turns)) + a second harmonic."""
+    columns = [np.ones_like(turns), turns, *(f(h * turns) for h in (1, 2) for f in (np.cos, np.sin))]
+    found = np.linalg.lstsq(np.column_stack(columns), values, rcond=None)[0]
+    return np.asarray(found[2] - 1j * found[3])

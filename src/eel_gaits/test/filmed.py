@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Films of a swimmer whose beat is known, and files of them in the forms of laboratories and trackers."""
+
+import math
+
+import numpy as np
+from measured import midline_of, moved, write
+
+from eel_gaits import Law, Term
+
+WAVE = Law(Term(amplitude=(2.0, 3.0, 5.0), knots=(0.0, 0.5, 1.0), wavelength=0.7, period=0.26))
+TWICE = WAVE + Law(Term(amplitude=(1.0, 2.0, 3.0), knots=(0.0, 0.5, 1.0), wavelength=0.4, period=0.13))
+TIMES = 0.02 * np.arange(80)
+ARC = np.linspace(0.0, 1.0, 20)
+
+
+def swimming(law=WAVE, *, noise=0.0, correlation=0.8, times=TIMES, arc=ARC, seed=2):
+    """Points (N, n, 2) [m] of a swimmer 1 m long that drifts ahead and turns; errors that last over several frames."""
+    draw, error, frames = np.random.default_rng(seed), np.zeros((len(arc), 2)), []
+    for time in times:
+        error = correlation * error + math.sqrt(1.0 - correlation**2) * noise * draw.normal(size=(len(arc), 2))
+        frames.append(moved(midline_of(law, time, arc), time) + error)
+    return np.array(frames)
+
+
+def write_long(path, points, *, times=TIMES, unit="mm", factor=1e3, numbered=True):
+    rows = []
+    for time, frame in zip(times, points, strict=True):
+        for place, point in enumerate(frame):
+            cells = ["" if np.isnan(each) else each for each in (factor * point).tolist()]
+            rows.append((time, *([place + 1] if numbered else []), *cells))
+    suffix = f"_{unit}" if unit else ""
+    return write(path, ("time_s", *(["point"] if numbered else []), f"x{suffix}", f"y{suffix}"), rows)
+
+
+def write_wide(path, points):
+    names = [f"{axis}{place}_m" for place in range(points.shape[1]) for axis in "xy"]
+    rows = [(time, *frame.ravel().tolist()) for time, frame in zip(TIMES, points, strict=True)]
+    return write(path, ("time_s", *names), rows)
+
+
+def deeplabcut_rows(animals):
+    """Header lines and rows of DeepLabCut's table of {name: points (N, n, 2)}; without names for one animal ""."""
+    columns = [
+        (animal, f"part{place}", what)
+        for animal, points in animals.items()
+        for place in range(points.shape[1])
+        for what in ("x", "y", "likelihood")
+    ]
+    likely = [np.concatenate((each, np.ones((*each.shape[:2], 1))), axis=2) for each in animals.values()]
+    values = np.concatenate([each.reshape(len(each), -1) for each in likely], axis=1)
+    heads = [["scorer", *["net"] * len(columns)]]
+    heads += [] if list(animals) == [""] else [["individuals", *(animal for animal, _, _ in columns)]]
+    heads += [["bodyparts", *(part for _, part, _ in columns)], ["coords", *(what for _, _, what in columns)]]
+    return heads, values
+
+
+def write_deeplabcut(path, animals):
+    heads, values = deeplabcut_rows(animals)
+    rows = [[frame, *("" if np.isnan(each) else each for each in row)] for frame, row in enumerate(values.tolist())]
+    return write(path, heads[0], [*heads[1:], *rows])
+
+
+def write_sleap(path, animals):
+    count = next(iter(animals.values())).shape[1]
+    names = [f"part{place}.{what}" for place in range(count) for what in ("x", "y", "score")]
+    rows = []
+    for frame in range(len(TIMES)):
+        for name, points in animals.items():
+            cells = [each for x, y in points[frame].tolist() for each in (x, y, 0.9)]
+            rows.append((name, frame, 0.9, *cells))
+    return write(path, ("track", "frame_idx", "instance.score", *names), rows)

@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Filmed swimmers swim: with a motion that is known, and a lamprey as its data were published."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from eel_dynamics.runs.command import main as simulate_command
+from eel_dynamics.runs.filmed import speeds_of
+from eel_gaits.film.beat import beat_of
+from eel_gaits.film.film import Film
+from filmed import TIMES, WAVE, swimming, write_long
+
+from eel_dynamics import Body, Scene, simulate
+
+ROOT = Path(__file__).resolve().parents[1]
+LAMPREY = ROOT / "docs" / "data" / "lamprey_midlines.csv"
+PLANAR = Scene(planar=True, friction="blended", internal_wrench=False)
+
+
+def test_a_noisy_film_swims_as_fast_as_the_motion_that_was_filmed():
+    beat = beat_of(Film("fish.csv", TIMES, swimming(noise=3e-3), ()))
+    body = Body.kern2006()
+    (found,) = speeds_of([beat], body, PLANAR)
+    true = simulate(WAVE, "settled", body=body, scene=PLANAR, accuracy=1e-2).mean_speed
+    assert found == pytest.approx(true, rel=0.05)  # the noise is 6 % of the points' distance
+
+
+def test_the_lamprey_swims_from_its_file_as_it_was_published(capsys):
+    assert simulate_command(["--midlines", str(LAMPREY), "--units", "mm", "--accuracy", "1e-2"]) == 0
+    told = capsys.readouterr().out
+    assert re.search(r"period 0\.26\d* \+- \d\.\d+ s \(95 %\), 6 beats, 1 harmonic kept", told)
+    assert "2 of 80 frames left out: empty" in told and re.search(r"residual \d\.\d+ mm \(RMS\)", told)
+    share = float(re.search(r"([0-9.]+)% of the variance", told)[1])
+    assert 85.0 < share < 92.0
+    speed, low, high = map(float, re.search(r"speed +([0-9.]+) m/s, ([0-9.]+) to ([0-9.]+) m/s by the", told).groups())
+    measured = float(re.search(r"beside the film +([0-9.]+) m/s measured", told)[1])
+    assert low < speed < high and measured == pytest.approx(0.270, abs=0.003)  # as its authors' data give
+    by_count = [float(each) for each in re.search(r"speed by harmonics +(.*) m/s", told)[1].replace(",", "").split()[1::2]]
+    assert len(by_count) == 5 and np.ptp(by_count) < 0.05 * speed
+
+
+def test_options_of_films_need_a_film_and_a_body_its_length(tmp_path, capsys):
+    assert simulate_command(["straight", "--units", "mm"]) == 2
+    assert "belong to --midlines, which is not given" in capsys.readouterr().err
+    path = str(write_long(tmp_path / "fish.csv", 0.2 * swimming()))
+    assert simulate_command(["--midlines", path, "--body", "boyer2010"]) == 2
+    assert "is 1 m long, the swimmer in the film 0.1999 m" in capsys.readouterr().err
+    assert simulate_command(["--midlines", path, "--file", path]) == 2
+    assert "--midlines takes the place of a gait" in capsys.readouterr().err
