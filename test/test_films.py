@@ -37,7 +37,9 @@ def test_the_lamprey_swims_from_its_file_as_it_was_published(capsys):
     speed, low, high = map(float, re.search(r"speed +([0-9.]+) m/s, ([0-9.]+) to ([0-9.]+) m/s by the", told).groups())
     measured = float(re.search(r"beside the film +([0-9.]+) m/s measured", told)[1])
     assert low < speed < high and measured == pytest.approx(0.270, abs=0.003)  # as its authors' data give
-    by_count = [float(each) for each in re.search(r"speed by harmonics +(.*) m/s", told)[1].replace(",", "").split()[1::2]]
+    by_count = [
+        float(each) for each in re.search(r"speed by harmonics +(.*) m/s", told)[1].replace(",", "").split()[1::2]
+    ]
     assert len(by_count) == 5 and np.ptp(by_count) < 0.05 * speed
 
 

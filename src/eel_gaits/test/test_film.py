@@ -178,7 +178,7 @@ def test_two_animals_are_refused_with_what_to_do(tmp_path):
     with pytest.raises(ValueError, match="line 2: a point stands twice in one frame: two animals"):
         read_film(twice)
     (tmp_path / "after.csv").write_text("\n".join(rows + rows[1:]))
-    with pytest.raises(ValueError, match="line 1602: time must rise, got 0 after 1.58: two animals in one file"):
+    with pytest.raises(ValueError, match=r"line 1602: time must rise, got 0 after 1.58: two animals in one file"):
         read_film(tmp_path / "after.csv")
 
 
@@ -207,7 +207,7 @@ def test_a_bad_table_is_refused_in_one_line(tmp_path, text, words):
 
 def test_motions_without_a_beat_are_refused():
     still = np.broadcast_to(swimming()[0], (80, 20, 2)).copy()
-    with pytest.raises(ValueError, match="the body does not bend|does not repeat"):
+    with pytest.raises(ValueError, match=r"the body does not bend|does not repeat"):
         beat_of(film(still))
     wandering = np.cumsum(np.cumsum(np.random.default_rng(1).normal(size=(80, 20)), axis=0), axis=1)
     angles = 0.01 * wandering

@@ -49,8 +49,8 @@ def body_for(text: str | None, film: Film) -> Body:
     body = body_of(str(text))
     if abs(body.length - film.length) > FITTING * film.length:
         raise ValueError(
-            f"body {shown(body.name)} is {body.length:g} m long, the swimmer in the film {film.length:.4g} m: give a body "
-            f"of that length, or none for {EEL} of that length"
+            f"body {shown(body.name)} is {body.length:g} m long, the swimmer in the film {film.length:.4g} m: give a "
+            f"body of that length, or none for {EEL} of that length"
         )
     return body
 

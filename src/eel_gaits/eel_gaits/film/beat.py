@@ -84,12 +84,12 @@ class Beat:
     def about(self) -> list[tuple[str, str]]:
         """What was read and how it was smoothed: names and sentences."""
         film, seen = self.film, self.measured
-        kept = f"{self.harmonics} harmonic{'s' if self.harmonics > 1 else ''}"
+        kept = f"{len(self.others)} beats, {self.harmonics} harmonic{'s' if self.harmonics > 1 else ''} kept"
         periods = jackknife([each.period for each in self.others])
         return [
             ("film", f"{film.name}: {film.points.shape[1]} points, {len(film.time)} frames, {film.length:.4g} m long"),
             *(("repaired", note) for note in film.notes),
-            ("beat", f"period {self.period:.4g} +- {float(periods):.2g} s (95 %), {len(self.others)} beats, {kept} kept"),
+            ("beat", f"period {self.period:.4g} +- {float(periods):.2g} s (95 %), {kept}"),
             ("along the body", f"splines through {self.knots} knots{self._rigid_part()}"),
             ("fit", f"{self.share:.1%} of the variance, {self.predicted:.1%} predicted from the other beats; residual "
                     f"{1e3 * self.residual:.3g} mm (RMS), {self.residual / film.length:.2%} of the length; curvature "
@@ -127,7 +127,7 @@ def beat_of(film: Film, *, harmonics: int | None = None, rigid: float = 0.0) -> 
 
 def most_harmonics(film: Film, period: float) -> int:
     """Harmonics that the frames in a beat of this `period` [s] can tell: fewer than half of their number."""
-    frames = (len(film.time) - 1) * period / (film.time[-1] - film.time[0])
+    frames = (len(film.time) - 1) * period / float(film.time[-1] - film.time[0])
     return max(1, min(HARMONICS, math.ceil(0.5 * frames) - 1))
 
 
@@ -164,7 +164,9 @@ class _Fit:
         self.beats = np.floor(self.time / self.period + 1e-6).astype(int)
         self.beats = np.minimum(self.beats, max(0, round(self.time[-1] / self.period + 1e-6) - 1))
         if (count := self.beats[-1] + 1) < FEWEST_BEATS:
-            raise ValueError(f"{film.name}: there must be {FEWEST_BEATS} beats or more, got {count} of {self.period:.3g} s")
+            raise ValueError(
+                f"{film.name}: there must be {FEWEST_BEATS} beats or more, got {count} of {self.period:.3g} s"
+            )
         self.bases = {knots: self._basis(knots) for knots in range(3, min(KNOTS, self.angles.shape[1]) + 1)}
 
     def best(self, harmonics: int | None) -> Beat:
@@ -180,8 +182,8 @@ class _Fit:
         predicted = 1.0 - float(np.sum(tried[order, knots])) / self.power
         if predicted < LEAST_SHARE:
             raise ValueError(
-                f"{self.film.name}: the motion does not repeat: at its best period, {self.period:.3g} s, the other beats "
-                f"predict {max(predicted, 0.0):.0%} of its variance. A motion that is not steady is read by --file"
+                f"{self.film.name}: the motion does not repeat: at its best period, {self.period:.3g} s, the other "
+                f"beats predict {max(predicted, 0.0):.0%} of its variance. A motion that is not steady is read by --file"
             )
         all_frames = np.ones(len(self.time), dtype=bool)
         period = self._refined(self.period, order, all_frames)

@@ -12,9 +12,11 @@ A unit after the last _ of a column counts as the file's. The trackers' points a
 
 import csv
 import io
+import itertools
 import re
+from importlib import import_module
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from eel_base.files.input_file import InputFile, Misplaced
@@ -161,7 +163,7 @@ def _of_parts(frames: np.ndarray, names: list[tuple[str, str, str]], values: np.
     column = {name: index for index, name in enumerate(names)}
     animals, unlikely = {}, 0
     for animal in dict.fromkeys(name[0] for name in names):
-        parts = [part for part in dict.fromkeys(name[1] for name in names if name[0] == animal)]
+        parts = list(dict.fromkeys(name[1] for name in names if name[0] == animal))
         points = np.full((len(frames), len(parts), 2), np.nan)
         for place, part in enumerate(parts):
             if not {(animal, part, "x"), (animal, part, "y")} <= set(names):
@@ -179,8 +181,8 @@ def _of_parts(frames: np.ndarray, names: list[tuple[str, str, str]], values: np.
 
 def _of_hdf(path: Path) -> Tracks:
     try:
-        import pandas
-        import tables  # noqa: F401  what pandas reads .h5 with
+        import_module("tables")  # what pandas reads .h5 with
+        pandas = import_module("pandas")
     except ImportError:
         raise ValueError(
             "an .h5 file of DeepLabCut needs pandas and PyTables (pip install pandas tables); its .csv needs neither"
@@ -188,8 +190,8 @@ def _of_hdf(path: Path) -> Tracks:
     return tracks_of_frame(pandas.read_hdf(path))
 
 
-def tracks_of_frame(frame) -> Tracks:
-    """Tracks of a `pandas.DataFrame` as DeepLabCut keeps it: columns of levels scorer, (individuals,) bodyparts, coords."""
+def tracks_of_frame(frame: Any) -> Tracks:
+    """Tracks of DeepLabCut's `pandas.DataFrame`: columns of the levels scorer, (individuals,) bodyparts, coords."""
     levels = list(frame.columns.names)
     if levels[-2:] != ["bodyparts", "coords"]:
         raise ValueError(f"a DeepLabCut table must have columns of scorer, bodyparts and coords, got {shown(levels)}")
@@ -208,7 +210,7 @@ def _of_sleap(head: list[str], rows: list[tuple[int, list[str]]]) -> Tracks:
     for track in dict.fromkeys(tracks):
         mine = [place for place, name in enumerate(tracks) if name == track]
         if len(set(frame[mine])) < len(mine):
-            twice = next(place for before, place in zip(mine, mine[1:], strict=False) if frame[place] <= frame[before])
+            twice = next(place for before, place in itertools.pairwise(mine) if frame[place] <= frame[before])
             raise Misplaced(f"line {rows[twice][0]}", "a track has two instances in one frame: two animals? Track them")
         animals[track] = np.full((len(frames), len(parts), 2), np.nan)
         animals[track][np.searchsorted(frames, frame[mine])] = points[mine].reshape(len(mine), len(parts), 2)
