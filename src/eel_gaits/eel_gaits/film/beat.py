@@ -183,7 +183,7 @@ class _Fit:
         if predicted < LEAST_SHARE:
             raise ValueError(
                 f"{self.film.name}: the motion does not repeat: at its best period, {self.period:.3g} s, the other "
-                f"beats predict {max(predicted, 0.0):.0%} of its variance. A motion that is not steady is read by --file"
+                f"beats predict {max(predicted, 0.0):.0%} of its variance. Motions that are not steady: --file"
             )
         all_frames = np.ones(len(self.time), dtype=bool)
         period = self._refined(self.period, order, all_frames)
