@@ -72,6 +72,7 @@ BODY_NUMBERS = "/numbers/body"
 ODOMETRY_NUMBERS = "/numbers/odom"
 
 # --- text --------------------------------------------------------------------------------------------------------
+LOOK = "/run/look"  # what to look at
 RUN = "/run/summary"
 LOG = "/run/log"
 

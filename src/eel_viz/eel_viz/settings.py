@@ -97,7 +97,7 @@ class Settings(Drawing):
     )
     colour_limit: float = setting(
         0.0,
-        "torque C3 from which on colours are deepest; 0: what fits the last 3 s; 0 below: what fits the run so far",
+        "torque C3 from which on colours are deepest; 0: here and below: what fits the last 3 s",
         unit="N m",
         minimum=0.0,
     )

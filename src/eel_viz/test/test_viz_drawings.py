@@ -7,7 +7,7 @@ import rerun as rr
 from eel_viz.batched_stream import BatchedStream
 from eel_viz.plots import heat_map, profile_plot
 from eel_viz.plots.heat_map import HeatMap
-from eel_viz.plots.limit import Limit, RecentLimit
+from eel_viz.plots.limit import Limit
 from eel_viz.plots.profile_plot import ProfilePlot
 from eel_viz.plots.readable import number, quantity
 from eel_viz.plots.series import Attitude
@@ -44,7 +44,7 @@ def stream(tmp_path):
 @given(limit=st.floats(1e-3, 1e3), value=st.floats(1e-6, 1e6))
 def test_a_limit_grows_to_a_round_value_that_holds(limit, value):
     scale = Limit(limit)
-    scale.include(value)
+    scale.include(0, value)
     grown = scale.value
     assert grown >= value * (1 - 1e-9)
     if value <= limit:
@@ -58,20 +58,20 @@ def test_a_limit_grows_to_a_round_value_that_holds(limit, value):
 def test_a_limit_that_nobody_set_fits_the_first_values():
     scale = Limit(0.0)
     assert scale.value == 1.0  # all values so far are zero
-    scale.include(3.2e-6)
+    scale.include(0, 3.2e-6)
     assert scale.value == pytest.approx(4e-6)
 
 
-def test_a_recent_limit_fits_the_last_seconds_alone_and_a_set_one_stays():
-    recent, fixed = RecentLimit(0.0), RecentLimit(0.25)
-    assert recent.value == 1.0 and fixed.value == 0.25
+def test_a_limit_fits_the_last_seconds_alone_and_a_set_one_may_stay():
+    recent, least, fixed = Limit(0.0), Limit(0.5), Limit(0.25, grows=False)
+    assert recent.value == 1.0 and least.value == 0.5 and fixed.value == 0.25
     limits = {}
     for second, value in enumerate((0.0, 0.51, 0.2, 0.28, 0.21, 0.19, 0.0, 0.0, 0.0)):
-        for scale in (recent, fixed):
+        for scale in (recent, least, fixed):
             scale.include(second * 10**9, value)
         limits[second] = recent.value
+        assert least.value == max(0.5, recent.value if second else 0.0) and fixed.value == 0.25
     assert limits == pytest.approx({0: 1.0, 1: 0.6, 2: 0.6, 3: 0.6, 4: 0.6, 5: 0.3, 6: 0.3, 7: 0.3, 8: 0.2})
-    assert fixed.value == 0.25
 
 
 @pytest.mark.parametrize(
@@ -116,7 +116,7 @@ def test_heading_and_roll_go_on_over_whole_turns():
 def test_curves_are_drawn_in_the_frame_s_units(stream):
     plot = ProfilePlot(stream, entities.TORQUE, names=("C1", "C2"), unit="N m", limit=2.0)
     values = np.stack([np.linspace(-2.0, 2.0, 21), 0 * X], axis=1)
-    plot.include(X, values)
+    plot.include(0, X, values)
     plot.draw(500_000_000, X, values)
     stream.disconnect()
     curves = read(stream.path, f"{entities.TORQUE}/{entities.CURVES}")
@@ -133,7 +133,7 @@ def test_nothing_leaves_the_frame_and_ticks_follow(stream):
     plot = ProfilePlot(stream, entities.FORCE, names=("N1",), unit="N", limit=1.0)
     for k, size in enumerate((0.9, 1.2, 7.0, 0.1)):
         values = np.full((21, 1), size)
-        plot.include(X, values)
+        plot.include(0, X, values)
         plot.draw(k * 10**9, X, values)
     stream.disconnect()
     curves = read(stream.path, f"{entities.FORCE}/{entities.CURVES}")
@@ -147,7 +147,7 @@ def test_nothing_leaves_the_frame_and_ticks_follow(stream):
 def test_the_envelope_is_the_least_and_the_greatest_so_far(stream):
     plot = ProfilePlot(stream, entities.FORCE, names=("N1",), unit="N", limit=4.0)
     for k, phase in enumerate((0.0, 1.0, 2.0)):
-        plot.include(X, np.sin(X + phase)[:, None])
+        plot.include(0, X, np.sin(X + phase)[:, None])
         plot.draw_envelope(k * 10**9)
     stream.disconnect()
     low, high = read(stream.path, f"{entities.FORCE}/{entities.ENVELOPE}")["strips"][-1]
@@ -158,9 +158,9 @@ def test_the_envelope_is_the_least_and_the_greatest_so_far(stream):
 
 def test_the_envelope_starts_anew_with_other_stations(stream):
     plot = ProfilePlot(stream, entities.FORCE, names=("N1",), unit="N", limit=4.0)
-    plot.include(X, np.full((21, 1), 3.0))
+    plot.include(0, X, np.full((21, 1), 3.0))
     shorter = np.linspace(0.0, 2.0, 5)
-    plot.include(shorter, np.full((5, 1), 1.0))
+    plot.include(0, shorter, np.full((5, 1), 1.0))
     plot.draw_envelope(0)
     stream.disconnect()
     low, high = read(stream.path, f"{entities.FORCE}/{entities.ENVELOPE}")["strips"][-1]
@@ -176,7 +176,7 @@ def image(path):
 
 
 def test_the_heat_map_rolls_and_shows_gaps_by_the_next_value(stream):
-    drawing = HeatMap(stream, limit=RecentLimit(1.0))
+    drawing = HeatMap(stream, limit=Limit(1.0))
     step = round(heat_map.STEP * 1e9)
     drawing.include(0, X, np.full(21, -1.0))
     drawing.include(step // 2, X, np.full(21, 0.7))  # the same column: left as it is
@@ -192,7 +192,7 @@ def test_the_heat_map_rolls_and_shows_gaps_by_the_next_value(stream):
 
 
 def test_the_heat_map_forgets_what_is_older_than_its_length(stream):
-    drawing = HeatMap(stream, limit=RecentLimit(1.0))
+    drawing = HeatMap(stream, limit=Limit(1.0))
     drawing.include(0, X, np.full(21, 1.0))
     drawing.include(10**12, X, np.full(21, 0.0))
     drawing.draw(10**9)
@@ -235,6 +235,7 @@ def test_the_summary_counts_path_speed_and_greatest_torque():
     text = summary.text()
     assert "law **falling**, swimming" in text
     assert "mean speed **0.500 m/s**, path 2.00 m" in text
-    assert "greatest C3 of the samples so far **-0.7 N m** at X = 0.50 m, 2.00 s" in text
+    assert "greatest C3 along the body **+0.6 N m** at X = 0.00 m" in text  # now
+    assert "of the samples so far -0.7 N m at X = 0.50 m, 2.00 s" in text
     assert "accuracy standard, real-time factor 0, closure 1.23e-14" in text
     assert "warnings" not in text

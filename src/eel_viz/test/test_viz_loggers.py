@@ -468,8 +468,8 @@ def test_the_recording_carries_its_blueprint(made):
         arrangement("best")
 
 
-@pytest.mark.parametrize(("duration", "blueprints"), [(0.0, 1), (9.0, 1), (30.0, 2)])
-def test_a_recording_gets_another_blueprint_where_its_legends_would_not_fit(tmp_path, duration, blueprints):
+@pytest.mark.parametrize(("end", "blueprints"), [(0.0, 1), (9.0, 2)])
+def test_a_recording_gets_another_blueprint_where_its_end_is_known(tmp_path, end, blueprints):
     from eel_viz.recording.recording_file import FileDestination
     from eel_viz.settings import Settings
     from rerun.chunk import RrdReader
@@ -477,7 +477,7 @@ def test_a_recording_gets_another_blueprint_where_its_legends_would_not_fit(tmp_
     said = []
     file = FileDestination(Settings(recording=str(tmp_path / "run.rrd")), said.append, said.append)
     stream = file.open(1, "made up")
-    file.fit(stream, duration)
+    file.fit(stream, end)
     file.close_recording(stream)
     assert len(RrdReader(str(tmp_path / "run.rrd")).blueprints()) == blueprints
 

@@ -13,7 +13,7 @@ from eel_viz.settings import BLUEPRINTS
 from eel_viz.viewer import CannotRender, _await_listening
 
 VIEWS = {
-    "overview": {"3D": 1, "2D": 3, "TimeSeries": 3, "TextDocument": 1},
+    "overview": {"3D": 1, "2D": 2, "TimeSeries": 3, "TextDocument": 2},
     "torques": {"3D": 1, "2D": 4},
     "motion": {"3D": 1, "TimeSeries": 5},
     "swimmer": {"3D": 1},

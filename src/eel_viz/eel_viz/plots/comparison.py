@@ -47,7 +47,7 @@ class Comparison:
             names=tuple(f"C3 {name}" for name in names[::-1]),  # the other below
             unit="N m",
             limit=limit,
-            palette=(colours.AMBER, colours.AXIS[2]),
+            palette=(colours.OTHER, colours.AXIS[2]),
             widths=(2.6, 1.2),
         )
         self._difference = ProfilePlot(
@@ -56,9 +56,9 @@ class Comparison:
         self._farthest = self._worst = self._greatest = 0.0  # m, N m, N m
         self._frame, self._water = FollowFrame(), WaterBox(stream, entities.BOTH_WATER)
         for path, name, colour in (
-            (entities.OTHER_SPEED, f"{names[1]} [m/s]", colours.AMBER),
-            (entities.DISTANCE, "distance [m]", colours.MAGENTA),
-            (entities.TORQUE_DIFFERENCE_MOST, "greatest over X [N m]", colours.MAGENTA),
+            (entities.OTHER_SPEED, f"{names[1]} [m/s]", colours.OTHER),
+            (entities.DISTANCE, "distance [m]", colours.PLAIN),
+            (entities.TORQUE_DIFFERENCE_MOST, "greatest over X [N m]", colours.PLAIN),
         ):
             stream.log_static(path, rr.SeriesLines(names=[name], colors=[colour], widths=[1.5]))
 
@@ -87,8 +87,8 @@ class Comparison:
             self.other.summary.add_torque(at, x, other[:, 2])
             difference = this - other
             both = np.stack([other[:, 2], this[:, 2]], axis=1)
-            self._both.include(x, both)
-            self._difference.include(x, difference)
+            self._both.include(at, x, both)
+            self._difference.include(at, x, difference)
             most = float(np.abs(difference).max())
             self._worst = max(self._worst, most)
             self._greatest = max(self._greatest, float(np.abs(this).max()))
@@ -164,7 +164,7 @@ class OtherSide(Side):
         self._stream = stream
         self._skin: Skin | None = None
         for path in (entities.OTHER_HOOPS, entities.OTHER_BACKBONE):
-            stream.log_line_style(path, colours.AMBER, width=0.8)
+            stream.log_line_style(path, colours.OTHER, width=0.8)
 
     def body(self, stamp: int, body: Body) -> None:
         """Take the sections, for the hoops."""

@@ -12,7 +12,7 @@ import rerun as rr
 
 from eel_viz import entities
 from eel_viz.batched_stream import BatchedStream
-from eel_viz.plots.limit import RecentLimit
+from eel_viz.plots.limit import Limit
 from eel_viz.scene3d import colours
 from eel_viz.scene3d.labels import text_labels
 
@@ -27,7 +27,7 @@ BOUNDS_Y = (-3.0, ROWS + 9.0)
 class HeatMap:
     """Keeps the columns and logs the image; `limit` is the value of the deepest colour."""
 
-    def __init__(self, stream: BatchedStream, *, limit: RecentLimit) -> None:
+    def __init__(self, stream: BatchedStream, *, limit: Limit) -> None:
         self._stream, self._limit = stream, limit
         self._values = np.full((ROWS, COLUMNS), np.nan, dtype=np.float32)
         self._last: int | None = None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The limit of a scale: what the user has set, or what fits the values so far, or the last of them; a round number."""
+"""The limit of a scale: what the user has set, or a round number that fits the last values."""
 
 from collections import deque
 
@@ -8,39 +8,24 @@ import numpy as np
 STEPS = (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
 
 
-class Limit:
-    """`value` > 0 of a scale from -value to +value. It begins with `start` [any unit]; 0: with the first value.
+RECENT = 3_000_000_000  # ns: what counts for a scale, so that a start or a manoeuvre does not fix it
 
-    It grows by the values that are included.
+
+class Limit:
+    """`value` > 0 of a scale from -value to +value: a round number that fits the values of the last `RECENT`.
+
+    least: what it does not fall below [any unit]. grows: whether greater values make it grow.
     """
 
-    def __init__(self, start: float) -> None:
-        self._limit = start
-
-    @property
-    def value(self) -> float:
-        """The present limit; 1 while all values have been zero."""
-        return self._limit or 1.0
-
-    def include(self, value: float) -> None:
-        """Grow to the next round number if `value` >= 0 exceeds the limit."""
-        if value > self._limit:
-            self._limit = rounded_up(value)
-
-
-class RecentLimit:
-    """A limit that fits the values of the last `WINDOW`: so a start or a manoeuvre does not fix it. fixed: 0, or it."""
-
-    WINDOW = 3_000_000_000  # ns
-
-    def __init__(self, fixed: float) -> None:
-        self._fixed = fixed
+    def __init__(self, least: float, *, grows: bool = True) -> None:
+        self._least, self._grows = least, grows
         self._greatest: deque[tuple[int, float]] = deque()  # ns, value: each greater than those after it
 
     @property
     def value(self) -> float:
         """The present limit; 1 while all values have been zero."""
-        return self._fixed or (self._greatest and rounded_up(self._greatest[0][1])) or 1.0
+        greatest = self._greatest[0][1] if self._grows and self._greatest else 0.0
+        return (self._least if greatest <= self._least else rounded_up(greatest)) or 1.0
 
     def include(self, stamp: int, value: float) -> None:
         """Take the `value` >= 0 at `stamp` [ns]."""
@@ -48,7 +33,7 @@ class RecentLimit:
         while recent and (recent[-1][1] <= value or recent[-1][0] > stamp):
             recent.pop()
         recent.append((stamp, value))
-        while recent[0][0] < stamp - self.WINDOW:
+        while recent[0][0] < stamp - RECENT:
             recent.popleft()
 
 

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A plot of profiles against the abscissa X: curves, their envelope so far, and axes with ticks.
+"""A plot of profiles against the abscissa X: curves, their envelope in the last seconds, and axes with ticks.
 
 Rerun only plots against time. So the plot is made of lines in a two-dimensional view, whose axes share one scale and
-whose y points down: drawn x = WIDTH * X / length, drawn y = -value / (2 limit). If a value exceeds the limit, the limit
-grows to the next round number, and the ticks with it.
+whose y points down: drawn x = WIDTH * X / length, drawn y = -value / (2 limit). The limit
+is a round number that fits the last seconds, and the ticks follow it.
 """
 
+from collections import deque
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ import rerun as rr
 from eel_viz import entities
 from eel_viz.batched_stream import BatchedStream
 from eel_viz.messages import same
-from eel_viz.plots.limit import Limit
+from eel_viz.plots.limit import RECENT, Limit
 from eel_viz.scene3d import colours
 from eel_viz.scene3d.colours import Colour
 from eel_viz.scene3d.labels import text_labels
@@ -22,6 +23,7 @@ from eel_viz.scene3d.labels import text_labels
 WIDTH = 5.2
 LABEL_RISE = 0.085  # a label hangs below its point
 IN_FRONT = 40.0  # draw order of labels: before the curves (30), their envelope (20) and the frame (10)
+SLOT = 500_000_000  # ns: the envelope forgets in such steps
 BOUNDS_X = (-0.5, WIDTH + 0.18)
 BOUNDS_Y = (-0.79, 0.79)
 
@@ -30,7 +32,7 @@ class ProfilePlot:
     """Draws up to three profiles into the entities below `root` of a recording.
 
     names: of the curves (C1, C2, C3), from back to front. unit: of the values. limit: the value at the upper edge at
-    first; 0: what fits the values so far. palette: colours of the curves. widths: of the curves [pixels].
+    first; 0: what fits the last values. palette: colours of the curves. widths: of the curves [pixels].
     """
 
     def __init__(
@@ -49,7 +51,7 @@ class ProfilePlot:
         self._palette, self._widths = palette, widths
         self._ticks: tuple[float, float] | None = None
         self._x: np.ndarray | None = None
-        self._low = self._high = np.empty(0)
+        self._slots: deque[tuple[int, np.ndarray, np.ndarray]] = deque()  # number, least and greatest values
         self._draw_frame()
 
     @property
@@ -57,14 +59,20 @@ class ProfilePlot:
         """The value at the upper edge."""
         return self._limit.value
 
-    def include(self, x: np.ndarray, values: np.ndarray) -> None:
-        """Extend the envelope and the limit by `values`, (M, n) at stations `x` (M,) [m]."""
+    def include(self, stamp: int, x: np.ndarray, values: np.ndarray) -> None:
+        """Extend the envelope and the limit by `values`, (M, n) at stations `x` (M,) [m], at `stamp` [ns]."""
         if self._x is None or not same(self._x, x):
-            self._x, self._low, self._high = x, np.array(values), np.array(values)
-        else:
-            np.minimum(self._low, values, out=self._low)
-            np.maximum(self._high, values, out=self._high)
-        self._limit.include(float(np.max(np.abs(values))))
+            self._x = x
+            self._slots.clear()
+        slot = stamp // SLOT
+        if not self._slots or self._slots[-1][0] != slot:
+            self._slots.append((slot, np.array(values), np.array(values)))
+        _, low, high = self._slots[-1]
+        np.minimum(low, values, out=low)
+        np.maximum(high, values, out=high)
+        while self._slots[0][0] <= slot - RECENT // SLOT:
+            self._slots.popleft()
+        self._limit.include(stamp, float(np.max(np.abs(values))))
 
     def draw(self, stamp: int, x: np.ndarray, values: np.ndarray) -> None:
         """Draw the curves of `values`, (M, n) at stations `x` (M,) [m], at `stamp` [ns]."""
@@ -75,9 +83,11 @@ class ProfilePlot:
         self._stream.add_row(stamp, f"{self._root}/{entities.CURVES}", rr.LineStrips2D, strips=self._drawn(x, values))
 
     def draw_envelope(self, stamp: int) -> None:
-        """Draw the least and the greatest value so far at each station, behind the curves."""
+        """Draw the least and the greatest value of the last seconds at each station, behind the curves."""
         if self._x is not None:
-            strips = np.concatenate([self._drawn(self._x, self._low), self._drawn(self._x, self._high)])
+            _, lows, highs = zip(*self._slots, strict=True)
+            extremes = np.minimum.reduce(lows), np.maximum.reduce(highs)
+            strips = np.concatenate([self._drawn(self._x, each) for each in extremes])
             self._stream.add_row(stamp, f"{self._root}/{entities.ENVELOPE}", rr.LineStrips2D, strips=strips)
 
     def _drawn(self, x: np.ndarray, values: np.ndarray) -> np.ndarray:

@@ -16,11 +16,16 @@ SERIES = {  # entity: (name, colour) of each value
     entities.ATTITUDE: (("heading", _THREE), ("pitch", _TWO), ("roll", _ONE)),
     entities.LINEAR: (("x", _ONE), ("y", _TWO), ("z", _THREE)),
     entities.ANGULAR: (("x", _ONE), ("y", _TWO), ("z", _THREE)),
-    entities.SPEED: (("speed [m/s]", _THREE),),
-    entities.DEPTH: (("depth [m]", _ONE),),
-    entities.POWER: (("actuator", _TWO), ("wake", _ONE), ("nose", colours.GREY), ("drag", colours.MAGENTA)),
-    entities.KINETIC: (("body", _ONE), ("fluid", _THREE)),
-    entities.RESIDUAL: (("residual [J]", colours.MAGENTA),),
+    entities.SPEED: (("speed [m/s]", colours.PLAIN),),
+    entities.DEPTH: (("depth [m]", colours.PLAIN),),
+    entities.POWER: (
+        ("actuators", colours.ACTUATORS),
+        ("wake", colours.WAKE),
+        ("nose", colours.ENDS),
+        ("drag", colours.FORCE),
+    ),
+    entities.KINETIC: (("body", colours.PLAIN), ("water", colours.FORCE)),
+    entities.RESIDUAL: (("residual [J]", colours.PLAIN),),
 }
 
 

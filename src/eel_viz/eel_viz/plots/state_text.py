@@ -10,6 +10,7 @@ import numpy as np
 
 from eel_viz.messages import Body
 from eel_viz.plots.readable import number
+from eel_viz.settings import Drawing
 
 MAXIMUM_AGE = 2_000_000_000  # ns: older diagnostics are not shown as the present state
 LABELS = {  # key of the diagnostics: its label
@@ -44,7 +45,8 @@ class Summary:
         self._first: tuple[int, np.ndarray] | None = None
         self._last: tuple[int, np.ndarray] | None = None
         self._path = 0.0  # m
-        self._peak: tuple[float, float, int] = (0.0, 0.0, 0)  # N m, m, ns
+        self._torque: tuple[float, float, int] = (0.0, 0.0, 0)  # N m, m, ns: the greatest of the last sample
+        self._peak = self._torque  # the greatest so far
 
     def add_position(self, stamp: int, position: np.ndarray) -> None:
         """Add the head's `position`, (3,) [m] in the world, at `stamp` [ns]."""
@@ -57,8 +59,9 @@ class Summary:
     def add_torque(self, stamp: int, x: np.ndarray, torque: np.ndarray) -> None:
         """Add the yaw torque C3, (M,) [N m], at stations `x` (M,) [m] and `stamp` [ns]."""
         k = int(np.argmax(np.abs(torque)))
+        self._torque = (float(torque[k]), float(x[k]), stamp)
         if abs(torque[k]) > abs(self._peak[0]):
-            self._peak = (float(torque[k]), float(x[k]), stamp)
+            self._peak = self._torque
 
     def add_status(self, stamp: int, state: str, values: dict[str, str]) -> bool:
         """Add message and values of the diagnostics at `stamp` [ns]; they apply once the head has reached that stamp.
@@ -95,11 +98,10 @@ class Summary:
             seconds = (self._last[0] - self._first[0]) / 1e9
             mean = self._path / seconds if seconds > 0 else 0.0
             lines.append(f"until {self._last[0] / 1e9:.1f} s: mean speed **{mean:.3f} m/s**, path {self._path:.2f} m")
-        torque, x, stamp = self._peak
-        if torque:
-            lines.append(
-                f"greatest C3 of the samples so far **{torque:+.3g} N m** at X = {x:.2f} m, {stamp / 1e9:.2f} s"
-            )
+        if self._peak[0]:
+            (torque, x, _), (peak, peak_x, stamp) = self._torque, self._peak
+            lines.append(f"greatest C3 along the body **{torque:+.3g} N m** at X = {x:.2f} m")
+            lines.append(f"of the samples so far {peak:+.3g} N m at X = {peak_x:.2f} m, {stamp / 1e9:.2f} s")
         if self.body is not None:
             lines.append(f"body {self.body.length:.3g} m, {self.body.mass:.4g} kg")
         return "  \n".join(line for line in lines if line)
@@ -115,6 +117,20 @@ class Summary:
         shown["greatest C3 of the samples [N m]"] = f"{self._peak[0]:+.4f}"
         shown["warnings"] = str(len(self.values["warnings"].split("; "))) if self.values.get("warnings") else "none"
         return shown
+
+
+def look_text(scales: Drawing) -> str:
+    """Markdown: what to look at, in three sentences, and the scales of the arrows."""
+    lines = [
+        "The eel swims towards its eyes: bends run from nose to tail and push the water back.",
+        "Colour on its flanks is the torque **C3** that bends it sideways, red one way and blue the other, on the "
+        "scale of the map at the upper right.",
+        "Arrows are the **force of the water** (yellow; magenta at nose and tail), violet threads what the tail leaves "
+        "in the **wake**.",
+        "",
+        f"Lengths: {scales.load_scale:g} m for 1 N/m along the body, {scales.end_force_scale:g} m for 1 N at its ends.",
+    ]
+    return "\n".join(lines)
 
 
 def plain(name: str, longest: int = LONGEST_NAME) -> str:

@@ -71,13 +71,13 @@ class DeliveryMonitor:
                 )
         self._last_check = time.monotonic()
 
-    def close(self, duration: float = 0.0) -> None:
-        """Flush and close the stream of a run of `duration` [s], which completes a file.
+    def close(self, end: float = 0.0) -> None:
+        """Flush and close the stream of a run that ends at `end` [s], which completes a file.
 
         A stream that blocks is detached instead.
         """
         if self.accepts_data:
-            self._destination.fit(self._stream, duration)
+            self._destination.fit(self._stream, end)
         arrived = not self._watched or self.failed or self.disconnected or self._flush()
         if self._path is None and not arrived and not self.disconnected:
             detach_blocked(self._stream)

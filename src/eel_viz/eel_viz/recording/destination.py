@@ -13,11 +13,10 @@ import rerun.blueprint as rrb
 from eel_viz.recording.rates import Rates
 from eel_viz.settings import Settings
 from eel_viz.views.blueprint import arrangement
-from eel_viz.views.views import USUAL, Look
+from eel_viz.views.views import Look
 
 APPLICATION = "eel"  # Rerun's application id
 CLOSE_TIMEOUT = 3.0  # s for the last flush of a stream
-LONG = 1.2  # of the usual duration: recordings that are longer get legends of their own
 
 LogFunction = Callable[[str], None]
 
@@ -61,16 +60,16 @@ class Destination(ABC):
         stream.send_recording_name(name)
         return stream
 
-    def blueprint(self, duration: float = USUAL) -> rrb.Blueprint:
-        """The arrangements of a recording of `duration` [s]."""
+    def blueprint(self, end: float = 0.0) -> rrb.Blueprint:
+        """The arrangements of a recording that ends at `end` [s]; 0: it has not ended."""
         chosen = self.settings
-        look = Look(frames=chosen.frames, wake=chosen.wake, duration=duration)
+        look = Look(frames=chosen.frames, wake=chosen.wake, end=end)
         return arrangement(chosen.blueprint, live=self.live, comparison=bool(chosen.compare), look=look)
 
-    def fit(self, stream: rr.RecordingStream, duration: float) -> None:
-        """Fit the legends of a recording that ends to its `duration` [s], where that is longer than usual."""
-        if not self.live and duration > LONG * USUAL:
-            stream.send_blueprint(self.blueprint(duration), make_active=False, make_default=True)
+    def fit(self, stream: rr.RecordingStream, end: float) -> None:
+        """Fit the axes of a recording that ends at `end` [s], and what is repeated of it."""
+        if not self.live and end > 0.0:
+            stream.send_blueprint(self.blueprint(end), make_active=False, make_default=True)
 
     def close_recording(self, stream: rr.RecordingStream) -> None:
         """Close a recording's stream."""

@@ -18,10 +18,10 @@ from eel_viz.batched_stream import BatchedStream
 from eel_viz.messages import Backbone, Body, Load, Pose, Profiles, Status, Twist, same
 from eel_viz.plots.comparison import Comparison
 from eel_viz.plots.heat_map import HeatMap
-from eel_viz.plots.limit import RecentLimit
+from eel_viz.plots.limit import Limit
 from eel_viz.plots.profile_plot import ProfilePlot
 from eel_viz.plots.series import Attitude, log_styles
-from eel_viz.plots.state_text import Summary
+from eel_viz.plots.state_text import Summary, look_text
 from eel_viz.recording.rates import Rates, Slots, period_of
 from eel_viz.scene3d import colours
 from eel_viz.scene3d.swimmer_scene import SwimmerScene
@@ -65,9 +65,10 @@ class Loggers:
                 (entities.CURVATURE, ("K2", "K3"), "rad/m", settings.curvature_limit),
             )
         )
-        self._colour_limit = RecentLimit(settings.colour_limit)
+        self._colour_limit = Limit(settings.colour_limit, grows=not settings.colour_limit)
         self._heat_map = HeatMap(stream, limit=self._colour_limit)
         log_styles(stream)
+        stream.log_static(entities.LOOK, rr.TextDocument(look_text(settings), media_type="text/markdown"))
         self._targets: tuple[list[object], list[object]] = [self], []  # what draws this run, and the compared one
         if settings.compare:
             comparison = Comparison(
@@ -147,8 +148,8 @@ class Loggers:
         torque = wrench.together("torque_1", "torque_2", "torque_3")
         force = wrench.together("force_1", "force_2", "force_3")
         self.summary.add_torque(stamp, wrench.x, torque[:, 2])
-        self._torque.include(wrench.x, torque)
-        self._force.include(wrench.x, force)
+        self._torque.include(stamp, wrench.x, torque)
+        self._force.include(stamp, wrench.x, force)
         if self._due("wrench", stamp, self._number_period):
             self._numbers(stamp, entities.WRENCH_NUMBERS, "InternalWrench", wrench.values, wrench.x)
         self._colour_limit.include(stamp, float(np.abs(torque[:, 2]).max()))
@@ -166,7 +167,7 @@ class Loggers:
     def curvature(self, stamp: int, curvature: Profiles) -> None:
         """Log the body's curvatures K2 and K3."""
         values = curvature.together("pitch", "yaw")
-        self._curvature.include(curvature.x, values)
+        self._curvature.include(stamp, curvature.x, values)
         if self._due("curvature", stamp, self._number_period):
             self._numbers(stamp, entities.CURVATURE_NUMBERS, "Curvature", curvature.values, curvature.x)
         if self._due("curvature drawn", stamp, self._drawing_period):

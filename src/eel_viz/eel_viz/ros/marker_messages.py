@@ -42,15 +42,15 @@ class SkinMarker:
 
 
 class ForceMarkers:
-    """The fluid's force on the body as arrows: per length along it in teal, at nose and tail in magenta."""
+    """The fluid's force on the body as arrows: per length along it in yellow, at nose and tail in magenta."""
 
     def __init__(self, settings: MarkerSettings) -> None:
         self._vectors = LoadVectors(load_scale=settings.load_scale, end_scale=settings.end_force_scale)
 
     def markers(self, header: Header, backbone: Backbone, load: Load) -> list[Marker]:
         """One marker for each arrow; those that a shape with more stations had are deleted."""
-        along = _arrows(header, "load", self._vectors.along(backbone, load), colours.TEAL, WIDTHS)
-        ends = _arrows(header, "end_force", self._vectors.ends(backbone, load), colours.MAGENTA, END_WIDTHS)
+        along = _arrows(header, "load", self._vectors.along(backbone, load), colours.FORCE, WIDTHS)
+        ends = _arrows(header, "end_force", self._vectors.ends(backbone, load), colours.ENDS, END_WIDTHS)
         gone = [Marker(header=header, ns="load", id=k, action=Marker.DELETE) for k in range(len(along), ALONG)]
         return [*along, *gone, *ends]
 

@@ -30,8 +30,8 @@ class Arrows:
         self._backbones: OrderedDict[int, Backbone] = OrderedDict()
         self._loads: OrderedDict[int, Load] = OrderedDict()
         self._wake = Wake(stream, wake_scale)
-        stream.log_static(entities.LOAD, rr.Arrows3D.from_fields(colors=[colours.TEAL], radii=[0.0022]))
-        stream.log_static(entities.LOAD_ENDS, rr.Arrows3D.from_fields(colors=[colours.MAGENTA], radii=[0.004]))
+        stream.log_static(entities.LOAD, rr.Arrows3D.from_fields(colors=[colours.FORCE], radii=[0.0022]))
+        stream.log_static(entities.LOAD_ENDS, rr.Arrows3D.from_fields(colors=[colours.ENDS], radii=[0.004]))
 
     def backbone(self, stamp: int, backbone: Backbone) -> None:
         """Take the backbone at `stamp` [ns]."""

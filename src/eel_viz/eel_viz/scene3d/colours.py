@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Colours for colour-blind readers too: one for each section axis, and a diverging map for signed values.
+"""What each colour means, in every view alike; for colour-blind readers too.
 
-The three axis colours are Okabe and Ito's orange, bluish green and sky blue. The diverging map goes from a light blue
+The colours of the axes are Okabe and Ito's orange, bluish green and sky blue. The diverging map goes from a light blue
 over the dark of the eel's back to a light red, so that both signs differ in hue and lightness from zero, and a body
 without torque looks as it is.
 """
@@ -10,12 +10,16 @@ import numpy as np
 
 Colour = tuple[int, int, int]  # red, green, blue: 0 to 255
 
-AXIS = ((230, 134, 40), (0, 170, 130), (86, 180, 233))  # section axes 1, 2, 3
-TEAL = (38, 190, 170)
-AMBER = (236, 178, 50)
-MAGENTA = (222, 80, 150)
-WAKE = (150, 120, 235)
-GREY = (150, 155, 160)
+AXIS = ((230, 134, 40), (0, 170, 130), (86, 180, 233))  # section axes 1, 2, 3; also x, y, z
+ACTUATORS = (236, 84, 72)  # red: their power
+FORCE = (240, 218, 66)  # yellow: of the water along the body, and its power
+ENDS = (222, 80, 150)  # magenta: of the water at nose and tail, and its power
+WAKE = (150, 120, 235)  # violet: what the tail leaves in it, and its power
+PATH = (150, 172, 192)  # blue-grey: of the head
+COURSE = (150, 232, 196)  # mint: way points of a goal
+OTHER = (244, 244, 240)  # white: the run that is laid over this one
+PLAIN = (190, 196, 202)  # a quantity that is alone in its plot
+GREY = (150, 155, 160)  # no data
 LABEL = (205, 210, 215)
 TICK = (70, 76, 84)
 FRAME = (110, 116, 124)

@@ -36,7 +36,7 @@ class Course:
         legs = rr.LineStrips3D([points.astype(np.float32)], colors=[colours.LABEL], radii=[thin])
         self._stream.log_static(entities.COURSE, legs)
         spheres = rr.Ellipsoids3D(
-            centers=points, half_sizes=np.full((len(points), 3), reach), colors=[colours.AMBER], line_radii=[thin]
+            centers=points, half_sizes=np.full((len(points), 3), reach), colors=[colours.COURSE], line_radii=[thin]
         )
         self._stream.log_static(entities.WAY_POINTS, spheres)
         along = np.diff(points, axis=0)
@@ -46,7 +46,7 @@ class Course:
             radii=np.full(len(lengths), reach),
             translations=points[:-1],
             quaternions=turns_of_up_into(along / np.maximum(lengths, 1e-9)[:, None]),
-            colors=[colours.AMBER],
+            colors=[colours.COURSE],
             line_radii=[thin],
             fill_mode="majorwireframe",
         )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The legend of the following views: a bar of the torque's colours, and the scale of the arrows.
+"""The legend of the following views: a bar of the torque's colours, and what the arrows and threads are.
 
 It stands at the lower edge of the picture, below `camera.CLEAR`, and so never before the swimmer.
 """
@@ -13,10 +13,10 @@ from eel_viz.scene3d import camera, colours
 from eel_viz.scene3d.labels import text_labels
 
 DISTANCE = 1.0  # radii, from the eye: so a tangent in the picture is a length in radii
-BAR_AT = (-0.54, -0.425)  # tangents: the middle of the bar
-BAR_SIZE = (0.30, 0.018)
-ARROWS_AT = ((0.19, -0.395), (0.50, -0.395))  # of the load along the body, and at the ends
-WAKE_AT = (0.345, -0.45)  # of the wake
+BAR_AT = (-0.50, -0.425)  # tangents: the middle of the bar
+BAR_SIZE = (0.27, 0.018)
+WORDS_AT = -0.43  # tangent: the height of the words
+FORCE_AT, ENDS_AT, WAKE_AT = -0.06, 0.27, 0.51  # tangents: the middles of the words
 STEPS = 33
 
 
@@ -39,15 +39,15 @@ def log_bar(stream: BatchedStream, stamp: int, *, limit: float, unit: str, name:
     )
 
 
-def log_arrow_scale(
-    stream: BatchedStream, stamp: int, *, load_scale: float, end_scale: float, wake_scale: float
-) -> None:
-    """Log what the lengths of arrows and wake mean: `load_scale` [m per N/m], `end_scale`, `wake_scale` [m per N]."""
-    at = camera.before_eye(DISTANCE, *WAKE_AT)
-    wake = f"momentum to the wake per time (scheme), 1 N: {wake_scale:g} m"
-    stream.log(stamp, entities.WAKE_LEGEND, text_labels(rr.Points3D, [at], [wake], [colours.WAKE]))
-    texts = [f"1 N/m: {load_scale:g} m", f"1 N: {end_scale:g} m"]
-    places = [camera.before_eye(DISTANCE, right, up) for right, up in ARROWS_AT]
-    stream.log(
-        stamp, f"{entities.LEGEND}/arrows", text_labels(rr.Points3D, places, texts, [colours.TEAL, colours.MAGENTA])
-    )
+def log_words(stream: BatchedStream, stamp: int) -> None:
+    """Log what arrows and threads are, in their colours."""
+    for path, words in (
+        (
+            f"{entities.LEGEND}/arrows",
+            ((FORCE_AT, "force of the water", colours.FORCE), (ENDS_AT, "nose and tail", colours.ENDS)),
+        ),
+        (entities.WAKE_LEGEND, ((WAKE_AT, "wake", colours.WAKE),)),
+    ):
+        at, texts, shades = zip(*words, strict=True)
+        places = [camera.before_eye(DISTANCE, right, WORDS_AT) for right in at]
+        stream.log(stamp, path, text_labels(rr.Points3D, places, list(texts), shades))

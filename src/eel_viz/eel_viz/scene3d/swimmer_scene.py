@@ -24,7 +24,7 @@ class SwimmerScene:
     """Draws into `stream`; reach: that of `Course`; scales: those of `Arrows`, by name."""
 
     def __init__(self, stream: BatchedStream, *, reach: float, **scales: float) -> None:
-        self._stream, self._scales = stream, scales
+        self._stream = stream
         self._skin: Skin | None = None
         self._torque_limit = 0.0  # N m: of the colours in the legend
         self._loaded = False
@@ -89,7 +89,7 @@ class SwimmerScene:
         """Colour the flanks by `torque` (M,) [N m] at `x` (M,) [m]; the colours are deepest at `limit`."""
         if limit != self._torque_limit:
             self._torque_limit = limit
-            legend.log_bar(self._stream, stamp, limit=limit, unit="N m", name="C3")
+            legend.log_bar(self._stream, stamp, limit=limit, unit="N m", name="torque C3")
         if self._skin is not None:
             shades = self._skin.coloured(x, torque, limit)
             self._stream.add_row(stamp, entities.SKIN, rr.Mesh3D, vertex_colors=shades)
@@ -98,7 +98,7 @@ class SwimmerScene:
         """Draw the force of the water as arrows."""
         if not self._loaded:
             self._loaded = True
-            legend.log_arrow_scale(self._stream, stamp, **self._scales)
+            legend.log_words(self._stream, stamp)
         self._arrows.load(stamp, load)
 
 

@@ -53,9 +53,9 @@ class Track:
         self._stream = stream
         self._places = RecentRows(3)  # m
         self._ages = _ages() * 1e9  # ns, (PIECES, POINTS), from the present backwards
-        stream.log_line_style(entities.TRACK, colours.dim(colours.AMBER), width=0.8)
+        stream.log_line_style(entities.TRACK, colours.dim(colours.PATH), width=0.8)
         left = 1.0 - np.arange(PIECES) / PIECES  # of the colour
-        stream.log_line_style(entities.TRAIL, colours.faded(colours.AMBER, left), width=0.5 + 1.1 * left)
+        stream.log_line_style(entities.TRAIL, colours.faded(colours.PATH, left), width=0.5 + 1.1 * left)
 
     def draw(self, stamp: int, position: np.ndarray) -> None:
         """Continue to `position`, (3,) [m] in the world, at `stamp` [ns]."""

@@ -6,42 +6,42 @@ A recording carries all of them as tabs: those of `ARRANGEMENTS`, and `compare` 
 
 from collections.abc import Callable
 
+import rerun as rr
 import rerun.blueprint as rrb
 from eel_base.wording import not_one_of
 
 from eel_viz import entities
 from eel_viz.settings import BLUEPRINTS
 from eel_viz.views.views import (
-    NARROW,
     PLAIN,
-    WIDE,
     Look,
     following_view,
     heat_map_view,
     path_view,
     profile_view,
-    run_tabs,
     series_view,
+    texts,
 )
+
+SETTLED = 0.4  # of a run: from here on it is repeated, for the swim is settled by then
+POWER_SHOWN = 4.0  # s: duration of the last power that is shown, so that its scale fits the swim and not its start
+POWER = "Power [W]: actuators red, drag yellow, wake violet, nose magenta"
+XYZ = "x orange, y green, z blue"
 
 
 def overview(look: Look) -> rrb.Container:
-    """The swimmer, its profiles, its power, and the run's state and residual."""
+    """The swimmer, its torque, its power, its speed, and what to look at."""
     return rrb.Horizontal(
+        rrb.Vertical(rrb.Tabs(following_view(look), path_view(look)), texts(look), row_shares=[2.5, 1.0]),
         rrb.Vertical(
-            rrb.Tabs(following_view(look), path_view(look)),
-            rrb.Horizontal(
-                series_view("Speed and depth of the head", entities.SPEED, entities.DEPTH, legend=look.room(NARROW)),
-                series_view("Power into body and fluid [W]", entities.POWER, legend=look.room(NARROW)),
-            ),
-            row_shares=[2.3, 1.0],
-        ),
-        rrb.Vertical(
-            profile_view(entities.TORQUE, "Internal torque C(X)"),
-            profile_view(entities.FORCE, "Internal force N(X)"),
             heat_map_view(),
-            rrb.Horizontal(run_tabs(), series_view("Energy residual [J]", entities.RESIDUAL), column_shares=[1.1, 1.0]),
-            row_shares=[1.15, 1.15, 1.15, 1.15],
+            profile_view(entities.TORQUE, "Internal torque C(X)"),
+            series_view(look, POWER, entities.POWER, last=POWER_SHOWN),
+            rrb.Horizontal(
+                series_view(look, "Speed of the head [m/s]", entities.SPEED),
+                series_view(look, "Depth of the head [m]", entities.DEPTH),
+            ),
+            row_shares=[1.0, 0.95, 1.1, 1.05],
         ),
         column_shares=[1.15, 1.0],
         name="overview",
@@ -63,20 +63,19 @@ def torques(look: Look) -> rrb.Container:
 
 def motion(look: Look) -> rrb.Container:
     """Path, attitude and velocities of the head."""
-    wide = look.room(WIDE)
     return rrb.Horizontal(
         rrb.Vertical(
             path_view(look),
             rrb.Horizontal(
-                series_view("Speed and depth of the head", entities.SPEED, entities.DEPTH, legend=look.room(NARROW)),
-                series_view("Kinetic energy [J]", entities.KINETIC, legend=look.room(NARROW)),
+                series_view(look, "Speed of the head [m/s]", entities.SPEED),
+                series_view(look, "Kinetic energy [J]: body grey, water yellow", entities.KINETIC),
             ),
             row_shares=[2.1, 1.0],
         ),
         rrb.Vertical(
-            series_view("Attitude of the head [deg]", entities.ATTITUDE, legend=wide),
-            series_view("Velocity of the head in base_link [m/s]", entities.LINEAR, legend=wide),
-            series_view("Angular velocity of the head in base_link [rad/s]", entities.ANGULAR, legend=wide),
+            series_view(look, "Head [deg]: heading blue, pitch green, roll orange", entities.ATTITUDE),
+            series_view(look, f"Velocity of the head in base_link [m/s]: {XYZ}", entities.LINEAR),
+            series_view(look, f"Angular velocity in base_link [rad/s]: {XYZ}", entities.ANGULAR),
         ),
         column_shares=[1.3, 1.0],
         name="motion",
@@ -95,8 +94,8 @@ def compare(look: Look) -> rrb.Container:
         rrb.Vertical(
             following_view(look, both=True),
             rrb.Horizontal(
-                series_view("Heads apart [m]", entities.DISTANCE),
-                series_view("Speed of both heads [m/s]", *speeds, legend=look.room(2 * NARROW)),
+                series_view(look, "Heads apart [m]", entities.DISTANCE),
+                series_view(look, "Speed of both heads [m/s]: this grey, the other white", *speeds),
             ),
             row_shares=[1.9, 1.0],
         ),
@@ -105,7 +104,7 @@ def compare(look: Look) -> rrb.Container:
             profile_view(entities.TORQUE_DIFFERENCE, "Difference of the torques (this - other)"),
             rrb.Horizontal(
                 rrb.TextDocumentView(name="Both runs", origin=entities.COMPARE_TEXT),
-                series_view("Apart [N m]", entities.TORQUE_DIFFERENCE_MOST),
+                series_view(look, "Apart [N m]", entities.TORQUE_DIFFERENCE_MOST),
                 column_shares=[1.7, 1.0],
             ),
             row_shares=[1.0, 1.0, 1.75],
@@ -125,17 +124,25 @@ def arrangement(
 ) -> rrb.Blueprint:
     """All arrangements as tabs, `first` in front. `ValueError` for an unknown one.
 
-    live: the time cursor follows the newest data, otherwise it stands at the start. comparison: with another run.
+    live: the time cursor follows the newest data; otherwise it plays, and repeats the swim, or all of a run whose end
+    is not known. comparison: with another run.
     """
     if first not in ARRANGEMENTS:
         raise ValueError(not_one_of("blueprint", first, ARRANGEMENTS))
     names = [name for name in ARRANGEMENTS if name != "compare" or comparison or first == "compare"]
+    swim = (rr.encodings.TimeInt(seconds=seconds) for seconds in (SETTLED * look.end, look.end))
     return rrb.Blueprint(
         rrb.Tabs(*(ARRANGEMENTS[name](look) for name in names), active_tab=names.index(first)),
         rrb.TopPanel(state="hidden"),
         rrb.BlueprintPanel(state="hidden"),
         rrb.SelectionPanel(state="hidden"),
-        rrb.TimePanel(state="collapsed", timeline=entities.TIMELINE, play_state="following" if live else "paused"),
+        rrb.TimePanel(
+            state="collapsed",
+            timeline=entities.TIMELINE,
+            play_state="following" if live else "playing",
+            loop_mode="off" if live else "selection" if look.end else "all",
+            time_selection=rr.encodings.AbsoluteTimeRange(*swim) if look.end else None,
+        ),
         auto_layout=False,
         auto_views=False,
     )

@@ -14,8 +14,7 @@ from eel_viz import entities
 from eel_viz.plots import heat_map, profile_plot
 from eel_viz.scene3d import camera, colours
 
-NARROW, WIDE = 0.45, 0.2  # of a run's duration: time before its start, for the legend of a narrow or a wide view
-USUAL = 10.0  # s: duration of a run that has not ended
+MARGIN = 0.05  # of a run's duration: time after its end, for the last label of the axis
 LOADS = entities.LOAD, entities.LOAD_ENDS
 FRAMES = entities.HEAD, entities.TAIL
 WAKE = entities.WAKE, entities.WAKE_LEGEND
@@ -23,20 +22,16 @@ WAKE = entities.WAKE, entities.WAKE_LEGEND
 
 @dataclass(frozen=True, kw_only=True)
 class Look:
-    """What is shown of `frames`, the axes of head and tail, and of the `wake`; and the `duration` of the run [s]."""
+    """What is shown of `frames`, the axes of head and tail, and of the `wake`; the `end` of the run [s], 0: unknown."""
 
     frames: bool = False
     wake: bool = True
-    duration: float = USUAL
+    end: float = 0.0
 
     @property
     def hidden(self) -> tuple[str, ...]:
         """The entities that are not shown."""
         return (*(() if self.frames else FRAMES), *(() if self.wake else WAKE))
-
-    def room(self, share: float) -> float:
-        """The time [s] before the run's start that a legend takes, which has this `share` of the duration."""
-        return share * self.duration
 
 
 PLAIN = Look()
@@ -90,7 +85,12 @@ def profile_view(root: str, name: str) -> rrb.Spatial2DView:
 
 def heat_map_view() -> rrb.Spatial2DView:
     """C3 over X and time."""
-    return _drawing(entities.HEAT_MAP, "Torque C3(X, t) [N m]", heat_map.BOUNDS_X, heat_map.BOUNDS_Y)
+    return _drawing(
+        entities.HEAT_MAP,
+        "Torque C3 over body and time: pulses run from nose to tail",
+        heat_map.BOUNDS_X,
+        heat_map.BOUNDS_Y,
+    )
 
 
 def _drawing(root: str, name: str, x: tuple[float, float], y: tuple[float, float]) -> rrb.Spatial2DView:
@@ -98,21 +98,34 @@ def _drawing(root: str, name: str, x: tuple[float, float], y: tuple[float, float
     return rrb.Spatial2DView(name=name, origin=root, background=colours.PLOT_BACKGROUND, visual_bounds=bounds)
 
 
-def run_tabs() -> rrb.Tabs:
-    """The run's summary, and the log."""
-    return rrb.Tabs(
-        rrb.TextDocumentView(name="Run", origin=entities.RUN),
-        rrb.TextLogView(name="Log", origin=entities.LOG),
+def texts(look: Look) -> rrb.Container:
+    """What to look at; and the run's summary, the log, and the residual, as tabs."""
+    return rrb.Horizontal(
+        rrb.TextDocumentView(name="What to look at", origin=entities.LOOK),
+        rrb.Tabs(
+            rrb.TextDocumentView(name="Run", origin=entities.RUN),
+            rrb.TextLogView(name="Log", origin=entities.LOG),
+            series_view(look, "Energy residual [J]", entities.RESIDUAL),
+        ),
     )
 
 
-def series_view(name: str, *paths: str, legend: float = 0.0) -> rrb.TimeSeriesView:
-    """Values over time. `legend` [s]: the time before the start, which the legend fills; 0: no legend."""
-    start = rrb.TimeRangeBoundary.absolute(seconds=-legend)
+def series_view(look: Look, name: str, *paths: str, last: float = 0.0) -> rrb.TimeSeriesView:
+    """Values over time, of the whole run or of the `last` seconds before the cursor.
+
+    The name says which colour is what, so no legend covers the curves.
+    """
+    start = end = rrb.TimeRangeBoundary.infinite()
+    if last:
+        start, end = (rrb.TimeRangeBoundary.cursor_relative(seconds=seconds) for seconds in (-last, 0.0))
+    elif look.end:
+        end = rrb.TimeRangeBoundary.absolute(seconds=(1.0 + MARGIN) * look.end)
     return rrb.TimeSeriesView(
         name=name,
         origin=entities.PLOTS,
         contents=list(paths),
-        plot_legend=rrb.PlotLegend(corner="LeftTop", visible=legend > 0.0),
-        axis_x=rrb.TimeAxis(view_range=rr.TimeRange(start=start, end=rrb.TimeRangeBoundary.infinite())),
+        plot_legend=rrb.PlotLegend(visible=False),
+        axis_x=rrb.TimeAxis(view_range=rr.TimeRange(start=start, end=end)),
+        time_ranges=rrb.VisibleTimeRange(entities.TIMELINE, start=start, end=end) if last else None,
+        background=rrb.archetypes.PlotBackground(color=colours.PLOT_BACKGROUND),
     )
